@@ -1,0 +1,6 @@
+//! termtrace: a live ray tracer whose screen is the terminal.
+
+#[cfg(not(any(target_os = "linux", target_os = "macos")))]
+compile_error!("termtrace runs on Linux and macOS: it talks to the terminal through POSIX termios, poll and signals");
+
+pub mod input;
