@@ -3,4 +3,16 @@
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
 compile_error!("termtrace runs on Linux and macOS: it talks to the terminal through POSIX termios, poll and signals");
 
+pub mod color;
+pub mod ray;
+pub mod shape;
+pub mod material;
+pub mod light;
+pub mod camera;
+pub mod scene;
+pub mod hit;
+pub mod shade;
+pub mod framebuffer;
+pub mod render;
+pub mod tone;
 pub mod input;

@@ -1,0 +1,260 @@
+//! Light as numbers: linear RGB, 8-bit sRGB, and the transfer function between them.
+//!
+//! Every colour in the crate is one of two types, because a mix-up would give a picture that looks plausible and is
+//! wrong: [`LinearRgb`] is an amount of light, which may be added and scaled; [`Srgb8`] is what a file or a terminal
+//! is told, which may not. The way from the first to the second is the picture's last step (see [`tone`](crate::tone)).
+//!
+//! The primaries are those of sRGB (IEC 61966-2-1), the white is D65.
+
+use std::ops::{Add, AddAssign, Mul};
+use std::sync::LazyLock;
+
+/// An amount of light in three bands, linear, in sRGB's primaries. 1 is the screen's white at exposure 1; values
+/// above 1 are legal light.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinearRgb {
+    /// Red, linear.
+    pub r: f32,
+    /// Green, linear.
+    pub g: f32,
+    /// Blue, linear.
+    pub b: f32,
+}
+
+impl LinearRgb {
+    /// No light.
+    pub const BLACK: Self = Self::new(0.0, 0.0, 0.0);
+
+    /// The three bands, linear.
+    pub const fn new(r: f32, g: f32, b: f32) -> Self {
+        Self { r, g, b }
+    }
+
+    /// The same amount in each band.
+    pub const fn grey(amount: f32) -> Self {
+        Self::new(amount, amount, amount)
+    }
+
+    /// What an 8-bit sRGB colour means as light, each band in 0..=1.
+    pub fn from_srgb8(color: Srgb8) -> Self {
+        let table = &TRANSFER.linear_from_srgb8;
+        Self::new(
+            table[usize::from(color.r)],
+            table[usize::from(color.g)],
+            table[usize::from(color.b)],
+        )
+    }
+
+    /// The relative luminance Y of CIE 1931 (the second row of sRGB's matrix; IEC 61966-2-1).
+    pub fn luminance(self) -> f32 {
+        0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
+    }
+
+    /// The mix of `self` (at `t` = 0) and `other` (at `t` = 1).
+    pub fn lerp(self, other: Self, t: f32) -> Self {
+        self * (1.0 - t) + other * t
+    }
+
+    /// Whether no band is infinite or NaN.
+    pub fn is_finite(self) -> bool {
+        self.r.is_finite() && self.g.is_finite() && self.b.is_finite()
+    }
+}
+
+impl Add for LinearRgb {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self::new(self.r + other.r, self.g + other.g, self.b + other.b)
+    }
+}
+
+impl AddAssign for LinearRgb {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+/// Light through a filter, or off a surface of that reflectance: band by band.
+impl Mul for LinearRgb {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self::new(self.r * other.r, self.g * other.g, self.b * other.b)
+    }
+}
+
+impl Mul<f32> for LinearRgb {
+    type Output = Self;
+    fn mul(self, factor: f32) -> Self {
+        Self::new(self.r * factor, self.g * factor, self.b * factor)
+    }
+}
+
+/// A colour as files and terminals take it: sRGB, 8 bits a band, transfer function applied.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Srgb8 {
+    /// Red, 0..=255.
+    pub r: u8,
+    /// Green, 0..=255.
+    pub g: u8,
+    /// Blue, 0..=255.
+    pub b: u8,
+}
+
+impl Srgb8 {
+    /// The three bands.
+    pub const fn new(r: u8, g: u8, b: u8) -> Self {
+        Self { r, g, b }
+    }
+
+    /// The nearest 8-bit colour: each band clamped to 0..=1, put through the transfer function and rounded.
+    /// NaN counts as no light.
+    pub fn from_linear(light: LinearRgb) -> Self {
+        Self::new(
+            srgb8_from_linear(light.r),
+            srgb8_from_linear(light.g),
+            srgb8_from_linear(light.b),
+        )
+    }
+}
+
+/// sRGB's transfer function, linear to encoded (IEC 61966-2-1), both in 0..=1.
+pub fn srgb_from_linear(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
+    }
+}
+
+/// sRGB's transfer function, encoded to linear (IEC 61966-2-1), both in 0..=1.
+pub fn linear_from_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        libm::pow((encoded + 0.055) / 1.055, 2.4)
+    }
+}
+
+/// One band: clamp, encode, round.
+///
+/// Calling `pow` for each band of each pixel would cost more than tracing it. Rounding has only 255 steps, so the
+/// light at which each step is taken is kept instead; a band lies in the step that its exponent and first mantissa
+/// bits lead to, or in one right above it.
+fn srgb8_from_linear(linear: f32) -> u8 {
+    // The negation also catches NaN.
+    if !(linear > 0.0) {
+        return 0;
+    }
+    if linear >= 1.0 {
+        return 255;
+    }
+    let transfer = &*TRANSFER;
+    let mut code = transfer.first_code[(linear.to_bits() >> BUCKET_SHIFT) as usize];
+    while code < 255 && linear >= transfer.linear_at_step[usize::from(code)] {
+        code += 1;
+    }
+    code
+}
+
+/// A bucket is a run of floats that share sign, exponent and the first 5 bits of the mantissa: short enough that it
+/// holds at most a few of the 255 steps.
+const BUCKET_SHIFT: u32 = 18;
+/// One bucket past 1.0's own.
+const BUCKETS: usize = (0x3f80_0000 >> BUCKET_SHIFT) + 1;
+
+/// The transfer function, tabulated.
+struct Transfer {
+    /// Light of each 8-bit code.
+    linear_from_srgb8: [f32; 256],
+    /// `linear_at_step[k]`: the least light that rounds to code k + 1.
+    linear_at_step: [f32; 255],
+    /// The code of the least light in each bucket.
+    first_code: [u8; BUCKETS],
+}
+
+static TRANSFER: LazyLock<Transfer> = LazyLock::new(|| {
+    let linear_from_srgb8 = std::array::from_fn(|code| linear_from_srgb(code as f64 / 255.0) as f32);
+    let linear_at_step = std::array::from_fn(|k| least_f32_at_or_above(linear_from_srgb((k as f64 + 0.5) / 255.0)));
+    let first_code = std::array::from_fn(|bucket| {
+        let least = f32::from_bits((bucket as u32) << BUCKET_SHIFT);
+        linear_at_step.iter().take_while(|&&step| least >= step).count() as u8 // at most 255 steps
+    });
+    Transfer {
+        linear_from_srgb8,
+        linear_at_step,
+        first_code,
+    }
+});
+
+/// Casting rounds to nearest, which may be below.
+fn least_f32_at_or_above(value: f64) -> f32 {
+    let nearest = value as f32;
+    if f64::from(nearest) < value {
+        nearest.next_up()
+    } else {
+        nearest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values of the standard's own formula, worked out with 40 digits.
+    #[test]
+    fn transfer_function_has_the_standards_values() {
+        for (linear, encoded) in [
+            (0.0, 0.0),
+            (0.001, 0.012_92),
+            (0.18, 0.461_356_129_500_442),
+            (0.214_041_140_482_232_55, 0.5),
+            (0.5, 0.735_356_983_052_444_9),
+            (1.0, 1.0),
+        ] {
+            assert!((srgb_from_linear(linear) - encoded).abs() < 1e-9, "{linear}");
+            assert!((linear_from_srgb(encoded) - linear).abs() < 1e-9, "{encoded}");
+        }
+    }
+
+    #[test]
+    fn every_code_survives_the_round_trip() {
+        for code in 0..=255 {
+            let color = Srgb8::new(code, 255 - code, code / 2);
+            assert_eq!(Srgb8::from_linear(LinearRgb::from_srgb8(color)), color);
+        }
+    }
+
+    /// The table against the formula in f64: at every step's two sides, and over the whole range.
+    #[test]
+    fn quantising_is_the_formula_rounded() {
+        let by_formula = |x: f32| (srgb_from_linear(f64::from(x)) * 255.0).round() as u8;
+        let steps = TRANSFER
+            .linear_at_step
+            .iter()
+            .flat_map(|&s| [s.next_down(), s, s.next_up()]);
+        let spread = (0..0x3f80_0000_u32).step_by(997).map(f32::from_bits);
+        for x in steps.chain(spread) {
+            assert_eq!(srgb8_from_linear(x), by_formula(x), "{x:e}");
+        }
+    }
+
+    #[test]
+    fn light_outside_the_screens_range_is_clamped() {
+        for (x, code) in [
+            (-1.0, 0),
+            (-0.0, 0),
+            (f32::NAN, 0),
+            (f32::NEG_INFINITY, 0),
+            (1.0, 255),
+            (7.0, 255),
+            (f32::INFINITY, 255),
+        ] {
+            assert_eq!(srgb8_from_linear(x), code, "{x}");
+        }
+    }
+
+    #[test]
+    fn luminance_of_white_is_one() {
+        assert!((LinearRgb::grey(1.0).luminance() - 1.0).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,225 @@
+//! Scene -> framebuffer, tile by tile: eye rays -> hits -> shadow rays -> shade.
+//!
+//! What crosses a tile goes together: each step is a function over arrays of the tile's rays, so that tracing them
+//! as packets, looking at a tile's edges or explaining one ray is a choice inside a step.
+//!
+//! A frame is a pure function of scene, camera, resolution and number of samples. Tiles run on the threads of the
+//! current rayon pool; as no pixel depends on another, neither their number nor their order shows.
+
+use crate::camera::{Camera, EyeRays};
+use crate::color::LinearRgb;
+use crate::framebuffer::{Framebuffer, Resolution};
+use crate::hit::{self, Hit};
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::shade::{self, TO_THE_LIGHT};
+use crate::shape::{Surface, SurfacePoint};
+use rayon::prelude::*;
+use std::num::NonZeroU32;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The picture of `scene` that `camera` sees, with so many rays per pixel. One ray goes through the pixel's centre.
+pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Framebuffer {
+    let never = AtomicBool::new(false);
+    render_unless(&never, scene, camera, resolution, samples)
+        .unwrap_or_else(|| unreachable!("nobody else can set the flag"))
+}
+
+/// [`render`], given up as soon as `cancelled` is true.
+pub fn render_unless(
+    cancelled: &AtomicBool,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    samples: NonZeroU32,
+) -> Option<Framebuffer> {
+    let frame = Frame {
+        scene,
+        eye_rays: camera.eye_rays(resolution.aspect_ratio()),
+        resolution,
+        samples,
+    };
+    let tiles = tiles(resolution);
+    let lights: Option<Vec<_>> = tiles
+        .par_iter()
+        .map_init(Buffers::default, |buffers, tile| {
+            (!cancelled.load(Ordering::Relaxed)).then(|| frame.light_of_tile(tile, buffers))
+        })
+        .collect();
+    Some(assemble(resolution, &tiles, &lights?))
+}
+
+/// A tile's side in pixels.
+const TILE: u32 = 16;
+
+/// A rectangle of pixels.
+struct Tile {
+    columns: Range<u32>,
+    rows: Range<u32>,
+}
+
+/// All tiles of a picture; those at the right and lower edge may be smaller.
+fn tiles(resolution: Resolution) -> Vec<Tile> {
+    let spans = |length: u32| {
+        (0..length)
+            .step_by(TILE as usize)
+            .map(move |at| at..length.min(at + TILE))
+    };
+    spans(resolution.height)
+        .flat_map(|rows| {
+            spans(resolution.width).map(move |columns| Tile {
+                columns,
+                rows: rows.clone(),
+            })
+        })
+        .collect()
+}
+
+/// The tiles' light, each row by row, put where it belongs.
+fn assemble(resolution: Resolution, tiles: &[Tile], lights: &[Vec<LinearRgb>]) -> Framebuffer {
+    let mut framebuffer = Framebuffer::new(resolution);
+    let width = resolution.width as usize;
+    for (tile, light) in tiles.iter().zip(lights) {
+        let columns = tile.columns.start as usize..tile.columns.end as usize;
+        for (y, row) in tile.rows.clone().zip(light.chunks_exact(columns.len())) {
+            framebuffer.pixels[y as usize * width..][columns.clone()].copy_from_slice(row);
+        }
+    }
+    framebuffer
+}
+
+/// What all tiles of a frame have in common.
+struct Frame<'a> {
+    scene: &'a Scene,
+    eye_rays: EyeRays,
+    resolution: Resolution,
+    samples: NonZeroU32,
+}
+
+/// The arrays between the steps, kept from tile to tile.
+#[derive(Default)]
+struct Buffers {
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+    points: Vec<Option<SurfacePoint>>,
+    light: Vec<LinearRgb>,
+    shadow: ShadowBuffers,
+}
+
+/// The arrays of one light's shadow rays.
+#[derive(Default)]
+struct ShadowBuffers {
+    /// Which of the tile's pixels each ray belongs to, and the light that it brings if nothing is in its way.
+    arriving: Vec<(usize, LinearRgb)>,
+    rays: Vec<Ray>,
+    blocked: Vec<bool>,
+}
+
+impl Frame<'_> {
+    /// The mean light of each pixel's samples, row by row.
+    fn light_of_tile(&self, tile: &Tile, buffers: &mut Buffers) -> Vec<LinearRgb> {
+        let mut sum = vec![LinearRgb::BLACK; tile.columns.len() * tile.rows.len()];
+        for sample in 0..self.samples.get() {
+            self.make_eye_rays(tile, sample, &mut buffers.rays);
+            hit::closest_hits(self.scene, &buffers.rays, &mut buffers.hits);
+            find_points(self.scene, buffers);
+            gather_light(self.scene, buffers);
+            shade(self.scene, buffers);
+            sum.iter_mut()
+                .zip(&buffers.light)
+                .for_each(|(sum, light)| *sum += *light);
+        }
+        let share = 1.0 / self.samples.get() as f32;
+        sum.into_iter().map(|light| light * share).collect()
+    }
+
+    /// One eye ray for each pixel.
+    fn make_eye_rays(&self, tile: &Tile, sample: u32, rays: &mut Vec<Ray>) {
+        let (sx, sy) = sample_position(sample);
+        let (width, height) = (self.resolution.width as f32, self.resolution.height as f32);
+        rays.clear();
+        for j in tile.rows.clone() {
+            // Rows are counted from the top, the lecture's q_v from the bottom.
+            let qv = (height - (j as f32 + sy)) / height;
+            rays.extend(
+                tile.columns
+                    .clone()
+                    .map(|i| self.eye_rays.through((i as f32 + sx) / width, qv)),
+            );
+        }
+    }
+}
+
+/// Where in the pixel a sample lies, as parts of its width and height from the top left corner: the centre first, then
+/// on through Roberts' R2 sequence (multiples of the inverses of the plastic number and its square, modulo 1), whose
+/// every beginning covers the pixel evenly. Counted in integers, so that it is exact.
+fn sample_position(sample: u32) -> (f32, f32) {
+    let part = |step: u32| {
+        let position = 0x8000_0000_u32.wrapping_add(sample.wrapping_mul(step));
+        (position >> 8) as f32 / 16_777_216.0
+    };
+    (part(3_242_174_889), part(2_447_445_414))
+}
+
+/// The surface at each hit.
+fn find_points(scene: &Scene, buffers: &mut Buffers) {
+    buffers.points.clear();
+    buffers.points.extend(
+        buffers
+            .rays
+            .iter()
+            .zip(&buffers.hits)
+            .map(|(ray, hit)| hit.map(|hit| scene.objects()[hit.object as usize].shape.at_crossing(ray, hit.t))),
+    );
+}
+
+/// The light that arrives at each point: ambient + sum over lights of V * I * max(0, n.l) / d^2.
+fn gather_light(scene: &Scene, buffers: &mut Buffers) {
+    let Buffers {
+        points,
+        light: arriving,
+        shadow,
+        ..
+    } = buffers;
+    arriving.clear();
+    arriving.resize(points.len(), scene.ambient);
+    for light in &scene.lights {
+        shadow.arriving.clear();
+        shadow.rays.clear();
+        for (pixel, point) in points.iter().enumerate() {
+            let Some(point) = point else { continue };
+            let Some(incidence) = shade::incidence(light, point) else {
+                continue;
+            };
+            shadow.arriving.push((pixel, incidence.light));
+            shadow.rays.push(shade::shadow_ray(light, point));
+        }
+        find_shadows(scene, shadow);
+        for (&(pixel, light), &blocked) in shadow.arriving.iter().zip(&shadow.blocked) {
+            if !blocked {
+                arriving[pixel] += light;
+            }
+        }
+    }
+}
+
+/// V = 0 for each shadow ray that meets an object before the light.
+fn find_shadows(scene: &Scene, shadow: &mut ShadowBuffers) {
+    if scene.shadows {
+        hit::any_hits(scene, &shadow.rays, TO_THE_LIGHT, &mut shadow.blocked);
+    } else {
+        shadow.blocked.clear();
+        shadow.blocked.resize(shadow.rays.len(), false);
+    }
+}
+
+/// What goes to the eye: the reflected part of what arrives, or the background where nothing was hit.
+fn shade(scene: &Scene, buffers: &mut Buffers) {
+    for (pixel, light) in buffers.light.iter_mut().enumerate() {
+        *light = match (buffers.hits[pixel], &buffers.points[pixel]) {
+            (Some(hit), Some(point)) => scene.objects()[hit.object as usize].material.reflectance(point) * *light,
+            _ => shade::background(scene, &buffers.rays[pixel]),
+        };
+    }
+}

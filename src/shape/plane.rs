@@ -1,0 +1,81 @@
+//! Ray-plane intersection (lecture, "Ray intersection").
+
+use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
+use crate::ray::{Interval, Ray};
+use glam::{Vec2, Vec3};
+
+/// All points x with <x - a, n> = 0. It has no end, and is seen from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    point: Vec3,
+    normal: Vec3,
+    /// The axes of patterns on the plane: u, normal, v is a right-handed orthonormal basis.
+    u: Vec3,
+    v: Vec3,
+}
+
+impl Plane {
+    /// The plane through `point`, perpendicular to `normal`.
+    ///
+    /// # Panics
+    /// In debug builds, unless the point is finite and the normal has unit length.
+    pub fn new(point: Vec3, normal: Vec3) -> Self {
+        debug_assert!(point.is_finite(), "a plane's point is finite");
+        debug_assert!(normal.is_normalized(), "a plane's normal has unit length");
+        let u = pattern_axis(normal);
+        // On a floor (normal +y) u is +x and v is +z.
+        Self {
+            point,
+            normal,
+            u,
+            v: u.cross(normal),
+        }
+    }
+
+    /// A point of the plane; patterns begin there.
+    pub fn point(&self) -> Vec3 {
+        self.point
+    }
+
+    /// Unit length.
+    pub fn normal(&self) -> Vec3 {
+        self.normal
+    }
+}
+
+/// The x axis laid into the plane; where that is (nearly) the normal itself, the z axis.
+fn pattern_axis(normal: Vec3) -> Vec3 {
+    let axis = if normal.x.abs() < 0.9 { Vec3::X } else { Vec3::Z };
+    (axis - normal * axis.dot(normal)).normalize()
+}
+
+impl Surface for Plane {
+    /// <p + t d - a, n> = 0 gives t = <a - p, n> / <d, n>; a ray along the plane never crosses it.
+    fn closest_crossing(&self, ray: &Ray, within: Interval) -> Option<f32> {
+        let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
+        // A ray along the plane divides by zero: infinite or NaN, and so not inside.
+        within.contains(t).then_some(t)
+    }
+
+    fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
+        let hit = ray.at(t);
+        let off = (hit - self.point).dot(self.normal);
+        let position = hit - self.normal * off;
+        let seen_from_front = ray.direction.dot(self.normal) < 0.0;
+        let (normal, side) = if seen_from_front {
+            (self.normal, Side::Front)
+        } else {
+            (-self.normal, Side::Back)
+        };
+        let clearance = CLEARANCE * (largest_coordinate(position) + largest_coordinate(self.point));
+        let from_point = position - self.point;
+        let uv = Vec2::new(from_point.dot(self.u), from_point.dot(self.v));
+        SurfacePoint {
+            position,
+            normal,
+            side,
+            clearance,
+            uv,
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! Light -> picture: exposure, tone curve, transfer function, rounding to 8 bits. Light is linear up to here.
+
+use crate::color::{LinearRgb, Srgb8};
+use crate::framebuffer::{Framebuffer, Resolution};
+use crate::scene::{Scene, ToneCurve};
+
+/// The picture as files and terminals take it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows of pixels.
+    pub height: u32,
+    /// `width * height` pixels, row by row from the top.
+    pub pixels: Vec<Srgb8>,
+}
+
+/// The framebuffer as `scene` wants its light shown.
+pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
+    let Resolution { width, height, .. } = framebuffer.resolution;
+    let show = |&light: &LinearRgb| Srgb8::from_linear(bend(scene.tone_curve, light * scene.exposure));
+    Picture {
+        width,
+        height,
+        pixels: framebuffer.pixels.iter().map(show).collect(),
+    }
+}
+
+/// The light after the tone curve.
+fn bend(curve: ToneCurve, light: LinearRgb) -> LinearRgb {
+    match curve {
+        ToneCurve::None => light,
+        // Reinhard, Stark, Shirley and Ferwerda 2002, equation 3, on the luminance, so that hues stay.
+        ToneCurve::Reinhard => light * (1.0 / (1.0 + light.luminance())),
+        ToneCurve::Filmic => LinearRgb::new(filmic(light.r), filmic(light.g), filmic(light.b)),
+    }
+}
+
+/// Krzysztof Narkowicz's fit (2015) to the ACES reference rendering and output transforms.
+fn filmic(x: f32) -> f32 {
+    (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)
+}
