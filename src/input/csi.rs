@@ -1,0 +1,153 @@
+//! CSI sequences: `ESC [`, a mark, numbers, marks, a letter.
+
+use crossterm::event::{Event, KeyEvent, KeyModifiers};
+use vte::Params;
+
+use super::{Reply, key, mouse};
+
+/// What a sequence says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Meaning {
+    /// A key.
+    Key(KeyEvent),
+    /// The mouse or the focus.
+    Event(Event),
+    /// An answer of the terminal.
+    Reply(Reply),
+    /// A paste begins.
+    PasteStart,
+    /// Three bytes of the oldest mouse report follow.
+    OldMouse,
+    /// The letter of a function key of the Linux console follows.
+    LinuxFunction,
+    /// Nothing that matters here.
+    Nothing,
+}
+
+/// What the sequence of these numbers and marks says; `text` is all of it after `ESC [`.
+pub(super) fn meaning(
+    params: &Params,
+    marks: &[u8],
+    ignored: bool,
+    last: char,
+    text: &[u8],
+) -> Meaning {
+    let sequence = Sequence {
+        params: params.iter().collect(),
+        last,
+        text,
+    };
+    let meaning = match marks {
+        _ if ignored => None,
+        b"" => sequence.plain(),
+        b"?" => sequence.private().map(Meaning::Reply),
+        b"?$" if last == 'y' => sequence.mode().map(Meaning::Reply),
+        b">" if last == 'c' => Some(Meaning::Reply(Reply::SecondaryAttributes(
+            sequence.numbers(),
+        ))),
+        b"<" => sequence.sgr_mouse().map(Meaning::Event),
+        _ => None,
+    };
+    meaning.unwrap_or_else(|| Meaning::Reply(Reply::Unknown(text.to_vec())))
+}
+
+struct Sequence<'a> {
+    /// Numbers, each with what follows it after colons.
+    params: Vec<&'a [u16]>,
+    last: char,
+    text: &'a [u8],
+}
+
+impl Sequence<'_> {
+    /// No number and no mark: the letter alone.
+    fn is_bare(&self) -> bool {
+        self.text.len() == 1
+    }
+
+    /// The numbers, without what follows after colons.
+    fn numbers(&self) -> Vec<u16> {
+        self.params.iter().map(|param| param[0]).collect()
+    }
+
+    /// The numbers, if there are so many, none with a colon.
+    fn exactly<const N: usize>(&self) -> Option<[u16; N]> {
+        let plain = self.params.iter().all(|param| param.len() == 1);
+        plain.then(|| self.numbers().try_into().ok()).flatten()
+    }
+
+    fn plain(&self) -> Option<Meaning> {
+        match self.last {
+            '~' if self.params[0] == [200] => Some(Meaning::PasteStart),
+            // The end of a paste that was given up, or never begun.
+            '~' if self.params[0] == [201] => Some(Meaning::Nothing),
+            'M' if self.is_bare() => Some(Meaning::OldMouse),
+            '[' if self.is_bare() => Some(Meaning::LinuxFunction),
+            'I' if self.is_bare() => Some(Meaning::Event(Event::FocusGained)),
+            'O' if self.is_bare() => Some(Meaning::Event(Event::FocusLost)),
+            'M' => {
+                let [code, column, row] = self.exactly()?;
+                mouse::from_rxvt(code, column, row).map(Meaning::Event)
+            }
+            'R' if !self.is_bare() => self.cursor_position().map(Meaning::Reply),
+            'n' => self
+                .exactly()
+                .map(|[status]| Meaning::Reply(Reply::Status(status))),
+            't' => Some(Meaning::Reply(self.window())),
+            _ => self.key().map(Meaning::Key),
+        }
+    }
+
+    fn key(&self) -> Option<KeyEvent> {
+        match self.last {
+            'a'..='d' if self.is_bare() => {
+                key::from_letter(self.last.to_ascii_uppercase(), KeyModifiers::SHIFT)
+            }
+            '~' if self.params[0] == [27] => key::from_other_keys(&self.params),
+            '~' => key::from_number(&self.params, KeyModifiers::NONE),
+            '^' => key::from_number(&self.params, KeyModifiers::CONTROL),
+            '@' => key::from_number(&self.params, KeyModifiers::CONTROL | KeyModifiers::SHIFT),
+            'u' => key::from_kitty(&self.params),
+            letter => key::from_letter_with_modifiers(letter, &self.params),
+        }
+    }
+
+    fn private(&self) -> Option<Reply> {
+        match self.last {
+            'c' => Some(Reply::DeviceAttributes(self.numbers())),
+            'u' => self.exactly().map(|[flags]| Reply::KeyboardFlags(flags)),
+            'R' => self.cursor_position(),
+            _ => None,
+        }
+    }
+
+    /// Some terminals add a third number, the page.
+    fn cursor_position(&self) -> Option<Reply> {
+        let [row, column] = self
+            .exactly()
+            .or_else(|| self.exactly().map(|[row, column, _page]| [row, column]))?;
+        Some(Reply::CursorPosition { row, column })
+    }
+
+    fn mode(&self) -> Option<Reply> {
+        self.exactly()
+            .map(|[mode, state]| Reply::Mode { mode, state })
+    }
+
+    fn window(&self) -> Reply {
+        match self.exactly() {
+            Some([4, height, width]) => Reply::TextPixels { width, height },
+            Some([6, height, width]) => Reply::CellPixels { width, height },
+            Some([8, rows, columns]) => Reply::TextCells { columns, rows },
+            _ => Reply::Window(self.numbers()),
+        }
+    }
+
+    fn sgr_mouse(&self) -> Option<Event> {
+        let [code, column, row] = self.exactly()?;
+        match self.last {
+            'M' => mouse::from_sgr(code, column, row, false),
+            'm' => mouse::from_sgr(code, column, row, true),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Mouse reports.
+
+use crossterm::event::{Event, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
+
+const SHIFT: u16 = 4;
+const ALT: u16 = 8;
+const CONTROL: u16 = 16;
+const MOTION: u16 = 32;
+/// What the older encodings add to each number, to keep clear of the control letters.
+const OFFSET: u8 = 32;
+
+/// `CSI < code ; column ; row M`, or `m` for a release: the SGR encoding, in cells or in pixels, from 1.
+pub(super) fn from_sgr(code: u16, column: u16, row: u16, released: bool) -> Option<Event> {
+    let kind = match (kind_from_code(code)?, released) {
+        (MouseEventKind::Down(button) | MouseEventKind::Drag(button), true) => {
+            MouseEventKind::Up(button)
+        }
+        // A wheel is not let go, and 3 is the release of an older encoding, which could not say of which button.
+        (_, true) | (MouseEventKind::Up(_), false) => return None,
+        (kind, false) => kind,
+    };
+    Some(event(kind, code, column, row))
+}
+
+/// `CSI code ; column ; row M`: the encoding of rxvt.
+pub(super) fn from_rxvt(code: u16, column: u16, row: u16) -> Option<Event> {
+    let code = code.checked_sub(u16::from(OFFSET))?;
+    Some(event(kind_from_code(code)?, code, column, row))
+}
+
+/// `CSI M` and three bytes: the oldest encoding.
+pub(super) fn from_bytes(code: u8, column: u8, row: u8) -> Option<Event> {
+    let code = u16::from(code.checked_sub(OFFSET)?);
+    let column = u16::from(column.checked_sub(OFFSET)?);
+    let row = u16::from(row.checked_sub(OFFSET)?);
+    Some(event(kind_from_code(code)?, code, column, row))
+}
+
+fn event(kind: MouseEventKind, code: u16, column: u16, row: u16) -> Event {
+    Event::Mouse(MouseEvent {
+        kind,
+        column: column.saturating_sub(1),
+        row: row.saturating_sub(1),
+        modifiers: modifiers_from_code(code),
+    })
+}
+
+/// The lowest two bits and the highest two name the button, the sixth says that the mouse moved.
+fn kind_from_code(code: u16) -> Option<MouseEventKind> {
+    let button = (code & 0b11) | ((code & 0b1100_0000) >> 4);
+    let moved = code & MOTION != 0;
+    Some(match (button, moved) {
+        _ if code > 0xff => return None,
+        (0, false) => MouseEventKind::Down(MouseButton::Left),
+        (1, false) => MouseEventKind::Down(MouseButton::Middle),
+        (2, false) => MouseEventKind::Down(MouseButton::Right),
+        (3, false) => MouseEventKind::Up(MouseButton::Left),
+        (0, true) => MouseEventKind::Drag(MouseButton::Left),
+        (1, true) => MouseEventKind::Drag(MouseButton::Middle),
+        (2, true) => MouseEventKind::Drag(MouseButton::Right),
+        (3, true) => MouseEventKind::Moved,
+        (4, false) => MouseEventKind::ScrollUp,
+        (5, false) => MouseEventKind::ScrollDown,
+        (6, false) => MouseEventKind::ScrollLeft,
+        (7, false) => MouseEventKind::ScrollRight,
+        // The side buttons have no name here.
+        _ => return None,
+    })
+}
+
+fn modifiers_from_code(code: u16) -> KeyModifiers {
+    [
+        (SHIFT, KeyModifiers::SHIFT),
+        (ALT, KeyModifiers::ALT),
+        (CONTROL, KeyModifiers::CONTROL),
+    ]
+    .into_iter()
+    .filter(|(bit, _)| code & bit != 0)
+    .map(|(_, modifier)| modifier)
+    .collect()
+}
