@@ -1,0 +1,7 @@
+//! Any bytes, in any split, with any waits given up: the same events, and no panic.
+#![no_main]
+
+#[path = "../../tests/input_laws/mod.rs"]
+mod input_laws;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| input_laws::hold_for(data));
