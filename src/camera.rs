@@ -207,6 +207,19 @@ impl ViewRectangle {
         }
     }
 
+    /// The rectangle of the same shape and shift that takes up that angle, in radians, vertically.
+    ///
+    /// # Errors
+    /// As [`ViewRectangle::from_vertical_fov`].
+    pub fn with_vertical_fov(self, radians: f32) -> Result<Self, CameraError> {
+        let Self { height, .. } = Self::from_vertical_fov(radians)?;
+        Ok(Self {
+            height,
+            width: self.width.map(|width| width * (height / self.height)),
+            ..self
+        })
+    }
+
     /// The rectangle of the same height with that aspect ratio (width / height) of its own.
     ///
     /// # Errors

@@ -229,11 +229,7 @@ impl Parser {
             0x80..=0xbf => tokens.is_empty(),
             _ => false,
         };
-        self.place = if unfinished {
-            Place::Character
-        } else {
-            Place::Ground
-        };
+        self.place = if unfinished { Place::Character } else { Place::Ground };
         for token in tokens {
             let alt = std::mem::take(&mut self.alt);
             say_plain(&token, alt, out);
@@ -267,8 +263,7 @@ impl Parser {
         match byte {
             b'0'..=b'9' | b';' => self.keep(byte, SEQUENCE_LIMIT),
             0x20..=0x7e => {
-                let meaning =
-                    key::from_ss3(&self.text, byte).map_or(Meaning::Nothing, Meaning::Key);
+                let meaning = key::from_ss3(&self.text, byte).map_or(Meaning::Nothing, Meaning::Key);
                 self.finish(meaning, out);
             }
             _ => self.drop_and_take(byte, out),

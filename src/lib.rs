@@ -5,6 +5,7 @@ compile_error!("termtrace runs on Linux and macOS: it talks to the terminal thro
 
 pub mod color;
 pub mod ray;
+pub mod capabilities;
 pub mod shape;
 pub mod material;
 pub mod light;
@@ -15,4 +16,12 @@ pub mod shade;
 pub mod framebuffer;
 pub mod render;
 pub mod tone;
+pub mod grid;
+pub mod cell;
+pub mod overlay;
+pub mod encode;
+pub mod export;
 pub mod input;
+pub mod terminal;
+pub mod control;
+pub mod app;

@@ -22,8 +22,19 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The picture of `scene` that `camera` sees, with so many rays per pixel. One ray goes through the pixel's centre.
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Framebuffer {
     let never = AtomicBool::new(false);
-    render_unless(&never, scene, camera, resolution, samples)
-        .unwrap_or_else(|| unreachable!("nobody else can set the flag"))
+    render_unless(&never, scene, camera, resolution, samples).map_or_else(
+        || unreachable!("nobody else can set the flag"),
+        |rendered| rendered.framebuffer,
+    )
+}
+
+/// A frame, and what it took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendered {
+    /// The picture.
+    pub framebuffer: Framebuffer,
+    /// How many rays were traced: eye rays and shadow rays.
+    pub rays: u64,
 }
 
 /// [`render`], given up as soon as `cancelled` is true.
@@ -33,7 +44,7 @@ pub fn render_unless(
     camera: &Camera,
     resolution: Resolution,
     samples: NonZeroU32,
-) -> Option<Framebuffer> {
+) -> Option<Rendered> {
     let frame = Frame {
         scene,
         eye_rays: camera.eye_rays(resolution.aspect_ratio()),
@@ -41,13 +52,18 @@ pub fn render_unless(
         samples,
     };
     let tiles = tiles(resolution);
-    let lights: Option<Vec<_>> = tiles
+    let traced: Option<Vec<TracedTile>> = tiles
         .par_iter()
         .map_init(Buffers::default, |buffers, tile| {
-            (!cancelled.load(Ordering::Relaxed)).then(|| frame.light_of_tile(tile, buffers))
+            (!cancelled.load(Ordering::Relaxed)).then(|| frame.trace(tile, buffers))
         })
         .collect();
-    Some(assemble(resolution, &tiles, &lights?))
+    let traced = traced?;
+    let rays = traced.iter().map(|tile| tile.rays).sum();
+    Some(Rendered {
+        framebuffer: assemble(resolution, &tiles, &traced),
+        rays,
+    })
 }
 
 /// A tile's side in pixels.
@@ -57,6 +73,12 @@ const TILE: u32 = 16;
 struct Tile {
     columns: Range<u32>,
     rows: Range<u32>,
+}
+
+/// A tile's mean light per pixel, row by row, and the number of rays that it took.
+struct TracedTile {
+    light: Vec<LinearRgb>,
+    rays: u64,
 }
 
 /// All tiles of a picture; those at the right and lower edge may be smaller.
@@ -76,11 +98,11 @@ fn tiles(resolution: Resolution) -> Vec<Tile> {
         .collect()
 }
 
-/// The tiles' light, each row by row, put where it belongs.
-fn assemble(resolution: Resolution, tiles: &[Tile], lights: &[Vec<LinearRgb>]) -> Framebuffer {
+/// The tiles' light, put where it belongs.
+fn assemble(resolution: Resolution, tiles: &[Tile], traced: &[TracedTile]) -> Framebuffer {
     let mut framebuffer = Framebuffer::new(resolution);
     let width = resolution.width as usize;
-    for (tile, light) in tiles.iter().zip(lights) {
+    for (tile, TracedTile { light, .. }) in tiles.iter().zip(traced) {
         let columns = tile.columns.start as usize..tile.columns.end as usize;
         for (y, row) in tile.rows.clone().zip(light.chunks_exact(columns.len())) {
             framebuffer.pixels[y as usize * width..][columns.clone()].copy_from_slice(row);
@@ -117,21 +139,26 @@ struct ShadowBuffers {
 }
 
 impl Frame<'_> {
-    /// The mean light of each pixel's samples, row by row.
-    fn light_of_tile(&self, tile: &Tile, buffers: &mut Buffers) -> Vec<LinearRgb> {
+    /// The mean light of each pixel's samples.
+    fn trace(&self, tile: &Tile, buffers: &mut Buffers) -> TracedTile {
         let mut sum = vec![LinearRgb::BLACK; tile.columns.len() * tile.rows.len()];
+        let mut rays = 0;
         for sample in 0..self.samples.get() {
             self.make_eye_rays(tile, sample, &mut buffers.rays);
             hit::closest_hits(self.scene, &buffers.rays, &mut buffers.hits);
             find_points(self.scene, buffers);
-            gather_light(self.scene, buffers);
+            let shadow_rays = gather_light(self.scene, buffers);
+            rays += (buffers.rays.len() + shadow_rays) as u64;
             shade(self.scene, buffers);
             sum.iter_mut()
                 .zip(&buffers.light)
                 .for_each(|(sum, light)| *sum += *light);
         }
         let share = 1.0 / self.samples.get() as f32;
-        sum.into_iter().map(|light| light * share).collect()
+        TracedTile {
+            light: sum.into_iter().map(|light| light * share).collect(),
+            rays,
+        }
     }
 
     /// One eye ray for each pixel.
@@ -174,8 +201,10 @@ fn find_points(scene: &Scene, buffers: &mut Buffers) {
     );
 }
 
-/// The light that arrives at each point: ambient + sum over lights of V * I * max(0, n.l) / d^2.
-fn gather_light(scene: &Scene, buffers: &mut Buffers) {
+/// The light that arrives at each point: ambient + sum over lights of V * I * max(0, n.l) / d^2. Returns the number of
+/// shadow rays that this took.
+fn gather_light(scene: &Scene, buffers: &mut Buffers) -> usize {
+    let mut shadow_rays = 0;
     let Buffers {
         points,
         light: arriving,
@@ -195,22 +224,25 @@ fn gather_light(scene: &Scene, buffers: &mut Buffers) {
             shadow.arriving.push((pixel, incidence.light));
             shadow.rays.push(shade::shadow_ray(light, point));
         }
-        find_shadows(scene, shadow);
+        shadow_rays += find_shadows(scene, shadow);
         for (&(pixel, light), &blocked) in shadow.arriving.iter().zip(&shadow.blocked) {
             if !blocked {
                 arriving[pixel] += light;
             }
         }
     }
+    shadow_rays
 }
 
-/// V = 0 for each shadow ray that meets an object before the light.
-fn find_shadows(scene: &Scene, shadow: &mut ShadowBuffers) {
+/// V = 0 for each shadow ray that meets an object before the light. Returns how many of them were traced.
+fn find_shadows(scene: &Scene, shadow: &mut ShadowBuffers) -> usize {
     if scene.shadows {
         hit::any_hits(scene, &shadow.rays, TO_THE_LIGHT, &mut shadow.blocked);
+        shadow.rays.len()
     } else {
         shadow.blocked.clear();
         shadow.blocked.resize(shadow.rays.len(), false);
+        0
     }
 }
 

@@ -25,13 +25,7 @@ pub(super) enum Meaning {
 }
 
 /// What the sequence of these numbers and marks says; `text` is all of it after `ESC [`.
-pub(super) fn meaning(
-    params: &Params,
-    marks: &[u8],
-    ignored: bool,
-    last: char,
-    text: &[u8],
-) -> Meaning {
+pub(super) fn meaning(params: &Params, marks: &[u8], ignored: bool, last: char, text: &[u8]) -> Meaning {
     let sequence = Sequence {
         params: params.iter().collect(),
         last,
@@ -42,9 +36,7 @@ pub(super) fn meaning(
         b"" => sequence.plain(),
         b"?" => sequence.private().map(Meaning::Reply),
         b"?$" if last == 'y' => sequence.mode().map(Meaning::Reply),
-        b">" if last == 'c' => Some(Meaning::Reply(Reply::SecondaryAttributes(
-            sequence.numbers(),
-        ))),
+        b">" if last == 'c' => Some(Meaning::Reply(Reply::SecondaryAttributes(sequence.numbers()))),
         b"<" => sequence.sgr_mouse().map(Meaning::Event),
         _ => None,
     };
@@ -89,9 +81,7 @@ impl Sequence<'_> {
                 mouse::from_rxvt(code, column, row).map(Meaning::Event)
             }
             'R' if !self.is_bare() => self.cursor_position().map(Meaning::Reply),
-            'n' => self
-                .exactly()
-                .map(|[status]| Meaning::Reply(Reply::Status(status))),
+            'n' => self.exactly().map(|[status]| Meaning::Reply(Reply::Status(status))),
             't' => Some(Meaning::Reply(self.window())),
             _ => self.key().map(Meaning::Key),
         }
@@ -99,9 +89,7 @@ impl Sequence<'_> {
 
     fn key(&self) -> Option<KeyEvent> {
         match self.last {
-            'a'..='d' if self.is_bare() => {
-                key::from_letter(self.last.to_ascii_uppercase(), KeyModifiers::SHIFT)
-            }
+            'a'..='d' if self.is_bare() => key::from_letter(self.last.to_ascii_uppercase(), KeyModifiers::SHIFT),
             '~' if self.params[0] == [27] => key::from_other_keys(&self.params),
             '~' => key::from_number(&self.params, KeyModifiers::NONE),
             '^' => key::from_number(&self.params, KeyModifiers::CONTROL),
@@ -129,8 +117,7 @@ impl Sequence<'_> {
     }
 
     fn mode(&self) -> Option<Reply> {
-        self.exactly()
-            .map(|[mode, state]| Reply::Mode { mode, state })
+        self.exactly().map(|[mode, state]| Reply::Mode { mode, state })
     }
 
     fn window(&self) -> Reply {

@@ -1,8 +1,6 @@
 //! Keys: the many ways in which terminals name them.
 
-use crossterm::event::{
-    KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifiers, MediaKeyCode, ModifierKeyCode,
-};
+use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifiers, MediaKeyCode, ModifierKeyCode};
 
 /// The Escape key.
 pub(super) fn escape() -> KeyEvent {
@@ -38,18 +36,12 @@ pub(super) fn from_control(byte: u8) -> Option<KeyEvent> {
         0x1c..=0x1f => byte - 0x1c + b'4',
         _ => return None,
     };
-    Some(KeyEvent::new(
-        KeyCode::Char(letter.into()),
-        KeyModifiers::CONTROL,
-    ))
+    Some(KeyEvent::new(KeyCode::Char(letter.into()), KeyModifiers::CONTROL))
 }
 
 /// `ESC O`, perhaps `1 ; modifiers` or the modifiers alone, and a letter.
 pub(super) fn from_ss3(numbers: &[u8], letter: u8) -> Option<KeyEvent> {
-    let last = numbers
-        .rsplit(|&byte| byte == b';')
-        .next()
-        .unwrap_or_default();
+    let last = numbers.rsplit(|&byte| byte == b';').next().unwrap_or_default();
     let modifiers = match std::str::from_utf8(last).ok()? {
         "" => KeyModifiers::NONE,
         digits => modifiers_from_mask(digits.parse().ok()?),
@@ -114,8 +106,7 @@ pub(super) fn from_letter_with_modifiers(letter: char, params: &[&[u16]]) -> Opt
         'Z' => Some(how.press(KeyCode::BackTab, KeyModifiers::SHIFT)),
         // `CSI R` alone: with numbers it is a cursor report, and does not come here.
         'R' => Some(how.press(KeyCode::F(3), KeyModifiers::NONE)),
-        _ => from_letter(letter, KeyModifiers::NONE)
-            .map(|key| how.press(key.code, KeyModifiers::NONE)),
+        _ => from_letter(letter, KeyModifiers::NONE).map(|key| how.press(key.code, KeyModifiers::NONE)),
     }
 }
 
@@ -188,8 +179,7 @@ fn key_from_code(code: u16, shifted: Option<u16>, how: How) -> Option<KeyEvent> 
 /// The character of a number, if it can be typed: no control, no private use (where the protocol keeps its own
 /// keys), and not U+FFFF, at which the tokeniser stops counting.
 fn char_from_code(code: u16) -> Option<char> {
-    char::from_u32(code.into())
-        .filter(|c| !c.is_control() && !matches!(code, 0xe000..=0xf8ff | 0xfffd..))
+    char::from_u32(code.into()).filter(|c| !c.is_control() && !matches!(code, 0xe000..=0xf8ff | 0xfffd..))
 }
 
 /// How a key is pressed.

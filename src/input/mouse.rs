@@ -12,9 +12,7 @@ const OFFSET: u8 = 32;
 /// `CSI < code ; column ; row M`, or `m` for a release: the SGR encoding, in cells or in pixels, from 1.
 pub(super) fn from_sgr(code: u16, column: u16, row: u16, released: bool) -> Option<Event> {
     let kind = match (kind_from_code(code)?, released) {
-        (MouseEventKind::Down(button) | MouseEventKind::Drag(button), true) => {
-            MouseEventKind::Up(button)
-        }
+        (MouseEventKind::Down(button) | MouseEventKind::Drag(button), true) => MouseEventKind::Up(button),
         // A wheel is not let go, and 3 is the release of an older encoding, which could not say of which button.
         (_, true) | (MouseEventKind::Up(_), false) => return None,
         (kind, false) => kind,

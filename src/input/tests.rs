@@ -1,8 +1,8 @@
 //! What bytes say, as a table; and that it does not depend on how they are split.
 
 use crossterm::event::{
-    Event, KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifiers, MediaKeyCode,
-    ModifierKeyCode, MouseButton, MouseEvent, MouseEventKind,
+    Event, KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifiers, MediaKeyCode, ModifierKeyCode, MouseButton,
+    MouseEvent, MouseEventKind,
 };
 use proptest::prelude::*;
 
@@ -61,10 +61,7 @@ fn characters() -> Vec<Row> {
     vec![
         (b"w", vec![letter('w', NONE)]),
         (b"W", vec![letter('W', SHIFT)]),
-        (
-            b"?/1 ",
-            ['?', '/', '1', ' '].map(|c| letter(c, NONE)).to_vec(),
-        ),
+        (b"?/1 ", ['?', '/', '1', ' '].map(|c| letter(c, NONE)).to_vec()),
         ("é".as_bytes(), vec![letter('é', NONE)]),
         (
             "É€😀".as_bytes(),
@@ -72,46 +69,24 @@ fn characters() -> Vec<Row> {
         ),
         (b"\r\t\x7f\x08", {
             let back = key(KeyCode::Backspace, NONE);
-            vec![
-                key(KeyCode::Enter, NONE),
-                key(KeyCode::Tab, NONE),
-                back.clone(),
-                back,
-            ]
+            vec![key(KeyCode::Enter, NONE), key(KeyCode::Tab, NONE), back.clone(), back]
         }),
         (
             b"\x01\x03\x0a\x0c\x1a",
-            ['a', 'c', 'j', 'l', 'z']
-                .map(|c| letter(c, CONTROL))
-                .to_vec(),
+            ['a', 'c', 'j', 'l', 'z'].map(|c| letter(c, CONTROL)).to_vec(),
         ),
-        (
-            b"\x00\x1c\x1f",
-            [' ', '4', '7'].map(|c| letter(c, CONTROL)).to_vec(),
-        ),
-        (
-            b"\x1bw\x1bW",
-            vec![letter('w', ALT), letter('W', ALT | SHIFT)],
-        ),
+        (b"\x00\x1c\x1f", [' ', '4', '7'].map(|c| letter(c, CONTROL)).to_vec()),
+        (b"\x1bw\x1bW", vec![letter('w', ALT), letter('W', ALT | SHIFT)]),
         (b"\x1b\x03", vec![letter('c', ALT | CONTROL)]),
         (b"\x1b\r\x1b\x7fx", {
             let enter = key(KeyCode::Enter, ALT);
             vec![enter, key(KeyCode::Backspace, ALT), letter('x', NONE)]
         }),
-        (
-            "\x1béx".as_bytes(),
-            vec![letter('é', ALT), letter('x', NONE)],
-        ),
+        ("\x1béx".as_bytes(), vec![letter('é', ALT), letter('x', NONE)]),
         (b"\x1b\x1b[A", vec![key(up, ALT)]),
         (b"\x1b\x1bOA", vec![key(up, ALT)]),
-        (
-            b"\x1b\x1b\x1b[A",
-            vec![key(KeyCode::Esc, NONE), key(up, ALT)],
-        ),
-        (
-            b"\x1b\x1bx",
-            vec![key(KeyCode::Esc, NONE), letter('x', ALT)],
-        ),
+        (b"\x1b\x1b\x1b[A", vec![key(KeyCode::Esc, NONE), key(up, ALT)]),
+        (b"\x1b\x1bx", vec![key(KeyCode::Esc, NONE), letter('x', ALT)]),
     ]
 }
 
@@ -127,28 +102,19 @@ fn broken_characters() -> Vec<Row> {
         ),
         // A control of the second set, encoded; a surrogate; the character that stands for broken bytes.
         (b"\xc2\x9b\xed\xa0\x80\xef\xbf\xbd", vec![]),
-        (
-            b"\x1b\xc3x\x1b\xffy",
-            vec![letter('x', NONE), letter('y', NONE)],
-        ),
+        (b"\x1b\xc3x\x1b\xffy", vec![letter('x', NONE), letter('y', NONE)]),
     ]
 }
 
 fn keys_without_a_letter() -> Vec<Row> {
-    use KeyCode::{
-        BackTab, Delete, Down, End, F, Home, Insert, KeypadBegin, Left, PageDown, PageUp, Right, Up,
-    };
-    let keys = |codes: &[KeyCode], modifiers| -> Vec<Input> {
-        codes.iter().map(|&code| key(code, modifiers)).collect()
-    };
+    use KeyCode::{BackTab, Delete, Down, End, F, Home, Insert, KeypadBegin, Left, PageDown, PageUp, Right, Up};
+    let keys =
+        |codes: &[KeyCode], modifiers| -> Vec<Input> { codes.iter().map(|&code| key(code, modifiers)).collect() };
     let arrows = [Up, Down, Right, Left];
     vec![
         (b"\x1b[A\x1b[B\x1b[C\x1b[D", keys(&arrows, NONE)),
         (b"\x1bOA\x1bOB\x1bOC\x1bOD", keys(&arrows, NONE)),
-        (
-            b"\x1b[1;2A\x1b[1;2B\x1b[1;2C\x1b[1;2D",
-            keys(&arrows, SHIFT),
-        ),
+        (b"\x1b[1;2A\x1b[1;2B\x1b[1;2C\x1b[1;2D", keys(&arrows, SHIFT)),
         (b"\x1b[a\x1b[b\x1b[c\x1b[d", keys(&arrows, SHIFT)),
         (b"\x1bOa\x1bOb\x1bOc\x1bOd", keys(&arrows, CONTROL)),
         (b"\x1b[1;8A", keys(&[Up], SHIFT | ALT | CONTROL)),
@@ -157,30 +123,15 @@ fn keys_without_a_letter() -> Vec<Row> {
             b"\x1b[H\x1b[F\x1bOH\x1bOF\x1b[E",
             keys(&[Home, End, Home, End, KeypadBegin], NONE),
         ),
-        (
-            b"\x1b[1~\x1b[4~\x1b[7~\x1b[8~",
-            keys(&[Home, End, Home, End], NONE),
-        ),
+        (b"\x1b[1~\x1b[4~\x1b[7~\x1b[8~", keys(&[Home, End, Home, End], NONE)),
         (
             b"\x1b[2~\x1b[3~\x1b[5~\x1b[6~",
             keys(&[Insert, Delete, PageUp, PageDown], NONE),
         ),
-        (
-            b"\x1b[5;2~\x1b[6;5~",
-            vec![key(PageUp, SHIFT), key(PageDown, CONTROL)],
-        ),
-        (
-            b"\x1b[7^\x1b[8@",
-            vec![key(Home, CONTROL), key(End, CONTROL | SHIFT)],
-        ),
-        (
-            b"\x1bOP\x1bOQ\x1bOR\x1bOS",
-            keys(&[F(1), F(2), F(3), F(4)], NONE),
-        ),
-        (
-            b"\x1b[P\x1b[Q\x1b[R\x1b[S",
-            keys(&[F(1), F(2), F(3), F(4)], NONE),
-        ),
+        (b"\x1b[5;2~\x1b[6;5~", vec![key(PageUp, SHIFT), key(PageDown, CONTROL)]),
+        (b"\x1b[7^\x1b[8@", vec![key(Home, CONTROL), key(End, CONTROL | SHIFT)]),
+        (b"\x1bOP\x1bOQ\x1bOR\x1bOS", keys(&[F(1), F(2), F(3), F(4)], NONE)),
+        (b"\x1b[P\x1b[Q\x1b[R\x1b[S", keys(&[F(1), F(2), F(3), F(4)], NONE)),
         (b"\x1b[1;5P\x1b[15;5~", keys(&[F(1), F(5)], CONTROL)),
         (
             b"\x1b[11~\x1b[15~\x1b[17~\x1b[21~",
@@ -200,11 +151,7 @@ fn keys_without_a_letter() -> Vec<Row> {
         ),
         (b"\x1bOp\x1bOk\x1bOM", {
             let pad = |code| with_state(code, KeyEventState::KEYPAD);
-            vec![
-                pad(KeyCode::Char('0')),
-                pad(KeyCode::Char('+')),
-                pad(KeyCode::Enter),
-            ]
+            vec![pad(KeyCode::Char('0')), pad(KeyCode::Char('+')), pad(KeyCode::Enter)]
         }),
         (
             b"\x1b[27;5;9~\x1b[27;6;9~",
@@ -223,31 +170,17 @@ fn kitty_keys() -> Vec<Row> {
             vec![key(w, NONE), key(w, NONE), key(w, NONE)],
         ),
         (b"\x1b[119;1:1u\x1b[119;1:2u\x1b[119;1:3u", {
-            [Press, Repeat, Release]
-                .map(|kind| of_kind(w, NONE, kind))
-                .to_vec()
+            [Press, Repeat, Release].map(|kind| of_kind(w, NONE, kind)).to_vec()
         }),
         (b"\x1b[99;5u", vec![letter('c', CONTROL)]),
         (b"\x1b[119;2u\x1b[119:87;2u\x1b[119:87:119;2:3u", {
             let upper = KeyCode::Char('W');
-            vec![
-                key(upper, SHIFT),
-                key(upper, SHIFT),
-                of_kind(upper, SHIFT, Release),
-            ]
+            vec![key(upper, SHIFT), key(upper, SHIFT), of_kind(upper, SHIFT, Release)]
         }),
-        (
-            b"\x1b[47:63;2u\x1b[47;2u",
-            vec![letter('?', NONE), letter('/', SHIFT)],
-        ),
+        (b"\x1b[47:63;2u\x1b[47;2u", vec![letter('?', NONE), letter('/', SHIFT)]),
         (b"\x1b[1094::119;1u", vec![letter('ц', NONE)]),
         (b"\x1b[27u\x1b[13u\x1b[127u\x1b[9u\x1b[9;2u", {
-            let plain = [
-                KeyCode::Esc,
-                KeyCode::Enter,
-                KeyCode::Backspace,
-                KeyCode::Tab,
-            ];
+            let plain = [KeyCode::Esc, KeyCode::Enter, KeyCode::Backspace, KeyCode::Tab];
             let mut keys = plain.map(|code| key(code, NONE)).to_vec();
             keys.push(key(KeyCode::BackTab, SHIFT));
             keys
@@ -282,30 +215,15 @@ fn kitty_keys() -> Vec<Row> {
         }),
         (b"\x1b[57399u\x1b[57408u\x1b[57414u\x1b[57427u", {
             let enter = KeyCode::Enter;
-            [
-                KeyCode::Char('0'),
-                KeyCode::Char('9'),
-                enter,
-                KeyCode::KeypadBegin,
-            ]
-            .map(|code| with_state(code, KeyEventState::KEYPAD))
-            .to_vec()
+            [KeyCode::Char('0'), KeyCode::Char('9'), enter, KeyCode::KeypadBegin]
+                .map(|code| with_state(code, KeyEventState::KEYPAD))
+                .to_vec()
         }),
-        (
-            b"\x1b[65535u\x1b[128512u\x1b[57345u\x1b[0u\x1b[u\x1b[119;1:4u",
-            {
-                [
-                    &b"65535u"[..],
-                    b"128512u",
-                    b"57345u",
-                    b"0u",
-                    b"u",
-                    b"119;1:4u",
-                ]
+        (b"\x1b[65535u\x1b[128512u\x1b[57345u\x1b[0u\x1b[u\x1b[119;1:4u", {
+            [&b"65535u"[..], b"128512u", b"57345u", b"0u", b"u", b"119;1:4u"]
                 .map(unknown)
                 .to_vec()
-            },
-        ),
+        }),
     ]
 }
 
@@ -330,31 +248,20 @@ fn mouse_reports() -> Vec<Row> {
                 .map(|k| mouse(k, 0, 0, NONE))
                 .to_vec()
         }),
-        (
-            b"\x1b[<28;1;1M",
-            vec![mouse(Down(Left), 0, 0, SHIFT | ALT | CONTROL)],
-        ),
+        (b"\x1b[<28;1;1M", vec![mouse(Down(Left), 0, 0, SHIFT | ALT | CONTROL)]),
         (b"\x1b[<0;0;0M", vec![mouse(Down(Left), 0, 0, NONE)]),
         (
             b"\x1b[32;3;4M\x1b[35;3;4M",
             vec![mouse(Down(Left), 2, 3, NONE), mouse(Up(Left), 2, 3, NONE)],
         ),
-        (
-            b"\x1b[M #$x",
-            vec![mouse(Down(Left), 2, 3, NONE), letter('x', NONE)],
-        ),
+        (b"\x1b[M #$x", vec![mouse(Down(Left), 2, 3, NONE), letter('x', NONE)]),
         (b"\x1b[M #\x03", vec![letter('c', CONTROL)]),
         (b"\x1b[<0;1M\x1b[<128;1;1M\x1b[<64;1;1m\x1b[<0;-1;1M", {
-            [&b"<0;1M"[..], b"<128;1;1M", b"<64;1;1m"]
-                .map(unknown)
-                .to_vec()
+            [&b"<0;1M"[..], b"<128;1;1M", b"<64;1;1m"].map(unknown).to_vec()
         }),
         (
             b"\x1b[I\x1b[O",
-            vec![
-                Input::Event(Event::FocusGained),
-                Input::Event(Event::FocusLost),
-            ],
+            vec![Input::Event(Event::FocusGained), Input::Event(Event::FocusLost)],
         ),
     ]
 }
@@ -371,59 +278,32 @@ fn pastes() -> Vec<Row> {
             b"\x1b[200~\x1b[200~\xff\xc3\xa9\x1b[201~",
             vec![paste("\x1b[200~\u{fffd}é")],
         ),
-        (
-            b"\x1b\x1b[200~q\x1b[201~",
-            vec![key(KeyCode::Esc, NONE), paste("q")],
-        ),
+        (b"\x1b\x1b[200~q\x1b[201~", vec![key(KeyCode::Esc, NONE), paste("q")]),
         (b"\x1b[201~x", vec![letter('x', NONE)]),
     ]
 }
 
 fn replies() -> Vec<Row> {
     vec![
-        (
-            b"\x1b[?62;22c",
-            vec![reply(Reply::DeviceAttributes(vec![62, 22]))],
-        ),
+        (b"\x1b[?62;22c", vec![reply(Reply::DeviceAttributes(vec![62, 22]))]),
         (
             b"\x1b[>41;354;0c",
             vec![reply(Reply::SecondaryAttributes(vec![41, 354, 0]))],
         ),
         (
             b"\x1b[12;40R",
-            vec![reply(Reply::CursorPosition {
-                row: 12,
-                column: 40,
-            })],
+            vec![reply(Reply::CursorPosition { row: 12, column: 40 })],
         ),
-        (
-            b"\x1b[1;2R",
-            vec![reply(Reply::CursorPosition { row: 1, column: 2 })],
-        ),
+        (b"\x1b[1;2R", vec![reply(Reply::CursorPosition { row: 1, column: 2 })]),
         (
             b"\x1b[?12;40;1R",
-            vec![reply(Reply::CursorPosition {
-                row: 12,
-                column: 40,
-            })],
+            vec![reply(Reply::CursorPosition { row: 12, column: 40 })],
         ),
-        (
-            b"\x1b[0n\x1b[n",
-            vec![reply(Reply::Status(0)), reply(Reply::Status(0))],
-        ),
-        (
-            b"\x1b[?2026;2$y",
-            vec![reply(Reply::Mode {
-                mode: 2026,
-                state: 2,
-            })],
-        ),
+        (b"\x1b[0n\x1b[n", vec![reply(Reply::Status(0)), reply(Reply::Status(0))]),
+        (b"\x1b[?2026;2$y", vec![reply(Reply::Mode { mode: 2026, state: 2 })]),
         (
             b"\x1b[6;19;10t",
-            vec![reply(Reply::CellPixels {
-                width: 10,
-                height: 19,
-            })],
+            vec![reply(Reply::CellPixels { width: 10, height: 19 })],
         ),
         (
             b"\x1b[4;456;800t",
@@ -434,10 +314,7 @@ fn replies() -> Vec<Row> {
         ),
         (
             b"\x1b[8;24;80t",
-            vec![reply(Reply::TextCells {
-                columns: 80,
-                rows: 24,
-            })],
+            vec![reply(Reply::TextCells { columns: 80, rows: 24 })],
         ),
         (
             b"\x1b[48;24;80;456;800t",
@@ -445,9 +322,7 @@ fn replies() -> Vec<Row> {
         ),
         (
             b"\x1b[?11u\x1b[?u",
-            [11, 0]
-                .map(|flags| reply(Reply::KeyboardFlags(flags)))
-                .to_vec(),
+            [11, 0].map(|flags| reply(Reply::KeyboardFlags(flags))).to_vec(),
         ),
     ]
 }
@@ -460,10 +335,7 @@ fn replies_in_strings_and_others() -> Vec<Row> {
         ),
         (
             b"\x1b]4;1;rgb:cc/0/0\x1b\\x",
-            vec![
-                reply(Reply::Osc(b"4;1;rgb:cc/0/0".to_vec())),
-                letter('x', NONE),
-            ],
+            vec![reply(Reply::Osc(b"4;1;rgb:cc/0/0".to_vec())), letter('x', NONE)],
         ),
         (
             b"\x1bP1$r48;2;1;2;3m\x1b\\",
@@ -473,10 +345,7 @@ fn replies_in_strings_and_others() -> Vec<Row> {
             b"\x1bP>|XTerm(380)\x1b\\",
             vec![reply(Reply::Dcs(b">|XTerm(380)".to_vec()))],
         ),
-        (
-            b"\x1b_Gi=31;OK\x1b\\",
-            vec![reply(Reply::Apc(b"Gi=31;OK".to_vec()))],
-        ),
+        (b"\x1b_Gi=31;OK\x1b\\", vec![reply(Reply::Apc(b"Gi=31;OK".to_vec()))]),
         (b"\x1b[?997;1n", vec![unknown(b"?997;1n")]),
         (b"\x1b[?1;0;256S", vec![unknown(b"?1;0;256S")]),
         (b"\x1b[4;1$y", vec![unknown(b"4;1$y")]),
@@ -486,10 +355,7 @@ fn replies_in_strings_and_others() -> Vec<Row> {
         // The Escape key pressed while an answer was on its way.
         (
             b"\x1b\x1b[?62c",
-            vec![
-                key(KeyCode::Esc, NONE),
-                reply(Reply::DeviceAttributes(vec![62])),
-            ],
+            vec![key(KeyCode::Esc, NONE), reply(Reply::DeviceAttributes(vec![62]))],
         ),
         (
             b"\x1b\x1b]11;?\x07",
@@ -504,35 +370,17 @@ fn broken_sequences() -> Vec<Row> {
         (b"\x1b[1;\x1b[A", vec![key(KeyCode::Up, NONE)]),
         (b"\x1bO\x1b[A", vec![key(KeyCode::Up, NONE)]),
         (b"\x1b]11;\x1b[A", vec![key(KeyCode::Up, NONE)]),
-        (
-            b"\x1bP1$r\x1b]4;0;x\x07",
-            vec![reply(Reply::Osc(b"4;0;x".to_vec()))],
-        ),
+        (b"\x1bP1$r\x1b]4;0;x\x07", vec![reply(Reply::Osc(b"4;0;x".to_vec()))]),
         // CAN and SUB end what was begun; they are Ctrl-X and Ctrl-Z of a person who waits no longer.
-        (
-            b"\x1b[1;\x18A",
-            vec![letter('x', CONTROL), letter('A', SHIFT)],
-        ),
-        (
-            b"\x1b]11;\x1aA",
-            vec![letter('z', CONTROL), letter('A', SHIFT)],
-        ),
+        (b"\x1b[1;\x18A", vec![letter('x', CONTROL), letter('A', SHIFT)]),
+        (b"\x1b]11;\x1aA", vec![letter('z', CONTROL), letter('A', SHIFT)]),
         // A control letter inside a sequence is what it always is.
-        (
-            b"\x1b[1;\x035A",
-            vec![letter('c', CONTROL), key(KeyCode::Up, CONTROL)],
-        ),
+        (b"\x1b[1;\x035A", vec![letter('c', CONTROL), key(KeyCode::Up, CONTROL)]),
         // Strings in which nothing is answered.
         (b"\x1bXnoise\x1b\\\x1b^noise\x1b\\", vec![]),
         // Grammar of no terminal.
-        (
-            b"\x1b[1?5Ax\x1b[ 1Ay",
-            vec![letter('x', NONE), letter('y', NONE)],
-        ),
-        (
-            b"\x1bO!x\x1bO9;9;9Zy",
-            vec![letter('x', NONE), letter('y', NONE)],
-        ),
+        (b"\x1b[1?5Ax\x1b[ 1Ay", vec![letter('x', NONE), letter('y', NONE)]),
+        (b"\x1bO!x\x1bO9;9;9Zy", vec![letter('x', NONE), letter('y', NONE)]),
         (b"\x1b[1;2$%&'A", vec![unknown(b"1;2$%&'A")]),
         (b"\x1b[[zx", vec![letter('x', NONE)]),
         (b"\x1b[[\x03", vec![letter('c', CONTROL)]),
@@ -599,20 +447,10 @@ fn a_split_changes_nothing() {
     for (bytes, expected) in table() {
         for at in 0..=bytes.len() {
             let (first, second) = bytes.split_at(at);
-            assert_eq!(
-                parse(&[first, second]),
-                expected,
-                "{} at {at}",
-                bytes.escape_ascii()
-            );
+            assert_eq!(parse(&[first, second]), expected, "{} at {at}", bytes.escape_ascii());
         }
         let single: Vec<&[u8]> = bytes.chunks(1).collect();
-        assert_eq!(
-            parse(&single),
-            expected,
-            "{} byte by byte",
-            bytes.escape_ascii()
-        );
+        assert_eq!(parse(&single), expected, "{} byte by byte", bytes.escape_ascii());
     }
 }
 
@@ -640,10 +478,7 @@ fn a_string_whose_very_end_is_late_is_still_a_reply() {
     parser.feed(b"\x1b]11;?\x1b", &mut out);
     parser.give_up_waiting(&mut out);
     parser.feed(b"\\x", &mut out);
-    assert_eq!(
-        out,
-        [reply(Reply::Osc(b"11;?".to_vec())), letter('x', NONE)]
-    );
+    assert_eq!(out, [reply(Reply::Osc(b"11;?".to_vec())), letter('x', NONE)]);
 }
 
 /// What comes of `begun` when the wait is given up, and then of `later`.
@@ -660,10 +495,7 @@ fn given_up(begun: &[u8], later: &[u8]) -> (Vec<Input>, Vec<Input>) {
 #[test]
 fn a_lone_escape_is_the_escape_key() {
     let escape = || key(KeyCode::Esc, NONE);
-    assert_eq!(
-        given_up(b"\x1b", b"x"),
-        (vec![escape()], vec![letter('x', NONE)])
-    );
+    assert_eq!(given_up(b"\x1b", b"x"), (vec![escape()], vec![letter('x', NONE)]));
     assert_eq!(
         given_up(b"\x1b\x1b", b"x"),
         (vec![escape(), escape()], vec![letter('x', NONE)])
@@ -704,19 +536,10 @@ fn half_a_sequence_does_not_swallow_keys_for_ever() {
         b"\x1b_G",
         b"\x1b]0\x1b",
     ] {
-        assert_eq!(
-            given_up(begun, b"\x03").1,
-            interrupt,
-            "{}",
-            begun.escape_ascii()
-        );
+        assert_eq!(given_up(begun, b"\x03").1, interrupt, "{}", begun.escape_ascii());
         assert_eq!(given_up(begun, b"\x1b[A").1, [key(KeyCode::Up, NONE)]);
         let typed = [b'1'; 400];
-        assert!(
-            given_up(begun, &typed).1.len() > 100,
-            "{}",
-            begun.escape_ascii()
-        );
+        assert!(given_up(begun, &typed).1.len() > 100, "{}", begun.escape_ascii());
     }
 }
 
@@ -758,23 +581,14 @@ fn a_paste_is_bounded() {
 
 #[test]
 fn a_string_or_a_sequence_without_end_keeps_little() {
-    for introducer in [
-        &b"\x1b]0;"[..],
-        b"\x1bP1$r",
-        b"\x1b_G",
-        b"\x1bX",
-        b"\x1b[",
-        b"\x1bO",
-    ] {
+    for introducer in [&b"\x1b]0;"[..], b"\x1bP1$r", b"\x1b_G", b"\x1bX", b"\x1b[", b"\x1bO"] {
         let (mut parser, mut out) = (Parser::new(), Vec::new());
         parser.feed(introducer, &mut out);
         parser.feed(&vec![b'1'; 1 << 20], &mut out);
         assert!(parser.text.capacity() <= 2 * super::STRING_LIMIT);
         assert!(parser.is_waiting());
         parser.feed(b"\x1b\\\x1b[Ax", &mut out);
-        let [.., up, x] = &out[..] else {
-            panic!("{out:?}")
-        };
+        let [.., up, x] = &out[..] else { panic!("{out:?}") };
         assert_eq!((up, x), (&key(KeyCode::Up, NONE), &letter('x', NONE)));
     }
 }
@@ -843,9 +657,5 @@ fn a_megabyte_of_random_bytes_is_survived() {
     let pieces: Vec<&[u8]> = bytes.chunks(7).collect();
     assert!(parse(&pieces) == whole, "split in sevens, seed {SEED:#x}");
     // Half of all bytes are ASCII or control letters: most of them are keys, if no string or paste hangs.
-    assert!(
-        whole.len() > 10_000,
-        "{} inputs, seed {SEED:#x}",
-        whole.len()
-    );
+    assert!(whole.len() > 10_000, "{} inputs, seed {SEED:#x}", whole.len());
 }

@@ -38,10 +38,7 @@ impl Tokeniser {
     /// What `byte` finishes: two things at most, where it also shows that the bytes before it were no character.
     /// `text` is what has come since `ESC [`, with this byte.
     pub(super) fn take(&mut self, byte: u8, text: &[u8]) -> Vec<Token> {
-        let mut listener = Listener {
-            said: Vec::new(),
-            text,
-        };
+        let mut listener = Listener { said: Vec::new(), text };
         self.0.advance(&mut listener, &[byte]);
         listener.said
     }

@@ -1,0 +1,319 @@
+//! The loop of the live view: input, render, present, rest.
+//!
+//! It sleeps until a key, a signal or a finished frame wakes it. A frame is rendered only when something changed, by a
+//! thread of its own, so that keys and signals are heard while it is traced; the newest picture wins: what changes in
+//! the meantime is in the next frame, and nothing is queued.
+
+use crate::camera::Camera;
+use crate::capabilities::{Capabilities, CellMode, USUAL_CELL_ASPECT};
+use crate::cell;
+use crate::control::{self, Command, Motion};
+use crate::framebuffer::Resolution;
+use crate::grid::Size;
+use crate::input::{Input, Parser};
+use crate::scene::Scene;
+use crate::terminal::{Signals, Terminal, Window};
+use crossterm::event::{Event, KeyEvent, KeyEventKind};
+use std::io;
+use std::time::{Duration, Instant};
+
+mod panels;
+mod renderer;
+mod screen;
+
+use renderer::{Job, Renderer};
+use screen::Screen;
+
+/// How the user wants the live view.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// How pixels become cells.
+    pub cell_mode: CellMode,
+    /// A cell's height over its width; `None`: as the terminal says it is, or 2.
+    pub cell_aspect: Option<f32>,
+    /// How many threads trace; `None`: as many as there are cores.
+    pub threads: Option<usize>,
+    /// Where to panic when `!` is pressed, so that tests can see how the terminal is left.
+    #[cfg(debug_assertions)]
+    pub test_panic: Option<TestPanic>,
+}
+
+/// Which thread panics.
+#[cfg(debug_assertions)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TestPanic {
+    /// The one that runs the loop.
+    Main,
+    /// One of those that trace.
+    Worker,
+}
+
+/// How the live view ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// Why.
+    pub ending: Ending,
+    /// Where the user had moved the camera, if he had.
+    pub moved: Option<Camera>,
+}
+
+/// Why the live view ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The user left.
+    Left,
+    /// A signal asked for it.
+    Signal(i32),
+}
+
+/// Shows the scene until the user leaves. The terminal is as it was when this returns, and also when it panics.
+///
+/// # Errors
+/// If there is no terminal, or it goes away.
+///
+/// # Panics
+/// With the payload of a thread that panicked while tracing.
+pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<Outcome> {
+    let camera = scene.camera;
+    // The terminal is declared last, and so is given back first: nothing that comes after can keep it.
+    let mut renderer = Renderer::start(scene, options.threads, signals.waker()?)?;
+    let mut terminal = Terminal::take()?;
+    let mut live = Live::new(camera, options, terminal.window()?);
+    let ending = live.run(&mut terminal, &mut renderer, signals)?;
+    Ok(Outcome {
+        ending,
+        moved: (live.camera != camera).then_some(live.camera),
+    })
+}
+
+/// Frames are at least this far apart.
+const FRAME: Duration = Duration::from_micros(16_667);
+/// How long the rest of a key's escape sequence may take before a lone Escape is taken for the key.
+const ESCAPE_WAIT: Duration = Duration::from_millis(50);
+
+/// The state of the live view.
+struct Live {
+    options: Options,
+    home: Camera,
+    camera: Camera,
+    speed: f32,
+    size: Size,
+    capabilities: Capabilities,
+    parser: Parser,
+    motion: Motion,
+    screen: Screen,
+    start: Instant,
+    /// Up to when the motion has been carried out; `None` at rest.
+    moved_until: Option<Duration>,
+    /// Whether the picture on the screen is of another camera or size than the wanted one.
+    stale: bool,
+    /// The last time a frame was begun.
+    begun: Option<Duration>,
+}
+
+impl Live {
+    fn new(camera: Camera, options: Options, window: Window) -> Self {
+        let mut live = Self {
+            options,
+            home: camera,
+            camera,
+            speed: control::speed(&camera),
+            size: window.size,
+            capabilities: Capabilities {
+                cell_mode: options.cell_mode,
+                cell_aspect: USUAL_CELL_ASPECT,
+            },
+            parser: Parser::new(),
+            motion: Motion::default(),
+            screen: Screen::new(options.cell_mode),
+            start: Instant::now(),
+            moved_until: None,
+            stale: true,
+            begun: None,
+        };
+        live.resize(window);
+        live
+    }
+
+    fn run(&mut self, terminal: &mut Terminal, renderer: &mut Renderer, signals: &mut Signals) -> io::Result<Ending> {
+        loop {
+            self.move_camera();
+            if self.stale && !renderer.is_busy() && self.frame_is_due() {
+                self.begin_frame(renderer);
+            }
+            let woken = terminal.wait(signals.wake_pipe(), self.timeout(renderer.is_busy()))?;
+            if woken.wake {
+                signals.drain();
+            }
+            if let Some(signal) = signals.deadly() {
+                return Ok(Ending::Signal(signal));
+            }
+            if signals.take_resized() {
+                self.resize(terminal.window()?);
+            }
+            if woken.keys {
+                if self.read_keys(terminal, renderer)? == Stay::Leave {
+                    return Ok(Ending::Left);
+                }
+            } else if !woken.wake && self.parser.is_waiting() {
+                let mut inputs = Vec::new();
+                self.parser.give_up_waiting(&mut inputs);
+                self.take_inputs(&inputs, renderer);
+            }
+            if let Some(frame) = renderer.finished() {
+                self.screen.take_frame(frame, self.now());
+            }
+            self.present(terminal)?;
+        }
+    }
+
+    /// The time since the start.
+    fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    fn resolution(&self) -> Resolution {
+        cell::resolution(self.capabilities.cell_mode, self.size, self.capabilities.cell_aspect)
+    }
+
+    fn resize(&mut self, window: Window) {
+        self.size = window.size;
+        self.capabilities.cell_aspect = self
+            .options
+            .cell_aspect
+            .or(window.cell_aspect)
+            .unwrap_or(USUAL_CELL_ASPECT);
+        // The terminal has moved what it shows to wherever it thought right.
+        self.screen.redraw();
+        self.stale = true;
+    }
+
+    /// Carries the motion out up to now.
+    fn move_camera(&mut self) {
+        let Some(since) = self.moved_until else { return };
+        let now = self.now();
+        let camera = self.motion.step(&self.camera, self.speed, since, now);
+        self.stale |= camera != self.camera;
+        self.camera = camera;
+        self.moved_until = self.motion.is_moving(now).then_some(now);
+    }
+
+    fn frame_is_due(&self) -> bool {
+        self.begun.is_none_or(|begun| self.now() >= begun + FRAME)
+    }
+
+    fn begin_frame(&mut self, renderer: &mut Renderer) {
+        self.stale = false;
+        self.begun = Some(self.now());
+        renderer.begin(Job {
+            camera: self.camera,
+            resolution: self.resolution(),
+            test_panic: false,
+        });
+    }
+
+    /// How long there is nothing to do if nobody wakes us: for ever when nothing moves.
+    fn timeout(&self, busy: bool) -> Option<Duration> {
+        let frame = (self.stale || self.moved_until.is_some()) && !busy;
+        let until_frame = frame.then(|| {
+            self.begun
+                .map_or(Duration::ZERO, |b| (b + FRAME).saturating_sub(self.now()))
+        });
+        let until_escape = self.parser.is_waiting().then_some(ESCAPE_WAIT);
+        until_frame.into_iter().chain(until_escape).min()
+    }
+
+    fn read_keys(&mut self, terminal: &mut Terminal, renderer: &mut Renderer) -> io::Result<Stay> {
+        let mut buffer = [0; 4096];
+        let bytes = terminal.read(&mut buffer)?;
+        if bytes.is_empty() {
+            return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
+        }
+        let mut inputs = Vec::new();
+        self.parser.feed(bytes, &mut inputs);
+        Ok(self.take_inputs(&inputs, renderer))
+    }
+
+    fn take_inputs(&mut self, inputs: &[Input], renderer: &mut Renderer) -> Stay {
+        for input in inputs {
+            if let Input::Event(Event::Key(key)) = input
+                && self.take_key(key, renderer) == Stay::Leave
+            {
+                return Stay::Leave;
+            }
+        }
+        Stay::Stay
+    }
+
+    fn take_key(&mut self, key: &KeyEvent, renderer: &mut Renderer) -> Stay {
+        self.panic_if_asked(key, renderer);
+        self.take_motion(key);
+        if key.kind != KeyEventKind::Press {
+            return Stay::Stay;
+        }
+        match control::command(key).map(|(command, _)| command) {
+            Some(Command::Quit) => return Stay::Leave,
+            Some(Command::Reset) => self.reset(),
+            Some(Command::Status) => self.screen.toggle_status(),
+            Some(Command::Help) => self.screen.toggle_help(),
+            Some(Command::Redraw) => self.screen.redraw(),
+            Some(Command::Move(_) | Command::Look(_)) | None => {}
+        }
+        Stay::Stay
+    }
+
+    /// What was going on is carried out before the key changes it.
+    fn take_motion(&mut self, key: &KeyEvent) {
+        self.move_camera();
+        let now = self.now();
+        self.motion.key(key, now);
+        // From rest, the first frame already shows a frame's worth of movement.
+        self.moved_until = self
+            .motion
+            .is_moving(now)
+            .then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
+    }
+
+    fn reset(&mut self) {
+        self.stale |= self.camera != self.home;
+        self.camera = self.home;
+    }
+
+    /// Brings the screen up to date: nothing is written if it is.
+    fn present(&mut self, terminal: &mut Terminal) -> io::Result<()> {
+        let bytes = self.screen.bytes(self.size, &self.camera);
+        if bytes.is_empty() {
+            Ok(())
+        } else {
+            terminal.write(bytes)
+        }
+    }
+
+    #[cfg(debug_assertions)]
+    fn panic_if_asked(&self, key: &KeyEvent, renderer: &mut Renderer) {
+        if key.code != crossterm::event::KeyCode::Char('!') {
+            return;
+        }
+        match self.options.test_panic {
+            Some(TestPanic::Main) => panic!("a test asked for a panic in the loop"),
+            Some(TestPanic::Worker) => {
+                renderer.begin(Job {
+                    camera: self.camera,
+                    resolution: self.resolution(),
+                    test_panic: true,
+                });
+            }
+            None => {}
+        }
+    }
+
+    #[cfg(not(debug_assertions))]
+    fn panic_if_asked(&self, _: &KeyEvent, _: &mut Renderer) {}
+}
+
+/// Whether the loop goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stay {
+    Stay,
+    Leave,
+}

@@ -1,0 +1,65 @@
+//! Text and panels over the picture: any ratatui buffer laid over the grid.
+
+use crate::color::Srgb8;
+use crate::grid::{Cell, Grid, Ink};
+use ratatui::buffer::Buffer;
+use ratatui::style::Color;
+use unicode_width::UnicodeWidthStr;
+
+/// Puts the buffer's cells over the grid's, where both have them.
+pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
+    let area = buffer.area;
+    for row in area.top()..area.bottom().min(grid.size().rows) {
+        let mut column = area.left();
+        while column < area.right().min(grid.size().columns) {
+            let mut cell = cell_from_ratatui(&buffer[(column, row)]);
+            let columns = buffer[(column, row)].symbol().width().max(1) as u16;
+            if columns > grid.size().columns - column {
+                cell.glyph = ' '; // a wide character with half of it outside
+            }
+            *grid.cell_mut(column, row) = cell;
+            for covered in column + 1..(column + columns).min(grid.size().columns) {
+                *grid.cell_mut(covered, row) = Cell {
+                    glyph: Cell::COVERED,
+                    ..cell
+                };
+            }
+            column += columns;
+        }
+    }
+}
+
+fn cell_from_ratatui(cell: &ratatui::buffer::Cell) -> Cell {
+    Cell {
+        // Of a character with combining marks the grid keeps the character.
+        glyph: cell.symbol().chars().next().filter(|c| !c.is_control()).unwrap_or(' '),
+        fg: ink_from_ratatui(cell.fg),
+        bg: ink_from_ratatui(cell.bg),
+        modifier: cell.modifier,
+    }
+}
+
+/// The 16 named colours are the first of the indexed ones, in the order of SGR's codes.
+fn ink_from_ratatui(color: Color) -> Ink {
+    match color {
+        Color::Reset => Ink::Default,
+        Color::Rgb(r, g, b) => Ink::Rgb(Srgb8::new(r, g, b)),
+        Color::Indexed(index) => Ink::Indexed(index),
+        Color::Black => Ink::Indexed(0),
+        Color::Red => Ink::Indexed(1),
+        Color::Green => Ink::Indexed(2),
+        Color::Yellow => Ink::Indexed(3),
+        Color::Blue => Ink::Indexed(4),
+        Color::Magenta => Ink::Indexed(5),
+        Color::Cyan => Ink::Indexed(6),
+        Color::Gray => Ink::Indexed(7),
+        Color::DarkGray => Ink::Indexed(8),
+        Color::LightRed => Ink::Indexed(9),
+        Color::LightGreen => Ink::Indexed(10),
+        Color::LightYellow => Ink::Indexed(11),
+        Color::LightBlue => Ink::Indexed(12),
+        Color::LightMagenta => Ink::Indexed(13),
+        Color::LightCyan => Ink::Indexed(14),
+        Color::White => Ink::Indexed(15),
+    }
+}

@@ -1,0 +1,145 @@
+//! The one owner of the terminal: what it turns on it turns off again, in reverse order, whatever happens.
+//!
+//! The terminal is given back when [`Terminal`] is dropped: on return, on an error, while a panic unwinds. Signals
+//! that would end the process end the loop of [`app`](crate::app) instead, and so drop it too; `main` then lets the
+//! signal do its work. Messages of panics are kept until the terminal is back (see [`hold_panic_messages`]), or they
+//! would vanish with the alternate screen.
+//!
+//! `O_NONBLOCK` is never set: the terminal is shared with the shell, which would find it set after us.
+
+use crate::capabilities;
+use crate::grid::Size;
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::fd::{AsFd, BorrowedFd};
+use rustix::termios;
+use std::fs::File;
+use std::io::{self, IsTerminal, Read, Write};
+use std::time::Duration;
+
+mod modes;
+mod panics;
+mod signals;
+
+pub use panics::{hold_panic_messages, take_panic_messages};
+pub use signals::{Signals, Waker, die_of};
+
+/// A terminal in raw mode with the alternate screen, to be read, written and asked for its size.
+pub struct Terminal {
+    keys: File,
+    screen: File,
+    modes: modes::Modes,
+}
+
+/// What woke [`Terminal::wait`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Woken {
+    /// There are bytes from the terminal, or it is gone.
+    pub keys: bool,
+    /// The wake pipe has something to say.
+    pub wake: bool,
+}
+
+/// A window's size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// In cells.
+    pub size: Size,
+    /// A cell's height over its width, if the terminal says how large it is in pixels.
+    pub cell_aspect: Option<f32>,
+}
+
+impl Terminal {
+    /// Takes the terminal over: the picture goes to standard output; keys come from standard input, or from the
+    /// controlling terminal where standard input is something else.
+    ///
+    /// # Errors
+    /// If either is not a terminal, or cannot be set up; it is then as it was.
+    pub fn take() -> io::Result<Self> {
+        let screen = File::from(io::stdout().as_fd().try_clone_to_owned()?);
+        let keys = keys_file()?;
+        let modes = modes::Modes::take(&keys, &screen)?;
+        Ok(Self { keys, screen, modes })
+    }
+
+    /// The window's size now.
+    ///
+    /// # Errors
+    /// If the terminal is gone.
+    pub fn window(&self) -> io::Result<Window> {
+        let window = termios::tcgetwinsize(&self.screen)?;
+        let (columns, rows) = (window.ws_col, window.ws_row);
+        // A terminal that nobody told its size has none.
+        let size = if columns == 0 || rows == 0 {
+            Size::new(80, 24)
+        } else {
+            Size::new(columns, rows)
+        };
+        let cell_aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
+        Ok(Window { size, cell_aspect })
+    }
+
+    /// Sends a frame, in one write where the terminal takes it whole.
+    ///
+    /// # Errors
+    /// If the terminal is gone.
+    pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.screen.write_all(bytes)
+    }
+
+    /// The bytes that are there. None at all: the terminal is gone.
+    ///
+    /// # Errors
+    /// If the terminal is gone.
+    pub fn read<'a>(&mut self, buffer: &'a mut [u8]) -> io::Result<&'a [u8]> {
+        loop {
+            match self.keys.read(buffer) {
+                Ok(count) => return Ok(&buffer[..count]),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// Sleeps until there are keys or the wake pipe is readable, at most for `timeout`, or for ever without one.
+    ///
+    /// # Errors
+    /// If the operating system refuses.
+    pub fn wait(&self, wake: BorrowedFd<'_>, timeout: Option<Duration>) -> io::Result<Woken> {
+        let mut fds = [
+            PollFd::new(&self.keys, PollFlags::IN),
+            PollFd::from_borrowed_fd(wake, PollFlags::IN),
+        ];
+        let timeout = timeout.map(timespec);
+        match poll(&mut fds, timeout.as_ref()) {
+            // A signal: what it was is in the wake pipe, and the next call finds it there.
+            Err(rustix::io::Errno::INTR) => Ok(Woken::default()),
+            Err(error) => Err(error.into()),
+            Ok(_) => Ok(Woken {
+                keys: !fds[0].revents().is_empty(),
+                wake: !fds[1].revents().is_empty(),
+            }),
+        }
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        self.modes.give_back(&self.keys, &mut self.screen);
+    }
+}
+
+/// Standard input if it is a terminal, else the controlling one.
+fn keys_file() -> io::Result<File> {
+    if io::stdin().is_terminal() {
+        return Ok(File::from(io::stdin().as_fd().try_clone_to_owned()?));
+    }
+    File::open("/dev/tty")
+        .map_err(|error| io::Error::new(error.kind(), format!("no terminal to read keys from: {error}")))
+}
+
+fn timespec(duration: Duration) -> rustix::event::Timespec {
+    rustix::event::Timespec {
+        tv_sec: i64::try_from(duration.as_secs()).unwrap_or(i64::MAX),
+        tv_nsec: duration.subsec_nanos().into(),
+    }
+}
