@@ -80,10 +80,7 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
     let mut terminal = Terminal::take()?;
     let mut live = Live::new(camera, options, terminal.window()?);
     let ending = live.run(&mut terminal, &mut renderer, signals)?;
-    Ok(Outcome {
-        ending,
-        moved: (live.camera != camera).then_some(live.camera),
-    })
+    Ok(Outcome { ending, moved: (live.camera != camera).then_some(live.camera) })
 }
 
 /// Frames are at least this far apart.
@@ -119,10 +116,7 @@ impl Live {
             camera,
             speed: control::speed(&camera),
             size: window.size,
-            capabilities: Capabilities {
-                cell_mode: options.cell_mode,
-                cell_aspect: USUAL_CELL_ASPECT,
-            },
+            capabilities: Capabilities { cell_mode: options.cell_mode, cell_aspect: USUAL_CELL_ASPECT },
             parser: Parser::new(),
             motion: Motion::default(),
             screen: Screen::new(options.cell_mode),
@@ -178,11 +172,7 @@ impl Live {
 
     fn resize(&mut self, window: Window) {
         self.size = window.size;
-        self.capabilities.cell_aspect = self
-            .options
-            .cell_aspect
-            .or(window.cell_aspect)
-            .unwrap_or(USUAL_CELL_ASPECT);
+        self.capabilities.cell_aspect = self.options.cell_aspect.or(window.cell_aspect).unwrap_or(USUAL_CELL_ASPECT);
         // The terminal has moved what it shows to wherever it thought right.
         self.screen.redraw();
         self.stale = true;
@@ -205,20 +195,13 @@ impl Live {
     fn begin_frame(&mut self, renderer: &mut Renderer) {
         self.stale = false;
         self.begun = Some(self.now());
-        renderer.begin(Job {
-            camera: self.camera,
-            resolution: self.resolution(),
-            test_panic: false,
-        });
+        renderer.begin(Job { camera: self.camera, resolution: self.resolution(), test_panic: false });
     }
 
     /// How long there is nothing to do if nobody wakes us: for ever when nothing moves.
     fn timeout(&self, busy: bool) -> Option<Duration> {
         let frame = (self.stale || self.moved_until.is_some()) && !busy;
-        let until_frame = frame.then(|| {
-            self.begun
-                .map_or(Duration::ZERO, |b| (b + FRAME).saturating_sub(self.now()))
-        });
+        let until_frame = frame.then(|| self.begun.map_or(Duration::ZERO, |b| (b + FRAME).saturating_sub(self.now())));
         let until_escape = self.parser.is_waiting().then_some(ESCAPE_WAIT);
         until_frame.into_iter().chain(until_escape).min()
     }
@@ -268,10 +251,7 @@ impl Live {
         let now = self.now();
         self.motion.key(key, now);
         // From rest, the first frame already shows a frame's worth of movement.
-        self.moved_until = self
-            .motion
-            .is_moving(now)
-            .then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
+        self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
     }
 
     fn reset(&mut self) {
@@ -282,11 +262,7 @@ impl Live {
     /// Brings the screen up to date: nothing is written if it is.
     fn present(&mut self, terminal: &mut Terminal) -> io::Result<()> {
         let bytes = self.screen.bytes(self.size, &self.camera);
-        if bytes.is_empty() {
-            Ok(())
-        } else {
-            terminal.write(bytes)
-        }
+        if bytes.is_empty() { Ok(()) } else { terminal.write(bytes) }
     }
 
     #[cfg(debug_assertions)]
@@ -297,11 +273,7 @@ impl Live {
         match self.options.test_panic {
             Some(TestPanic::Main) => panic!("a test asked for a panic in the loop"),
             Some(TestPanic::Worker) => {
-                renderer.begin(Job {
-                    camera: self.camera,
-                    resolution: self.resolution(),
-                    test_panic: true,
-                });
+                renderer.begin(Job { camera: self.camera, resolution: self.resolution(), test_panic: true });
             }
             None => {}
         }

@@ -89,11 +89,7 @@ impl Camera {
     /// # Errors
     /// Where the pose gives no basis: see [`CameraError`].
     pub fn new(pose: Pose, rectangle: ViewRectangle) -> Result<Self, CameraError> {
-        Ok(Self {
-            pose,
-            basis: Basis::from_pose(&pose)?,
-            rectangle,
-        })
+        Ok(Self { pose, basis: Basis::from_pose(&pose)?, rectangle })
     }
 
     /// The same intrinsic parameters from another pose.
@@ -130,12 +126,7 @@ impl Camera {
         let Basis { u, v, w } = self.basis;
         let (width, height, middle) = self.rectangle.fitted_to(aspect_ratio);
         let q0 = u * (middle.x - 0.5 * width) + v * (middle.y - 0.5 * height) - w;
-        EyeRays {
-            eye: self.pose.eye,
-            q0,
-            across: u * width,
-            upward: v * height,
-        }
+        EyeRays { eye: self.pose.eye, q0, across: u * width, upward: v * height }
     }
 }
 
@@ -157,11 +148,7 @@ impl Basis {
             return Err(CameraError::UpAlongView);
         }
         let u = across / across.length();
-        Ok(Self {
-            u: u.as_vec3(),
-            v: w.cross(u).as_vec3(),
-            w: w.as_vec3(),
-        })
+        Ok(Self { u: u.as_vec3(), v: w.cross(u).as_vec3(), w: w.as_vec3() })
     }
 }
 
@@ -180,11 +167,7 @@ impl ViewRectangle {
     pub fn from_vertical_fov(radians: f32) -> Result<Self, CameraError> {
         let height = (2.0 * libm::tan(0.5 * f64::from(radians))) as f32;
         if radians > 0.0 && radians < std::f32::consts::PI && height > 0.0 && height.is_finite() {
-            Ok(Self {
-                width: None,
-                height,
-                shift: Vec2::ZERO,
-            })
+            Ok(Self { width: None, height, shift: Vec2::ZERO })
         } else {
             Err(CameraError::FieldOfView)
         }
@@ -197,11 +180,7 @@ impl ViewRectangle {
     pub fn from_focal_length(focal_length: f32, width: f32, height: f32) -> Result<Self, CameraError> {
         let (width, height) = (width / focal_length, height / focal_length);
         if focal_length > 0.0 && is_length(width) && is_length(height) {
-            Ok(Self {
-                width: Some(width),
-                height,
-                shift: Vec2::ZERO,
-            })
+            Ok(Self { width: Some(width), height, shift: Vec2::ZERO })
         } else {
             Err(CameraError::ViewRectangle)
         }
@@ -213,11 +192,7 @@ impl ViewRectangle {
     /// As [`ViewRectangle::from_vertical_fov`].
     pub fn with_vertical_fov(self, radians: f32) -> Result<Self, CameraError> {
         let Self { height, .. } = Self::from_vertical_fov(radians)?;
-        Ok(Self {
-            height,
-            width: self.width.map(|width| width * (height / self.height)),
-            ..self
-        })
+        Ok(Self { height, width: self.width.map(|width| width * (height / self.height)), ..self })
     }
 
     /// The rectangle of the same height with that aspect ratio (width / height) of its own.
@@ -226,14 +201,7 @@ impl ViewRectangle {
     /// Unless the aspect ratio is greater than 0 and finite.
     pub fn with_aspect_ratio(self, aspect_ratio: f32) -> Result<Self, CameraError> {
         let width = self.height * aspect_ratio;
-        if is_length(width) {
-            Ok(Self {
-                width: Some(width),
-                ..self
-            })
-        } else {
-            Err(CameraError::ViewRectangle)
-        }
+        if is_length(width) { Ok(Self { width: Some(width), ..self }) } else { Err(CameraError::ViewRectangle) }
     }
 
     /// The rectangle off centre: its middle to the right of and above the w axis, in heights of the rectangle.
@@ -241,11 +209,7 @@ impl ViewRectangle {
     /// # Errors
     /// Unless the shift is finite.
     pub fn with_shift(self, shift: Vec2) -> Result<Self, CameraError> {
-        if shift.is_finite() {
-            Ok(Self { shift, ..self })
-        } else {
-            Err(CameraError::NotFinite)
-        }
+        if shift.is_finite() { Ok(Self { shift, ..self }) } else { Err(CameraError::NotFinite) }
     }
 
     /// The angle that the rectangle takes up vertically when it is not shifted, in radians.
@@ -295,9 +259,6 @@ impl EyeRays {
     /// The ray through the point (qu, qv) of the unit square, (0, 0) being the picture's lower left corner:
     /// q = q0 + w qu u + h qv v. Its direction is q - eye, whose part along -w is 1: t is the depth.
     pub fn through(&self, qu: f32, qv: f32) -> Ray {
-        Ray {
-            origin: self.eye,
-            direction: self.q0 + self.across * qu + self.upward * qv,
-        }
+        Ray { origin: self.eye, direction: self.q0 + self.across * qu + self.upward * qv }
     }
 }

@@ -67,10 +67,7 @@ fn is_dumb(variable: impl Fn(&str) -> Option<String>) -> bool {
 /// The locale's character set, by POSIX's order of the variables. Where none is set, nobody has said anything against
 /// UTF-8, and a terminal of today shows it.
 fn is_utf8(variable: impl Fn(&str) -> Option<String>) -> bool {
-    let locale = ["LC_ALL", "LC_CTYPE", "LANG"]
-        .into_iter()
-        .filter_map(variable)
-        .find(|value| !value.is_empty());
+    let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().filter_map(variable).find(|value| !value.is_empty());
     locale.is_none_or(|locale| {
         let locale = locale.to_ascii_lowercase();
         locale.contains("utf-8") || locale.contains("utf8")
@@ -92,12 +89,7 @@ mod tests {
     use super::*;
 
     fn mode(choice: ColorChoice, environment: &[(&str, &str)]) -> CellMode {
-        cell_mode(choice, |name| {
-            environment
-                .iter()
-                .find(|(n, _)| *n == name)
-                .map(|(_, value)| (*value).to_owned())
-        })
+        cell_mode(choice, |name| environment.iter().find(|(n, _)| *n == name).map(|(_, value)| (*value).to_owned()))
     }
 
     #[test]
@@ -105,11 +97,7 @@ mod tests {
         use CellMode::{HalfBlock, Ramp};
         use ColorChoice::{Always, Auto, Never};
         for (choice, environment, expected) in [
-            (
-                Auto,
-                &[("TERM", "xterm-256color"), ("LANG", "en_US.UTF-8")][..],
-                HalfBlock,
-            ),
+            (Auto, &[("TERM", "xterm-256color"), ("LANG", "en_US.UTF-8")][..], HalfBlock),
             (Auto, &[], HalfBlock),
             (Auto, &[("LANG", "C.utf8")], HalfBlock),
             (Auto, &[("NO_COLOR", "1")], Ramp),
@@ -137,11 +125,7 @@ mod tests {
             (80, 24, 79, 480, None),
             (80, 24, 65535, 24, None),
         ] {
-            assert_eq!(
-                cell_aspect(columns, rows, width, height),
-                expected,
-                "{columns}x{rows} in {width}x{height}"
-            );
+            assert_eq!(cell_aspect(columns, rows, width, height), expected, "{columns}x{rows} in {width}x{height}");
         }
     }
 }

@@ -38,11 +38,7 @@ impl LinearRgb {
     /// What an 8-bit sRGB colour means as light, each band in 0..=1.
     pub fn from_srgb8(color: Srgb8) -> Self {
         let table = &TRANSFER.linear_from_srgb8;
-        Self::new(
-            table[usize::from(color.r)],
-            table[usize::from(color.g)],
-            table[usize::from(color.b)],
-        )
+        Self::new(table[usize::from(color.r)], table[usize::from(color.g)], table[usize::from(color.b)])
     }
 
     /// The relative luminance Y of CIE 1931 (the second row of sRGB's matrix; IEC 61966-2-1).
@@ -109,30 +105,18 @@ impl Srgb8 {
     /// The nearest 8-bit colour: each band clamped to 0..=1, put through the transfer function and rounded.
     /// NaN counts as no light.
     pub fn from_linear(light: LinearRgb) -> Self {
-        Self::new(
-            srgb8_from_linear(light.r),
-            srgb8_from_linear(light.g),
-            srgb8_from_linear(light.b),
-        )
+        Self::new(srgb8_from_linear(light.r), srgb8_from_linear(light.g), srgb8_from_linear(light.b))
     }
 }
 
 /// sRGB's transfer function, linear to encoded (IEC 61966-2-1), both in 0..=1.
 pub fn srgb_from_linear(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
-    }
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
 }
 
 /// sRGB's transfer function, encoded to linear (IEC 61966-2-1), both in 0..=1.
 pub fn linear_from_srgb(encoded: f64) -> f64 {
-    if encoded <= 0.040_45 {
-        encoded / 12.92
-    } else {
-        libm::pow((encoded + 0.055) / 1.055, 2.4)
-    }
+    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
 /// One band: clamp, encode, round.
@@ -179,21 +163,13 @@ static TRANSFER: LazyLock<Transfer> = LazyLock::new(|| {
         let least = f32::from_bits((bucket as u32) << BUCKET_SHIFT);
         linear_at_step.iter().take_while(|&&step| least >= step).count() as u8 // at most 255 steps
     });
-    Transfer {
-        linear_from_srgb8,
-        linear_at_step,
-        first_code,
-    }
+    Transfer { linear_from_srgb8, linear_at_step, first_code }
 });
 
 /// Casting rounds to nearest, which may be below.
 fn least_f32_at_or_above(value: f64) -> f32 {
     let nearest = value as f32;
-    if f64::from(nearest) < value {
-        nearest.next_up()
-    } else {
-        nearest
-    }
+    if f64::from(nearest) < value { nearest.next_up() } else { nearest }
 }
 
 #[cfg(test)]
@@ -228,10 +204,7 @@ mod tests {
     #[test]
     fn quantising_is_the_formula_rounded() {
         let by_formula = |x: f32| (srgb_from_linear(f64::from(x)) * 255.0).round() as u8;
-        let steps = TRANSFER
-            .linear_at_step
-            .iter()
-            .flat_map(|&s| [s.next_down(), s, s.next_up()]);
+        let steps = TRANSFER.linear_at_step.iter().flat_map(|&s| [s.next_down(), s, s.next_up()]);
         let spread = (0..0x3f80_0000_u32).step_by(997).map(f32::from_bits);
         for x in steps.chain(spread) {
             assert_eq!(srgb8_from_linear(x), by_formula(x), "{x:e}");
@@ -240,15 +213,9 @@ mod tests {
 
     #[test]
     fn light_outside_the_screens_range_is_clamped() {
-        for (x, code) in [
-            (-1.0, 0),
-            (-0.0, 0),
-            (f32::NAN, 0),
-            (f32::NEG_INFINITY, 0),
-            (1.0, 255),
-            (7.0, 255),
-            (f32::INFINITY, 255),
-        ] {
+        for (x, code) in
+            [(-1.0, 0), (-0.0, 0), (f32::NAN, 0), (f32::NEG_INFINITY, 0), (1.0, 255), (7.0, 255), (f32::INFINITY, 255)]
+        {
             assert_eq!(srgb8_from_linear(x), code, "{x}");
         }
     }

@@ -78,17 +78,11 @@ pub struct Key {
 }
 
 const fn letter(c: char) -> Key {
-    Key {
-        code: KeyCode::Char(c),
-        ctrl: false,
-    }
+    Key { code: KeyCode::Char(c), ctrl: false }
 }
 
 const fn ctrl(c: char) -> Key {
-    Key {
-        code: KeyCode::Char(c),
-        ctrl: true,
-    }
+    Key { code: KeyCode::Char(c), ctrl: true }
 }
 
 const fn named(code: KeyCode) -> Key {
@@ -96,12 +90,7 @@ const fn named(code: KeyCode) -> Key {
 }
 
 const fn binding(keys: &'static [Key], label: &'static str, command: Command, does: &'static str) -> Binding {
-    Binding {
-        keys,
-        label,
-        command,
-        does,
-    }
+    Binding { keys, label, command, does }
 }
 
 /// All bindings, in the order of the help.
@@ -110,42 +99,12 @@ pub const BINDINGS: &[Binding] = &[
     binding(&[letter('s')], "s", Command::Move(Direction::Back), "move back"),
     binding(&[letter('a')], "a", Command::Move(Direction::Left), "move left"),
     binding(&[letter('d')], "d", Command::Move(Direction::Right), "move right"),
-    binding(
-        &[letter('e'), named(KeyCode::PageUp)],
-        "e PageUp",
-        Command::Move(Direction::Up),
-        "move up",
-    ),
-    binding(
-        &[letter('c'), named(KeyCode::PageDown)],
-        "c PageDown",
-        Command::Move(Direction::Down),
-        "move down",
-    ),
-    binding(
-        &[named(KeyCode::Left), letter('h')],
-        "Left h",
-        Command::Look(Turn::Left),
-        "look left",
-    ),
-    binding(
-        &[named(KeyCode::Right), letter('l')],
-        "Right l",
-        Command::Look(Turn::Right),
-        "look right",
-    ),
-    binding(
-        &[named(KeyCode::Up), letter('k')],
-        "Up k",
-        Command::Look(Turn::Up),
-        "look up",
-    ),
-    binding(
-        &[named(KeyCode::Down), letter('j')],
-        "Down j",
-        Command::Look(Turn::Down),
-        "look down",
-    ),
+    binding(&[letter('e'), named(KeyCode::PageUp)], "e PageUp", Command::Move(Direction::Up), "move up"),
+    binding(&[letter('c'), named(KeyCode::PageDown)], "c PageDown", Command::Move(Direction::Down), "move down"),
+    binding(&[named(KeyCode::Left), letter('h')], "Left h", Command::Look(Turn::Left), "look left"),
+    binding(&[named(KeyCode::Right), letter('l')], "Right l", Command::Look(Turn::Right), "look right"),
+    binding(&[named(KeyCode::Up), letter('k')], "Up k", Command::Look(Turn::Up), "look up"),
+    binding(&[named(KeyCode::Down), letter('j')], "Down j", Command::Look(Turn::Down), "look down"),
     binding(&[letter('r')], "r", Command::Reset, "back to the first view"),
     binding(&[letter('i')], "i", Command::Status, "status line"),
     binding(&[letter('?')], "?", Command::Help, "this help"),
@@ -163,9 +122,7 @@ pub fn command(key: &KeyEvent) -> Option<(Command, bool)> {
         code => code,
     };
     let capital = code != key.code || shift;
-    let found = BINDINGS
-        .iter()
-        .find(|binding| binding.keys.contains(&Key { code, ctrl }))?;
+    let found = BINDINGS.iter().find(|binding| binding.keys.contains(&Key { code, ctrl }))?;
     let moves = matches!(found.command, Command::Move(_) | Command::Look(_));
     // Capitals of letters that do not move are free for other commands.
     let is_letter = matches!(code, KeyCode::Char(c) if c.is_ascii_lowercase());
@@ -206,12 +163,7 @@ impl Motion {
             (_, None) => None,
             (_, Some((command, fast))) => {
                 let until = now + if same.is_some() { COAST } else { GLIDE };
-                Some(Held {
-                    key: key.code,
-                    command,
-                    fast,
-                    until,
-                })
+                Some(Held { key: key.code, command, fast, until })
             }
         };
     }
@@ -266,11 +218,7 @@ fn moved(camera: &Camera, direction: Direction, distance: f32) -> Pose {
             Direction::Up => up.normalize_or_zero(),
             Direction::Down => -up.normalize_or_zero(),
         };
-    Pose {
-        eye: eye + by,
-        target: target + by,
-        up,
-    }
+    Pose { eye: eye + by, target: target + by, up }
 }
 
 fn turned(camera: &Camera, turn: Turn, angle: f32) -> Pose {
@@ -283,11 +231,7 @@ fn turned(camera: &Camera, turn: Turn, angle: f32) -> Pose {
         Turn::Up => rotated(view, camera.basis().u, up_to_the_pole(camera, angle)),
         Turn::Down => rotated(view, camera.basis().u, up_to_the_pole(camera, -angle)),
     };
-    Pose {
-        eye,
-        target: eye + turned,
-        up,
-    }
+    Pose { eye, target: eye + turned, up }
 }
 
 /// As much of an upward turn as the pole leaves. A view that begins beyond the limit may turn away from the pole only.
@@ -295,11 +239,7 @@ fn up_to_the_pole(camera: &Camera, angle: f32) -> f32 {
     let limit = std::f32::consts::FRAC_PI_2 - POLE;
     let sine = -camera.basis().w.dot(camera.pose().up.normalize_or_zero());
     let elevation = libm::asinf(sine.clamp(-1.0, 1.0));
-    if angle > 0.0 {
-        angle.min((limit - elevation).max(0.0))
-    } else {
-        angle.max((-limit - elevation).min(0.0))
-    }
+    if angle > 0.0 { angle.min((limit - elevation).max(0.0)) } else { angle.max((-limit - elevation).min(0.0)) }
 }
 
 /// Rodrigues' rotation of `v` about a unit axis, to the left when seen against it; the length is kept.

@@ -70,10 +70,7 @@ fn width(grid: &Grid, column: u16, row: u16) -> u16 {
 
 /// CUP: rows and columns are counted from 1.
 fn move_to(column: u16, row: u16, bytes: &mut Vec<u8>) {
-    sequence(
-        bytes,
-        format_args!("\x1b[{};{}H", u32::from(row) + 1, u32::from(column) + 1),
-    );
+    sequence(bytes, format_args!("\x1b[{};{}H", u32::from(row) + 1, u32::from(column) + 1));
 }
 
 /// The colours and modifiers that the terminal would write with now.

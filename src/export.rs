@@ -21,11 +21,7 @@ pub fn text_frame(scene: &Scene, size: Size) -> String {
 pub fn text(grid: &Grid) -> String {
     let mut text = String::with_capacity(grid.cells().len() + usize::from(grid.size().rows));
     for row in grid.rows() {
-        text.extend(
-            row.iter()
-                .map(|cell| cell.glyph)
-                .filter(|&glyph| glyph != crate::grid::Cell::COVERED),
-        );
+        text.extend(row.iter().map(|cell| cell.glyph).filter(|&glyph| glyph != crate::grid::Cell::COVERED));
         text.push('\n');
     }
     text
@@ -52,18 +48,13 @@ pub fn ansi(grid: &Grid) -> Vec<u8> {
 /// If the picture has no pixels, or too many for the format.
 pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(
-        &mut bytes,
-        picture.width.saturating_mul(scale),
-        picture.height.saturating_mul(scale),
-    );
+    let mut encoder =
+        png::Encoder::new(&mut bytes, picture.width.saturating_mul(scale), picture.height.saturating_mul(scale));
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_pixel_dims(pixel_dimensions(pixel_aspect));
-    encoder
-        .write_header()?
-        .write_image_data(&scaled(picture, scale as usize))?;
+    encoder.write_header()?.write_image_data(&scaled(picture, scale as usize))?;
     Ok(bytes)
 }
 

@@ -16,11 +16,7 @@ pub struct Resolution {
 impl Resolution {
     /// Square pixels.
     pub const fn square(width: u32, height: u32) -> Self {
-        Self {
-            width,
-            height,
-            pixel_aspect: 1.0,
-        }
+        Self { width, height, pixel_aspect: 1.0 }
     }
 
     /// The picture's aspect ratio as it is seen: width over height.
@@ -46,10 +42,7 @@ pub struct Framebuffer {
 impl Framebuffer {
     /// A black picture.
     pub fn new(resolution: Resolution) -> Self {
-        Self {
-            resolution,
-            pixels: vec![LinearRgb::BLACK; resolution.pixel_count()],
-        }
+        Self { resolution, pixels: vec![LinearRgb::BLACK; resolution.pixel_count()] }
     }
 
     /// The light at a pixel.
@@ -57,10 +50,7 @@ impl Framebuffer {
     /// # Panics
     /// Outside the picture.
     pub fn pixel(&self, x: u32, y: u32) -> LinearRgb {
-        assert!(
-            x < self.resolution.width && y < self.resolution.height,
-            "pixel ({x}, {y}) is outside the picture"
-        );
+        assert!(x < self.resolution.width && y < self.resolution.height, "pixel ({x}, {y}) is outside the picture");
         self.pixels[y as usize * self.resolution.width as usize + x as usize]
     }
 
@@ -72,8 +62,6 @@ impl Framebuffer {
         size.into_iter()
             .chain(bands)
             .flat_map(u32::to_le_bytes)
-            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-                (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-            })
+            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
     }
 }

@@ -61,12 +61,7 @@ impl Cell {
 
     /// A character in these colours, without modifiers.
     pub const fn new(glyph: char, fg: Ink, bg: Ink) -> Self {
-        Self {
-            glyph,
-            fg,
-            bg,
-            modifier: Modifier::empty(),
-        }
+        Self { glyph, fg, bg, modifier: Modifier::empty() }
     }
 }
 
@@ -80,10 +75,7 @@ pub struct Grid {
 impl Grid {
     /// All blank.
     pub fn new(size: Size) -> Self {
-        Self {
-            size,
-            cells: vec![Cell::BLANK; size.cell_count()],
-        }
+        Self { size, cells: vec![Cell::BLANK; size.cell_count()] }
     }
 
     /// Its size.
@@ -121,10 +113,7 @@ impl Grid {
 
     fn index(&self, column: u16, row: u16) -> usize {
         let Size { columns, rows } = self.size;
-        assert!(
-            column < columns && row < rows,
-            "cell ({column}, {row}) is outside the grid"
-        );
+        assert!(column < columns && row < rows, "cell ({column}, {row}) is outside the grid");
         usize::from(row) * usize::from(columns) + usize::from(column)
     }
 }

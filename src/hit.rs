@@ -43,8 +43,5 @@ pub fn closest_hit(scene: &Scene, ray: &Ray) -> Option<Hit> {
 
 /// Whether one ray meets anything inside the interval.
 pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
-    scene
-        .objects()
-        .iter()
-        .any(|object| object.shape.closest_crossing(ray, within).is_some())
+    scene.objects().iter().any(|object| object.shape.closest_crossing(ray, within).is_some())
 }

@@ -19,10 +19,7 @@ pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
             }
             *grid.cell_mut(column, row) = cell;
             for covered in column + 1..(column + columns).min(grid.size().columns) {
-                *grid.cell_mut(covered, row) = Cell {
-                    glyph: Cell::COVERED,
-                    ..cell
-                };
+                *grid.cell_mut(covered, row) = Cell { glyph: Cell::COVERED, ..cell };
             }
             column += columns;
         }

@@ -29,10 +29,7 @@ pub struct Interval {
 
 impl Interval {
     /// All that lies in front of the ray's origin: [0, infinity).
-    pub const IN_FRONT: Self = Self {
-        min: 0.0,
-        max: f32::MAX,
-    };
+    pub const IN_FRONT: Self = Self { min: 0.0, max: f32::MAX };
 
     /// Whether `t` lies inside. NaN does not, nor does infinity.
     pub fn contains(self, t: f32) -> bool {

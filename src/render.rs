@@ -22,10 +22,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The picture of `scene` that `camera` sees, with so many rays per pixel. One ray goes through the pixel's centre.
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Framebuffer {
     let never = AtomicBool::new(false);
-    render_unless(&never, scene, camera, resolution, samples).map_or_else(
-        || unreachable!("nobody else can set the flag"),
-        |rendered| rendered.framebuffer,
-    )
+    render_unless(&never, scene, camera, resolution, samples)
+        .map_or_else(|| unreachable!("nobody else can set the flag"), |rendered| rendered.framebuffer)
 }
 
 /// A frame, and what it took.
@@ -45,12 +43,7 @@ pub fn render_unless(
     resolution: Resolution,
     samples: NonZeroU32,
 ) -> Option<Rendered> {
-    let frame = Frame {
-        scene,
-        eye_rays: camera.eye_rays(resolution.aspect_ratio()),
-        resolution,
-        samples,
-    };
+    let frame = Frame { scene, eye_rays: camera.eye_rays(resolution.aspect_ratio()), resolution, samples };
     let tiles = tiles(resolution);
     let traced: Option<Vec<TracedTile>> = tiles
         .par_iter()
@@ -60,10 +53,7 @@ pub fn render_unless(
         .collect();
     let traced = traced?;
     let rays = traced.iter().map(|tile| tile.rays).sum();
-    Some(Rendered {
-        framebuffer: assemble(resolution, &tiles, &traced),
-        rays,
-    })
+    Some(Rendered { framebuffer: assemble(resolution, &tiles, &traced), rays })
 }
 
 /// A tile's side in pixels.
@@ -83,18 +73,9 @@ struct TracedTile {
 
 /// All tiles of a picture; those at the right and lower edge may be smaller.
 fn tiles(resolution: Resolution) -> Vec<Tile> {
-    let spans = |length: u32| {
-        (0..length)
-            .step_by(TILE as usize)
-            .map(move |at| at..length.min(at + TILE))
-    };
+    let spans = |length: u32| (0..length).step_by(TILE as usize).map(move |at| at..length.min(at + TILE));
     spans(resolution.height)
-        .flat_map(|rows| {
-            spans(resolution.width).map(move |columns| Tile {
-                columns,
-                rows: rows.clone(),
-            })
-        })
+        .flat_map(|rows| spans(resolution.width).map(move |columns| Tile { columns, rows: rows.clone() }))
         .collect()
 }
 
@@ -150,15 +131,10 @@ impl Frame<'_> {
             let shadow_rays = gather_light(self.scene, buffers);
             rays += (buffers.rays.len() + shadow_rays) as u64;
             shade(self.scene, buffers);
-            sum.iter_mut()
-                .zip(&buffers.light)
-                .for_each(|(sum, light)| *sum += *light);
+            sum.iter_mut().zip(&buffers.light).for_each(|(sum, light)| *sum += *light);
         }
         let share = 1.0 / self.samples.get() as f32;
-        TracedTile {
-            light: sum.into_iter().map(|light| light * share).collect(),
-            rays,
-        }
+        TracedTile { light: sum.into_iter().map(|light| light * share).collect(), rays }
     }
 
     /// One eye ray for each pixel.
@@ -169,11 +145,7 @@ impl Frame<'_> {
         for j in tile.rows.clone() {
             // Rows are counted from the top, the lecture's q_v from the bottom.
             let qv = (height - (j as f32 + sy)) / height;
-            rays.extend(
-                tile.columns
-                    .clone()
-                    .map(|i| self.eye_rays.through((i as f32 + sx) / width, qv)),
-            );
+            rays.extend(tile.columns.clone().map(|i| self.eye_rays.through((i as f32 + sx) / width, qv)));
         }
     }
 }
@@ -205,12 +177,7 @@ fn find_points(scene: &Scene, buffers: &mut Buffers) {
 /// shadow rays that this took.
 fn gather_light(scene: &Scene, buffers: &mut Buffers) -> usize {
     let mut shadow_rays = 0;
-    let Buffers {
-        points,
-        light: arriving,
-        shadow,
-        ..
-    } = buffers;
+    let Buffers { points, light: arriving, shadow, .. } = buffers;
     arriving.clear();
     arriving.resize(points.len(), scene.ambient);
     for light in &scene.lights {

@@ -61,10 +61,7 @@ pub struct Object {
 impl Object {
     /// That surface of that material.
     pub fn new(shape: impl Into<Shape>, material: Material) -> Self {
-        Self {
-            shape: shape.into(),
-            material,
-        }
+        Self { shape: shape.into(), material }
     }
 }
 

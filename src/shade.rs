@@ -45,25 +45,18 @@ pub fn incidence(light: &PointLight, point: &SurfacePoint) -> Option<Incidence> 
         Falloff::InverseSquare => cosine / distance_squared,
         Falloff::None => cosine,
     };
-    Some(Incidence {
-        l,
-        distance,
-        cosine,
-        light: light.intensity * weakening,
-    })
+    Some(Incidence { l, distance, cosine, light: light.intensity * weakening })
 }
 
 /// The ray from a point to a light. The light is at t = 1.
 pub fn shadow_ray(light: &PointLight, point: &SurfacePoint) -> Ray {
     let origin = point.ray_origin();
-    Ray {
-        origin,
-        direction: light.position - origin,
-    }
+    Ray { origin, direction: light.position - origin }
 }
 
-/// Where on a [`shadow_ray`] an object is in the light's way.
-pub const TO_THE_LIGHT: Interval = Interval { min: 0.0, max: 1.0 };
+/// Where on a [`shadow_ray`] an object is in the light's way. Not at t = 0: at the origin of the coordinates a clearance
+/// in proportion to them is nothing, and the point lies in its surface exactly.
+pub const TO_THE_LIGHT: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 };
 
 /// The light that comes along a ray that meets nothing.
 pub fn background(scene: &Scene, ray: &Ray) -> LinearRgb {

@@ -69,11 +69,7 @@ impl Terminal {
         let window = termios::tcgetwinsize(&self.screen)?;
         let (columns, rows) = (window.ws_col, window.ws_row);
         // A terminal that nobody told its size has none.
-        let size = if columns == 0 || rows == 0 {
-            Size::new(80, 24)
-        } else {
-            Size::new(columns, rows)
-        };
+        let size = if columns == 0 || rows == 0 { Size::new(80, 24) } else { Size::new(columns, rows) };
         let cell_aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
         Ok(Window { size, cell_aspect })
     }
@@ -105,19 +101,13 @@ impl Terminal {
     /// # Errors
     /// If the operating system refuses.
     pub fn wait(&self, wake: BorrowedFd<'_>, timeout: Option<Duration>) -> io::Result<Woken> {
-        let mut fds = [
-            PollFd::new(&self.keys, PollFlags::IN),
-            PollFd::from_borrowed_fd(wake, PollFlags::IN),
-        ];
+        let mut fds = [PollFd::new(&self.keys, PollFlags::IN), PollFd::from_borrowed_fd(wake, PollFlags::IN)];
         let timeout = timeout.map(timespec);
         match poll(&mut fds, timeout.as_ref()) {
             // A signal: what it was is in the wake pipe, and the next call finds it there.
             Err(rustix::io::Errno::INTR) => Ok(Woken::default()),
             Err(error) => Err(error.into()),
-            Ok(_) => Ok(Woken {
-                keys: !fds[0].revents().is_empty(),
-                wake: !fds[1].revents().is_empty(),
-            }),
+            Ok(_) => Ok(Woken { keys: !fds[0].revents().is_empty(), wake: !fds[1].revents().is_empty() }),
         }
     }
 }

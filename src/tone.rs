@@ -19,11 +19,7 @@ pub struct Picture {
 pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     let Resolution { width, height, .. } = framebuffer.resolution;
     let show = |&light: &LinearRgb| Srgb8::from_linear(bend(scene.tone_curve, light * scene.exposure));
-    Picture {
-        width,
-        height,
-        pixels: framebuffer.pixels.iter().map(show).collect(),
-    }
+    Picture { width, height, pixels: framebuffer.pixels.iter().map(show).collect() }
 }
 
 /// The light after the tone curve.

@@ -23,18 +23,10 @@ impl Look {
     pub(super) fn of(cell_mode: CellMode) -> Self {
         match cell_mode {
             CellMode::HalfBlock => {
-                let style = Style::new()
-                    .fg(Color::Rgb(0xe6, 0xe6, 0xe6))
-                    .bg(Color::Rgb(0x18, 0x1c, 0x24));
-                Self {
-                    style,
-                    border: border::ROUNDED,
-                }
+                let style = Style::new().fg(Color::Rgb(0xe6, 0xe6, 0xe6)).bg(Color::Rgb(0x18, 0x1c, 0x24));
+                Self { style, border: border::ROUNDED }
             }
-            CellMode::Ramp => Self {
-                style: Style::new(),
-                border: ASCII_BORDER,
-            },
+            CellMode::Ramp => Self { style: Style::new(), border: ASCII_BORDER },
         }
     }
 }
@@ -66,11 +58,7 @@ pub(super) struct Status {
 
 /// The lowest row.
 pub(super) fn status_area(screen: Rect) -> Rect {
-    Rect {
-        y: screen.bottom().saturating_sub(1),
-        height: screen.height.min(1),
-        ..screen
-    }
+    Rect { y: screen.bottom().saturating_sub(1), height: screen.height.min(1), ..screen }
 }
 
 impl Status {
@@ -80,9 +68,7 @@ impl Status {
 
     fn text(&self) -> String {
         let Self { cells, pixels, eye, .. } = self;
-        let shown = self
-            .shown
-            .map_or_else(|| "still".to_owned(), |fps| format!("shown {fps:.0}"));
+        let shown = self.shown.map_or_else(|| "still".to_owned(), |fps| format!("shown {fps:.0}"));
         format!(
             " {}x{} cells {}x{} px | fps: trace {}, encode {}, {shown} | {} rays/s | eye {:.2} {:.2} {:.2}",
             cells.columns,
@@ -131,14 +117,8 @@ pub(super) fn help_area(screen: Rect) -> Rect {
 
 pub(super) fn draw_help(look: Look, area: Rect, buffer: &mut Buffer) {
     Clear.render(area, buffer);
-    Block::bordered()
-        .border_set(look.border)
-        .title(" keys ")
-        .style(look.style)
-        .render(area, buffer);
-    Paragraph::new(help_lines())
-        .style(look.style)
-        .render(area.inner(Margin::new(2, 1)), buffer);
+    Block::bordered().border_set(look.border).title(" keys ").style(look.style).render(area, buffer);
+    Paragraph::new(help_lines()).style(look.style).render(area.inner(Margin::new(2, 1)), buffer);
 }
 
 /// A line for each binding.

@@ -49,10 +49,7 @@ pub(super) struct Renderer {
 impl Renderer {
     /// Starts the thread, and the pool of those that it shares the tiles with.
     pub(super) fn start(scene: Scene, threads: Option<usize>, mut waker: Waker) -> io::Result<Self> {
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(threads.unwrap_or(0))
-            .build()
-            .map_err(io::Error::other)?;
+        let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build().map_err(io::Error::other)?;
         let (jobs, wanted) = channel::<Job>();
         let (done, frames) = channel();
         let cancelled = Arc::new(AtomicBool::new(false));
@@ -68,13 +65,7 @@ impl Renderer {
                 }
             }
         })?;
-        Ok(Self {
-            jobs: Some(jobs),
-            frames,
-            cancelled,
-            thread: Some(thread),
-            in_work: 0,
-        })
+        Ok(Self { jobs: Some(jobs), frames, cancelled, thread: Some(thread), in_work: 0 })
     }
 
     /// Whether a frame is on its way.
@@ -122,11 +113,7 @@ fn trace(pool: &ThreadPool, cancelled: &AtomicBool, scene: &Scene, job: &Job) ->
         let start = Instant::now();
         let rendered = render_unless(cancelled, scene, &job.camera, job.resolution, NonZeroU32::MIN)?;
         let trace = start.elapsed();
-        Some(Frame {
-            picture: tone(&rendered.framebuffer, scene),
-            rays: rendered.rays,
-            trace,
-        })
+        Some(Frame { picture: tone(&rendered.framebuffer, scene), rays: rendered.rays, trace })
     })
 }
 

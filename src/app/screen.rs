@@ -125,9 +125,8 @@ impl Pace {
     fn count(&mut self, now: Duration) {
         let between = self.last.map(|last| now.saturating_sub(last));
         self.last = Some(now);
-        self.frames_per_second = between
-            .filter(|&between| between < PAUSE && between > Duration::ZERO)
-            .map(|between| {
+        self.frames_per_second =
+            between.filter(|&between| between < PAUSE && between > Duration::ZERO).map(|between| {
                 let now = 1.0 / between.as_secs_f32();
                 // A mean over about eight frames, so that the figure can be read.
                 self.frames_per_second.map_or(now, |mean| mean + (now - mean) / 8.0)

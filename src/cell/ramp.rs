@@ -26,10 +26,7 @@ fn luminance(pixel: Srgb8) -> f32 {
 
 /// Equal steps of lightness, so that equal steps of the ramp look equal.
 fn glyph(luminance: f32) -> char {
-    let step = LUMINANCE_AT_STEP
-        .iter()
-        .take_while(|&&least| luminance >= least)
-        .count();
+    let step = LUMINANCE_AT_STEP.iter().take_while(|&&least| luminance >= least).count();
     char::from(RAMP[step])
 }
 
@@ -39,11 +36,7 @@ static LUMINANCE_AT_STEP: LazyLock<[f32; RAMP.len() - 1]> =
 
 /// CIE 1976: Y of L*, both with 1 for white.
 fn luminance_from_lightness(lightness: f64) -> f64 {
-    if lightness > 0.08 {
-        libm::pow((lightness + 0.16) / 1.16, 3.0)
-    } else {
-        lightness * 27.0 / 24_389.0 * 100.0
-    }
+    if lightness > 0.08 { libm::pow((lightness + 0.16) / 1.16, 3.0) } else { lightness * 27.0 / 24_389.0 * 100.0 }
 }
 
 #[cfg(test)]
@@ -54,10 +47,7 @@ mod tests {
     fn grey_of_each_tenth_of_lightness_has_its_character() {
         // L* of these sRGB greys is 5, 15, ... 95 (CIE's formula, worked out by hand).
         let greys = [17, 38, 59, 82, 106, 131, 157, 184, 212, 240];
-        let text: String = greys
-            .iter()
-            .map(|&grey| glyph(luminance(Srgb8::new(grey, grey, grey))))
-            .collect();
+        let text: String = greys.iter().map(|&grey| glyph(luminance(Srgb8::new(grey, grey, grey)))).collect();
         assert_eq!(text.as_bytes(), RAMP);
     }
 

@@ -26,11 +26,7 @@ pub(super) enum Meaning {
 
 /// What the sequence of these numbers and marks says; `text` is all of it after `ESC [`.
 pub(super) fn meaning(params: &Params, marks: &[u8], ignored: bool, last: char, text: &[u8]) -> Meaning {
-    let sequence = Sequence {
-        params: params.iter().collect(),
-        last,
-        text,
-    };
+    let sequence = Sequence { params: params.iter().collect(), last, text };
     let meaning = match marks {
         _ if ignored => None,
         b"" => sequence.plain(),
@@ -110,9 +106,7 @@ impl Sequence<'_> {
 
     /// Some terminals add a third number, the page.
     fn cursor_position(&self) -> Option<Reply> {
-        let [row, column] = self
-            .exactly()
-            .or_else(|| self.exactly().map(|[row, column, _page]| [row, column]))?;
+        let [row, column] = self.exactly().or_else(|| self.exactly().map(|[row, column, _page]| [row, column]))?;
         Some(Reply::CursorPosition { row, column })
     }
 

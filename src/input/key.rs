@@ -69,12 +69,7 @@ fn from_keypad(letter: u8, modifiers: KeyModifiers) -> Option<KeyEvent> {
         _ => return None,
     };
     let state = KeyEventState::KEYPAD;
-    Some(KeyEvent::new_with_kind_and_state(
-        code,
-        modifiers,
-        KeyEventKind::Press,
-        state,
-    ))
+    Some(KeyEvent::new_with_kind_and_state(code, modifiers, KeyEventKind::Press, state))
 }
 
 /// The key that a letter after `ESC [` or `ESC O` names.
@@ -205,11 +200,7 @@ impl How {
             3 => KeyEventKind::Release,
             _ => return None,
         };
-        Some(Self {
-            modifiers: modifiers_from_mask(mask),
-            kind,
-            state: state_from_mask(mask),
-        })
+        Some(Self { modifiers: modifiers_from_mask(mask), kind, state: state_from_mask(mask) })
     }
 
     fn press(self, code: KeyCode, more: KeyModifiers) -> KeyEvent {
@@ -252,11 +243,7 @@ fn modifiers_from_mask(mask: u16) -> KeyModifiers {
         KeyModifiers::META,
     ];
     let bits = mask.saturating_sub(1);
-    (0..)
-        .zip(order)
-        .filter(|(bit, _)| bits >> bit & 1 == 1)
-        .map(|(_, modifier)| modifier)
-        .collect()
+    (0..).zip(order).filter(|(bit, _)| bits >> bit & 1 == 1).map(|(_, modifier)| modifier).collect()
 }
 
 /// The locks of a mask that counts from 1.
@@ -300,14 +287,8 @@ fn keypad(code: u16) -> Option<KeyCode> {
 
 /// The keys that write nothing, by the kitty protocol's numbers.
 fn functional(code: u16) -> Option<KeyCode> {
-    const LOCKS: [KeyCode; 6] = [
-        KeyCode::CapsLock,
-        KeyCode::ScrollLock,
-        KeyCode::NumLock,
-        KeyCode::PrintScreen,
-        KeyCode::Pause,
-        KeyCode::Menu,
-    ];
+    const LOCKS: [KeyCode; 6] =
+        [KeyCode::CapsLock, KeyCode::ScrollLock, KeyCode::NumLock, KeyCode::PrintScreen, KeyCode::Pause, KeyCode::Menu];
     const MEDIA: [MediaKeyCode; 13] = [
         MediaKeyCode::Play,
         MediaKeyCode::Pause,

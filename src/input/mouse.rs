@@ -67,13 +67,9 @@ fn kind_from_code(code: u16) -> Option<MouseEventKind> {
 }
 
 fn modifiers_from_code(code: u16) -> KeyModifiers {
-    [
-        (SHIFT, KeyModifiers::SHIFT),
-        (ALT, KeyModifiers::ALT),
-        (CONTROL, KeyModifiers::CONTROL),
-    ]
-    .into_iter()
-    .filter(|(bit, _)| code & bit != 0)
-    .map(|(_, modifier)| modifier)
-    .collect()
+    [(SHIFT, KeyModifiers::SHIFT), (ALT, KeyModifiers::ALT), (CONTROL, KeyModifiers::CONTROL)]
+        .into_iter()
+        .filter(|(bit, _)| code & bit != 0)
+        .map(|(_, modifier)| modifier)
+        .collect()
 }

@@ -34,12 +34,7 @@ fn with_state(code: KeyCode, state: KeyEventState) -> Input {
 }
 
 fn mouse(kind: MouseEventKind, column: u16, row: u16, modifiers: KeyModifiers) -> Input {
-    Input::Event(Event::Mouse(MouseEvent {
-        kind,
-        column,
-        row,
-        modifiers,
-    }))
+    Input::Event(Event::Mouse(MouseEvent { kind, column, row, modifiers }))
 }
 
 fn paste(text: &str) -> Input {
@@ -63,18 +58,12 @@ fn characters() -> Vec<Row> {
         (b"W", vec![letter('W', SHIFT)]),
         (b"?/1 ", ['?', '/', '1', ' '].map(|c| letter(c, NONE)).to_vec()),
         ("é".as_bytes(), vec![letter('é', NONE)]),
-        (
-            "É€😀".as_bytes(),
-            vec![letter('É', SHIFT), letter('€', NONE), letter('😀', NONE)],
-        ),
+        ("É€😀".as_bytes(), vec![letter('É', SHIFT), letter('€', NONE), letter('😀', NONE)]),
         (b"\r\t\x7f\x08", {
             let back = key(KeyCode::Backspace, NONE);
             vec![key(KeyCode::Enter, NONE), key(KeyCode::Tab, NONE), back.clone(), back]
         }),
-        (
-            b"\x01\x03\x0a\x0c\x1a",
-            ['a', 'c', 'j', 'l', 'z'].map(|c| letter(c, CONTROL)).to_vec(),
-        ),
+        (b"\x01\x03\x0a\x0c\x1a", ['a', 'c', 'j', 'l', 'z'].map(|c| letter(c, CONTROL)).to_vec()),
         (b"\x00\x1c\x1f", [' ', '4', '7'].map(|c| letter(c, CONTROL)).to_vec()),
         (b"\x1bw\x1bW", vec![letter('w', ALT), letter('W', ALT | SHIFT)]),
         (b"\x1b\x03", vec![letter('c', ALT | CONTROL)]),
@@ -92,14 +81,8 @@ fn characters() -> Vec<Row> {
 
 fn broken_characters() -> Vec<Row> {
     vec![
-        (
-            b"a\xffb\xc3c\x80\x9b\xe2\x82d",
-            ['a', 'b', 'c', 'd'].map(|c| letter(c, NONE)).to_vec(),
-        ),
-        (
-            b"\xe2\x82\x1b[A\xc3\xc3\xa9",
-            vec![key(KeyCode::Up, NONE), letter('é', NONE)],
-        ),
+        (b"a\xffb\xc3c\x80\x9b\xe2\x82d", ['a', 'b', 'c', 'd'].map(|c| letter(c, NONE)).to_vec()),
+        (b"\xe2\x82\x1b[A\xc3\xc3\xa9", vec![key(KeyCode::Up, NONE), letter('é', NONE)]),
         // A control of the second set, encoded; a surrogate; the character that stands for broken bytes.
         (b"\xc2\x9b\xed\xa0\x80\xef\xbf\xbd", vec![]),
         (b"\x1b\xc3x\x1b\xffy", vec![letter('x', NONE), letter('y', NONE)]),
@@ -119,44 +102,23 @@ fn keys_without_a_letter() -> Vec<Row> {
         (b"\x1bOa\x1bOb\x1bOc\x1bOd", keys(&arrows, CONTROL)),
         (b"\x1b[1;8A", keys(&[Up], SHIFT | ALT | CONTROL)),
         (b"\x1bO5A\x1bO1;5A", keys(&[Up, Up], CONTROL)),
-        (
-            b"\x1b[H\x1b[F\x1bOH\x1bOF\x1b[E",
-            keys(&[Home, End, Home, End, KeypadBegin], NONE),
-        ),
+        (b"\x1b[H\x1b[F\x1bOH\x1bOF\x1b[E", keys(&[Home, End, Home, End, KeypadBegin], NONE)),
         (b"\x1b[1~\x1b[4~\x1b[7~\x1b[8~", keys(&[Home, End, Home, End], NONE)),
-        (
-            b"\x1b[2~\x1b[3~\x1b[5~\x1b[6~",
-            keys(&[Insert, Delete, PageUp, PageDown], NONE),
-        ),
+        (b"\x1b[2~\x1b[3~\x1b[5~\x1b[6~", keys(&[Insert, Delete, PageUp, PageDown], NONE)),
         (b"\x1b[5;2~\x1b[6;5~", vec![key(PageUp, SHIFT), key(PageDown, CONTROL)]),
         (b"\x1b[7^\x1b[8@", vec![key(Home, CONTROL), key(End, CONTROL | SHIFT)]),
         (b"\x1bOP\x1bOQ\x1bOR\x1bOS", keys(&[F(1), F(2), F(3), F(4)], NONE)),
         (b"\x1b[P\x1b[Q\x1b[R\x1b[S", keys(&[F(1), F(2), F(3), F(4)], NONE)),
         (b"\x1b[1;5P\x1b[15;5~", keys(&[F(1), F(5)], CONTROL)),
-        (
-            b"\x1b[11~\x1b[15~\x1b[17~\x1b[21~",
-            keys(&[F(1), F(5), F(6), F(10)], NONE),
-        ),
-        (
-            b"\x1b[23~\x1b[24~\x1b[29~\x1b[34~",
-            keys(&[F(11), F(12), F(16), F(20)], NONE),
-        ),
-        (
-            b"\x1b[[A\x1b[[Ex",
-            vec![key(F(1), NONE), key(F(5), NONE), letter('x', NONE)],
-        ),
-        (
-            b"\x1b[Z\x1b[1;6Z",
-            vec![key(BackTab, SHIFT), key(BackTab, SHIFT | CONTROL)],
-        ),
+        (b"\x1b[11~\x1b[15~\x1b[17~\x1b[21~", keys(&[F(1), F(5), F(6), F(10)], NONE)),
+        (b"\x1b[23~\x1b[24~\x1b[29~\x1b[34~", keys(&[F(11), F(12), F(16), F(20)], NONE)),
+        (b"\x1b[[A\x1b[[Ex", vec![key(F(1), NONE), key(F(5), NONE), letter('x', NONE)]),
+        (b"\x1b[Z\x1b[1;6Z", vec![key(BackTab, SHIFT), key(BackTab, SHIFT | CONTROL)]),
         (b"\x1bOp\x1bOk\x1bOM", {
             let pad = |code| with_state(code, KeyEventState::KEYPAD);
             vec![pad(KeyCode::Char('0')), pad(KeyCode::Char('+')), pad(KeyCode::Enter)]
         }),
-        (
-            b"\x1b[27;5;9~\x1b[27;6;9~",
-            vec![key(KeyCode::Tab, CONTROL), key(BackTab, SHIFT | CONTROL)],
-        ),
+        (b"\x1b[27;5;9~\x1b[27;6;9~", vec![key(KeyCode::Tab, CONTROL), key(BackTab, SHIFT | CONTROL)]),
     ]
 }
 
@@ -165,10 +127,7 @@ fn kitty_keys() -> Vec<Row> {
     let w = KeyCode::Char('w');
     let shift = KeyCode::Modifier(ModifierKeyCode::LeftShift);
     vec![
-        (
-            b"\x1b[119u\x1b[119;1u\x1b[119;;119u",
-            vec![key(w, NONE), key(w, NONE), key(w, NONE)],
-        ),
+        (b"\x1b[119u\x1b[119;1u\x1b[119;;119u", vec![key(w, NONE), key(w, NONE), key(w, NONE)]),
         (b"\x1b[119;1:1u\x1b[119;1:2u\x1b[119;1:3u", {
             [Press, Repeat, Release].map(|kind| of_kind(w, NONE, kind)).to_vec()
         }),
@@ -186,10 +145,7 @@ fn kitty_keys() -> Vec<Row> {
             keys
         }),
         (b"\x1b[119;65u\x1b[119;129u", {
-            vec![
-                with_state(w, KeyEventState::CAPS_LOCK),
-                with_state(w, KeyEventState::NUM_LOCK),
-            ]
+            vec![with_state(w, KeyEventState::CAPS_LOCK), with_state(w, KeyEventState::NUM_LOCK)]
         }),
         (b"\x1b[119;9u\x1b[119;17u\x1b[119;33u", {
             [KeyModifiers::SUPER, KeyModifiers::HYPER, KeyModifiers::META]
@@ -203,15 +159,10 @@ fn kitty_keys() -> Vec<Row> {
                 of_kind(KeyCode::F(3), NONE, Release),
             ]
         }),
-        (
-            b"\x1b[57441;2u\x1b[57441;1:3u",
-            vec![key(shift, SHIFT), of_kind(shift, NONE, Release)],
-        ),
+        (b"\x1b[57441;2u\x1b[57441;1:3u", vec![key(shift, SHIFT), of_kind(shift, NONE, Release)]),
         (b"\x1b[57376u\x1b[57398u\x1b[57358u\x1b[57440u", {
             let mute = KeyCode::Media(MediaKeyCode::MuteVolume);
-            [KeyCode::F(13), KeyCode::F(35), KeyCode::CapsLock, mute]
-                .map(|code| key(code, NONE))
-                .to_vec()
+            [KeyCode::F(13), KeyCode::F(35), KeyCode::CapsLock, mute].map(|code| key(code, NONE)).to_vec()
         }),
         (b"\x1b[57399u\x1b[57408u\x1b[57414u\x1b[57427u", {
             let enter = KeyCode::Enter;
@@ -220,9 +171,7 @@ fn kitty_keys() -> Vec<Row> {
                 .to_vec()
         }),
         (b"\x1b[65535u\x1b[128512u\x1b[57345u\x1b[0u\x1b[u\x1b[119;1:4u", {
-            [&b"65535u"[..], b"128512u", b"57345u", b"0u", b"u", b"119;1:4u"]
-                .map(unknown)
-                .to_vec()
+            [&b"65535u"[..], b"128512u", b"57345u", b"0u", b"u", b"119;1:4u"].map(unknown).to_vec()
         }),
     ]
 }
@@ -235,49 +184,29 @@ fn mouse_reports() -> Vec<Row> {
             let at = |button, x, y| mouse(Down(button), x, y, NONE);
             vec![at(Left, 0, 0), at(Middle, 79, 23), at(Right, 299, 199)]
         }),
-        (
-            b"\x1b[<0;3;4m\x1b[<2;3;4m",
-            vec![mouse(Up(Left), 2, 3, NONE), mouse(Up(Right), 2, 3, NONE)],
-        ),
-        (
-            b"\x1b[<32;3;4M\x1b[<35;3;4M",
-            vec![mouse(Drag(Left), 2, 3, NONE), mouse(Moved, 2, 3, NONE)],
-        ),
+        (b"\x1b[<0;3;4m\x1b[<2;3;4m", vec![mouse(Up(Left), 2, 3, NONE), mouse(Up(Right), 2, 3, NONE)]),
+        (b"\x1b[<32;3;4M\x1b[<35;3;4M", vec![mouse(Drag(Left), 2, 3, NONE), mouse(Moved, 2, 3, NONE)]),
         (b"\x1b[<64;1;1M\x1b[<65;1;1M\x1b[<66;1;1M\x1b[<67;1;1M", {
-            [ScrollUp, ScrollDown, ScrollLeft, ScrollRight]
-                .map(|k| mouse(k, 0, 0, NONE))
-                .to_vec()
+            [ScrollUp, ScrollDown, ScrollLeft, ScrollRight].map(|k| mouse(k, 0, 0, NONE)).to_vec()
         }),
         (b"\x1b[<28;1;1M", vec![mouse(Down(Left), 0, 0, SHIFT | ALT | CONTROL)]),
         (b"\x1b[<0;0;0M", vec![mouse(Down(Left), 0, 0, NONE)]),
-        (
-            b"\x1b[32;3;4M\x1b[35;3;4M",
-            vec![mouse(Down(Left), 2, 3, NONE), mouse(Up(Left), 2, 3, NONE)],
-        ),
+        (b"\x1b[32;3;4M\x1b[35;3;4M", vec![mouse(Down(Left), 2, 3, NONE), mouse(Up(Left), 2, 3, NONE)]),
         (b"\x1b[M #$x", vec![mouse(Down(Left), 2, 3, NONE), letter('x', NONE)]),
         (b"\x1b[M #\x03", vec![letter('c', CONTROL)]),
         (b"\x1b[<0;1M\x1b[<128;1;1M\x1b[<64;1;1m\x1b[<0;-1;1M", {
             [&b"<0;1M"[..], b"<128;1;1M", b"<64;1;1m"].map(unknown).to_vec()
         }),
-        (
-            b"\x1b[I\x1b[O",
-            vec![Input::Event(Event::FocusGained), Input::Event(Event::FocusLost)],
-        ),
+        (b"\x1b[I\x1b[O", vec![Input::Event(Event::FocusGained), Input::Event(Event::FocusLost)]),
     ]
 }
 
 fn pastes() -> Vec<Row> {
     vec![
-        (
-            b"\x1b[200~q\x03\x1b[A\x1b[201~x",
-            vec![paste("q\x03\x1b[A"), letter('x', NONE)],
-        ),
+        (b"\x1b[200~q\x03\x1b[A\x1b[201~x", vec![paste("q\x03\x1b[A"), letter('x', NONE)]),
         (b"\x1b[200~\x1b[201~", vec![paste("")]),
         (b"\x1b[200~\x1b[20\x1b\x1b[201~", vec![paste("\x1b[20\x1b")]),
-        (
-            b"\x1b[200~\x1b[200~\xff\xc3\xa9\x1b[201~",
-            vec![paste("\x1b[200~\u{fffd}é")],
-        ),
+        (b"\x1b[200~\x1b[200~\xff\xc3\xa9\x1b[201~", vec![paste("\x1b[200~\u{fffd}é")]),
         (b"\x1b\x1b[200~q\x1b[201~", vec![key(KeyCode::Esc, NONE), paste("q")]),
         (b"\x1b[201~x", vec![letter('x', NONE)]),
     ]
@@ -286,81 +215,34 @@ fn pastes() -> Vec<Row> {
 fn replies() -> Vec<Row> {
     vec![
         (b"\x1b[?62;22c", vec![reply(Reply::DeviceAttributes(vec![62, 22]))]),
-        (
-            b"\x1b[>41;354;0c",
-            vec![reply(Reply::SecondaryAttributes(vec![41, 354, 0]))],
-        ),
-        (
-            b"\x1b[12;40R",
-            vec![reply(Reply::CursorPosition { row: 12, column: 40 })],
-        ),
+        (b"\x1b[>41;354;0c", vec![reply(Reply::SecondaryAttributes(vec![41, 354, 0]))]),
+        (b"\x1b[12;40R", vec![reply(Reply::CursorPosition { row: 12, column: 40 })]),
         (b"\x1b[1;2R", vec![reply(Reply::CursorPosition { row: 1, column: 2 })]),
-        (
-            b"\x1b[?12;40;1R",
-            vec![reply(Reply::CursorPosition { row: 12, column: 40 })],
-        ),
+        (b"\x1b[?12;40;1R", vec![reply(Reply::CursorPosition { row: 12, column: 40 })]),
         (b"\x1b[0n\x1b[n", vec![reply(Reply::Status(0)), reply(Reply::Status(0))]),
         (b"\x1b[?2026;2$y", vec![reply(Reply::Mode { mode: 2026, state: 2 })]),
-        (
-            b"\x1b[6;19;10t",
-            vec![reply(Reply::CellPixels { width: 10, height: 19 })],
-        ),
-        (
-            b"\x1b[4;456;800t",
-            vec![reply(Reply::TextPixels {
-                width: 800,
-                height: 456,
-            })],
-        ),
-        (
-            b"\x1b[8;24;80t",
-            vec![reply(Reply::TextCells { columns: 80, rows: 24 })],
-        ),
-        (
-            b"\x1b[48;24;80;456;800t",
-            vec![reply(Reply::Window(vec![48, 24, 80, 456, 800]))],
-        ),
-        (
-            b"\x1b[?11u\x1b[?u",
-            [11, 0].map(|flags| reply(Reply::KeyboardFlags(flags))).to_vec(),
-        ),
+        (b"\x1b[6;19;10t", vec![reply(Reply::CellPixels { width: 10, height: 19 })]),
+        (b"\x1b[4;456;800t", vec![reply(Reply::TextPixels { width: 800, height: 456 })]),
+        (b"\x1b[8;24;80t", vec![reply(Reply::TextCells { columns: 80, rows: 24 })]),
+        (b"\x1b[48;24;80;456;800t", vec![reply(Reply::Window(vec![48, 24, 80, 456, 800]))]),
+        (b"\x1b[?11u\x1b[?u", [11, 0].map(|flags| reply(Reply::KeyboardFlags(flags))).to_vec()),
     ]
 }
 
 fn replies_in_strings_and_others() -> Vec<Row> {
     vec![
-        (
-            b"\x1b]11;rgb:1e1e/1e1e/1e1e\x07",
-            vec![reply(Reply::Osc(b"11;rgb:1e1e/1e1e/1e1e".to_vec()))],
-        ),
-        (
-            b"\x1b]4;1;rgb:cc/0/0\x1b\\x",
-            vec![reply(Reply::Osc(b"4;1;rgb:cc/0/0".to_vec())), letter('x', NONE)],
-        ),
-        (
-            b"\x1bP1$r48;2;1;2;3m\x1b\\",
-            vec![reply(Reply::Dcs(b"1$r48;2;1;2;3m".to_vec()))],
-        ),
-        (
-            b"\x1bP>|XTerm(380)\x1b\\",
-            vec![reply(Reply::Dcs(b">|XTerm(380)".to_vec()))],
-        ),
+        (b"\x1b]11;rgb:1e1e/1e1e/1e1e\x07", vec![reply(Reply::Osc(b"11;rgb:1e1e/1e1e/1e1e".to_vec()))]),
+        (b"\x1b]4;1;rgb:cc/0/0\x1b\\x", vec![reply(Reply::Osc(b"4;1;rgb:cc/0/0".to_vec())), letter('x', NONE)]),
+        (b"\x1bP1$r48;2;1;2;3m\x1b\\", vec![reply(Reply::Dcs(b"1$r48;2;1;2;3m".to_vec()))]),
+        (b"\x1bP>|XTerm(380)\x1b\\", vec![reply(Reply::Dcs(b">|XTerm(380)".to_vec()))]),
         (b"\x1b_Gi=31;OK\x1b\\", vec![reply(Reply::Apc(b"Gi=31;OK".to_vec()))]),
         (b"\x1b[?997;1n", vec![unknown(b"?997;1n")]),
         (b"\x1b[?1;0;256S", vec![unknown(b"?1;0;256S")]),
         (b"\x1b[4;1$y", vec![unknown(b"4;1$y")]),
-        (b"\x1b[7;5A\x1b[1;2;3A\x1b[99~", {
-            [&b"7;5A"[..], b"1;2;3A", b"99~"].map(unknown).to_vec()
-        }),
+        (b"\x1b[7;5A\x1b[1;2;3A\x1b[99~", { [&b"7;5A"[..], b"1;2;3A", b"99~"].map(unknown).to_vec() }),
         // The Escape key pressed while an answer was on its way.
-        (
-            b"\x1b\x1b[?62c",
-            vec![key(KeyCode::Esc, NONE), reply(Reply::DeviceAttributes(vec![62]))],
-        ),
-        (
-            b"\x1b\x1b]11;?\x07",
-            vec![key(KeyCode::Esc, NONE), reply(Reply::Osc(b"11;?".to_vec()))],
-        ),
+        (b"\x1b\x1b[?62c", vec![key(KeyCode::Esc, NONE), reply(Reply::DeviceAttributes(vec![62]))]),
+        (b"\x1b\x1b]11;?\x07", vec![key(KeyCode::Esc, NONE), reply(Reply::Osc(b"11;?".to_vec()))]),
     ]
 }
 
@@ -384,14 +266,8 @@ fn broken_sequences() -> Vec<Row> {
         (b"\x1b[1;2$%&'A", vec![unknown(b"1;2$%&'A")]),
         (b"\x1b[[zx", vec![letter('x', NONE)]),
         (b"\x1b[[\x03", vec![letter('c', CONTROL)]),
-        (
-            b"\x1b]\x1b\\\x1bP\x1b\\",
-            vec![reply(Reply::Osc(vec![])), reply(Reply::Dcs(vec![]))],
-        ),
-        (
-            b"\x1b[\x80\xffA\x1b[\x7fB",
-            vec![key(KeyCode::Up, NONE), key(KeyCode::Down, NONE)],
-        ),
+        (b"\x1b]\x1b\\\x1bP\x1b\\", vec![reply(Reply::Osc(vec![])), reply(Reply::Dcs(vec![]))]),
+        (b"\x1b[\x80\xffA\x1b[\x7fB", vec![key(KeyCode::Up, NONE), key(KeyCode::Down, NONE)]),
     ]
 }
 
@@ -496,14 +372,8 @@ fn given_up(begun: &[u8], later: &[u8]) -> (Vec<Input>, Vec<Input>) {
 fn a_lone_escape_is_the_escape_key() {
     let escape = || key(KeyCode::Esc, NONE);
     assert_eq!(given_up(b"\x1b", b"x"), (vec![escape()], vec![letter('x', NONE)]));
-    assert_eq!(
-        given_up(b"\x1b\x1b", b"x"),
-        (vec![escape(), escape()], vec![letter('x', NONE)])
-    );
-    assert_eq!(
-        given_up(b"\x1b\x1b[1", b"\x03"),
-        (vec![escape()], vec![letter('c', CONTROL)])
-    );
+    assert_eq!(given_up(b"\x1b\x1b", b"x"), (vec![escape(), escape()], vec![letter('x', NONE)]));
+    assert_eq!(given_up(b"\x1b\x1b[1", b"\x03"), (vec![escape()], vec![letter('c', CONTROL)]));
 }
 
 #[test]
@@ -511,15 +381,7 @@ fn half_a_sequence_is_dropped_with_its_rest() {
     for begun in [&b"\x1b["[..], b"\x1b[1;", b"\x1bO", b"\x1bO5"] {
         assert_eq!(given_up(begun, b"Ax"), (vec![], vec![letter('x', NONE)]));
     }
-    for begun in [
-        &b"\xc3"[..],
-        b"\xf0\x9f",
-        b"\x1b[[",
-        b"\x1b[M #",
-        b"\x1bX",
-        b"\x1b]",
-        b"\x1bP",
-    ] {
+    for begun in [&b"\xc3"[..], b"\xf0\x9f", b"\x1b[[", b"\x1b[M #", b"\x1bX", b"\x1b]", b"\x1bP"] {
         assert_eq!(given_up(begun, b"x"), (vec![], vec![letter('x', NONE)]));
     }
 }
@@ -527,15 +389,7 @@ fn half_a_sequence_is_dropped_with_its_rest() {
 #[test]
 fn half_a_sequence_does_not_swallow_keys_for_ever() {
     let interrupt = vec![letter('c', CONTROL)];
-    for begun in [
-        &b"\x1b["[..],
-        b"\x1b[1;",
-        b"\x1bO",
-        b"\x1b]11;",
-        b"\x1bP1$",
-        b"\x1b_G",
-        b"\x1b]0\x1b",
-    ] {
+    for begun in [&b"\x1b["[..], b"\x1b[1;", b"\x1bO", b"\x1b]11;", b"\x1bP1$", b"\x1b_G", b"\x1b]0\x1b"] {
         assert_eq!(given_up(begun, b"\x03").1, interrupt, "{}", begun.escape_ascii());
         assert_eq!(given_up(begun, b"\x1b[A").1, [key(KeyCode::Up, NONE)]);
         let typed = [b'1'; 400];

@@ -26,13 +26,7 @@ pub(super) struct Tokeniser(vte::Parser);
 impl Tokeniser {
     /// Stands after `ESC [`.
     pub(super) fn begin_csi(&mut self) {
-        self.0.advance(
-            &mut Listener {
-                said: Vec::new(),
-                text: &[],
-            },
-            b"\x1b[",
-        );
+        self.0.advance(&mut Listener { said: Vec::new(), text: &[] }, b"\x1b[");
     }
 
     /// What `byte` finishes: two things at most, where it also shows that the bytes before it were no character.

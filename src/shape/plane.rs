@@ -24,12 +24,7 @@ impl Plane {
         debug_assert!(normal.is_normalized(), "a plane's normal has unit length");
         let u = pattern_axis(normal);
         // On a floor (normal +y) u is +x and v is +z.
-        Self {
-            point,
-            normal,
-            u,
-            v: u.cross(normal),
-        }
+        Self { point, normal, u, v: u.cross(normal) }
     }
 
     /// A point of the plane; patterns begin there.
@@ -62,20 +57,10 @@ impl Surface for Plane {
         let off = (hit - self.point).dot(self.normal);
         let position = hit - self.normal * off;
         let seen_from_front = ray.direction.dot(self.normal) < 0.0;
-        let (normal, side) = if seen_from_front {
-            (self.normal, Side::Front)
-        } else {
-            (-self.normal, Side::Back)
-        };
+        let (normal, side) = if seen_from_front { (self.normal, Side::Front) } else { (-self.normal, Side::Back) };
         let clearance = CLEARANCE * (largest_coordinate(position) + largest_coordinate(self.point));
         let from_point = position - self.point;
         let uv = Vec2::new(from_point.dot(self.u), from_point.dot(self.v));
-        SurfacePoint {
-            position,
-            normal,
-            side,
-            clearance,
-            uv,
-        }
+        SurfacePoint { position, normal, side, clearance, uv }
     }
 }

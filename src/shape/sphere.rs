@@ -18,10 +18,7 @@ impl Sphere {
     /// In debug builds, unless the centre is finite and the radius is finite and greater than 0.
     pub fn new(center: Vec3, radius: f32) -> Self {
         debug_assert!(center.is_finite(), "a sphere's centre is finite");
-        debug_assert!(
-            radius > 0.0 && radius.is_finite(),
-            "a sphere's radius is greater than 0"
-        );
+        debug_assert!(radius > 0.0 && radius.is_finite(), "a sphere's radius is greater than 0");
         Self { center, radius }
     }
 
@@ -77,18 +74,8 @@ impl Surface for Sphere {
         let outward = (ray.at(t) - self.center).normalize();
         let position = self.center + outward * self.radius;
         let seen_from_outside = ray.direction.dot(outward) < 0.0;
-        let (normal, side) = if seen_from_outside {
-            (outward, Side::Front)
-        } else {
-            (-outward, Side::Back)
-        };
+        let (normal, side) = if seen_from_outside { (outward, Side::Front) } else { (-outward, Side::Back) };
         let clearance = CLEARANCE * (largest_coordinate(self.center) + self.radius);
-        SurfacePoint {
-            position,
-            normal,
-            side,
-            clearance,
-            uv: Vec2::ZERO,
-        }
+        SurfacePoint { position, normal, side, clearance, uv: Vec2::ZERO }
     }
 }

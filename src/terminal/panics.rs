@@ -23,10 +23,7 @@ pub fn hold_panic_messages() {
 
 /// The messages kept so far, oldest first.
 pub fn take_panic_messages() -> Vec<String> {
-    MESSAGES
-        .lock()
-        .map(|mut messages| std::mem::take(&mut *messages))
-        .unwrap_or_default()
+    MESSAGES.lock().map(|mut messages| std::mem::take(&mut *messages)).unwrap_or_default()
 }
 
 /// Said by whoever takes the terminal and gives it back.

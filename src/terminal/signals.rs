@@ -36,12 +36,7 @@ impl Signals {
         }
         signal_hook::flag::register(SIGWINCH, Arc::clone(&resized))?;
         signal_hook::low_level::pipe::register(SIGWINCH, write.try_clone()?)?;
-        Ok(Self {
-            read,
-            write,
-            deadly,
-            resized,
-        })
+        Ok(Self { read, write, deadly, resized })
     }
 
     /// What becomes readable when there is something to do.

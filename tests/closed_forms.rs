@@ -1,0 +1,325 @@
+//! Light and hits that follow from pen and paper.
+//!
+//! Each expectation is worked out here in f64 from the geometry of its scene, not from the crate's own functions.
+
+use glam::{Vec2, Vec3};
+use std::f32::consts::PI;
+use std::num::NonZeroU32;
+use termtrace::camera::{Camera, Pose, ViewRectangle};
+use termtrace::color::LinearRgb;
+use termtrace::framebuffer::{Framebuffer, Resolution};
+use termtrace::light::{Falloff, PointLight};
+use termtrace::material::Material;
+use termtrace::ray::{Interval, Ray};
+use termtrace::render::render;
+use termtrace::scene::{Background, Object, Scene, ToneCurve};
+use termtrace::shape::{Plane, Side, Sphere, Surface};
+use termtrace::tone::tone;
+
+/// A camera that sees `fov` degrees vertically.
+fn camera(eye: [f32; 3], target: [f32; 3], fov: f32) -> Camera {
+    let pose = Pose { eye: Vec3::from(eye), target: Vec3::from(target), up: Vec3::Y };
+    Camera::new(pose, ViewRectangle::from_vertical_fov(fov.to_radians()).unwrap()).unwrap()
+}
+
+fn light(position: [f32; 3], intensity: f32) -> PointLight {
+    PointLight {
+        position: Vec3::from(position),
+        intensity: LinearRgb::grey(intensity),
+        falloff: Falloff::InverseSquare,
+    }
+}
+
+const GREY: Material = Material::Diffuse(LinearRgb::grey(0.5));
+
+fn unit_sphere() -> Object {
+    Object::new(Sphere::new(Vec3::ZERO, 1.0), GREY)
+}
+
+fn floor() -> Object {
+    Object::new(Plane::new(Vec3::ZERO, Vec3::Y), GREY)
+}
+
+fn lit(camera: Camera, objects: Vec<Object>, lights: Vec<PointLight>) -> Scene {
+    let mut scene = Scene::new(camera, objects);
+    scene.lights = lights;
+    scene
+}
+
+fn picture(scene: &Scene, width: u32, height: u32) -> Framebuffer {
+    render(scene, &scene.camera, Resolution::square(width, height), NonZeroU32::MIN)
+}
+
+/// What arrives along the middle of the view.
+fn seen(scene: &Scene) -> f64 {
+    f64::from(picture(scene, 1, 1).pixel(0, 0).g)
+}
+
+#[track_caller]
+fn assert_close(found: f64, expected: f64) {
+    let error = (found - expected).abs() / expected.abs().max(1e-30);
+    assert!(error < 1e-4, "found {found}, pen and paper say {expected} ({error:e} off)");
+}
+
+#[test]
+fn unit_sphere_lit_from_the_eye() {
+    // n.l = 1 at the nearest point, which is 4 - 1 from the light: L = 0.5 * 18 / 9.
+    let scene =
+        lit(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()], vec![light([0.0, 0.0, 4.0], 18.0)]);
+    assert_close(seen(&scene), 1.0);
+}
+
+#[test]
+fn unit_sphere_lit_from_the_eye_off_its_middle() {
+    // A ray at angle a to the axis meets the sphere at t = D cos a - sqrt(1 - D^2 sin^2 a); there, with the light at
+    // the eye, cos(n, l) = sqrt(1 - D^2 sin^2 a) (the sine rule), and the distance is t.
+    let distance = 4.0_f64;
+    let scene =
+        lit(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()], vec![light([0.0, 0.0, 4.0], 18.0)]);
+    let frame = picture(&scene, 101, 101);
+    for x in [30, 40, 50, 60, 75] {
+        let tan = (f64::from(x) + 0.5 - 50.5) / 50.5 * 20.0_f64.to_radians().tan();
+        let sin_squared = tan * tan / (1.0 + tan * tan);
+        let cosine = (1.0 - distance * distance * sin_squared).sqrt();
+        let t = distance * (1.0 - sin_squared).sqrt() - cosine;
+        assert_close(f64::from(frame.pixel(x, 50).g), 0.5 * 18.0 * cosine / (t * t));
+    }
+}
+
+#[test]
+fn plane_under_a_light() {
+    // L = rho I cos / d^2 = rho I h / (h^2 + r^2)^(3/2) at the distance r from the foot of a light at height h.
+    let h = 3.0_f64;
+    for r in [0.0_f64, 0.5, 1.0, 2.0, 5.0, 20.0] {
+        let camera = camera([r as f32, 2.0, 1.5], [r as f32, 0.0, 0.0], 40.0);
+        let scene = lit(camera, vec![floor()], vec![light([0.0, 3.0, 0.0], 10.0)]);
+        assert_close(seen(&scene), 0.5 * 10.0 * h / (h * h + r * r).powf(1.5));
+    }
+}
+
+#[test]
+fn a_light_without_falloff_is_as_strong_anywhere() {
+    // n.l = 3/5 in a 3-4-5 triangle, at any size of it.
+    for scale in [1.0, 10.0, 1000.0] {
+        let lamp = PointLight { falloff: Falloff::None, ..light([4.0 * scale, 3.0 * scale, 0.0], 1.5) };
+        let scene = lit(camera([0.0, 2.0, 2.0], [0.0, 0.0, 0.0], 40.0), vec![floor()], vec![lamp]);
+        assert_close(seen(&scene), 0.5 * 1.5 * 0.6);
+    }
+}
+
+#[test]
+fn inside_of_a_sphere_with_the_light_in_its_middle() {
+    // Every point is at distance r, and faces the light: the same light everywhere, rho I / r^2.
+    let room = Object::new(Sphere::new(Vec3::new(1.0, 2.0, 3.0), 2.5), GREY);
+    let scene = lit(camera([1.5, 2.5, 3.5], [5.0, 2.0, 0.0], 90.0), vec![room], vec![light([1.0, 2.0, 3.0], 5.0)]);
+    for pixel in &picture(&scene, 31, 23).pixels {
+        assert_close(f64::from(pixel.g), 0.5 * 5.0 / 6.25);
+    }
+}
+
+#[test]
+fn ambient_light_is_reflected_by_its_share() {
+    let mut scene = Scene::new(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()]);
+    scene.ambient = LinearRgb::grey(0.3);
+    assert_close(seen(&scene), 0.15);
+}
+
+#[test]
+fn colours_of_lights_and_surfaces_multiply_and_lights_add() {
+    let surface = Material::Diffuse(LinearRgb::new(0.2, 0.4, 0.8));
+    let object = Object::new(Plane::new(Vec3::ZERO, Vec3::Y), surface);
+    let lamps =
+        [([3.0, 4.0, 0.0], LinearRgb::new(25.0, 0.0, 50.0)), ([0.0, 12.0, 5.0], LinearRgb::new(0.0, 169.0, 169.0))];
+    let lights = lamps.map(|(position, intensity)| PointLight { intensity, ..light(position, 0.0) });
+    let scene = lit(camera([0.0, 2.0, 2.0], [0.0, 0.0, 0.0], 40.0), vec![object], lights.to_vec());
+    let found = picture(&scene, 1, 1).pixel(0, 0);
+    // n.l / d^2 is 0.8 / 25 and (12/13) / 169.
+    assert_close(found.r.into(), 0.2 * 0.8);
+    assert_close(found.g.into(), 0.4 * 12.0 / 13.0);
+    assert_close(found.b.into(), 0.8 * (2.0 * 0.8 + 12.0 / 13.0));
+}
+
+#[test]
+fn silhouette_of_a_sphere() {
+    // Its outline is where rays touch it: sin a = r / D, so that on the screen its radius is tan a / tan(fov / 2)
+    // half heights. The area is compared, which is right to a fraction of a pixel.
+    let (radius, distance) = (1.0_f64, 5.0_f64);
+    let mut scene = Scene::new(camera([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()]);
+    scene.ambient = LinearRgb::grey(1.0);
+    let frame = picture(&scene, 800, 600);
+    let covered = frame.pixels.iter().filter(|pixel| pixel.g > 0.0).count() as f64;
+    let tan = radius / (distance * distance - radius * radius).sqrt();
+    let on_screen = 300.0 * tan / 20.0_f64.to_radians().tan();
+    let error = (covered / (std::f64::consts::PI * on_screen * on_screen) - 1.0).abs();
+    assert!(error < 1e-3, "{covered} pixels, radius {on_screen}: {error}");
+    // Its leftmost and rightmost pixels on the middle rows are where that radius ends.
+    let row: Vec<_> = (0..800).filter(|&x| frame.pixel(x, 300).g > 0.0).collect();
+    let half = (row.len() as f64) / 2.0;
+    assert!((half - on_screen).abs() <= 1.0, "half width {half}, expected {on_screen}");
+    assert_eq!(row[0] + row[row.len() - 1], 799, "the sphere is in the middle");
+}
+
+#[test]
+fn a_sphere_is_as_wide_as_high_with_pixels_of_any_shape() {
+    let mut scene = Scene::new(camera([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()]);
+    scene.ambient = LinearRgb::grey(1.0);
+    for pixel_aspect in [0.5_f32, 0.95, 1.0, 1.1, 2.0] {
+        let resolution = Resolution { width: 400, height: 300, pixel_aspect };
+        let frame = render(&scene, &scene.camera, resolution, NonZeroU32::MIN);
+        let wide = (0..400).filter(|&x| frame.pixel(x, 150).g > 0.0).count() as f32;
+        let high = (0..300).filter(|&y| frame.pixel(200, y).g > 0.0).count() as f32 * pixel_aspect;
+        assert!((wide - high).abs() <= 2.0 * pixel_aspect.max(1.0), "{wide} by {high} at {pixel_aspect}");
+    }
+}
+
+#[test]
+fn row_of_the_horizon() {
+    // Looking down by b, the horizon of a plane is tan b / tan(fov / 2) half heights above the middle.
+    for down in [-10.0_f64, -3.0, 0.0, 4.0, 12.0] {
+        let target = [0.0, 5.0 - down.to_radians().tan() as f32, -1.0];
+        let mut scene = Scene::new(camera([0.0, 5.0, 0.0], target, 50.0), vec![floor()]);
+        scene.ambient = LinearRgb::grey(1.0);
+        let frame = picture(&scene, 3, 1000);
+        let sky_rows = (0..1000).take_while(|&y| frame.pixel(1, y).g == 0.0).count() as f64;
+        let expected = 500.0 * (1.0 - down.to_radians().tan() / 25.0_f64.to_radians().tan());
+        assert!((sky_rows - expected).abs() <= 1.0, "{sky_rows} rows of sky, expected {expected}");
+        assert!((sky_rows as u32..1000).all(|y| frame.pixel(1, y).g > 0.0), "below the horizon all is plane");
+    }
+}
+
+#[test]
+fn shadow_of_a_sphere_on_a_plane() {
+    // A light at height 10 above a sphere of radius 1 at height 6: its rays touch the sphere at sin a = 1/4, and the
+    // shadow on the floor has the radius 10 tan a.
+    let ball = Object::new(Sphere::new(Vec3::new(0.0, 6.0, 0.0), 1.0), GREY);
+    let edge = 10.0 * (0.25_f64 / (1.0 - 0.0625_f64).sqrt());
+    for (r, dark) in [(0.0, true), (edge - 0.01, true), (edge + 0.01, false), (2.0 * edge, false)] {
+        let x = r as f32;
+        let mut scene =
+            lit(camera([x, 1.0, 9.0], [x, 0.0, 0.0], 40.0), vec![floor(), ball], vec![light([0.0, 10.0, 0.0], 100.0)]);
+        assert_eq!(seen(&scene) == 0.0, dark, "at {r} of {edge}");
+        // Without shadows the light goes through.
+        scene.shadows = false;
+        assert!(seen(&scene) > 0.0);
+    }
+}
+
+#[test]
+fn a_surface_is_dark_on_the_side_away_from_the_light() {
+    let scene =
+        |y: f32| lit(camera([0.0, y, 2.0], [0.0, 0.0, 0.0], 40.0), vec![floor()], vec![light([0.0, 3.0, 0.0], 9.0)]);
+    assert_close(seen(&scene(2.0)), 0.5);
+    assert_eq!(seen(&scene(-2.0)), 0.0, "the light is behind the surface that is seen");
+    let ball = |z: f32| {
+        lit(camera([0.0, 0.0, z], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()], vec![light([0.0, 0.0, 4.0], 9.0)])
+    };
+    assert_close(seen(&ball(2.0)), 0.5);
+    assert_eq!(seen(&ball(-2.0)), 0.0);
+}
+
+#[test]
+fn a_point_has_the_same_colour_from_every_viewpoint() {
+    let lights = vec![light([3.0, 4.0, 5.0], 30.0), light([-2.0, 6.0, 1.0], 10.0)];
+    // The same point, (0, 1, 0) on the sphere, seen from all around the upper half.
+    let from = |eye: [f32; 3]| seen(&lit(camera(eye, [0.0, 1.0, 0.0], 10.0), vec![unit_sphere()], lights.clone()));
+    let first = from([0.0, 3.0, 4.0]);
+    assert!(first > 0.1);
+    for eye in [[0.1, 5.0, 0.0], [4.0, 1.5, 0.0], [-30.0, 20.0, -7.0], [1.0, 1.2, -2.0]] {
+        assert_close(from(eye), first);
+    }
+}
+
+#[test]
+fn gradient_of_the_background() {
+    let (bottom, top) = (LinearRgb::new(0.1, 0.2, 0.3), LinearRgb::new(0.9, 0.6, 0.4));
+    for target in [[0.0, 1.0, 0.1], [1.0, 0.0, 0.0], [3.0, 4.0, 0.0], [0.0, -4.0, 3.0]] {
+        let mut scene = Scene::new(camera([0.0, 0.0, 0.0], target, 40.0), vec![]);
+        scene.background = Background::Gradient { bottom, top };
+        let [x, y, z] = target.map(f64::from);
+        let part = (y / (x * x + y * y + z * z).sqrt() + 1.0) / 2.0;
+        assert_close(seen(&scene), 0.2 + 0.4 * part);
+    }
+}
+
+#[test]
+fn squares_of_a_checker() {
+    let (a, b) = (LinearRgb::grey(0.9), LinearRgb::grey(0.1));
+    let board = Object::new(Plane::new(Vec3::new(1.0, 0.0, -2.0), Vec3::Y), Material::Checker { a, b, size: 2.0 });
+    // The square from (1, -2) to (3, 0) is of a; its neighbours are of b.
+    for (x, z, expected) in
+        [(1.5, -1.5, 0.9), (2.9, -0.1, 0.9), (3.1, -0.1, 0.1), (0.9, -1.5, 0.1), (0.9, -2.1, 0.9), (2.0, 0.1, 0.1)]
+    {
+        let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], 40.0), vec![board]);
+        scene.ambient = LinearRgb::grey(1.0);
+        assert_close(seen(&scene), expected);
+    }
+}
+
+#[test]
+fn of_two_crossings_the_closer_one_in_front_counts() {
+    let sphere = Sphere::new(Vec3::ZERO, 2.0);
+    let crossing = |z: f32| {
+        let ray = Ray { origin: Vec3::new(0.0, 0.0, z), direction: Vec3::new(0.0, 0.0, -0.5) };
+        sphere.closest_crossing(&ray, Interval::IN_FRONT).map(|t| (t, sphere.at_crossing(&ray, t).side))
+    };
+    assert_eq!(crossing(5.0), Some((6.0, Side::Front)), "from outside: the near one");
+    assert_eq!(crossing(1.0), Some((6.0, Side::Back)), "from inside: the far one");
+    assert_eq!(crossing(-3.0), None, "behind the eye: none");
+}
+
+#[test]
+fn eye_rays_through_the_corners() {
+    // Straight ahead along -z: the corners are at (±a tan(fov/2), ±tan(fov/2), -1).
+    let rays = camera([1.0, 2.0, 3.0], [1.0, 2.0, -7.0], 60.0).eye_rays(1.5);
+    let tan = (PI / 6.0).tan();
+    for (qu, qv, x, y) in [
+        (0.0, 0.0, -1.5, -1.0),
+        (1.0, 0.0, 1.5, -1.0),
+        (0.0, 1.0, -1.5, 1.0),
+        (1.0, 1.0, 1.5, 1.0),
+        (0.5, 0.5, 0.0, 0.0),
+    ] {
+        let ray = rays.through(qu, qv);
+        assert_eq!(ray.origin, Vec3::new(1.0, 2.0, 3.0));
+        assert!(ray.direction.abs_diff_eq(Vec3::new(x * tan, y * tan, -1.0), 1e-6), "({qu}, {qv}): {}", ray.direction);
+    }
+}
+
+#[test]
+fn an_off_centre_rectangle_moves_the_picture_and_nothing_else() {
+    // Shifted up by a quarter of its height, the rectangle shows the target a quarter of the height below its middle.
+    let straight = camera([0.0, 0.0, 9.0], [0.0, 0.0, 0.0], 40.0);
+    let shifted = straight.with_rectangle(straight.rectangle().with_shift(Vec2::new(0.0, 0.25)).unwrap());
+    let sphere = |camera| {
+        let mut scene = Scene::new(camera, vec![unit_sphere()]);
+        scene.ambient = LinearRgb::grey(1.0);
+        picture(&scene, 200, 200)
+    };
+    let (straight, shifted) = (sphere(straight), sphere(shifted));
+    for y in 0..150 {
+        for x in 0..200 {
+            assert_eq!(straight.pixel(x, y), shifted.pixel(x, y + 50), "({x}, {y})");
+        }
+    }
+}
+
+#[test]
+fn light_becomes_srgb_by_its_own_curve() {
+    // 12.92 x below the toe, 1.055 x^(1/2.4) - 0.055 above, rounded: worked out by hand for these.
+    let mut scene = Scene::new(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![]);
+    for (linear, code) in [(0.0, 0), (0.002, 7), (0.18, 118), (0.5, 188), (0.9, 243), (1.0, 255), (4.0, 255)] {
+        scene.background = Background::Color(LinearRgb::grey(linear));
+        let shown = tone(&picture(&scene, 1, 1), &scene).pixels[0];
+        assert_eq!(shown.r, code, "{linear}");
+    }
+    // Exposure multiplies; Reinhard's curve makes 1 a half.
+    scene.background = Background::Color(LinearRgb::grey(0.25));
+    scene.exposure = 2.0;
+    assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 188);
+    scene.exposure = 4.0;
+    scene.tone_curve = ToneCurve::Reinhard;
+    assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 188);
+    scene.tone_curve = ToneCurve::Filmic;
+    // (2.51 + 0.03) / (2.43 + 0.59 + 0.14) = 0.80380, which is encoded as 0.90824.
+    assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 232);
+}

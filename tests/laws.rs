@@ -1,0 +1,221 @@
+//! The laws of the crate's architecture (see the guide in `src/lib.rs`), held by reading the source.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// All Rust files below a folder, with their text.
+fn rust_files(folder: &Path) -> Vec<(PathBuf, String)> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).expect("the folder is there") {
+        let path = entry.expect("the entry can be read").path();
+        if path.is_dir() {
+            files.extend(rust_files(&path));
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            let text = fs::read_to_string(&path).expect("source is UTF-8");
+            files.push((path, text));
+        }
+    }
+    files
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The library's files: everything in `src` but the binary's.
+fn library_files() -> Vec<(PathBuf, String)> {
+    let binary = |path: &Path| {
+        let first = path.strip_prefix(root().join("src")).expect("below src").iter().next().expect("a name");
+        ["main.rs", "cli.rs", "cli"].iter().any(|name| first == *name)
+    };
+    rust_files(&root().join("src")).into_iter().filter(|(path, _)| !binary(path)).collect()
+}
+
+/// The modules of `lib.rs` in their order.
+fn route() -> Vec<String> {
+    let lib = fs::read_to_string(root().join("src/lib.rs")).expect("lib.rs is there");
+    let modules = lib.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
+    modules.map(str::to_owned).collect()
+}
+
+/// The top-level module that a file belongs to: `src/shape/plane.rs` to `shape`.
+fn stage(path: &Path) -> String {
+    let inside = path.strip_prefix(root().join("src")).expect("below src");
+    let first = inside.iter().next().expect("a name").to_string_lossy();
+    first.trim_end_matches(".rs").to_owned()
+}
+
+/// Whether a path such as `super::x` in this file starts at the crate's root.
+fn is_top_level(path: &Path) -> bool {
+    path.parent() == Some(&root().join("src"))
+}
+
+/// The text without comments and without what is compiled for tests only.
+fn code(text: &str) -> String {
+    let mut code = String::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        let trimmed = line.trim_start();
+        if trimmed.starts_with("#[cfg(test)]") {
+            skip_item(&mut lines);
+        } else if !trimmed.starts_with("//") {
+            code.push_str(line.split(" // ").next().unwrap_or(line));
+            code.push('\n');
+        }
+    }
+    code
+}
+
+/// Passes over an item: to its semicolon, or to the brace that closes it.
+fn skip_item<'a>(lines: &mut impl Iterator<Item = &'a str>) {
+    let mut depth = 0;
+    for line in lines {
+        depth += line.matches('{').count();
+        depth -= line.matches('}').count();
+        if depth == 0 && (line.contains('}') || line.trim_end().ends_with(';')) {
+            return;
+        }
+    }
+}
+
+/// The first names after each `prefix` (such as `crate::`): one, or those of a brace.
+fn names_after(code: &str, prefix: &str) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    for (at, _) in code.match_indices(prefix) {
+        // `super::` inside `super::super::` is found by its own prefix, and an identifier may end in "crate".
+        if code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':') {
+            continue;
+        }
+        let rest = &code[at + prefix.len()..];
+        match rest.strip_prefix('{') {
+            Some(group) => names.extend(first_names_of_group(group)),
+            None => names.extend(identifier(rest)),
+        }
+    }
+    names
+}
+
+fn identifier(text: &str) -> Option<String> {
+    let name: String = text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    (!name.is_empty()).then_some(name)
+}
+
+/// Of `a::b, c::{d, e}, f}` the names a, c and f.
+fn first_names_of_group(group: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut depth = 0;
+    let mut at_start = true;
+    for (at, c) in group.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            ',' if depth == 0 => at_start = true,
+            c if at_start && !c.is_whitespace() => {
+                names.extend(identifier(&group[at..]));
+                at_start = false;
+            }
+            _ => {}
+        }
+    }
+    names
+}
+
+/// Everything of the crate's root that a file names.
+fn named(path: &Path, text: &str) -> BTreeSet<String> {
+    let code = code(text);
+    let mut names = names_after(&code, "crate::");
+    names.extend(names_after(&code, if is_top_level(path) { "super::" } else { "super::super::" }));
+    names
+}
+
+/// The ways back in a set of files: (file's stage, what it names).
+fn ways_back(route: &[String], files: &[(PathBuf, String)]) -> Vec<String> {
+    let place = |name: &str| route.iter().position(|module| module == name);
+    let mut back = Vec::new();
+    for (path, text) in files {
+        let Some(here) = place(&stage(path)) else { continue };
+        for name in named(path, text) {
+            match place(&name) {
+                Some(there) if there <= here => {}
+                Some(_) => back.push(format!("{} uses {name}, which comes after it", path.display())),
+                None => back.push(format!("{} uses crate::{name}, which is no module of lib.rs", path.display())),
+            }
+        }
+    }
+    back
+}
+
+/// Law 1.
+#[test]
+fn a_module_uses_only_what_stands_above_it() {
+    let route = route();
+    assert!(route.len() > 20, "the route was read: {route:?}");
+    let files = library_files();
+    assert!(files.len() > 30, "the library was read");
+    let back = ways_back(&route, &files);
+    assert!(back.is_empty(), "{}", back.join("\n"));
+}
+
+/// Every stage is on the route, and nothing else stands at the root, where it would be above and below everything.
+#[test]
+fn the_root_holds_the_route_and_nothing_else() {
+    let route: BTreeSet<_> = route().into_iter().collect();
+    let stages: BTreeSet<_> =
+        library_files().iter().map(|(path, _)| stage(path)).filter(|name| name != "lib").collect();
+    assert_eq!(stages, route);
+    let lib = code(&fs::read_to_string(root().join("src/lib.rs")).expect("lib.rs is there"));
+    for line in lib.lines().filter(|line| !line.trim().is_empty()) {
+        let expected = ["pub mod ", "#[cfg(not(any(target_os", "compile_error!(", "#![", "    \"", ");"];
+        assert!(expected.iter().any(|start| line.starts_with(start)), "lib.rs says more than its modules: {line}");
+    }
+}
+
+/// The test above can fail: planted ways back are found, and what only looks like one is not.
+#[test]
+fn ways_back_are_found() {
+    let route = ["color", "shape", "scene", "app"].map(str::to_owned);
+    let found =
+        |file: &str, text: &str| !ways_back(&route, &[(root().join("src").join(file), text.to_owned())]).is_empty();
+    assert!(found("shape.rs", "use crate::scene::Scene;"));
+    assert!(found("shape.rs", "fn f() { crate::app::run() }"));
+    assert!(found("shape.rs", "use super::scene;"));
+    assert!(found("shape/plane.rs", "use super::super::scene;"));
+    assert!(found("shape/plane.rs", "use crate::{\n    color::{LinearRgb, Srgb8},\n    scene::Scene,\n};"));
+    assert!(found("color.rs", "#[cfg(test)]\nmod tests { }\nuse crate::shape;"));
+    assert!(!found("scene.rs", "use crate::{color::Srgb8, shape::{self, Shape}};"));
+    assert!(!found("shape/plane.rs", "use super::Surface;"));
+    assert!(!found(
+        "shape.rs",
+        "/// See [`crate::scene`].\n#[cfg(test)]\nmod tests {\n    use crate::scene::Scene;\n}"
+    ));
+}
+
+/// Laws 5 and 8: only `terminal` touches the terminal and signals; the library neither prints nor exits.
+#[test]
+fn the_operating_systems_terminal_has_one_owner() {
+    for (path, text) in library_files() {
+        let code = code(&text);
+        for word in ["println!", "eprint", "print!(", "process::exit", "process::abort", "std::env::"] {
+            assert!(!code.contains(word), "{} has {word}", path.display());
+        }
+        if stage(&path) != "terminal" {
+            for word in ["rustix::", "signal_hook", "io::stdin", "io::stdout", "set_hook", "crossterm::terminal"] {
+                assert!(!code.contains(word), "{} has {word}", path.display());
+            }
+        }
+    }
+}
+
+/// The manifest denies unsafe code; nobody may allow it again.
+#[test]
+fn nobody_allows_unsafe_code() {
+    let allowed = concat!("allow(unsafe", "_code)");
+    let folders = ["src", "tests", "benches", "examples"].map(|folder| root().join(folder));
+    for (path, text) in folders.iter().filter(|folder| folder.exists()).flat_map(|folder| rust_files(folder)) {
+        assert!(!text.contains(allowed), "{} has {allowed}", path.display());
+    }
+    let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("the manifest is there");
+    assert!(manifest.contains("unsafe_code = \"deny\""));
+}
