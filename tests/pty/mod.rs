@@ -1,0 +1,517 @@
+//! A program on a pseudo-terminal of its own, watched from outside: what it shows, what it leaves behind, how it dies.
+//!
+//! ```ignore
+//! let mut session = Start::new("termtrace").arg("scene.ron").size(Size::cells(80, 24)).spawn();
+//! session.wait_for("a picture", SOON, |seen| seen.screen().text()[0].contains('▄'));
+//! session.send(b"q");
+//! let status = session.wait_exit(SOON);
+//! session.assert_clean();
+//! ```
+//!
+//! Nothing here sleeps in the place of knowing: every wait is for a condition, with a deadline.
+
+// Each test target that says `mod pty;` uses a part of it.
+#![allow(dead_code)]
+
+mod modes;
+mod output;
+mod screen;
+mod termios;
+
+use std::{
+    ffi::{OsStr, OsString},
+    io::{self, Write},
+    os::{
+        fd::AsFd,
+        unix::{ffi::OsStrExt, fs::OpenOptionsExt, process::ExitStatusExt},
+    },
+    process::{Child, ExitStatus, Stdio},
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use pty_process::blocking::{Command, Pty, open};
+use rustix::{
+    event::{PollFd, PollFlags},
+    fs::OFlags,
+    process::{Pid, Signal, WaitId, WaitIdOptions},
+    termios::{Termios, Winsize},
+};
+
+pub(crate) use modes::Modes;
+use output::Output;
+pub(crate) use screen::{Colour, Screen};
+
+/// A deadline for what happens at once, unless the machine is very busy.
+pub(crate) const SOON: Duration = Duration::from_secs(10);
+
+/// Between two looks at whether the child has exited: it announces that to nobody else.
+const LOOK: Duration = Duration::from_millis(2);
+
+/// How long the terminal of a dead child may take to hand on its output. Only one that was stopped takes so long.
+const LAST_OUTPUT: Duration = Duration::from_secs(1);
+
+/// What the harness itself writes after the child's last byte, so as to know that nothing is still on its way.
+const END_OF_OUTPUT: &[u8] = b"\x1b_the end of the output\x1b\\";
+
+/// The size of a terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size {
+    /// Cells from left to right.
+    pub(crate) columns: u16,
+    /// Cells from top to bottom.
+    pub(crate) rows: u16,
+    /// The width and height of a cell in pixels; zero where the terminal does not say.
+    pub(crate) cell: (u16, u16),
+}
+
+impl Size {
+    /// So many cells, of 10x20 pixels.
+    pub(crate) fn cells(columns: u16, rows: u16) -> Self {
+        Self {
+            columns,
+            rows,
+            cell: (10, 20),
+        }
+    }
+
+    /// The same with cells of so many pixels.
+    pub(crate) fn of_pixels(self, width: u16, height: u16) -> Self {
+        Self {
+            cell: (width, height),
+            ..self
+        }
+    }
+
+    fn winsize(self) -> Winsize {
+        Winsize {
+            ws_row: self.rows,
+            ws_col: self.columns,
+            ws_xpixel: self.columns * self.cell.0,
+            ws_ypixel: self.rows * self.cell.1,
+        }
+    }
+}
+
+/// A program about to be started.
+pub(crate) struct Start {
+    program: OsString,
+    arguments: Vec<OsString>,
+    environment: Vec<(OsString, OsString)>,
+    size: Size,
+    stdin: Option<Stdio>,
+    stdout: Option<Stdio>,
+    stderr: Option<Stdio>,
+}
+
+impl Start {
+    /// A program, found by its path or in this process's PATH, on 80x24 cells of 10x20 pixels.
+    ///
+    /// Of the environment it gets PATH, a TERM and a locale of UTF-8, and what is added.
+    pub(crate) fn new(program: impl AsRef<OsStr>) -> Self {
+        let start = Self {
+            program: program.as_ref().to_owned(),
+            arguments: Vec::new(),
+            environment: Vec::new(),
+            size: Size::cells(80, 24),
+            stdin: None,
+            stdout: None,
+            stderr: None,
+        };
+        start
+            .env("PATH", std::env::var_os("PATH").unwrap_or_default())
+            .env("TERM", "xterm-256color")
+            .env("LC_ALL", "C.UTF-8")
+    }
+
+    /// A script for `sh`.
+    pub(crate) fn shell(script: &str) -> Self {
+        Self::new("sh").arg("-c").arg(script)
+    }
+
+    /// One more argument.
+    pub(crate) fn arg(mut self, argument: impl AsRef<OsStr>) -> Self {
+        self.arguments.push(argument.as_ref().to_owned());
+        self
+    }
+
+    /// A variable of the environment, in the place of an earlier one of that name.
+    pub(crate) fn env(mut self, name: &str, value: impl AsRef<OsStr>) -> Self {
+        self.environment.retain(|(known, _)| known != name);
+        self.environment
+            .push((name.into(), value.as_ref().to_owned()));
+        self
+    }
+
+    /// The size of the terminal.
+    pub(crate) fn size(self, size: Size) -> Self {
+        Self { size, ..self }
+    }
+
+    /// Something else than the terminal for standard input.
+    pub(crate) fn stdin(self, stdin: impl Into<Stdio>) -> Self {
+        Self {
+            stdin: Some(stdin.into()),
+            ..self
+        }
+    }
+
+    /// Something else than the terminal for standard output.
+    pub(crate) fn stdout(self, stdout: impl Into<Stdio>) -> Self {
+        Self {
+            stdout: Some(stdout.into()),
+            ..self
+        }
+    }
+
+    /// Something else than the terminal for standard error.
+    pub(crate) fn stderr(self, stderr: impl Into<Stdio>) -> Self {
+        Self {
+            stderr: Some(stderr.into()),
+            ..self
+        }
+    }
+
+    fn command(self) -> Command {
+        let mut command = Command::new(self.program)
+            .args(self.arguments)
+            .env_clear()
+            .envs(self.environment);
+        if let Some(stdin) = self.stdin {
+            command = command.stdin(stdin);
+        }
+        if let Some(stdout) = self.stdout {
+            command = command.stdout(stdout);
+        }
+        if let Some(stderr) = self.stderr {
+            command = command.stderr(stderr);
+        }
+        command
+    }
+
+    /// Starts it, as the leader of a session whose controlling terminal is a fresh pseudo-terminal.
+    #[track_caller]
+    pub(crate) fn spawn(self) -> Session {
+        let (master, slave) = open().expect("a pseudo-terminal can be had");
+        let size = self.size;
+        rustix::termios::tcsetwinsize(&master, size.winsize()).expect("a terminal has a size");
+        let slave_side = open_slave_again(&slave).expect("the slave side can be opened twice");
+        set_nonblocking(&master).expect("a file descriptor has flags");
+        let master = Arc::new(master);
+        let before = rustix::termios::tcgetattr(&*master).expect("a terminal has settings");
+        let output =
+            Output::read_from(Arc::clone(&master)).expect("a pipe and a thread can be had");
+        let name = self.program.display().to_string();
+        let child = self.command().spawn(slave);
+        let child = child.unwrap_or_else(|error| panic!("{name} does not start: {error}"));
+        Session {
+            child,
+            status: None,
+            master,
+            slave_side,
+            before,
+            output,
+            seen: Seen {
+                bytes: Vec::new(),
+                screen: Screen::new(size.columns, size.rows),
+            },
+        }
+    }
+}
+
+/// The slave side by its name, which makes it a description of its own: it is never blocked by a terminal that was
+/// stopped, and the child does not see its flags. While it is open the output of a dead child is not lost, and reading
+/// the master gives no EIO.
+fn open_slave_again(slave: &impl AsFd) -> io::Result<std::fs::File> {
+    let name = rustix::termios::ttyname(slave, Vec::new())?;
+    let flags = OFlags::NOCTTY | OFlags::NONBLOCK;
+    let flags = flags.bits().try_into().expect("these flags are small");
+    let mut options = std::fs::OpenOptions::new();
+    options.read(true).write(true).custom_flags(flags);
+    options.open(OsStr::from_bytes(name.as_bytes()))
+}
+
+fn set_nonblocking(file: &impl AsFd) -> rustix::io::Result<()> {
+    let flags = rustix::fs::fcntl_getfl(file)?;
+    rustix::fs::fcntl_setfl(file, flags | OFlags::NONBLOCK)
+}
+
+/// Writes all to a file that does not block; false if there was no room for it before the deadline.
+fn write_before(
+    file: &mut (impl Write + AsFd),
+    mut bytes: &[u8],
+    deadline: Instant,
+) -> io::Result<bool> {
+    while !bytes.is_empty() {
+        match file.write(bytes) {
+            Ok(count) => bytes = &bytes[count..],
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+                let left = deadline.saturating_duration_since(Instant::now());
+                if left.is_zero() {
+                    return Ok(false);
+                }
+                let timeout = left.try_into().expect("a deadline is near");
+                let mut polled = [PollFd::new(file, PollFlags::OUT)];
+                // An interrupted or timed-out wait only means another look.
+                let _ = rustix::event::poll(&mut polled, Some(&timeout));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(true)
+}
+
+/// All that came out of the terminal up to now.
+pub(crate) struct Seen {
+    bytes: Vec<u8>,
+    screen: Screen,
+}
+
+impl Seen {
+    /// The bytes.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Whether these bytes came, in a row.
+    pub(crate) fn has(&self, wanted: &[u8]) -> bool {
+        self.bytes
+            .windows(wanted.len().max(1))
+            .any(|window| window == wanted)
+    }
+
+    /// What a terminal shows after the bytes.
+    pub(crate) fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
+    /// The modes that the bytes turned on and did not turn off, and whether they end inside an escape sequence.
+    pub(crate) fn modes(&self) -> Modes {
+        Modes::after(&self.bytes)
+    }
+
+    fn take(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+        self.screen.feed(bytes);
+    }
+
+    /// The screen and the end of the bytes, for the message of a failed wait.
+    fn describe(&self) -> String {
+        let tail = &self.bytes[self.bytes.len().saturating_sub(300)..];
+        let screen = self.screen.text().join("\n");
+        format!(
+            "the screen shows\n{}\nafter {} bytes that end in {}",
+            screen.trim_end(),
+            self.bytes.len(),
+            tail.escape_ascii()
+        )
+    }
+}
+
+/// A program on its pseudo-terminal. It is killed when this is dropped, with what it started.
+pub(crate) struct Session {
+    child: Child,
+    status: Option<ExitStatus>,
+    master: Arc<Pty>,
+    slave_side: std::fs::File,
+    before: Termios,
+    output: Output,
+    seen: Seen,
+}
+
+impl Session {
+    /// The process started.
+    pub(crate) fn pid(&self) -> Pid {
+        Pid::from_child(&self.child)
+    }
+
+    /// The process group in the foreground of the terminal: another than the child's own if the child is a shell with
+    /// job control.
+    pub(crate) fn foreground_group(&self) -> Pid {
+        rustix::termios::tcgetpgrp(&*self.master).expect("the terminal has a foreground")
+    }
+
+    /// Types these bytes.
+    #[track_caller]
+    pub(crate) fn send(&self, bytes: &[u8]) {
+        let written = write_before(&mut &*self.master, bytes, Instant::now() + SOON);
+        assert!(
+            matches!(written, Ok(true)),
+            "not all of {} bytes typed: {written:?}",
+            bytes.len()
+        );
+    }
+
+    /// Sends a signal to the child; to one that has exited nothing happens.
+    #[track_caller]
+    pub(crate) fn signal(&self, signal: Signal) {
+        rustix::process::kill_process(self.pid(), signal).expect("one's own child takes signals");
+    }
+
+    /// Gives the terminal another size, of which the kernel tells the foreground by SIGWINCH.
+    pub(crate) fn resize(&mut self, size: Size) {
+        self.pump();
+        self.seen.screen.resize(size.columns, size.rows);
+        rustix::termios::tcsetwinsize(&*self.master, size.winsize())
+            .expect("a terminal can be resized");
+    }
+
+    /// The terminal's size, as it would be told to the child.
+    pub(crate) fn window_size(&self) -> Winsize {
+        rustix::termios::tcgetwinsize(&*self.master).expect("a terminal has a size")
+    }
+
+    /// All that has come out up to now.
+    pub(crate) fn seen(&mut self) -> &Seen {
+        self.pump();
+        &self.seen
+    }
+
+    fn pump(&mut self) {
+        self.seen.take(&self.output.take());
+    }
+
+    /// Waits until what came out fulfils a condition; whether it did so in time.
+    pub(crate) fn sees(&mut self, limit: Duration, mut wanted: impl FnMut(&Seen) -> bool) -> bool {
+        let deadline = Instant::now() + limit;
+        loop {
+            self.pump();
+            if wanted(&self.seen) {
+                return true;
+            }
+            if !self.output.wait_for_more(deadline) {
+                // What came between the last look and the deadline counts.
+                self.pump();
+                return wanted(&self.seen);
+            }
+        }
+    }
+
+    /// The same, with a panic that shows the screen if it is not fulfilled in time.
+    #[track_caller]
+    pub(crate) fn wait_for(
+        &mut self,
+        what: &str,
+        limit: Duration,
+        wanted: impl FnMut(&Seen) -> bool,
+    ) {
+        let seen = self.sees(limit, wanted);
+        assert!(seen, "no {what} within {limit:?}: {}", self.seen.describe());
+    }
+
+    /// Waits until the screen shows this text, in one line.
+    #[track_caller]
+    pub(crate) fn wait_for_text(&mut self, text: &str) {
+        self.wait_for(&format!("{text:?}"), SOON, |seen| {
+            seen.screen.text().iter().any(|line| line.contains(text))
+        });
+    }
+
+    /// Waits until the child is stopped, as by SIGTSTP, and says by which signal. A stop is told once.
+    ///
+    /// A session leader whose parent is elsewhere ignores SIGTSTP, SIGTTIN and SIGTTOU, as POSIX wants of an orphaned
+    /// process group: to see a program stopped by these, let it be started by a shell with job control (`sh -m`), and
+    /// wait for what the shell says.
+    #[track_caller]
+    pub(crate) fn wait_stopped(&mut self, limit: Duration) -> i32 {
+        let deadline = Instant::now() + limit;
+        loop {
+            let options = WaitIdOptions::STOPPED | WaitIdOptions::NOHANG;
+            let stopped = rustix::process::waitid(WaitId::Pid(self.pid()), options)
+                .expect("one's own child can be waited for");
+            if let Some(signal) = stopped.and_then(|status| status.stopping_signal()) {
+                return signal;
+            }
+            assert!(Instant::now() < deadline, "not stopped within {limit:?}");
+            self.output.wait_for_more(Instant::now() + LOOK);
+            self.pump();
+        }
+    }
+
+    /// Waits until the child has exited, and for the last of its output.
+    #[track_caller]
+    pub(crate) fn wait_exit(&mut self, limit: Duration) -> ExitStatus {
+        let deadline = Instant::now() + limit;
+        loop {
+            if let Some(status) = self.status {
+                return status;
+            }
+            // Looked at before the output, so that what is written in between is not missed.
+            let status = self.look_for_exit();
+            if status.is_some() {
+                self.take_last_output();
+                self.status = status;
+                continue;
+            }
+            if Instant::now() >= deadline {
+                self.pump();
+                panic!("still running after {limit:?}: {}", self.seen.describe());
+            }
+            self.output.wait_for_more(Instant::now() + LOOK);
+            self.pump();
+        }
+    }
+
+    /// How the child exited, if it did. It is left a zombie until the drop, so that its number, which is its group's
+    /// too, stays its own: what it left behind can then be killed without hitting a stranger.
+    fn look_for_exit(&self) -> Option<ExitStatus> {
+        let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+        let exited = rustix::process::waitid(WaitId::Pid(self.pid()), options)
+            .expect("one's own child can be waited for")?;
+        let raw = match exited.terminating_signal() {
+            Some(signal) => signal,
+            None => exited.exit_status()? << 8,
+        };
+        Some(ExitStatus::from_raw(raw))
+    }
+
+    /// The kernel hands a terminal's output on some time after it was written. What is written later comes later: so a
+    /// marker of the harness's own tells that all before it has come.
+    #[track_caller]
+    fn take_last_output(&mut self) {
+        let deadline = Instant::now() + LAST_OUTPUT;
+        let bytes = match write_before(&mut self.slave_side, END_OF_OUTPUT, deadline) {
+            Ok(true) => self.output.take_up_to(Some(END_OF_OUTPUT)),
+            // The terminal was stopped (Ctrl-S): what it holds back is never shown.
+            Ok(false) => self.output.take(),
+            // A system that takes the terminal of a dead leader away from everybody ends its output by that.
+            Err(_) => self.output.take_up_to(None),
+        };
+        self.seen.take(&bytes);
+    }
+
+    /// What differs between the terminal's settings before the start and now.
+    pub(crate) fn termios_changes(&self) -> Vec<String> {
+        let now = rustix::termios::tcgetattr(&*self.master).expect("a terminal has settings");
+        termios::changes(&self.before, &now)
+    }
+
+    /// All that is not as it was before the start: modes left on, a torn sequence, the terminal's settings.
+    pub(crate) fn left_behind(&mut self) -> Vec<String> {
+        let mut left = self.seen().modes().left_on();
+        left.extend(self.termios_changes());
+        left
+    }
+
+    /// Panics if anything is not as it was before the start.
+    #[track_caller]
+    pub(crate) fn assert_clean(&mut self) {
+        let left = self.left_behind();
+        assert!(
+            left.is_empty(),
+            "left behind: {}; {}",
+            left.join(", "),
+            self.seen.describe()
+        );
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        // The child and the group it leads. An error means that nothing is left of it. Groups made by a shell with job
+        // control go by the SIGHUP of the terminal's end, if they do not ignore it.
+        let _ = rustix::process::kill_process_group(self.pid(), Signal::KILL);
+        let _ = self.child.wait();
+    }
+}
