@@ -30,8 +30,7 @@ fn a_program_that_only_prints_is_clean() {
 
 #[test]
 fn a_program_that_leaves_modes_on_is_reported() {
-    let mut session =
-        run("printf '\\033[?1049h\\033[?25l\\033[?1003;1006h\\033[>11u\\033[38;2;1;2;3m'");
+    let mut session = run("printf '\\033[?1049h\\033[?25l\\033[?1003;1006h\\033[>11u\\033[38;2;1;2;3m'");
     assert_eq!(
         session.left_behind(),
         [
@@ -74,14 +73,7 @@ fn a_special_code_left_changed_is_reported() {
 
 #[test]
 fn a_stream_cut_inside_a_sequence_is_seen() {
-    for torn in [
-        "\\033",
-        "\\033[",
-        "\\033[38;2;1",
-        "\\033]0;title",
-        "\\033P1$r",
-        "\\342\\226",
-    ] {
+    for torn in ["\\033", "\\033[", "\\033[38;2;1", "\\033]0;title", "\\033P1$r", "\\342\\226"] {
         let mut session = run(&format!("printf 'text{torn}'"));
         assert!(session.seen().modes().is_torn(), "{torn}");
         assert_eq!(session.left_behind().len(), 1, "{torn}");
@@ -128,13 +120,7 @@ fn modes_are_told_from_bytes() {
         b"\x1b[2 q",
         b"\x1b[?25",
     ] {
-        assert_eq!(
-            left(dirty).len(),
-            1,
-            "{}: {:?}",
-            dirty.escape_ascii(),
-            left(dirty)
-        );
+        assert_eq!(left(dirty).len(), 1, "{}: {:?}", dirty.escape_ascii(), left(dirty));
     }
 }
 
@@ -168,8 +154,7 @@ fn what_is_typed_is_read() {
 
 #[test]
 fn the_size_is_told_and_a_resize_too() {
-    let script =
-        "trap 'stty size; exit' WINCH; stty size; printf ready; while :; do sleep 0.01; done";
+    let script = "trap 'stty size; exit' WINCH; stty size; printf ready; while :; do sleep 0.01; done";
     let mut session = Start::shell(script).size(Size::cells(30, 10)).spawn();
     session.wait_for_text("ready");
     assert_eq!(session.seen().screen().text()[0], "10 30");
@@ -181,9 +166,7 @@ fn the_size_is_told_and_a_resize_too() {
 
 #[test]
 fn the_size_in_pixels_is_told() {
-    let mut session = Start::shell("read line")
-        .size(Size::cells(30, 10).of_pixels(9, 19))
-        .spawn();
+    let mut session = Start::shell("read line").size(Size::cells(30, 10).of_pixels(9, 19)).spawn();
     let size = session.window_size();
     assert_eq!((size.ws_xpixel, size.ws_ypixel), (270, 190));
     session.resize(Size::cells(30, 10).of_pixels(0, 0));
@@ -193,10 +176,8 @@ fn the_size_in_pixels_is_told() {
 
 #[test]
 fn the_environment_is_the_one_given() {
-    let mut session = Start::shell("env | cut -d= -f1 | sort | tr '\\n' ' '")
-        .env("TERM", "vt100")
-        .env("NO_COLOR", "1")
-        .spawn();
+    let mut session =
+        Start::shell("env | cut -d= -f1 | sort | tr '\\n' ' '").env("TERM", "vt100").env("NO_COLOR", "1").spawn();
     session.wait_exit(SOON);
     let text = session.seen().screen().text().join(" ");
     for name in ["NO_COLOR", "TERM", "PATH"] {
@@ -209,15 +190,11 @@ fn the_environment_is_the_one_given() {
 fn standard_output_and_input_may_be_something_else() {
     let (mut reader, writer) = std::io::pipe().expect("a pipe can be had");
     let null = File::open("/dev/null").expect("there is always /dev/null");
-    let mut session = Start::shell("cat; test -t 1 || echo piped; echo seen >/dev/tty")
-        .stdin(null)
-        .stdout(writer)
-        .spawn();
+    let mut session =
+        Start::shell("cat; test -t 1 || echo piped; echo seen >/dev/tty").stdin(null).stdout(writer).spawn();
     assert!(session.wait_exit(SOON).success());
     let mut piped = String::new();
-    reader
-        .read_to_string(&mut piped)
-        .expect("the child wrote text");
+    reader.read_to_string(&mut piped).expect("the child wrote text");
     assert_eq!(piped, "piped\n");
     assert_eq!(session.seen().bytes(), b"seen\r\n");
 }
@@ -225,8 +202,7 @@ fn standard_output_and_input_may_be_something_else() {
 #[test]
 fn standard_input_may_be_a_file() {
     let mut file = tempfile::tempfile().expect("a file can be had");
-    file.write_all(b"from a file")
-        .expect("a file can be written");
+    file.write_all(b"from a file").expect("a file can be written");
     std::io::Seek::rewind(&mut file).expect("a file has a beginning");
     let mut session = Start::new("cat").stdin(file).spawn();
     assert!(session.wait_exit(SOON).success());
@@ -238,14 +214,8 @@ fn colours_of_a_cell_are_seen_by_both_models() {
     let mut session = run("printf '\\033[38;2;1;2;3;48;5;20m\\342\\226\\204\\033[0m'");
     let screen = session.seen().screen();
     let cell = screen.cell(0, 0);
-    assert_eq!(
-        (cell.glyph, cell.foreground, cell.background),
-        ('▄', Colour::Rgb(1, 2, 3), Colour::Indexed(20))
-    );
-    let second = screen
-        .second_opinion()
-        .cell(0, 0)
-        .expect("the screen has a first cell");
+    assert_eq!((cell.glyph, cell.foreground, cell.background), ('▄', Colour::Rgb(1, 2, 3), Colour::Indexed(20)));
+    let second = screen.second_opinion().cell(0, 0).expect("the screen has a first cell");
     assert_eq!(second.contents(), "▄");
     assert_eq!(second.fgcolor(), vt100::Color::Rgb(1, 2, 3));
     assert_eq!(screen.cell(1, 0).background, Colour::Default);
@@ -320,9 +290,7 @@ fn a_dropped_session_leaves_no_process() {
 #[test]
 fn a_dropped_session_leaves_nothing_of_a_child_that_exited() {
     let mut session = run("trap '' HUP; sleep 100 & printf $!");
-    let number = session.seen().screen().text()[0]
-        .parse()
-        .expect("the shell says the number");
+    let number = session.seen().screen().text()[0].parse().expect("the shell says the number");
     let left = Pid::from_raw(number).expect("no process has the number zero");
     assert_eq!(test_kill_process(left), Ok(()));
     drop(session);
@@ -336,9 +304,7 @@ fn a_dropped_session_leaves_nothing_of_a_child_that_exited() {
 /// Whether a process is gone, or dead and not yet buried.
 fn is_gone(pid: Pid) -> bool {
     let number = pid.as_raw_nonzero().to_string();
-    let ps = Command::new("ps")
-        .args(["-o", "stat=", "-p", &number])
-        .output();
+    let ps = Command::new("ps").args(["-o", "stat=", "-p", &number]).output();
     let state = ps.expect("there is ps on every system").stdout;
     matches!(state.trim_ascii_start().first(), None | Some(b'Z'))
 }

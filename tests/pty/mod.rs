@@ -68,19 +68,12 @@ pub(crate) struct Size {
 impl Size {
     /// So many cells, of 10x20 pixels.
     pub(crate) fn cells(columns: u16, rows: u16) -> Self {
-        Self {
-            columns,
-            rows,
-            cell: (10, 20),
-        }
+        Self { columns, rows, cell: (10, 20) }
     }
 
     /// The same with cells of so many pixels.
     pub(crate) fn of_pixels(self, width: u16, height: u16) -> Self {
-        Self {
-            cell: (width, height),
-            ..self
-        }
+        Self { cell: (width, height), ..self }
     }
 
     fn winsize(self) -> Winsize {
@@ -138,8 +131,7 @@ impl Start {
     /// A variable of the environment, in the place of an earlier one of that name.
     pub(crate) fn env(mut self, name: &str, value: impl AsRef<OsStr>) -> Self {
         self.environment.retain(|(known, _)| known != name);
-        self.environment
-            .push((name.into(), value.as_ref().to_owned()));
+        self.environment.push((name.into(), value.as_ref().to_owned()));
         self
     }
 
@@ -150,33 +142,21 @@ impl Start {
 
     /// Something else than the terminal for standard input.
     pub(crate) fn stdin(self, stdin: impl Into<Stdio>) -> Self {
-        Self {
-            stdin: Some(stdin.into()),
-            ..self
-        }
+        Self { stdin: Some(stdin.into()), ..self }
     }
 
     /// Something else than the terminal for standard output.
     pub(crate) fn stdout(self, stdout: impl Into<Stdio>) -> Self {
-        Self {
-            stdout: Some(stdout.into()),
-            ..self
-        }
+        Self { stdout: Some(stdout.into()), ..self }
     }
 
     /// Something else than the terminal for standard error.
     pub(crate) fn stderr(self, stderr: impl Into<Stdio>) -> Self {
-        Self {
-            stderr: Some(stderr.into()),
-            ..self
-        }
+        Self { stderr: Some(stderr.into()), ..self }
     }
 
     fn command(self) -> Command {
-        let mut command = Command::new(self.program)
-            .args(self.arguments)
-            .env_clear()
-            .envs(self.environment);
+        let mut command = Command::new(self.program).args(self.arguments).env_clear().envs(self.environment);
         if let Some(stdin) = self.stdin {
             command = command.stdin(stdin);
         }
@@ -199,8 +179,7 @@ impl Start {
         set_nonblocking(&master).expect("a file descriptor has flags");
         let master = Arc::new(master);
         let before = rustix::termios::tcgetattr(&*master).expect("a terminal has settings");
-        let output =
-            Output::read_from(Arc::clone(&master)).expect("a pipe and a thread can be had");
+        let output = Output::read_from(Arc::clone(&master)).expect("a pipe and a thread can be had");
         let name = self.program.display().to_string();
         let child = self.command().spawn(slave);
         let child = child.unwrap_or_else(|error| panic!("{name} does not start: {error}"));
@@ -211,10 +190,7 @@ impl Start {
             slave_side,
             before,
             output,
-            seen: Seen {
-                bytes: Vec::new(),
-                screen: Screen::new(size.columns, size.rows),
-            },
+            seen: Seen { bytes: Vec::new(), screen: Screen::new(size.columns, size.rows) },
         }
     }
 }
@@ -237,11 +213,7 @@ fn set_nonblocking(file: &impl AsFd) -> rustix::io::Result<()> {
 }
 
 /// Writes all to a file that does not block; false if there was no room for it before the deadline.
-fn write_before(
-    file: &mut (impl Write + AsFd),
-    mut bytes: &[u8],
-    deadline: Instant,
-) -> io::Result<bool> {
+fn write_before(file: &mut (impl Write + AsFd), mut bytes: &[u8], deadline: Instant) -> io::Result<bool> {
     while !bytes.is_empty() {
         match file.write(bytes) {
             Ok(count) => bytes = &bytes[count..],
@@ -276,9 +248,7 @@ impl Seen {
 
     /// Whether these bytes came, in a row.
     pub(crate) fn has(&self, wanted: &[u8]) -> bool {
-        self.bytes
-            .windows(wanted.len().max(1))
-            .any(|window| window == wanted)
+        self.bytes.windows(wanted.len().max(1)).any(|window| window == wanted)
     }
 
     /// What a terminal shows after the bytes.
@@ -336,11 +306,7 @@ impl Session {
     #[track_caller]
     pub(crate) fn send(&self, bytes: &[u8]) {
         let written = write_before(&mut &*self.master, bytes, Instant::now() + SOON);
-        assert!(
-            matches!(written, Ok(true)),
-            "not all of {} bytes typed: {written:?}",
-            bytes.len()
-        );
+        assert!(matches!(written, Ok(true)), "not all of {} bytes typed: {written:?}", bytes.len());
     }
 
     /// Sends a signal to the child; to one that has exited nothing happens.
@@ -353,8 +319,7 @@ impl Session {
     pub(crate) fn resize(&mut self, size: Size) {
         self.pump();
         self.seen.screen.resize(size.columns, size.rows);
-        rustix::termios::tcsetwinsize(&*self.master, size.winsize())
-            .expect("a terminal can be resized");
+        rustix::termios::tcsetwinsize(&*self.master, size.winsize()).expect("a terminal can be resized");
     }
 
     /// The terminal's size, as it would be told to the child.
@@ -390,12 +355,7 @@ impl Session {
 
     /// The same, with a panic that shows the screen if it is not fulfilled in time.
     #[track_caller]
-    pub(crate) fn wait_for(
-        &mut self,
-        what: &str,
-        limit: Duration,
-        wanted: impl FnMut(&Seen) -> bool,
-    ) {
+    pub(crate) fn wait_for(&mut self, what: &str, limit: Duration, wanted: impl FnMut(&Seen) -> bool) {
         let seen = self.sees(limit, wanted);
         assert!(seen, "no {what} within {limit:?}: {}", self.seen.describe());
     }
@@ -403,9 +363,7 @@ impl Session {
     /// Waits until the screen shows this text, in one line.
     #[track_caller]
     pub(crate) fn wait_for_text(&mut self, text: &str) {
-        self.wait_for(&format!("{text:?}"), SOON, |seen| {
-            seen.screen.text().iter().any(|line| line.contains(text))
-        });
+        self.wait_for(&format!("{text:?}"), SOON, |seen| seen.screen.text().iter().any(|line| line.contains(text)));
     }
 
     /// Waits until the child is stopped, as by SIGTSTP, and says by which signal. A stop is told once.
@@ -418,8 +376,8 @@ impl Session {
         let deadline = Instant::now() + limit;
         loop {
             let options = WaitIdOptions::STOPPED | WaitIdOptions::NOHANG;
-            let stopped = rustix::process::waitid(WaitId::Pid(self.pid()), options)
-                .expect("one's own child can be waited for");
+            let stopped =
+                rustix::process::waitid(WaitId::Pid(self.pid()), options).expect("one's own child can be waited for");
             if let Some(signal) = stopped.and_then(|status| status.stopping_signal()) {
                 return signal;
             }
@@ -457,8 +415,8 @@ impl Session {
     /// too, stays its own: what it left behind can then be killed without hitting a stranger.
     fn look_for_exit(&self) -> Option<ExitStatus> {
         let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-        let exited = rustix::process::waitid(WaitId::Pid(self.pid()), options)
-            .expect("one's own child can be waited for")?;
+        let exited =
+            rustix::process::waitid(WaitId::Pid(self.pid()), options).expect("one's own child can be waited for")?;
         let raw = match exited.terminating_signal() {
             Some(signal) => signal,
             None => exited.exit_status()? << 8,
@@ -498,12 +456,7 @@ impl Session {
     #[track_caller]
     pub(crate) fn assert_clean(&mut self) {
         let left = self.left_behind();
-        assert!(
-            left.is_empty(),
-            "left behind: {}; {}",
-            left.join(", "),
-            self.seen.describe()
-        );
+        assert!(left.is_empty(), "left behind: {}; {}", left.join(", "), self.seen.describe());
     }
 }
 

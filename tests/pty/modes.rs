@@ -80,10 +80,7 @@ impl Modes {
 
     /// Whether this private mode is on.
     pub(crate) fn is_on(&self, mode: u16) -> bool {
-        self.private
-            .get(&mode)
-            .copied()
-            .unwrap_or(ON_AT_START.contains(&mode))
+        self.private.get(&mode).copied().unwrap_or(ON_AT_START.contains(&mode))
     }
 
     /// What is not as it was, in words; nothing if all is.
@@ -92,34 +89,17 @@ impl Modes {
             .private
             .iter()
             .filter(|(mode, on)| **on != ON_AT_START.contains(mode))
-            .map(|(&mode, &on)| {
-                format!(
-                    "{} ({mode}) left {}",
-                    name(mode),
-                    if on { "on" } else { "off" }
-                )
-            })
+            .map(|(&mode, &on)| format!("{} ({mode}) left {}", name(mode), if on { "on" } else { "off" }))
             .collect();
-        left.extend(
-            self.pen
-                .iter()
-                .map(|(what, by)| format!("pen: {what} left by {by}")),
-        );
-        for (screen, depth) in ["main", "alternate"]
-            .iter()
-            .zip(self.keyboard.each_ref().map(Vec::len))
-        {
+        left.extend(self.pen.iter().map(|(what, by)| format!("pen: {what} left by {by}")));
+        for (screen, depth) in ["main", "alternate"].iter().zip(self.keyboard.each_ref().map(Vec::len)) {
             if depth > 0 {
-                left.push(format!(
-                    "kitty keyboard pushed {depth} times on the {screen} screen"
-                ));
+                left.push(format!("kitty keyboard pushed {depth} times on the {screen} screen"));
             }
         }
         for (screen, flags) in ["main", "alternate"].iter().zip(self.keyboard_flags) {
             if flags > 0 {
-                left.push(format!(
-                    "kitty keyboard flags {flags} set on the {screen} screen"
-                ));
+                left.push(format!("kitty keyboard flags {flags} set on the {screen} screen"));
             }
         }
         left.extend(self.others.iter().map(|&what| what.to_owned()));
@@ -146,8 +126,7 @@ impl Modes {
         for mode in params.iter().map(|param| param[0]) {
             if let 47 | 1047 | 1049 = mode {
                 // Three names of one screen: leaving by any of them leaves it.
-                self.private
-                    .retain(|known, _| !matches!(known, 47 | 1047 | 1049));
+                self.private.retain(|known, _| !matches!(known, 47 | 1047 | 1049));
             }
             self.private.insert(mode, on);
         }
@@ -247,10 +226,7 @@ impl Modes {
 }
 
 fn name(mode: u16) -> &'static str {
-    NAMES
-        .iter()
-        .find(|(number, _)| *number == mode)
-        .map_or("private mode", |(_, name)| name)
+    NAMES.iter().find(|(number, _)| *number == mode).map_or("private mode", |(_, name)| name)
 }
 
 impl Perform for Modes {
@@ -288,10 +264,7 @@ impl Perform for Modes {
             (b"", 'h' | 'l') if first == 4 => self.set(INSERT, last == 'h'),
             (b"", 'm') => self.draw_with(params),
             (b">", 'm') if first == 4 => {
-                self.set(
-                    OTHER_KEYS,
-                    params.iter().nth(1).is_some_and(|param| param[0] != 0),
-                );
+                self.set(OTHER_KEYS, params.iter().nth(1).is_some_and(|param| param[0] != 0));
             }
             (&[mark], 'u') => self.keyboard(mark, params),
             (b"", 'r') => self.set(SCROLL_REGION, params.iter().any(|param| param[0] != 0)),

@@ -45,11 +45,7 @@ impl Output {
         let shared = Arc::new(Shared::default());
         let into = Arc::clone(&shared);
         let thread = std::thread::spawn(move || read_all(&master, &stopped, &into));
-        Ok(Self {
-            shared,
-            stop: Some(stop),
-            thread: Some(thread),
-        })
+        Ok(Self { shared, stop: Some(stop), thread: Some(thread) })
     }
 
     /// What has come since the last time.
@@ -60,15 +56,8 @@ impl Output {
     /// Waits until there is something to take; false if the deadline passed.
     pub(super) fn wait_for_more(&self, deadline: Instant) -> bool {
         let left = deadline.saturating_duration_since(Instant::now());
-        let wait = self
-            .shared
-            .more
-            .wait_timeout_while(self.shared.lock(), left, |unread| unread.bytes.is_empty());
-        !wait
-            .expect("no holder of this lock panics")
-            .0
-            .bytes
-            .is_empty()
+        let wait = self.shared.more.wait_timeout_while(self.shared.lock(), left, |unread| unread.bytes.is_empty());
+        !wait.expect("no holder of this lock panics").0.bytes.is_empty()
     }
 
     /// All that has come when this marker has, without it; or when the output has ended by itself.
@@ -76,21 +65,13 @@ impl Output {
     pub(super) fn take_up_to(&self, marker: Option<&[u8]>) -> Vec<u8> {
         let find = |bytes: &[u8]| {
             let marker = marker?;
-            let at = bytes
-                .windows(marker.len())
-                .rposition(|window| window == marker)?;
+            let at = bytes.windows(marker.len()).rposition(|window| window == marker)?;
             Some(at..at + marker.len())
         };
         let goes_on = |unread: &mut Unread| !unread.ended && find(&unread.bytes).is_none();
-        let wait = self
-            .shared
-            .more
-            .wait_timeout_while(self.shared.lock(), super::SOON, goes_on);
+        let wait = self.shared.more.wait_timeout_while(self.shared.lock(), super::SOON, goes_on);
         let (mut unread, timeout) = wait.expect("no holder of this lock panics");
-        assert!(
-            !timeout.timed_out(),
-            "the output of a child that exited does not end"
-        );
+        assert!(!timeout.timed_out(), "the output of a child that exited does not end");
         let mut bytes = std::mem::take(&mut unread.bytes);
         // A process that the child left behind may have written after the marker.
         if let Some(place) = find(&bytes) {
@@ -113,10 +94,7 @@ impl Drop for Output {
 fn read_all(master: &Pty, stopped: &io::PipeReader, shared: &Shared) {
     let mut buffer = vec![0; 1 << 16];
     loop {
-        let mut polled = [
-            PollFd::new(master, PollFlags::IN),
-            PollFd::new(stopped, PollFlags::IN),
-        ];
+        let mut polled = [PollFd::new(master, PollFlags::IN), PollFd::new(stopped, PollFlags::IN)];
         // An interrupted wait only means another look.
         let _ = rustix::event::poll(&mut polled, None);
         if !polled[1].revents().is_empty() {

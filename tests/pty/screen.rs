@@ -58,33 +58,25 @@ impl Screen {
         self.second.process(bytes);
         self.partial.extend_from_slice(bytes);
         let whole = whole_characters(&self.partial);
-        self.terminal
-            .feed(String::from_utf8_lossy(&self.partial[..whole]).as_ref());
+        self.terminal.feed(String::from_utf8_lossy(&self.partial[..whole]).as_ref());
         self.partial.drain(..whole);
     }
 
     /// Takes another size.
     pub(crate) fn resize(&mut self, columns: u16, rows: u16) {
         self.terminal.resize(columns.into(), rows.into());
-        self.second
-            .set_size(at_least_one(rows), at_least_one(columns));
+        self.second.set_size(at_least_one(rows), at_least_one(columns));
     }
 
     /// The lines, from the top, without the blanks at their ends.
     pub(crate) fn text(&self) -> Vec<String> {
         let lines = self.terminal.screen().visible_lines();
-        lines
-            .map(|line| line.text().trim_end().to_owned())
-            .collect()
+        lines.map(|line| line.text().trim_end().to_owned()).collect()
     }
 
     /// The cell in this column and row, both from 0.
     pub(crate) fn cell(&self, column: usize, row: usize) -> Cell {
-        let line = self
-            .terminal
-            .screen()
-            .line(row)
-            .expect("the row is on the screen");
+        let line = self.terminal.screen().line(row).expect("the row is on the screen");
         let cell = &line.cells()[column];
         Cell {
             glyph: cell.char(),
@@ -116,10 +108,7 @@ fn at_least_one(count: u16) -> NonZeroU16 {
 /// How many of the bytes are not the beginning of a character cut off at the end.
 fn whole_characters(bytes: &[u8]) -> usize {
     let tail = bytes.len().saturating_sub(3);
-    let start = bytes[tail..]
-        .iter()
-        .rposition(|&byte| byte >= 0xc0)
-        .map(|at| tail + at);
+    let start = bytes[tail..].iter().rposition(|&byte| byte >= 0xc0).map(|at| tail + at);
     match start {
         Some(start) => match std::str::from_utf8(&bytes[start..]) {
             Err(error) if error.error_len().is_none() => start,

@@ -23,11 +23,7 @@ pub(super) fn changes(before: &Termios, after: &Termios) -> Vec<String> {
         (was != is).then(|| format!("{name} was {was:?}, is {is:?}"))
     }));
     if before.output_speed() != after.output_speed() {
-        changes.push(format!(
-            "speed was {}, is {}",
-            before.output_speed(),
-            after.output_speed()
-        ));
+        changes.push(format!("speed was {}, is {}", before.output_speed(), after.output_speed()));
     }
     changes
 }
