@@ -61,6 +61,10 @@ fn assert_close(found: f64, expected: f64) {
     assert!(error < 1e-4, "found {found}, pen and paper say {expected} ({error:e} off)");
 }
 
+fn tan_of_degrees(degrees: f64) -> f64 {
+    libm::tan(degrees.to_radians())
+}
+
 #[test]
 fn unit_sphere_lit_from_the_eye() {
     // n.l = 1 at the nearest point, which is 4 - 1 from the light: L = 0.5 * 18 / 9.
@@ -78,7 +82,7 @@ fn unit_sphere_lit_from_the_eye_off_its_middle() {
         lit(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()], vec![light([0.0, 0.0, 4.0], 18.0)]);
     let frame = picture(&scene, 101, 101);
     for x in [30, 40, 50, 60, 75] {
-        let tan = (f64::from(x) + 0.5 - 50.5) / 50.5 * 20.0_f64.to_radians().tan();
+        let tan = (f64::from(x) + 0.5 - 50.5) / 50.5 * tan_of_degrees(20.0);
         let sin_squared = tan * tan / (1.0 + tan * tan);
         let cosine = (1.0 - distance * distance * sin_squared).sqrt();
         let t = distance * (1.0 - sin_squared).sqrt() - cosine;
@@ -93,7 +97,7 @@ fn plane_under_a_light() {
     for r in [0.0_f64, 0.5, 1.0, 2.0, 5.0, 20.0] {
         let camera = camera([r as f32, 2.0, 1.5], [r as f32, 0.0, 0.0], 40.0);
         let scene = lit(camera, vec![floor()], vec![light([0.0, 3.0, 0.0], 10.0)]);
-        assert_close(seen(&scene), 0.5 * 10.0 * h / (h * h + r * r).powf(1.5));
+        assert_close(seen(&scene), 0.5 * 10.0 * h / libm::pow(h * h + r * r, 1.5));
     }
 }
 
@@ -149,7 +153,7 @@ fn silhouette_of_a_sphere() {
     let frame = picture(&scene, 800, 600);
     let covered = frame.pixels.iter().filter(|pixel| pixel.g > 0.0).count() as f64;
     let tan = radius / (distance * distance - radius * radius).sqrt();
-    let on_screen = 300.0 * tan / 20.0_f64.to_radians().tan();
+    let on_screen = 300.0 * tan / tan_of_degrees(20.0);
     let error = (covered / (std::f64::consts::PI * on_screen * on_screen) - 1.0).abs();
     assert!(error < 1e-3, "{covered} pixels, radius {on_screen}: {error}");
     // Its leftmost and rightmost pixels on the middle rows are where that radius ends.
@@ -176,12 +180,12 @@ fn a_sphere_is_as_wide_as_high_with_pixels_of_any_shape() {
 fn row_of_the_horizon() {
     // Looking down by b, the horizon of a plane is tan b / tan(fov / 2) half heights above the middle.
     for down in [-10.0_f64, -3.0, 0.0, 4.0, 12.0] {
-        let target = [0.0, 5.0 - down.to_radians().tan() as f32, -1.0];
+        let target = [0.0, 5.0 - tan_of_degrees(down) as f32, -1.0];
         let mut scene = Scene::new(camera([0.0, 5.0, 0.0], target, 50.0), vec![floor()]);
         scene.ambient = LinearRgb::grey(1.0);
         let frame = picture(&scene, 3, 1000);
         let sky_rows = (0..1000).take_while(|&y| frame.pixel(1, y).g == 0.0).count() as f64;
-        let expected = 500.0 * (1.0 - down.to_radians().tan() / 25.0_f64.to_radians().tan());
+        let expected = 500.0 * (1.0 - tan_of_degrees(down) / tan_of_degrees(25.0));
         assert!((sky_rows - expected).abs() <= 1.0, "{sky_rows} rows of sky, expected {expected}");
         assert!((sky_rows as u32..1000).all(|y| frame.pixel(1, y).g > 0.0), "below the horizon all is plane");
     }
@@ -271,7 +275,7 @@ fn of_two_crossings_the_closer_one_in_front_counts() {
 fn eye_rays_through_the_corners() {
     // Straight ahead along -z: the corners are at (±a tan(fov/2), ±tan(fov/2), -1).
     let rays = camera([1.0, 2.0, 3.0], [1.0, 2.0, -7.0], 60.0).eye_rays(1.5);
-    let tan = (PI / 6.0).tan();
+    let tan = libm::tanf(PI / 6.0);
     for (qu, qv, x, y) in [
         (0.0, 0.0, -1.5, -1.0),
         (1.0, 0.0, 1.5, -1.0),
