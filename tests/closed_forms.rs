@@ -240,7 +240,7 @@ fn gradient_of_the_background() {
         let mut scene = Scene::new(camera([0.0, 0.0, 0.0], target, 40.0), vec![]);
         scene.background = Background::Gradient { bottom, top };
         let [x, y, z] = target.map(f64::from);
-        let part = (y / (x * x + y * y + z * z).sqrt() + 1.0) / 2.0;
+        let part = 0.5 * (y / (x * x + y * y + z * z).sqrt()) + 0.5;
         assert_close(seen(&scene), 0.2 + 0.4 * part);
     }
 }
