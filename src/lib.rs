@@ -6,6 +6,7 @@ compile_error!("termtrace runs on Linux and macOS: it talks to the terminal thro
 pub mod color;
 pub mod ray;
 pub mod capabilities;
+pub mod scene_text;
 pub mod shape;
 pub mod material;
 pub mod light;

@@ -1,0 +1,130 @@
+//! Text -> a syntax tree that knows where everything stands; faults with line, column and caret.
+//!
+//! Scenes are written in RON (Rusty Object Notation). The tree says nothing of what a scene is: that is the next
+//! stage's affair, [`scene_file`](crate::scene_file). Two things are its own. Every [`Node`] has the bytes it was
+//! written in, so that a later check can point at them, and a program can put something else in their place without
+//! touching the comments around them. And no text, however large, deep or broken, does more than give a [`Fault`]:
+//! nesting is limited, memory stays within a small multiple of the text, time is linear.
+
+mod fault;
+mod parser;
+mod tokens;
+
+pub use fault::{Fault, Faults, Report, SceneError};
+pub(crate) use fault::{clipped, quoted, visible};
+pub use parser::parse;
+
+/// The bytes of the text that something was written in: from `start` up to, and without, `end`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Span {
+    /// The first byte.
+    pub start: u32,
+    /// The byte after the last one.
+    pub end: u32,
+}
+
+impl Span {
+    /// The bytes from `start` up to `end`. A text is at most 16 MiB, so that 32 bits hold every place in it.
+    pub fn new(start: usize, end: usize) -> Self {
+        Self {
+            start: start as u32,
+            end: end as u32,
+        }
+    }
+
+    /// No bytes, at that place.
+    pub fn at(place: usize) -> Self {
+        Self::new(place, place)
+    }
+}
+
+/// The largest text that is read: 16 MiB. A scene of 200,000 spheres fits in.
+pub const MAX_BYTES: usize = 16 << 20;
+
+/// How deep values may lie in each other.
+pub const MAX_DEPTH: usize = 128;
+
+/// A value and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node<'a> {
+    /// All of it, brackets included.
+    pub span: Span,
+    /// What it is.
+    pub value: Value<'a>,
+}
+
+/// What RON can say. `Some(x)` is read as x.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value<'a> {
+    /// `true` or `false`.
+    Bool(bool),
+    /// A number of any notation, `inf` and `NaN` among them.
+    Number(f64),
+    /// A string, its escapes resolved.
+    String(Box<str>),
+    /// `[a, b]`.
+    List(Vec<Node<'a>>),
+    /// `{a: b}`.
+    Map(Vec<(Node<'a>, Node<'a>)>),
+    /// `Name`, `Name(...)` or `(...)`.
+    Group(Box<Group<'a>>),
+}
+
+/// A name, a pair of parentheses, or both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group<'a> {
+    /// What stands before the parentheses.
+    pub name: Option<Name<'a>>,
+    /// What stands in them.
+    pub body: Body<'a>,
+}
+
+/// A word that is not in quotes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Name<'a> {
+    /// The word.
+    pub text: &'a str,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// What follows a name.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Body<'a> {
+    /// Nothing: `InverseSquare`.
+    Nothing,
+    /// Values: `(1, 2, 3)`; also `()`.
+    Values(Vec<Node<'a>>),
+    /// Values with names: `(radius: 1)`.
+    Fields(Vec<Field<'a>>),
+}
+
+/// `name: value`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field<'a> {
+    /// Before the colon.
+    pub name: Name<'a>,
+    /// After it.
+    pub value: Node<'a>,
+}
+
+impl Node<'_> {
+    /// Where to point when something is missing in this value: its name, or else its first bracket.
+    pub fn head(&self) -> Span {
+        match &self.value {
+            Value::Group(group) => match group.name {
+                Some(name) => name.span,
+                None => first_byte(self.span),
+            },
+            Value::List(_) | Value::Map(_) => first_byte(self.span),
+            _ => self.span,
+        }
+    }
+}
+
+fn first_byte(span: Span) -> Span {
+    Span {
+        end: span.start + 1,
+        ..span
+    }
+}

@@ -1,0 +1,306 @@
+//! Faults, and how a person is shown them: all at once, in the order of the text, as compilers do.
+
+use super::Span;
+use std::fmt;
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
+
+/// Something wrong with a text, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// What is wrong, and where it can be said what would be right: one line, no full stop.
+    pub message: String,
+    /// The bytes it is about.
+    pub span: Span,
+}
+
+/// The faults found so far. Of a text that is wrong everywhere only the first thousand are kept, the others counted.
+#[derive(Clone, Debug, Default)]
+pub struct Faults {
+    kept: Vec<Fault>,
+    more: usize,
+}
+
+impl Faults {
+    const KEPT: usize = 1000;
+
+    /// One more; the message is made only if it will be kept.
+    pub fn add(&mut self, span: Span, message: impl FnOnce() -> String) {
+        if self.kept.len() < Self::KEPT {
+            let message = message();
+            self.kept.push(Fault { message, span });
+        } else {
+            self.more += 1;
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.kept.is_empty()
+    }
+}
+
+impl From<Fault> for Faults {
+    fn from(fault: Fault) -> Self {
+        Self {
+            kept: vec![fault],
+            more: 0,
+        }
+    }
+}
+
+/// Why a text is no scene: every fault that was found in it. Printed, it reads like a compiler's message:
+///
+/// ```text
+/// scenes/x.ron:3:32: unknown field "radus"; did you mean "radius"?
+///   3 |         Sphere(center: (0, 1, 0), radus: 1),
+///     |                                   ^^^^^
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneError {
+    name: String,
+    reports: Vec<Report>,
+    more: usize,
+}
+
+/// One fault as it is shown. No character of it controls a terminal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// The line, counted from 1.
+    pub line: usize,
+    /// The column, in characters, counted from 1.
+    pub column: usize,
+    /// What is wrong.
+    pub message: String,
+    /// The bytes it is about.
+    pub span: Span,
+    /// The line of the text, or the part of a long one around the fault.
+    pub source: String,
+    /// How many terminal columns stand before the fault in `source`.
+    pub caret: usize,
+    /// How many terminal columns of `source` the fault takes; at least 1.
+    pub caret_width: usize,
+}
+
+impl SceneError {
+    const PRINTED: usize = 50;
+
+    /// These faults of that text. The name is the file's, for messages only.
+    pub fn new(name: &str, text: &str, faults: impl Into<Faults>) -> Self {
+        let Faults { mut kept, more } = faults.into();
+        kept.sort_by_key(|fault| (fault.span.start, fault.span.end));
+        let mut walk = Walk::new(text);
+        let reports = kept.iter().map(|fault| walk.report(fault)).collect();
+        Self {
+            name: visible(name),
+            reports,
+            more,
+        }
+    }
+
+    /// The faults in the order of the text; of more than a thousand, a thousand.
+    pub fn reports(&self) -> &[Report] {
+        &self.reports
+    }
+
+    /// How many faults there are.
+    pub fn count(&self) -> usize {
+        self.reports.len() + self.more
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, report) in self.reports.iter().take(Self::PRINTED).enumerate() {
+            let Report {
+                line, column, message, ..
+            } = report;
+            let end = if i == 0 { "" } else { "\n" };
+            write!(f, "{end}{}:{line}:{column}: {message}", self.name)?;
+            if !report.source.is_empty() {
+                let number = line.to_string();
+                write!(f, "\n  {number} | {}", report.source)?;
+                write!(f, "\n  {:1$} | ", "", number.len())?;
+                write!(f, "{:1$}{2}", "", report.caret, "^".repeat(report.caret_width))?;
+            }
+        }
+        match self.count().saturating_sub(Self::PRINTED) {
+            0 => Ok(()),
+            1 => write!(f, "\n... and 1 more fault"),
+            more => write!(f, "\n... and {more} more faults"),
+        }
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+/// A walk through the text, from fault to fault, that counts lines and columns: together they take one pass.
+struct Walk<'a> {
+    text: &'a str,
+    at: usize,
+    line: usize,
+    column: usize,
+    line_start: usize,
+}
+
+impl<'a> Walk<'a> {
+    fn new(text: &'a str) -> Self {
+        Self {
+            text,
+            at: 0,
+            line: 1,
+            column: 1,
+            line_start: 0,
+        }
+    }
+
+    fn go_to(&mut self, place: usize) {
+        for c in self.text[self.at..place].chars() {
+            self.at += c.len_utf8();
+            if c == '\n' {
+                self.line += 1;
+                self.column = 1;
+                self.line_start = self.at;
+            } else {
+                self.column += 1;
+            }
+        }
+    }
+
+    fn report(&mut self, fault: &Fault) -> Report {
+        let start = character_at(self.text, fault.span.start as usize);
+        let end = character_at(self.text, fault.span.end as usize).max(start);
+        self.go_to(start);
+        let excerpt = Excerpt::new(
+            &self.text[self.line_start..],
+            start - self.line_start,
+            end - self.line_start,
+        );
+        Report {
+            line: self.line,
+            column: self.column,
+            message: visible(&fault.message),
+            span: fault.span,
+            source: excerpt.source,
+            caret: excerpt.caret,
+            caret_width: excerpt.caret_width,
+        }
+    }
+}
+
+/// Where the character begins that the byte belongs to.
+fn character_at(text: &str, place: usize) -> usize {
+    let place = place.min(text.len());
+    (0..=place).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
+}
+
+/// Line and column, counted from 1, of a byte of the text.
+pub(super) fn line_and_column(text: &str, place: usize) -> (usize, usize) {
+    let mut walk = Walk::new(text);
+    walk.go_to(place);
+    (walk.line, walk.column)
+}
+
+/// As much of a line as is shown.
+struct Excerpt {
+    source: String,
+    caret: usize,
+    caret_width: usize,
+}
+
+impl Excerpt {
+    /// Columns that are shown at most.
+    const WIDTH: usize = 100;
+    /// A fault so near the line's beginning is shown with all that stands before it,
+    const NEAR: usize = 75;
+    /// and any other with so many columns.
+    const BEFORE: usize = 50;
+
+    /// `text` begins with the line; the fault takes its bytes from `start` to `end`.
+    fn new(text: &str, start: usize, end: usize) -> Self {
+        let is_long = text.chars().take(Self::WIDTH + 1).take_while(|&c| c != '\n').count() > Self::WIDTH;
+        let is_far = is_long && back_by(text, start, Self::NEAR) > 0;
+        let from = if is_far { back_by(text, start, Self::BEFORE) } else { 0 };
+        let mut excerpt = Self {
+            source: if from > 0 { "...".to_owned() } else { String::new() },
+            caret: 0,
+            caret_width: 0,
+        };
+        excerpt.take(text, from, start, end);
+        excerpt
+    }
+
+    fn take(&mut self, text: &str, from: usize, start: usize, end: usize) {
+        let (mut caret_end, mut budget) = (None, Self::WIDTH);
+        let mut caret = None;
+        for (i, c) in text[from..].char_indices() {
+            let (at, rest) = (from + i, &text[from + i..]);
+            if at >= start && caret.is_none() {
+                caret = Some(self.source.width());
+            }
+            if at >= end && caret_end.is_none() {
+                caret_end = Some(self.source.width());
+            }
+            if c == '\n' || rest.starts_with("\r\n") || rest == "\r" {
+                break;
+            }
+            let shown = visible_char(c);
+            budget = budget.saturating_sub(shown.width().unwrap_or(1).max(1));
+            if budget == 0 {
+                caret_end.get_or_insert(self.source.width());
+                self.source.push_str("...");
+                break;
+            }
+            self.source.push(shown);
+        }
+        self.source.truncate(self.source.trim_end().len());
+        let width = self.source.width();
+        self.caret = caret.unwrap_or(width);
+        self.caret_width = caret_end.unwrap_or(width).saturating_sub(self.caret).max(1);
+    }
+}
+
+/// The place so many columns before `place`, or 0 where the line has not so many.
+fn back_by(text: &str, place: usize, columns: usize) -> usize {
+    let mut left = columns;
+    for (i, c) in text[..place].char_indices().rev() {
+        let width = visible_char(c).width().unwrap_or(1).max(1);
+        if width > left {
+            return i + c.len_utf8();
+        }
+        left -= width;
+    }
+    0
+}
+
+/// What stands for a character in a message: itself, unless it would move the cursor, start an escape sequence, or
+/// turn the direction of writing.
+fn visible_char(c: char) -> char {
+    match c {
+        '\t' => ' ',
+        '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{61c}' | '\u{feff}' => {
+            '\u{fffd}'
+        }
+        _ if c.is_control() => '\u{fffd}',
+        _ => c,
+    }
+}
+
+/// The text with nothing in it that controls a terminal.
+pub(crate) fn visible(text: &str) -> String {
+    text.chars().map(visible_char).collect()
+}
+
+/// A piece of the file for a message, cut off where it is long.
+pub(crate) fn clipped(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut shown: String = text.chars().take(LONGEST).map(visible_char).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        shown.push_str("...");
+    }
+    shown
+}
+
+/// A piece of the file in quotes.
+pub(crate) fn quoted(text: &str) -> String {
+    format!("\"{}\"", clipped(text))
+}

@@ -1,0 +1,352 @@
+//! Tokens -> the tree. The first fault ends it: what a text means after that is guesswork.
+
+use super::fault::{clipped, line_and_column, quoted};
+use super::tokens::{Token, Tokens};
+use super::{Body, Fault, Field, Group, MAX_DEPTH, Name, Node, Span, Value};
+
+/// The one value that the text holds, or its first fault.
+///
+/// # Errors
+/// Where the text is not RON.
+pub fn parse(text: &str) -> Result<Node<'_>, Fault> {
+    let mut tokens = Tokens::new(text);
+    tokens.skip_attributes()?;
+    let (next, span) = tokens.next()?;
+    let mut parser = Parser {
+        text,
+        tokens,
+        next,
+        span,
+        previous_end: 0,
+        open: Vec::new(),
+        misaligned: None,
+    };
+    if parser.next == Token::End {
+        let message = "there is no scene here: nothing but comments or white space".to_owned();
+        return Err(Fault {
+            message,
+            span: Span::at(text.len()),
+        });
+    }
+    let root = parser.value()?;
+    match parser.next {
+        Token::End => Ok(root),
+        _ => Err(parser.here(format!("unexpected {} after the end of the scene", parser.found()))),
+    }
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    tokens: Tokens<'a>,
+    /// The token to be read next, and its bytes.
+    next: Token<'a>,
+    span: Span,
+    previous_end: u32,
+    /// The brackets that are open, and where they stand.
+    open: Vec<(char, Span)>,
+    /// The first bracket whose closing one stands first on its line and further left or right than the opening one's
+    /// line: the likeliest to lack its own, where one is lacking in the end.
+    misaligned: Option<(char, Span)>,
+}
+
+type Parsed<T> = Result<T, Fault>;
+
+impl<'a> Parser<'a> {
+    fn advance(&mut self) -> Parsed<Token<'a>> {
+        let (next, span) = self.tokens.next()?;
+        self.previous_end = self.span.end;
+        self.span = span;
+        Ok(std::mem::replace(&mut self.next, next))
+    }
+
+    /// The token after the next one is a colon: the next one is a field's name.
+    fn colon_follows(&self) -> bool {
+        let mut tokens = self.tokens;
+        matches!(tokens.next(), Ok((Token::Colon, _)))
+    }
+
+    fn value(&mut self) -> Parsed<Node<'a>> {
+        let start = self.span.start;
+        let value = match self.next {
+            Token::Word(word) => return self.word(word),
+            Token::Open('(') => Value::Group(Box::new(Group {
+                name: None,
+                body: self.body()?,
+            })),
+            Token::Open('[') => {
+                self.open()?;
+                let items = self.items()?;
+                self.close()?;
+                Value::List(items)
+            }
+            Token::Open(_) => {
+                self.open()?;
+                let entries = self.entries()?;
+                self.close()?;
+                Value::Map(entries)
+            }
+            Token::Number(number) => {
+                self.advance()?;
+                Value::Number(number)
+            }
+            Token::String(_) => match self.advance()? {
+                Token::String(string) => Value::String(string),
+                _ => Value::String(Box::default()),
+            },
+            _ => return Err(self.here(self.no_value())),
+        };
+        Ok(self.node(start, value))
+    }
+
+    fn node(&self, start: u32, value: Value<'a>) -> Node<'a> {
+        let span = Span {
+            start,
+            end: self.previous_end,
+        };
+        Node { span, value }
+    }
+
+    fn word(&mut self, word: &'a str) -> Parsed<Node<'a>> {
+        let span = self.span;
+        self.advance()?;
+        let value = match (word, &self.next) {
+            ("true", _) => Value::Bool(true),
+            ("false", _) => Value::Bool(false),
+            (_, Token::Open('{')) => {
+                return Err(self.here(format!("expected `(` after {}, found `{{`", quoted_word(word))));
+            }
+            (_, Token::Open('(')) => return self.named_group(Name { text: word, span }),
+            _ => Value::Group(Box::new(Group {
+                name: Some(Name { text: word, span }),
+                body: Body::Nothing,
+            })),
+        };
+        Ok(self.node(span.start, value))
+    }
+
+    fn named_group(&mut self, name: Name<'a>) -> Parsed<Node<'a>> {
+        let body = self.body()?;
+        if let ("Some", Body::Values(values)) = (name.text, &body)
+            && let [inner] = &values[..]
+        {
+            return Ok(inner.clone());
+        }
+        let group = Group { name: Some(name), body };
+        Ok(self.node(name.span.start, Value::Group(Box::new(group))))
+    }
+
+    /// `(...)`: fields if it begins with one, else values.
+    fn body(&mut self) -> Parsed<Body<'a>> {
+        self.open()?;
+        let body = if matches!(self.next, Token::Word(_)) && self.colon_follows() {
+            Body::Fields(self.fields()?)
+        } else {
+            Body::Values(self.items()?)
+        };
+        self.close()?;
+        Ok(body)
+    }
+
+    fn items(&mut self) -> Parsed<Vec<Node<'a>>> {
+        let mut items = Vec::new();
+        while !self.at_end() {
+            items.push(self.value()?);
+            if matches!(self.next, Token::Colon) {
+                return Err(
+                    self.here("unexpected `:`; all values in these brackets have names, or none has".to_owned())
+                );
+            }
+            if !self.comma()? {
+                break;
+            }
+        }
+        Ok(items)
+    }
+
+    fn entries(&mut self) -> Parsed<Vec<(Node<'a>, Node<'a>)>> {
+        let mut entries = Vec::new();
+        while !self.at_end() {
+            let key = self.value()?;
+            if self.next != Token::Colon {
+                return Err(self.here(format!("expected `:` and a value, found {}", self.found())));
+            }
+            self.advance()?;
+            entries.push((key, self.value()?));
+            if !self.comma()? {
+                break;
+            }
+        }
+        Ok(entries)
+    }
+
+    fn fields(&mut self) -> Parsed<Vec<Field<'a>>> {
+        let mut fields = Vec::new();
+        while !self.at_end() {
+            let Token::Word(text) = self.next else {
+                let hint = if self.next == Token::Comma {
+                    "; is it one comma too many?"
+                } else {
+                    ""
+                };
+                return Err(self.here(format!("expected the name of a field, found {}{hint}", self.found())));
+            };
+            let name = Name { text, span: self.span };
+            self.advance()?;
+            if self.next != Token::Colon {
+                return Err(self.no_colon(name));
+            }
+            self.advance()?;
+            fields.push(Field {
+                name,
+                value: self.value()?,
+            });
+            if !self.comma()? {
+                break;
+            }
+        }
+        Ok(fields)
+    }
+
+    fn at_end(&self) -> bool {
+        matches!(self.next, Token::Close(_) | Token::End)
+    }
+
+    fn comma(&mut self) -> Parsed<bool> {
+        let comma = self.next == Token::Comma;
+        if comma {
+            self.advance()?;
+        }
+        Ok(comma)
+    }
+
+    fn open(&mut self) -> Parsed<()> {
+        if self.open.len() == MAX_DEPTH {
+            return Err(self.here(format!("brackets lie more than {MAX_DEPTH} deep in each other")));
+        }
+        if let Token::Open(bracket) = self.next {
+            self.open.push((bracket, self.span));
+        }
+        self.advance()?;
+        Ok(())
+    }
+
+    /// Past the bracket that closes the innermost open one.
+    fn close(&mut self) -> Parsed<()> {
+        let Some(&(bracket, opened)) = self.open.last() else {
+            return Ok(());
+        };
+        if self.next != Token::Close(closing(bracket)) {
+            return Err(self.not_closed(bracket, opened));
+        }
+        if self.misaligned.is_none() && self.is_misaligned(opened) {
+            self.misaligned = Some((bracket, opened));
+        }
+        self.open.pop();
+        self.advance()?;
+        Ok(())
+    }
+
+    /// Whether the next token stands first on a line of its own that is indented otherwise than the bracket's line.
+    fn is_misaligned(&self, opened: Span) -> bool {
+        let line_before = |at: u32| self.text[..at as usize].rsplit('\n').next().unwrap_or_default();
+        // A very long line is nobody's indentation, and looking through it each time would take its square.
+        if self.span.start - opened.end < 2 || self.span.start - self.previous_end > 1000 {
+            return false;
+        }
+        let between = &self.text[self.previous_end as usize..self.span.start as usize];
+        if !between.contains('\n') || !line_before(self.span.start).trim().is_empty() {
+            return false;
+        }
+        let opening_line = line_before(opened.start);
+        let indentation = opening_line.len() - opening_line.trim_start().len();
+        indentation != line_before(self.span.start).len()
+    }
+
+    // What to say -----------------------------------------------------------------------------------------------------
+
+    fn here(&self, message: String) -> Fault {
+        Fault {
+            message,
+            span: self.span,
+        }
+    }
+
+    fn found(&self) -> String {
+        match &self.next {
+            Token::Open(c) | Token::Close(c) | Token::Other(c) => format!("`{c}`"),
+            Token::Comma => "`,`".to_owned(),
+            Token::Colon => "`:`".to_owned(),
+            Token::Word(word) => quoted_word(word),
+            Token::Number(_) => "a number".to_owned(),
+            Token::String(string) => format!("the string {}", quoted(string)),
+            Token::End => "the end of the file".to_owned(),
+        }
+    }
+
+    fn no_value(&self) -> String {
+        match self.next {
+            Token::Other('#') => "unexpected `#`; a colour is written in quotes, as in \"#ff8800\"".to_owned(),
+            Token::Comma if !self.text[..self.previous_end as usize].ends_with(':') => {
+                "expected a value, found `,`; is it one comma too many?".to_owned()
+            }
+            _ => format!("expected a value, found {}", self.found()),
+        }
+    }
+
+    fn no_colon(&self, name: Name<'_>) -> Fault {
+        let word = quoted_word(name.text);
+        match (&self.next, self.open.last()) {
+            (Token::Other('='), _) => self.here(format!("expected `:` after {word}, found `=`")),
+            (Token::Open(_), Some(&(bracket, opened))) => Fault {
+                message: format!(
+                    "expected a field, found {word}; is a `{}` missing before it, for the `{bracket}` at {}?",
+                    closing(bracket),
+                    self.place(opened),
+                ),
+                span: name.span,
+            },
+            _ => self.here(format!("expected `:` after {word}, found {}", self.found())),
+        }
+    }
+
+    /// Something else stands where a comma or the closing bracket should.
+    fn not_closed(&self, bracket: char, opened: Span) -> Fault {
+        let right = closing(bracket);
+        match self.next {
+            Token::End => {
+                let (bracket, span) = self.misaligned.unwrap_or((bracket, opened));
+                let message = format!("this `{bracket}` is never closed by a `{}`", closing(bracket));
+                Fault { message, span }
+            }
+            Token::Close(wrong) => {
+                let opened = self.place(opened);
+                self.here(format!(
+                    "expected `{right}`, found `{wrong}`; the `{bracket}` at {opened} is still open"
+                ))
+            }
+            Token::Other(other) => self.here(format!("expected `,` or `{right}`, found `{other}`")),
+            _ => Fault {
+                message: format!("expected `,` or `{right}` before {}", self.found()),
+                span: Span::at(self.previous_end as usize),
+            },
+        }
+    }
+
+    fn place(&self, span: Span) -> String {
+        let (line, column) = line_and_column(self.text, span.start as usize);
+        format!("{line}:{column}")
+    }
+}
+
+fn closing(bracket: char) -> char {
+    match bracket {
+        '(' => ')',
+        '[' => ']',
+        _ => '}',
+    }
+}
+
+/// A word of the file, in backticks.
+fn quoted_word(word: &str) -> String {
+    format!("`{}`", clipped(word))
+}

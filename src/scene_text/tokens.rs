@@ -1,0 +1,294 @@
+//! Characters -> tokens.
+
+use super::fault::quoted;
+use super::{Fault, Span};
+
+/// The smallest things that mean something.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Token<'a> {
+    /// `(`, `[` or `{`.
+    Open(char),
+    /// `)`, `]` or `}`.
+    Close(char),
+    Comma,
+    Colon,
+    Word(&'a str),
+    Number(f64),
+    String(Box<str>),
+    /// A character that RON has no use for in that place.
+    Other(char),
+    /// The end of the text.
+    End,
+}
+
+/// Where the next token begins. Copied to look ahead.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tokens<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl<'a> Tokens<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        Self { text, at: 0 }
+    }
+
+    /// The next token and the bytes it takes.
+    pub(super) fn next(&mut self) -> Result<(Token<'a>, Span), Fault> {
+        self.skip_space()?;
+        let start = self.at;
+        let token = self.token()?;
+        Ok((token, Span::new(start, self.at)))
+    }
+
+    /// Attributes of the whole text: `#![enable(implicit_some)]` and the like. They change nothing here.
+    pub(super) fn skip_attributes(&mut self) -> Result<(), Fault> {
+        if self.rest().starts_with(BYTE_ORDER_MARK) {
+            self.at += BYTE_ORDER_MARK.len_utf8();
+        }
+        loop {
+            self.skip_space()?;
+            let rest = self.rest();
+            if !rest.starts_with("#![") {
+                return Ok(());
+            }
+            let Some(end) = rest.find(']') else { return Ok(()) };
+            self.at += end + 1;
+        }
+    }
+
+    fn rest(&self) -> &'a str {
+        &self.text[self.at..]
+    }
+
+    fn token(&mut self) -> Result<Token<'a>, Fault> {
+        let rest = self.rest();
+        let Some(first) = rest.chars().next() else {
+            return Ok(Token::End);
+        };
+        if let Some(hashes) = raw_string_hashes(rest) {
+            return self.raw_string(hashes);
+        }
+        match first {
+            '"' => return self.string(),
+            '\'' => return Err(self.single_quote()),
+            '0'..='9' | '+' | '-' | '.' => return self.number(),
+            _ if first == '_' || first.is_alphabetic() => return Ok(self.word()),
+            _ => {}
+        }
+        self.at += first.len_utf8();
+        Ok(match first {
+            '(' | '[' | '{' => Token::Open(first),
+            ')' | ']' | '}' => Token::Close(first),
+            ',' => Token::Comma,
+            ':' => Token::Colon,
+            other => Token::Other(other),
+        })
+    }
+
+    fn word(&mut self) -> Token<'a> {
+        let word = self.take_while(|c| c == '_' || c.is_alphanumeric());
+        match word {
+            "inf" => Token::Number(f64::INFINITY),
+            "NaN" => Token::Number(f64::NAN),
+            _ => Token::Word(word),
+        }
+    }
+
+    fn take_while(&mut self, belongs: impl Fn(char) -> bool) -> &'a str {
+        let rest = self.rest();
+        let end = rest.find(|c| !belongs(c)).unwrap_or(rest.len());
+        self.at += end;
+        &rest[..end]
+    }
+
+    /// All that looks like a part of a number is taken, so that what is wrong with it is shown whole.
+    fn number(&mut self) -> Result<Token<'a>, Fault> {
+        let start = self.at;
+        self.at += 1;
+        loop {
+            let run = self.take_while(|c| c == '_' || c == '.' || c.is_alphanumeric());
+            let so_far = &self.text[start..self.at];
+            let exponent = run.ends_with(['e', 'E']) && !is_prefixed(so_far) && self.rest().starts_with(['+', '-']);
+            if !exponent {
+                break;
+            }
+            self.at += 1;
+        }
+        let text = &self.text[start..self.at];
+        number_from(text).map(Token::Number).ok_or_else(|| Fault {
+            message: format!("{} is not a number", quoted(text)),
+            span: Span::new(start, self.at),
+        })
+    }
+
+    /// A scene's strings are names and colours: one that does not end on its line is one whose quote was forgotten.
+    fn string(&mut self) -> Result<Token<'a>, Fault> {
+        let start = self.at;
+        let mut value = String::new();
+        let mut chars = self.text[start + 1..].char_indices();
+        while let Some((i, c)) = chars.next() {
+            match c {
+                '"' => {
+                    self.at = start + 1 + i + 1;
+                    return Ok(Token::String(value.into()));
+                }
+                '\n' => break,
+                '\\' => value.push(unescaped(&mut chars).ok_or_else(|| Fault {
+                    message: "unknown escape in this string; a backslash itself is written \\\\".to_owned(),
+                    span: Span::new(start + 1 + i, start + 2 + i),
+                })?),
+                _ => value.push(c),
+            }
+        }
+        Err(Fault {
+            message: "this string has no closing quote on its line".to_owned(),
+            span: Span::new(start, start + 1),
+        })
+    }
+
+    fn raw_string(&mut self, hashes: usize) -> Result<Token<'a>, Fault> {
+        let start = self.at;
+        let begin = start + 2 + hashes;
+        let closing = format!("\"{}", "#".repeat(hashes));
+        let Some(length) = self.text[begin..].find(&closing) else {
+            return Err(Fault {
+                message: "this raw string is never closed".to_owned(),
+                span: Span::new(start, begin),
+            });
+        };
+        self.at = begin + length + closing.len();
+        Ok(Token::String(self.text[begin..begin + length].into()))
+    }
+
+    fn single_quote(&self) -> Fault {
+        Fault {
+            message: "a string is written in double quotes: \"...\"".to_owned(),
+            span: Span::new(self.at, self.at + 1),
+        }
+    }
+
+    /// White space and comments.
+    fn skip_space(&mut self) -> Result<(), Fault> {
+        loop {
+            self.take_while(is_space);
+            let rest = self.rest();
+            if rest.starts_with("//") {
+                self.at += rest.find('\n').unwrap_or(rest.len());
+            } else if rest.starts_with("/*") {
+                self.at += block_comment_length(rest).ok_or_else(|| Fault {
+                    message: "this comment is never closed".to_owned(),
+                    span: Span::new(self.at, self.at + 2),
+                })?;
+            } else {
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// Some editors begin a file with it.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+/// What RON takes for white space.
+fn is_space(c: char) -> bool {
+    matches!(
+        c,
+        ' ' | '\t' | '\n' | '\r' | '\x0B' | '\x0C' | '\u{85}' | '\u{200E}' | '\u{200F}' | '\u{2028}' | '\u{2029}'
+    )
+}
+
+/// Block comments may lie in each other.
+fn block_comment_length(text: &str) -> Option<usize> {
+    let mut depth = 0_usize;
+    let mut at = 0;
+    while let Some(step) = text[at..].find(['/', '*']) {
+        at += step;
+        if text[at..].starts_with("/*") {
+            depth += 1;
+            at += 2;
+        } else if text[at..].starts_with("*/") {
+            depth -= 1;
+            at += 2;
+            if depth == 0 {
+                return Some(at);
+            }
+        } else {
+            at += 1;
+        }
+    }
+    None
+}
+
+/// `r"`, `r#"`, `r##"`...: how many hashes.
+fn raw_string_hashes(text: &str) -> Option<usize> {
+    let after = text.strip_prefix('r')?;
+    let unhashed = after.trim_start_matches('#');
+    unhashed.starts_with('"').then(|| after.len() - unhashed.len())
+}
+
+/// What the backslash, which has been read, and the characters after it stand for.
+fn unescaped(chars: &mut std::str::CharIndices<'_>) -> Option<char> {
+    let (_, kind) = chars.next()?;
+    Some(match kind {
+        'n' => '\n',
+        'r' => '\r',
+        't' => '\t',
+        '0' => '\0',
+        '\\' | '"' | '\'' => kind,
+        'x' => {
+            let digits: String = chars.by_ref().take(2).map(|(_, c)| c).collect();
+            char::from(u8::from_str_radix(&digits, 16).ok()?)
+        }
+        'u' => {
+            let (_, '{') = chars.next()? else { return None };
+            let digits: String = chars
+                .by_ref()
+                .map(|(_, c)| c)
+                .take_while(|&c| c != '}')
+                .take(7)
+                .collect();
+            char::from_u32(u32::from_str_radix(&digits, 16).ok()?)?
+        }
+        _ => return None,
+    })
+}
+
+/// Whether the number is written with another base than 10.
+fn is_prefixed(number: &str) -> bool {
+    let digits = number.trim_start_matches(['+', '-']).as_bytes();
+    matches!(digits, [b'0', b'x' | b'X' | b'o' | b'O' | b'b' | b'B', ..])
+}
+
+/// The types that a number may name in Rust and RON.
+const SUFFIXES: [&str; 12] = [
+    "f32", "f64", "i8", "i16", "i32", "i64", "i128", "u8", "u16", "u32", "u64", "u128",
+];
+
+/// Decimal or with a prefix, with underscores and Rust's suffixes.
+fn number_from(text: &str) -> Option<f64> {
+    if is_prefixed(text) {
+        return prefixed_number(text);
+    }
+    let digits = SUFFIXES
+        .iter()
+        .find_map(|suffix| text.strip_suffix(suffix))
+        .unwrap_or(text);
+    digits.replace('_', "").parse().ok()
+}
+
+fn prefixed_number(text: &str) -> Option<f64> {
+    let digits = text.trim_start_matches(['+', '-']);
+    let base = match digits.as_bytes()[1].to_ascii_lowercase() {
+        b'x' => 16,
+        b'o' => 8,
+        _ => 2,
+    };
+    let digits = digits[2..].replace('_', "");
+    // `from_str_radix` would take a second sign.
+    if digits.starts_with(['+', '-']) {
+        return None;
+    }
+    let size = u128::from_str_radix(&digits, base).ok()? as f64;
+    Some(if text.starts_with('-') { -size } else { size })
+}
