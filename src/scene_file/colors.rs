@@ -1,0 +1,117 @@
+//! Colours as they are written.
+
+use super::WrittenNumber;
+use super::reader::{Reader, values};
+use super::words::closest;
+use crate::color::Srgb8;
+use crate::scene_text::{Body, Group, Node, Span, Value, quoted};
+use csscolorparser::NAMED_COLORS;
+
+/// A colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WrittenColor {
+    /// `"#rgb"`, `"#rrggbb"`, or a name of CSS.
+    Srgb(Srgb8),
+    /// `(r, g, b)`, linear.
+    Linear([WrittenNumber; 3]),
+    /// One number: the same in each band, linear.
+    Grey(WrittenNumber),
+}
+
+impl WrittenColor {
+    /// Where a number in it stands that fails the test, if there is one.
+    pub fn first_band(&self, fails: impl Fn(f64) -> bool) -> Option<Span> {
+        let bands: &[_] = match self {
+            Self::Srgb(_) => &[],
+            Self::Linear(bands) => bands,
+            Self::Grey(band) => std::slice::from_ref(band),
+        };
+        bands.iter().find(|band| fails(band.value)).map(|band| band.span)
+    }
+}
+
+impl Reader<'_> {
+    pub(super) fn color(&mut self, node: &Node<'_>) -> Option<WrittenColor> {
+        const WANTED: &str = "a colour (\"#rrggbb\", a name, (r, g, b) or a number)";
+        match &node.value {
+            Value::String(string) => match color_from(string) {
+                Ok(color) => Some(WrittenColor::Srgb(color)),
+                Err(message) => {
+                    self.fault(node.span, || message);
+                    None
+                }
+            },
+            Value::Number(_) => self.number(node).map(WrittenColor::Grey),
+            Value::Group(group) if is_color_word(group) => {
+                let name = group.name.map_or("", |name| name.text);
+                self.fault(node.span, || format!("a colour stands in quotes: {}", quoted(name)));
+                None
+            }
+            _ if values(node).is_some() => self.numbers(node, WANTED).map(WrittenColor::Linear),
+            _ => {
+                self.mismatch(node, WANTED);
+                None
+            }
+        }
+    }
+}
+
+/// A name of CSS whose quotes were forgotten.
+fn is_color_word(group: &Group<'_>) -> bool {
+    group.body == Body::Nothing && group.name.is_some_and(|name| color_named(name.text).is_some())
+}
+
+/// The CSS colour of that name, whatever the case.
+pub(crate) fn color_named(name: &str) -> Option<Srgb8> {
+    let &[r, g, b] = NAMED_COLORS.get(name.into())?;
+    Some(Srgb8::new(r, g, b))
+}
+
+fn color_from(string: &str) -> Result<Srgb8, String> {
+    let name = string.trim();
+    if let Some(digits) = name.strip_prefix('#') {
+        return from_hex(digits).ok_or_else(|| bad_hex(string, digits));
+    }
+    color_named(name).ok_or_else(|| unknown_name(string, name))
+}
+
+fn from_hex(digits: &str) -> Option<Srgb8> {
+    if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        return None;
+    }
+    let number = u32::from_str_radix(digits, 16).ok()?;
+    let [_, r, g, b] = number.to_be_bytes();
+    match digits.len() {
+        6 => Some(Srgb8::new(r, g, b)),
+        // #f80 is #ff8800: each digit twice.
+        3 => {
+            let twice = |shift: u32| ((number >> shift & 15) * 17) as u8; // at most 255
+            Some(Srgb8::new(twice(8), twice(4), twice(0)))
+        }
+        _ => None,
+    }
+}
+
+fn bad_hex(string: &str, digits: &str) -> String {
+    let quoted = quoted(string);
+    match digits.chars().find(|c| !c.is_ascii_hexdigit()) {
+        Some(_) => format!("{quoted} is not a colour; after `#` come hexadecimal digits, 0 to 9 and a to f"),
+        None if matches!(digits.len(), 4 | 8) => {
+            format!("{quoted} is not a colour; there is no transparency, write \"#rgb\" or \"#rrggbb\"")
+        }
+        None => format!("{quoted} is not a colour; after `#` come 3 or 6 digits"),
+    }
+}
+
+fn unknown_name(string: &str, name: &str) -> String {
+    let quoted = quoted(string);
+    if let 3 | 6 = name.len()
+        && from_hex(name).is_some()
+    {
+        return format!("{quoted} is not a colour; did you mean \"#{name}\"?");
+    }
+    match closest(name, NAMED_COLORS.keys().map(|known| known.as_str())) {
+        Some(meant) => format!("{quoted} is not the name of a colour; did you mean \"{meant}\"?"),
+        None => format!("{quoted} is not a colour; write \"#rrggbb\" or a name of CSS, such as \"steelblue\""),
+    }
+}

@@ -1,0 +1,137 @@
+//! Objects and materials as they are written.
+
+use super::reader::{Reader, description, group_of_values, values};
+use super::{MaterialUse, NamedMaterial, Spanned, WrittenMaterial, WrittenObject, WrittenShape};
+use crate::scene_text::{Body, Node, Value, quoted};
+use std::collections::HashSet;
+
+impl Reader<'_> {
+    pub(super) fn objects(&mut self, node: &Node<'_>) -> Option<Vec<WrittenObject>> {
+        let items = self.list(node, "a list of objects [Sphere(...), ...]")?;
+        Some(items.iter().filter_map(|item| self.object(item)).collect())
+    }
+
+    fn object(&mut self, node: &Node<'_>) -> Option<WrittenObject> {
+        const FORM: &str = "an object, such as Sphere(center: ..., radius: ...)";
+        match self.variant(node, "an object", FORM, &["Sphere", "Plane"])? {
+            "Sphere" => self.sphere(node),
+            _ => self.plane(node),
+        }
+    }
+
+    fn sphere(&mut self, node: &Node<'_>) -> Option<WrittenObject> {
+        let form = "Sphere(center: ..., radius: ...)";
+        let fields = self.fields(node, "a Sphere", form, &["center", "radius", "material"])?;
+        Some(WrittenObject {
+            shape: WrittenShape::Sphere {
+                center: self.required(&fields, "center", Reader::point),
+                radius: self.required(&fields, "radius", Reader::number),
+            },
+            material: self.optional(&fields, "material", Reader::material_use),
+        })
+    }
+
+    fn plane(&mut self, node: &Node<'_>) -> Option<WrittenObject> {
+        let form = "Plane(point: ..., normal: ...)";
+        let fields = self.fields(node, "a Plane", form, &["point", "normal", "material"])?;
+        Some(WrittenObject {
+            shape: WrittenShape::Plane {
+                point: self.required(&fields, "point", Reader::point),
+                normal: self.required(&fields, "normal", Reader::direction),
+            },
+            material: self.optional(&fields, "material", Reader::material_use),
+        })
+    }
+
+    fn material_use(&mut self, node: &Node<'_>) -> Option<Spanned<MaterialUse>> {
+        let value = match &node.value {
+            Value::String(name) => MaterialUse::Named(name.clone()),
+            _ => MaterialUse::Inline(self.material(node)?),
+        };
+        Some(Spanned { value, span: node.span })
+    }
+
+    /// All entries of `materials`; false if a name may be lacking that the author meant to give.
+    pub(super) fn materials(&mut self, node: &Node<'_>, materials: &mut Vec<NamedMaterial>) -> bool {
+        let Value::Map(entries) = &node.value else {
+            let is_empty = values(node).is_some_and(<[_]>::is_empty);
+            if !is_empty {
+                self.fault(node.head(), || {
+                    let found = description(node);
+                    format!("expected named materials {{\"name\": Diffuse(...), ...}}, found {found}")
+                });
+            }
+            return is_empty;
+        };
+        let mut complete = true;
+        let mut names = HashSet::new();
+        for (key, value) in entries {
+            let material = self.material(value);
+            match self.material_name(key) {
+                Some(name) if names.insert(name) => materials.push(NamedMaterial {
+                    name: name.into(),
+                    material,
+                }),
+                Some(name) => self.fault(key.span, || format!("duplicate material {}", quoted(name))),
+                None => complete = false,
+            }
+        }
+        complete
+    }
+
+    /// A bare word is a fault, but one that says which name was meant.
+    fn material_name<'n>(&mut self, key: &'n Node<'n>) -> Option<&'n str> {
+        match &key.value {
+            Value::String(name) => return Some(name),
+            Value::Group(group) if group.body == Body::Nothing => {
+                let name = group.name?.text;
+                self.fault(key.span, || {
+                    format!("the name of a material stands in quotes: {}", quoted(name))
+                });
+                return Some(name);
+            }
+            _ => self.mismatch(key, "the name of a material in quotes"),
+        }
+        None
+    }
+
+    fn material(&mut self, node: &Node<'_>) -> Option<WrittenMaterial> {
+        const FORM: &str = "a material, such as Diffuse(\"red\"), or the name of one";
+        match self.variant(node, "a material", FORM, &["Diffuse", "Checker"])? {
+            "Diffuse" => self.diffuse(node),
+            _ => self.checker(node),
+        }
+    }
+
+    /// `Diffuse(colour)` or `Diffuse(reflectance: colour)`.
+    fn diffuse(&mut self, node: &Node<'_>) -> Option<WrittenMaterial> {
+        if let Value::Group(group) = &node.value
+            && let Body::Values(values) = &group.body
+        {
+            let [color] = &values[..] else {
+                self.fault(node.span, || {
+                    let found = group_of_values(values, "");
+                    format!("expected one colour, as in Diffuse(\"#rrggbb\") or Diffuse((r, g, b)), found {found}")
+                });
+                return None;
+            };
+            return Some(WrittenMaterial::Diffuse(self.color(color)));
+        }
+        let fields = self.fields(node, "Diffuse", "Diffuse(\"#rrggbb\")", &["reflectance"])?;
+        Some(WrittenMaterial::Diffuse(self.required(
+            &fields,
+            "reflectance",
+            Reader::color,
+        )))
+    }
+
+    fn checker(&mut self, node: &Node<'_>) -> Option<WrittenMaterial> {
+        let form = "Checker(a: ..., b: ..., size: ...)";
+        let fields = self.fields(node, "a Checker", form, &["a", "b", "size"])?;
+        Some(WrittenMaterial::Checker {
+            a: self.optional(&fields, "a", Reader::color),
+            b: self.optional(&fields, "b", Reader::color),
+            size: self.optional(&fields, "size", Reader::number),
+        })
+    }
+}

@@ -1,0 +1,360 @@
+//! From nodes of the tree to typed values: what every field's reading has in common.
+
+use super::words::{closest, listed};
+use super::{Spanned, WrittenNumber, WrittenVector};
+use crate::scene_text::{Body, Faults, Field, Group, Name, Node, Span, Value, clipped, quoted};
+
+/// Reads values, and notes what is wrong with them.
+pub(super) struct Reader<'f> {
+    faults: &'f mut Faults,
+}
+
+/// The fields of one group, found by name.
+pub(super) struct Fields<'n> {
+    entries: &'n [Field<'n>],
+    /// "a Sphere", for messages.
+    owner: &'static str,
+    /// Where to point when a field is missing.
+    head: Span,
+    /// Fields that were given under a slightly wrong name: they are not missing as well.
+    misspelt: Vec<&'static str>,
+}
+
+impl<'n> Fields<'n> {
+    /// The field of that name, as it stands first in the group.
+    pub(super) fn field(&self, name: &str) -> Option<&'n Field<'n>> {
+        self.entries.iter().find(|field| field.name.text == name)
+    }
+
+    /// Its value.
+    pub(super) fn get(&self, name: &str) -> Option<&'n Node<'n>> {
+        self.field(name).map(|field| &field.value)
+    }
+
+    /// Whether the author gave it, under its name or one much like it.
+    pub(super) fn is_given(&self, name: &str) -> bool {
+        self.misspelt.contains(&name) || self.field(name).is_some()
+    }
+}
+
+impl<'f> Reader<'f> {
+    pub(super) fn new(faults: &'f mut Faults) -> Self {
+        Self { faults }
+    }
+
+    pub(super) fn fault(&mut self, span: Span, message: impl FnOnce() -> String) {
+        self.faults.add(span, message);
+    }
+
+    /// Of another type than it should be.
+    pub(super) fn mismatch(&mut self, node: &Node<'_>, wanted: &str) {
+        self.fault(node.span, || format!("expected {wanted}, found {}", description(node)));
+    }
+
+    // Groups ------------------------------------------------------------------------------------------------------
+
+    /// The node's fields, each known and given once. `form` shows how the whole is written.
+    pub(super) fn fields<'n>(
+        &mut self,
+        node: &'n Node<'n>,
+        owner: &'static str,
+        form: &str,
+        known: &[&'static str],
+    ) -> Option<Fields<'n>> {
+        let Value::Group(group) = &node.value else {
+            self.mismatch(node, form);
+            return None;
+        };
+        let entries: &[_] = match &group.body {
+            Body::Fields(entries) => entries,
+            Body::Values(values) if values.is_empty() => &[],
+            other => {
+                let found = if *other == Body::Nothing {
+                    "none"
+                } else {
+                    "values without names"
+                };
+                self.fault(node.head(), || format!("expected fields, as in {form}; found {found}"));
+                return None;
+            }
+        };
+        Some(Fields {
+            entries,
+            owner,
+            head: node.head(),
+            misspelt: self.check_names(entries, owner, known),
+        })
+    }
+
+    /// Notes unknown and duplicate fields; returns those that the unknown ones were probably meant to be.
+    fn check_names(&mut self, entries: &[Field<'_>], owner: &str, known: &[&'static str]) -> Vec<&'static str> {
+        let mut seen = vec![false; known.len()];
+        let mut misspelt = Vec::new();
+        for Field { name, .. } in entries {
+            match known.iter().position(|&known| known == name.text) {
+                None => self.fault(name.span, || {
+                    let meant = meant_field(name.text, known);
+                    misspelt.extend(meant);
+                    unknown_field(name.text, meant, owner, known)
+                }),
+                Some(i) if seen[i] => self.fault(name.span, || format!("duplicate field \"{}\"", name.text)),
+                Some(i) => seen[i] = true,
+            }
+        }
+        misspelt
+    }
+
+    /// The value of a field that must be there.
+    pub(super) fn required<T>(
+        &mut self,
+        fields: &Fields<'_>,
+        name: &str,
+        read: impl FnOnce(&mut Self, &Node<'_>) -> Option<T>,
+    ) -> Option<T> {
+        let Some(node) = fields.get(name) else {
+            if !fields.is_given(name) {
+                let owner = fields.owner;
+                self.fault(fields.head, || format!("missing field \"{name}\"; {owner} needs one"));
+            }
+            return None;
+        };
+        read(self, node)
+    }
+
+    /// The value of a field that need not be there; `None` says the same as leaving it out.
+    pub(super) fn optional<T>(
+        &mut self,
+        fields: &Fields<'_>,
+        name: &str,
+        read: impl FnOnce(&mut Self, &Node<'_>) -> Option<T>,
+    ) -> Option<T> {
+        let node = fields.get(name)?;
+        if is_word(node, "None") {
+            return None;
+        }
+        read(self, node)
+    }
+
+    /// The same, where `None` is a value of its own.
+    pub(super) fn optional_word<T>(
+        &mut self,
+        fields: &Fields<'_>,
+        name: &str,
+        read: impl FnOnce(&mut Self, &Node<'_>) -> Option<T>,
+    ) -> Option<T> {
+        read(self, fields.get(name)?)
+    }
+
+    /// The group's name, which is to be one of these.
+    pub(super) fn variant<'n>(
+        &mut self,
+        node: &'n Node<'n>,
+        kind: &str,
+        form: &str,
+        known: &[&'static str],
+    ) -> Option<&'static str> {
+        let Value::Group(group) = &node.value else {
+            self.mismatch(node, form);
+            return None;
+        };
+        let Some(name) = group.name else {
+            self.fault(node.head(), || {
+                format!("expected {form}, found (...) without a name before it")
+            });
+            return None;
+        };
+        let found = known.iter().copied().find(|&known| known == name.text);
+        if found.is_none() {
+            self.fault(name.span, || unknown_variant(name, kind, known));
+        }
+        found
+    }
+
+    /// One of a few words.
+    pub(super) fn choice<T: Copy>(&mut self, node: &Node<'_>, kind: &str, all: &[(&'static str, T)]) -> Option<T> {
+        let words: Vec<_> = all.iter().map(|&(word, _)| word).collect();
+        let wanted = format!("{kind} ({})", listed(&words).replace(" and ", " or "));
+        match &node.value {
+            Value::Group(group) => match (&**group, group.name) {
+                (
+                    Group {
+                        body: Body::Nothing, ..
+                    },
+                    Some(_),
+                ) => {
+                    let word = self.variant(node, kind, &wanted, &words)?;
+                    return all.iter().find(|(known, _)| *known == word).map(|&(_, value)| value);
+                }
+                _ => self.mismatch(node, &wanted),
+            },
+            Value::String(string) if words.contains(&&**string) => {
+                self.fault(node.span, || {
+                    format!("expected {wanted}; write {string} without quotes")
+                });
+            }
+            _ => self.mismatch(node, &wanted),
+        }
+        None
+    }
+
+    /// `[...]`, or `(...)` without names.
+    pub(super) fn list<'n>(&mut self, node: &'n Node<'n>, wanted: &str) -> Option<&'n [Node<'n>]> {
+        if let Some(items) = values(node) {
+            return Some(items);
+        }
+        if matches!(&node.value, Value::Group(group) if group.name.is_some()) {
+            let message = || {
+                format!(
+                    "expected {wanted}, found {}; put it in brackets [...]",
+                    description(node)
+                )
+            };
+            self.fault(node.head(), message);
+        } else {
+            self.fault(node.head(), || {
+                format!("expected {wanted}, found {}", description(node))
+            });
+        }
+        None
+    }
+
+    // Values --------------------------------------------------------------------------------------------------------
+
+    pub(super) fn boolean(&mut self, node: &Node<'_>) -> Option<bool> {
+        if let Value::Bool(value) = node.value {
+            return Some(value);
+        }
+        self.mismatch(node, "true or false");
+        None
+    }
+
+    /// A finite number.
+    pub(super) fn number(&mut self, node: &Node<'_>) -> Option<WrittenNumber> {
+        match node.value {
+            Value::Number(value) if value.is_finite() => Some(Spanned { value, span: node.span }),
+            Value::Number(_) => {
+                self.fault(node.span, || "the number must be finite".to_owned());
+                None
+            }
+            _ => {
+                self.mismatch(node, "a number");
+                None
+            }
+        }
+    }
+
+    pub(super) fn point(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
+        self.vector(node, "a point (x, y, z)")
+    }
+
+    pub(super) fn direction(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
+        self.vector(node, "a direction (x, y, z)")
+    }
+
+    fn vector(&mut self, node: &Node<'_>, wanted: &str) -> Option<WrittenVector> {
+        let components = self.numbers(node, wanted)?;
+        Some(WrittenVector {
+            components,
+            span: node.span,
+        })
+    }
+
+    /// So many numbers, in parentheses or brackets.
+    pub(super) fn numbers<const N: usize>(&mut self, node: &Node<'_>, wanted: &str) -> Option<[WrittenNumber; N]> {
+        let Some(items) = values(node).filter(|items| items.len() == N) else {
+            self.mismatch(node, wanted);
+            return None;
+        };
+        let read: Vec<_> = items.iter().map(|item| self.number(item)).collect();
+        let numbers: Option<Vec<_>> = read.into_iter().collect();
+        numbers?.try_into().ok()
+    }
+}
+
+/// The values of `[...]` or of `(...)` without names.
+pub(super) fn values<'n>(node: &'n Node<'n>) -> Option<&'n [Node<'n>]> {
+    match &node.value {
+        Value::List(items) => Some(items),
+        Value::Group(group) => match &**group {
+            Group {
+                name: None,
+                body: Body::Values(items),
+            } => Some(items),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn is_word(node: &Node<'_>, word: &str) -> bool {
+    matches!(&node.value, Value::Group(group)
+        if group.body == Body::Nothing && group.name.is_some_and(|name| name.text == word))
+}
+
+/// The field that was meant by a name that is none: one spelt much like it, or what others call the same thing.
+fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
+    const ALSO_CALLED: [(&str, &str); 8] = [
+        ("look_at", "target"),
+        ("lookat", "target"),
+        ("from", "eye"),
+        ("position", "eye"),
+        ("position", "center"),
+        ("power", "intensity"),
+        ("color", "material"),
+        ("color", "reflectance"),
+    ];
+    closest(name, known.iter().copied()).or_else(|| {
+        let meant = ALSO_CALLED
+            .iter()
+            .filter(|(other, _)| *other == name)
+            .map(|&(_, meant)| meant);
+        meant.into_iter().find(|meant| known.contains(meant))
+    })
+}
+
+fn unknown_field(name: &str, meant: Option<&str>, owner: &str, known: &[&str]) -> String {
+    let unknown = format!("unknown field {}", quoted(name));
+    match meant {
+        Some(meant) => format!("{unknown}; did you mean \"{meant}\"?"),
+        None if known.len() == 1 => format!("{unknown}; {owner} has only {}", listed(known)),
+        None => format!("{unknown}; {owner} has {}", listed(known)),
+    }
+}
+
+fn unknown_variant(name: Name<'_>, kind: &str, known: &[&str]) -> String {
+    let unknown = format!("{} is not {kind}", clipped(name.text));
+    match (closest(name.text, known.iter().copied()), known) {
+        (Some(meant), _) => format!("{unknown}; did you mean {meant}?"),
+        (None, [only]) => format!("{unknown}; there is only {only}"),
+        (None, _) => format!("{unknown}; there are {}", listed(known)),
+    }
+}
+
+/// What was found, for a message.
+pub(super) fn description(node: &Node<'_>) -> String {
+    match &node.value {
+        Value::Bool(value) => value.to_string(),
+        Value::Number(_) => "a number".to_owned(),
+        Value::String(string) => format!("the string {}", quoted(string)),
+        Value::List(items) => group_of_values(items, "a list of"),
+        Value::Map(_) => "a map {...}".to_owned(),
+        Value::Group(group) => match (group.name, &group.body) {
+            (Some(name), Body::Nothing) => format!("the word {}", clipped(name.text)),
+            (Some(name), _) => format!("{}(...)", clipped(name.text)),
+            (None, Body::Values(items)) => group_of_values(items, "a group of"),
+            (None, _) => "a group of named fields".to_owned(),
+        },
+    }
+}
+
+/// The same for what stands in brackets.
+pub(super) fn group_of_values(items: &[Node<'_>], a_group_of: &str) -> String {
+    let numbers = items.iter().all(|item| matches!(item.value, Value::Number(_)));
+    match (items.len(), numbers) {
+        (0, _) => "nothing in brackets".to_owned(),
+        (1, true) => "1 number in brackets".to_owned(),
+        (n, true) => format!("{n} numbers"),
+        (1, false) => format!("{a_group_of} 1 value"),
+        (n, false) => format!("{a_group_of} {n} values"),
+    }
+}

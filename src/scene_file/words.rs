@@ -1,0 +1,71 @@
+//! Words for messages: lists, and the word that was probably meant.
+
+/// `a`, `a and b`, `a, b and c`.
+pub(crate) fn listed(words: &[impl AsRef<str>]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => only.as_ref().to_owned(),
+        [most @ .., last] => {
+            let most: Vec<_> = most.iter().map(AsRef::as_ref).collect();
+            format!("{} and {}", most.join(", "), last.as_ref())
+        }
+    }
+}
+
+/// The word of the list that the author probably meant: one that differs in few letters, or of which he wrote a part
+/// (`fov` for `vertical_fov`).
+pub(crate) fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
+    // The distance takes the product of the lengths; a name this long is no slip of the pen. And among thousands of
+    // names something is always close.
+    const LONGEST: usize = 64;
+    const MOST: usize = 1000;
+    if word.len() > LONGEST {
+        return None;
+    }
+    let written = word.to_lowercase();
+    among
+        .into_iter()
+        .take(MOST)
+        .filter(|known| known.len() <= LONGEST)
+        .filter_map(|known| Some((distance(&written, &known.to_lowercase())?, known)))
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, known)| known)
+}
+
+/// How far off, if it is a slip at all.
+fn distance(written: &str, known: &str) -> Option<usize> {
+    let distance = strsim::osa_distance(written, known);
+    let is_part = written.len() >= 3 && known.split('_').any(|part| part == written);
+    let allowed = match written.chars().count() {
+        ..3 => 0,
+        length => (length / 3).max(1),
+    };
+    (distance <= allowed || is_part).then_some(distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_are_found_and_strangers_are_not() {
+        let known = ["center", "radius", "material", "vertical_fov"];
+        for (written, meant) in [
+            ("radus", Some("radius")),
+            ("centre", Some("center")),
+            ("Radius", Some("radius")),
+            ("fov", Some("vertical_fov")),
+            ("colour", None),
+            ("x", None),
+        ] {
+            assert_eq!(closest(written, known), meant, "{written}");
+        }
+    }
+
+    #[test]
+    fn lists_read_well() {
+        assert_eq!(listed(&["a"]), "a");
+        assert_eq!(listed(&["a", "b"]), "a and b");
+        assert_eq!(listed(&["a", "b", "c"]), "a, b and c");
+    }
+}
