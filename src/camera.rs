@@ -217,6 +217,16 @@ impl ViewRectangle {
         2.0 * libm::atanf(0.5 * self.height)
     }
 
+    /// Width over focal length, where the rectangle has a width of its own.
+    pub fn width(&self) -> Option<f32> {
+        self.width
+    }
+
+    /// Height over focal length.
+    pub fn height(&self) -> f32 {
+        self.height
+    }
+
     /// The rectangle's own aspect ratio, where it has one.
     pub fn aspect_ratio(&self) -> Option<f32> {
         self.width.map(|width| width / self.height)

@@ -1,6 +1,13 @@
 //! What is drawn, checked: a [`Scene`] cannot be wrong.
 //!
-//! All units are fixed here: world units, radians, linear light, unit vectors.
+//! All units are fixed here: world units, radians, linear light, unit vectors. [`Scene::load`] and [`Scene::from_ron`]
+//! are the only way from what was written to what is drawn.
+
+mod checked;
+mod load;
+mod written_camera;
+
+pub use load::LoadError;
 
 use crate::camera::Camera;
 use crate::color::LinearRgb;

@@ -1,0 +1,184 @@
+//! File, bytes or text -> scene.
+
+use super::{Scene, checked};
+use crate::scene_file::SceneFile;
+use crate::scene_text::{Fault, Faults, MAX_BYTES, SceneError, Span, parse, visible};
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+impl Scene {
+    /// The scene that the text describes. The name is used in messages only.
+    ///
+    /// ```
+    /// use termtrace::scene::Scene;
+    ///
+    /// let text = r#"(
+    ///     camera: (eye: (0, 0, 5), target: (0, 0, 0)),
+    ///     lights: [Point(position: (3, 4, 5), intensity: 40)],
+    ///     objects: [Sphere(center: (0, 0, 0), radius: 1, material: Diffuse("tomato"))],
+    /// )"#;
+    /// let scene = Scene::from_ron("ball.ron", text)?;
+    /// assert_eq!(scene.objects().len(), 1);
+    ///
+    /// let error = Scene::from_ron("ball.ron", &text.replace("radius", "radus")).unwrap_err();
+    /// assert!(error.to_string().starts_with(r#"ball.ron:4:35: unknown field "radus"; did you mean "radius"?"#));
+    /// # Ok::<(), termtrace::scene_text::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The first fault of the syntax; if there is none, all others: unknown and missing fields, wrong types, and values
+    /// that make no picture.
+    pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
+        check_size(text.len())
+            .and_then(|()| not_empty(text))
+            .and_then(|()| no_nul(text.as_bytes()))
+            .map_err(|fault| SceneError::new(name, text, fault))?;
+        let root = parse(text).map_err(|fault| SceneError::new(name, text, fault))?;
+        let mut faults = Faults::default();
+        let file = SceneFile::read(&root, &mut faults);
+        checked::check(&file, &mut faults).ok_or_else(|| SceneError::new(name, text, faults))
+    }
+
+    /// The scene that the bytes describe, which should be UTF-8 text.
+    ///
+    /// ```
+    /// use termtrace::scene::Scene;
+    ///
+    /// let error = Scene::from_bytes("photo.png", b"\x89PNG\r\n\x1a\n\0\0").unwrap_err();
+    /// assert!(error.to_string().contains("not a text file"));
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Scene::from_ron`], and for bytes that are no text.
+    pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, SceneError> {
+        match text_from(bytes) {
+            Ok(text) => Self::from_ron(name, text),
+            Err(fault) => {
+                // Of a file that is no text from its first byte, no line is worth showing.
+                let shown = if fault.span.start == 0 { &[] } else { bytes };
+                Err(SceneError::new(name, &String::from_utf8_lossy(shown), fault))
+            }
+        }
+    }
+
+    /// The scene in that file.
+    ///
+    /// ```no_run
+    /// use std::path::Path;
+    /// use termtrace::scene::Scene;
+    ///
+    /// match Scene::load(Path::new("scenes/three_spheres.ron")) {
+    ///     Ok(scene) => println!("{} objects", scene.objects().len()),
+    ///     Err(error) => println!("{error}"),
+    /// }
+    /// ```
+    ///
+    /// # Errors
+    /// If the file cannot be read, or as [`Scene::from_bytes`].
+    pub fn load(path: &Path) -> Result<Self, LoadError> {
+        let cannot_read = |error| LoadError::CannotRead {
+            path: path.to_owned(),
+            error,
+        };
+        let mut bytes = Vec::new();
+        File::open(path)
+            .and_then(|file| file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
+            .map_err(cannot_read)?;
+        Self::from_bytes(&path.to_string_lossy(), &bytes).map_err(LoadError::Scene)
+    }
+}
+
+/// Why a file gave no scene.
+#[derive(Debug)]
+pub enum LoadError {
+    /// It could not be read.
+    CannotRead {
+        /// Which file.
+        path: PathBuf,
+        /// What the system said.
+        error: io::Error,
+    },
+    /// What it says is no scene.
+    Scene(SceneError),
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::CannotRead { path, error } => {
+                let path = visible(&path.to_string_lossy());
+                match error.kind() {
+                    io::ErrorKind::NotFound => write!(f, "{path}: there is no such file"),
+                    io::ErrorKind::IsADirectory => write!(f, "{path}: this is a directory, not a scene file"),
+                    io::ErrorKind::PermissionDenied => write!(f, "{path}: no permission to read this file"),
+                    _ => write!(f, "{path}: cannot be read: {error}"),
+                }
+            }
+            Self::Scene(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for LoadError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::CannotRead { error, .. } => Some(error),
+            Self::Scene(_) => None,
+        }
+    }
+}
+
+/// The bytes as text, if they are that.
+fn text_from(bytes: &[u8]) -> Result<&str, Fault> {
+    check_size(bytes.len())?;
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err(fault_at(0, "the file is UTF-16; save it as UTF-8".to_owned()));
+    }
+    no_nul(bytes)?;
+    std::str::from_utf8(bytes).map_err(|error| {
+        let place = error.valid_up_to();
+        let byte = bytes.get(place).copied().unwrap_or_default();
+        fault_at(
+            place,
+            format!("the file is not UTF-8 text: byte 0x{byte:02x} begins no character here"),
+        )
+    })
+}
+
+fn check_size(bytes: usize) -> Result<(), Fault> {
+    if bytes > MAX_BYTES {
+        return Err(fault_at(
+            0,
+            "the file is larger than 16 MiB, too large for a scene".to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+fn not_empty(text: &str) -> Result<(), Fault> {
+    if text.trim().is_empty() {
+        let message = "the file is empty; the smallest scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))";
+        return Err(fault_at(0, message.to_owned()));
+    }
+    Ok(())
+}
+
+/// A NUL stands in no text, and near the beginning of nearly everything else.
+fn no_nul(bytes: &[u8]) -> Result<(), Fault> {
+    let Some(place) = bytes.iter().position(|&byte| byte == 0) else {
+        return Ok(());
+    };
+    // Places in the text as it will be shown are those in the file only as far as it is UTF-8.
+    let is_text = std::str::from_utf8(&bytes[..place]).is_ok();
+    let message = format!("this is not a text file: byte {place} is a NUL");
+    Err(fault_at(if is_text { place } else { 0 }, message))
+}
+
+fn fault_at(place: usize, message: String) -> Fault {
+    Fault {
+        message,
+        span: Span::at(place),
+    }
+}
