@@ -7,6 +7,7 @@ pub mod color;
 pub mod ray;
 pub mod capabilities;
 pub mod scene_text;
+pub mod scene_file;
 pub mod shape;
 pub mod material;
 pub mod light;
