@@ -11,6 +11,18 @@ use std::num::NonZeroU32;
 
 /// The scene at that size as plain text, for snapshot tests: one ray through each pixel's centre, cells of the usual
 /// aspect of 2, one line for each row, each with all its characters and a line feed.
+///
+/// ```
+/// use termtrace::{export::text_frame, grid::Size, scene::Scene};
+///
+/// let scene = Scene::from_ron("ball.ron", r##"(
+///     camera: (eye: (0, 0, 4), target: (0, 0, 0)),
+///     lights: [Point(position: (0, 0, 4), intensity: 10)],
+///     objects: [Sphere(center: (0, 0, 0), radius: 1)],
+/// )"##).unwrap();
+/// assert_eq!(text_frame(&scene, Size::new(12, 6)), "\
+/// ");
+/// ```
 pub fn text_frame(scene: &Scene, size: Size) -> String {
     let resolution = cell::resolution(CellMode::Ramp, size, USUAL_CELL_ASPECT);
     let picture = tone(&render(scene, &scene.camera, resolution, NonZeroU32::MIN), scene);

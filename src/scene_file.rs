@@ -239,37 +239,14 @@ impl SceneFile {
 
 impl Reader<'_> {
     fn root<'n>(&mut self, root: &'n Node<'n>) -> Option<Fields<'n>> {
-        const FIELDS: &[&str] = &[
-            "camera",
-            "background",
-            "ambient",
-            "lights",
-            "materials",
-            "objects",
-            "shadows",
-            "exposure",
-            "tone_curve",
-        ];
-        self.fields(
-            root,
-            "a scene",
-            "a scene (camera: ..., lights: [...], objects: [...])",
-            FIELDS,
-        )
+        const FIELDS: &[&str] =
+            &["camera", "background", "ambient", "lights", "materials", "objects", "shadows", "exposure", "tone_curve"];
+        self.fields(root, "a scene", "a scene (camera: ..., lights: [...], objects: [...])", FIELDS)
     }
 
     fn camera(&mut self, node: &Node<'_>) -> Option<WrittenCamera> {
-        const FIELDS: &[&str] = &[
-            "eye",
-            "target",
-            "up",
-            "vertical_fov",
-            "aspect_ratio",
-            "focal_length",
-            "width",
-            "height",
-            "shift",
-        ];
+        const FIELDS: &[&str] =
+            &["eye", "target", "up", "vertical_fov", "aspect_ratio", "focal_length", "width", "height", "shift"];
         let fields = self.fields(node, "a camera", "a camera (eye: ..., target: ...)", FIELDS)?;
         Some(WrittenCamera {
             span: node.head(),
@@ -298,11 +275,7 @@ impl Reader<'_> {
         }
         self.missing_of_focal_form(fields, &FOCAL);
         let [focal_length, width, height] = FOCAL.map(|name| self.optional(fields, name, Reader::number));
-        WrittenLens::FocalLength {
-            focal_length,
-            width,
-            height,
-        }
+        WrittenLens::FocalLength { focal_length, width, height }
     }
 
     fn missing_of_focal_form(&mut self, fields: &Fields<'_>, names: &[&str]) {
@@ -312,10 +285,7 @@ impl Reader<'_> {
         if let (false, Some(given)) = (missing.is_empty(), given) {
             let s = if missing.len() > 1 { "s" } else { "" };
             self.fault(given.name.span, || {
-                format!(
-                    "missing field{s} {}; focal_length, width and height go together",
-                    listed(&missing)
-                )
+                format!("missing field{s} {}; focal_length, width and height go together", listed(&missing))
             });
         }
     }
@@ -324,18 +294,8 @@ impl Reader<'_> {
         if !matches!(node.value, Value::Group(ref group) if group.name.is_some()) {
             return self.color(node).map(WrittenBackground::Color);
         }
-        self.variant(
-            node,
-            "a background",
-            "a colour or Gradient(bottom: ..., top: ...)",
-            &["Gradient"],
-        )?;
-        let fields = self.fields(
-            node,
-            "a Gradient",
-            "Gradient(bottom: ..., top: ...)",
-            &["bottom", "top"],
-        )?;
+        self.variant(node, "a background", "a colour or Gradient(bottom: ..., top: ...)", &["Gradient"])?;
+        let fields = self.fields(node, "a Gradient", "Gradient(bottom: ..., top: ...)", &["bottom", "top"])?;
         Some(WrittenBackground::Gradient {
             bottom: self.required(&fields, "bottom", Reader::color),
             top: self.required(&fields, "top", Reader::color),
@@ -360,10 +320,7 @@ impl Reader<'_> {
     }
 
     fn falloff(&mut self, node: &Node<'_>) -> Option<WrittenFalloff> {
-        let all = [
-            ("InverseSquare", WrittenFalloff::InverseSquare),
-            ("None", WrittenFalloff::None),
-        ];
+        let all = [("InverseSquare", WrittenFalloff::InverseSquare), ("None", WrittenFalloff::None)];
         self.choice(node, "a falloff", &all)
     }
 

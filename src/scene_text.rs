@@ -26,10 +26,7 @@ pub struct Span {
 impl Span {
     /// The bytes from `start` up to `end`. A text is at most 16 MiB, so that 32 bits hold every place in it.
     pub fn new(start: usize, end: usize) -> Self {
-        Self {
-            start: start as u32,
-            end: end as u32,
-        }
+        Self { start: start as u32, end: end as u32 }
     }
 
     /// No bytes, at that place.
@@ -123,8 +120,5 @@ impl Node<'_> {
 }
 
 fn first_byte(span: Span) -> Span {
-    Span {
-        end: span.start + 1,
-        ..span
-    }
+    Span { end: span.start + 1, ..span }
 }

@@ -28,11 +28,7 @@ fn read(bytes: &[u8]) -> Result<Scene, SceneError> {
         let lines = bytes.split(|&byte| byte == b'\n').count();
         for report in error.reports() {
             let (start, end) = (report.span.start as usize, report.span.end as usize);
-            assert!(
-                start <= end && end <= bytes.len(),
-                "{report:?} of {} bytes",
-                bytes.len()
-            );
+            assert!(start <= end && end <= bytes.len(), "{report:?} of {} bytes", bytes.len());
             assert!(report.line >= 1 && report.line <= lines && report.column >= 1);
         }
         let message = error.to_string();
@@ -56,9 +52,7 @@ fn every_beginning_of_a_scene_gives_a_fault() {
 /// In the 2 MiB of a usual thread's stack.
 #[test]
 fn deep_nesting_is_a_fault() {
-    for opening in [
-        "(", "[", "{", "a(", "a(b:", "Some(", "{1:", "[(", "(a:[", "/*", "#![", "r#", "\"\\",
-    ] {
+    for opening in ["(", "[", "{", "a(", "a(b:", "Some(", "{1:", "[(", "(a:[", "/*", "#![", "r#", "\"\\"] {
         let text = opening.repeat(1_000_000);
         let error = std::thread::Builder::new()
             .stack_size(2 << 20)
@@ -102,10 +96,7 @@ fn large_files_take_linear_time() {
 #[test]
 fn files_beyond_the_limit_are_not_read() {
     let error = read(&vec![b' '; MAX_BYTES + 1]).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "x.ron:1:1: the file is larger than 16 MiB, too large for a scene"
-    );
+    assert_eq!(error.to_string(), "x.ron:1:1: the file is larger than 16 MiB, too large for a scene");
 }
 
 /// Our tree, in a notation of the test's own.
@@ -172,14 +163,11 @@ fn theirs(expr: &ron2::ast::Expr<'_>) -> String {
 
 /// Valid RON of the kinds that scenes use, with white space and comments anywhere.
 fn ron() -> impl Strategy<Value = String> {
-    let word = "[a-z_][a-zA-Z0-9_]{0,6}".prop_filter("reserved", |word| {
-        !["true", "false", "r", "b", "br", "inf"].contains(&word.as_str())
-    });
+    let word = "[a-z_][a-zA-Z0-9_]{0,6}"
+        .prop_filter("reserved", |word| !["true", "false", "r", "b", "br", "inf"].contains(&word.as_str()));
     let leaf = prop_oneof![
         any::<i32>().prop_map(|number| number.to_string()),
-        any::<f32>()
-            .prop_filter("finite", |x| x.is_finite())
-            .prop_map(|number| format!("{number:?}")),
+        any::<f32>().prop_filter("finite", |x| x.is_finite()).prop_map(|number| format!("{number:?}")),
         "[a-z #é地]{0,5}".prop_map(|text| format!("{text:?}")),
         any::<bool>().prop_map(|value| value.to_string()),
         word.clone().prop_map(String::from),

@@ -114,11 +114,7 @@ impl Checker<'_> {
         if value > 0.0 && value as f32 > 0.0 && value <= LARGEST_EXPOSURE {
             return Some(value as f32);
         }
-        let wanted = if value <= 0.0 {
-            "greater than 0"
-        } else {
-            "between 1e-45 and 1e6"
-        };
+        let wanted = if value <= 0.0 { "greater than 0" } else { "between 1e-45 and 1e6" };
         self.fault(span, || format!("the exposure must be {wanted}"))
     }
 
@@ -150,10 +146,7 @@ impl Checker<'_> {
             WrittenBackground::Color(color) => self.light_color(color).map(Background::Color),
             WrittenBackground::Gradient { bottom, top } => {
                 let [bottom, top] = [bottom, top].map(|color| color.and_then(|color| self.light_color(color)));
-                Some(Background::Gradient {
-                    bottom: bottom?,
-                    top: top?,
-                })
+                Some(Background::Gradient { bottom: bottom?, top: top? })
             }
         }
     }
@@ -223,9 +216,7 @@ impl Checker<'_> {
         let vector = self.coordinates(written)?;
         let largest = vector.abs().max_element();
         if largest == 0.0 {
-            return self.fault(written.span, || {
-                format!("the {what} must have a length; (0, 0, 0) points nowhere")
-            });
+            return self.fault(written.span, || format!("the {what} must have a length; (0, 0, 0) points nowhere"));
         }
         let vector = vector / largest;
         Some(vector / vector.dot(vector).sqrt())
@@ -257,10 +248,9 @@ impl Checker<'_> {
             return Some(Material::DEFAULT);
         };
         let (is_checker, material) = match value {
-            MaterialUse::Inline(written) => (
-                matches!(written, WrittenMaterial::Checker { .. }),
-                self.material(written),
-            ),
+            MaterialUse::Inline(written) => {
+                (matches!(written, WrittenMaterial::Checker { .. }), self.material(written))
+            }
             MaterialUse::Named(name) => match materials.get(&**name) {
                 Some(named) => (named.is_checker, named.material),
                 None if !file.materials_complete => return None,
@@ -289,11 +279,7 @@ fn unknown_material(name: &str, file: &SceneFile) -> String {
     match (closest(name, names()), is_color) {
         (Some(meant), false) => return format!("{unknown}; did you mean {}?", quoted(meant)),
         (Some(meant), true) => {
-            return format!(
-                "{unknown}; did you mean {} or the colour Diffuse({})?",
-                quoted(meant),
-                quoted(name)
-            );
+            return format!("{unknown}; did you mean {} or the colour Diffuse({})?", quoted(meant), quoted(name));
         }
         (None, true) => return format!("{unknown}; a colour is written Diffuse({})", quoted(name)),
         (None, false) => {}

@@ -78,10 +78,7 @@ impl Scene {
     /// # Errors
     /// If the file cannot be read, or as [`Scene::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, LoadError> {
-        let cannot_read = |error| LoadError::CannotRead {
-            path: path.to_owned(),
-            error,
-        };
+        let cannot_read = |error| LoadError::CannotRead { path: path.to_owned(), error };
         let mut bytes = Vec::new();
         File::open(path)
             .and_then(|file| file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
@@ -140,19 +137,13 @@ fn text_from(bytes: &[u8]) -> Result<&str, Fault> {
     std::str::from_utf8(bytes).map_err(|error| {
         let place = error.valid_up_to();
         let byte = bytes.get(place).copied().unwrap_or_default();
-        fault_at(
-            place,
-            format!("the file is not UTF-8 text: byte 0x{byte:02x} begins no character here"),
-        )
+        fault_at(place, format!("the file is not UTF-8 text: byte 0x{byte:02x} begins no character here"))
     })
 }
 
 fn check_size(bytes: usize) -> Result<(), Fault> {
     if bytes > MAX_BYTES {
-        return Err(fault_at(
-            0,
-            "the file is larger than 16 MiB, too large for a scene".to_owned(),
-        ));
+        return Err(fault_at(0, "the file is larger than 16 MiB, too large for a scene".to_owned()));
     }
     Ok(())
 }
@@ -177,8 +168,5 @@ fn no_nul(bytes: &[u8]) -> Result<(), Fault> {
 }
 
 fn fault_at(place: usize, message: String) -> Fault {
-    Fault {
-        message,
-        span: Span::at(place),
-    }
+    Fault { message, span: Span::at(place) }
 }

@@ -40,11 +40,7 @@ fn number(x: f32) -> String {
     let plain = x.to_string();
     let short = if plain.len() > 16 { format!("{x:e}") } else { plain };
     // The reader rounds twice, to f64 and then to f32; for all but a few numbers that is the same.
-    if reads_as(&short, |value| value as f32 == x) {
-        short
-    } else {
-        f64::from(x).to_string()
-    }
+    if reads_as(&short, |value| value as f32 == x) { short } else { f64::from(x).to_string() }
 }
 
 fn reads_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
@@ -132,10 +128,7 @@ mod tests {
     fn rectangle() -> impl Strategy<Value = ViewRectangle> {
         let by_angle = (0.001_f32..3.1).prop_map(|angle| ViewRectangle::from_vertical_fov(angle).unwrap());
         let by_ratio = (0.1_f32..3.0, 0.01_f32..100.0).prop_map(|(angle, ratio)| {
-            ViewRectangle::from_vertical_fov(angle)
-                .unwrap()
-                .with_aspect_ratio(ratio)
-                .unwrap()
+            ViewRectangle::from_vertical_fov(angle).unwrap().with_aspect_ratio(ratio).unwrap()
         });
         let by_length = (0.1_f32..10.0, 0.1_f32..10.0, 0.1_f32..10.0)
             .prop_map(|(f, w, h)| ViewRectangle::from_focal_length(f, w, h).unwrap());

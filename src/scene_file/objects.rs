@@ -68,10 +68,7 @@ impl Reader<'_> {
         for (key, value) in entries {
             let material = self.material(value);
             match self.material_name(key) {
-                Some(name) if names.insert(name) => materials.push(NamedMaterial {
-                    name: name.into(),
-                    material,
-                }),
+                Some(name) if names.insert(name) => materials.push(NamedMaterial { name: name.into(), material }),
                 Some(name) => self.fault(key.span, || format!("duplicate material {}", quoted(name))),
                 None => complete = false,
             }
@@ -85,9 +82,7 @@ impl Reader<'_> {
             Value::String(name) => return Some(name),
             Value::Group(group) if group.body == Body::Nothing => {
                 let name = group.name?.text;
-                self.fault(key.span, || {
-                    format!("the name of a material stands in quotes: {}", quoted(name))
-                });
+                self.fault(key.span, || format!("the name of a material stands in quotes: {}", quoted(name)));
                 return Some(name);
             }
             _ => self.mismatch(key, "the name of a material in quotes"),
@@ -118,11 +113,7 @@ impl Reader<'_> {
             return Some(WrittenMaterial::Diffuse(self.color(color)));
         }
         let fields = self.fields(node, "Diffuse", "Diffuse(\"#rrggbb\")", &["reflectance"])?;
-        Some(WrittenMaterial::Diffuse(self.required(
-            &fields,
-            "reflectance",
-            Reader::color,
-        )))
+        Some(WrittenMaterial::Diffuse(self.required(&fields, "reflectance", Reader::color)))
     }
 
     fn checker(&mut self, node: &Node<'_>) -> Option<WrittenMaterial> {

@@ -69,21 +69,12 @@ impl<'f> Reader<'f> {
             Body::Fields(entries) => entries,
             Body::Values(values) if values.is_empty() => &[],
             other => {
-                let found = if *other == Body::Nothing {
-                    "none"
-                } else {
-                    "values without names"
-                };
+                let found = if *other == Body::Nothing { "none" } else { "values without names" };
                 self.fault(node.head(), || format!("expected fields, as in {form}; found {found}"));
                 return None;
             }
         };
-        Some(Fields {
-            entries,
-            owner,
-            head: node.head(),
-            misspelt: self.check_names(entries, owner, known),
-        })
+        Some(Fields { entries, owner, head: node.head(), misspelt: self.check_names(entries, owner, known) })
     }
 
     /// Notes unknown and duplicate fields; returns those that the unknown ones were probably meant to be.
@@ -158,9 +149,7 @@ impl<'f> Reader<'f> {
             return None;
         };
         let Some(name) = group.name else {
-            self.fault(node.head(), || {
-                format!("expected {form}, found (...) without a name before it")
-            });
+            self.fault(node.head(), || format!("expected {form}, found (...) without a name before it"));
             return None;
         };
         let found = known.iter().copied().find(|&known| known == name.text);
@@ -176,21 +165,14 @@ impl<'f> Reader<'f> {
         let wanted = format!("{kind} ({})", listed(&words).replace(" and ", " or "));
         match &node.value {
             Value::Group(group) => match (&**group, group.name) {
-                (
-                    Group {
-                        body: Body::Nothing, ..
-                    },
-                    Some(_),
-                ) => {
+                (Group { body: Body::Nothing, .. }, Some(_)) => {
                     let word = self.variant(node, kind, &wanted, &words)?;
                     return all.iter().find(|(known, _)| *known == word).map(|&(_, value)| value);
                 }
                 _ => self.mismatch(node, &wanted),
             },
             Value::String(string) if words.contains(&&**string) => {
-                self.fault(node.span, || {
-                    format!("expected {wanted}; write {string} without quotes")
-                });
+                self.fault(node.span, || format!("expected {wanted}; write {string} without quotes"));
             }
             _ => self.mismatch(node, &wanted),
         }
@@ -203,17 +185,10 @@ impl<'f> Reader<'f> {
             return Some(items);
         }
         if matches!(&node.value, Value::Group(group) if group.name.is_some()) {
-            let message = || {
-                format!(
-                    "expected {wanted}, found {}; put it in brackets [...]",
-                    description(node)
-                )
-            };
+            let message = || format!("expected {wanted}, found {}; put it in brackets [...]", description(node));
             self.fault(node.head(), message);
         } else {
-            self.fault(node.head(), || {
-                format!("expected {wanted}, found {}", description(node))
-            });
+            self.fault(node.head(), || format!("expected {wanted}, found {}", description(node)));
         }
         None
     }
@@ -253,10 +228,7 @@ impl<'f> Reader<'f> {
 
     fn vector(&mut self, node: &Node<'_>, wanted: &str) -> Option<WrittenVector> {
         let components = self.numbers(node, wanted)?;
-        Some(WrittenVector {
-            components,
-            span: node.span,
-        })
+        Some(WrittenVector { components, span: node.span })
     }
 
     /// So many numbers, in parentheses or brackets.
@@ -276,10 +248,7 @@ pub(super) fn values<'n>(node: &'n Node<'n>) -> Option<&'n [Node<'n>]> {
     match &node.value {
         Value::List(items) => Some(items),
         Value::Group(group) => match &**group {
-            Group {
-                name: None,
-                body: Body::Values(items),
-            } => Some(items),
+            Group { name: None, body: Body::Values(items) } => Some(items),
             _ => None,
         },
         _ => None,
@@ -304,10 +273,7 @@ fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
         ("color", "reflectance"),
     ];
     closest(name, known.iter().copied()).or_else(|| {
-        let meant = ALSO_CALLED
-            .iter()
-            .filter(|(other, _)| *other == name)
-            .map(|&(_, meant)| meant);
+        let meant = ALSO_CALLED.iter().filter(|(other, _)| *other == name).map(|&(_, meant)| meant);
         meant.into_iter().find(|meant| known.contains(meant))
     })
 }

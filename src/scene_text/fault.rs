@@ -41,10 +41,7 @@ impl Faults {
 
 impl From<Fault> for Faults {
     fn from(fault: Fault) -> Self {
-        Self {
-            kept: vec![fault],
-            more: 0,
-        }
+        Self { kept: vec![fault], more: 0 }
     }
 }
 
@@ -90,11 +87,7 @@ impl SceneError {
         kept.sort_by_key(|fault| (fault.span.start, fault.span.end));
         let mut walk = Walk::new(text);
         let reports = kept.iter().map(|fault| walk.report(fault)).collect();
-        Self {
-            name: visible(name),
-            reports,
-            more,
-        }
+        Self { name: visible(name), reports, more }
     }
 
     /// The faults in the order of the text; of more than a thousand, a thousand.
@@ -111,9 +104,7 @@ impl SceneError {
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, report) in self.reports.iter().take(Self::PRINTED).enumerate() {
-            let Report {
-                line, column, message, ..
-            } = report;
+            let Report { line, column, message, .. } = report;
             let end = if i == 0 { "" } else { "\n" };
             write!(f, "{end}{}:{line}:{column}: {message}", self.name)?;
             if !report.source.is_empty() {
@@ -144,13 +135,7 @@ struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     fn new(text: &'a str) -> Self {
-        Self {
-            text,
-            at: 0,
-            line: 1,
-            column: 1,
-            line_start: 0,
-        }
+        Self { text, at: 0, line: 1, column: 1, line_start: 0 }
     }
 
     fn go_to(&mut self, place: usize) {
@@ -170,11 +155,7 @@ impl<'a> Walk<'a> {
         let start = character_at(self.text, fault.span.start as usize);
         let end = character_at(self.text, fault.span.end as usize).max(start);
         self.go_to(start);
-        let excerpt = Excerpt::new(
-            &self.text[self.line_start..],
-            start - self.line_start,
-            end - self.line_start,
-        );
+        let excerpt = Excerpt::new(&self.text[self.line_start..], start - self.line_start, end - self.line_start);
         Report {
             line: self.line,
             column: self.column,
@@ -220,11 +201,8 @@ impl Excerpt {
         let is_long = text.chars().take(Self::WIDTH + 1).take_while(|&c| c != '\n').count() > Self::WIDTH;
         let is_far = is_long && back_by(text, start, Self::NEAR) > 0;
         let from = if is_far { back_by(text, start, Self::BEFORE) } else { 0 };
-        let mut excerpt = Self {
-            source: if from > 0 { "...".to_owned() } else { String::new() },
-            caret: 0,
-            caret_width: 0,
-        };
+        let mut excerpt =
+            Self { source: if from > 0 { "...".to_owned() } else { String::new() }, caret: 0, caret_width: 0 };
         excerpt.take(text, from, start, end);
         excerpt
     }

@@ -12,21 +12,10 @@ pub fn parse(text: &str) -> Result<Node<'_>, Fault> {
     let mut tokens = Tokens::new(text);
     tokens.skip_attributes()?;
     let (next, span) = tokens.next()?;
-    let mut parser = Parser {
-        text,
-        tokens,
-        next,
-        span,
-        previous_end: 0,
-        open: Vec::new(),
-        misaligned: None,
-    };
+    let mut parser = Parser { text, tokens, next, span, previous_end: 0, open: Vec::new(), misaligned: None };
     if parser.next == Token::End {
         let message = "there is no scene here: nothing but comments or white space".to_owned();
-        return Err(Fault {
-            message,
-            span: Span::at(text.len()),
-        });
+        return Err(Fault { message, span: Span::at(text.len()) });
     }
     let root = parser.value()?;
     match parser.next {
@@ -69,10 +58,7 @@ impl<'a> Parser<'a> {
         let start = self.span.start;
         let value = match self.next {
             Token::Word(word) => return self.word(word),
-            Token::Open('(') => Value::Group(Box::new(Group {
-                name: None,
-                body: self.body()?,
-            })),
+            Token::Open('(') => Value::Group(Box::new(Group { name: None, body: self.body()? })),
             Token::Open('[') => {
                 self.open()?;
                 let items = self.items()?;
@@ -99,10 +85,7 @@ impl<'a> Parser<'a> {
     }
 
     fn node(&self, start: u32, value: Value<'a>) -> Node<'a> {
-        let span = Span {
-            start,
-            end: self.previous_end,
-        };
+        let span = Span { start, end: self.previous_end };
         Node { span, value }
     }
 
@@ -116,10 +99,7 @@ impl<'a> Parser<'a> {
                 return Err(self.here(format!("expected `(` after {}, found `{{`", quoted_word(word))));
             }
             (_, Token::Open('(')) => return self.named_group(Name { text: word, span }),
-            _ => Value::Group(Box::new(Group {
-                name: Some(Name { text: word, span }),
-                body: Body::Nothing,
-            })),
+            _ => Value::Group(Box::new(Group { name: Some(Name { text: word, span }), body: Body::Nothing })),
         };
         Ok(self.node(span.start, value))
     }
@@ -183,11 +163,7 @@ impl<'a> Parser<'a> {
         let mut fields = Vec::new();
         while !self.at_end() {
             let Token::Word(text) = self.next else {
-                let hint = if self.next == Token::Comma {
-                    "; is it one comma too many?"
-                } else {
-                    ""
-                };
+                let hint = if self.next == Token::Comma { "; is it one comma too many?" } else { "" };
                 return Err(self.here(format!("expected the name of a field, found {}{hint}", self.found())));
             };
             let name = Name { text, span: self.span };
@@ -196,10 +172,7 @@ impl<'a> Parser<'a> {
                 return Err(self.no_colon(name));
             }
             self.advance()?;
-            fields.push(Field {
-                name,
-                value: self.value()?,
-            });
+            fields.push(Field { name, value: self.value()? });
             if !self.comma()? {
                 break;
             }
@@ -265,10 +238,7 @@ impl<'a> Parser<'a> {
     // What to say -----------------------------------------------------------------------------------------------------
 
     fn here(&self, message: String) -> Fault {
-        Fault {
-            message,
-            span: self.span,
-        }
+        Fault { message, span: self.span }
     }
 
     fn found(&self) -> String {
@@ -320,9 +290,7 @@ impl<'a> Parser<'a> {
             }
             Token::Close(wrong) => {
                 let opened = self.place(opened);
-                self.here(format!(
-                    "expected `{right}`, found `{wrong}`; the `{bracket}` at {opened} is still open"
-                ))
+                self.here(format!("expected `{right}`, found `{wrong}`; the `{bracket}` at {opened} is still open"))
             }
             Token::Other(other) => self.here(format!("expected `,` or `{right}`, found `{other}`")),
             _ => Fault {

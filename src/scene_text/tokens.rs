@@ -152,10 +152,7 @@ impl<'a> Tokens<'a> {
         let begin = start + 2 + hashes;
         let closing = format!("\"{}", "#".repeat(hashes));
         let Some(length) = self.text[begin..].find(&closing) else {
-            return Err(Fault {
-                message: "this raw string is never closed".to_owned(),
-                span: Span::new(start, begin),
-            });
+            return Err(Fault { message: "this raw string is never closed".to_owned(), span: Span::new(start, begin) });
         };
         self.at = begin + length + closing.len();
         Ok(Token::String(self.text[begin..begin + length].into()))
@@ -242,12 +239,7 @@ fn unescaped(chars: &mut std::str::CharIndices<'_>) -> Option<char> {
         }
         'u' => {
             let (_, '{') = chars.next()? else { return None };
-            let digits: String = chars
-                .by_ref()
-                .map(|(_, c)| c)
-                .take_while(|&c| c != '}')
-                .take(7)
-                .collect();
+            let digits: String = chars.by_ref().map(|(_, c)| c).take_while(|&c| c != '}').take(7).collect();
             char::from_u32(u32::from_str_radix(&digits, 16).ok()?)?
         }
         _ => return None,
@@ -261,19 +253,14 @@ fn is_prefixed(number: &str) -> bool {
 }
 
 /// The types that a number may name in Rust and RON.
-const SUFFIXES: [&str; 12] = [
-    "f32", "f64", "i8", "i16", "i32", "i64", "i128", "u8", "u16", "u32", "u64", "u128",
-];
+const SUFFIXES: [&str; 12] = ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "u8", "u16", "u32", "u64", "u128"];
 
 /// Decimal or with a prefix, with underscores and Rust's suffixes.
 fn number_from(text: &str) -> Option<f64> {
     if is_prefixed(text) {
         return prefixed_number(text);
     }
-    let digits = SUFFIXES
-        .iter()
-        .find_map(|suffix| text.strip_suffix(suffix))
-        .unwrap_or(text);
+    let digits = SUFFIXES.iter().find_map(|suffix| text.strip_suffix(suffix)).unwrap_or(text);
     digits.replace('_', "").parse().ok()
 }
 

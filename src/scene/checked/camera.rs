@@ -37,9 +37,7 @@ impl Checker<'_> {
                     CameraError::UpIsZero | CameraError::UpAlongView => written.up.map(|up| up.span).or(target),
                     _ => target,
                 };
-                self.fault(place.unwrap_or(written.span), || {
-                    pose_fault(error, written.up.is_some())
-                })
+                self.fault(place.unwrap_or(written.span), || pose_fault(error, written.up.is_some()))
             }
         }
     }
@@ -55,10 +53,7 @@ impl Checker<'_> {
 
     fn view_rectangle(&mut self, lens: &WrittenLens) -> Option<ViewRectangle> {
         match *lens {
-            WrittenLens::FieldOfView {
-                vertical_fov,
-                aspect_ratio,
-            } => {
+            WrittenLens::FieldOfView { vertical_fov, aspect_ratio } => {
                 let rectangle = match vertical_fov {
                     Some(degrees) => self.rectangle_from_degrees(degrees),
                     None => ViewRectangle::from_vertical_fov(radians(45.0)).ok(),
@@ -71,11 +66,9 @@ impl Checker<'_> {
                     None => rectangle,
                 }
             }
-            WrittenLens::FocalLength {
-                focal_length,
-                width,
-                height,
-            } => self.rectangle_from_focal_length(focal_length, width, height),
+            WrittenLens::FocalLength { focal_length, width, height } => {
+                self.rectangle_from_focal_length(focal_length, width, height)
+            }
         }
     }
 
@@ -124,9 +117,8 @@ impl Checker<'_> {
     fn shift(&mut self, written: &[WrittenNumber; 2]) -> Option<Vec2> {
         let too_far = |number: &&WrittenNumber| number.value.abs() > LARGEST_SHIFT;
         if let Some(number) = written.iter().find(too_far) {
-            return self.fault(number.span, || {
-                "the view rectangle can be shifted by at most 1000 of its heights".to_owned()
-            });
+            return self
+                .fault(number.span, || "the view rectangle can be shifted by at most 1000 of its heights".to_owned());
         }
         let [right, up] = written.map(|number| number.value as f32);
         Some(Vec2::new(right, up))

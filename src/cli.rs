@@ -1,0 +1,189 @@
+//! The command line: what it says, and what is then done.
+
+mod check;
+mod frame;
+mod live;
+
+use clap::{Args, Parser, Subcommand};
+use glam::Vec3;
+use std::ffi::OsString;
+use std::fmt::Display;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use termtrace::camera::{Camera, CameraError, Pose};
+use termtrace::scene::Scene;
+
+/// Why a command ends without having done what was asked.
+enum Failure {
+    /// It could not be done: exit code 1.
+    Runtime(String),
+    /// The command line or the scene is wrong: exit code 2.
+    Usage(String),
+    /// All is said already, with exit code 1.
+    Difference,
+}
+
+impl Failure {
+    /// It could not be done, with the reason after what it was about.
+    fn runtime(what: impl Display, why: impl Display) -> Self {
+        Self::Runtime(format!("{what}: {why}"))
+    }
+}
+
+type Done = Result<(), Failure>;
+
+const ABOUT: &str = "A live ray tracer whose screen is the terminal";
+
+const EXAMPLES: &str = "\
+Examples:
+  termtrace scenes/three_spheres.ron                     look into a scene; ? shows the keys, q leaves
+  termtrace scenes/three_spheres.ron --eye 0,4,9         from another eye point
+  termtrace frame scenes/three_spheres.ron               one frame as text
+  termtrace frame scenes/three_spheres.ron -o ball.png --pixels 800x600 --samples 16
+  termtrace frame my.ron --check my.txt                  compare with a golden frame (--bless writes it)
+  termtrace check my.ron                                 say what is wrong with a scene file
+  generate_scene | termtrace -                           read the scene from standard input
+
+Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wrong arguments or a wrong scene";
+
+#[derive(Parser)]
+#[command(name = "termtrace", version, about = ABOUT, after_help = EXAMPLES)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true, disable_help_subcommand = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    live: Option<live::LiveArgs>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Print one frame, or compare it with a golden one
+    Frame(frame::FrameArgs),
+    /// Say what is wrong with a scene file, or that it is fine
+    Check(check::CheckArgs),
+}
+
+/// The scene, and who looks at it: on every command.
+#[derive(Args)]
+struct SceneArgs {
+    /// The scene file; - reads the scene from standard input
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Where to look from, instead of the scene's eye point
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
+    eye: Option<Vec3>,
+    /// Where to look to, instead of the scene's target
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
+    target: Option<Vec3>,
+    /// What is vertical in the picture, instead of the scene's up
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
+    up: Option<Vec3>,
+    /// The vertical field of view in degrees, instead of the scene's
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    fov: Option<f32>,
+    /// How many threads trace [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl SceneArgs {
+    /// The scene, with the camera that the command line wants.
+    fn load(&self) -> Result<Scene, Failure> {
+        let mut scene = if self.scene == Path::new("-") {
+            Scene::from_bytes("standard input", &read_stdin()?).map_err(|error| Failure::Usage(error.to_string()))?
+        } else {
+            Scene::load(&self.scene).map_err(|error| Failure::Usage(error.to_string()))?
+        };
+        scene.camera = self.camera(&scene.camera).map_err(|error| Failure::Usage(error.to_string()))?;
+        Ok(scene)
+    }
+
+    fn camera(&self, camera: &Camera) -> Result<Camera, CameraError> {
+        let Pose { eye, target, up } = camera.pose();
+        let pose =
+            Pose { eye: self.eye.unwrap_or(eye), target: self.target.unwrap_or(target), up: self.up.unwrap_or(up) };
+        let camera = camera.with_pose(pose)?;
+        match self.fov {
+            Some(degrees) => Ok(camera.with_rectangle(camera.rectangle().with_vertical_fov(degrees.to_radians())?)),
+            None => Ok(camera),
+        }
+    }
+
+    /// Does something on the threads that the command line wants.
+    fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+        let Some(threads) = self.threads else { return Ok(work()) };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build();
+        pool.map(|pool| pool.install(work)).map_err(|error| Failure::runtime("--threads", error))
+    }
+}
+
+/// All of it, up to one byte more than a scene may have.
+fn read_stdin() -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let limit = termtrace::scene_text::MAX_BYTES as u64 + 1;
+    let read = io::stdin().lock().take(limit).read_to_end(&mut bytes);
+    read.map(|_| bytes).map_err(|error| Failure::runtime("standard input", error))
+}
+
+/// `x,y,z`, three finite numbers.
+fn parse_vec3(text: &str) -> Result<Vec3, String> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse::<f32>()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => Ok(Vec3::new(x, y, z)),
+        _ => Err("expected three numbers with commas between them, such as 0,1.5,6".to_owned()),
+    }
+}
+
+/// Reads the command line, does what it says, and says what went wrong.
+pub(crate) fn main() -> ExitCode {
+    termtrace::terminal::hold_panic_messages();
+    let cli = match parse(std::env::args_os()) {
+        Ok(cli) => cli,
+        Err(exit) => return exit,
+    };
+    let done = match (cli.command, cli.live) {
+        (Some(Command::Frame(args)), _) => frame::run(&args),
+        (Some(Command::Check(args)), _) => check::run(&args),
+        (None, Some(args)) => live::run(&args),
+        (None, None) => Err(Failure::Usage("no scene given; try: termtrace scenes/three_spheres.ron".to_owned())),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Difference) => ExitCode::from(1),
+        Err(Failure::Runtime(message)) => complain(&message, 1),
+        Err(Failure::Usage(message)) => complain(&message, 2),
+    }
+}
+
+/// Help and version are no errors; a closed pipe hides either.
+fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Cli, ExitCode> {
+    Cli::try_parse_from(arguments).map_err(|error| {
+        let _ = error.print();
+        ExitCode::from(if error.use_stderr() { 2 } else { 0 })
+    })
+}
+
+fn complain(message: &str, code: u8) -> ExitCode {
+    // Nobody may be listening any more; the exit code says it too.
+    let _ = writeln!(io::stderr(), "termtrace: {message}");
+    ExitCode::from(code)
+}
+
+/// Says what the threads said when they panicked, and ends as a panic does.
+fn complain_of_panic() -> ! {
+    for message in termtrace::terminal::take_panic_messages() {
+        let _ = writeln!(io::stderr(), "{message}");
+    }
+    std::process::exit(101)
+}
+
+/// To standard output. A reader that has seen enough (`| head`) is no error.
+fn write_stdout(bytes: &[u8]) -> Done {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::runtime("standard output", error)),
+        _ => Ok(()),
+    }
+}

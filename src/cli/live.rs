@@ -1,0 +1,101 @@
+//! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
+
+use super::{Done, Failure, SceneArgs, complain_of_panic, frame, write_stdout};
+use clap::{Args, ValueEnum};
+use std::io::{self, IsTerminal};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use termtrace::app::{self, Ending, Options, Outcome};
+use termtrace::capabilities::{CellMode, ColorChoice, USUAL_CELL_ASPECT, cell_mode};
+use termtrace::export;
+use termtrace::scene::Scene;
+use termtrace::terminal::{Signals, die_of};
+
+#[derive(Args)]
+pub(super) struct LiveArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Whether to use colour; auto asks NO_COLOR, TERM and the locale
+    #[arg(long, value_name = "WHEN", default_value = "auto")]
+    color: Color,
+    /// A cell's height over its width [default: as the terminal says, or 2]
+    #[arg(long, value_name = "A", value_parser = frame::parse_cell_aspect)]
+    cell_aspect: Option<f32>,
+    /// Do not print the camera on leaving
+    #[arg(long)]
+    quiet: bool,
+    /// Panic when ! is pressed
+    #[cfg(debug_assertions)]
+    #[arg(long, hide = true)]
+    test_panic: Option<TestPanic>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+#[cfg(debug_assertions)]
+#[derive(Clone, Copy, ValueEnum)]
+enum TestPanic {
+    Main,
+    Worker,
+}
+
+impl LiveArgs {
+    fn color(&self) -> ColorChoice {
+        match self.color {
+            Color::Auto => ColorChoice::Auto,
+            Color::Always => ColorChoice::Always,
+            Color::Never => ColorChoice::Never,
+        }
+    }
+
+    fn options(&self) -> Options {
+        Options {
+            cell_mode: cell_mode(self.color(), |name| std::env::var(name).ok()),
+            cell_aspect: self.cell_aspect,
+            threads: self.scene.threads.map(usize::from),
+            #[cfg(debug_assertions)]
+            test_panic: self.test_panic.map(|panic| match panic {
+                TestPanic::Main => app::TestPanic::Main,
+                TestPanic::Worker => app::TestPanic::Worker,
+            }),
+        }
+    }
+}
+
+pub(super) fn run(args: &LiveArgs) -> Done {
+    let scene = args.scene.load()?;
+    if io::stdout().is_terminal() { look(args, scene) } else { print(args, &scene) }
+}
+
+/// One frame, as `termtrace frame` prints it.
+fn print(args: &LiveArgs, scene: &Scene) -> Done {
+    let cell_aspect = args.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
+    let (cell_mode, export): (_, fn(&_) -> Vec<u8>) = match args.color {
+        Color::Always => (CellMode::HalfBlock, export::ansi),
+        Color::Auto | Color::Never => (CellMode::Ramp, |grid| export::text(grid).into_bytes()),
+    };
+    let grid = args.scene.on_threads(|| frame::usual_grid(scene, cell_mode, cell_aspect))?;
+    write_stdout(&export(&grid))
+}
+
+/// The live view. Whatever happens in it, the terminal is given back before a word is said.
+fn look(args: &LiveArgs, scene: Scene) -> Done {
+    let options = args.options();
+    let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", error))?;
+    let ended = catch_unwind(AssertUnwindSafe(|| app::run(scene, options, &mut signals)));
+    let Outcome { ending, moved } = match ended {
+        Ok(outcome) => outcome.map_err(|error| Failure::runtime("terminal", error))?,
+        Err(_) => complain_of_panic(),
+    };
+    if let Ending::Signal(signal) = ending {
+        die_of(signal);
+    }
+    match moved {
+        Some(camera) if !args.quiet => write_stdout(format!("{}\n", camera.to_ron()).as_bytes()),
+        _ => Ok(()),
+    }
+}
