@@ -54,7 +54,7 @@ struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
-    live: Option<live::LiveArgs>,
+    live: live::LiveArgs,
 }
 
 #[derive(Subcommand)]
@@ -69,8 +69,9 @@ enum Command {
 #[derive(Args)]
 struct SceneArgs {
     /// The scene file; - reads the scene from standard input
-    #[arg(value_name = "SCENE")]
-    scene: PathBuf,
+    // Always there when it is asked for; optional, because the arguments before a command have none.
+    #[arg(value_name = "SCENE", required = true)]
+    scene: Option<PathBuf>,
     /// Where to look from, instead of the scene's eye point
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
     eye: Option<Vec3>,
@@ -89,12 +90,17 @@ struct SceneArgs {
 }
 
 impl SceneArgs {
+    /// The scene's file name.
+    fn path(&self) -> &Path {
+        self.scene.as_deref().unwrap_or(Path::new("-"))
+    }
+
     /// The scene, with the camera that the command line wants.
     fn load(&self) -> Result<Scene, Failure> {
-        let mut scene = if self.scene == Path::new("-") {
+        let mut scene = if self.path() == Path::new("-") {
             Scene::from_bytes("standard input", &read_stdin()?).map_err(|error| Failure::Usage(error.to_string()))?
         } else {
-            Scene::load(&self.scene).map_err(|error| Failure::Usage(error.to_string()))?
+            Scene::load(self.path()).map_err(|error| Failure::Usage(error.to_string()))?
         };
         scene.camera = self.camera(&scene.camera).map_err(|error| Failure::Usage(error.to_string()))?;
         Ok(scene)
@@ -143,11 +149,10 @@ pub(crate) fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(exit) => return exit,
     };
-    let done = match (cli.command, cli.live) {
-        (Some(Command::Frame(args)), _) => frame::run(&args),
-        (Some(Command::Check(args)), _) => check::run(&args),
-        (None, Some(args)) => live::run(&args),
-        (None, None) => Err(Failure::Usage("no scene given; try: termtrace scenes/three_spheres.ron".to_owned())),
+    let done = match cli.command {
+        Some(Command::Frame(args)) => frame::run(&args),
+        Some(Command::Check(args)) => check::run(&args),
+        None => live::run(&cli.live),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -45,7 +45,6 @@ const ASCII_BORDER: border::Set<'static> = border::Set {
 /// What the status line says.
 pub(super) struct Status {
     pub(super) cells: Size,
-    pub(super) pixels: (u32, u32),
     /// How long tracing took.
     pub(super) trace: Duration,
     /// How long cells and bytes took.
@@ -67,17 +66,15 @@ impl Status {
     }
 
     fn text(&self) -> String {
-        let Self { cells, pixels, eye, .. } = self;
-        let shown = self.shown.map_or_else(|| "still".to_owned(), |fps| format!("shown {fps:.0}"));
+        let Self { cells, eye, .. } = self;
+        let shown = self.shown.map_or_else(|| "at rest".to_owned(), |fps| format!("shown {fps:.0}"));
         format!(
-            " {}x{} cells {}x{} px | fps: trace {}, encode {}, {shown} | {} rays/s | eye {:.2} {:.2} {:.2}",
+            " {}x{}  {} rays/s  trace {} encode {} {shown} fps  eye {:.2} {:.2} {:.2}",
             cells.columns,
             cells.rows,
-            pixels.0,
-            pixels.1,
+            short(per_second(self.rays as f64, self.trace)),
             short(per_second(1.0, self.trace)),
             short(per_second(1.0, self.encode)),
-            short(per_second(self.rays as f64, self.trace)),
             eye.x,
             eye.y,
             eye.z,
@@ -89,7 +86,7 @@ fn per_second(count: f64, time: Duration) -> f64 {
     count / time.as_secs_f64().max(1e-9)
 }
 
-/// Three digits and a letter: 812, 3.95k, 12.1M.
+/// Two or three digits and a letter: 812, 3.9k, 12M.
 fn short(value: f64) -> String {
     let (value, unit) = match value {
         v if v >= 1e9 => (v / 1e9, "G"),
@@ -97,11 +94,7 @@ fn short(value: f64) -> String {
         v if v >= 1e3 => (v / 1e3, "k"),
         v => (v, ""),
     };
-    match value {
-        v if v >= 100.0 || unit.is_empty() => format!("{v:.0}{unit}"),
-        v if v >= 10.0 => format!("{v:.1}{unit}"),
-        v => format!("{v:.2}{unit}"),
-    }
+    if value >= 10.0 { format!("{value:.0}{unit}") } else { format!("{value:.1}{unit}") }
 }
 
 const HELP_NOTES: [&str; 1] = ["Shift with a movement: faster"];

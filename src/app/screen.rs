@@ -94,7 +94,6 @@ impl Screen {
         if self.status {
             let status = panels::Status {
                 cells: Size { columns, rows },
-                pixels: (frame.picture.width, frame.picture.height),
                 trace: frame.trace,
                 encode: self.encode,
                 shown: self.pace.frames_per_second,

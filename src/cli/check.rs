@@ -15,5 +15,5 @@ pub(super) fn run(args: &CheckArgs) -> Done {
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights.len(), "light");
-    write_stdout(format!("{}: fine ({objects}, {lights})\n", args.scene.scene.display()).as_bytes())
+    write_stdout(format!("{}: fine ({objects}, {lights})\n", args.scene.path().display()).as_bytes())
 }
