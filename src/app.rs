@@ -161,9 +161,9 @@ impl Live {
         }
     }
 
-    /// The time since the start.
+    /// The time: a frame's worth at the start, so that whatever is pressed then may have begun a frame ago.
     fn now(&self) -> Duration {
-        self.start.elapsed()
+        FRAME + self.start.elapsed()
     }
 
     fn resolution(&self) -> Resolution {
@@ -251,7 +251,7 @@ impl Live {
         let now = self.now();
         self.motion.key(key, now);
         // From rest, the first frame already shows a frame's worth of movement.
-        self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
+        self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now - FRAME));
     }
 
     fn reset(&mut self) {

@@ -1,0 +1,351 @@
+//! The live view on a real pseudo-terminal: keys and signals in, bytes and an exit status out.
+
+mod pty;
+
+use pty::{Colour, SOON, Session, Size, Start};
+use rustix::process::Signal;
+use std::fs::File;
+use std::io::Write;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::time::Duration;
+use termtrace::capabilities::CellMode;
+use termtrace::cell;
+use termtrace::control::BINDINGS;
+use termtrace::grid::{Grid, Ink};
+use termtrace::render::render;
+use termtrace::scene::Scene;
+use termtrace::tone::tone;
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
+
+fn program() -> Start {
+    Start::new(env!("CARGO_BIN_EXE_termtrace"))
+}
+
+fn termtrace() -> Start {
+    program().arg(SCENE)
+}
+
+/// What the scene looks like on such a screen, made by the library.
+fn picture(cell_mode: CellMode, size: Size) -> Grid {
+    let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
+    let aspect = f32::from(size.cell.1) / f32::from(size.cell.0);
+    let resolution = cell::resolution(cell_mode, termtrace::grid::Size::new(size.columns, size.rows), aspect);
+    let framebuffer = render(&scene, &scene.camera, resolution, std::num::NonZeroU32::MIN);
+    cell::grid_from_picture(cell_mode, &tone(&framebuffer, &scene))
+}
+
+fn colour(ink: Ink) -> Colour {
+    match ink {
+        Ink::Default => Colour::Default,
+        Ink::Indexed(index) => Colour::Indexed(index),
+        Ink::Rgb(c) => Colour::Rgb(c.r, c.g, c.b),
+    }
+}
+
+/// Whether the emulator shows exactly these cells.
+fn shows(screen: &pty::Screen, grid: &Grid) -> bool {
+    let columns = usize::from(grid.size().columns);
+    grid.cells().iter().enumerate().all(|(at, wanted)| {
+        let shown = screen.cell(at % columns, at / columns);
+        // The colour of a space's character is nobody's business.
+        let same_fg = wanted.glyph == ' ' || shown.foreground == colour(wanted.fg);
+        shown.glyph == wanted.glyph && same_fg && shown.background == colour(wanted.bg)
+    })
+}
+
+#[track_caller]
+fn wait_for_picture(session: &mut Session, size: Size) {
+    let wanted = picture(CellMode::HalfBlock, size);
+    session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+}
+
+/// A session that shows its picture.
+#[track_caller]
+fn looking(start: Start) -> Session {
+    let mut session = start.spawn();
+    wait_for_picture(&mut session, Size::cells(80, 24));
+    session
+}
+
+#[track_caller]
+fn leave(session: &mut Session) -> String {
+    let before = session.seen().bytes().len();
+    session.send(b"q");
+    let status = session.wait_exit(SOON);
+    assert_eq!(status.code(), Some(0));
+    session.assert_clean();
+    String::from_utf8_lossy(&session.seen().bytes()[before..]).into_owned()
+}
+
+#[test]
+fn the_picture_is_the_librarys_and_q_leaves() {
+    let mut session = looking(termtrace());
+    assert!(session.seen().screen().is_alternate());
+    let said = leave(&mut session);
+    assert!(!said.contains("camera:"), "the camera was not moved: {said}");
+    assert!(!session.seen().screen().is_alternate());
+}
+
+#[test]
+fn the_first_frame_is_one_write_without_a_clear() {
+    let mut session = looking(termtrace());
+    let bytes = session.seen().bytes().to_vec();
+    assert!(!bytes.windows(4).any(|window| window == b"\x1b[2J"), "no clear");
+}
+
+#[test]
+fn ctrl_c_leaves() {
+    let mut session = looking(termtrace());
+    session.send(b"\x03");
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+}
+
+#[test]
+fn signals_are_died_of_with_the_terminal_given_back() {
+    for signal in [Signal::TERM, Signal::HUP, Signal::INT, Signal::QUIT] {
+        let mut session = looking(termtrace());
+        session.signal(signal);
+        assert_eq!(session.wait_exit(SOON).signal(), Some(signal.as_raw()), "{signal:?}");
+        session.assert_clean();
+    }
+}
+
+#[cfg(debug_assertions)]
+#[test]
+fn a_panic_is_told_after_the_terminal_is_given_back() {
+    for (place, message) in [("main", "a panic in the loop"), ("worker", "a panic in a worker")] {
+        let mut session = looking(termtrace().arg("--test-panic").arg(place));
+        session.send(b"!");
+        assert_eq!(session.wait_exit(SOON).code(), Some(101), "{place}");
+        session.assert_clean();
+        let seen = session.seen();
+        assert!(!seen.screen().is_alternate());
+        let text = seen.screen().text().join("");
+        assert!(text.contains(message), "{place}: {text}");
+        // Given back first, told then; and told once.
+        let told = String::from_utf8_lossy(seen.bytes()).into_owned();
+        let (back, message_at) = (told.rfind("\x1b[?1049l"), told.find(message));
+        assert!(back < message_at, "{place}");
+        assert_eq!(told.matches(message).count(), 1, "{place}");
+    }
+}
+
+/// The eye of the `camera:` line that is printed on leaving.
+fn eye_in(said: &str) -> [f32; 3] {
+    let numbers = said.split("eye: (").nth(1).and_then(|rest| rest.split(')').next()).expect("an eye point is printed");
+    let numbers: Vec<f32> = numbers.split(", ").map(|n| n.parse().expect("a number")).collect();
+    numbers.try_into().expect("three numbers")
+}
+
+#[test]
+fn a_press_moves_the_eye_for_its_time_and_the_camera_is_printed() {
+    let mut session = looking(termtrace());
+    session.send(b"w");
+    // The scene's eye is at distance 5: the speed is 2.5 a second, a glide takes 0.7 s, and its first frame shows a
+    // sixtieth of a second already.
+    session.send(b"i");
+    session.wait_for_text("eye 0.00 1.00");
+    let moved = 2.5 * 1.0 / 60.0;
+    let said = leave(&mut session);
+    let eye = eye_in(&said);
+    // `i` stops the glide soon after its start.
+    assert!(eye[2] < 5.0 - 0.9 * moved && eye[2] > 2.0, "{said}");
+    assert_eq!([eye[0], eye[1]], [0.0, 1.0]);
+}
+
+#[test]
+fn a_glide_ends_by_itself_at_the_same_place_every_time() {
+    let mut session = looking(termtrace());
+    session.send(b"w");
+    let end = 5.0 - 2.5 * (0.7 + 1.0 / 60.0);
+    // At rest the screen no longer changes.
+    let mut before = 0;
+    while session.sees(Duration::from_millis(300), |seen| seen.bytes().len() != before) {
+        before = session.seen().bytes().len();
+    }
+    let eye = eye_in(&leave(&mut session));
+    assert!((eye[2] - end).abs() < 0.02, "{eye:?}, expected {end}");
+}
+
+#[test]
+fn reset_brings_the_first_view_back_and_quiet_is_quiet() {
+    let mut session = looking(termtrace());
+    session.send(b"d");
+    let wanted = picture(CellMode::HalfBlock, Size::cells(80, 24));
+    session.wait_for("another picture", SOON, |seen| !shows(seen.screen(), &wanted));
+    session.send(b"r");
+    wait_for_picture(&mut session, Size::cells(80, 24));
+    assert!(!leave(&mut session).contains("camera:"));
+
+    let mut session = looking(termtrace().arg("--quiet"));
+    session.send(b"d");
+    session.wait_for("another picture", SOON, |seen| !shows(seen.screen(), &wanted));
+    assert!(!leave(&mut session).contains("camera:"));
+}
+
+#[test]
+fn help_shows_every_binding_and_goes_away() {
+    let mut session = looking(termtrace());
+    session.send(b"?");
+    for binding in BINDINGS {
+        session.wait_for_text(binding.does);
+        session.wait_for_text(binding.label);
+    }
+    session.send(b"?");
+    wait_for_picture(&mut session, Size::cells(80, 24));
+    leave(&mut session);
+}
+
+#[test]
+fn the_status_line_tells_size_and_eye() {
+    let mut session = looking(termtrace());
+    session.send(b"i");
+    for text in ["80x24", "rays/s", "fps", "eye 0.00 1.00 5.00"] {
+        session.wait_for_text(text);
+    }
+    session.send(b"i");
+    wait_for_picture(&mut session, Size::cells(80, 24));
+    leave(&mut session);
+}
+
+#[test]
+fn at_rest_nothing_is_sent() {
+    let mut session = looking(termtrace());
+    let bytes = session.seen().bytes().len();
+    assert!(!session.sees(Duration::from_secs(1), |seen| seen.bytes().len() != bytes), "bytes at rest");
+    leave(&mut session);
+}
+
+/// The clock ticks of CPU that a process has used.
+#[cfg(target_os = "linux")]
+fn ticks(session: &Session) -> u64 {
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", session.pid().as_raw_nonzero())).expect("it runs");
+    let fields: Vec<&str> = stat.rsplit(") ").next().expect("after the name").split(' ').collect();
+    fields[11].parse::<u64>().expect("user time") + fields[12].parse::<u64>().expect("system time")
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn at_rest_nothing_is_computed() {
+    let mut session = looking(termtrace());
+    let before = ticks(&session);
+    assert!(!session.sees(Duration::from_secs(2), |_| false));
+    assert_eq!(ticks(&session), before, "CPU time at rest");
+    leave(&mut session);
+}
+
+#[test]
+fn redraw_repairs_a_screen_that_something_else_wrote_on() {
+    let mut session = looking(termtrace());
+    let before = session.seen().bytes().len();
+    session.send(b"\x0c");
+    session.wait_for("a whole frame", SOON, |seen| seen.bytes().len() > before + 80 * 24);
+    // A fresh terminal that gets only these bytes shows the whole picture.
+    let mut fresh = pty::Screen::new(80, 24);
+    let wanted = picture(CellMode::HalfBlock, Size::cells(80, 24));
+    session.wait_for("the end of it", SOON, |seen| {
+        fresh = pty::Screen::new(80, 24);
+        fresh.feed(&seen.bytes()[before..]);
+        shows(&fresh, &wanted)
+    });
+    leave(&mut session);
+}
+
+#[test]
+fn a_resize_keeps_the_pictures_shape() {
+    let mut session = looking(termtrace());
+    for size in [Size::cells(100, 30), Size::cells(31, 40), Size::cells(80, 24).of_pixels(9, 20), Size::cells(1, 1)] {
+        session.resize(size);
+        wait_for_picture(&mut session, size);
+    }
+    leave(&mut session);
+}
+
+#[test]
+fn any_size_works() {
+    for size in [Size::cells(1, 1), Size::cells(2, 1), Size::cells(1, 3), Size::cells(300, 120)] {
+        let mut session = termtrace().size(size).spawn();
+        wait_for_picture(&mut session, size);
+        session.send(b"?i");
+        let before = session.seen().bytes().len();
+        session.wait_for("panels", SOON, |seen| seen.bytes().len() > before);
+        leave(&mut session);
+    }
+}
+
+#[test]
+fn the_flag_says_the_cell_aspect_where_the_terminal_does_not() {
+    let mut session = termtrace().arg("--cell-aspect").arg("2.2").size(Size::cells(80, 24).of_pixels(0, 0)).spawn();
+    wait_for_picture(&mut session, Size::cells(80, 24).of_pixels(10, 22));
+    leave(&mut session);
+    let mut session = termtrace().size(Size::cells(80, 24).of_pixels(0, 0)).spawn();
+    wait_for_picture(&mut session, Size::cells(80, 24).of_pixels(1, 2));
+    leave(&mut session);
+}
+
+#[test]
+fn without_colour_or_utf8_the_picture_is_plain_characters() {
+    let wanted = picture(CellMode::Ramp, Size::cells(80, 24));
+    for (name, value) in [("NO_COLOR", "1"), ("TERM", "dumb"), ("LC_ALL", "C")] {
+        let mut session = termtrace().env(name, value).spawn();
+        session.wait_for("the ramp", SOON, |seen| shows(seen.screen(), &wanted));
+        session.send(b"?i");
+        session.wait_for_text("move forward");
+        session.wait_for_text("rays/s");
+        let seen = session.seen();
+        assert!(seen.bytes().is_ascii(), "{name}={value}");
+        assert!(!seen.has(b"38;") && !seen.has(b"48;"), "{name}={value}: a colour");
+        leave(&mut session);
+    }
+}
+
+#[test]
+fn the_scene_may_come_from_standard_input() {
+    let scene = File::open(SCENE).expect("the scene is there");
+    let mut session = looking(program().arg("-").stdin(scene));
+    leave(&mut session);
+}
+
+#[test]
+fn a_wrong_scene_is_told_without_touching_the_terminal() {
+    let mut file = tempfile::NamedTempFile::new().expect("a file can be made");
+    file.write_all(b"(camera: (eye: (0, 0, 5), target: (0, 0, 5)))").expect("a file can be written");
+    let mut session = program().arg(file.path()).spawn();
+    assert_eq!(session.wait_exit(SOON).code(), Some(2));
+    session.assert_clean();
+    assert!(!session.seen().has(b"\x1b["), "no escape sequence");
+    session.wait_for_text("the same point");
+}
+
+#[test]
+fn output_that_is_no_terminal_gets_one_plain_frame() {
+    let file = tempfile::NamedTempFile::new().expect("a file can be made");
+    let mut session = termtrace().stdout(file.reopen().expect("it can be opened again")).spawn();
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+    assert!(session.seen().bytes().is_empty(), "nothing goes to the terminal");
+    let text = std::fs::read_to_string(file.path()).expect("text");
+    assert_eq!(
+        text,
+        termtrace::export::text_frame(&Scene::load(Path::new(SCENE)).unwrap(), termtrace::grid::Size::new(80, 24))
+    );
+}
+
+/// The flag would stay on the terminal when we are gone, and the shell would find it set.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_shared_terminal_never_gets_nonblocking() {
+    const O_NONBLOCK: u32 = 0o4000;
+    let mut session = looking(termtrace());
+    for fd in 0..3 {
+        let path = format!("/proc/{}/fdinfo/{fd}", session.pid().as_raw_nonzero());
+        let info = std::fs::read_to_string(path).expect("it runs");
+        let flags = info.lines().find_map(|line| line.strip_prefix("flags:")).expect("flags are told");
+        let flags = u32::from_str_radix(flags.trim(), 8).expect("octal");
+        assert_eq!(flags & O_NONBLOCK, 0, "file descriptor {fd}");
+    }
+    leave(&mut session);
+}
