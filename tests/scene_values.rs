@@ -1,0 +1,158 @@
+//! What is written is what is drawn: units, colour spaces, defaults and the two forms of each thing.
+
+use glam::{Vec2, Vec3};
+use std::path::Path;
+use termtrace::camera::{Pose, ViewRectangle};
+use termtrace::color::{LinearRgb, Srgb8};
+use termtrace::light::{Falloff, PointLight};
+use termtrace::material::Material;
+use termtrace::scene::{Background, Object, Scene, ToneCurve};
+use termtrace::shape::{Plane, Sphere};
+
+const CAMERA: &str = "camera: (eye: (0, 1, 5), target: (0, 1, 0))";
+
+fn scene(fields: &str) -> Scene {
+    Scene::from_ron("x.ron", &format!("({CAMERA}, {fields})")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn camera(fields: &str) -> Scene {
+    let text = format!("(camera: (eye: (0, 1, 5), target: (0, 1, 0), {fields}))");
+    Scene::from_ron("x.ron", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn srgb(r: u8, g: u8, b: u8) -> LinearRgb {
+    LinearRgb::from_srgb8(Srgb8::new(r, g, b))
+}
+
+#[test]
+fn only_the_camera_must_be_given() {
+    let scene = scene("");
+    let pose = Pose {
+        eye: Vec3::new(0.0, 1.0, 5.0),
+        target: Vec3::new(0.0, 1.0, 0.0),
+        up: Vec3::Y,
+    };
+    assert_eq!(scene.camera.pose(), pose);
+    let quarter = ViewRectangle::from_vertical_fov(std::f32::consts::FRAC_PI_4).unwrap();
+    assert_eq!(scene.camera.rectangle(), quarter);
+    assert_eq!(scene, Scene::new(scene.camera, Vec::new()));
+}
+
+#[test]
+fn the_view_rectangle_has_two_forms() {
+    let by_angle = camera("vertical_fov: 90, aspect_ratio: 1.5, shift: (0.25, -1)")
+        .camera
+        .rectangle();
+    assert!((by_angle.height() - 2.0).abs() < 1e-6 && (by_angle.width().unwrap() - 3.0).abs() < 1e-6);
+    assert_eq!(by_angle.shift(), Vec2::new(0.25, -1.0));
+    let by_length = camera("focal_length: 24, width: 36, height: 24").camera.rectangle();
+    assert_eq!((by_length.width(), by_length.height()), (Some(1.5), 1.0));
+}
+
+#[test]
+fn a_color_has_many_forms() {
+    for (written, light) in [
+        ("\"#f80\"", srgb(0xff, 0x88, 0x00)),
+        ("\"#Ff8800\"", srgb(0xff, 0x88, 0x00)),
+        ("\"SteelBlue\"", srgb(70, 130, 180)),
+        ("(0.5, 2, 0)", LinearRgb::new(0.5, 2.0, 0.0)),
+        ("[0.5, 2, 0]", LinearRgb::new(0.5, 2.0, 0.0)),
+        ("0.25", LinearRgb::grey(0.25)),
+        ("Some(0x2)", LinearRgb::grey(2.0)),
+    ] {
+        let scene = scene(&format!("background: {written}, ambient: {written}"));
+        assert_eq!(
+            (scene.background, scene.ambient),
+            (Background::Color(light), light),
+            "{written}"
+        );
+    }
+    let gradient = scene("background: Gradient(bottom: 0, top: \"white\")").background;
+    let (bottom, top) = (LinearRgb::BLACK, LinearRgb::grey(1.0));
+    assert_eq!(gradient, Background::Gradient { bottom, top });
+}
+
+#[test]
+fn lights_multiply_color_by_intensity() {
+    let lights = scene(
+        "lights: (Point(position: (1, 2, 3)), Point(position: [1, 2, 3], color: (1, 0.5, 0), intensity: 4, falloff: None))",
+    )
+    .lights;
+    let position = Vec3::new(1.0, 2.0, 3.0);
+    let light = |intensity, falloff| PointLight {
+        position,
+        intensity,
+        falloff,
+    };
+    let expected = [
+        light(LinearRgb::grey(1.0), Falloff::InverseSquare),
+        light(LinearRgb::new(4.0, 2.0, 0.0), Falloff::None),
+    ];
+    assert_eq!(lights, expected);
+}
+
+#[test]
+fn objects_and_their_materials() {
+    let scene = scene(
+        "materials: {\"floor\": Checker(size: 2), \"red\": Diffuse(reflectance: \"red\")},
+        objects: [
+            Sphere(center: (1, 2, 3), radius: 4),
+            Sphere(center: (1, 2, 3), radius: 4, material: \"red\"),
+            Sphere(center: (1, 2, 3), radius: 4, material: Diffuse(0.5)),
+            Plane(point: (0, 1, 0), normal: (0, 1e-30, 0), material: \"floor\"),
+        ]",
+    );
+    let sphere = Sphere::new(Vec3::new(1.0, 2.0, 3.0), 4.0);
+    let checker = Material::Checker {
+        a: srgb(0xdd, 0xdd, 0xdd),
+        b: srgb(0x33, 0x33, 0x33),
+        size: 2.0,
+    };
+    let expected = [
+        Object::new(sphere, Material::DEFAULT),
+        Object::new(sphere, Material::Diffuse(srgb(255, 0, 0))),
+        Object::new(sphere, Material::Diffuse(LinearRgb::grey(0.5))),
+        Object::new(Plane::new(Vec3::Y, Vec3::Y), checker),
+    ];
+    assert_eq!(scene.objects(), expected);
+}
+
+#[test]
+fn how_the_light_is_shown() {
+    let scene = scene("shadows: false, exposure: 2, tone_curve: Reinhard");
+    assert_eq!(
+        (scene.shadows, scene.exposure, scene.tone_curve),
+        (false, 2.0, ToneCurve::Reinhard)
+    );
+}
+
+/// No number that a scene may hold makes the tracer divide by nothing or pass what it asks of its values.
+#[test]
+fn the_outermost_values_make_a_picture() {
+    let text = "(
+        camera: (eye: (1e9, 1e9, 1e9), target: (-1e9, 0, 1e9), up: (0, 1e-8, 0), vertical_fov: 179.9, shift: (1000, -1000)),
+        lights: [Point(position: (1e9, 1, 1e9), color: 1e12, intensity: 1e12), Point(position: (0, 0, 0))],
+        objects: [
+            Sphere(center: (-1e9, 1e9, 0), radius: 1e9), Sphere(center: (0, 0, 0), radius: 1e-9),
+            Plane(point: (0, -1e9, 0), normal: (1e9, 1e-9, -1e9), material: Checker(size: 1e-9)),
+        ],
+        exposure: 1e6, tone_curve: Filmic,
+    )";
+    let scene = Scene::from_ron("x.ron", text).unwrap_or_else(|error| panic!("{error}"));
+    let resolution = termtrace::framebuffer::Resolution::square(16, 8);
+    let one = std::num::NonZeroU32::MIN;
+    let frame = termtrace::render::render(&scene, &scene.camera, resolution, one);
+    assert_eq!(termtrace::tone::tone(&frame, &scene).pixels.len(), 128);
+}
+
+#[test]
+fn files_that_cannot_be_read_say_why() {
+    let load = |path: &Path| Scene::load(path).unwrap_err().to_string();
+    let folder = tempfile::tempdir().unwrap();
+    let missing = folder.path().join("no\u{1b}such.ron");
+    assert!(load(&missing).ends_with("no\u{fffd}such.ron: there is no such file"));
+    assert!(load(folder.path()).ends_with(": this is a directory, not a scene file"));
+    let large = folder.path().join("large.ron");
+    std::fs::File::create(&large).unwrap().set_len(1 << 40).unwrap();
+    assert!(load(&large).ends_with(": the file is larger than 16 MiB, too large for a scene"));
+}
