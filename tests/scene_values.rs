@@ -27,11 +27,7 @@ fn srgb(r: u8, g: u8, b: u8) -> LinearRgb {
 #[test]
 fn only_the_camera_must_be_given() {
     let scene = scene("");
-    let pose = Pose {
-        eye: Vec3::new(0.0, 1.0, 5.0),
-        target: Vec3::new(0.0, 1.0, 0.0),
-        up: Vec3::Y,
-    };
+    let pose = Pose { eye: Vec3::new(0.0, 1.0, 5.0), target: Vec3::new(0.0, 1.0, 0.0), up: Vec3::Y };
     assert_eq!(scene.camera.pose(), pose);
     let quarter = ViewRectangle::from_vertical_fov(std::f32::consts::FRAC_PI_4).unwrap();
     assert_eq!(scene.camera.rectangle(), quarter);
@@ -40,9 +36,7 @@ fn only_the_camera_must_be_given() {
 
 #[test]
 fn the_view_rectangle_has_two_forms() {
-    let by_angle = camera("vertical_fov: 90, aspect_ratio: 1.5, shift: (0.25, -1)")
-        .camera
-        .rectangle();
+    let by_angle = camera("vertical_fov: 90, aspect_ratio: 1.5, shift: (0.25, -1)").camera.rectangle();
     assert!((by_angle.height() - 2.0).abs() < 1e-6 && (by_angle.width().unwrap() - 3.0).abs() < 1e-6);
     assert_eq!(by_angle.shift(), Vec2::new(0.25, -1.0));
     let by_length = camera("focal_length: 24, width: 36, height: 24").camera.rectangle();
@@ -61,11 +55,7 @@ fn a_color_has_many_forms() {
         ("Some(0x2)", LinearRgb::grey(2.0)),
     ] {
         let scene = scene(&format!("background: {written}, ambient: {written}"));
-        assert_eq!(
-            (scene.background, scene.ambient),
-            (Background::Color(light), light),
-            "{written}"
-        );
+        assert_eq!((scene.background, scene.ambient), (Background::Color(light), light), "{written}");
     }
     let gradient = scene("background: Gradient(bottom: 0, top: \"white\")").background;
     let (bottom, top) = (LinearRgb::BLACK, LinearRgb::grey(1.0));
@@ -79,15 +69,9 @@ fn lights_multiply_color_by_intensity() {
     )
     .lights;
     let position = Vec3::new(1.0, 2.0, 3.0);
-    let light = |intensity, falloff| PointLight {
-        position,
-        intensity,
-        falloff,
-    };
-    let expected = [
-        light(LinearRgb::grey(1.0), Falloff::InverseSquare),
-        light(LinearRgb::new(4.0, 2.0, 0.0), Falloff::None),
-    ];
+    let light = |intensity, falloff| PointLight { position, intensity, falloff };
+    let expected =
+        [light(LinearRgb::grey(1.0), Falloff::InverseSquare), light(LinearRgb::new(4.0, 2.0, 0.0), Falloff::None)];
     assert_eq!(lights, expected);
 }
 
@@ -103,11 +87,7 @@ fn objects_and_their_materials() {
         ]",
     );
     let sphere = Sphere::new(Vec3::new(1.0, 2.0, 3.0), 4.0);
-    let checker = Material::Checker {
-        a: srgb(0xdd, 0xdd, 0xdd),
-        b: srgb(0x33, 0x33, 0x33),
-        size: 2.0,
-    };
+    let checker = Material::Checker { a: srgb(0xdd, 0xdd, 0xdd), b: srgb(0x33, 0x33, 0x33), size: 2.0 };
     let expected = [
         Object::new(sphere, Material::DEFAULT),
         Object::new(sphere, Material::Diffuse(srgb(255, 0, 0))),
@@ -120,10 +100,7 @@ fn objects_and_their_materials() {
 #[test]
 fn how_the_light_is_shown() {
     let scene = scene("shadows: false, exposure: 2, tone_curve: Reinhard");
-    assert_eq!(
-        (scene.shadows, scene.exposure, scene.tone_curve),
-        (false, 2.0, ToneCurve::Reinhard)
-    );
+    assert_eq!((scene.shadows, scene.exposure, scene.tone_curve), (false, 2.0, ToneCurve::Reinhard));
 }
 
 /// No number that a scene may hold makes the tracer divide by nothing or pass what it asks of its values.
