@@ -251,7 +251,7 @@ impl Live {
         let now = self.now();
         self.motion.key(key, now);
         // From rest, the first frame already shows a frame's worth of movement.
-        self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now - FRAME));
+        self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
     }
 
     fn reset(&mut self) {

@@ -20,8 +20,15 @@ use std::num::NonZeroU32;
 ///     lights: [Point(position: (0, 0, 4), intensity: 10)],
 ///     objects: [Sphere(center: (0, 0, 0), radius: 1)],
 /// )"##).unwrap();
-/// assert_eq!(text_frame(&scene, Size::new(12, 6)), "\
-/// ");
+/// let rows = [
+///     "            ",
+///     "   -+**+-   ",
+///     "  -#%@@%#-  ",
+///     "  -#%@@%#-  ",
+///     "   -+**+-   ",
+///     "            ",
+/// ];
+/// assert_eq!(text_frame(&scene, Size::new(12, 6)), rows.map(|row| format!("{row}\n")).concat());
 /// ```
 pub fn text_frame(scene: &Scene, size: Size) -> String {
     let resolution = cell::resolution(CellMode::Ramp, size, USUAL_CELL_ASPECT);

@@ -1,4 +1,87 @@
-//! termtrace: a live ray tracer whose screen is the terminal.
+//! termtrace: a live ray tracer whose screen is the terminal, as a library.
+//!
+//! Scene file -> scene -> camera -> eye ray -> closest hit -> shade -> framebuffer (linear light) -> tone -> cells ->
+//! bytes -> a terminal or a file; and back: bytes -> events -> camera.
+//!
+//! ```
+//! use std::num::NonZeroU32;
+//! use termtrace::{framebuffer::Resolution, render::render, scene::Scene, tone::tone};
+//!
+//! let scene = Scene::from_ron("ball.ron", r##"(
+//!     camera: (eye: (0, 1, 4), target: (0, 1, 0)),
+//!     lights: [Point(position: (3, 4, 5), intensity: 40)],
+//!     objects: [Sphere(center: (0, 1, 0), radius: 1, material: Diffuse("#e04030"))],
+//! )"##)?;
+//! let light = render(&scene, &scene.camera, Resolution::square(80, 48), NonZeroU32::MIN);
+//! let picture = tone(&light, &scene);
+//! assert_eq!(picture.pixels.len(), 80 * 48);
+//! # Ok::<(), termtrace::scene_text::SceneError>(())
+//! ```
+//!
+//! # The route
+//!
+//! One file per stage, in the order in which the data travels; a stage that outgrows its file has a folder of the same
+//! name.
+//!
+//! Words that all stages speak:
+//! - [`color`]: linear RGB, 8-bit sRGB, and the transfer function between them
+//! - [`ray`]: origin + t * direction, and intervals of t
+//! - [`capabilities`]: what a terminal's cells can be made of
+//!
+//! What was written:
+//! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret
+//! - [`scene_file`]: what the author wrote, typed, in his own units
+//!
+//! What is drawn, checked once, in radians, linear light and unit vectors:
+//! - [`shape`]: surfaces f(p) = 0, where a ray crosses them, their normals
+//! - [`material`]: diffuse reflectance
+//! - [`light`]: point lights
+//! - [`camera`]: eye, target, up, field of view -> basis u, v, w -> eye rays
+//! - [`scene`]: all of it, and the one conversion from what was written
+//!
+//! From the eye to the light:
+//! - [`hit`]: the closest hit, any hit
+//! - [`shade`]: light from a surface to the eye
+//! - [`framebuffer`]: linear light per pixel
+//! - [`render`]: tile by tile, eye rays -> hits -> shadow rays -> shade
+//!
+//! From light to the screen:
+//! - [`tone`]: exposure, tone curve, transfer function, 8 bits
+//! - [`grid`]: the cell grid
+//! - [`cell`]: picture -> grid, by half blocks or by a ramp of characters
+//! - [`overlay`]: any ratatui buffer laid over the grid
+//! - [`encode`]: wanted grid, shown grid, pen -> bytes
+//! - [`export`]: grid or picture -> text, ANSI, PNG
+//!
+//! With a person:
+//! - [`input`]: bytes -> events and replies
+//! - [`terminal`]: the one owner of the terminal
+//! - [`control`]: keys + camera -> camera
+//! - [`app`]: the loop, and the panels
+//!
+//! # Laws
+//!
+//! 1. A module uses only what stands above it here (`tests/laws.rs` reads the imports).
+//! 2. Written, then checked: [`scene_file`] holds what the author wrote and where; [`scene`] converts it once into a
+//!    value that cannot be wrong. Units and colour spaces change there and nowhere else.
+//! 3. The value between two layers has a name: [`Scene`](scene::Scene), [`Camera`](camera::Camera),
+//!    [`Hit`](hit::Hit), [`Framebuffer`](framebuffer::Framebuffer), [`Picture`](tone::Picture), [`Grid`](grid::Grid),
+//!    bytes. Each can be made by hand in a test.
+//! 4. The picture is a pure function of scene, camera, resolution and samples: no clock, no randomness, no number of
+//!    threads, and the same bits on any CPU, because only + - * / and the square root are on its path, with libm in
+//!    Rust at set-up (clippy bans the rest; `tests/hashes.txt` has the bits).
+//! 5. Only [`terminal`] touches the operating system's terminal and signals, and it is the one owner of what is turned
+//!    on. Everything above bytes runs without a terminal.
+//! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no
+//!    timer runs.
+//! 7. The library neither prints nor exits, and installs nothing by itself.
+//! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over a tile's arrays.
+//!
+//! # What is not here
+//!
+//! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, and a new surface is one file under `shape/`, a
+//! variant, and its fields in [`scene_file`]. No RON library but in the tests: see [`scene_text`]. No fixed epsilon:
+//! see [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin).
 
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
 compile_error!("termtrace runs on Linux and macOS: it talks to the terminal through POSIX termios, poll and signals");
@@ -27,3 +110,8 @@ pub mod input;
 pub mod terminal;
 pub mod control;
 pub mod app;
+
+/// The examples of the README are compiled and run with the others.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

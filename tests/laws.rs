@@ -57,7 +57,7 @@ fn code(text: &str) -> String {
     let mut lines = text.lines();
     while let Some(line) = lines.next() {
         let trimmed = line.trim_start();
-        if trimmed.starts_with("#[cfg(test)]") {
+        if trimmed.starts_with("#[cfg(test)]") || trimmed.starts_with("#[cfg(doctest)]") {
             skip_item(&mut lines);
         } else if !trimmed.starts_with("//") {
             code.push_str(line.split(" // ").next().unwrap_or(line));

@@ -4,7 +4,7 @@ use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
 use crate::ray::{Interval, Ray};
 use glam::{Vec2, Vec3};
 
-/// All points x with <x - a, n> = 0. It has no end, and is seen from both sides.
+/// All points x with (x - a).n = 0. It has no end, and is seen from both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     point: Vec3,
@@ -45,7 +45,7 @@ fn pattern_axis(normal: Vec3) -> Vec3 {
 }
 
 impl Surface for Plane {
-    /// <p + t d - a, n> = 0 gives t = <a - p, n> / <d, n>; a ray along the plane never crosses it.
+    /// (p + t d - a).n = 0 gives t = (a - p).n / d.n; a ray along the plane never crosses it.
     fn closest_crossing(&self, ray: &Ray, within: Interval) -> Option<f32> {
         let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
         // A ray along the plane divides by zero: infinite or NaN, and so not inside.

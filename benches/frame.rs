@@ -1,0 +1,87 @@
+//! How long a frame takes, stage by stage: trace, tone, cells, bytes. Run by hand: `cargo bench`.
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::Vec3;
+use std::hint::black_box;
+use std::num::NonZeroU32;
+use std::path::Path;
+use termtrace::camera::{Camera, Pose};
+use termtrace::capabilities::CellMode;
+use termtrace::cell;
+use termtrace::encode::Encoder;
+use termtrace::grid::{Grid, Size};
+use termtrace::render::render;
+use termtrace::scene::Scene;
+use termtrace::tone::{Picture, tone};
+
+const SIZES: [Size; 2] = [Size::new(80, 24), Size::new(200, 60)];
+
+fn scene(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    Scene::load(&path).expect("shipped scenes are fine")
+}
+
+fn picture(scene: &Scene, camera: &Camera, size: Size) -> Picture {
+    let resolution = cell::resolution(CellMode::HalfBlock, size, 2.0);
+    tone(&render(scene, camera, resolution, NonZeroU32::MIN), scene)
+}
+
+/// Frames of a turn around the target, 1.5 degrees apart.
+fn turn(scene: &Scene, size: Size, frames: usize) -> Vec<Grid> {
+    let Pose { eye, target, up } = scene.camera.pose();
+    let (sin, cos) = libm::sincosf(1.5_f32.to_radians());
+    let mut arm = eye - target;
+    (0..frames)
+        .map(|_| {
+            arm = Vec3::new(cos * arm.x + sin * arm.z, arm.y, cos * arm.z - sin * arm.x);
+            let camera =
+                scene.camera.with_pose(Pose { eye: target + arm, target, up }).expect("a pose all the way round");
+            cell::grid_from_picture(CellMode::HalfBlock, &picture(scene, &camera, size))
+        })
+        .collect()
+}
+
+fn trace(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("trace");
+    for name in ["three_spheres.ron", "many_spheres.ron"] {
+        let scene = scene(name);
+        for size in SIZES {
+            let resolution = cell::resolution(CellMode::HalfBlock, size, 2.0);
+            group.bench_with_input(BenchmarkId::new(name, format!("{size:?}")), &resolution, |bencher, &resolution| {
+                bencher.iter(|| render(black_box(&scene), &scene.camera, resolution, NonZeroU32::MIN));
+            });
+        }
+    }
+}
+
+fn light_to_cells(criterion: &mut Criterion) {
+    let scene = scene("three_spheres.ron");
+    let light = render(&scene, &scene.camera, cell::resolution(CellMode::HalfBlock, SIZES[1], 2.0), NonZeroU32::MIN);
+    criterion.bench_function("tone", |bencher| bencher.iter(|| tone(black_box(&light), &scene)));
+    let picture = tone(&light, &scene);
+    for mode in [CellMode::HalfBlock, CellMode::Ramp] {
+        criterion.bench_function(&format!("cells {mode:?}"), |bencher| {
+            bencher.iter(|| cell::grid_from_picture(mode, black_box(&picture)));
+        });
+    }
+}
+
+fn encode(criterion: &mut Criterion) {
+    let scene = scene("three_spheres.ron");
+    for size in SIZES {
+        let frames = turn(&scene, size, 20);
+        criterion.bench_function(&format!("encode 20 frames of a turn at {size:?}"), |bencher| {
+            let mut bytes = Vec::new();
+            bencher.iter(|| {
+                let mut encoder = Encoder::new();
+                for frame in &frames {
+                    bytes.clear();
+                    encoder.encode(black_box(frame), &mut bytes);
+                }
+            });
+        });
+    }
+}
+
+criterion_group!(benches, trace, light_to_cells, encode);
+criterion_main!(benches);

@@ -1,0 +1,70 @@
+//! What the README says, held.
+
+use std::fs;
+use std::path::Path;
+use termtrace::control::BINDINGS;
+use termtrace::scene::Scene;
+
+fn readme() -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("the README is there")
+}
+
+/// The blocks of code of one language.
+fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
+    let start = format!("```{language}\n");
+    readme.split(&start).skip(1).filter_map(|rest| rest.split("```").next()).collect()
+}
+
+#[test]
+fn every_scene_in_it_loads() {
+    let readme = readme();
+    let scenes = blocks(&readme, "ron");
+    assert!(scenes.len() >= 2, "the scenes were found");
+    for scene in scenes {
+        if let Err(error) = Scene::from_ron("README.md", scene) {
+            panic!("{error}");
+        }
+    }
+}
+
+#[test]
+fn every_kind_of_thing_is_shown() {
+    let readme = readme();
+    let scenes = blocks(&readme, "ron").concat();
+    for word in
+        ["Point(", "Sphere(", "Plane(", "Diffuse(", "Checker(", "Gradient(", "focal_length", "vertical_fov", "shift"]
+    {
+        assert!(scenes.contains(word), "no scene of the README shows {word}");
+    }
+}
+
+#[test]
+fn the_message_in_it_is_the_programs() {
+    let readme = readme();
+    let shown = blocks(&readme, "text").concat();
+    let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)),\n    objects: [\n        Sphere(center: (0, 1, 0), radus: 1),\n])";
+    let error = Scene::from_ron("my.ron", text).expect_err("it is wrong").to_string();
+    assert!(error.contains(shown.trim_end()), "the README says\n{shown}\nthe program says\n{error}");
+}
+
+#[test]
+fn every_scene_file_is_listed() {
+    let readme = readme();
+    for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")).expect("scenes are there") {
+        let name = entry.expect("it can be read").file_name().into_string().expect("a plain name");
+        assert!(readme.contains(&format!("`{name}`")), "{name} is not in the README");
+    }
+}
+
+#[test]
+fn every_key_is_listed() {
+    let readme = readme();
+    for key in BINDINGS.iter().flat_map(|binding| binding.label.split(' ')) {
+        let listed = match key {
+            "Left" | "Right" | "Up" | "Down" => "arrows".to_owned(),
+            named if named.len() > 1 => named.to_owned(),
+            letter => format!("`{letter}`"),
+        };
+        assert!(readme.contains(&listed), "{key} is not in the README");
+    }
+}
