@@ -23,7 +23,7 @@ impl Scene {
     /// assert_eq!(scene.objects().len(), 1);
     ///
     /// let error = Scene::from_ron("ball.ron", &text.replace("radius", "radus")).unwrap_err();
-    /// assert!(error.to_string().starts_with(r#"ball.ron:4:35: unknown field "radus"; did you mean "radius"?"#));
+    /// assert!(error.to_string().starts_with(r#"ball.ron:4:41: unknown field "radus"; did you mean "radius"?"#));
     /// # Ok::<(), termtrace::scene_text::SceneError>(())
     /// ```
     ///
