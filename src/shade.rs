@@ -45,7 +45,14 @@ pub fn incidence(light: &PointLight, point: &SurfacePoint) -> Option<Incidence> 
         Falloff::InverseSquare => cosine / distance_squared,
         Falloff::None => cosine,
     };
-    Some(Incidence { l, distance, cosine, light: light.intensity * weakening })
+    Some(Incidence { l, distance, cosine, light: bounded(light.intensity * weakening) })
+}
+
+/// A light nearly in its surface may be brighter than f32 can say. Bounded here, all sums and products that follow are
+/// numbers: NaN has other bits on other CPUs. (`min` of NaN and a number is the number.)
+fn bounded(light: LinearRgb) -> LinearRgb {
+    const BRIGHTEST: f32 = 1e30;
+    LinearRgb::new(light.r.min(BRIGHTEST), light.g.min(BRIGHTEST), light.b.min(BRIGHTEST))
 }
 
 /// The ray from a point to a light. The light is at t = 1.

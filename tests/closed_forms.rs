@@ -327,3 +327,13 @@ fn light_becomes_srgb_by_its_own_curve() {
     // (2.51 + 0.03) / (2.43 + 0.59 + 0.14) = 0.80380, which is encoded as 0.90824.
     assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 232);
 }
+
+#[test]
+fn light_that_no_number_can_hold_is_still_a_number() {
+    // A light that nearly lies in the surface: I n.l / d^2 is beyond f32, and 0 times that would be NaN.
+    let lamp = PointLight { intensity: LinearRgb::new(1e24, 0.0, 1.0), ..light([0.0, 1e-22, 0.0], 0.0) };
+    let scene = lit(camera([0.0, 2.0, 0.1], [0.0, 0.0, 0.0], 40.0), vec![floor()], vec![lamp, lamp, lamp]);
+    for light in &picture(&scene, 9, 9).pixels {
+        assert!(light.is_finite(), "{light:?}");
+    }
+}
