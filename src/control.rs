@@ -248,3 +248,154 @@ fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
     let turned = v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
     turned * (v.length() / turned.length())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::ViewRectangle;
+    use std::collections::HashSet;
+
+    fn camera() -> Camera {
+        let pose = Pose { eye: Vec3::new(0.0, 0.0, 4.0), target: Vec3::ZERO, up: Vec3::Y };
+        Camera::new(pose, ViewRectangle::from_vertical_fov(0.7).unwrap()).unwrap()
+    }
+
+    fn press(c: char) -> KeyEvent {
+        KeyEvent::new(KeyCode::Char(c), KeyModifiers::NONE)
+    }
+
+    fn ms(milliseconds: u64) -> Duration {
+        Duration::from_millis(milliseconds)
+    }
+
+    #[test]
+    fn no_key_is_bound_twice() {
+        let mut seen = HashSet::new();
+        for key in BINDINGS.iter().flat_map(|binding| binding.keys) {
+            assert!(seen.insert(format!("{key:?}")), "{key:?} is bound twice");
+        }
+        // Shift makes movement faster: no other command may be the capital of one of its letters.
+        let moves = |c: &Command| matches!(c, Command::Move(_) | Command::Look(_));
+        for binding in BINDINGS.iter().filter(|binding| moves(&binding.command)) {
+            for key in binding.keys {
+                if let KeyCode::Char(letter) = key.code {
+                    let capital = Key { code: KeyCode::Char(letter.to_ascii_uppercase()), ctrl: key.ctrl };
+                    assert!(!BINDINGS.iter().any(|other| other.keys.contains(&capital)), "{capital:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn keys_mean_what_the_table_says() {
+        let fast = |code| command(&KeyEvent::new(code, KeyModifiers::SHIFT));
+        assert_eq!(command(&press('w')), Some((Command::Move(Direction::Forward), false)));
+        assert_eq!(command(&press('W')), Some((Command::Move(Direction::Forward), true)));
+        assert_eq!(fast(KeyCode::Char('W')), Some((Command::Move(Direction::Forward), true)));
+        assert_eq!(fast(KeyCode::Left), Some((Command::Look(Turn::Left), true)));
+        assert_eq!(fast(KeyCode::PageUp), Some((Command::Move(Direction::Up), true)));
+        assert_eq!(command(&press('?')), Some((Command::Help, false)));
+        assert_eq!(fast(KeyCode::Char('?')), Some((Command::Help, false)), "however it is typed");
+        assert_eq!(command(&press('R')), None, "a capital that moves nothing is free");
+        assert_eq!(command(&KeyEvent::new(KeyCode::Char('w'), KeyModifiers::CONTROL)), None);
+        assert_eq!(command(&KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL)), Some((Command::Quit, false)));
+    }
+
+    /// Key, and where eye and view direction are after a second of it at speed 1.
+    #[test]
+    fn each_key_moves_the_camera_its_way() {
+        let turn = std::f32::consts::FRAC_1_SQRT_2; // sine and cosine of the 45 degrees that a second turns
+        for (key, eye, view) in [
+            ('w', [0.0, 0.0, 3.0], [0.0, 0.0, -1.0]),
+            ('s', [0.0, 0.0, 5.0], [0.0, 0.0, -1.0]),
+            ('a', [-1.0, 0.0, 4.0], [0.0, 0.0, -1.0]),
+            ('d', [1.0, 0.0, 4.0], [0.0, 0.0, -1.0]),
+            ('e', [0.0, 1.0, 4.0], [0.0, 0.0, -1.0]),
+            ('c', [0.0, -1.0, 4.0], [0.0, 0.0, -1.0]),
+            ('h', [0.0, 0.0, 4.0], [-turn, 0.0, -turn]),
+            ('l', [0.0, 0.0, 4.0], [turn, 0.0, -turn]),
+            ('k', [0.0, 0.0, 4.0], [0.0, turn, -turn]),
+            ('j', [0.0, 0.0, 4.0], [0.0, -turn, -turn]),
+            ('W', [0.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
+        ] {
+            let (command, fast) = command(&press(key)).unwrap();
+            let held = Held { key: KeyCode::Char(key), command, fast, until: ms(9_000) };
+            let pose = Motion { held: Some(held) }.step(&camera(), 1.0, ms(1_000), ms(2_000)).pose();
+            assert!(pose.eye.abs_diff_eq(Vec3::from(eye), 1e-5), "{key}: eye {}", pose.eye);
+            let looks = (pose.target - pose.eye).normalize();
+            assert!(looks.abs_diff_eq(Vec3::from(view), 1e-5), "{key}: view {looks}");
+            assert!((pose.target.distance(pose.eye) - 4.0).abs() < 1e-5, "{key}: the distance to the target stays");
+        }
+    }
+
+    #[test]
+    fn movement_is_per_second_not_per_step() {
+        let mut motion = Motion::default();
+        motion.key(&press('h'), ms(0));
+        let at_once = motion.step(&camera(), 1.0, ms(0), ms(600));
+        let mut in_steps = camera();
+        for at in (0..600).step_by(7) {
+            in_steps = motion.step(&in_steps, 1.0, ms(at), ms((at + 7).min(600)));
+        }
+        assert!(at_once.pose().target.abs_diff_eq(in_steps.pose().target, 1e-4));
+    }
+
+    #[test]
+    fn a_press_glides_a_repeat_coasts_and_another_key_stops_it() {
+        let mut motion = Motion::default();
+        motion.key(&press('w'), ms(0));
+        assert!(motion.is_moving(ms(699)) && !motion.is_moving(ms(700)), "a single press");
+        motion.key(&press('w'), ms(660));
+        assert!(motion.is_moving(ms(700)), "the first repeat comes in time");
+        motion.key(&press('w'), ms(700));
+        assert!(motion.is_moving(ms(849)) && !motion.is_moving(ms(850)), "the last repeat");
+        motion.key(&press('w'), ms(1_000));
+        assert!(motion.is_moving(ms(1_699)), "pressed anew");
+        motion.key(&press('i'), ms(1_100));
+        assert!(!motion.is_moving(ms(1_100)), "another key");
+        motion.key(&press('w'), ms(2_000));
+        motion.key(&KeyEvent { kind: KeyEventKind::Release, ..press('w') }, ms(2_050));
+        assert!(!motion.is_moving(ms(2_050)), "a terminal that tells of releases");
+    }
+
+    #[test]
+    fn a_step_never_goes_past_the_end_of_the_motion() {
+        let mut motion = Motion::default();
+        motion.key(&press('w'), ms(0));
+        let eye = motion.step(&camera(), 1.0, ms(0), ms(60_000)).pose().eye;
+        assert!((eye.z - 3.3).abs() < 1e-5, "{eye}");
+        assert_eq!(motion.step(&camera(), 1.0, ms(800), ms(900)), camera(), "after its end nothing moves");
+    }
+
+    #[test]
+    fn the_view_never_turns_over_the_pole() {
+        for key in ['k', 'j'] {
+            let mut camera = camera();
+            for at in (0..10_000).step_by(100) {
+                let mut motion = Motion::default();
+                motion.key(&press(key), ms(at));
+                camera = motion.step(&camera, 1.0, ms(at), ms(at + 100));
+            }
+            let up = -camera.basis().w.y;
+            assert!(up.abs() > 0.999 && up.abs() < 1.0, "{key}: {up}");
+            assert!(camera.basis().v.y > 0.0, "up is still up");
+            // And back again.
+            let mut motion = Motion::default();
+            motion.key(&press(if key == 'k' { 'j' } else { 'k' }), ms(0));
+            assert_ne!(motion.step(&camera, 1.0, ms(0), ms(100)), camera);
+        }
+    }
+
+    #[test]
+    fn a_tilted_up_is_what_is_turned_about() {
+        let up = Vec3::new(1.0, 1.0, 0.0);
+        let camera = camera().with_pose(Pose { up, ..camera().pose() }).unwrap();
+        let mut motion = Motion::default();
+        motion.key(&press('l'), ms(0));
+        let turned = motion.step(&camera, 1.0, ms(0), ms(500)).pose();
+        assert!((turned.target - turned.eye).dot(up).abs() < 1e-5, "the view stays perpendicular to up");
+        motion.key(&press('e'), ms(0));
+        let eye = motion.step(&camera, 1.0, ms(0), ms(500)).pose().eye;
+        assert!((eye - camera.pose().eye).abs_diff_eq(up.normalize() * 0.5, 1e-5));
+    }
+}
