@@ -1,0 +1,154 @@
+//! What is wrong is said, once, on standard error, with an exit code that tells whose fault it is.
+
+use super::{BALL, Folder, shipped_scenes};
+
+const COMMANDS: [&str; 3] = ["", "frame", "check"];
+
+#[test]
+fn check_says_what_is_wrong_or_that_all_is_fine() {
+    let folder = Folder::new();
+    assert_eq!(folder.run("check ball.ron").text(), "ball.ron: fine (2 objects, 1 light)\n");
+    for scene in shipped_scenes() {
+        let text = folder.run(&format!("check {}", scene.display())).text();
+        assert!(text.starts_with(&format!("{}: fine", scene.display())), "{text}");
+        assert_eq!(text.lines().count(), 1, "{text}");
+    }
+}
+
+/// As a compiler's: file, line, column, the line, a caret, and all faults in one run.
+#[test]
+fn a_faulty_scene_is_told_as_by_a_compiler() {
+    let folder = Folder::new();
+    folder.write("broken.ron", BALL.replace("radius", "radus").replace("intensity: 60", "intensity: -60"));
+    let line = "        Sphere(center: (-0.6, 1, 0), radus: 1, material: Diffuse(\"#e04030\")),";
+    for command in COMMANDS {
+        let run = folder.run(&format!("{command} broken.ron"));
+        run.fails(2, "broken.ron:7:38: unknown field \"radus\"; did you mean \"radius\"?\n");
+        assert!(run.stderr.contains("broken.ron:5:"), "all faults are told: {}", run.stderr);
+        let lines: Vec<_> = run.stderr.lines().collect();
+        let at = lines.iter().position(|l| l.contains(line.trim())).expect("the line is shown");
+        let caret = lines[at + 1].find('^').expect("a caret");
+        assert_eq!(Some(caret), lines[at].find("radus"), "{}", run.stderr);
+    }
+}
+
+#[test]
+fn files_that_are_no_scenes() {
+    let folder = Folder::new();
+    folder.write("empty.ron", "");
+    folder.write("blank.ron", " \n\t\n");
+    folder.write("binary.ron", b"\x7fELF\x02\x01\x01\0\0\0\xff\xfe");
+    folder.write("latin.ron", b"// caf\xe9\n(camera: (eye: (0, 0, 5), target: (0, 0, 0)))");
+    folder.write("deep.ron", "(".repeat(100_000));
+    folder.write("lists.ron", "[".repeat(1 << 20));
+    folder.write("huge.ron", vec![b' '; 17 << 20]);
+    folder.write("line.ron", format!("(camera: {})", "x".repeat(1 << 20)));
+    folder.write("controls.ron", "(camera: \x1b[2J\x07)");
+    std::fs::create_dir(folder.path("folder.ron")).expect("a folder can be made");
+    for command in COMMANDS {
+        for (file, words) in [
+            ("missing.ron", "no such file"),
+            ("missing/ball.ron", "no such file"),
+            ("folder.ron", "directory"),
+            (".", "directory"),
+            ("ball.ron/x", "ball.ron/x"),
+            ("empty.ron", "empty"),
+            ("blank.ron", "empty"),
+            ("binary.ron", "not a text file"),
+            ("latin.ron", "UTF-8"),
+            ("deep.ron", "deep"),
+            ("lists.ron", "deep"),
+            ("huge.ron", "too large"),
+            ("line.ron", "line.ron:1:10"),
+            ("controls.ron", "controls.ron:1:10"),
+        ] {
+            let run = folder.run(&format!("{command} {file}"));
+            run.fails(2, words);
+            assert!(run.stderr.starts_with(&format!("termtrace: {file}")), "{run:?}");
+            assert!(run.stderr.len() < 2000, "{} bytes about {file}", run.stderr.len());
+        }
+    }
+}
+
+/// The one fault of a scene file that only the system knows of. Who may read everything cannot try it.
+#[test]
+fn files_that_may_not_be_read() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    let path = folder.path("ball.ron");
+    std::fs::set_permissions(&path, PermissionsExt::from_mode(0o000)).expect("it is our file");
+    if std::fs::File::open(path).is_err() {
+        for command in COMMANDS {
+            folder.run(&format!("{command} ball.ron")).fails_in_a_line(2, "no permission");
+        }
+    }
+}
+
+#[test]
+fn help_has_examples() {
+    let folder = Folder::new();
+    let help = folder.run("--help").text();
+    for words in ["Usage:", "Examples:", "Exit codes", "frame", "check", "--eye", "--threads", "--color"] {
+        assert!(help.contains(words), "{words}: {help}");
+    }
+    let example = |line: &str| line.trim_start().starts_with("termtrace ");
+    assert!(help.lines().filter(|line| example(line)).count() >= 5, "{help}");
+    for (command, flags) in [
+        (
+            "frame --help",
+            &["--size", "--pixels", "--format", "--samples", "--cell-aspect", "--scale", "--output", "--check"][..],
+        ),
+        ("check --help", &["--eye", "--target", "--up", "--fov", "--threads"]),
+    ] {
+        let help = folder.run(command).text();
+        assert!(flags.iter().all(|flag| help.contains(flag)), "{help}");
+    }
+    for help in [folder.run("--help").text(), folder.run("frame --help").text(), folder.run("check --help").text()] {
+        assert!(!help.contains('\x1b'), "no colour in help");
+        assert!(!help.contains("test-panic"), "what is for tests alone is hidden");
+    }
+    assert!(folder.run("-h").text().contains("Usage:"));
+}
+
+/// The examples of the help are held: each runs as it stands there.
+#[test]
+fn the_examples_of_the_help_run() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("scenes")).expect("a folder can be made");
+    folder.write("scenes/three_spheres.ron", BALL);
+    folder.write("my.ron", BALL);
+    folder.run("frame my.ron --check my.txt --bless").done();
+    let help = folder.run("--help").text();
+    let (_, examples) = help.split_once("Examples:").expect("examples");
+    for example in examples.lines().filter_map(|line| line.trim_start().strip_prefix("termtrace ")) {
+        let arguments = example.split("  ").next().unwrap_or_default();
+        folder.run(arguments).done();
+    }
+    assert!(folder.path("ball.png").exists());
+}
+
+#[test]
+fn version_is_the_crates() {
+    let folder = Folder::new();
+    for flag in ["--version", "-V"] {
+        assert_eq!(folder.run(flag).text(), format!("termtrace {}\n", env!("CARGO_PKG_VERSION")));
+    }
+}
+
+#[test]
+fn a_wrong_command_line_is_told_and_helped() {
+    let folder = Folder::new();
+    folder.run("").is_misused("<SCENE>");
+    folder.run("frame").is_misused("<SCENE>");
+    folder.run("check").is_misused("<SCENE>");
+    folder.run("frame ball.ron --pixel 8x8").is_misused("'--pixels'");
+    folder.run("frame ball.ron --sample 2").is_misused("'--samples'");
+    folder.run("ball.ron --colour=always").is_misused("'--color");
+    folder.run("ball.ron --samples 2").is_misused("--samples");
+    folder.run("check ball.ron --size 2x2").is_misused("--size");
+    folder.run("ball.ron other.ron").is_misused("other.ron");
+    folder.run("frame ball.ron other.ron").is_misused("other.ron");
+    folder.run("frame ball.ron --scale 0").is_misused("--scale");
+    folder.run("frame ball.ron --format text --format png").is_misused("multiple times");
+    assert_eq!(folder.run("frame ball.ron --size 8x4 --bless").code, Some(2));
+}

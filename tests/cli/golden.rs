@@ -1,0 +1,158 @@
+//! `frame --check`: snapshot tests without a line of Rust.
+
+use super::Folder;
+
+const ENDINGS: [&str; 3] = ["txt", "ansi", "png"];
+
+/// The whole loop of a user: no golden, bless it, equal, something changes, differing, bless it.
+#[test]
+fn bless_check_change_check() {
+    for ending in ENDINGS {
+        let folder = Folder::new();
+        let golden = format!("ball.{ending}");
+        let check = format!("frame ball.ron --size 30x10 --check {golden}");
+        folder.run(&check).fails_in_a_line(1, "--bless writes it");
+        assert!(!folder.path(&golden).exists(), "only --bless writes");
+        assert_eq!(folder.run(&format!("{check} --bless")).done(), b"");
+        let blessed = folder.read(&golden);
+        folder.frame(&format!("ball.ron --size 30x10 -o frame.{ending}"));
+        assert!(blessed == folder.read(&format!("frame.{ending}")), "{ending}: the golden is the frame");
+        assert_eq!(folder.run(&check).done(), b"", "equal frames are passed over in silence");
+        let moved = format!("{check} --eye 1,1.5,6.5");
+        let differing = folder.run(&moved);
+        assert_eq!((differing.code, differing.stderr.as_str()), (Some(1), ""), "{ending}");
+        assert!(!differing.stdout.is_empty());
+        assert!(blessed == folder.read(&golden), "a check writes nothing");
+        folder.run(&format!("{moved} --bless")).done();
+        folder.run(&moved).done();
+        assert_eq!(folder.run(&check).code, Some(1));
+    }
+}
+
+/// The difference of a frame from a golden, as a person reads it.
+#[track_caller]
+fn difference(folder: &Folder, arguments: &str) -> String {
+    let run = folder.run(&format!("frame {arguments}"));
+    assert_eq!((run.code, run.stderr.as_str()), (Some(1), ""));
+    let text = String::from_utf8(run.stdout).expect("a diff is text");
+    let strange = text.chars().find(|&c| c != '\n' && c.is_control());
+    assert_eq!(strange, None, "a diff changes no terminal: {text:?}");
+    assert!(text.ends_with('\n'));
+    text
+}
+
+#[test]
+fn a_difference_of_text_is_a_line_diff() {
+    let folder = Folder::new();
+    folder.run("frame ball.ron --size 30x10 --check ball.txt --bless").done();
+    let text = String::from_utf8(folder.read("ball.txt")).expect("text");
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let right = lines[6].clone();
+    lines[6].replace_range(11..12, "?");
+    folder.write("ball.txt", lines.join("\n") + "\n");
+    let diff = difference(&folder, "ball.ron --size 30x10 --check ball.txt");
+    // The file, the place, one line as it was and as it is, and a line each side of it.
+    assert!(diff.starts_with("ball.txt: "), "{diff}");
+    assert!(diff.contains("@@ -6,3 +6,3 @@"), "{diff}");
+    assert!(diff.contains(&format!("\n {}\n-{}\n+{right}\n {}\n", lines[5], lines[6], lines[7])), "{diff}");
+    assert_eq!(diff.lines().filter(|line| line.starts_with('-') && !line.starts_with("---")).count(), 1, "{diff}");
+}
+
+/// An editor that cuts blanks off the ends of lines breaks a golden, and is found out.
+#[test]
+fn blanks_at_the_end_of_a_line_count() {
+    let folder = Folder::new();
+    folder.write("black.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))");
+    assert_eq!(folder.frame("black.ron --size 3x2"), b"   \n   \n");
+    folder.write("black.txt", "   \n\n");
+    let diff = difference(&folder, "black.ron --size 3x2 --check black.txt");
+    assert!(diff.contains("\n-\n+   \n"), "{diff}");
+    folder.write("black.txt", "   \n   ");
+    difference(&folder, "black.ron --size 3x2 --check black.txt");
+}
+
+#[test]
+fn a_difference_of_ansi_names_row_and_column() {
+    let folder = Folder::new();
+    folder.run("frame ball.ron --size 30x10 --check ball.ansi --bless").done();
+    let text = String::from_utf8(folder.read("ball.ansi")).expect("UTF-8");
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    // The last character of a line stands before the reset.
+    let last = lines[4].trim_end_matches("\x1b[0m").chars().next_back().expect("a character");
+    let place = lines[4].rfind(last).expect("it is there");
+    lines[4].replace_range(place..place + last.len_utf8(), "?");
+    folder.write("ball.ansi", lines.join("\n") + "\n");
+    let diff = difference(&folder, "ball.ron --size 30x10 --check ball.ansi");
+    assert!(diff.contains("row 4: differs from column 29 on"), "{diff}");
+    assert_eq!(diff.matches("row ").count(), 1, "{diff}");
+}
+
+#[test]
+fn a_difference_of_png_names_the_pixel() {
+    let folder = Folder::new();
+    // The same scene but for a small ball that covers a few pixels.
+    folder.run("frame ball.ron --pixels 60x40 --check ball.png --bless").done();
+    let with_more = super::BALL.replace("objects: [", "objects: [Sphere(center: (1.6, 1, 0), radius: 0.04),");
+    folder.write("ball.ron", &with_more);
+    let before = decoded(&folder.read("ball.png"));
+    folder.frame("ball.ron --pixels 60x40 -o after.png");
+    let after = decoded(&folder.read("after.png"));
+    let differing: Vec<_> = (0..60 * 40).filter(|&i| before[3 * i..3 * i + 3] != after[3 * i..3 * i + 3]).collect();
+    assert!(!differing.is_empty(), "the small ball is seen");
+    let diff = difference(&folder, "ball.ron --pixels 60x40 --check ball.png");
+    let (x, y) = (differing[0] % 60, differing[0] / 60);
+    assert!(diff.contains(&format!("{} of 2400 pixels differ", differing.len())), "{diff}");
+    assert!(diff.contains(&format!("pixel ({x}, {y})")), "{diff}");
+}
+
+fn decoded(bytes: &[u8]) -> Vec<u8> {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG");
+    let mut rgb = vec![0; reader.output_buffer_size().expect("it fits")];
+    reader.next_frame(&mut rgb).expect("a picture");
+    rgb
+}
+
+#[test]
+fn a_golden_of_another_size_or_kind_is_told() {
+    let folder = Folder::new();
+    folder.run("frame ball.ron --size 30x10 --check ball.png --bless").done();
+    let diff = difference(&folder, "ball.ron --size 31x10 --check ball.png");
+    assert!(diff.contains("30x20") && diff.contains("31x20"), "{diff}");
+    // The same pixels, said to be of another shape.
+    folder.write("ball.ron", r##"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), background: "#123456")"##);
+    folder.run("frame ball.ron --size 3x2 --check ball.png --bless").done();
+    let diff = difference(&folder, "ball.ron --size 3x2 --cell-aspect 3 --check ball.png");
+    assert!(diff.contains("pixels are equal"), "{diff}");
+    // A golden may be anything.
+    for ending in ENDINGS {
+        let golden = format!("other.{ending}");
+        for contents in [&b""[..], b"\0\xff\xfe\x1b[2J\x07\r\n", b"\n\n\n", b"\x89PNG\r\n\x1a\n"] {
+            folder.write(&golden, contents);
+            difference(&folder, &format!("ball.ron --size 3x2 --check {golden}"));
+        }
+    }
+}
+
+#[test]
+fn goldens_that_cannot_be_read_or_written() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("folder.txt")).expect("a folder can be made");
+    folder.run("frame ball.ron --check folder.txt").fails_in_a_line(1, "folder.txt");
+    folder.run("frame ball.ron --check folder.txt --bless").fails_in_a_line(1, "folder.txt");
+    folder.run("frame ball.ron --check missing/ball.txt --bless").fails_in_a_line(1, "missing/ball.txt");
+    folder.run("frame ball.ron --check ball.jpg").fails_in_a_line(2, "--format");
+    folder.run("frame ball.ron --bless").is_misused("--check");
+    folder.run("frame ball.ron --check a.txt -o b.txt").is_misused("cannot be used with");
+    // A wrong scene is never a golden.
+    folder.run("frame missing.ron --check a.txt --bless").fails_in_a_line(2, "missing.ron");
+    assert!(!folder.path("a.txt").exists());
+}
+
+#[test]
+fn the_format_of_a_golden_may_be_said() {
+    let folder = Folder::new();
+    folder.run("frame ball.ron --format text --check ball.golden --bless").done();
+    assert!(folder.read("ball.golden") == folder.frame("ball.ron"));
+    folder.run("frame ball.ron --format text --check ball.golden").done();
+    assert_eq!(folder.run("frame ball.ron --format ansi --check ball.golden").code, Some(1));
+}

@@ -1,0 +1,252 @@
+//! PNG and ANSI are the same picture: a PNG decoder and a terminal emulator, both of other hands, agree about every
+//! pixel, and the plain text is what CIE's formula makes of them.
+
+use super::{Folder, shipped_scenes};
+use png::{ColorType, Decoder, PixelDimensions, SrgbRenderingIntent, Unit};
+use std::io::Cursor;
+use std::num::NonZeroU16;
+
+type Rgb = [u8; 3];
+
+struct Png {
+    width: usize,
+    height: usize,
+    pixels: Vec<Rgb>,
+    shape: Option<PixelDimensions>,
+}
+
+impl Png {
+    /// Decoded by the `png` crate; marked as sRGB, as every PNG of ours.
+    #[track_caller]
+    fn decode(bytes: &[u8]) -> Self {
+        let mut reader = Decoder::new(Cursor::new(bytes)).read_info().expect("a PNG");
+        let mut rgb = vec![0; reader.output_buffer_size().expect("it fits")];
+        let frame = reader.next_frame(&mut rgb).expect("a picture");
+        assert_eq!((frame.color_type, frame.bit_depth), (ColorType::Rgb, png::BitDepth::Eight));
+        let info = reader.info();
+        assert_eq!(info.srgb, Some(SrgbRenderingIntent::Perceptual));
+        let pixels = rgb.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
+        Self { width: frame.width as usize, height: frame.height as usize, pixels, shape: info.pixel_dims }
+    }
+
+    fn pixel(&self, x: usize, y: usize) -> Rgb {
+        self.pixels[y * self.width + x]
+    }
+
+    /// The two pixels of a cell; none below the edge.
+    fn cell(&self, column: usize, row: usize) -> (Rgb, Option<Rgb>) {
+        (self.pixel(column, 2 * row), (2 * row + 1 < self.height).then(|| self.pixel(column, 2 * row + 1)))
+    }
+}
+
+/// A character with its colours; `None` is the terminal's own.
+type AnsiCell = (char, Option<Rgb>, Option<Rgb>);
+
+/// The lines of cells that the bytes say, by a reader that knows characters, `CSI ... m` with 0, 38;2 and 48;2, and
+/// nothing else. Each line has to end with the terminal's own colours.
+#[track_caller]
+fn cells_of_ansi(bytes: &[u8]) -> Vec<Vec<AnsiCell>> {
+    let text = std::str::from_utf8(bytes).expect("ANSI is UTF-8");
+    assert!(text.ends_with('\n'));
+    text.lines()
+        .map(|line| {
+            let (mut cells, mut fg, mut bg) = (Vec::new(), None, None);
+            let mut rest = line;
+            while let Some(c) = rest.chars().next() {
+                rest = &rest[c.len_utf8()..];
+                if c != '\x1b' {
+                    assert!(!c.is_control(), "{c:?}");
+                    cells.push((c, fg, bg));
+                    continue;
+                }
+                let (sequence, after) = rest.split_once('m').expect("every sequence is an SGR");
+                let numbers: Vec<u8> = sequence
+                    .strip_prefix('[')
+                    .and_then(|numbers| numbers.split(';').map(|number| number.parse().ok()).collect())
+                    .unwrap_or_else(|| panic!("{sequence:?}"));
+                match numbers[..] {
+                    [0] => (fg, bg) = (None, None),
+                    [38, 2, r, g, b] => fg = Some([r, g, b]),
+                    [48, 2, r, g, b] => bg = Some([r, g, b]),
+                    _ => panic!("{sequence:?}"),
+                }
+                rest = after;
+            }
+            assert_eq!((fg, bg), (None, None), "the line leaves its colours on");
+            cells
+        })
+        .collect()
+}
+
+/// What a terminal of that size shows after the bytes were printed on it.
+fn shown(bytes: &[u8], columns: usize, rows: usize) -> vt100::Parser {
+    let side = |length: usize| NonZeroU16::new(length as u16).expect("not zero");
+    // A row more than the frame has: the line feed after the last row scrolls nothing away.
+    let mut terminal = vt100::Parser::new(side(rows + 1), side(columns), 0);
+    // The terminal driver's part.
+    terminal.process(&bytes.split(|&byte| byte == b'\n').collect::<Vec<_>>().join(&b"\r\n"[..]));
+    terminal
+}
+
+fn rgb_of(color: vt100::Color) -> Option<Rgb> {
+    match color {
+        vt100::Color::Default => None,
+        vt100::Color::Rgb(r, g, b) => Some([r, g, b]),
+        vt100::Color::Idx(index) => panic!("colour {index} of the 256 is no truecolor"),
+    }
+}
+
+/// The cell shows these pixels: upper and lower, or the upper one alone at an odd edge.
+#[track_caller]
+fn assert_shows((glyph, fg, bg): AnsiCell, (upper, lower): (Rgb, Option<Rgb>)) {
+    match (glyph, lower) {
+        ('▄', Some(lower)) => {
+            assert_eq!((fg, bg), (Some(lower), Some(upper)));
+            assert_ne!(lower, upper, "a flat cell is a space");
+        }
+        (' ', Some(lower)) => assert_eq!((bg, bg), (Some(lower), Some(upper))),
+        ('▀', None) => assert_eq!((fg, bg), (Some(upper), None)),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Of one scene at one size: PNG, ANSI as a file, and ANSI on a screen.
+#[track_caller]
+fn judge(folder: &Folder, arguments: &str) {
+    folder.frame(&format!("{arguments} -o frame.png"));
+    let png = Png::decode(&folder.read("frame.png"));
+    let ansi = folder.frame(&format!("{arguments} --format ansi"));
+    let lines = cells_of_ansi(&ansi);
+    let rows = png.height.div_ceil(2);
+    assert_eq!(lines.len(), rows, "{arguments}");
+    let terminal = shown(&ansi, png.width, rows);
+    for (row, line) in lines.iter().enumerate() {
+        assert_eq!(line.len(), png.width, "{arguments}: row {row}");
+        for (column, &cell) in line.iter().enumerate() {
+            assert_shows(cell, png.cell(column, row));
+            let on_screen = terminal.screen().cell(row as u16, column as u16).expect("on the screen");
+            let glyph = on_screen.contents().chars().next().unwrap_or(' ');
+            assert_shows((glyph, rgb_of(on_screen.fgcolor()), rgb_of(on_screen.bgcolor())), png.cell(column, row));
+        }
+    }
+    let text = folder.run(&format!("frame {arguments} --format text")).text();
+    assert_eq!(text.lines().count(), rows);
+    for (row, line) in text.lines().enumerate() {
+        for (column, glyph) in line.chars().enumerate() {
+            assert_lightness(glyph, png.cell(column, row));
+        }
+    }
+}
+
+/// The ramp in ten equal steps of CIE 1976 lightness, worked out in f64 from the PNG's pixels.
+#[track_caller]
+fn assert_lightness(glyph: char, (upper, lower): (Rgb, Option<Rgb>)) {
+    let linear = |band: u8| {
+        let c = f64::from(band) / 255.0;
+        if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
+    };
+    let luminance = |[r, g, b]: Rgb| 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+    let y = lower.map_or(luminance(upper), |lower| f64::midpoint(luminance(upper), luminance(lower)));
+    let lightness = if y > 216.0 / 24389.0 { 116.0 * libm::cbrt(y) - 16.0 } else { y * 24389.0 / 27.0 };
+    let place = " .:-=+*#%@".find(glyph).unwrap_or_else(|| panic!("{glyph:?} is not of the ramp")) as f64;
+    // The last step has white in it; where two steps meet, either will do.
+    let (least, most) = (10.0 * place - 1e-3, if place < 9.0 { 10.0 * place + 10.0 + 1e-3 } else { 100.1 });
+    assert!((least..=most).contains(&lightness), "{glyph:?} for lightness {lightness}");
+}
+
+#[test]
+fn every_shipped_scene_is_one_picture_in_all_formats() {
+    let folder = Folder::new();
+    for scene in shipped_scenes() {
+        judge(&folder, &format!("{} --size 60x20", scene.display()));
+    }
+}
+
+#[test]
+fn odd_and_small_pictures_are_one_picture_in_all_formats() {
+    let folder = Folder::new();
+    for arguments in ["--pixels 1x1", "--pixels 7x5", "--pixels 2x3", "--size 1x1", "--pixels 60x41 --samples 3"] {
+        judge(&folder, &format!("ball.ron {arguments}"));
+    }
+}
+
+#[test]
+fn a_png_has_a_pixel_for_each_half_cell() {
+    let folder = Folder::new();
+    for (arguments, size) in
+        [("", (80, 48)), ("--size 9x4", (9, 8)), ("--pixels 9x5", (9, 5)), ("--pixels 1x1", (1, 1))]
+    {
+        let png = Png::decode(&folder.frame(&format!("ball.ron --format png {arguments}")));
+        assert_eq!((png.width, png.height), size, "{arguments}");
+    }
+}
+
+#[test]
+fn scale_makes_each_pixel_a_square() {
+    let folder = Folder::new();
+    let small = Png::decode(&folder.frame("ball.ron --pixels 12x7 --format png"));
+    for scale in [1, 2, 3, 8] {
+        let large = Png::decode(&folder.frame(&format!("ball.ron --pixels 12x7 --format png --scale {scale}")));
+        assert_eq!((large.width, large.height), (12 * scale, 7 * scale));
+        for y in 0..large.height {
+            for x in 0..large.width {
+                assert_eq!(large.pixel(x, y), small.pixel(x / scale, y / scale), "({x}, {y}) at {scale}");
+            }
+        }
+    }
+}
+
+/// pHYs says how many pixels make up a unit each way: pixels higher than wide are more across than down.
+#[test]
+fn pixels_that_are_not_square_are_marked() {
+    let folder = Folder::new();
+    for (aspect, shape) in [("2", None), ("3", Some(1.5)), ("1", Some(0.5)), ("1.9", Some(0.95)), ("2.2", Some(1.1))] {
+        let png = Png::decode(&folder.frame(&format!("ball.ron --size 9x4 --format png --cell-aspect {aspect}")));
+        let found = png.shape.map(|shape| {
+            assert_eq!(shape.unit, Unit::Unspecified);
+            f64::from(shape.xppu) / f64::from(shape.yppu)
+        });
+        match (found, shape) {
+            (Some(found), Some(shape)) => assert!((found - shape).abs() < 2e-3, "{found} for {aspect}"),
+            _ => assert_eq!(found, shape, "{aspect}"),
+        }
+    }
+}
+
+/// The numbers by hand: a colour said as sRGB comes out as it went in; linear 0.5 is 1.055 * 0.5^(1/2.4) - 0.055 =
+/// 0.7354 of 255 = 187.5, rounded up; what is brighter than white is white.
+#[test]
+fn colours_are_srgb_by_the_real_transfer_function() {
+    let folder = Folder::new();
+    for (background, expected) in [
+        ("\"#87a6cc\"", [0x87, 0xa6, 0xcc]),
+        ("\"#010203\"", [1, 2, 3]),
+        ("\"white\"", [255, 255, 255]),
+        ("\"rebeccapurple\"", [0x66, 0x33, 0x99]),
+        ("(0.5, 0.25, 0.001)", [188, 137, 3]),
+        ("(0.0, 1.0, 0.2140411)", [0, 255, 127]),
+    ] {
+        folder.write("sky.ron", format!("(camera: (eye: (0, 0, 5), target: (0, 0, 0)), background: {background})"));
+        let png = Png::decode(&folder.frame("sky.ron --pixels 3x3 --format png"));
+        assert_eq!(png.pixels, [expected; 9], "{background}");
+    }
+}
+
+/// Pixel (0, 0) is top left: a ball to the left and above is seen there.
+#[test]
+fn the_first_pixel_is_top_left() {
+    let folder = Folder::new();
+    folder.write(
+        "corner.ron",
+        "(camera: (eye: (0, 0, 10), target: (0, 0, 0), vertical_fov: 30), ambient: 1,
+          objects: [Sphere(center: (-1.5, 1.5, 0), radius: 0.8)])",
+    );
+    let png = Png::decode(&folder.frame("corner.ron --pixels 40x40 --format png"));
+    let seen: Vec<_> = (0..1600).filter(|&i| png.pixels[i] != [0; 3]).map(|i| (i % 40, i / 40)).collect();
+    assert!(seen.len() > 50);
+    assert!(seen.iter().all(|&(x, y)| x < 20 && y < 20), "{seen:?}");
+    let text = folder.run("frame corner.ron --pixels 40x40").text();
+    assert!(text.lines().take(10).any(|line| !line.trim().is_empty()));
+    assert!(text.lines().skip(10).all(|line| line.trim().is_empty()));
+    assert!(text.lines().all(|line| line[20..].trim().is_empty()));
+}
