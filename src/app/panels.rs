@@ -67,9 +67,9 @@ impl Status {
 
     fn text(&self) -> String {
         let Self { cells, eye, .. } = self;
-        let shown = self.shown.map_or_else(|| "at rest".to_owned(), |fps| format!("shown {fps:.0}"));
+        let shown = self.shown.map_or_else(|| "-".to_owned(), |fps| format!("{fps:.0}"));
         format!(
-            " {}x{}  {} rays/s  trace {} encode {} {shown} fps  eye {:.2} {:.2} {:.2}",
+            " {}x{}  {} rays/s  trace {} encode {} shown {shown} fps  eye {:.2} {:.2} {:.2}",
             cells.columns,
             cells.rows,
             short(per_second(self.rays as f64, self.trace)),
