@@ -4,7 +4,7 @@ use crate::color::Srgb8;
 use crate::grid::{Cell, Grid, Ink};
 use ratatui::buffer::Buffer;
 use ratatui::style::Color;
-use unicode_width::UnicodeWidthStr;
+use unicode_width::UnicodeWidthChar;
 
 /// Puts the buffer's cells over the grid's, where both have them.
 pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
@@ -13,7 +13,7 @@ pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
         let mut column = area.left();
         while column < area.right().min(grid.size().columns) {
             let mut cell = cell_from_ratatui(&buffer[(column, row)]);
-            let columns = buffer[(column, row)].symbol().width().max(1) as u16;
+            let columns = cell.glyph.width().unwrap_or(1) as u16;
             if columns > grid.size().columns - column {
                 cell.glyph = ' '; // a wide character with half of it outside
             }
@@ -28,8 +28,8 @@ pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
 
 fn cell_from_ratatui(cell: &ratatui::buffer::Cell) -> Cell {
     Cell {
-        // Of a character with combining marks the grid keeps the character.
-        glyph: cell.symbol().chars().next().filter(|c| !c.is_control()).unwrap_or(' '),
+        // Of a character with combining marks the grid keeps the character; what takes no cell is a blank.
+        glyph: cell.symbol().chars().next().filter(|c| c.width() > Some(0)).unwrap_or(' '),
         fg: ink_from_ratatui(cell.fg),
         bg: ink_from_ratatui(cell.bg),
         modifier: cell.modifier,
