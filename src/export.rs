@@ -52,7 +52,7 @@ pub fn ansi(grid: &Grid) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut pen = Pen::default();
     for row in grid.rows() {
-        for cell in row {
+        for cell in row.iter().filter(|cell| cell.glyph != crate::grid::Cell::COVERED) {
             pen.write_cell(cell, &mut bytes);
         }
         pen.reset(&mut bytes);
