@@ -1,0 +1,139 @@
+//! The bytes themselves, worked out by hand.
+
+use super::rgb;
+use ratatui::style::Modifier;
+use termtrace::encode::Encoder;
+use termtrace::grid::{Cell, Grid, Ink, Size};
+
+const A: Ink = rgb(10, 20, 30);
+const B: Ink = rgb(200, 100, 0);
+const C: Ink = rgb(1, 2, 3);
+
+fn flat(cell: Cell) -> Grid {
+    let mut grid = Grid::new(Size::new(5, 3));
+    for row in 0..3 {
+        for column in 0..5 {
+            *grid.cell_mut(column, row) = cell;
+        }
+    }
+    grid
+}
+
+fn encoded(encoder: &mut Encoder, grid: &Grid) -> String {
+    let mut bytes = Vec::new();
+    encoder.encode(grid, &mut bytes);
+    String::from_utf8(bytes).expect("UTF-8")
+}
+
+#[test]
+fn a_first_frame_says_each_colour_once() {
+    let grid = flat(Cell::new('▄', A, B));
+    assert_eq!(
+        encoded(&mut Encoder::new(), &grid),
+        "\x1b[0m\x1b[1;1H\x1b[48;2;200;100;0m\x1b[38;2;10;20;30m▄▄▄▄▄\x1b[2;1H▄▄▄▄▄\x1b[3;1H▄▄▄▄▄"
+    );
+}
+
+/// CUP, SGR of only the colour that differs from the pen, and the character.
+#[test]
+fn one_changed_cell_is_a_place_a_colour_and_a_character() {
+    let mut encoder = Encoder::new();
+    let start = Cell::new('▄', A, B);
+    let mut grid = flat(start);
+    encoded(&mut encoder, &grid);
+    for (cell, expected) in [
+        (start, ""),
+        (Cell::new('▄', C, B), "\x1b[2;4H\x1b[38;2;1;2;3m▄"),
+        // The pen still has that colour.
+        (Cell::new('x', C, B), "\x1b[2;4Hx"),
+        (Cell::new('x', C, A), "\x1b[2;4H\x1b[48;2;10;20;30mx"),
+        (Cell::new('x', B, C), "\x1b[2;4H\x1b[48;2;1;2;3m\x1b[38;2;200;100;0mx"),
+        // The colour of a space is not seen, and the pen's stays.
+        (Cell::new(' ', A, B), "\x1b[2;4H\x1b[48;2;200;100;0m "),
+        (Cell::new('▄', B, B), "\x1b[2;4H▄"),
+        (Cell::new('x', Ink::Default, B), "\x1b[2;4H\x1b[39mx"),
+        (Cell::new('x', Ink::Indexed(7), Ink::Indexed(255)), "\x1b[2;4H\x1b[48;5;255m\x1b[38;5;7mx"),
+        (Cell::BLANK, "\x1b[2;4H\x1b[49m "),
+    ] {
+        *grid.cell_mut(3, 1) = cell;
+        assert_eq!(encoded(&mut encoder, &grid), expected, "{cell:?}");
+        assert_eq!(encoded(&mut encoder, &grid), "", "{cell:?} again");
+    }
+}
+
+#[test]
+fn modifiers_begin_with_all_off() {
+    let mut encoder = Encoder::new();
+    let mut grid = flat(Cell::new('x', A, B));
+    encoded(&mut encoder, &grid);
+    let bold = Cell { modifier: Modifier::BOLD | Modifier::UNDERLINED, ..Cell::new('x', A, B) };
+    *grid.cell_mut(0, 0) = bold;
+    let colours = "\x1b[48;2;200;100;0m\x1b[38;2;10;20;30m";
+    assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[1;1H\x1b[0m\x1b[1m\x1b[4m{colours}x"));
+    *grid.cell_mut(1, 0) = Cell { modifier: Modifier::BOLD | Modifier::UNDERLINED, ..Cell::new(' ', C, B) };
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;2H\x1b[38;2;1;2;3m ", "the line under a space is seen");
+    *grid.cell_mut(0, 0) = Cell::new('x', A, B);
+    assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[1;1H\x1b[0m{colours}x"));
+}
+
+/// Neighbours follow each other; over a gap, and at the edge, the place is said.
+#[test]
+fn a_run_of_changes_says_its_place_once() {
+    let mut encoder = Encoder::new();
+    let mut grid = flat(Cell::BLANK);
+    encoded(&mut encoder, &grid);
+    for (column, row) in [(0, 0), (1, 0), (3, 0), (4, 0), (0, 1), (4, 2)] {
+        grid.cell_mut(column, row).glyph = 'x';
+    }
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;1Hxx\x1b[1;4Hxx\x1b[2;1Hx\x1b[3;5Hx");
+}
+
+#[test]
+fn wide_characters_are_two_cells() {
+    let mut encoder = Encoder::new();
+    let mut grid = flat(Cell::BLANK);
+    encoded(&mut encoder, &grid);
+    grid.cell_mut(1, 0).glyph = '世';
+    grid.cell_mut(2, 0).glyph = Cell::COVERED;
+    grid.cell_mut(3, 0).glyph = 'x';
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;2H世x");
+    grid.cell_mut(1, 0).glyph = 'a';
+    grid.cell_mut(2, 0).glyph = ' ';
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;2Ha ");
+}
+
+/// After `forget` and after a resize everything is said again, as if for the first time; nothing is ever cleared.
+#[test]
+fn forgetting_draws_everything_again() {
+    let grid = flat(Cell::new('▄', A, B));
+    let mut encoder = Encoder::new();
+    let first = encoded(&mut encoder, &grid);
+    assert_eq!(encoded(&mut encoder, &grid), "");
+    encoder.forget();
+    assert_eq!(encoded(&mut encoder, &grid), first);
+    let mut small = Grid::new(Size::new(2, 1));
+    small.cell_mut(0, 0).glyph = 'x';
+    assert_eq!(encoded(&mut encoder, &small), "\x1b[0m\x1b[1;1Hx ");
+    assert_eq!(encoded(&mut encoder, &grid), first);
+}
+
+/// Bytes are appended: whatever stands in the buffer already is sent first.
+#[test]
+fn bytes_are_appended() {
+    let mut bytes = b"before".to_vec();
+    Encoder::new().encode(&Grid::new(Size::new(1, 1)), &mut bytes);
+    assert_eq!(bytes, b"before\x1b[0m\x1b[1;1H ");
+}
+
+/// The largest screen and the furthest cell.
+#[test]
+fn places_have_five_digits_where_they_need_them() {
+    let mut encoder = Encoder::new();
+    let mut grid = Grid::new(Size::new(65_535, 1));
+    encoded(&mut encoder, &grid);
+    grid.cell_mut(65_534, 0).glyph = 'x';
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;65535Hx");
+    for empty in [Size::new(0, 0), Size::new(0, 5), Size::new(5, 0)] {
+        assert!(encoded(&mut encoder, &Grid::new(empty)).len() <= "\x1b[0m".len());
+    }
+}

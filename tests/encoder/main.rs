@@ -1,0 +1,227 @@
+//! The encoder's bytes, judged by what three terminals show of them: random grids, changes, panels and resizes, and
+//! after each frame every cell of every screen is the wanted one.
+
+mod bytes;
+mod overlay;
+mod screens;
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Modifier, Style};
+use screens::Screens;
+use termtrace::color::Srgb8;
+use termtrace::encode::Encoder;
+use termtrace::grid::{Cell, Grid, Ink, Size};
+use unicode_width::UnicodeWidthChar;
+
+pub(crate) const fn rgb(r: u8, g: u8, b: u8) -> Ink {
+    Ink::Rgb(Srgb8::new(r, g, b))
+}
+
+/// Few colours, so that neighbours often share one.
+fn ink() -> impl Strategy<Value = Ink> {
+    prop_oneof![
+        1 => Just(Ink::Default),
+        1 => prop::sample::select(vec![Ink::Indexed(1), Ink::Indexed(9), Ink::Indexed(200)]),
+        4 => prop::sample::select(vec![rgb(0, 0, 0), rgb(255, 255, 255), rgb(1, 20, 200), rgb(1, 20, 201)]),
+        1 => any::<[u8; 3]>().prop_map(|[r, g, b]| rgb(r, g, b)),
+    ]
+}
+
+fn modifier() -> impl Strategy<Value = Modifier> {
+    prop_oneof![4 => Just(Modifier::empty()), 1 => any::<u16>().prop_map(Modifier::from_bits_truncate)]
+}
+
+fn cell(glyphs: &'static [char]) -> impl Strategy<Value = Cell> {
+    (prop::sample::select(glyphs), ink(), ink(), modifier()).prop_map(|(glyph, fg, bg, modifier)| Cell {
+        glyph,
+        fg,
+        bg,
+        modifier,
+    })
+}
+
+/// What a picture is made of.
+const PICTURE: &[char] = &['▄', ' ', '▀'];
+
+/// What a grid can hold: the picture's, plain and accented letters, and wide ones.
+const ANYTHING: &[char] = &['▄', '▄', ' ', ' ', '▀', 'a', '@', 'é', '│', '世', '🙂'];
+
+/// The most cells of a grid here.
+const CELLS: usize = 60;
+
+fn size() -> impl Strategy<Value = Size> {
+    (1_u16..=12, 1_u16..=5).prop_map(|(columns, rows)| Size::new(columns, rows))
+}
+
+/// Puts a character where it has room, and a blank where half of a wide one is left over.
+fn put(grid: &mut Grid, column: u16, row: u16, cell: Cell) {
+    let wide = cell.glyph.width() == Some(2);
+    if wide && column + 1 == grid.size().columns {
+        return;
+    }
+    let width = if wide { 2 } else { 1 };
+    if grid.cell(column, row).glyph == Cell::COVERED {
+        grid.cell_mut(column - 1, row).glyph = ' ';
+    }
+    let after = column + width;
+    if after < grid.size().columns && grid.cell(after, row).glyph == Cell::COVERED {
+        grid.cell_mut(after, row).glyph = ' ';
+    }
+    *grid.cell_mut(column, row) = cell;
+    if wide {
+        *grid.cell_mut(column + 1, row) = Cell { glyph: Cell::COVERED, ..cell };
+    }
+}
+
+fn filled(size: Size, cells: &[Cell]) -> Grid {
+    let mut grid = Grid::new(size);
+    for (place, &cell) in (0..size.cell_count()).zip(cells) {
+        put_at(&mut grid, place, cell);
+    }
+    grid
+}
+
+fn put_at(grid: &mut Grid, place: usize, cell: Cell) {
+    let columns = usize::from(grid.size().columns);
+    put(grid, (place % columns) as u16, (place / columns) as u16, cell);
+}
+
+/// A ratatui buffer somewhere over the grid, perhaps beyond its edge, with a line of text.
+#[derive(Clone, Debug)]
+struct Panel {
+    area: Rect,
+    text: String,
+    style: Style,
+}
+
+impl Panel {
+    fn buffer(&self) -> Buffer {
+        let mut buffer = Buffer::empty(self.area);
+        buffer.set_style(self.area, self.style);
+        for y in self.area.top()..self.area.bottom() {
+            buffer.set_stringn(self.area.x, y, &self.text, self.area.width.into(), self.style);
+        }
+        buffer
+    }
+}
+
+fn panel() -> impl Strategy<Value = Panel> {
+    let color = prop_oneof![
+        Just(Color::Reset),
+        prop::sample::select(&[Color::Red, Color::Gray, Color::DarkGray, Color::White][..]),
+        any::<u8>().prop_map(Color::Indexed),
+        any::<[u8; 3]>().prop_map(|[r, g, b]| Color::Rgb(r, g, b)),
+    ];
+    let area =
+        (0_u16..8, 0_u16..4, 1_u16..9, 1_u16..4).prop_map(|(x, y, width, height)| Rect::new(x, y, width, height));
+    (area, "[a-c é│世🙂]{0,8}", color.clone(), color, modifier()).prop_map(|(area, text, fg, bg, modifier)| Panel {
+        area,
+        text,
+        style: Style::new().fg(fg).bg(bg).add_modifier(modifier),
+    })
+}
+
+/// What the next frame is.
+#[derive(Clone, Debug)]
+enum Step {
+    /// The same again.
+    Same,
+    /// Some cells are others.
+    Change(Vec<(usize, Cell)>),
+    /// Every cell may be another.
+    Redraw(Vec<Cell>),
+    /// A picture with a panel over it; the panel is gone with the next frame.
+    Panel(Vec<Cell>, Panel),
+    /// The window has another size.
+    Resize(Size, Vec<Cell>),
+    /// Something else has written on the screen.
+    Disturb,
+}
+
+fn step() -> impl Strategy<Value = Step> {
+    prop_oneof![
+        1 => Just(Step::Same),
+        4 => vec((0..CELLS, cell(ANYTHING)), 1..6).prop_map(Step::Change),
+        1 => vec(cell(ANYTHING), CELLS).prop_map(Step::Redraw),
+        2 => (vec(cell(PICTURE), CELLS), panel()).prop_map(|(cells, panel)| Step::Panel(cells, panel)),
+        1 => (size(), vec(cell(ANYTHING), CELLS)).prop_map(|(size, cells)| Step::Resize(size, cells)),
+        1 => Just(Step::Disturb),
+    ]
+}
+
+/// An encoder, the terminals that read its bytes, and the grid that is wanted.
+struct Stage {
+    encoder: Encoder,
+    screens: Screens,
+    grid: Grid,
+}
+
+impl Stage {
+    fn new(grid: Grid) -> Self {
+        Self { encoder: Encoder::new(), screens: Screens::disturbed(grid.size()), grid }
+    }
+
+    /// Takes the step; what the bytes have to be fewer than.
+    fn take(&mut self, step: &Step) -> usize {
+        let all = 4 + self.grid.size().cell_count() * MOST_BYTES;
+        match step {
+            Step::Same => return 0,
+            Step::Change(changes) => {
+                let count = self.grid.size().cell_count();
+                for &(place, cell) in changes {
+                    put_at(&mut self.grid, place % count, cell);
+                }
+                // Each may also have cut a wide character to its left and to its right.
+                return changes.len() * 3 * MOST_BYTES;
+            }
+            Step::Redraw(cells) => self.grid = filled(self.grid.size(), cells),
+            Step::Panel(cells, panel) => {
+                self.grid = filled(self.grid.size(), cells);
+                termtrace::overlay::lay_over(&mut self.grid, &panel.buffer());
+                overlay::assert_lies_over(&self.grid, &filled(self.grid.size(), cells), &panel.buffer());
+            }
+            Step::Resize(size, cells) => {
+                self.screens.resize(*size);
+                self.grid = filled(*size, cells);
+                return 4 + size.cell_count() * MOST_BYTES;
+            }
+            Step::Disturb => {
+                self.screens = Screens::disturbed(self.grid.size());
+                self.encoder.forget();
+            }
+        }
+        all
+    }
+
+    /// Sends the wanted grid.
+    fn send(&mut self, most: usize) {
+        let mut bytes = Vec::new();
+        self.encoder.encode(&self.grid, &mut bytes);
+        assert!(bytes.len() <= most, "{} bytes, at most {most} are needed", bytes.len());
+        self.screens.feed(&bytes);
+        self.screens.assert_show(&self.grid);
+        let mut more = Vec::new();
+        self.encoder.encode(&self.grid, &mut more);
+        assert!(more.is_empty(), "nothing has changed, and {:?} is sent", String::from_utf8_lossy(&more));
+    }
+}
+
+/// A place, a reset and all nine modifiers, two colours, a character.
+const MOST_BYTES: usize = "\x1b[12;12H".len() + 10 * "\x1b[0m".len() + 2 * "\x1b[38;2;255;255;255m".len() + 4;
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2_000) })]
+
+    #[test]
+    fn every_terminal_shows_every_frame(size in size(), cells in vec(cell(ANYTHING), CELLS), steps in vec(step(), 1..8)) {
+        let mut stage = Stage::new(filled(size, &cells));
+        stage.send(4 + size.cell_count() * MOST_BYTES);
+        for step in steps {
+            let most = stage.take(&step);
+            stage.send(most);
+        }
+    }
+}
