@@ -75,16 +75,23 @@ fn blanks_at_the_end_of_a_line_count() {
 fn a_difference_of_ansi_names_row_and_column() {
     let folder = Folder::new();
     folder.run("frame ball.ron --size 30x10 --check ball.ansi --bless").done();
-    let text = String::from_utf8(folder.read("ball.ansi")).expect("UTF-8");
-    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
-    // The last character of a line stands before the reset.
-    let last = lines[4].trim_end_matches("\x1b[0m").chars().next_back().expect("a character");
-    let place = lines[4].rfind(last).expect("it is there");
-    lines[4].replace_range(place..place + last.len_utf8(), "?");
-    folder.write("ball.ansi", lines.join("\n") + "\n");
-    let diff = difference(&folder, "ball.ron --size 30x10 --check ball.ansi");
-    assert!(diff.contains("row 4: differs from column 29 on"), "{diff}");
-    assert_eq!(diff.matches("row ").count(), 1, "{diff}");
+    let right = String::from_utf8(folder.read("ball.ansi")).expect("UTF-8");
+    let mut lines: Vec<String> = right.lines().map(str::to_owned).collect();
+    let row = lines.iter().position(|line| line.contains('▄')).expect("not all cells are flat");
+    let place = lines[row].rfind('▄').expect("it was found");
+    // Characters before the place: what stands after each sequence's m.
+    let before = lines[row][..place].split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, after)| after));
+    let column: usize = before.map(|characters| characters.chars().count()).sum();
+    // The upper half block differs from the lower one in the last of its three bytes only.
+    for other in ["?", "▀"] {
+        let line = lines[row].clone();
+        lines[row].replace_range(place..place + '▄'.len_utf8(), other);
+        folder.write("ball.ansi", lines.join("\n") + "\n");
+        lines[row] = line;
+        let diff = difference(&folder, "ball.ron --size 30x10 --check ball.ansi");
+        assert!(diff.contains(&format!("row {row}: differs from column {column} on")), "{diff}");
+        assert_eq!(diff.matches("row ").count(), 1, "{diff}");
+    }
 }
 
 #[test]

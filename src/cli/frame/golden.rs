@@ -65,6 +65,8 @@ fn ansi_difference(golden: &[u8], frame: &[u8]) -> String {
 /// How many characters, escape sequences not counted, stand before the first difference.
 fn column_of_difference(a: &[u8], b: &[u8]) -> usize {
     let same = a.iter().zip(b).take_while(|(a, b)| a == b).count();
+    // Characters may have their first bytes in common.
+    let same = (0..=same).rfind(|&at| a.get(at).is_none_or(|byte| byte & 0xc0 != 0x80)).unwrap_or(0);
     let mut columns = 0;
     let mut in_escape = false;
     for &byte in &a[..same] {
