@@ -24,8 +24,9 @@ mod screen;
 use renderer::{Job, Renderer};
 use screen::Screen;
 
-/// How the user wants the live view.
+/// How the user wants the live view: made by [`Options::new`], then changed.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Options {
     /// How pixels become cells.
     pub cell_mode: CellMode,
@@ -36,6 +37,19 @@ pub struct Options {
     /// Where to panic when `!` is pressed, so that tests can see how the terminal is left.
     #[cfg(debug_assertions)]
     pub test_panic: Option<TestPanic>,
+}
+
+impl Options {
+    /// With that cell mode; the rest as terminal and machine say.
+    pub fn new(cell_mode: CellMode) -> Self {
+        Self {
+            cell_mode,
+            cell_aspect: None,
+            threads: None,
+            #[cfg(debug_assertions)]
+            test_panic: None,
+        }
+    }
 }
 
 /// Which thread panics.
@@ -55,6 +69,8 @@ pub struct Outcome {
     pub ending: Ending,
     /// Where the user had moved the camera, if he had.
     pub moved: Option<Camera>,
+    /// Whether the terminal still takes what is written. One that has stopped reading would stop whoever says more.
+    pub heard: bool,
 }
 
 /// Why the live view ended.
@@ -80,7 +96,8 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
     let mut terminal = Terminal::take()?;
     let mut live = Live::new(camera, options, terminal.window()?);
     let ending = live.run(&mut terminal, &mut renderer, signals)?;
-    Ok(Outcome { ending, moved: (live.camera != camera).then_some(live.camera) })
+    let heard = terminal.give_back();
+    Ok(Outcome { ending, moved: (live.camera != camera).then_some(live.camera), heard })
 }
 
 /// Frames are at least this far apart.
@@ -132,10 +149,12 @@ impl Live {
     fn run(&mut self, terminal: &mut Terminal, renderer: &mut Renderer, signals: &mut Signals) -> io::Result<Ending> {
         loop {
             self.move_camera();
-            if self.stale && !renderer.is_busy() && self.frame_is_due() {
+            // Nothing is rendered that cannot be sent.
+            let idle = !renderer.is_busy() && !terminal.is_sending();
+            if self.stale && idle && self.now() >= self.next_frame() {
                 self.begin_frame(renderer);
             }
-            let woken = terminal.wait(signals.wake_pipe(), self.timeout(renderer.is_busy()))?;
+            let woken = terminal.wait(signals.wake_pipe(), self.timeout(idle && !renderer.is_busy()))?;
             if woken.wake {
                 signals.drain();
             }
@@ -155,7 +174,7 @@ impl Live {
                 self.take_inputs(&inputs, renderer);
             }
             if let Some(frame) = renderer.finished() {
-                self.screen.take_frame(frame, self.now());
+                self.screen.take_frame(frame, self.moved_until.is_some().then(|| self.now()));
             }
             self.present(terminal)?;
         }
@@ -188,8 +207,10 @@ impl Live {
         self.moved_until = self.motion.is_moving(now).then_some(now);
     }
 
-    fn frame_is_due(&self) -> bool {
-        self.begun.is_none_or(|begun| self.now() >= begun + FRAME)
+    /// The earliest time for the next frame, and for the next look at what moves.
+    fn next_frame(&self) -> Duration {
+        let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + FRAME);
+        if self.stale { next(self.begun) } else { next(self.moved_until).max(next(self.begun)) }
     }
 
     fn begin_frame(&mut self, renderer: &mut Renderer) {
@@ -199,9 +220,9 @@ impl Live {
     }
 
     /// How long there is nothing to do if nobody wakes us: for ever when nothing moves.
-    fn timeout(&self, busy: bool) -> Option<Duration> {
-        let frame = (self.stale || self.moved_until.is_some()) && !busy;
-        let until_frame = frame.then(|| self.begun.map_or(Duration::ZERO, |b| (b + FRAME).saturating_sub(self.now())));
+    fn timeout(&self, idle: bool) -> Option<Duration> {
+        let frame = (self.stale || self.moved_until.is_some()) && idle;
+        let until_frame = frame.then(|| self.next_frame().saturating_sub(self.now()));
         let until_escape = self.parser.is_waiting().then_some(ESCAPE_WAIT);
         until_frame.into_iter().chain(until_escape).min()
     }
@@ -239,6 +260,7 @@ impl Live {
             Some(Command::Reset) => self.reset(),
             Some(Command::Status) => self.screen.toggle_status(),
             Some(Command::Help) => self.screen.toggle_help(),
+            Some(Command::Close) => self.screen.close_help(),
             Some(Command::Redraw) => self.screen.redraw(),
             Some(Command::Move(_) | Command::Look(_)) | None => {}
         }
@@ -259,10 +281,13 @@ impl Live {
         self.camera = self.home;
     }
 
-    /// Brings the screen up to date: nothing is written if it is.
+    /// Brings the screen up to date: nothing is written if it is, or while the terminal is behind.
     fn present(&mut self, terminal: &mut Terminal) -> io::Result<()> {
+        if terminal.is_sending() {
+            return Ok(());
+        }
         let bytes = self.screen.bytes(self.size, &self.camera);
-        if bytes.is_empty() { Ok(()) } else { terminal.write(bytes) }
+        if bytes.is_empty() { Ok(()) } else { terminal.send(bytes) }
     }
 
     #[cfg(debug_assertions)]

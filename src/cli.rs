@@ -130,7 +130,7 @@ fn read_stdin() -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let limit = termtrace::scene_text::MAX_BYTES as u64 + 1;
     let read = io::stdin().lock().take(limit).read_to_end(&mut bytes);
-    read.map(|_| bytes).map_err(|error| Failure::runtime("standard input", error))
+    read.map(|_| bytes).map_err(|error| Failure::runtime("standard input", reason(&error)))
 }
 
 /// `x,y,z`, three finite numbers.
@@ -172,8 +172,23 @@ fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Cli, ExitCode> {
 
 fn complain(message: &str, code: u8) -> ExitCode {
     // Nobody may be listening any more; the exit code says it too.
-    let _ = writeln!(io::stderr(), "termtrace: {message}");
+    let _ = writeln!(io::stderr(), "termtrace: {}", visible(message));
     ExitCode::from(code)
+}
+
+/// Text without control characters but line feeds: a file's name or contents must not steer the terminal.
+fn visible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() && c != '\n' { shown.extend(c.escape_default()) } else { shown.push(c) }
+    }
+    shown
+}
+
+/// What the system says went wrong, without its number.
+fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_owned()
 }
 
 /// Says what the threads said when they panicked, and ends as a panic does.
@@ -188,7 +203,9 @@ fn complain_of_panic() -> ! {
 fn write_stdout(bytes: &[u8]) -> Done {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::runtime("standard output", error)),
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::runtime("standard output", reason(&error)))
+        }
         _ => Ok(()),
     }
 }

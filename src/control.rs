@@ -20,6 +20,8 @@ pub enum Command {
     Status,
     /// The help on or off.
     Help,
+    /// The help off.
+    Close,
     /// The whole screen again, in case something else wrote on it.
     Redraw,
     /// Out.
@@ -108,6 +110,7 @@ pub const BINDINGS: &[Binding] = &[
     binding(&[letter('r')], "r", Command::Reset, "back to the first view"),
     binding(&[letter('i')], "i", Command::Status, "status line"),
     binding(&[letter('?')], "?", Command::Help, "this help"),
+    binding(&[named(KeyCode::Esc)], "Esc", Command::Close, "close it"),
     binding(&[ctrl('l')], "Ctrl-L", Command::Redraw, "draw the screen again"),
     binding(&[letter('q'), ctrl('c')], "q Ctrl-C", Command::Quit, "leave"),
 ];

@@ -3,26 +3,46 @@
 use crate::color::Srgb8;
 use crate::grid::{Cell, Grid, Ink};
 use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
 use ratatui::style::Color;
 use unicode_width::UnicodeWidthChar;
 
 /// Puts the buffer's cells over the grid's, where both have them.
 pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
-    let area = buffer.area;
-    for row in area.top()..area.bottom().min(grid.size().rows) {
-        let mut column = area.left();
-        while column < area.right().min(grid.size().columns) {
-            let mut cell = cell_from_ratatui(&buffer[(column, row)]);
-            let columns = cell.glyph.width().unwrap_or(1) as u16;
-            if columns > grid.size().columns - column {
-                cell.glyph = ' '; // a wide character with half of it outside
-            }
-            *grid.cell_mut(column, row) = cell;
-            for covered in column + 1..(column + columns).min(grid.size().columns) {
-                *grid.cell_mut(covered, row) = Cell { glyph: Cell::COVERED, ..cell };
-            }
-            column += columns;
+    let area = buffer.area.intersection(Rect::new(0, 0, grid.size().columns, grid.size().rows));
+    if area.is_empty() {
+        return;
+    }
+    for row in area.rows() {
+        cut_wide_characters(grid, row);
+        lay_row(grid, buffer, row);
+    }
+}
+
+/// Half a wide character is none: where the row will begin or end in its middle, the other half becomes a blank.
+fn cut_wide_characters(grid: &mut Grid, row: Rect) {
+    let is_covered = |grid: &Grid, column| grid.cell(column, row.y).glyph == Cell::COVERED;
+    if row.left() > 0 && is_covered(grid, row.left()) {
+        grid.cell_mut(row.left() - 1, row.y).glyph = ' ';
+    }
+    if row.right() < grid.size().columns && is_covered(grid, row.right()) {
+        grid.cell_mut(row.right(), row.y).glyph = ' ';
+    }
+}
+
+fn lay_row(grid: &mut Grid, buffer: &Buffer, row: Rect) {
+    let mut column = row.left();
+    while column < row.right() {
+        let mut cell = cell_from_ratatui(&buffer[(column, row.y)]);
+        let columns = cell.glyph.width().unwrap_or(1) as u16;
+        if columns > row.right() - column {
+            cell.glyph = ' '; // a wide character with half of it outside
         }
+        *grid.cell_mut(column, row.y) = cell;
+        for covered in column + 1..(column + columns).min(row.right()) {
+            *grid.cell_mut(covered, row.y) = Cell { glyph: Cell::COVERED, ..cell };
+        }
+        column += columns;
     }
 }
 

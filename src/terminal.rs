@@ -5,7 +5,8 @@
 //! signal do its work. Messages of panics are kept until the terminal is back (see [`hold_panic_messages`]), or they
 //! would vanish with the alternate screen.
 //!
-//! `O_NONBLOCK` is never set: the terminal is shared with the shell, which would find it set after us.
+//! `O_NONBLOCK` is never set on what is shared with the shell, which would find it set after us: the screen is opened
+//! a second time for that. So a terminal that has stopped reading never keeps us from hearing keys and signals.
 
 use crate::capabilities;
 use crate::grid::Size;
@@ -13,21 +14,24 @@ use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fd::{AsFd, BorrowedFd};
 use rustix::termios;
 use std::fs::File;
-use std::io::{self, IsTerminal, Read, Write};
+use std::io::{self, IsTerminal, Read};
 use std::time::Duration;
 
 mod modes;
+mod output;
 mod panics;
 mod signals;
 
+use modes::Modes;
+use output::{Output, timespec};
 pub use panics::{hold_panic_messages, take_panic_messages};
 pub use signals::{Signals, Waker, die_of};
 
 /// A terminal in raw mode with the alternate screen, to be read, written and asked for its size.
 pub struct Terminal {
     keys: File,
-    screen: File,
-    modes: modes::Modes,
+    output: Output,
+    modes: Modes,
 }
 
 /// What woke [`Terminal::wait`].
@@ -55,10 +59,10 @@ impl Terminal {
     /// # Errors
     /// If either is not a terminal, or cannot be set up; it is then as it was.
     pub fn take() -> io::Result<Self> {
-        let screen = File::from(io::stdout().as_fd().try_clone_to_owned()?);
+        let mut output = Output::open()?;
         let keys = keys_file()?;
-        let modes = modes::Modes::take(&keys, &screen)?;
-        Ok(Self { keys, screen, modes })
+        let modes = Modes::take(&keys, &mut output)?;
+        Ok(Self { keys, output, modes })
     }
 
     /// The window's size now.
@@ -66,7 +70,7 @@ impl Terminal {
     /// # Errors
     /// If the terminal is gone.
     pub fn window(&self) -> io::Result<Window> {
-        let window = termios::tcgetwinsize(&self.screen)?;
+        let window = termios::tcgetwinsize(self.output.file())?;
         let (columns, rows) = (window.ws_col, window.ws_row);
         // A terminal that nobody told its size has none.
         let size = if columns == 0 || rows == 0 { Size::new(80, 24) } else { Size::new(columns, rows) };
@@ -74,12 +78,24 @@ impl Terminal {
         Ok(Window { size, cell_aspect })
     }
 
-    /// Sends a frame, in one write where the terminal takes it whole.
+    /// Sends a frame, in one write where the terminal takes it whole. What it does not take at once goes out while
+    /// [`wait`](Self::wait) waits.
     ///
     /// # Errors
     /// If the terminal is gone.
-    pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.screen.write_all(bytes)
+    pub fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.output.send(bytes)
+    }
+
+    /// Whether the terminal has not taken the last frame yet.
+    pub fn is_sending(&self) -> bool {
+        self.output.is_pending()
+    }
+
+    /// Gives the terminal back, as dropping it does. Whether it took all that was sent: one that has stopped reading is
+    /// left after a second, and is not to be written to any more.
+    pub fn give_back(mut self) -> bool {
+        self.modes.give_back(&self.keys, &mut self.output)
     }
 
     /// The bytes that are there. None at all: the terminal is gone.
@@ -96,25 +112,34 @@ impl Terminal {
         }
     }
 
-    /// Sleeps until there are keys or the wake pipe is readable, at most for `timeout`, or for ever without one.
+    /// Sleeps until there are keys or the wake pipe is readable, at most for `timeout`, or for ever without one; also
+    /// until the terminal takes more of what is being sent.
     ///
     /// # Errors
-    /// If the operating system refuses.
-    pub fn wait(&self, wake: BorrowedFd<'_>, timeout: Option<Duration>) -> io::Result<Woken> {
-        let mut fds = [PollFd::new(&self.keys, PollFlags::IN), PollFd::from_borrowed_fd(wake, PollFlags::IN)];
+    /// If the terminal is gone, or the operating system refuses.
+    pub fn wait(&mut self, wake: BorrowedFd<'_>, timeout: Option<Duration>) -> io::Result<Woken> {
+        // Without anything to send, only its end would be told of the screen, and the keys tell of that too.
+        let sending = if self.is_sending() { PollFlags::OUT } else { PollFlags::empty() };
+        let mut fds = [
+            PollFd::new(&self.keys, PollFlags::IN),
+            PollFd::from_borrowed_fd(wake, PollFlags::IN),
+            PollFd::new(self.output.file(), sending),
+        ];
         let timeout = timeout.map(timespec);
-        match poll(&mut fds, timeout.as_ref()) {
+        let woken = match poll(&mut fds, timeout.as_ref()) {
             // A signal: what it was is in the wake pipe, and the next call finds it there.
-            Err(rustix::io::Errno::INTR) => Ok(Woken::default()),
-            Err(error) => Err(error.into()),
-            Ok(_) => Ok(Woken { keys: !fds[0].revents().is_empty(), wake: !fds[1].revents().is_empty() }),
-        }
+            Err(rustix::io::Errno::INTR) => Woken::default(),
+            Err(error) => return Err(error.into()),
+            Ok(_) => Woken { keys: !fds[0].revents().is_empty(), wake: !fds[1].revents().is_empty() },
+        };
+        self.output.push()?;
+        Ok(woken)
     }
 }
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        self.modes.give_back(&self.keys, &mut self.screen);
+        self.modes.give_back(&self.keys, &mut self.output);
     }
 }
 
@@ -125,11 +150,4 @@ fn keys_file() -> io::Result<File> {
     }
     File::open("/dev/tty")
         .map_err(|error| io::Error::new(error.kind(), format!("no terminal to read keys from: {error}")))
-}
-
-fn timespec(duration: Duration) -> rustix::event::Timespec {
-    rustix::event::Timespec {
-        tv_sec: i64::try_from(duration.as_secs()).unwrap_or(i64::MAX),
-        tv_nsec: duration.subsec_nanos().into(),
-    }
 }

@@ -34,5 +34,7 @@ fn bend(curve: ToneCurve, light: LinearRgb) -> LinearRgb {
 
 /// Krzysztof Narkowicz's fit (2015) to the ACES reference rendering and output transforms.
 fn filmic(x: f32) -> f32 {
+    // Far beyond where it is white already; the square of more may be beyond f32.
+    let x = x.min(1e6);
     (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)
 }

@@ -42,9 +42,10 @@ impl Screen {
         }
     }
 
-    pub(super) fn take_frame(&mut self, frame: Frame, now: Duration) {
+    /// A frame, and the time while something moves.
+    pub(super) fn take_frame(&mut self, frame: Frame, moving: Option<Duration>) {
         self.frame = Some(frame);
-        self.pace.count(now);
+        self.pace.count(moving);
         self.changed = true;
     }
 
@@ -56,6 +57,11 @@ impl Screen {
     pub(super) fn toggle_help(&mut self) {
         self.help = !self.help;
         self.changed = true;
+    }
+
+    pub(super) fn close_help(&mut self) {
+        self.changed |= self.help;
+        self.help = false;
     }
 
     /// The terminal may show anything: the next bytes draw everything.
@@ -120,10 +126,11 @@ struct Pace {
 }
 
 impl Pace {
-    /// A frame is shown at `now`. A pause ends the count: frames of before it say nothing of those after.
-    fn count(&mut self, now: Duration) {
-        let between = self.last.map(|last| now.saturating_sub(last));
-        self.last = Some(now);
+    /// A frame is shown while something moves, or, without a time, at rest. A pause ends the count: frames of before it
+    /// say nothing of those after.
+    fn count(&mut self, moving: Option<Duration>) {
+        let between = self.last.zip(moving).map(|(last, now)| now.saturating_sub(last));
+        self.last = moving;
         self.frames_per_second =
             between.filter(|&between| between < PAUSE && between > Duration::ZERO).map(|between| {
                 let now = 1.0 / between.as_secs_f32();

@@ -1,9 +1,15 @@
 //! `termtrace check`: what is wrong with a scene file.
 
-use super::{Done, SceneArgs, write_stdout};
+use super::{Done, SceneArgs, visible, write_stdout};
 use clap::Args;
 
+const EXAMPLES: &str = "\
+Examples:
+  termtrace check my.ron
+  termtrace check my.ron --eye 0,0,0      whether the scene can be looked at from there";
+
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct CheckArgs {
     #[command(flatten)]
     scene: SceneArgs,
@@ -15,5 +21,6 @@ pub(super) fn run(args: &CheckArgs) -> Done {
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights.len(), "light");
-    write_stdout(format!("{}: fine ({objects}, {lights})\n", args.scene.path().display()).as_bytes())
+    let path = args.scene.path().display().to_string();
+    write_stdout(format!("{}: fine ({objects}, {lights})\n", visible(&path)).as_bytes())
 }

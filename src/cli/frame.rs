@@ -2,12 +2,12 @@
 
 mod golden;
 
-use super::{Done, Failure, SceneArgs, write_stdout};
+use super::{Done, Failure, SceneArgs, reason, write_stdout};
 use clap::{Args, ValueEnum};
+use std::fs;
 use std::io::{self, IsTerminal};
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use std::{fs, str};
 use termtrace::capabilities::{CellMode, USUAL_CELL_ASPECT};
 use termtrace::cell;
 use termtrace::export;
@@ -17,7 +17,16 @@ use termtrace::render::render;
 use termtrace::scene::Scene;
 use termtrace::tone::{Picture, tone};
 
+const EXAMPLES: &str = "\
+Examples:
+  termtrace frame my.ron                                      text, 80x24 cells, to standard output
+  termtrace frame my.ron --format ansi --size 120x40          truecolor half blocks
+  termtrace frame my.ron -o my.png --pixels 800x600 --samples 16
+  termtrace frame my.ron --check my.txt --bless               write the golden frame
+  termtrace frame my.ron --check my.txt                       compare with it";
+
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct FrameArgs {
     #[command(flatten)]
     scene: SceneArgs,
@@ -36,10 +45,10 @@ pub(super) struct FrameArgs {
     /// A cell's height over its width
     #[arg(long, value_name = "A", default_value_t = USUAL_CELL_ASPECT, value_parser = parse_cell_aspect)]
     cell_aspect: f32,
-    /// Make each pixel a square of N by N in a PNG
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=256))]
-    scale: u32,
-    /// Write to a file instead of standard output
+    /// PNG: make each pixel N by N of the file's [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    scale: Option<u32>,
+    /// Write to a file; - is standard output [default: -]
     #[arg(short, long, value_name = "FILE", conflicts_with = "check")]
     output: Option<PathBuf>,
     /// Compare with the frame in a file instead of writing one; exit code 1 and a diff if they differ
@@ -67,11 +76,16 @@ const MAX_PIXELS: u64 = 1 << 26;
 impl FrameArgs {
     /// What is to be written, by the flag, or by the file's name.
     fn format(&self) -> Result<Format, Failure> {
-        match (self.format, self.output.as_ref().or(self.check.as_ref())) {
+        match (self.format, self.output().or(self.check.as_deref())) {
             (Some(format), _) => Ok(format),
             (None, Some(path)) => format_by_ending(path),
             (None, None) => Ok(Format::Text),
         }
+    }
+
+    /// The file to write to, if it is not standard output.
+    fn output(&self) -> Option<&Path> {
+        self.output.as_deref().filter(|&path| path != Path::new("-"))
     }
 
     fn resolution(&self) -> Result<Resolution, Failure> {
@@ -94,28 +108,32 @@ impl FrameArgs {
     fn contents(&self, format: Format) -> Result<Vec<u8>, Failure> {
         let scene = self.scene.load()?;
         let resolution = self.resolution()?;
-        let scale = u64::from(self.scale);
-        let (width, height) = (u64::from(resolution.width) * scale, u64::from(resolution.height) * scale);
-        if format == Format::Png && width * height > MAX_PIXELS {
+        let scale = self.scale.unwrap_or(1);
+        let [width, height] = [resolution.width, resolution.height].map(|side| u64::from(side) * u64::from(scale));
+        if width * height > MAX_PIXELS {
             return Err(too_large(width, height));
         }
         let picture = self.picture(&scene, resolution)?;
         Ok(match format {
             Format::Text => export::text(&cell::grid_from_picture(CellMode::Ramp, &picture)).into_bytes(),
             Format::Ansi => export::ansi(&cell::grid_from_picture(CellMode::HalfBlock, &picture)),
-            Format::Png => export::png(&picture, resolution.pixel_aspect, self.scale)
-                .map_err(|error| Failure::runtime("PNG", error))?,
+            Format::Png => {
+                export::png(&picture, resolution.pixel_aspect, scale).map_err(|error| Failure::runtime("PNG", error))?
+            }
         })
     }
 }
 
 pub(super) fn run(args: &FrameArgs) -> Done {
     let format = args.format()?;
-    if format == Format::Png && args.output.is_none() && args.check.is_none() && io::stdout().is_terminal() {
+    if format != Format::Png && args.scale.is_some() {
+        return Err(Failure::Usage("--scale is for PNG; text and ANSI frames take their size from --size".to_owned()));
+    }
+    if format == Format::Png && args.output().is_none() && args.check.is_none() && io::stdout().is_terminal() {
         return Err(Failure::Usage("a PNG would garble the terminal; name a file with -o, or pipe it".to_owned()));
     }
     let frame = args.contents(format)?;
-    match (&args.check, &args.output) {
+    match (&args.check, args.output()) {
         (Some(golden), _) if args.bless => write_file(golden, &frame),
         (Some(golden), _) => golden::check(golden, format, &frame),
         (None, Some(output)) => write_file(output, &frame),
@@ -132,7 +150,7 @@ pub(super) fn usual_grid(scene: &Scene, cell_mode: CellMode, cell_aspect: f32) -
 
 /// The whole frame is there before the file is touched.
 fn write_file(path: &Path, bytes: &[u8]) -> Done {
-    fs::write(path, bytes).map_err(|error| Failure::runtime(path.display(), error))
+    fs::write(path, bytes).map_err(|error| Failure::runtime(path.display(), reason(&error)))
 }
 
 fn format_by_ending(path: &Path) -> Result<Format, Failure> {

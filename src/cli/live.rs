@@ -1,6 +1,6 @@
 //! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
 
-use super::{Done, Failure, SceneArgs, complain_of_panic, frame, write_stdout};
+use super::{Done, Failure, SceneArgs, complain_of_panic, frame, reason, write_stdout};
 use clap::{Args, ValueEnum};
 use std::io::{self, IsTerminal};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -53,16 +53,17 @@ impl LiveArgs {
     }
 
     fn options(&self) -> Options {
-        Options {
-            cell_mode: cell_mode(self.color(), |name| std::env::var(name).ok()),
-            cell_aspect: self.cell_aspect,
-            threads: self.scene.threads.map(usize::from),
-            #[cfg(debug_assertions)]
-            test_panic: self.test_panic.map(|panic| match panic {
+        let mut options = Options::new(cell_mode(self.color(), |name| std::env::var(name).ok()));
+        options.cell_aspect = self.cell_aspect;
+        options.threads = self.scene.threads.map(usize::from);
+        #[cfg(debug_assertions)]
+        {
+            options.test_panic = self.test_panic.map(|panic| match panic {
                 TestPanic::Main => app::TestPanic::Main,
                 TestPanic::Worker => app::TestPanic::Worker,
-            }),
+            });
         }
+        options
     }
 }
 
@@ -85,17 +86,18 @@ fn print(args: &LiveArgs, scene: &Scene) -> Done {
 /// The live view. Whatever happens in it, the terminal is given back before a word is said.
 fn look(args: &LiveArgs, scene: Scene) -> Done {
     let options = args.options();
-    let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", error))?;
+    let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::run(scene, options, &mut signals)));
-    let Outcome { ending, moved } = match ended {
-        Ok(outcome) => outcome.map_err(|error| Failure::runtime("terminal", error))?,
+    let Outcome { ending, moved, heard } = match ended {
+        Ok(outcome) => outcome.map_err(|error| Failure::runtime("terminal", reason(&error)))?,
         Err(_) => complain_of_panic(),
     };
     if let Ending::Signal(signal) = ending {
         die_of(signal);
     }
     match moved {
-        Some(camera) if !args.quiet => write_stdout(format!("{}\n", camera.to_ron()).as_bytes()),
+        // With a comma: a line for the scene file.
+        Some(camera) if heard && !args.quiet => write_stdout(format!("{},\n", camera.to_ron()).as_bytes()),
         _ => Ok(()),
     }
 }

@@ -1,10 +1,12 @@
 //! What is turned on, in order, and how each is turned off.
 
+use super::output::Output;
 use super::panics;
-use crossterm::{Command, cursor, style, terminal};
+use crossterm::{Command, cursor, event, style, terminal};
 use rustix::termios::{self, OptionalActions, QueueSelector, Termios};
 use std::fs::File;
-use std::io::{self, Write};
+use std::io;
+use std::time::{Duration, Instant};
 
 /// Everything that was turned on, oldest first.
 pub(super) struct Modes {
@@ -19,37 +21,53 @@ enum Mode {
     Screen(String),
 }
 
+/// How long the terminal may take over the last bytes. One that has stopped reading (Ctrl-S, a dead link) is left without.
+const PATIENCE: Duration = Duration::from_secs(1);
+
 impl Modes {
-    /// Raw mode, the alternate screen, no cursor.
-    pub(super) fn take(keys: &File, screen: &File) -> io::Result<Self> {
+    /// Raw mode, the alternate screen, no cursor, pastes in brackets.
+    pub(super) fn take(keys: &File, output: &mut Output) -> io::Result<Self> {
         let mut modes = Self { on: Vec::new() };
-        let taken = modes.turn_on(keys, screen);
+        let taken = modes.turn_on(keys, output);
         if taken.is_err() {
-            modes.give_back(keys, &mut &*screen);
+            modes.give_back(keys, output);
         }
         taken.map(|()| modes)
     }
 
-    fn turn_on(&mut self, keys: &File, mut screen: &File) -> io::Result<()> {
+    /// What is about to be turned on is listed first: half done is undone too.
+    fn turn_on(&mut self, keys: &File, output: &mut Output) -> io::Result<()> {
         let before = termios::tcgetattr(keys)?;
         let mut raw = before.clone();
         raw.make_raw();
-        // What is about to be turned on is listed first: half done is undone too.
         self.on.push(Mode::Raw(Box::new(before)));
         panics::hold(true);
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
-        // The pen is reset when the alternate screen ends, so that no colour is left for the shell.
-        self.on.push(Mode::Screen(ansi(terminal::LeaveAlternateScreen)));
+        let mut turn_on = String::new();
+        self.list(&mut turn_on, terminal::EnterAlternateScreen, terminal::LeaveAlternateScreen);
+        // Nothing to turn on: the pen is the picture's, and no colour is left for the shell.
         self.on.push(Mode::Screen(ansi(style::ResetColor)));
-        self.on.push(Mode::Screen(ansi(cursor::Show)));
-        screen.write_all((ansi(terminal::EnterAlternateScreen) + &ansi(cursor::Hide)).as_bytes())
+        self.list(&mut turn_on, cursor::Hide, cursor::Show);
+        self.list(&mut turn_on, event::EnableBracketedPaste, event::DisableBracketedPaste);
+        output.send(turn_on.as_bytes())
     }
 
-    /// Turns everything off, newest first. What fails is passed over: the rest must be undone all the same.
-    pub(super) fn give_back(&mut self, keys: &File, screen: &mut impl Write) {
+    fn list(&mut self, turn_on: &mut String, on: impl Command, off: impl Command) {
+        self.on.push(Mode::Screen(ansi(off)));
+        turn_on.push_str(&ansi(on));
+    }
+
+    /// Turns everything off, newest first, after what is still on its way, so that nothing is torn. What fails is passed
+    /// over: the rest must be undone all the same. Whether the terminal took it all; asked again, it did.
+    pub(super) fn give_back(&mut self, keys: &File, output: &mut Output) -> bool {
+        let deadline = Instant::now() + PATIENCE;
+        let mut heard = true;
         while let Some(mode) = self.on.pop() {
             match mode {
-                Mode::Screen(off) => drop(screen.write_all(off.as_bytes())),
+                Mode::Screen(off) => {
+                    let _ = output.send(off.as_bytes());
+                    heard = output.finish(deadline);
+                }
                 Mode::Raw(before) => {
                     // Keys that were meant for us are not left for the shell. (TCSAFLUSH would do both, but it waits
                     // for the output to be read, and a terminal stopped by Ctrl-S does not read.)
@@ -59,6 +77,7 @@ impl Modes {
             }
         }
         panics::hold(false);
+        heard
     }
 }
 

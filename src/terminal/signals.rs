@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 pub struct Signals {
     read: UnixStream,
     write: UnixStream,
-    /// The first signal that asked the program to end; 0: none.
+    /// The last signal that asked the program to end; 0: none.
     deadly: Arc<AtomicUsize>,
     resized: Arc<AtomicBool>,
 }

@@ -25,7 +25,7 @@ fn a_frame_is_80_by_24_characters() {
     let frame = folder.frame("ball.ron");
     assert_eq!(text_size(&frame), (80, 24));
     assert_eq!(frame.len(), 81 * 24);
-    assert_eq!(frame, folder.frame("ball.ron --size 80x24 --format text --samples 1 --cell-aspect 2 --scale 1"));
+    assert_eq!(frame, folder.frame("ball.ron --size 80x24 --format text --samples 1 --cell-aspect 2"));
     // And it is what the library gives to a test.
     let scene = Scene::from_ron("ball.ron", BALL).expect("the scene is fine");
     assert_eq!(frame, text_frame(&scene, Size::new(80, 24)).into_bytes());

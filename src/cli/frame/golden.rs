@@ -1,7 +1,7 @@
 //! `frame --check`: is the frame the one in the file, and if not, where do they differ?
 
 use super::Format;
-use crate::cli::{Done, Failure, write_stdout};
+use crate::cli::{Done, Failure, reason, visible, write_stdout};
 use similar::TextDiff;
 use std::fmt::Write;
 use std::fs;
@@ -11,12 +11,12 @@ use std::path::Path;
 pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> Done {
     let golden = fs::read(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => Failure::runtime(path.display(), "no such golden frame; --bless writes it"),
-        _ => Failure::runtime(path.display(), error),
+        _ => Failure::runtime(path.display(), reason(&error)),
     })?;
     if golden == frame {
         return Ok(());
     }
-    let name = path.display().to_string();
+    let name = visible(&path.display().to_string());
     let difference = match format {
         Format::Text => text_difference(&golden, frame, &name),
         Format::Ansi => ansi_difference(&golden, frame),
@@ -28,21 +28,9 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> Done {
 
 /// Line by line, as `diff -u`.
 fn text_difference(golden: &[u8], frame: &[u8], name: &str) -> String {
-    let (golden, frame) = (visible(golden), visible(frame));
+    // A golden file may be anything.
+    let [golden, frame] = [golden, frame].map(|bytes| visible(&String::from_utf8_lossy(bytes)));
     TextDiff::from_lines(&*golden, &*frame).unified_diff().context_radius(1).header(name, "this frame").to_string()
-}
-
-/// A golden file may be anything: what is not a character of a text frame is shown by its code.
-fn visible(bytes: &[u8]) -> String {
-    let text = String::from_utf8_lossy(bytes);
-    text.chars().fold(String::new(), |mut shown, c| {
-        if c.is_control() && c != '\n' {
-            shown.extend(c.escape_default());
-        } else {
-            shown.push(c);
-        }
-        shown
-    })
 }
 
 /// The rows that differ, and where each begins to.
