@@ -133,12 +133,12 @@ fn read_stdin() -> Result<Vec<u8>, Failure> {
     read.map(|_| bytes).map_err(|error| Failure::runtime("standard input", reason(&error)))
 }
 
-/// `x,y,z`, three finite numbers.
+/// `x,y,z`, within what a scene file may say.
 fn parse_vec3(text: &str) -> Result<Vec3, String> {
     let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse::<f32>()).collect();
     match numbers.as_deref() {
-        Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => Ok(Vec3::new(x, y, z)),
-        _ => Err("expected three numbers with commas between them, such as 0,1.5,6".to_owned()),
+        Ok(&[x, y, z]) if [x, y, z].iter().all(|number| number.abs() <= 1e9) => Ok(Vec3::new(x, y, z)),
+        _ => Err("expected three numbers from -1e9 to 1e9 with commas between them, such as 0,1.5,6".to_owned()),
     }
 }
 

@@ -31,9 +31,14 @@ use std::num::NonZeroU32;
 /// assert_eq!(text_frame(&scene, Size::new(12, 6)), rows.map(|row| format!("{row}\n")).concat());
 /// ```
 pub fn text_frame(scene: &Scene, size: Size) -> String {
-    let resolution = cell::resolution(CellMode::Ramp, size, USUAL_CELL_ASPECT);
+    text(&frame_grid(scene, CellMode::Ramp, size, USUAL_CELL_ASPECT))
+}
+
+/// The scene's own view as the cells of a screen of that size and cell aspect, one ray through each pixel's centre.
+pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f32) -> Grid {
+    let resolution = cell::resolution(cell_mode, size, cell_aspect);
     let picture = tone(&render(scene, &scene.camera, resolution, NonZeroU32::MIN), scene);
-    text(&cell::grid_from_picture(CellMode::Ramp, &picture))
+    cell::grid_from_picture(cell_mode, &picture)
 }
 
 /// The grid's characters without colours: one line for each row, with all its trailing spaces.

@@ -79,8 +79,8 @@
 //!
 //! # What is not here
 //!
-//! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, and a new surface is one file under `shape/`, a
-//! variant, and its fields in [`scene_file`]. No RON library but in the tests: see [`scene_text`]. No fixed epsilon:
+//! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, and a new surface is one file under `shape/`
+//! and a variant; scene files then need its fields in [`scene_file`] and their check in [`scene`]. No RON library but in the tests: see [`scene_text`]. No fixed epsilon:
 //! see [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin).
 
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]

@@ -1,8 +1,9 @@
 //! Surfaces: where a ray crosses them, and what they are like at that point.
 //!
 //! The lecture's way: a surface is given implicitly by f(x) = 0, and putting the ray's x = p + t d into it leaves one
-//! equation in t. Each surface solves its own in a file of its own under `shape/`; to add one, write that file, give
-//! [`Shape`] a variant for it, and let [`scene_file`](crate::scene_file) read it.
+//! equation in t. Each surface solves its own in a file of its own under `shape/`. To add one, write that file and give
+//! [`Shape`] its variant here; for scene files, [`scene_file`](crate::scene_file) reads its fields and
+//! [`scene`](crate::scene) checks them.
 //!
 //! This module knows nothing of materials and light.
 
@@ -67,39 +68,40 @@ fn largest_coordinate(v: Vec3) -> f32 {
     v.abs().max_element()
 }
 
-/// Any of the surfaces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+/// The enum of all surfaces: a variant for each, which hands every question on to it.
+macro_rules! shapes {
+    ($($(#[$doc:meta])* $surface:ident,)*) => {
+        /// Any of the surfaces.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Shape {
+            $($(#[$doc])* $surface($surface),)*
+        }
+
+        impl Surface for Shape {
+            fn closest_crossing(&self, ray: &Ray, within: Interval) -> Option<f32> {
+                match self {
+                    $(Self::$surface(surface) => surface.closest_crossing(ray, within),)*
+                }
+            }
+
+            fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
+                match self {
+                    $(Self::$surface(surface) => surface.at_crossing(ray, t),)*
+                }
+            }
+        }
+
+        $(impl From<$surface> for Shape {
+            fn from(surface: $surface) -> Self {
+                Self::$surface(surface)
+            }
+        })*
+    };
+}
+
+shapes! {
     /// All points at one distance from a centre.
-    Sphere(Sphere),
+    Sphere,
     /// All points whose difference to a given one is perpendicular to the normal.
-    Plane(Plane),
-}
-
-impl Surface for Shape {
-    fn closest_crossing(&self, ray: &Ray, within: Interval) -> Option<f32> {
-        match self {
-            Self::Sphere(sphere) => sphere.closest_crossing(ray, within),
-            Self::Plane(plane) => plane.closest_crossing(ray, within),
-        }
-    }
-
-    fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        match self {
-            Self::Sphere(sphere) => sphere.at_crossing(ray, t),
-            Self::Plane(plane) => plane.at_crossing(ray, t),
-        }
-    }
-}
-
-impl From<Sphere> for Shape {
-    fn from(sphere: Sphere) -> Self {
-        Self::Sphere(sphere)
-    }
-}
-
-impl From<Plane> for Shape {
-    fn from(plane: Plane) -> Self {
-        Self::Plane(plane)
-    }
+    Plane,
 }

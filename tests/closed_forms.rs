@@ -8,11 +8,13 @@ use std::num::NonZeroU32;
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::{Framebuffer, Resolution};
+use termtrace::hit::any_hit;
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::ray::{Interval, Ray};
 use termtrace::render::render;
 use termtrace::scene::{Background, Object, Scene, ToneCurve};
+use termtrace::shade::{TO_THE_LIGHT, shadow_ray};
 use termtrace::shape::{Plane, Side, Sphere, Surface};
 use termtrace::tone::tone;
 
@@ -222,6 +224,50 @@ fn a_surface_is_dark_on_the_side_away_from_the_light() {
 }
 
 #[test]
+fn light_from_behind_is_nothing_also_where_nothing_casts_a_shadow() {
+    // Without shadows the surface itself is not in the way: max(0, n.l) alone makes it dark.
+    for (eye, object) in [([0.0, -2.0, 2.0], floor()), ([0.0, 0.0, -4.0], unit_sphere())] {
+        let mut scene = lit(camera(eye, [0.0, 0.0, 0.0], 40.0), vec![object], vec![light([0.0, 3.0, 4.0], 9.0)]);
+        scene.shadows = false;
+        assert_eq!(seen(&scene), 0.0);
+    }
+}
+
+#[test]
+fn ambient_light_arrives_once_however_many_lights_there_are() {
+    // One light lights (0.5 * 9 / 9), the other is behind the floor: 0.5 * (0.2 + 1 + 0).
+    let lights = vec![light([0.0, 3.0, 0.0], 9.0), light([0.0, -3.0, 0.0], 9.0)];
+    let mut scene = lit(camera([0.0, 2.0, 2.0], [0.0, 0.0, 0.0], 40.0), vec![floor()], lights);
+    scene.ambient = LinearRgb::grey(0.2);
+    assert_close(seen(&scene), 0.6);
+}
+
+#[test]
+fn a_shadow_reaches_the_point_of_contact() {
+    // A ball on a floor, the light straight above: the floor is dark from where they touch on. The gap between them at
+    // the distance x from there is about x^2 / 2, and a ray's origin must be nearer to the floor than that.
+    let ball = Object::new(Sphere::new(Vec3::new(0.0, 1.0, 0.0), 1.0), GREY);
+    let scene = lit(camera([0.0, 2.0, 4.0], [0.0; 3], 40.0), vec![floor(), ball], vec![light([0.0, 50.0, 0.0], 100.0)]);
+    for x in [0.005, 0.01, 0.1, 0.5] {
+        let down = Ray { origin: Vec3::new(x, 1.0, 0.0), direction: -Vec3::Y };
+        let shadow = shadow_ray(&scene.lights[0], &floor().shape.at_crossing(&down, 1.0));
+        assert!(any_hit(&scene, &shadow, TO_THE_LIGHT), "lit at {x} from the contact");
+    }
+}
+
+#[test]
+fn of_two_surfaces_in_one_place_the_first_is_seen() {
+    let ball = |grey| Object::new(Sphere::new(Vec3::ZERO, 1.0), Material::Diffuse(LinearRgb::grey(grey)));
+    for (first, second) in [(0.2, 0.7), (0.7, 0.2)] {
+        let mut scene = Scene::new(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![ball(first), ball(second)]);
+        scene.ambient = LinearRgb::grey(1.0);
+        for pixel in picture(&scene, 21, 21).pixels.iter().filter(|pixel| pixel.g > 0.0) {
+            assert_close(pixel.g.into(), f64::from(first));
+        }
+    }
+}
+
+#[test]
 fn a_point_has_the_same_colour_from_every_viewpoint() {
     let lights = vec![light([3.0, 4.0, 5.0], 30.0), light([-2.0, 6.0, 1.0], 10.0)];
     // The same point, (0, 1, 0) on the sphere, seen from all around the upper half.
@@ -290,6 +336,51 @@ fn eye_rays_through_the_corners() {
 }
 
 #[test]
+fn a_rectangle_of_its_own_shape_is_seen_whole() {
+    // f = 2, w = 4, h = 1: half the width is 1 and half the height 0.25 at distance 1, in a picture of that shape (4).
+    // In a wider one the height stays and the width follows; in a narrower one it is the other way round.
+    let pose = camera([0.0, 0.0, 0.0], [0.0, 0.0, -1.0], 40.0).pose();
+    let camera = Camera::new(pose, ViewRectangle::from_focal_length(2.0, 4.0, 1.0).unwrap()).unwrap();
+    for (aspect, x, y) in [(4.0, 1.0, 0.25), (8.0, 2.0, 0.25), (1.0, 1.0, 1.0), (0.5, 1.0, 2.0)] {
+        let corner = camera.eye_rays(aspect).through(1.0, 1.0).direction;
+        assert!(corner.abs_diff_eq(Vec3::new(x, y, -1.0), 1e-6), "at {aspect}: {corner}");
+    }
+    // The same shape by a field of view and an aspect ratio.
+    let by_angle = ViewRectangle::from_vertical_fov(2.0 * libm::atanf(0.25)).unwrap().with_aspect_ratio(4.0).unwrap();
+    let corner = camera.with_rectangle(by_angle).eye_rays(1.0).through(0.0, 0.0).direction;
+    assert!(corner.abs_diff_eq(Vec3::new(-1.0, -1.0, -1.0), 1e-6), "{corner}");
+}
+
+#[test]
+fn another_field_of_view_keeps_the_rectangles_shape() {
+    // 90 degrees: half the height is 1 at distance 1, and the width stays four times the height.
+    let rectangle = ViewRectangle::from_focal_length(2.0, 4.0, 1.0).unwrap();
+    let wider = rectangle.with_vertical_fov(PI / 2.0).unwrap();
+    let pose = camera([0.0, 0.0, 0.0], [0.0, 0.0, -1.0], 40.0).pose();
+    let corner = Camera::new(pose, wider).unwrap().eye_rays(4.0).through(1.0, 1.0).direction;
+    assert!(corner.abs_diff_eq(Vec3::new(4.0, 1.0, -1.0), 1e-5), "{corner}");
+}
+
+#[test]
+fn a_shift_goes_right_and_up_in_heights_of_the_rectangle() {
+    // 2 wide and 1 high at distance 1, moved by half a height to the right and a quarter up.
+    let rectangle = ViewRectangle::from_focal_length(1.0, 2.0, 1.0).unwrap().with_shift(Vec2::new(0.5, 0.25)).unwrap();
+    let pose = camera([0.0, 0.0, 0.0], [0.0, 0.0, -1.0], 40.0).pose();
+    let rays = Camera::new(pose, rectangle).unwrap().eye_rays(2.0);
+    for (qu, qv, x, y) in [(0.0, 0.0, -0.5, -0.25), (0.5, 0.5, 0.5, 0.25), (1.0, 1.0, 1.5, 0.75)] {
+        let direction = rays.through(qu, qv).direction;
+        assert!(direction.abs_diff_eq(Vec3::new(x, y, -1.0), 1e-6), "({qu}, {qv}): {direction}");
+    }
+}
+
+#[test]
+fn patterns_lie_along_x_and_z_on_a_floor() {
+    let plane = Plane::new(Vec3::new(1.0, 0.0, 2.0), Vec3::Y);
+    let ray = Ray { origin: Vec3::new(4.0, 5.0, 7.0), direction: -Vec3::Y };
+    assert!(plane.at_crossing(&ray, 5.0).uv.abs_diff_eq(Vec2::new(3.0, 5.0), 1e-6));
+}
+
+#[test]
 fn an_off_centre_rectangle_moves_the_picture_and_nothing_else() {
     // Shifted up by a quarter of its height, the rectangle shows the target a quarter of the height below its middle.
     let straight = camera([0.0, 0.0, 9.0], [0.0, 0.0, 0.0], 40.0);
@@ -323,9 +414,19 @@ fn light_becomes_srgb_by_its_own_curve() {
     scene.exposure = 4.0;
     scene.tone_curve = ToneCurve::Reinhard;
     assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 188);
+    // Of a colour, the luminance is bent, and the hue stays: Y of (1, 0.5, 0) is 0.5702, and 1 / 1.5702 = 0.63686.
+    scene.background = Background::Color(LinearRgb::new(0.25, 0.125, 0.0));
+    let orange = tone(&picture(&scene, 1, 1), &scene).pixels[0];
+    assert_eq!([orange.r, orange.g, orange.b], [209, 153, 0]);
+    scene.background = Background::Color(LinearRgb::grey(0.25));
     scene.tone_curve = ToneCurve::Filmic;
     // (2.51 + 0.03) / (2.43 + 0.59 + 0.14) = 0.80380, which is encoded as 0.90824.
     assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 232);
+    // No light is too bright to be white.
+    for curve in [ToneCurve::None, ToneCurve::Reinhard, ToneCurve::Filmic] {
+        (scene.tone_curve, scene.background) = (curve, Background::Color(LinearRgb::grey(1e30)));
+        assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 255, "{curve:?}");
+    }
 }
 
 #[test]

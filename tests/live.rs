@@ -89,7 +89,7 @@ fn the_picture_is_the_librarys_and_q_leaves() {
 }
 
 #[test]
-fn the_first_frame_is_one_write_without_a_clear() {
+fn the_first_frame_comes_without_a_clear() {
     let mut session = looking(termtrace());
     let bytes = session.seen().bytes().to_vec();
     assert!(!bytes.windows(4).any(|window| window == b"\x1b[2J"), "no clear");
@@ -196,6 +196,10 @@ fn help_shows_every_binding_and_goes_away() {
     }
     session.send(b"?");
     wait_for_picture(&mut session, Size::cells(80, 24));
+    session.send(b"?");
+    session.wait_for_text("leave");
+    session.send(b"\x1b");
+    wait_for_picture(&mut session, Size::cells(80, 24));
     leave(&mut session);
 }
 
@@ -237,6 +241,118 @@ fn at_rest_nothing_is_computed() {
     leave(&mut session);
 }
 
+/// A key that changes nothing (Up at the pole) is held: the loop looks at it once a frame, and renders nothing.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_held_key_that_changes_nothing_costs_nothing() {
+    let mut session = termtrace().arg("--eye").arg("0,9,0.1").arg("--target").arg("0,99,0.11").spawn();
+    session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+    session.send(b"k");
+    // Up to the pole, and on for a while.
+    assert!(!session.sees(Duration::from_millis(400), |_| false));
+    let (before, bytes) = (ticks(&session), session.seen().bytes().len());
+    for _ in 0..20 {
+        session.send(b"k");
+        assert!(!session.sees(Duration::from_millis(40), |_| false));
+    }
+    assert_eq!(session.seen().bytes().len(), bytes, "frames at the pole");
+    assert!(ticks(&session) - before <= 8, "{} ticks of 80", ticks(&session) - before);
+    leave(&mut session);
+}
+
+/// Frames are at least a sixtieth of a second apart, however small and quick they are.
+#[test]
+fn no_more_than_sixty_frames_are_shown_in_a_second() {
+    let size = Size::cells(80, 3);
+    let mut session = termtrace().size(size).spawn();
+    wait_for_picture(&mut session, size);
+    // The status line shows the eye: a frame is another eye. A glide and its first frame take 0.717 s.
+    session.send(b"iw");
+    let mut eyes = std::collections::HashSet::new();
+    session.sees(Duration::from_millis(900), |seen| {
+        eyes.insert(seen.screen().text().concat().rsplit("eye").next().map(str::to_owned));
+        false
+    });
+    assert!((10..=46).contains(&eyes.len()), "{} frames in 0.717 s", eyes.len());
+    leave(&mut session);
+}
+
+/// A terminal that has stopped reading (Ctrl-S, a dead link) is left all the same.
+#[test]
+fn a_terminal_that_does_not_read_is_left() {
+    for (what, code, signal) in [("q", Some(0), None), ("TERM", None, Some(Signal::TERM))] {
+        let mut session = looking(termtrace());
+        session.stop_reading();
+        // More frames than any buffer holds.
+        for _ in 0..60 {
+            session.send(b"\x0cd\x0ca");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        match signal {
+            Some(signal) => session.signal(signal),
+            None => session.send(b"q"),
+        }
+        let status = session.wait_exit(Duration::from_secs(6));
+        assert_eq!((status.code(), status.signal()), (code, signal.map(Signal::as_raw)), "{what}");
+        assert_eq!(session.termios_changes(), Vec::<String>::new(), "{what}");
+    }
+}
+
+/// A frame that takes long is given up.
+#[test]
+fn a_slow_frame_does_not_keep_anybody_from_leaving() {
+    use std::fmt::Write as _;
+    let mut scene = String::from("(camera: (eye: (0, 0, 30), target: (0, 0, 0)), objects: [");
+    for n in 0..20_000 {
+        let _ = write!(scene, "Sphere(center: ({}, {}, {}), radius: 0.1),", n % 40 - 20, n / 40 % 40 - 20, n / 1600);
+    }
+    scene.push_str("])");
+    let mut file = tempfile::NamedTempFile::new().expect("a file can be made");
+    file.write_all(scene.as_bytes()).expect("a file can be written");
+    let mut session = program().arg(file.path()).size(Size::cells(400, 200)).spawn();
+    session.wait_for("the terminal to be taken", SOON, |seen| seen.screen().is_alternate());
+    session.send(b"q");
+    let start = std::time::Instant::now();
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    assert!(start.elapsed() < Duration::from_secs(3), "{:?}", start.elapsed());
+    session.assert_clean();
+}
+
+/// In the reverse order of turning on: the cursor first, then the colours, then the screen.
+#[test]
+fn what_was_turned_on_is_undone_in_reverse() {
+    let mut session = looking(termtrace());
+    let said = leave(&mut session);
+    let places = ["\x1b[?2004l", "\x1b[?25h", "\x1b[0m", "\x1b[?1049l"].map(|off| said.rfind(off));
+    assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?}: {said:?}");
+}
+
+/// What is typed ahead of the shell is not typed into it.
+#[test]
+fn keys_that_were_meant_for_us_are_not_left_for_the_shell() {
+    let mut session = program_in_a_shell("read -r line; echo \"left: [$line]\"");
+    session.wait_for("a picture", SOON, |seen| seen.screen().is_alternate() && seen.bytes().len() > 2_000);
+    session.send(b"qwasd\r");
+    session.wait_for("the screen given back", SOON, |seen| !seen.screen().is_alternate());
+    session.send(b"fresh\r");
+    session.wait_for_text("left: [fresh]");
+}
+
+/// The program, and then a script in the same terminal.
+fn program_in_a_shell(script: &str) -> Session {
+    Start::shell(&format!("{} {SCENE} --quiet; {script}", env!("CARGO_BIN_EXE_termtrace"))).spawn()
+}
+
+#[test]
+fn pasted_text_presses_no_keys() {
+    let mut session = looking(termtrace());
+    session.send(b"\x1b[200~q\x03wasd\x1b[201~");
+    let wanted = picture(CellMode::HalfBlock, Size::cells(80, 24));
+    let moved = session.sees(Duration::from_millis(300), |seen| !shows(seen.screen(), &wanted));
+    assert!(!moved, "the paste moved the eye");
+    leave(&mut session);
+}
+
 #[test]
 fn redraw_repairs_a_screen_that_something_else_wrote_on() {
     let mut session = looking(termtrace());
@@ -269,8 +385,8 @@ fn any_size_works() {
     for size in [Size::cells(1, 1), Size::cells(2, 1), Size::cells(1, 3), Size::cells(300, 120)] {
         let mut session = termtrace().size(size).spawn();
         wait_for_picture(&mut session, size);
-        session.send(b"?i");
         let before = session.seen().bytes().len();
+        session.send(b"?i");
         session.wait_for("panels", SOON, |seen| seen.bytes().len() > before);
         leave(&mut session);
     }

@@ -12,7 +12,6 @@ use termtrace::capabilities::{CellMode, USUAL_CELL_ASPECT};
 use termtrace::cell;
 use termtrace::export;
 use termtrace::framebuffer::Resolution;
-use termtrace::grid::{Grid, Size};
 use termtrace::render::render;
 use termtrace::scene::Scene;
 use termtrace::tone::{Picture, tone};
@@ -70,8 +69,8 @@ enum Format {
     Png,
 }
 
-/// The most pixels that a frame may have, and that a scaled PNG may have: 768 MiB of light.
-const MAX_PIXELS: u64 = 1 << 26;
+/// The most pixels that a frame may have, and a scaled PNG: some 900 MB while it is traced.
+const MAX_PIXELS: u64 = 1 << 25;
 
 impl FrameArgs {
     /// What is to be written, by the flag, or by the file's name.
@@ -139,13 +138,6 @@ pub(super) fn run(args: &FrameArgs) -> Done {
         (None, Some(output)) => write_file(output, &frame),
         (None, None) => write_stdout(&frame),
     }
-}
-
-/// The frame that a program gets that does not say what it wants: 80x24 cells, one sample.
-pub(super) fn usual_grid(scene: &Scene, cell_mode: CellMode, cell_aspect: f32) -> Grid {
-    let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect);
-    let picture = tone(&render(scene, &scene.camera, resolution, NonZeroU32::MIN), scene);
-    cell::grid_from_picture(cell_mode, &picture)
 }
 
 /// The whole frame is there before the file is touched.

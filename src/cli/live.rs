@@ -7,13 +7,20 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use termtrace::app::{self, Ending, Options, Outcome};
 use termtrace::capabilities::{CellMode, ColorChoice, USUAL_CELL_ASPECT, cell_mode};
 use termtrace::export;
+use termtrace::grid::Size;
 use termtrace::scene::Scene;
 use termtrace::terminal::{Signals, die_of};
+
+/// The names of the commands, for who misspells one.
+const COMMANDS: [&str; 2] = ["frame", "check"];
 
 #[derive(Args)]
 pub(super) struct LiveArgs {
     #[command(flatten)]
     scene: SceneArgs,
+    /// What is too much, kept to say so
+    #[arg(hide = true)]
+    more: Vec<String>,
     /// Whether to use colour; auto asks NO_COLOR, TERM and the locale
     #[arg(long, value_name = "WHEN", default_value = "auto")]
     color: Color,
@@ -68,19 +75,34 @@ impl LiveArgs {
 }
 
 pub(super) fn run(args: &LiveArgs) -> Done {
+    if !args.more.is_empty() {
+        return Err(too_much(&args.scene.path().display().to_string(), &args.more));
+    }
     let scene = args.scene.load()?;
     if io::stdout().is_terminal() { look(args, scene) } else { print(args, &scene) }
+}
+
+/// More than a scene: its name was likely meant for a command.
+fn too_much(first: &str, more: &[String]) -> Failure {
+    let close = COMMANDS.into_iter().find(|command| strsim::damerau_levenshtein(first, command) <= 2);
+    Failure::Usage(match close {
+        Some(command) => format!("there is no command \"{first}\"; did you mean \"{command}\"?"),
+        None => format!("one scene at a time: what is \"{}\" after \"{first}\"?", more.join(" ")),
+    })
 }
 
 /// One frame, as `termtrace frame` prints it.
 fn print(args: &LiveArgs, scene: &Scene) -> Done {
     let cell_aspect = args.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
-    let (cell_mode, export): (_, fn(&_) -> Vec<u8>) = match args.color {
-        Color::Always => (CellMode::HalfBlock, export::ansi),
-        Color::Auto | Color::Never => (CellMode::Ramp, |grid| export::text(grid).into_bytes()),
+    let cell_mode = match args.color {
+        Color::Always => CellMode::HalfBlock,
+        Color::Auto | Color::Never => CellMode::Ramp,
     };
-    let grid = args.scene.on_threads(|| frame::usual_grid(scene, cell_mode, cell_aspect))?;
-    write_stdout(&export(&grid))
+    let grid = args.scene.on_threads(|| export::frame_grid(scene, cell_mode, Size::new(80, 24), cell_aspect))?;
+    write_stdout(&match cell_mode {
+        CellMode::HalfBlock => export::ansi(&grid),
+        CellMode::Ramp => export::text(&grid).into_bytes(),
+    })
 }
 
 /// The live view. Whatever happens in it, the terminal is given back before a word is said.

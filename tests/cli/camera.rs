@@ -83,14 +83,14 @@ fn numbers_that_are_none_are_turned_away() {
 fn extreme_cameras_do_not_panic() {
     let folder = Folder::new();
     for flags in [
-        "--eye 3e38,-3e38,3e38",
-        "--eye 1e20,0,0 --target -1e20,0,1",
+        "--eye 1e9,-1e9,1e9",
+        "--eye 1e9,0,0 --target -1e9,0,1",
         "--eye 1e-40,0,0 --target 0,0,1e-40",
-        "--up 3e38,3e38,3e38",
+        "--up 1e9,1e9,1e9",
         "--up 1e-45,0,0",
         "--fov 1e-30",
         "--fov 179.99999",
-        "--eye 0,0,0 --target 0,0,3e38",
+        "--eye 0,0,0 --target 0,0,1e9",
         "--eye 0,0,1 --target 0,0,1.0000001",
     ] {
         let run = folder.run(&format!("frame ball.ron --size 9x4 {flags}"));
@@ -98,5 +98,14 @@ fn extreme_cameras_do_not_panic() {
             Some(0) => assert_eq!(run.stdout.len(), 40, "{flags}"),
             _ => run.fails_in_a_line(2, ""),
         }
+    }
+}
+
+/// A scene file may say no more either, and the camera that is printed on leaving must load again.
+#[test]
+fn coordinates_beyond_a_scenes_limits_are_misuse() {
+    let folder = Folder::new();
+    for flags in ["--eye 3e38,0,0", "--target 0,0,-1.1e9", "--up inf,0,0", "--eye NaN,0,0"] {
+        folder.run(&format!("frame ball.ron {flags}")).is_misused("from -1e9 to 1e9");
     }
 }

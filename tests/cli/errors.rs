@@ -146,7 +146,10 @@ fn a_wrong_command_line_is_told_and_helped() {
     folder.run("ball.ron --colour=always").is_misused("'--color");
     folder.run("ball.ron --samples 2").is_misused("--samples");
     folder.run("check ball.ron --size 2x2").is_misused("--size");
-    folder.run("ball.ron other.ron").is_misused("other.ron");
+    folder.run("ball.ron other.ron").fails_in_a_line(2, "one scene at a time");
+    folder.run("fram ball.ron").fails_in_a_line(2, "did you mean \"frame\"?");
+    folder.run("ball.ron --color=always other.ron").fails_in_a_line(2, "other.ron");
+    folder.run("frame ball.ron --scale 2").fails_in_a_line(2, "--scale is for PNG");
     folder.run("frame ball.ron other.ron").is_misused("other.ron");
     folder.run("frame ball.ron --scale 0").is_misused("--scale");
     folder.run("frame ball.ron --format text --format png").is_misused("multiple times");

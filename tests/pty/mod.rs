@@ -322,6 +322,12 @@ impl Session {
         rustix::termios::tcsetwinsize(&*self.master, size.winsize()).expect("a terminal can be resized");
     }
 
+    /// From now on nobody reads what the child writes, as when a terminal was stopped or a link is dead.
+    pub(crate) fn stop_reading(&mut self) {
+        self.output.stop();
+        self.pump();
+    }
+
     /// The terminal's size, as it would be told to the child.
     pub(crate) fn window_size(&self) -> Winsize {
         rustix::termios::tcgetwinsize(&*self.master).expect("a terminal has a size")

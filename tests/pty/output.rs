@@ -81,13 +81,20 @@ impl Output {
     }
 }
 
-impl Drop for Output {
-    fn drop(&mut self) {
+impl Output {
+    /// Reads no more, as a terminal that was stopped, or whose link is dead.
+    pub(super) fn stop(&mut self) {
         self.stop = None;
         if let Some(thread) = self.thread.take() {
             // A panic of the thread has shown itself already.
             let _ = thread.join();
         }
+    }
+}
+
+impl Drop for Output {
+    fn drop(&mut self) {
+        self.stop();
     }
 }
 
