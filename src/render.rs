@@ -12,8 +12,8 @@ use crate::framebuffer::{Framebuffer, Resolution};
 use crate::hit::{self, Hit};
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::shade::{self, TO_THE_LIGHT};
-use crate::shape::{Surface, SurfacePoint};
+use crate::shade::{self, ShadowRays};
+use crate::shape::SurfacePoint;
 use rayon::prelude::*;
 use std::num::NonZeroU32;
 use std::ops::Range;
@@ -107,16 +107,7 @@ struct Buffers {
     hits: Vec<Option<Hit>>,
     points: Vec<Option<SurfacePoint>>,
     light: Vec<LinearRgb>,
-    shadow: ShadowBuffers,
-}
-
-/// The arrays of one light's shadow rays.
-#[derive(Default)]
-struct ShadowBuffers {
-    /// Which of the tile's pixels each ray belongs to, and the light that it brings if nothing is in its way.
-    arriving: Vec<(usize, LinearRgb)>,
-    rays: Vec<Ray>,
-    blocked: Vec<bool>,
+    shadows: ShadowRays,
 }
 
 impl Frame<'_> {
@@ -126,12 +117,13 @@ impl Frame<'_> {
         let mut rays = 0;
         for sample in 0..self.samples.get() {
             self.make_eye_rays(tile, sample, &mut buffers.rays);
-            hit::closest_hits(self.scene, &buffers.rays, &mut buffers.hits);
-            find_points(self.scene, buffers);
-            let shadow_rays = gather_light(self.scene, buffers);
-            rays += (buffers.rays.len() + shadow_rays) as u64;
-            shade(self.scene, buffers);
-            sum.iter_mut().zip(&buffers.light).for_each(|(sum, light)| *sum += *light);
+            let Buffers { rays: eye_rays, hits, points, light, shadows } = buffers;
+            hit::closest_hits(self.scene, eye_rays, hits);
+            shade::surface_points(self.scene, eye_rays, hits, points);
+            let shadow_rays = shade::arriving_light(self.scene, points, shadows, light);
+            shade::reflect(self.scene, eye_rays, hits, points, light);
+            sum.iter_mut().zip(light).for_each(|(sum, light)| *sum += *light);
+            rays += (eye_rays.len() + shadow_rays) as u64;
         }
         let share = 1.0 / self.samples.get() as f32;
         TracedTile { light: sum.into_iter().map(|light| light * share).collect(), rays }
@@ -159,66 +151,4 @@ fn sample_position(sample: u32) -> (f32, f32) {
         (position >> 8) as f32 / 16_777_216.0
     };
     (part(3_242_174_889), part(2_447_445_414))
-}
-
-/// The surface at each hit.
-fn find_points(scene: &Scene, buffers: &mut Buffers) {
-    buffers.points.clear();
-    buffers.points.extend(
-        buffers
-            .rays
-            .iter()
-            .zip(&buffers.hits)
-            .map(|(ray, hit)| hit.map(|hit| scene.objects()[hit.object as usize].shape.at_crossing(ray, hit.t))),
-    );
-}
-
-/// The light that arrives at each point: ambient + sum over lights of V * I * max(0, n.l) / d^2. Returns the number of
-/// shadow rays that this took.
-fn gather_light(scene: &Scene, buffers: &mut Buffers) -> usize {
-    let mut shadow_rays = 0;
-    let Buffers { points, light: arriving, shadow, .. } = buffers;
-    arriving.clear();
-    arriving.resize(points.len(), scene.ambient);
-    for light in &scene.lights {
-        shadow.arriving.clear();
-        shadow.rays.clear();
-        for (pixel, point) in points.iter().enumerate() {
-            let Some(point) = point else { continue };
-            let Some(incidence) = shade::incidence(light, point) else {
-                continue;
-            };
-            shadow.arriving.push((pixel, incidence.light));
-            shadow.rays.push(shade::shadow_ray(light, point));
-        }
-        shadow_rays += find_shadows(scene, shadow);
-        for (&(pixel, light), &blocked) in shadow.arriving.iter().zip(&shadow.blocked) {
-            if !blocked {
-                arriving[pixel] += light;
-            }
-        }
-    }
-    shadow_rays
-}
-
-/// V = 0 for each shadow ray that meets an object before the light. Returns how many of them were traced.
-fn find_shadows(scene: &Scene, shadow: &mut ShadowBuffers) -> usize {
-    if scene.shadows {
-        hit::any_hits(scene, &shadow.rays, TO_THE_LIGHT, &mut shadow.blocked);
-        shadow.rays.len()
-    } else {
-        shadow.blocked.clear();
-        shadow.blocked.resize(shadow.rays.len(), false);
-        0
-    }
-}
-
-/// What goes to the eye: the reflected part of what arrives, or the background where nothing was hit.
-fn shade(scene: &Scene, buffers: &mut Buffers) {
-    for (pixel, light) in buffers.light.iter_mut().enumerate() {
-        *light = match (buffers.hits[pixel], &buffers.points[pixel]) {
-            (Some(hit), Some(point)) => scene.objects()[hit.object as usize].material.reflectance(point) * *light,
-            _ => shade::background(scene, &buffers.rays[pixel]),
-        };
-    }
 }

@@ -11,11 +11,96 @@
 //! Nothing in it depends on where the eye is, but for the side of the surface that it sees.
 
 use crate::color::LinearRgb;
+use crate::hit::{self, Hit};
 use crate::light::{Falloff, PointLight};
 use crate::ray::{Interval, Ray};
 use crate::scene::{Background, Scene};
-use crate::shape::SurfacePoint;
+use crate::shape::{Surface, SurfacePoint};
 use glam::Vec3;
+
+/// The surface at each hit.
+pub fn surface_points(scene: &Scene, rays: &[Ray], hits: &[Option<Hit>], points: &mut Vec<Option<SurfacePoint>>) {
+    points.clear();
+    points.extend(
+        rays.iter()
+            .zip(hits)
+            .map(|(ray, hit)| hit.map(|hit| scene.objects()[hit.object as usize].shape.at_crossing(ray, hit.t))),
+    );
+}
+
+/// The arrays of one light's shadow rays.
+#[derive(Default)]
+pub struct ShadowRays {
+    /// Which point each ray belongs to, and the light that it brings if nothing is in its way.
+    arriving: Vec<(usize, LinearRgb)>,
+    rays: Vec<Ray>,
+    blocked: Vec<bool>,
+}
+
+/// The light that arrives at each point: ambient + sum over lights of V * I * max(0, n.l) / d^2. Returns the number of
+/// shadow rays that this took.
+pub fn arriving_light(
+    scene: &Scene,
+    points: &[Option<SurfacePoint>],
+    shadows: &mut ShadowRays,
+    arriving: &mut Vec<LinearRgb>,
+) -> usize {
+    let mut shadow_rays = 0;
+    arriving.clear();
+    arriving.resize(points.len(), scene.ambient);
+    for light in &scene.lights {
+        shadows.aim(light, points);
+        shadow_rays += shadows.trace(scene);
+        for (&(point, light), &blocked) in shadows.arriving.iter().zip(&shadows.blocked) {
+            if !blocked {
+                arriving[point] += light;
+            }
+        }
+    }
+    shadow_rays
+}
+
+impl ShadowRays {
+    /// A ray from each point that faces the light.
+    fn aim(&mut self, light: &PointLight, points: &[Option<SurfacePoint>]) {
+        self.arriving.clear();
+        self.rays.clear();
+        for (at, point) in points.iter().enumerate() {
+            let Some(point) = point else { continue };
+            let Some(incidence) = incidence(light, point) else { continue };
+            self.arriving.push((at, incidence.light));
+            self.rays.push(shadow_ray(light, point));
+        }
+    }
+
+    /// V = 0 for each ray that meets an object before the light. Returns how many of them were traced.
+    fn trace(&mut self, scene: &Scene) -> usize {
+        if scene.shadows {
+            hit::any_hits(scene, &self.rays, TO_THE_LIGHT, &mut self.blocked);
+            self.rays.len()
+        } else {
+            self.blocked.clear();
+            self.blocked.resize(self.rays.len(), false);
+            0
+        }
+    }
+}
+
+/// What goes to the eye: the reflected part of the light that arrives, or the background where nothing was hit.
+pub fn reflect(
+    scene: &Scene,
+    rays: &[Ray],
+    hits: &[Option<Hit>],
+    points: &[Option<SurfacePoint>],
+    light: &mut [LinearRgb],
+) {
+    for (at, light) in light.iter_mut().enumerate() {
+        *light = match (hits[at], &points[at]) {
+            (Some(hit), Some(point)) => scene.objects()[hit.object as usize].material.reflectance(point) * *light,
+            _ => background(scene, &rays[at]),
+        };
+    }
+}
 
 /// What one light does at a point that it faces, if nothing is in its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
