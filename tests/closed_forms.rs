@@ -353,12 +353,13 @@ fn a_rectangle_of_its_own_shape_is_seen_whole() {
 
 #[test]
 fn another_field_of_view_keeps_the_rectangles_shape() {
-    // 90 degrees: half the height is 1 at distance 1, and the width stays four times the height.
+    // 90 degrees: half the height is 1 at distance 1, and the width stays four times the height: in a square picture
+    // half the width is 4, and so is half the height.
     let rectangle = ViewRectangle::from_focal_length(2.0, 4.0, 1.0).unwrap();
     let wider = rectangle.with_vertical_fov(PI / 2.0).unwrap();
     let pose = camera([0.0, 0.0, 0.0], [0.0, 0.0, -1.0], 40.0).pose();
-    let corner = Camera::new(pose, wider).unwrap().eye_rays(4.0).through(1.0, 1.0).direction;
-    assert!(corner.abs_diff_eq(Vec3::new(4.0, 1.0, -1.0), 1e-5), "{corner}");
+    let corner = Camera::new(pose, wider).unwrap().eye_rays(1.0).through(1.0, 1.0).direction;
+    assert!(corner.abs_diff_eq(Vec3::new(4.0, 4.0, -1.0), 1e-5), "{corner}");
 }
 
 #[test]
