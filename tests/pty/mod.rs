@@ -20,7 +20,7 @@ mod termios;
 
 use std::{
     ffi::{OsStr, OsString},
-    io::{self, Write},
+    io::{self, Read, Write},
     os::{
         fd::AsFd,
         unix::{ffi::OsStrExt, fs::OpenOptionsExt, process::ExitStatusExt},
@@ -326,6 +326,26 @@ impl Session {
     pub(crate) fn stop_reading(&mut self) {
         self.output.stop();
         self.pump();
+    }
+
+    /// Waits until the child has read all that was typed, and then some, so that what is typed next it may never read.
+    #[track_caller]
+    pub(crate) fn wait_for_no_reader(&mut self) {
+        let deadline = Instant::now() + SOON;
+        while rustix::io::ioctl_fionread(&self.slave_side).expect("a terminal counts what was typed") > 0 {
+            assert!(Instant::now() < deadline, "what was typed is not read");
+            self.output.wait_for_more(Instant::now() + LOOK);
+        }
+        self.sees(Duration::from_millis(200), |_| false);
+    }
+
+    /// What was typed and read by nobody: the next reader, such as a shell, would get it.
+    pub(crate) fn typed_ahead(&mut self) -> Vec<u8> {
+        let mut bytes = vec![0; 4096];
+        // Nothing there is WouldBlock.
+        let count = self.slave_side.read(&mut bytes).unwrap_or(0);
+        bytes.truncate(count);
+        bytes
     }
 
     /// The terminal's size, as it would be told to the child.
