@@ -253,6 +253,7 @@ fn a_shadow_reaches_the_point_of_contact() {
         let down = Ray { origin: Vec3::new(3.0 + x, 1.0, 0.0), direction: -Vec3::Y };
         let shadow = shadow_ray(&lamp, &floor().shape.at_crossing(&down, 1.0));
         assert!(any_hit(&scene, &shadow, TO_THE_LIGHT), "lit at {x} from the contact");
+        assert!(shadow.origin.y < x * x / 2.0, "inside the ball at {x}: {}", shadow.origin);
     }
 }
 
