@@ -8,7 +8,7 @@ use std::path::Path;
 use termtrace::camera::{Camera, Pose};
 use termtrace::capabilities::CellMode;
 use termtrace::cell;
-use termtrace::encode::Encoder;
+use termtrace::encode::{Encoder, Order};
 use termtrace::grid::{Grid, Size};
 use termtrace::render::render;
 use termtrace::scene::Scene;
@@ -73,7 +73,7 @@ fn encode(criterion: &mut Criterion) {
         criterion.bench_function(&format!("encode 20 frames of a turn at {size:?}"), |bencher| {
             let mut bytes = Vec::new();
             bencher.iter(|| {
-                let mut encoder = Encoder::new();
+                let mut encoder = Encoder::new().with_order(Order::Color).with_upper_half(true);
                 for frame in &frames {
                     bytes.clear();
                     encoder.encode(black_box(frame), &mut bytes);

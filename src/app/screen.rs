@@ -5,7 +5,7 @@ use super::renderer::Frame;
 use crate::camera::Camera;
 use crate::capabilities::CellMode;
 use crate::cell;
-use crate::encode::Encoder;
+use crate::encode::{Encoder, Order};
 use crate::grid::{Grid, Size};
 use crate::overlay;
 use ratatui::buffer::Buffer;
@@ -31,7 +31,7 @@ impl Screen {
     pub(super) fn new(cell_mode: CellMode) -> Self {
         Self {
             cell_mode,
-            encoder: Encoder::new(),
+            encoder: Encoder::new().with_order(Order::Color),
             frame: None,
             status: false,
             help: false,

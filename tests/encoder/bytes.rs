@@ -2,7 +2,7 @@
 
 use super::rgb;
 use ratatui::style::Modifier;
-use termtrace::encode::Encoder;
+use termtrace::encode::{Encoder, Order};
 use termtrace::grid::{Cell, Grid, Ink, Size};
 
 const A: Ink = rgb(10, 20, 30);
@@ -30,7 +30,7 @@ fn a_first_frame_says_each_colour_once() {
     let grid = flat(Cell::new('▄', A, B));
     assert_eq!(
         encoded(&mut Encoder::new(), &grid),
-        "\x1b[0m\x1b[1;1H\x1b[48;2;200;100;0m\x1b[38;2;10;20;30m▄▄▄▄▄\x1b[2;1H▄▄▄▄▄\x1b[3;1H▄▄▄▄▄"
+        "\x1b[0m\x1b[H\x1b[38;2;10;20;30;48;2;200;100;0m▄▄▄▄▄\x1b[2H▄▄▄▄▄\x1b[3H▄▄▄▄▄"
     );
 }
 
@@ -47,12 +47,12 @@ fn one_changed_cell_is_a_place_a_colour_and_a_character() {
         // The pen still has that colour.
         (Cell::new('x', C, B), "\x1b[2;4Hx"),
         (Cell::new('x', C, A), "\x1b[2;4H\x1b[48;2;10;20;30mx"),
-        (Cell::new('x', B, C), "\x1b[2;4H\x1b[48;2;1;2;3m\x1b[38;2;200;100;0mx"),
+        (Cell::new('x', B, C), "\x1b[2;4H\x1b[38;2;200;100;0;48;2;1;2;3mx"),
         // The colour of a space is not seen, and the pen's stays.
         (Cell::new(' ', A, B), "\x1b[2;4H\x1b[48;2;200;100;0m "),
         (Cell::new('▄', B, B), "\x1b[2;4H▄"),
         (Cell::new('x', Ink::Default, B), "\x1b[2;4H\x1b[39mx"),
-        (Cell::new('x', Ink::Indexed(7), Ink::Indexed(255)), "\x1b[2;4H\x1b[48;5;255m\x1b[38;5;7mx"),
+        (Cell::new('x', Ink::Indexed(7), Ink::Indexed(255)), "\x1b[2;4H\x1b[38;5;7;48;5;255mx"),
         (Cell::BLANK, "\x1b[2;4H\x1b[49m "),
     ] {
         *grid.cell_mut(3, 1) = cell;
@@ -68,15 +68,24 @@ fn modifiers_begin_with_all_off() {
     encoded(&mut encoder, &grid);
     let bold = Cell { modifier: Modifier::BOLD | Modifier::UNDERLINED, ..Cell::new('x', A, B) };
     *grid.cell_mut(0, 0) = bold;
-    let colours = "\x1b[48;2;200;100;0m\x1b[38;2;10;20;30m";
-    assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[1;1H\x1b[0m\x1b[1m\x1b[4m{colours}x"));
+    let colours = "\x1b[38;2;10;20;30;48;2;200;100;0m";
+    assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[H\x1b[0;1;4m{colours}x"));
     *grid.cell_mut(1, 0) = Cell { modifier: Modifier::BOLD | Modifier::UNDERLINED, ..Cell::new(' ', C, B) };
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;2H\x1b[38;2;1;2;3m ", "the line under a space is seen");
     *grid.cell_mut(0, 0) = Cell::new('x', A, B);
-    assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[1;1H\x1b[0m{colours}x"));
+    assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[H\x1b[0m{colours}x"));
+    *grid.cell_mut(0, 0) = bold;
+    encoded(&mut encoder, &grid);
+    *grid.cell_mut(0, 0) = Cell::new(' ', A, B);
+    assert_eq!(
+        encoded(&mut encoder, &grid),
+        "\x1b[H\x1b[0m\x1b[48;2;200;100;0m ",
+        "a plain space's colour is not seen"
+    );
 }
 
-/// Neighbours follow each other; over a gap, and at the edge, the place is said.
+/// Neighbours follow each other. A gap of one is written again, if the pen is right for it: a byte instead of three. After
+/// the last column nobody knows where the cursor is; from anywhere else a line feed goes down.
 #[test]
 fn a_run_of_changes_says_its_place_once() {
     let mut encoder = Encoder::new();
@@ -85,7 +94,65 @@ fn a_run_of_changes_says_its_place_once() {
     for (column, row) in [(0, 0), (1, 0), (3, 0), (4, 0), (0, 1), (4, 2)] {
         grid.cell_mut(column, row).glyph = 'x';
     }
-    assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;1Hxx\x1b[1;4Hxx\x1b[2;1Hx\x1b[3;5Hx");
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[Hxx xx\x1b[2Hx\n\x1b[3Cx");
+}
+
+#[test]
+fn moves_are_the_cheapest() {
+    let mut encoder = Encoder::new();
+    let mut grid = Grid::new(Size::new(30, 4));
+    encoded(&mut encoder, &grid);
+    let mut change = |cells: &[(u16, u16)]| {
+        for &(column, row) in cells {
+            let cell = grid.cell_mut(column, row);
+            cell.glyph = if cell.glyph == 'x' { 'y' } else { 'x' };
+        }
+        encoded(&mut encoder, &grid)
+    };
+    assert_eq!(change(&[(2, 0), (2, 1)]), "\x1b[1;3Hx\n\x08x", "one down, one back");
+    assert_eq!(change(&[(4, 0), (0, 1)]), "\x1b[1;5Hx\n\rx", "one down, to the first column");
+    assert_eq!(change(&[(3, 0), (9, 0)]), "\x1b[1;4Hx\x1b[5Cx", "five cells written again would be a byte more");
+    assert_eq!(change(&[(3, 2), (3, 3)]), "\x1b[3;4Hx\n\x08x", "down to the last row");
+    assert_eq!(change(&[(25, 1), (8, 2)]), "\x1b[2;26Hx\n\x1b[9Gx", "one down, to a column");
+    assert_eq!(change(&[(2, 0), (2, 3)]), "\x1b[1;3Hy\n\n\n\x08x", "three down");
+}
+
+/// By colour, all cells of two colours come before the next two, wherever they stand; then the way is back.
+#[test]
+fn cells_of_the_same_colours_follow_each_other() {
+    let mut grid = Grid::new(Size::new(5, 1));
+    for (column, cell) in [Cell::new('▄', A, B), Cell::new(' ', A, C)].into_iter().cycle().take(4).enumerate() {
+        *grid.cell_mut(column as u16, 0) = cell;
+    }
+    grid.cell_mut(4, 0).glyph = 'x';
+    assert_eq!(
+        encoded(&mut Encoder::new().with_order(Order::Color), &grid),
+        // Text first, in the terminal's own colours.
+        "\x1b[0m\x1b[1;5Hx\x1b[H\x1b[38;2;10;20;30;48;2;200;100;0m▄\x1b[C▄\x08\x08\x1b[48;2;1;2;3m \x1b[C "
+    );
+}
+
+/// With either half a cell looks the same: the second one wants only one other colour. Never the terminal's own colours:
+/// the one for characters is not the one behind them.
+#[test]
+fn either_half_saves_a_colour() {
+    let mut grid = Grid::new(Size::new(2, 1));
+    *grid.cell_mut(0, 0) = Cell::new('▄', A, B);
+    *grid.cell_mut(1, 0) = Cell::new('▄', B, C);
+    let mut encoder = Encoder::new().with_upper_half(true);
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[0m\x1b[H\x1b[38;2;200;100;0;48;2;10;20;30m▀\x1b[48;2;1;2;3m▄");
+    *grid.cell_mut(0, 0) = Cell::new('▄', C, Ink::Default);
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[38;2;1;2;3;49m▄");
+}
+
+/// What is not seen is not sent.
+#[test]
+fn the_colour_of_a_plain_space_is_not_sent() {
+    for order in [Order::Raster, Order::Color] {
+        let mut encoder = Encoder::new().with_order(order);
+        encoded(&mut encoder, &flat(Cell::new(' ', A, B)));
+        assert_eq!(encoded(&mut encoder, &flat(Cell::new(' ', C, B))), "");
+    }
 }
 
 #[test]
@@ -113,7 +180,7 @@ fn forgetting_draws_everything_again() {
     assert_eq!(encoded(&mut encoder, &grid), first);
     let mut small = Grid::new(Size::new(2, 1));
     small.cell_mut(0, 0).glyph = 'x';
-    assert_eq!(encoded(&mut encoder, &small), "\x1b[0m\x1b[1;1Hx ");
+    assert_eq!(encoded(&mut encoder, &small), "\x1b[0m\x1b[Hx ");
     assert_eq!(encoded(&mut encoder, &grid), first);
 }
 
@@ -122,7 +189,7 @@ fn forgetting_draws_everything_again() {
 fn bytes_are_appended() {
     let mut bytes = b"before".to_vec();
     Encoder::new().encode(&Grid::new(Size::new(1, 1)), &mut bytes);
-    assert_eq!(bytes, b"before\x1b[0m\x1b[1;1H ");
+    assert_eq!(bytes, b"before\x1b[0m\x1b[H ");
 }
 
 /// The largest screen and the furthest cell.

@@ -3,6 +3,7 @@
 
 mod bytes;
 mod overlay;
+mod pictures;
 mod screens;
 
 use proptest::collection::vec;
@@ -12,7 +13,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use screens::Screens;
 use termtrace::color::Srgb8;
-use termtrace::encode::Encoder;
+use termtrace::encode::{Encoder, Order};
 use termtrace::grid::{Cell, Grid, Ink, Size};
 use unicode_width::UnicodeWidthChar;
 
@@ -153,15 +154,23 @@ fn step() -> impl Strategy<Value = Step> {
 }
 
 /// An encoder, the terminals that read its bytes, and the grid that is wanted.
-struct Stage {
+pub(crate) struct Stage {
     encoder: Encoder,
+    upper_half: bool,
     screens: Screens,
     grid: Grid,
 }
 
 impl Stage {
-    fn new(grid: Grid) -> Self {
-        Self { encoder: Encoder::new(), screens: Screens::disturbed(grid.size()), grid }
+    pub(crate) fn new(order: Order, upper_half: bool, grid: Grid) -> Self {
+        let encoder = Encoder::new().with_order(order).with_upper_half(upper_half);
+        Self { encoder, upper_half, screens: Screens::disturbed(grid.size()), grid }
+    }
+
+    /// One for each way of encoding.
+    pub(crate) fn all(grid: &Grid) -> [Self; 4] {
+        let ways = [(Order::Raster, false), (Order::Raster, true), (Order::Color, false), (Order::Color, true)];
+        ways.map(|(order, upper_half)| Self::new(order, upper_half, grid.clone()))
     }
 
     /// Takes the step; what the bytes have to be fewer than.
@@ -197,31 +206,36 @@ impl Stage {
     }
 
     /// Sends the wanted grid.
-    fn send(&mut self, most: usize) {
+    pub(crate) fn send(&mut self, most: usize) {
         let mut bytes = Vec::new();
         self.encoder.encode(&self.grid, &mut bytes);
         assert!(bytes.len() <= most, "{} bytes, at most {most} are needed", bytes.len());
         self.screens.feed(&bytes);
-        self.screens.assert_show(&self.grid);
+        if self.upper_half {
+            self.screens.assert_show_halves(&self.grid);
+        } else {
+            self.screens.assert_show(&self.grid);
+        }
         let mut more = Vec::new();
         self.encoder.encode(&self.grid, &mut more);
         assert!(more.is_empty(), "nothing has changed, and {:?} is sent", String::from_utf8_lossy(&more));
     }
 }
 
-/// A place, a reset and all nine modifiers, two colours, a character.
-const MOST_BYTES: usize = "\x1b[12;12H".len() + 10 * "\x1b[0m".len() + 2 * "\x1b[38;2;255;255;255m".len() + 4;
+/// A place, all nine modifiers, two colours, a character.
+const MOST_BYTES: usize = "\x1b[12;12H\x1b[0;1;2;3;4;5;6;7;8;9m\x1b[38;2;255;255;255;48;2;255;255;255m".len() + 4;
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2_000) })]
 
     #[test]
     fn every_terminal_shows_every_frame(size in size(), cells in vec(cell(ANYTHING), CELLS), steps in vec(step(), 1..8)) {
-        let mut stage = Stage::new(filled(size, &cells));
-        stage.send(4 + size.cell_count() * MOST_BYTES);
-        for step in steps {
-            let most = stage.take(&step);
-            stage.send(most);
+        for mut stage in Stage::all(&filled(size, &cells)) {
+            stage.send(4 + size.cell_count() * MOST_BYTES);
+            for step in &steps {
+                let most = stage.take(step);
+                stage.send(most);
+            }
         }
     }
 }

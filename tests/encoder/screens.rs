@@ -68,6 +68,8 @@ impl Screens {
         if let Some((_, last)) = text.rsplit_once('\x1b') {
             assert!(last.contains(|c: char| c.is_ascii_alphabetic()), "a frame ends in a sequence's middle: {last:?}");
         }
+        // Since the last frame something else may have moved the cursor.
+        self.model.cursor = None;
         self.avt.feed(text);
         self.vt100.process(bytes);
         self.parser.advance(&mut self.model, bytes);
@@ -76,18 +78,29 @@ impl Screens {
     /// Each of them shows exactly this grid.
     #[track_caller]
     pub(crate) fn assert_show(&self, grid: &Grid) {
+        self.assert_show_as(grid, |cell| cell);
+    }
+
+    /// Each of them shows this grid in the same colours, half cell by half cell: with whichever half they were written.
+    #[track_caller]
+    pub(crate) fn assert_show_halves(&self, grid: &Grid) {
+        self.assert_show_as(grid, lower_half);
+    }
+
+    #[track_caller]
+    fn assert_show_as(&self, grid: &Grid, look: fn(Cell) -> Cell) {
         for row in 0..grid.size().rows {
             for column in 0..grid.size().columns {
                 let wanted = seen_of(*grid.cell(column, row));
                 let place = format!("column {column}, row {row}");
-                assert_eq!(self.model.cells[self.model.index(column, row)], wanted, "the model, {place}");
-                assert_eq!(self.seen_by_avt(column, row), wanted.as_known(AVT_KNOWS), "avt, {place}");
+                assert_eq!(look(self.model.cells[self.model.index(column, row)]), look(wanted), "the model, {place}");
+                assert_eq!(look(self.seen_by_avt(column, row)), look(wanted.as_known(AVT_KNOWS)), "avt, {place}");
                 let mut by_vt100 = wanted.as_known(VT100_KNOWS);
                 let seen = self.seen_by_vt100(column, row);
                 if seen.glyph == Cell::COVERED {
                     by_vt100 = Cell { glyph: by_vt100.glyph, ..seen };
                 }
-                assert_eq!(seen, by_vt100, "vt100, {place}");
+                assert_eq!(look(seen), look(by_vt100), "vt100, {place}");
             }
         }
     }
@@ -145,6 +158,19 @@ fn seen_of(cell: Cell) -> Cell {
     Cell { fg: if unseen { Ink::Default } else { cell.fg }, ..cell }
 }
 
+/// A cell of two colours as its lower half on its upper one's colour. The terminal's own colours stay where they are:
+/// that of characters is not that behind them.
+fn lower_half(cell: Cell) -> Cell {
+    if !cell.modifier.is_empty() || cell.bg == Ink::Default {
+        return cell;
+    }
+    match cell.glyph {
+        '▀' if cell.fg != Ink::Default => Cell::new('▄', cell.bg, cell.fg),
+        ' ' => Cell::new('▄', cell.bg, cell.bg),
+        _ => cell,
+    }
+}
+
 trait Known {
     /// The cell as a terminal keeps it that knows these modifiers, and bold and dim as one scale.
     fn as_known(&self, known: Modifier) -> Cell;
@@ -162,13 +188,14 @@ impl Known for Cell {
     }
 }
 
-/// A terminal that knows CUP, SGR and characters. At anything else it panics: erasing, scrolling, wrapping at the edge,
-/// control characters. What the encoder learns to say, this has to learn to read.
+/// A terminal in raw mode that knows CUP, CUF, CHA, CR, BS, LF, SGR and characters. At anything else it panics: erasing,
+/// scrolling, going over an edge, going anywhere from beyond the last column (where terminals disagree), other control
+/// characters. What the encoder learns to say, this has to learn to read.
 struct Model {
     size: Size,
     cells: Vec<Cell>,
     pen: Cell,
-    /// Where the next character goes; none until something says so.
+    /// Where the next character goes; none until something says so. Beyond the last column only CUP is allowed.
     cursor: Option<(u16, u16)>,
 }
 
@@ -193,23 +220,54 @@ impl Model {
         }
     }
 
+    /// The cursor, where it is sure to be on the screen.
+    fn cursor(&self) -> (u16, u16) {
+        let (column, row) = self.cursor.expect("the place is said before a relative move");
+        assert!(column < self.size.columns, "beyond the last column, in row {row}, the cursor may be anywhere");
+        (column, row)
+    }
+
+    fn place(&mut self, column: u16, row: u16) {
+        assert!(column < self.size.columns && row < self.size.rows, "({column}, {row}) is not on the screen");
+        self.cursor = Some((column, row));
+    }
+
+    /// One SGR sequence.
     fn select(&mut self, numbers: &[u16]) {
         let byte = |number: u16| u8::try_from(number).expect("a colour's number is a byte");
-        match *numbers {
-            [0] => self.pen = Cell::BLANK,
-            [code @ 1..=9] => self.pen.modifier.insert(Modifier::from_bits_truncate(1 << (code - 1))),
-            [code @ 30..=37] => self.pen.fg = Ink::Indexed(byte(code - 30)),
-            [code @ 40..=47] => self.pen.bg = Ink::Indexed(byte(code - 40)),
-            [39] => self.pen.fg = Ink::Default,
-            [49] => self.pen.bg = Ink::Default,
-            [38, 5, index] => self.pen.fg = Ink::Indexed(byte(index)),
-            [48, 5, index] => self.pen.bg = Ink::Indexed(byte(index)),
-            [38, 2, r, g, b] => self.pen.fg = Ink::Rgb(Srgb8::new(byte(r), byte(g), byte(b))),
-            [48, 2, r, g, b] => self.pen.bg = Ink::Rgb(Srgb8::new(byte(r), byte(g), byte(b))),
-            // What the rubbish at the beginning says.
-            [1, 4, 31, 42] => numbers.iter().for_each(|&one| self.select(&[one])),
+        let rest = match *numbers {
+            [] => return,
+            [0, ref rest @ ..] => {
+                self.pen = Cell::BLANK;
+                rest
+            }
+            [code @ 1..=9, ref rest @ ..] => {
+                self.pen.modifier.insert(Modifier::from_bits_truncate(1 << (code - 1)));
+                rest
+            }
+            [code @ (30..=37 | 39), ref rest @ ..] => {
+                self.pen.fg = if code == 39 { Ink::Default } else { Ink::Indexed(byte(code - 30)) };
+                rest
+            }
+            [code @ (40..=47 | 49), ref rest @ ..] => {
+                self.pen.bg = if code == 49 { Ink::Default } else { Ink::Indexed(byte(code - 40)) };
+                rest
+            }
+            [code @ (38 | 48), 5, index, ref rest @ ..] => {
+                *self.ink(code) = Ink::Indexed(byte(index));
+                rest
+            }
+            [code @ (38 | 48), 2, r, g, b, ref rest @ ..] => {
+                *self.ink(code) = Ink::Rgb(Srgb8::new(byte(r), byte(g), byte(b)));
+                rest
+            }
             _ => panic!("SGR {numbers:?}"),
-        }
+        };
+        self.select(rest);
+    }
+
+    fn ink(&mut self, code: u16) -> &mut Ink {
+        if code == 38 { &mut self.pen.fg } else { &mut self.pen.bg }
     }
 }
 
@@ -235,17 +293,29 @@ impl vte::Perform for Model {
         assert!(intermediates.is_empty() && !ignore, "{intermediates:?} {numbers:?} {action:?}");
         match (action, &numbers[..]) {
             ('m', numbers) => self.select(numbers),
-            ('H', &[row, column]) => {
-                let inside = (1..=self.size.rows).contains(&row) && (1..=self.size.columns).contains(&column);
-                assert!(inside, "({column}, {row}) is not on the screen, whose first cell is (1, 1)");
-                self.cursor = Some((column - 1, row - 1));
+            // A number that is not said is read as 0, which means 1.
+            ('H', &[row]) => self.place(0, row.max(1) - 1),
+            ('H', &[row, column]) => self.place(column.checked_sub(1).expect("from 1"), row.max(1) - 1),
+            ('C', &[columns]) => {
+                let (column, row) = self.cursor();
+                self.place(column + columns.max(1), row);
+            }
+            ('G', &[number]) => {
+                let (_, row) = self.cursor();
+                self.place(number.max(1) - 1, row);
             }
             other => panic!("not of the safe core: {other:?}"),
         }
     }
 
     fn execute(&mut self, byte: u8) {
-        panic!("control character {byte:#04x}");
+        let (column, row) = self.cursor();
+        match byte {
+            b'\r' => self.place(0, row),
+            b'\n' => self.place(column, row + 1),
+            b'\x08' => self.place(column.checked_sub(1).expect("not left of the first column"), row),
+            _ => panic!("control character {byte:#04x}"),
+        }
     }
 
     fn esc_dispatch(&mut self, _: &[u8], _: bool, byte: u8) {

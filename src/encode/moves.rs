@@ -1,0 +1,186 @@
+//! The cheapest way for the cursor from one cell to another.
+//!
+//! CUP says row and column; CUF goes right, CHA to a column, CR to the first one, BS one to the left, LF one down. (In
+//! raw mode a line feed keeps the column, and nothing scrolls, because it is only used above the last row.) Nothing
+//! else is used: REP, ECH and tabs gain little and break in some multiplexer or other.
+
+/// A place on the screen, counted from the top left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) column: u16,
+    pub(super) row: u16,
+}
+
+/// One of the ways, each of which may begin with line feeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Move {
+    /// CUP.
+    To(Place),
+    /// LF so many times, then along the row.
+    Down(u16, Along),
+}
+
+/// Along a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Along {
+    Stay,
+    /// CUF.
+    Right(u16),
+    /// BS so many times.
+    Left(u16),
+    /// CR.
+    Start,
+    /// CHA.
+    Column(u16),
+}
+
+/// The cheapest move. Where the cursor is unknown, or beyond the last column, only CUP is sure.
+pub(super) fn cheapest(from: Option<Place>, to: Place) -> Move {
+    let absolute = Move::To(to);
+    let Some(from) = from.filter(|from| from.row <= to.row) else { return absolute };
+    let relative = Move::Down(to.row - from.row, cheapest_along(from.column, to.column));
+    if relative.len() <= absolute.len() { relative } else { absolute }
+}
+
+fn cheapest_along(from: u16, to: u16) -> Along {
+    if to == from {
+        Along::Stay
+    } else if to > from {
+        Along::Right(to - from)
+    } else if to == 0 {
+        Along::Start
+    } else if usize::from(from - to) <= Along::Column(to).len() {
+        Along::Left(from - to)
+    } else {
+        Along::Column(to)
+    }
+}
+
+impl Move {
+    /// How many bytes it takes.
+    pub(super) fn len(self) -> usize {
+        match self {
+            Self::To(Place { column: 0, row: 0 }) => 3,
+            Self::To(Place { column: 0, row }) => 3 + digits(row + 1),
+            Self::To(Place { column, row }) => 4 + digits(row + 1) + digits(column + 1),
+            Self::Down(rows, along) => usize::from(rows) + along.len(),
+        }
+    }
+
+    /// Makes it.
+    pub(super) fn write(self, bytes: &mut Vec<u8>) {
+        match self {
+            Self::To(Place { column: 0, row: 0 }) => bytes.extend_from_slice(b"\x1b[H"),
+            Self::To(Place { column: 0, row }) => sequence(bytes, row + 1, b'H'),
+            Self::To(Place { column, row }) => {
+                bytes.extend_from_slice(b"\x1b[");
+                write_number(row + 1, bytes);
+                bytes.push(b';');
+                write_number(column + 1, bytes);
+                bytes.push(b'H');
+            }
+            Self::Down(rows, along) => {
+                bytes.extend(std::iter::repeat_n(b'\n', rows.into()));
+                along.write(bytes);
+            }
+        }
+    }
+}
+
+impl Along {
+    fn len(self) -> usize {
+        match self {
+            Self::Stay => 0,
+            Self::Start | Self::Left(1) => 1,
+            Self::Right(1) => 3,
+            Self::Left(columns) => columns.into(),
+            Self::Right(columns) => 3 + digits(columns),
+            Self::Column(column) => 3 + digits(column + 1),
+        }
+    }
+
+    fn write(self, bytes: &mut Vec<u8>) {
+        match self {
+            Self::Stay => {}
+            Self::Start => bytes.push(b'\r'),
+            Self::Left(columns) => bytes.extend(std::iter::repeat_n(b'\x08', columns.into())),
+            Self::Right(1) => bytes.extend_from_slice(b"\x1b[C"),
+            Self::Right(columns) => sequence(bytes, columns, b'C'),
+            Self::Column(column) => sequence(bytes, column + 1, b'G'),
+        }
+    }
+}
+
+/// CSI with one number.
+fn sequence(bytes: &mut Vec<u8>, number: u16, last: u8) {
+    bytes.extend_from_slice(b"\x1b[");
+    write_number(number, bytes);
+    bytes.push(last);
+}
+
+/// How many digits a number has.
+pub(super) fn digits(number: u16) -> usize {
+    match number {
+        0..10 => 1,
+        10..100 => 2,
+        100..1_000 => 3,
+        1_000..10_000 => 4,
+        _ => 5,
+    }
+}
+
+/// In decimal. (`write!` takes ten times as long, and this is most of what an encoder writes.)
+pub(super) fn write_number(number: u16, bytes: &mut Vec<u8>) {
+    let mut unit = [1, 10, 100, 1_000, 10_000][digits(number) - 1];
+    while unit > 0 {
+        bytes.push(b'0' + (number / unit % 10) as u8);
+        unit /= 10;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bytes(from: Option<(u16, u16)>, to: (u16, u16)) -> String {
+        let place = |(column, row)| Place { column, row };
+        let cheapest = cheapest(from.map(place), place(to));
+        let mut bytes = Vec::new();
+        cheapest.write(&mut bytes);
+        assert_eq!(bytes.len(), cheapest.len(), "{cheapest:?}");
+        String::from_utf8(bytes).unwrap()
+    }
+
+    #[test]
+    fn the_cheapest_move_is_made() {
+        for (from, to, expected) in [
+            (None, (0, 0), "\x1b[H"),
+            (None, (0, 4), "\x1b[5H"),
+            (None, (9, 4), "\x1b[5;10H"),
+            (Some((3, 3)), (3, 3), ""),
+            (Some((3, 3)), (4, 3), "\x1b[C"),
+            (Some((3, 3)), (14, 3), "\x1b[11C"),
+            (Some((3, 3)), (0, 3), "\r"),
+            (Some((9, 3)), (7, 3), "\x08\x08"),
+            (Some((99, 3)), (7, 3), "\x1b[8G"),
+            (Some((3, 3)), (3, 5), "\n\n"),
+            (Some((3, 3)), (0, 5), "\n\n\r"),
+            (Some((4, 3)), (3, 4), "\n\x08"),
+            (Some((4, 3)), (5, 4), "\n\x1b[C"),
+            (Some((4, 9)), (5, 4), "\x1b[5;6H"),
+            (Some((4, 3)), (200, 4), "\n\x1b[196C"),
+            (Some((4, 0)), (4, 50), "\x1b[51;5H"),
+        ] {
+            assert_eq!(bytes(from, to), expected, "{from:?} to {to:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_written_whole() {
+        for number in [0, 7, 10, 99, 100, 255, 1_000, 9_999, 10_000, u16::MAX] {
+            let mut bytes = Vec::new();
+            write_number(number, &mut bytes);
+            assert_eq!(bytes, number.to_string().into_bytes());
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! The pen: the colours and modifiers that the terminal would write with now, and what it costs to change them.
+
+use super::moves::{digits, write_number};
+use crate::grid::{Cell, Ink};
+use ratatui::style::Modifier;
+
+/// The colours and modifiers that the terminal would write with now.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Pen {
+    pub(super) fg: Ink,
+    pub(super) bg: Ink,
+    pub(super) modifier: Modifier,
+}
+
+impl Pen {
+    /// Back to the terminal's own colours, said even if they hold already.
+    pub(crate) fn reset(&mut self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(b"\x1b[0m");
+        *self = Self::default();
+    }
+
+    /// The cell's character in its colours, for a file; only what differs from the pen is said, one colour at a time: what
+    /// saves bytes on a screen does not change files.
+    pub(crate) fn write_cell(&mut self, cell: &Cell, bytes: &mut Vec<u8>) {
+        let wanted = self.wanted_by(cell);
+        self.become_pen(Self { fg: self.before_colors(wanted.modifier).fg, ..wanted }, bytes);
+        self.become_pen(wanted, bytes);
+        super::strokes::write_char(cell.glyph, bytes);
+    }
+
+    /// The pen with which the cell is to be written. The colour of a plain space's character is not seen: nothing is said
+    /// for its sake.
+    pub(super) fn wanted_by(&self, cell: &Cell) -> Self {
+        let fg = if is_plain_space(cell) { self.before_colors(cell.modifier).fg } else { cell.fg };
+        Self { fg, bg: cell.bg, modifier: cell.modifier }
+    }
+
+    /// The pen once the modifiers are these: terminals disagree on how to switch single ones off, so all is switched off
+    /// first, colours too, which is understood everywhere.
+    fn before_colors(self, modifier: Modifier) -> Self {
+        if self.modifier == modifier { self } else { Self { modifier, ..Self::default() } }
+    }
+
+    /// How many bytes [`become_pen`](Self::become_pen) takes.
+    pub(super) fn cost_of(&self, wanted: &Self) -> usize {
+        let modifiers =
+            if self.modifier == wanted.modifier { 0 } else { 4 + 2 * modifier_codes(wanted.modifier).count() };
+        let from = self.before_colors(wanted.modifier);
+        let colors = match (from.fg != wanted.fg, from.bg != wanted.bg) {
+            (false, false) => 0,
+            (true, false) => 3 + ink_len(wanted.fg),
+            (false, true) => 3 + ink_len(wanted.bg),
+            (true, true) => 4 + ink_len(wanted.fg) + ink_len(wanted.bg),
+        };
+        modifiers + colors
+    }
+
+    /// Says what differs: the modifiers in one sequence, the colours in another. (All in one could be more numbers than
+    /// some terminals take.)
+    pub(super) fn become_pen(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
+        if self.modifier != wanted.modifier {
+            bytes.extend_from_slice(b"\x1b[0");
+            for code in modifier_codes(wanted.modifier) {
+                bytes.extend_from_slice(&[b';', code]);
+            }
+            bytes.push(b'm');
+        }
+        let from = self.before_colors(wanted.modifier);
+        let (fg, bg) = (from.fg != wanted.fg, from.bg != wanted.bg);
+        if fg || bg {
+            bytes.extend_from_slice(b"\x1b[");
+            if fg {
+                write_ink(wanted.fg, 30, bytes);
+            }
+            if fg && bg {
+                bytes.push(b';');
+            }
+            if bg {
+                write_ink(wanted.bg, 40, bytes);
+            }
+            bytes.push(b'm');
+        }
+        *self = wanted;
+    }
+}
+
+/// Whether only the colour behind the character is seen.
+pub(super) fn is_plain_space(cell: &Cell) -> bool {
+    cell.glyph == ' ' && cell.modifier.is_empty()
+}
+
+/// The numbers of one colour; `base` is 30 for the character's, 40 for the one behind it.
+fn write_ink(ink: Ink, base: u16, bytes: &mut Vec<u8>) {
+    match ink {
+        Ink::Default => write_number(base + 9, bytes),
+        Ink::Indexed(index) => {
+            write_number(base + 8, bytes);
+            bytes.extend_from_slice(b";5;");
+            write_number(index.into(), bytes);
+        }
+        Ink::Rgb(color) => {
+            write_number(base + 8, bytes);
+            bytes.extend_from_slice(b";2");
+            for band in [color.r, color.g, color.b] {
+                bytes.push(b';');
+                write_number(band.into(), bytes);
+            }
+        }
+    }
+}
+
+/// How many bytes [`write_ink`] takes.
+fn ink_len(ink: Ink) -> usize {
+    match ink {
+        Ink::Default => 2,
+        Ink::Indexed(index) => 5 + digits(index.into()),
+        Ink::Rgb(color) => 7 + [color.r, color.g, color.b].into_iter().map(|band| digits(band.into())).sum::<usize>(),
+    }
+}
+
+/// The number of each modifier that is on, in rising order.
+fn modifier_codes(modifier: Modifier) -> impl Iterator<Item = u8> {
+    const CODES: [(Modifier, u8); 9] = [
+        (Modifier::BOLD, b'1'),
+        (Modifier::DIM, b'2'),
+        (Modifier::ITALIC, b'3'),
+        (Modifier::UNDERLINED, b'4'),
+        (Modifier::SLOW_BLINK, b'5'),
+        (Modifier::RAPID_BLINK, b'6'),
+        (Modifier::REVERSED, b'7'),
+        (Modifier::HIDDEN, b'8'),
+        (Modifier::CROSSED_OUT, b'9'),
+    ];
+    CODES.into_iter().filter(move |&(flag, _)| modifier.contains(flag)).map(|(_, code)| code)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Srgb8;
+
+    /// What a change costs is what it takes, from any pen to any other.
+    #[test]
+    fn costs_are_true() {
+        let inks = [Ink::Default, Ink::Indexed(7), Ink::Indexed(200), Ink::Rgb(Srgb8::new(0, 10, 100))];
+        let modifiers = [Modifier::empty(), Modifier::BOLD, Modifier::BOLD | Modifier::REVERSED, Modifier::all()];
+        let colors = || inks.into_iter().flat_map(|fg| inks.map(|bg| (fg, bg)));
+        let pens: Vec<Pen> = colors().flat_map(|(fg, bg)| modifiers.map(|modifier| Pen { fg, bg, modifier })).collect();
+        for from in &pens {
+            for to in &pens {
+                let mut bytes = Vec::new();
+                let mut pen = *from;
+                pen.become_pen(*to, &mut bytes);
+                assert_eq!((pen, bytes.len()), (*to, from.cost_of(to)), "{from:?} to {to:?}");
+            }
+        }
+    }
+}
