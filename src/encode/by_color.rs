@@ -140,14 +140,14 @@ impl<'a> Tour<'a> {
         best.1
     }
 
-    /// What it costs to go on with a pair, in eighths of a byte: the change of the pen, the move to its first cell, and
-    /// up to eight bytes for how well it can wait.
+    /// What it costs to go on with a pair, in bytes: the change of the pen, the move to its first cell, and up to eight
+    /// for how well it can wait.
     fn price(&self, pair: usize) -> usize {
         let pair = &self.pairs[pair];
         let change = self.pen.cost_of(&self.pen_for(pair));
         let way = cheapest(self.cursor, self.places[pair.places.start]).len();
         let others = pair.colors.map(|color| self.colors[color].left);
-        8 * (change + way) + 8 * others[0].min(others[1]).min(8)
+        change + way + others[0].min(others[1]).min(8)
     }
 
     /// The cheaper of the two pens that can write the pair.
