@@ -155,3 +155,33 @@ fn a_wrong_command_line_is_told_and_helped() {
     folder.run("frame ball.ron --format text --format png").is_misused("multiple times");
     assert_eq!(folder.run("frame ball.ron --size 8x4 --bless").code, Some(2));
 }
+
+/// A file's name may hold anything but a slash; what is said of it steers no terminal.
+#[test]
+fn names_of_files_reach_the_terminal_without_their_control_characters() {
+    let folder = Folder::new();
+    let scene = std::fs::read(folder.path("ball.ron")).expect("the scene is there");
+    folder.write("ball\x1b[2J.ron", scene);
+    folder.write("gold\x1b[1m.txt", "no frame\x1b[2J\n");
+    for arguments in [
+        "check ball\x1b[2J.ron",
+        "check no\x1b[2J.ron",
+        "frame ball.ron -o \x1b[2Jxy",
+        "frame ball.ron -o \x1b[2Jx/y.txt",
+        "frame ball.ron --check gold\x1b[1m.txt",
+        "frame ball.ron --check no\x1b[1m.txt",
+        "ball.ron \x1b[2J",
+    ] {
+        let run = folder.run(arguments);
+        let said = [run.stdout, run.stderr.into()].concat();
+        assert!(!said.is_empty() && !said.contains(&0x1b), "{arguments:?}: {}", said.escape_ascii());
+    }
+}
+
+/// As for the scene, `-` is the standard stream.
+#[test]
+fn a_dash_is_standard_output() {
+    let folder = Folder::new();
+    assert_eq!(folder.frame("ball.ron -o -"), folder.frame("ball.ron"));
+    assert_eq!(folder.frame("ball.ron --format png -o -"), folder.frame("ball.ron --format png"));
+}
