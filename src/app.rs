@@ -8,6 +8,7 @@ use crate::camera::Camera;
 use crate::capabilities::{Capabilities, CellMode, USUAL_CELL_ASPECT};
 use crate::cell;
 use crate::control::{self, Command, Motion};
+use crate::encode::Order;
 use crate::framebuffer::Resolution;
 use crate::grid::Size;
 use crate::input::{Input, Parser};
@@ -32,6 +33,8 @@ pub struct Options {
     pub cell_mode: CellMode,
     /// A cell's height over its width; `None`: as the terminal says it is, or 2.
     pub cell_aspect: Option<f32>,
+    /// In which order changed cells are sent.
+    pub order: Order,
     /// How many threads trace; `None`: as many as there are cores.
     pub threads: Option<usize>,
     /// Where to panic when `!` is pressed, so that tests can see how the terminal is left.
@@ -40,11 +43,12 @@ pub struct Options {
 }
 
 impl Options {
-    /// With that cell mode; the rest as terminal and machine say.
+    /// With that cell mode, for a link that does not compress; the rest as terminal and machine say.
     pub fn new(cell_mode: CellMode) -> Self {
         Self {
             cell_mode,
             cell_aspect: None,
+            order: Order::Color,
             threads: None,
             #[cfg(debug_assertions)]
             test_panic: None,
@@ -136,7 +140,7 @@ impl Live {
             capabilities: Capabilities { cell_mode: options.cell_mode, cell_aspect: USUAL_CELL_ASPECT },
             parser: Parser::new(),
             motion: Motion::default(),
-            screen: Screen::new(options.cell_mode),
+            screen: Screen::new(options.cell_mode, options.order),
             start: Instant::now(),
             moved_until: None,
             stale: true,

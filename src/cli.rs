@@ -1,6 +1,7 @@
 //! The command line: what it says, and what is then done.
 
 mod check;
+mod encoding;
 mod frame;
 mod live;
 
@@ -48,7 +49,7 @@ Examples:
 Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wrong arguments or a wrong scene";
 
 #[derive(Parser)]
-#[command(name = "termtrace", version, about = ABOUT, after_help = EXAMPLES)]
+#[command(name = "termtrace", version, about = ABOUT, after_help = format!("{}\n\n{EXAMPLES}", encoding::EXPLAINED))]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true, disable_help_subcommand = true)]
 struct Cli {
     #[command(subcommand)]

@@ -12,6 +12,7 @@ use std::time::Duration;
 use termtrace::capabilities::CellMode;
 use termtrace::cell;
 use termtrace::control::BINDINGS;
+use termtrace::encode::{Encoder, Order};
 use termtrace::grid::{Grid, Ink};
 use termtrace::render::render;
 use termtrace::scene::Scene;
@@ -93,6 +94,22 @@ fn the_first_frame_comes_without_a_clear() {
     let mut session = looking(termtrace());
     let bytes = session.seen().bytes().to_vec();
     assert!(!bytes.windows(4).any(|window| window == b"\x1b[2J"), "no clear");
+}
+
+#[test]
+fn the_first_frame_is_sent_in_the_order_that_is_asked_for() {
+    for (flags, order) in [
+        (&[][..], Order::Color),
+        (&["--order=color"], Order::Color),
+        (&["--order=raster"], Order::Raster),
+        (&["--compressed-link"], Order::Raster),
+    ] {
+        let mut session = looking(flags.iter().fold(termtrace(), Start::arg));
+        let mut wanted = Vec::new();
+        Encoder::new().with_order(order).encode(&picture(CellMode::HalfBlock, Size::cells(80, 24)), &mut wanted);
+        let sent = session.seen().bytes();
+        assert!(sent.windows(wanted.len()).any(|bytes| bytes == wanted), "{flags:?}");
+    }
 }
 
 #[test]

@@ -28,10 +28,10 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    pub(super) fn new(cell_mode: CellMode) -> Self {
+    pub(super) fn new(cell_mode: CellMode, order: Order) -> Self {
         Self {
             cell_mode,
-            encoder: Encoder::new().with_order(Order::Color),
+            encoder: Encoder::new().with_order(order),
             frame: None,
             status: false,
             help: false,

@@ -1,5 +1,6 @@
 //! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
 
+use super::encoding::EncodingArgs;
 use super::{Done, Failure, SceneArgs, complain_of_panic, frame, reason, write_stdout};
 use clap::{Args, ValueEnum};
 use std::io::{self, IsTerminal};
@@ -27,6 +28,8 @@ pub(super) struct LiveArgs {
     /// A cell's height over its width [default: as the terminal says, or 2]
     #[arg(long, value_name = "A", value_parser = frame::parse_cell_aspect)]
     cell_aspect: Option<f32>,
+    #[command(flatten)]
+    encoding: EncodingArgs,
     /// Do not print the camera on leaving
     #[arg(long)]
     quiet: bool,
@@ -62,6 +65,7 @@ impl LiveArgs {
     fn options(&self) -> Options {
         let mut options = Options::new(cell_mode(self.color(), |name| std::env::var(name).ok()));
         options.cell_aspect = self.cell_aspect;
+        options.order = self.encoding.order();
         options.threads = self.scene.threads.map(usize::from);
         #[cfg(debug_assertions)]
         {

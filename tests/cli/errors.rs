@@ -88,7 +88,9 @@ fn files_that_may_not_be_read() {
 fn help_has_examples() {
     let folder = Folder::new();
     let help = folder.run("--help").text();
-    for words in ["Usage:", "Examples:", "Exit codes", "frame", "check", "--eye", "--threads", "--color"] {
+    for words in
+        ["Usage:", "Examples:", "Exit codes", "frame", "check", "--eye", "--threads", "--color", "--order", "ssh's own"]
+    {
         assert!(help.contains(words), "{words}: {help}");
     }
     let example = |line: &str| line.trim_start().starts_with("termtrace ");
@@ -145,6 +147,8 @@ fn a_wrong_command_line_is_told_and_helped() {
     folder.run("frame ball.ron --sample 2").is_misused("'--samples'");
     folder.run("ball.ron --colour=always").is_misused("'--color");
     folder.run("ball.ron --samples 2").is_misused("--samples");
+    folder.run("ball.ron --order rows").is_misused("color, raster");
+    folder.run("ball.ron --order color --compressed-link").is_misused("cannot be used with");
     folder.run("check ball.ron --size 2x2").is_misused("--size");
     folder.run("ball.ron other.ron").fails_in_a_line(2, "one scene at a time");
     folder.run("fram ball.ron").fails_in_a_line(2, "did you mean \"frame\"?");
