@@ -9,10 +9,10 @@
 //! - [`Order::Color`] goes from cell to cell by the colours they share: about a fifth less on a raw link.
 //!
 //! The escape sequences used are the safe core that every terminal and multiplexer understands: CUP, CUF, CHA, CR, BS,
-//! LF and SGR with `38;2`/`48;2`; nothing that repeats, erases or scrolls. A terminal in raw mode is taken for granted: a
-//! line feed keeps the column.
+//! LF and SGR with `38;2`/`48;2`; and `58:2`, the colour of an underline, which others pass over. Nothing that repeats,
+//! erases or scrolls. A terminal in raw mode is taken for granted: a line feed keeps the column.
 
-use crate::grid::{Cell, Grid, Size};
+use crate::grid::{Cell, Glyph, Grid, Size};
 
 mod by_color;
 mod moves;
@@ -68,50 +68,73 @@ impl Encoder {
 
     /// Appends the bytes that make the terminal show `wanted`; none if it does already.
     pub fn encode(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) {
-        let shown = self.shown.take().filter(|shown| shown.size() == wanted.size());
-        if shown.is_none() {
+        let mut shown = self.shown.take().filter(|shown| shown.size() == wanted.size()).unwrap_or_else(|| {
             // Whatever the pen was, it is known from here on.
             self.pen.reset(bytes);
-        }
-        let changed = changed(shown.as_ref(), wanted);
+            unknown(wanted.size())
+        });
+        let changed = update(&mut shown, wanted);
         let strokes = match self.order {
             Order::Raster => strokes::choose(wanted, &changed, self.upper_half, self.pen),
             Order::Color => {
                 let order = by_color::order(wanted, &changed, self.upper_half, self.pen);
                 let mut strokes = strokes::choose(wanted, &order, self.upper_half, self.pen);
                 // Not row by row: a compressor finds fewer repetitions then, which costs more than this saves.
-                strokes::look_ahead(&mut strokes);
+                strokes::look_ahead(wanted, &mut strokes);
                 strokes
             }
         };
         strokes::write(wanted, &strokes, &mut self.pen, bytes);
-        self.shown = Some(wanted.clone());
+        self.shown = Some(shown);
     }
 }
 
-/// The places that are to be written, row by row. The second half of a wide character is never one.
-fn changed(shown: Option<&Grid>, wanted: &Grid) -> Vec<Place> {
-    let Size { columns, rows } = wanted.size();
-    let places = (0..rows).flat_map(|row| (0..columns).map(move |column| Place { column, row }));
-    places
-        .filter(|&Place { column, row }| {
-            let covered = wanted.cell(column, row).glyph == Cell::COVERED;
-            !covered && shown.is_none_or(|shown| differs(shown, wanted, column, row))
-        })
-        .collect()
+/// A screen of which nothing is known: every cell is another than any that can be wanted.
+fn unknown(size: Size) -> Grid {
+    let mut grid = Grid::new(size);
+    grid.cells_mut().fill(Cell { glyph: Glyph::Covered, ..Cell::BLANK });
+    grid
 }
 
-/// Whether a character is to be written again: it, or the half of it that another one stood in, looks different.
-fn differs(shown: &Grid, wanted: &Grid, column: u16, row: u16) -> bool {
-    (column..column + width(wanted, column, row)).any(|column| {
-        let (shown, wanted) = (shown.cell(column, row), wanted.cell(column, row));
-        let same_space = pen::is_plain_space(shown) && pen::is_plain_space(wanted) && shown.bg == wanted.bg;
-        shown != wanted && !same_space
-    })
+/// Makes the grid show what is wanted; the places that are to be written for it, row by row. A covered cell is never one.
+fn update(shown: &mut Grid, wanted: &Grid) -> Vec<Place> {
+    let mut changed = Vec::new();
+    for (row, (shown, wanted)) in (0..).zip(shown.rows_mut().zip(wanted.rows())) {
+        update_row(shown, wanted, |column| changed.push(Place { column, row }));
+    }
+    changed
 }
 
-/// How many columns the character takes: two only if the grid has left it the second.
+/// What stands behind a cluster is written again with it: a terminal that takes the cluster apart has written over it.
+fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
+    let mut safe_from = 0;
+    let mut column = 0;
+    while column < wanted.len() {
+        let end = column + columns(&wanted[column..]);
+        let (shown, wanted) = (&mut shown[column..end], &wanted[column..end]);
+        let differs = !shown.iter().zip(wanted).all(|(shown, wanted)| pen::look_alike(shown, wanted));
+        if wanted[0].glyph != Glyph::Covered && (differs || column < safe_from) {
+            shown.clone_from_slice(wanted);
+            write(column as u16);
+            if let Glyph::Cluster(text) = &wanted[0].glyph {
+                safe_from = safe_from.max(column + columns_apart(text));
+            }
+        }
+        column = end;
+    }
+}
+
+/// How many columns the first of these cells takes: its own, and those that it covers.
+fn columns(cells: &[Cell]) -> usize {
+    1 + cells.iter().skip(1).take_while(|cell| cell.glyph == Glyph::Covered).count()
+}
+
+/// How many columns a cluster takes at most: each of its characters on its own, and no mark without a column.
+fn columns_apart(text: &str) -> usize {
+    text.chars().map(|c| c.width().unwrap_or(0).max(1)).sum()
+}
+
+/// How many columns are written with the one at that place.
 fn width(grid: &Grid, column: u16, row: u16) -> u16 {
-    let covers_next = column + 1 < grid.size().columns && grid.cell(column + 1, row).glyph == Cell::COVERED;
-    if covers_next && grid.cell(column, row).glyph.width() == Some(2) { 2 } else { 1 }
+    columns(grid.row_from(column, row)) as u16
 }

@@ -3,7 +3,7 @@
 use crate::capabilities::{CellMode, USUAL_CELL_ASPECT};
 use crate::cell;
 use crate::encode::Pen;
-use crate::grid::{Grid, Size};
+use crate::grid::{Glyph, Grid, Size};
 use crate::render::render;
 use crate::scene::Scene;
 use crate::tone::{Picture, tone};
@@ -45,7 +45,7 @@ pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f
 pub fn text(grid: &Grid) -> String {
     let mut text = String::with_capacity(grid.cells().len() + usize::from(grid.size().rows));
     for row in grid.rows() {
-        text.extend(row.iter().map(|cell| cell.glyph).filter(|&glyph| glyph != crate::grid::Cell::COVERED));
+        text.extend(row.iter().map(|cell| cell.glyph.to_string()));
         text.push('\n');
     }
     text
@@ -57,7 +57,7 @@ pub fn ansi(grid: &Grid) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut pen = Pen::default();
     for row in grid.rows() {
-        for cell in row.iter().filter(|cell| cell.glyph != crate::grid::Cell::COVERED) {
+        for cell in row.iter().filter(|cell| cell.glyph != Glyph::Covered) {
             pen.write_cell(cell, &mut bytes);
         }
         pen.reset(&mut bytes);

@@ -5,6 +5,8 @@
 
 use crate::color::Srgb8;
 use ratatui::style::Modifier;
+use std::fmt;
+use std::sync::Arc;
 
 /// A screen's size in cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,29 +41,62 @@ pub enum Ink {
     Rgb(Srgb8),
 }
 
+/// What stands in a cell. Something wide is followed by [`Glyph::Covered`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Glyph {
+    /// A character that takes as many cells in every terminal: one, or two.
+    Char(char),
+    /// A grapheme of which terminals may think otherwise: a letter with its marks, a family, a flag.
+    Cluster(Arc<str>),
+    /// Nothing of its own: what stands to the left takes this cell too.
+    Covered,
+}
+
+impl From<char> for Glyph {
+    fn from(character: char) -> Self {
+        Self::Char(character)
+    }
+}
+
+impl PartialEq<char> for Glyph {
+    fn eq(&self, character: &char) -> bool {
+        matches!(self, Self::Char(own) if own == character)
+    }
+}
+
+/// Its text: none where it is covered.
+impl fmt::Display for Glyph {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Char(character) => write!(f, "{character}"),
+            Self::Cluster(text) => f.write_str(text),
+            Self::Covered => Ok(()),
+        }
+    }
+}
+
 /// One cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cell {
-    /// The character. A wide one is followed by a cell with [`Cell::COVERED`].
-    pub glyph: char,
-    /// The character's colour.
+    /// What stands in it.
+    pub glyph: Glyph,
+    /// The glyph's colour.
     pub fg: Ink,
     /// The colour behind it.
     pub bg: Ink,
+    /// The colour of the line below, where [`Modifier::UNDERLINED`] draws one; by default it is the glyph's.
+    pub underline: Ink,
     /// Bold, underlined and so on; none in a picture.
     pub modifier: Modifier,
 }
 
 impl Cell {
-    /// The glyph of the second cell of a wide character: nothing is written there.
-    pub const COVERED: char = '\0';
-
     /// A space in the terminal's own colours.
     pub const BLANK: Self = Self::new(' ', Ink::Default, Ink::Default);
 
     /// A character in these colours, without modifiers.
-    pub const fn new(glyph: char, fg: Ink, bg: Ink) -> Self {
-        Self { glyph, fg, bg, modifier: Modifier::empty() }
+    pub const fn new(character: char, fg: Ink, bg: Ink) -> Self {
+        Self { glyph: Glyph::Char(character), fg, bg, underline: Ink::Default, modifier: Modifier::empty() }
     }
 }
 
@@ -88,10 +123,29 @@ impl Grid {
         &self.cells
     }
 
+    /// All cells to change.
+    pub fn cells_mut(&mut self) -> &mut [Cell] {
+        &mut self.cells
+    }
+
     /// The rows from the top.
     pub fn rows(&self) -> impl Iterator<Item = &[Cell]> {
         // No columns: no rows either, and no chunks of length 0.
         self.cells.chunks_exact(usize::from(self.size.columns).max(1))
+    }
+
+    /// The rows to change.
+    pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut [Cell]> {
+        self.cells.chunks_exact_mut(usize::from(self.size.columns).max(1))
+    }
+
+    /// A row's cells from that one on.
+    ///
+    /// # Panics
+    /// Outside the grid.
+    pub fn row_from(&self, column: u16, row: u16) -> &[Cell] {
+        let left = usize::from(self.size.columns - column);
+        &self.cells[self.index(column, row)..][..left]
     }
 
     /// One cell, counted from the top left.
@@ -109,6 +163,33 @@ impl Grid {
     pub fn cell_mut(&mut self, column: u16, row: u16) -> &mut Cell {
         let index = self.index(column, row);
         &mut self.cells[index]
+    }
+
+    /// Puts a cell there whose glyph takes so many columns. Half of something wide is nothing: what it cuts becomes blanks.
+    ///
+    /// # Panics
+    /// Outside the grid.
+    pub fn put(&mut self, column: u16, row: u16, cell: &Cell, columns: u16) {
+        let end = column + columns.max(1);
+        self.split(column, row);
+        self.split(end, row);
+        for covered in column + 1..end {
+            *self.cell_mut(covered, row) = Cell { glyph: Glyph::Covered, ..cell.clone() };
+        }
+        self.cell_mut(column, row).clone_from(cell);
+    }
+
+    /// If something stands on both sides of that column's left edge, it becomes blanks in its colours.
+    fn split(&mut self, column: u16, row: u16) {
+        if column >= self.size.columns || self.cell(column, row).glyph != Glyph::Covered {
+            return;
+        }
+        let is_covered = |grid: &Self, column| grid.cell(column, row).glyph == Glyph::Covered;
+        let start = (0..column).rev().find(|&column| !is_covered(self, column)).unwrap_or(0);
+        let end = (column..self.size.columns).find(|&column| !is_covered(self, column)).unwrap_or(self.size.columns);
+        for column in start..end {
+            self.cell_mut(column, row).glyph = Glyph::Char(' ');
+        }
     }
 
     fn index(&self, column: u16, row: u16) -> usize {

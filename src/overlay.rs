@@ -1,11 +1,11 @@
 //! Text and panels over the picture: any ratatui buffer laid over the grid.
 
 use crate::color::Srgb8;
-use crate::grid::{Cell, Grid, Ink};
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use crate::grid::{Cell, Glyph, Grid, Ink};
+use ratatui::buffer::{Buffer, CellDiffOption, CellWidth};
+use ratatui::layout::{Position, Rect};
 use ratatui::style::Color;
-use unicode_width::UnicodeWidthChar;
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Puts the buffer's cells over the grid's, where both have them.
 pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
@@ -14,46 +14,61 @@ pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
         return;
     }
     for row in area.rows() {
-        cut_wide_characters(grid, row);
-        lay_row(grid, buffer, row);
-    }
-}
-
-/// Half a wide character is none: where the row will begin or end in its middle, the other half becomes a blank.
-fn cut_wide_characters(grid: &mut Grid, row: Rect) {
-    let is_covered = |grid: &Grid, column| grid.cell(column, row.y).glyph == Cell::COVERED;
-    if row.left() > 0 && is_covered(grid, row.left()) {
-        grid.cell_mut(row.left() - 1, row.y).glyph = ' ';
-    }
-    if row.right() < grid.size().columns && is_covered(grid, row.right()) {
-        grid.cell_mut(row.right(), row.y).glyph = ' ';
-    }
-}
-
-fn lay_row(grid: &mut Grid, buffer: &Buffer, row: Rect) {
-    let mut column = row.left();
-    while column < row.right() {
-        let mut cell = cell_from_ratatui(&buffer[(column, row.y)]);
-        let columns = cell.glyph.width().unwrap_or(1) as u16;
-        if columns > row.right() - column {
-            cell.glyph = ' '; // a wide character with half of it outside
+        let mut column = row.left();
+        while column < row.right() {
+            column += put(grid, Position::new(column, row.y), &buffer[(column, row.y)], row.right() - column);
         }
-        *grid.cell_mut(column, row.y) = cell;
-        for covered in column + 1..(column + columns).min(row.right()) {
-            *grid.cell_mut(covered, row.y) = Cell { glyph: Cell::COVERED, ..cell };
-        }
-        column += columns;
     }
 }
 
-fn cell_from_ratatui(cell: &ratatui::buffer::Cell) -> Cell {
-    Cell {
-        // Of a character with combining marks the grid keeps the character; what takes no cell is a blank.
-        glyph: cell.symbol().chars().next().filter(|c| c.width() > Some(0)).unwrap_or(' '),
+/// Puts one cell into the grid, where there is room for so many columns; how many it takes. A skipped one leaves what is
+/// there: ratatui's programs skip where a picture is.
+fn put(grid: &mut Grid, place: Position, cell: &ratatui::buffer::Cell, room: u16) -> u16 {
+    if is_skipped(cell) {
+        return 1;
+    }
+    let (glyph, columns) = glyph_from_ratatui(cell);
+    // Half a wide character is none.
+    let (glyph, columns) = if columns <= room { (glyph, columns) } else { (Glyph::Char(' '), 1) };
+    let cell = Cell {
+        glyph,
         fg: ink_from_ratatui(cell.fg),
         bg: ink_from_ratatui(cell.bg),
+        underline: ink_from_ratatui(cell.underline_color),
         modifier: cell.modifier,
+    };
+    grid.put(place.x, place.y, &cell, columns);
+    columns
+}
+
+#[expect(deprecated, reason = "programs still set the older one of the two ways to say it")]
+fn is_skipped(cell: &ratatui::buffer::Cell) -> bool {
+    match cell.diff_option {
+        CellDiffOption::Skip => true,
+        CellDiffOption::None => cell.skip,
+        CellDiffOption::AlwaysUpdate | CellDiffOption::ForcedWidth(_) => false,
     }
+}
+
+/// What stands in the cell, and how many columns ratatui takes it for. Control characters would do something else to the
+/// terminal than the encoder knows, and what has no width would go to another cell: each is a blank.
+fn glyph_from_ratatui(cell: &ratatui::buffer::Cell) -> (Glyph, u16) {
+    let symbol = cell.symbol();
+    if symbol.contains(char::is_control) || symbol.width() == 0 {
+        return (Glyph::Char(' '), 1);
+    }
+    let columns = cell.cell_width();
+    let mut characters = symbol.chars();
+    let glyph = match (characters.next(), characters.next()) {
+        (Some(c), None) if c.width() == Some(columns.into()) && !is_half_a_flag(c) => Glyph::Char(c),
+        _ => Glyph::Cluster(symbol.into()),
+    };
+    (glyph, columns)
+}
+
+/// A regional indicator: two of them are a flag, and of one alone terminals disagree.
+fn is_half_a_flag(character: char) -> bool {
+    matches!(character, '\u{1f1e6}'..='\u{1f1ff}')
 }
 
 /// The 16 named colours are the first of the indexed ones, in the order of SGR's codes.

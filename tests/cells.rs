@@ -5,7 +5,7 @@ use termtrace::cell::{RAMP, grid_from_picture, resolution};
 use termtrace::color::Srgb8;
 use termtrace::export;
 use termtrace::framebuffer::Resolution;
-use termtrace::grid::{Cell, Grid, Ink, Size};
+use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
 use termtrace::tone::Picture;
 
 /// Rows of pixels, each a letter: b(lack), w(hite), r(ed), g(rey).
@@ -31,7 +31,7 @@ fn written(grid: &Grid) -> Vec<String> {
         Ink::Rgb(found) => "bwrg".chars().find(|&letter| color(letter) == found).unwrap_or('?'),
         Ink::Indexed(_) => '?',
     };
-    let cell = |cell: &Cell| [cell.glyph, letter(cell.fg), letter(cell.bg)].iter().collect::<String>();
+    let cell = |cell: &Cell| format!("{}{}{}", cell.glyph, letter(cell.fg), letter(cell.bg));
     grid.rows().map(|row| row.iter().map(cell).collect::<Vec<_>>().join(" ")).collect()
 }
 
@@ -129,13 +129,44 @@ fn ansi_of_a_picture() {
     assert_eq!(String::from_utf8_lossy(&export::ansi(&grid)), expected);
 }
 
-/// The second half of a wide character is no character.
+/// The second half of a wide character is no character, and a cluster is written whole.
 #[test]
 fn covered_cells_are_not_written_to_files() {
-    let mut grid = Grid::new(Size::new(4, 1));
-    grid.cell_mut(0, 0).glyph = '世';
-    grid.cell_mut(1, 0).glyph = Cell::COVERED;
-    grid.cell_mut(2, 0).glyph = 'x';
-    assert_eq!(export::text(&grid), "世x \n");
-    assert_eq!(String::from_utf8_lossy(&export::ansi(&grid)), "世x \x1b[0m\n");
+    let mut grid = Grid::new(Size::new(6, 1));
+    grid.put(0, 0, &Cell::new('世', Ink::Default, Ink::Default), 2);
+    grid.put(2, 0, &Cell { glyph: Glyph::Cluster("e\u{301}".into()), ..Cell::BLANK }, 1);
+    grid.put(3, 0, &Cell { glyph: Glyph::Cluster("👨\u{200d}👩\u{200d}👧".into()), ..Cell::BLANK }, 2);
+    assert_eq!(export::text(&grid), "世e\u{301}👨\u{200d}👩\u{200d}👧 \n");
+    assert_eq!(String::from_utf8_lossy(&export::ansi(&grid)), "世e\u{301}👨\u{200d}👩\u{200d}👧 \x1b[0m\n");
+}
+
+/// What is put over half of something wide leaves blanks of its colours beside it.
+#[test]
+fn what_is_cut_becomes_blanks() {
+    let wide = |text: &str| Cell { glyph: Glyph::Cluster(text.into()), bg: Ink::Indexed(1), ..Cell::BLANK };
+    let letter = |cell: &Cell| if cell.glyph == Glyph::Covered { "<".to_owned() } else { cell.glyph.to_string() };
+    for (column, columns, expected) in [
+        (0, 1, "x  .b<<."),
+        (1, 1, " x .b<<."),
+        (2, 1, "  x.b<<."),
+        (3, 1, "a<<xb<<."),
+        (3, 2, "a<<x<  ."),
+        (2, 3, "  x<<  ."),
+        (5, 2, "a<<. x<."),
+        (7, 1, "a<<.b<<x"),
+    ] {
+        let mut grid = Grid::new(Size::new(8, 1));
+        for column in [3, 7] {
+            grid.cell_mut(column, 0).glyph = '.'.into();
+        }
+        grid.put(0, 0, &wide("a"), 3);
+        grid.put(4, 0, &wide("b"), 3);
+        grid.put(column, 0, &Cell::new('x', Ink::Default, Ink::Default), columns);
+        let shown: String = grid.cells().iter().map(letter).collect();
+        assert_eq!(shown, expected, "{columns} columns at {column}");
+        assert_eq!(
+            [2, 4].map(|column| grid.cell(column, 0).bg == Ink::Indexed(1)),
+            [2, 4].map(|c| !(column..column + columns).contains(&c))
+        );
+    }
 }

@@ -52,7 +52,7 @@ fn shows(screen: &pty::Screen, grid: &Grid) -> bool {
         let shown = screen.cell(at % columns, at / columns);
         // The colour of a space's character is nobody's business.
         let same_fg = wanted.glyph == ' ' || shown.foreground == colour(wanted.fg);
-        shown.glyph == wanted.glyph && same_fg && shown.background == colour(wanted.bg)
+        wanted.glyph == shown.glyph && same_fg && shown.background == colour(wanted.bg)
     })
 }
 

@@ -1,7 +1,7 @@
 //! The pen: the colours and modifiers that the terminal would write with now, and what it costs to change them.
 
 use super::moves::{digits, write_number};
-use crate::grid::{Cell, Ink};
+use crate::grid::{Cell, Glyph, Ink};
 use ratatui::style::Modifier;
 
 /// The colours and modifiers that the terminal would write with now.
@@ -9,6 +9,7 @@ use ratatui::style::Modifier;
 pub(crate) struct Pen {
     pub(super) fg: Ink,
     pub(super) bg: Ink,
+    pub(super) underline: Ink,
     pub(super) modifier: Modifier,
 }
 
@@ -25,38 +26,47 @@ impl Pen {
         let wanted = self.wanted_by(cell);
         self.become_pen(Self { fg: self.before_colors(wanted.modifier).fg, ..wanted }, bytes);
         self.become_pen(wanted, bytes);
-        super::strokes::write_char(cell.glyph, bytes);
+        write_glyph(&cell.glyph, bytes);
     }
 
-    /// The pen with which the cell is to be written. The colour of a plain space's character is not seen: nothing is said
-    /// for its sake.
+    /// The pen with which the cell is to be written. The colour of a plain space's character is not seen, nor that of a
+    /// line that is not drawn: nothing is said for their sake.
     pub(super) fn wanted_by(&self, cell: &Cell) -> Self {
-        let fg = if is_plain_space(cell) { self.before_colors(cell.modifier).fg } else { cell.fg };
-        Self { fg, bg: cell.bg, modifier: cell.modifier }
+        let mut pen = self.before_colors(cell.modifier);
+        pen.bg = cell.bg;
+        if !is_plain_space(cell) {
+            pen.fg = cell.fg;
+        }
+        if is_underlined(cell) {
+            pen.underline = cell.underline;
+        }
+        pen
     }
 
     /// The pen once the modifiers are these: terminals disagree on how to switch single ones off, so all is switched off
     /// first, colours too, which is understood everywhere.
-    fn before_colors(self, modifier: Modifier) -> Self {
+    pub(super) fn before_colors(self, modifier: Modifier) -> Self {
         if self.modifier == modifier { self } else { Self { modifier, ..Self::default() } }
     }
 
     /// How many bytes [`become_pen`](Self::become_pen) takes.
     pub(super) fn cost_of(&self, wanted: &Self) -> usize {
-        let modifiers =
-            if self.modifier == wanted.modifier { 0 } else { 4 + 2 * modifier_codes(wanted.modifier).count() };
-        let from = self.before_colors(wanted.modifier);
-        let colors = match (from.fg != wanted.fg, from.bg != wanted.bg) {
+        if self.modifier != wanted.modifier {
+            let codes = modifier_codes(wanted.modifier).count();
+            return 4 + 2 * codes + self.before_colors(wanted.modifier).cost_of(wanted);
+        }
+        let colors = match (self.fg != wanted.fg, self.bg != wanted.bg) {
             (false, false) => 0,
             (true, false) => 3 + ink_len(wanted.fg),
             (false, true) => 3 + ink_len(wanted.bg),
             (true, true) => 4 + ink_len(wanted.fg) + ink_len(wanted.bg),
         };
-        modifiers + colors
+        let underline = if self.underline == wanted.underline { 0 } else { underline_len(wanted.underline) };
+        colors + underline
     }
 
-    /// Says what differs: the modifiers in one sequence, the colours in another. (All in one could be more numbers than
-    /// some terminals take.)
+    /// Says what differs: the modifiers in one sequence, the colours in another, the line's in a third. (All in one could
+    /// be more numbers than some terminals take.)
     pub(super) fn become_pen(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if self.modifier != wanted.modifier {
             bytes.extend_from_slice(b"\x1b[0");
@@ -80,13 +90,44 @@ impl Pen {
             }
             bytes.push(b'm');
         }
+        if from.underline != wanted.underline {
+            write_underline(wanted.underline, bytes);
+        }
         *self = wanted;
     }
+}
+
+/// Whether nobody can tell the two cells apart.
+pub(super) fn look_alike(a: &Cell, b: &Cell) -> bool {
+    (a.bg, a.modifier) == (b.bg, b.modifier)
+        && a.glyph == b.glyph
+        && (a.fg == b.fg || is_plain_space(a))
+        && (a.underline == b.underline || !is_underlined(a))
 }
 
 /// Whether only the colour behind the character is seen.
 pub(super) fn is_plain_space(cell: &Cell) -> bool {
     cell.glyph == ' ' && cell.modifier.is_empty()
+}
+
+/// Whether the colour of the line below is seen.
+fn is_underlined(cell: &Cell) -> bool {
+    cell.modifier.contains(Modifier::UNDERLINED)
+}
+
+/// In UTF-8.
+pub(super) fn write_glyph(glyph: &Glyph, bytes: &mut Vec<u8>) {
+    match glyph {
+        Glyph::Char(character) => write_char(*character, bytes),
+        Glyph::Cluster(text) => bytes.extend_from_slice(text.as_bytes()),
+        Glyph::Covered => {}
+    }
+}
+
+/// In UTF-8.
+pub(super) fn write_char(character: char, bytes: &mut Vec<u8>) {
+    let mut utf8 = [0; 4];
+    bytes.extend_from_slice(character.encode_utf8(&mut utf8).as_bytes());
 }
 
 /// The numbers of one colour; `base` is 30 for the character's, 40 for the one behind it.
@@ -118,6 +159,36 @@ fn ink_len(ink: Ink) -> usize {
     }
 }
 
+/// The colour of the line below, in a sequence of its own and with colons: a terminal that does not know it passes over
+/// that, where it would take `58;2` for something and then dim.
+fn write_underline(ink: Ink, bytes: &mut Vec<u8>) {
+    match ink {
+        Ink::Default => bytes.extend_from_slice(b"\x1b[59"),
+        Ink::Indexed(index) => {
+            bytes.extend_from_slice(b"\x1b[58:5:");
+            write_number(index.into(), bytes);
+        }
+        Ink::Rgb(color) => {
+            // The number left out is that of a colour space.
+            bytes.extend_from_slice(b"\x1b[58:2:");
+            for band in [color.r, color.g, color.b] {
+                bytes.push(b':');
+                write_number(band.into(), bytes);
+            }
+        }
+    }
+    bytes.push(b'm');
+}
+
+/// How many bytes [`write_underline`] takes.
+fn underline_len(ink: Ink) -> usize {
+    match ink {
+        Ink::Default => 5,
+        Ink::Indexed(_) => 3 + ink_len(ink),
+        Ink::Rgb(_) => 4 + ink_len(ink),
+    }
+}
+
 /// The number of each modifier that is on, in rising order.
 fn modifier_codes(modifier: Modifier) -> impl Iterator<Item = u8> {
     const CODES: [(Modifier, u8); 9] = [
@@ -145,7 +216,10 @@ mod tests {
         let inks = [Ink::Default, Ink::Indexed(7), Ink::Indexed(200), Ink::Rgb(Srgb8::new(0, 10, 100))];
         let modifiers = [Modifier::empty(), Modifier::BOLD, Modifier::BOLD | Modifier::REVERSED, Modifier::all()];
         let colors = || inks.into_iter().flat_map(|fg| inks.map(|bg| (fg, bg)));
-        let pens: Vec<Pen> = colors().flat_map(|(fg, bg)| modifiers.map(|modifier| Pen { fg, bg, modifier })).collect();
+        let looks = || colors().flat_map(|colors| inks.map(|underline| (colors, underline)));
+        let pens: Vec<Pen> = looks()
+            .flat_map(|((fg, bg), underline)| modifiers.map(|modifier| Pen { fg, bg, underline, modifier }))
+            .collect();
         for from in &pens {
             for to in &pens {
                 let mut bytes = Vec::new();

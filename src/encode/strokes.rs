@@ -4,14 +4,14 @@
 //! which one is cheaper depends on the pen, which depends on how the cell before was written. So the whole sequence is
 //! decided at once: for each cell the cheapest way to have written everything up to it in either form (Viterbi 1967).
 
-use super::moves::{Place, cheapest};
-use super::pen::{Pen, is_plain_space};
-use crate::grid::{Cell, Grid, Ink};
+use super::moves::{Move, Place, cheapest};
+use super::pen::{Pen, is_plain_space, write_char, write_glyph};
+use crate::grid::{Cell, Glyph, Grid, Ink};
 
-/// A character and the pen that writes it.
+/// A cell, the form in which it is written, and the pen.
 pub(super) struct Stroke {
     place: Place,
-    glyph: char,
+    form: Form,
     pen: Pen,
 }
 
@@ -19,21 +19,20 @@ pub(super) struct Stroke {
 pub(super) fn choose(wanted: &Grid, order: &[Place], upper_half: bool, mut pen: Pen) -> Vec<Stroke> {
     let forms = choose_forms(wanted, order, upper_half, pen);
     let stroke = |(&place, form): (&Place, Form)| {
-        let cell = form.of(wanted.cell(place.column, place.row));
-        pen = pen.wanted_by(&cell);
-        Stroke { place, glyph: cell.glyph, pen }
+        pen = form.pen(wanted.cell(place.column, place.row), &pen);
+        Stroke { place, form, pen }
     };
     order.iter().zip(forms).map(stroke).collect()
 }
 
 /// The colour of a plain space's character is free: let it be the one that the next cell wants, if that wants nothing
 /// else changed. Where the space changes the colour behind it, one sequence then says both.
-pub(super) fn look_ahead(strokes: &mut [Stroke]) {
+pub(super) fn look_ahead(wanted: &Grid, strokes: &mut [Stroke]) {
     for at in (1..strokes.len()).rev() {
         let next = strokes[at].pen;
         let stroke = &mut strokes[at - 1];
         let only_fg = Pen { fg: next.fg, ..stroke.pen } == next;
-        if stroke.glyph == ' ' && stroke.pen.modifier.is_empty() && only_fg {
+        if only_fg && is_plain_space(wanted.cell(stroke.place.column, stroke.place.row)) {
             stroke.pen = next;
         }
     }
@@ -46,8 +45,22 @@ pub(super) fn write(wanted: &Grid, strokes: &[Stroke], pen: &mut Pen, bytes: &mu
     for stroke in strokes {
         move_to(wanted, cursor, stroke.place, pen, bytes);
         pen.become_pen(stroke.pen, bytes);
-        write_char(stroke.glyph, bytes);
+        write_cell(wanted, stroke, bytes);
         cursor = after(wanted, stroke.place);
+    }
+}
+
+/// A wide cluster takes one cell in some terminals: what stood in the others is wiped out before it.
+fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
+    let Place { column, row } = stroke.place;
+    let glyph = &wanted.cell(column, row).glyph;
+    if matches!(glyph, Glyph::Cluster(_)) && super::width(wanted, column, row) > 1 {
+        bytes.extend(std::iter::repeat_n(b' ', super::width(wanted, column, row).into()));
+        Move::To(stroke.place).write(bytes);
+    }
+    match stroke.form {
+        Form::Plain => write_glyph(glyph, bytes),
+        Form::Turned => write_char(other_half(glyph).unwrap_or(' '), bytes),
     }
 }
 
@@ -61,20 +74,20 @@ enum Form {
 }
 
 impl Form {
-    fn of(self, cell: &Cell) -> Cell {
+    /// The pen that writes the cell in this form, after that one.
+    fn pen(self, cell: &Cell, before: &Pen) -> Pen {
+        let plain = before.wanted_by(cell);
         match self {
-            Self::Plain => *cell,
-            Self::Turned => {
-                Cell { glyph: other_half(cell.glyph).unwrap_or(cell.glyph), fg: cell.bg, bg: cell.fg, ..*cell }
-            }
+            Self::Plain => plain,
+            Self::Turned => Pen { fg: plain.bg, bg: plain.fg, ..plain },
         }
     }
 }
 
-fn other_half(glyph: char) -> Option<char> {
+fn other_half(glyph: &Glyph) -> Option<char> {
     match glyph {
-        '▄' => Some('▀'),
-        '▀' => Some('▄'),
+        Glyph::Char('▄') => Some('▀'),
+        Glyph::Char('▀') => Some('▄'),
         _ => None,
     }
 }
@@ -82,7 +95,7 @@ fn other_half(glyph: char) -> Option<char> {
 /// Whether the cell looks the same when its halves and colours are exchanged. The terminal's own colours cannot be: each
 /// is known only in its own place.
 fn can_be_turned(cell: &Cell) -> bool {
-    other_half(cell.glyph).is_some() && cell.modifier.is_empty() && cell.fg != Ink::Default && cell.bg != Ink::Default
+    other_half(&cell.glyph).is_some() && cell.modifier.is_empty() && cell.fg != Ink::Default && cell.bg != Ink::Default
 }
 
 /// A cheapest way to have written everything up to a cell.
@@ -102,15 +115,15 @@ fn choose_forms(wanted: &Grid, order: &[Place], upper_half: bool, pen: Pen) -> V
     let mut before = Vec::with_capacity(order.len());
     for place in order {
         let cell = wanted.cell(place.column, place.row);
-        let (plain, from_plain) = extend(&paths, cell);
+        let (plain, from_plain) = extend(&paths, cell, Form::Plain);
         if can_be_turned(cell) {
-            let (turned, from_turned) = extend(&paths, &Form::Turned.of(cell));
+            let (turned, from_turned) = extend(&paths, cell, Form::Turned);
             before.push([from_plain, from_turned]);
             paths = [plain, turned];
         } else if is_plain_space(cell) {
             // The character's colour is carried on: both paths stay open.
             before.push([0, 1]);
-            paths = paths.map(|path| step(&path, cell));
+            paths = paths.map(|path| step(&path, cell, Form::Plain));
         } else {
             before.push([from_plain; 2]);
             paths = [plain; 2];
@@ -128,13 +141,13 @@ fn choose_forms(wanted: &Grid, order: &[Place], upper_half: bool, pen: Pen) -> V
 }
 
 /// The cheaper of two paths, with the cell written, and which of them it was.
-fn extend(paths: &[Path; 2], cell: &Cell) -> (Path, u8) {
-    let [first, second] = [step(&paths[0], cell), step(&paths[1], cell)];
+fn extend(paths: &[Path; 2], cell: &Cell, form: Form) -> (Path, u8) {
+    let [first, second] = [step(&paths[0], cell, form), step(&paths[1], cell, form)];
     if second.cost < first.cost { (second, 1) } else { (first, 0) }
 }
 
-fn step(path: &Path, cell: &Cell) -> Path {
-    let pen = path.pen.wanted_by(cell);
+fn step(path: &Path, cell: &Cell, form: Form) -> Path {
+    let pen = form.pen(cell, &path.pen);
     Path { pen, cost: path.cost + path.pen.cost_of(&pen) }
 }
 
@@ -165,18 +178,19 @@ fn same_row(cursor: Option<Place>, place: Place) -> Option<std::ops::Range<u16>>
 /// The character that shows the cell with this very pen, if one byte does. (More bytes would not be cheaper than the
 /// move, and a wide character is more.)
 fn again(cell: &Cell, pen: &Pen) -> Option<u8> {
-    let fits = pen.wanted_by(cell) == *pen && cell.glyph != Cell::COVERED;
-    u8::try_from(cell.glyph).ok().filter(|glyph| fits && glyph.is_ascii())
+    match cell.glyph {
+        Glyph::Char(character) if character.is_ascii() && pen.wanted_by(cell) == *pen => Some(character as u8),
+        _ => None,
+    }
 }
 
-/// In UTF-8.
-pub(super) fn write_char(glyph: char, bytes: &mut Vec<u8>) {
-    let mut utf8 = [0; 4];
-    bytes.extend_from_slice(glyph.encode_utf8(&mut utf8).as_bytes());
-}
-
-/// Where the cursor is after a character: in the last column that depends on the terminal.
+/// Where the cursor is after a cell, if that is sure. In the last column it depends on the terminal. After a cluster too:
+/// terminals disagree on how many cells a flag, a family or a letter with marks takes, so the next move has to say its
+/// place.
 pub(super) fn after(wanted: &Grid, place: Place) -> Option<Place> {
+    if matches!(wanted.cell(place.column, place.row).glyph, Glyph::Cluster(_)) {
+        return None;
+    }
     let column = place.column + super::width(wanted, place.column, place.row);
     (column < wanted.size().columns).then_some(Place { column, ..place })
 }

@@ -3,17 +3,17 @@
 use super::rgb;
 use ratatui::style::Modifier;
 use termtrace::encode::{Encoder, Order};
-use termtrace::grid::{Cell, Grid, Ink, Size};
+use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
 
 const A: Ink = rgb(10, 20, 30);
 const B: Ink = rgb(200, 100, 0);
 const C: Ink = rgb(1, 2, 3);
 
-fn flat(cell: Cell) -> Grid {
+fn flat(cell: &Cell) -> Grid {
     let mut grid = Grid::new(Size::new(5, 3));
     for row in 0..3 {
         for column in 0..5 {
-            *grid.cell_mut(column, row) = cell;
+            grid.cell_mut(column, row).clone_from(cell);
         }
     }
     grid
@@ -27,7 +27,7 @@ fn encoded(encoder: &mut Encoder, grid: &Grid) -> String {
 
 #[test]
 fn a_first_frame_says_each_colour_once() {
-    let grid = flat(Cell::new('▄', A, B));
+    let grid = flat(&Cell::new('▄', A, B));
     assert_eq!(
         encoded(&mut Encoder::new(), &grid),
         "\x1b[0m\x1b[H\x1b[38;2;10;20;30;48;2;200;100;0m▄▄▄▄▄\x1b[2H▄▄▄▄▄\x1b[3H▄▄▄▄▄"
@@ -39,10 +39,10 @@ fn a_first_frame_says_each_colour_once() {
 fn one_changed_cell_is_a_place_a_colour_and_a_character() {
     let mut encoder = Encoder::new();
     let start = Cell::new('▄', A, B);
-    let mut grid = flat(start);
+    let mut grid = flat(&start);
     encoded(&mut encoder, &grid);
     for (cell, expected) in [
-        (start, ""),
+        (start.clone(), ""),
         (Cell::new('▄', C, B), "\x1b[2;4H\x1b[38;2;1;2;3m▄"),
         // The pen still has that colour.
         (Cell::new('x', C, B), "\x1b[2;4Hx"),
@@ -55,7 +55,7 @@ fn one_changed_cell_is_a_place_a_colour_and_a_character() {
         (Cell::new('x', Ink::Indexed(7), Ink::Indexed(255)), "\x1b[2;4H\x1b[38;5;7;48;5;255mx"),
         (Cell::BLANK, "\x1b[2;4H\x1b[49m "),
     ] {
-        *grid.cell_mut(3, 1) = cell;
+        grid.cell_mut(3, 1).clone_from(&cell);
         assert_eq!(encoded(&mut encoder, &grid), expected, "{cell:?}");
         assert_eq!(encoded(&mut encoder, &grid), "", "{cell:?} again");
     }
@@ -64,10 +64,10 @@ fn one_changed_cell_is_a_place_a_colour_and_a_character() {
 #[test]
 fn modifiers_begin_with_all_off() {
     let mut encoder = Encoder::new();
-    let mut grid = flat(Cell::new('x', A, B));
+    let mut grid = flat(&Cell::new('x', A, B));
     encoded(&mut encoder, &grid);
     let bold = Cell { modifier: Modifier::BOLD | Modifier::UNDERLINED, ..Cell::new('x', A, B) };
-    *grid.cell_mut(0, 0) = bold;
+    *grid.cell_mut(0, 0) = bold.clone();
     let colours = "\x1b[38;2;10;20;30;48;2;200;100;0m";
     assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[H\x1b[0;1;4m{colours}x"));
     *grid.cell_mut(1, 0) = Cell { modifier: Modifier::BOLD | Modifier::UNDERLINED, ..Cell::new(' ', C, B) };
@@ -89,10 +89,10 @@ fn modifiers_begin_with_all_off() {
 #[test]
 fn a_run_of_changes_says_its_place_once() {
     let mut encoder = Encoder::new();
-    let mut grid = flat(Cell::BLANK);
+    let mut grid = flat(&Cell::BLANK);
     encoded(&mut encoder, &grid);
     for (column, row) in [(0, 0), (1, 0), (3, 0), (4, 0), (0, 1), (4, 2)] {
-        grid.cell_mut(column, row).glyph = 'x';
+        grid.cell_mut(column, row).glyph = 'x'.into();
     }
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[Hxx xx\x1b[2Hx\n\x1b[3Cx");
 }
@@ -105,7 +105,7 @@ fn moves_are_the_cheapest() {
     let mut change = |cells: &[(u16, u16)]| {
         for &(column, row) in cells {
             let cell = grid.cell_mut(column, row);
-            cell.glyph = if cell.glyph == 'x' { 'y' } else { 'x' };
+            cell.glyph = if cell.glyph == 'x' { 'y' } else { 'x' }.into();
         }
         encoded(&mut encoder, &grid)
     };
@@ -124,7 +124,7 @@ fn cells_of_the_same_colours_follow_each_other() {
     for (column, cell) in [Cell::new('▄', A, B), Cell::new(' ', A, C)].into_iter().cycle().take(4).enumerate() {
         *grid.cell_mut(column as u16, 0) = cell;
     }
-    grid.cell_mut(4, 0).glyph = 'x';
+    grid.cell_mut(4, 0).glyph = 'x'.into();
     assert_eq!(
         encoded(&mut Encoder::new().with_order(Order::Color), &grid),
         // Text first, in the terminal's own colours.
@@ -150,36 +150,96 @@ fn either_half_saves_a_colour() {
 fn the_colour_of_a_plain_space_is_not_sent() {
     for order in [Order::Raster, Order::Color] {
         let mut encoder = Encoder::new().with_order(order);
-        encoded(&mut encoder, &flat(Cell::new(' ', A, B)));
-        assert_eq!(encoded(&mut encoder, &flat(Cell::new(' ', C, B))), "");
+        encoded(&mut encoder, &flat(&Cell::new(' ', A, B)));
+        assert_eq!(encoded(&mut encoder, &flat(&Cell::new(' ', C, B))), "");
     }
 }
 
 #[test]
 fn wide_characters_are_two_cells() {
     let mut encoder = Encoder::new();
-    let mut grid = flat(Cell::BLANK);
+    let mut grid = flat(&Cell::BLANK);
     encoded(&mut encoder, &grid);
-    grid.cell_mut(1, 0).glyph = '世';
-    grid.cell_mut(2, 0).glyph = Cell::COVERED;
-    grid.cell_mut(3, 0).glyph = 'x';
+    grid.put(1, 0, &Cell::new('世', Ink::Default, Ink::Default), 2);
+    grid.cell_mut(3, 0).glyph = 'x'.into();
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;2H世x");
-    grid.cell_mut(1, 0).glyph = 'a';
-    grid.cell_mut(2, 0).glyph = ' ';
+    grid.cell_mut(1, 0).glyph = 'a'.into();
+    grid.cell_mut(2, 0).glyph = ' '.into();
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;2Ha ");
+}
+
+fn cluster(text: &str) -> Cell {
+    Cell { glyph: Glyph::Cluster(text.into()), ..Cell::BLANK }
+}
+
+/// After a cluster nobody knows where the cursor is: the next cell says its place. What stands behind it is written
+/// again, as far as a terminal that takes it apart writes over it; nothing else is.
+#[test]
+fn clusters_are_followed_by_a_place() {
+    let mut encoder = Encoder::new();
+    let mut grid = flat(&Cell::new('x', Ink::Default, Ink::Default));
+    encoded(&mut encoder, &grid);
+    grid.put(0, 0, &cluster("e\u{301}"), 1);
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[He\u{301}\x1b[1;2Hx");
+    assert_eq!(encoded(&mut encoder, &grid), "");
+    grid.put(3, 2, &cluster("e\u{301}"), 1);
+    grid.put(4, 2, &cluster("o\u{308}"), 1);
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[3;4He\u{301}\x1b[3;5Ho\u{308}");
+    grid.put(3, 2, &Cell::new('y', Ink::Default, Ink::Default), 1);
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[3;4Hy", "what stands before a cluster is not");
+}
+
+/// In some terminals a wide cluster takes one cell: both are wiped out first.
+#[test]
+fn wide_clusters_are_written_on_blanks() {
+    let mut encoder = Encoder::new();
+    let mut grid = flat(&Cell::new('x', A, B));
+    encoded(&mut encoder, &grid);
+    grid.put(1, 0, &Cell { fg: A, bg: C, ..cluster("🇫🇷") }, 2);
+    let colour = "\x1b[48;2;1;2;3m";
+    assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[1;2H{colour}  \x1b[1;2H🇫🇷"));
+    grid.put(1, 1, &Cell { fg: A, bg: C, ..cluster("👨\u{200d}👩") }, 2);
+    assert_eq!(
+        encoded(&mut encoder, &grid),
+        "\x1b[2;2H  \x1b[2;2H👨\u{200d}👩\x1b[2;4H\x1b[48;2;200;100;0mxx",
+        "five columns where each character has its own"
+    );
+}
+
+/// The colour of an underline has a sequence of its own, with colons; where no line is drawn nothing is said.
+#[test]
+fn underlines_have_a_colour() {
+    let mut encoder = Encoder::new();
+    let underlined = |underline, modifier| Cell { underline, modifier, ..Cell::new('x', A, B) };
+    let mut grid = flat(&underlined(Ink::Default, Modifier::UNDERLINED));
+    encoded(&mut encoder, &grid);
+    let colours = "\x1b[38;2;10;20;30;48;2;200;100;0m";
+    for (underline, modifier, expected) in [
+        (A, Modifier::UNDERLINED, "\x1b[58:2::10:20:30mx"),
+        (Ink::Indexed(7), Modifier::UNDERLINED, "\x1b[58:5:7mx"),
+        (Ink::Default, Modifier::UNDERLINED, "\x1b[59mx"),
+        (C, Modifier::UNDERLINED, "\x1b[58:2::1:2:3mx"),
+        (C, Modifier::empty(), &format!("\x1b[0m{colours}x")),
+        (A, Modifier::empty(), ""),
+        (A, Modifier::ITALIC | Modifier::UNDERLINED, &format!("\x1b[0;3;4m{colours}\x1b[58:2::10:20:30mx")),
+    ] {
+        *grid.cell_mut(0, 0) = underlined(underline, modifier);
+        let place = if expected.is_empty() { "" } else { "\x1b[H" };
+        assert_eq!(encoded(&mut encoder, &grid), format!("{place}{expected}"), "{underline:?} {modifier:?}");
+    }
 }
 
 /// After `forget` and after a resize everything is said again, as if for the first time; nothing is ever cleared.
 #[test]
 fn forgetting_draws_everything_again() {
-    let grid = flat(Cell::new('▄', A, B));
+    let grid = flat(&Cell::new('▄', A, B));
     let mut encoder = Encoder::new();
     let first = encoded(&mut encoder, &grid);
     assert_eq!(encoded(&mut encoder, &grid), "");
     encoder.forget();
     assert_eq!(encoded(&mut encoder, &grid), first);
     let mut small = Grid::new(Size::new(2, 1));
-    small.cell_mut(0, 0).glyph = 'x';
+    small.cell_mut(0, 0).glyph = 'x'.into();
     assert_eq!(encoded(&mut encoder, &small), "\x1b[0m\x1b[Hx ");
     assert_eq!(encoded(&mut encoder, &grid), first);
 }
@@ -198,7 +258,7 @@ fn places_have_five_digits_where_they_need_them() {
     let mut encoder = Encoder::new();
     let mut grid = Grid::new(Size::new(65_535, 1));
     encoded(&mut encoder, &grid);
-    grid.cell_mut(65_534, 0).glyph = 'x';
+    grid.cell_mut(65_534, 0).glyph = 'x'.into();
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;65535Hx");
     for empty in [Size::new(0, 0), Size::new(0, 5), Size::new(5, 0)] {
         assert!(encoded(&mut encoder, &Grid::new(empty)).len() <= "\x1b[0m".len());

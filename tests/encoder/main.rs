@@ -11,11 +11,11 @@ use proptest::prelude::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
-use screens::Screens;
+use screens::{Clusters, Screens, glyph_of};
 use termtrace::color::Srgb8;
 use termtrace::encode::{Encoder, Order};
 use termtrace::grid::{Cell, Grid, Ink, Size};
-use unicode_width::UnicodeWidthChar;
+use unicode_width::UnicodeWidthStr;
 
 pub(crate) const fn rgb(r: u8, g: u8, b: u8) -> Ink {
     Ink::Rgb(Srgb8::new(r, g, b))
@@ -35,20 +35,30 @@ fn modifier() -> impl Strategy<Value = Modifier> {
     prop_oneof![4 => Just(Modifier::empty()), 1 => any::<u16>().prop_map(Modifier::from_bits_truncate)]
 }
 
-fn cell(glyphs: &'static [char]) -> impl Strategy<Value = Cell> {
-    (prop::sample::select(glyphs), ink(), ink(), modifier()).prop_map(|(glyph, fg, bg, modifier)| Cell {
-        glyph,
+fn cell(texts: &'static [&'static str]) -> impl Strategy<Value = Cell> {
+    let looks = (ink(), ink(), ink(), modifier());
+    (prop::sample::select(texts), looks).prop_map(|(text, (fg, bg, underline, modifier))| Cell {
+        glyph: glyph_of(text),
         fg,
         bg,
+        underline,
         modifier,
     })
 }
 
 /// What a picture is made of.
-const PICTURE: &[char] = &['▄', ' ', '▀'];
+const PICTURE: &[&str] = &["▄", " ", "▀"];
 
-/// What a grid can hold: the picture's, plain and accented letters, and wide ones.
-const ANYTHING: &[char] = &['▄', '▄', ' ', ' ', '▀', 'a', '@', 'é', '│', '世', '🙂'];
+/// What a grid can hold: the picture's, plain and accented letters, and wide ones; and clusters.
+fn anything(clusters: Clusters) -> &'static [&'static str] {
+    match clusters {
+        Clusters::None => &["▄", "▄", " ", " ", "▀", "a", "@", "é", "│", "世", "🙂"],
+        Clusters::Marks => &["▄", " ", "a", "世", "e\u{301}", "o\u{308}\u{323}", "世\u{301}", "❤\u{fe0f}"],
+        Clusters::Joined => {
+            &["▄", " ", "a", "世", "e\u{301}", "👨\u{200d}👩\u{200d}👧", "🇫🇷", "👍🏽", "1\u{fe0f}\u{20e3}"]
+        }
+    }
+}
 
 /// The most cells of a grid here.
 const CELLS: usize = 60;
@@ -57,35 +67,23 @@ fn size() -> impl Strategy<Value = Size> {
     (1_u16..=12, 1_u16..=5).prop_map(|(columns, rows)| Size::new(columns, rows))
 }
 
-/// Puts a character where it has room, and a blank where half of a wide one is left over.
-fn put(grid: &mut Grid, column: u16, row: u16, cell: Cell) {
-    let wide = cell.glyph.width() == Some(2);
-    if wide && column + 1 == grid.size().columns {
-        return;
-    }
-    let width = if wide { 2 } else { 1 };
-    if grid.cell(column, row).glyph == Cell::COVERED {
-        grid.cell_mut(column - 1, row).glyph = ' ';
-    }
-    let after = column + width;
-    if after < grid.size().columns && grid.cell(after, row).glyph == Cell::COVERED {
-        grid.cell_mut(after, row).glyph = ' ';
-    }
-    *grid.cell_mut(column, row) = cell;
-    if wide {
-        *grid.cell_mut(column + 1, row) = Cell { glyph: Cell::COVERED, ..cell };
+/// Puts a glyph where it has room.
+fn put(grid: &mut Grid, column: u16, row: u16, cell: &Cell) {
+    let columns = cell.glyph.to_string().width() as u16;
+    if column + columns <= grid.size().columns {
+        grid.put(column, row, cell, columns);
     }
 }
 
 fn filled(size: Size, cells: &[Cell]) -> Grid {
     let mut grid = Grid::new(size);
-    for (place, &cell) in (0..size.cell_count()).zip(cells) {
+    for (place, cell) in (0..size.cell_count()).zip(cells) {
         put_at(&mut grid, place, cell);
     }
     grid
 }
 
-fn put_at(grid: &mut Grid, place: usize, cell: Cell) {
+fn put_at(grid: &mut Grid, place: usize, cell: &Cell) {
     let columns = usize::from(grid.size().columns);
     put(grid, (place % columns) as u16, (place / columns) as u16, cell);
 }
@@ -109,7 +107,7 @@ impl Panel {
     }
 }
 
-fn panel() -> impl Strategy<Value = Panel> {
+fn panel(clusters: Clusters) -> impl Strategy<Value = Panel> {
     let color = prop_oneof![
         Just(Color::Reset),
         prop::sample::select(&[Color::Red, Color::Gray, Color::DarkGray, Color::White][..]),
@@ -118,11 +116,10 @@ fn panel() -> impl Strategy<Value = Panel> {
     ];
     let area =
         (0_u16..8, 0_u16..4, 1_u16..9, 1_u16..4).prop_map(|(x, y, width, height)| Rect::new(x, y, width, height));
-    (area, "[a-c é│世🙂]{0,8}", color.clone(), color, modifier()).prop_map(|(area, text, fg, bg, modifier)| Panel {
-        area,
-        text,
-        style: Style::new().fg(fg).bg(bg).add_modifier(modifier),
-    })
+    let text = vec(prop::sample::select(anything(clusters)), 0..8).prop_map(|text| text.concat());
+    let style = (color.clone(), color.clone(), color, modifier())
+        .prop_map(|(fg, bg, line, modifier)| Style::new().fg(fg).bg(bg).underline_color(line).add_modifier(modifier));
+    (area, text, style).prop_map(|(area, text, style)| Panel { area, text, style })
 }
 
 /// What the next frame is.
@@ -142,13 +139,14 @@ enum Step {
     Disturb,
 }
 
-fn step() -> impl Strategy<Value = Step> {
+fn step(clusters: Clusters) -> impl Strategy<Value = Step> {
+    let anything = anything(clusters);
     prop_oneof![
         1 => Just(Step::Same),
-        4 => vec((0..CELLS, cell(ANYTHING)), 1..6).prop_map(Step::Change),
-        1 => vec(cell(ANYTHING), CELLS).prop_map(Step::Redraw),
-        2 => (vec(cell(PICTURE), CELLS), panel()).prop_map(|(cells, panel)| Step::Panel(cells, panel)),
-        1 => (size(), vec(cell(ANYTHING), CELLS)).prop_map(|(size, cells)| Step::Resize(size, cells)),
+        4 => vec((0..CELLS, cell(anything)), 1..6).prop_map(Step::Change),
+        1 => vec(cell(anything), CELLS).prop_map(Step::Redraw),
+        2 => (vec(cell(PICTURE), CELLS), panel(clusters)).prop_map(|(cells, panel)| Step::Panel(cells, panel)),
+        1 => (size(), vec(cell(anything), CELLS)).prop_map(|(size, cells)| Step::Resize(size, cells)),
         1 => Just(Step::Disturb),
     ]
 }
@@ -157,20 +155,21 @@ fn step() -> impl Strategy<Value = Step> {
 pub(crate) struct Stage {
     encoder: Encoder,
     upper_half: bool,
+    clusters: Clusters,
     screens: Screens,
     grid: Grid,
 }
 
 impl Stage {
-    pub(crate) fn new(order: Order, upper_half: bool, grid: Grid) -> Self {
+    fn new(order: Order, upper_half: bool, grid: Grid, clusters: Clusters) -> Self {
         let encoder = Encoder::new().with_order(order).with_upper_half(upper_half);
-        Self { encoder, upper_half, screens: Screens::disturbed(grid.size()), grid }
+        Self { encoder, upper_half, clusters, screens: Screens::disturbed(grid.size(), clusters), grid }
     }
 
     /// One for each way of encoding.
-    pub(crate) fn all(grid: &Grid) -> [Self; 4] {
+    pub(crate) fn all(grid: &Grid, clusters: Clusters) -> [Self; 4] {
         let ways = [(Order::Raster, false), (Order::Raster, true), (Order::Color, false), (Order::Color, true)];
-        ways.map(|(order, upper_half)| Self::new(order, upper_half, grid.clone()))
+        ways.map(|(order, upper_half)| Self::new(order, upper_half, grid.clone(), clusters))
     }
 
     /// Takes the step; what the bytes have to be fewer than.
@@ -180,11 +179,13 @@ impl Stage {
             Step::Same => return 0,
             Step::Change(changes) => {
                 let count = self.grid.size().cell_count();
-                for &(place, cell) in changes {
+                for (place, cell) in changes {
                     put_at(&mut self.grid, place % count, cell);
                 }
-                // Each may also have cut a wide character to its left and to its right.
-                return changes.len() * 3 * MOST_BYTES;
+                // Each may also have cut a wide character to its left and to its right; and with a cluster all that stands
+                // behind it in its row may be written again.
+                let cells = if matches!(self.clusters, Clusters::None) { 3 } else { 3 * 12 };
+                return changes.len() * cells * MOST_BYTES;
             }
             Step::Redraw(cells) => self.grid = filled(self.grid.size(), cells),
             Step::Panel(cells, panel) => {
@@ -198,7 +199,7 @@ impl Stage {
                 return 4 + size.cell_count() * MOST_BYTES;
             }
             Step::Disturb => {
-                self.screens = Screens::disturbed(self.grid.size());
+                self.screens = Screens::disturbed(self.grid.size(), self.clusters);
                 self.encoder.forget();
             }
         }
@@ -222,20 +223,40 @@ impl Stage {
     }
 }
 
-/// A place, all nine modifiers, two colours, a character.
-const MOST_BYTES: usize = "\x1b[12;12H\x1b[0;1;2;3;4;5;6;7;8;9m\x1b[38;2;255;255;255;48;2;255;255;255m".len() + 4;
+/// A place, all nine modifiers, three colours, a wide cluster that is written on blanks.
+const MOST_BYTES: usize = "\x1b[12;12H\x1b[0;1;2;3;4;5;6;7;8;9m\x1b[38;2;255;255;255;48;2;255;255;255m".len()
+    + "\x1b[58:2::255:255:255m  \x1b[12;12H👨\u{200d}👩\u{200d}👧".len();
+
+/// A first grid, and what happens to it.
+fn story(clusters: Clusters) -> impl Strategy<Value = (Size, Vec<Cell>, Vec<Step>)> {
+    (size(), vec(cell(anything(clusters)), CELLS), vec(step(clusters), 1..8))
+}
+
+fn assert_told((size, cells, steps): &(Size, Vec<Cell>, Vec<Step>), clusters: Clusters) {
+    for mut stage in Stage::all(&filled(*size, cells), clusters) {
+        stage.send(4 + size.cell_count() * MOST_BYTES);
+        for step in steps {
+            let most = stage.take(step);
+            stage.send(most);
+        }
+    }
+}
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2_000) })]
 
     #[test]
-    fn every_terminal_shows_every_frame(size in size(), cells in vec(cell(ANYTHING), CELLS), steps in vec(step(), 1..8)) {
-        for mut stage in Stage::all(&filled(size, &cells)) {
-            stage.send(4 + size.cell_count() * MOST_BYTES);
-            for step in &steps {
-                let most = stage.take(step);
-                stage.send(most);
-            }
-        }
+    fn every_terminal_shows_every_frame(story in story(Clusters::None)) {
+        assert_told(&story, Clusters::None);
+    }
+
+    #[test]
+    fn letters_keep_their_marks(story in story(Clusters::Marks)) {
+        assert_told(&story, Clusters::Marks);
+    }
+
+    #[test]
+    fn families_and_flags_stay_together(story in story(Clusters::Joined)) {
+        assert_told(&story, Clusters::Joined);
     }
 }

@@ -1,12 +1,13 @@
 //! Panels of ratatui over the grid.
 
 use super::rgb;
-use super::screens::Screens;
-use ratatui::buffer::Buffer;
+use super::screens::{Clusters, Screens};
+use ratatui::buffer::{Buffer, CellDiffOption};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
+use std::num::NonZeroU16;
 use termtrace::encode::Encoder;
-use termtrace::grid::{Cell, Grid, Ink, Size};
+use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
 use termtrace::overlay::lay_over;
 use unicode_width::UnicodeWidthStr;
 
@@ -37,12 +38,14 @@ pub(crate) fn assert_lies_over(grid: &Grid, before: &Grid, buffer: &Buffer) {
             let wanted = &buffer[(column, row)];
             let width = wanted.symbol().width() as u16;
             let fits = column + width <= columns;
-            let glyph = if fits { wanted.symbol().chars().next() } else { Some(' ') };
-            assert_eq!(Some(found.glyph), glyph, "({column}, {row})");
+            let text = if fits { wanted.symbol() } else { " " };
+            assert_eq!(found.glyph.to_string(), text, "({column}, {row})");
             assert_eq!((found.fg, found.bg), (ink(wanted.fg), ink(wanted.bg)), "({column}, {row})");
+            assert_eq!(found.underline, ink(wanted.underline_color), "({column}, {row})");
             assert_eq!(found.modifier, wanted.modifier, "({column}, {row})");
             if width == 2 && fits {
-                assert_eq!(*grid.cell(column + 1, row), Cell { glyph: Cell::COVERED, ..*found }, "({column}, {row})");
+                let second = Cell { glyph: Glyph::Covered, ..found.clone() };
+                assert_eq!(*grid.cell(column + 1, row), second, "({column}, {row})");
             }
             column += width;
         }
@@ -85,10 +88,10 @@ fn line(text: &str, style: Style) -> Buffer {
 
 /// What the terminals show of a grid; they agree.
 #[track_caller]
-fn assert_shown(grid: &Grid) {
+fn assert_shown(grid: &Grid, clusters: Clusters) {
     let mut bytes = Vec::new();
     Encoder::new().encode(grid, &mut bytes);
-    let mut screens = Screens::disturbed(grid.size());
+    let mut screens = Screens::disturbed(grid.size(), clusters);
     screens.feed(&bytes);
     screens.assert_show(grid);
 }
@@ -97,14 +100,22 @@ fn assert_shown(grid: &Grid) {
 fn a_line_of_text_over_a_picture() {
     let size = Size::new(6, 3);
     let mut grid = picture(size);
-    let style = Style::new().fg(Color::Red).bg(Color::Rgb(9, 8, 7)).add_modifier(Modifier::BOLD);
+    let style =
+        Style::new().fg(Color::Red).bg(Color::Rgb(9, 8, 7)).underline_color(Color::Indexed(99)).bold().underlined();
     lay_over(&mut grid, &line("a世b", style));
-    let text = |glyph| Cell { glyph, fg: Ink::Indexed(1), bg: rgb(9, 8, 7), modifier: Modifier::BOLD };
-    let beside = *picture(size).cell(0, 0);
-    let row: Vec<_> = (0..6).map(|column| *grid.cell(column, 1)).collect();
-    assert_eq!(row, [beside, text('a'), text('世'), text(Cell::COVERED), text('b'), beside]);
+    let text = |glyph| Cell {
+        glyph,
+        fg: Ink::Indexed(1),
+        bg: rgb(9, 8, 7),
+        underline: Ink::Indexed(99),
+        modifier: Modifier::BOLD | Modifier::UNDERLINED,
+    };
+    let beside = picture(size).cell(0, 0).clone();
+    let row = [text('a'.into()), text('世'.into()), text(Glyph::Covered), text('b'.into())];
+    assert_eq!(grid.row_from(1, 1)[..4], row);
+    assert_eq!([grid.cell(0, 1), grid.cell(5, 1)], [&beside; 2]);
     assert_lies_over(&grid, &picture(size), &line("a世b", style));
-    assert_shown(&grid);
+    assert_shown(&grid, Clusters::None);
 }
 
 #[test]
@@ -126,8 +137,8 @@ fn what_goes_over_the_edge_is_cut() {
     let size = Size::new(3, 2);
     let mut grid = picture(size);
     lay_over(&mut grid, &line("a世b", Style::new()));
-    assert_eq!([grid.cell(1, 1).glyph, grid.cell(2, 1).glyph], ['a', ' ']);
-    assert_shown(&grid);
+    assert_eq!([1, 2].map(|column| grid.cell(column, 1).glyph.to_string()), ["a", " "]);
+    assert_shown(&grid, Clusters::None);
     let mut grid = picture(Size::new(1, 1));
     lay_over(&mut grid, &line("far away", Style::new()));
     assert_eq!(grid, picture(Size::new(1, 1)));
@@ -135,24 +146,77 @@ fn what_goes_over_the_edge_is_cut() {
     assert_eq!(grid, picture(Size::new(1, 1)));
 }
 
-/// Of a character with combining marks the grid keeps the character.
+/// A character keeps its marks, and a family its members: as many cells as ratatui takes them for.
 #[test]
-fn combining_marks_are_left_out() {
-    let mut grid = picture(Size::new(6, 3));
-    lay_over(&mut grid, &line("e\u{301}x", Style::new()));
-    assert_eq!([1, 2, 3].map(|column| grid.cell(column, 1).glyph), ['e', 'x', '▄']);
-    assert_shown(&grid);
+fn clusters_are_kept_whole() {
+    for (symbol, clusters) in [
+        ("e\u{301}", Clusters::Marks),
+        ("世\u{301}", Clusters::Marks),
+        ("❤\u{fe0f}", Clusters::Marks),
+        ("1\u{fe0f}\u{20e3}", Clusters::Joined),
+        ("👨\u{200d}👩\u{200d}👧", Clusters::Joined),
+        ("🇫🇷", Clusters::Joined),
+    ] {
+        let mut grid = picture(Size::new(6, 3));
+        let buffer = line(&format!("{symbol}x"), Style::new());
+        lay_over(&mut grid, &buffer);
+        assert_lies_over(&grid, &picture(Size::new(6, 3)), &buffer);
+        assert_eq!(grid.cell(1, 1).glyph, Glyph::Cluster(symbol.into()));
+        assert_shown(&grid, clusters);
+    }
 }
 
-/// What takes two cells only by what stands after it is cut to its first character, which takes one: the next column
-/// is a blank of the panel, and all that follows stands where it should.
+/// Where a terminal takes a cluster apart, all that stands behind it is right in the end.
 #[test]
-fn a_character_made_wide_by_its_companions_is_one_cell() {
-    for symbol in ["❤\u{fe0f}", "1\u{fe0f}\u{20e3}", "🇫🇷"] {
+fn clusters_taken_apart_disturb_nothing() {
+    for symbol in ["e\u{301}", "👨\u{200d}👩\u{200d}👧", "🇫🇷", "👍🏽"] {
+        let mut grid = picture(Size::new(12, 3));
+        let mut screens = Screens::disturbed(grid.size(), Clusters::None);
+        let mut encoder = Encoder::new();
+        for text in ["", symbol] {
+            lay_over(&mut grid, &line(text, Style::new()));
+            let mut bytes = Vec::new();
+            encoder.encode(&grid, &mut bytes);
+            screens.feed(&bytes);
+        }
+        // The model keeps the cluster; of the others only what is not its own is asked.
+        let shown = screens.emulated();
+        let own = 1..1 + symbol.width() as u16;
+        for (column, row) in (0..3).flat_map(|row| (0..12).map(move |column| (column, row))) {
+            if row != 1 || !own.contains(&column) {
+                let wanted = grid.cell(column, row);
+                assert_eq!(shown(column, row), [wanted.clone(), wanted.clone()], "{symbol}, ({column}, {row})");
+            }
+        }
+    }
+}
+
+/// A skipped cell is left alone: something else is drawn there. One that is said to be wider than its text takes so many
+/// columns.
+#[test]
+#[expect(deprecated, reason = "the older one of the two ways to skip a cell still counts")]
+fn ratatuis_options_are_respected() {
+    let mut buffer = line("abcdef", Style::new());
+    buffer[(2, 1)].set_diff_option(CellDiffOption::Skip);
+    buffer[(3, 1)].set_skip(true);
+    buffer[(4, 1)].set_diff_option(CellDiffOption::ForcedWidth(NonZeroU16::new(2).expect("not 0")));
+    let mut grid = picture(Size::new(8, 3));
+    lay_over(&mut grid, &buffer);
+    let texts: Vec<_> = grid.row_from(0, 1).iter().map(|cell| cell.glyph.to_string()).collect();
+    assert_eq!(texts, ["▄", "a", "▄", "▄", "d", "", "f", "▄"]);
+    assert_eq!(grid.cell(5, 1).glyph, Glyph::Covered);
+}
+
+/// What would be a command to the terminal is a blank.
+#[test]
+fn control_characters_are_blanks() {
+    for symbol in ["\n", "\x1b[2J", "a\u{7}", "\u{9b}2J"] {
+        let mut buffer = line("abc", Style::new());
+        buffer[(2, 1)].set_symbol(symbol);
         let mut grid = picture(Size::new(6, 3));
-        lay_over(&mut grid, &line(&format!("{symbol}x"), Style::new()));
-        assert_eq!(grid.cell(3, 1).glyph, 'x', "{symbol}");
-        assert_shown(&grid);
+        lay_over(&mut grid, &buffer);
+        assert_eq!([1, 2, 3].map(|column| grid.cell(column, 1).glyph.to_string()), ["a", " ", "c"], "{symbol:?}");
+        assert_shown(&grid, Clusters::None);
     }
 }
 
@@ -164,8 +228,8 @@ fn a_character_without_width_is_a_blank() {
         buffer[(2, 1)].set_symbol(symbol);
         let mut grid = picture(Size::new(6, 3));
         lay_over(&mut grid, &buffer);
-        assert_eq!([1, 2, 3].map(|column| grid.cell(column, 1).glyph), ['a', ' ', 'c'], "{symbol:?}");
-        assert_shown(&grid);
+        assert_eq!([1, 2, 3].map(|column| grid.cell(column, 1).glyph.to_string()), ["a", " ", "c"], "{symbol:?}");
+        assert_shown(&grid, Clusters::None);
     }
 }
 
@@ -178,6 +242,6 @@ fn a_panel_over_half_of_a_wide_character() {
         let mut buffer = Buffer::empty(Rect::new(column, 1, 1, 1));
         buffer.set_string(column, 1, "x", Style::new());
         lay_over(&mut grid, &buffer);
-        assert_shown(&grid);
+        assert_shown(&grid, Clusters::None);
     }
 }

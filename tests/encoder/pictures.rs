@@ -1,5 +1,6 @@
 //! Whole pictures of kinds that are hard on an encoder, and what moves in them.
 
+use super::screens::Clusters;
 use super::{Stage, put, rgb};
 use termtrace::grid::{Cell, Grid, Ink, Size};
 
@@ -36,7 +37,7 @@ fn any_color(number: u32) -> Ink {
 /// Every terminal shows every one of them, however they are encoded.
 #[track_caller]
 fn assert_shown(frames: &[Grid]) {
-    for mut stage in Stage::all(&frames[0]) {
+    for mut stage in Stage::all(&frames[0], Clusters::None) {
         for frame in frames {
             stage.grid = frame.clone();
             // As many bytes as a row's number, a column's, two colours and a half block can take.
@@ -101,7 +102,7 @@ fn wide_characters_over_a_picture() {
                 let [column, row, glyph, color] = number().to_le_bytes();
                 let glyph = ['世', '🙂', 'x', ' '][usize::from(glyph % 4)];
                 let (column, row) = (u16::from(column) % SIZE.columns, u16::from(row) % SIZE.rows);
-                put(&mut grid, column, row, Cell::new(glyph, rgb(color % 3, 0, 0), rgb(0, color % 2, 0)));
+                put(&mut grid, column, row, &Cell::new(glyph, rgb(color % 3, 0, 0), rgb(0, color % 2, 0)));
             }
             grid
         })

@@ -4,13 +4,16 @@
 //! Where an emulator does not keep what was sent, it is not asked, and the model alone is the judge:
 //! - `vt100` knows neither blinking nor hidden nor crossed-out text, and no colour of a wide character's second half;
 //! - `avt` does not know hidden text, nor two speeds of blinking;
-//! - both take bold and dim for two ends of one scale, of which the last said counts.
+//! - both take bold and dim for two ends of one scale, of which the last said counts;
+//! - neither knows the colour of an underline;
+//! - `vt100` keeps marks with their letter, but not a family or a flag in one place; `avt` gives every mark a cell.
 
 use ratatui::style::Modifier;
 use std::num::NonZeroU16;
 use termtrace::color::Srgb8;
-use termtrace::grid::{Cell, Grid, Ink, Size};
-use unicode_width::UnicodeWidthChar;
+use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
+use unicode_segmentation::UnicodeSegmentation;
+use unicode_width::UnicodeWidthStr;
 
 const AVT_KNOWS: Modifier = Modifier::BOLD
     .union(Modifier::DIM)
@@ -22,10 +25,20 @@ const AVT_KNOWS: Modifier = Modifier::BOLD
 
 const VT100_KNOWS: Modifier = AVT_KNOWS.difference(Modifier::SLOW_BLINK).difference(Modifier::CROSSED_OUT);
 
-/// Three terminals on one line.
+/// What the clusters of a frame are, by which of the emulators keep them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Clusters {
+    None,
+    /// A letter with its marks.
+    Marks,
+    /// Characters that each have a cell of their own elsewhere.
+    Joined,
+}
+
+/// Three terminals on one line, those of them that are asked.
 pub(crate) struct Screens {
-    avt: avt::Terminal,
-    vt100: vt100::Parser,
+    avt: Option<avt::Terminal>,
+    vt100: Option<vt100::Parser>,
     model: Model,
     parser: vte::Parser,
 }
@@ -36,11 +49,13 @@ fn side(length: u16) -> NonZeroU16 {
 
 impl Screens {
     /// Full of what another program has left behind, its colours still on and its cursor anywhere.
-    pub(crate) fn disturbed(size: Size) -> Self {
+    pub(crate) fn disturbed(size: Size, clusters: Clusters) -> Self {
         let Size { columns, rows } = size;
+        let avt = || avt::Terminal::new(columns.into(), rows.into()).expect("a screen has cells");
+        let vt100 = || vt100::Parser::new(side(rows), side(columns), 0);
         let mut screens = Self {
-            avt: avt::Terminal::new(columns.into(), rows.into()).expect("a screen has cells"),
-            vt100: vt100::Parser::new(side(rows), side(columns), 0),
+            avt: matches!(clusters, Clusters::None).then(avt),
+            vt100: matches!(clusters, Clusters::None | Clusters::Marks).then(vt100),
             model: Model::new(size),
             parser: vte::Parser::new(),
         };
@@ -55,9 +70,13 @@ impl Screens {
         if size == self.model.size {
             return;
         }
-        self.avt.resize(size.columns.into(), size.rows.into());
-        self.vt100.screen_mut().set_size(side(size.rows), side(size.columns));
-        let pen = self.model.pen;
+        if let Some(avt) = &mut self.avt {
+            avt.resize(size.columns.into(), size.rows.into());
+        }
+        if let Some(vt100) = &mut self.vt100 {
+            vt100.screen_mut().set_size(side(size.rows), side(size.columns));
+        }
+        let pen = self.model.pen.clone();
         self.model = Model { pen, ..Model::new(size) };
     }
 
@@ -70,9 +89,20 @@ impl Screens {
         }
         // Since the last frame something else may have moved the cursor.
         self.model.cursor = None;
-        self.avt.feed(text);
-        self.vt100.process(bytes);
+        self.model.last = None;
+        if let Some(avt) = &mut self.avt {
+            avt.feed(text);
+        }
+        if let Some(vt100) = &mut self.vt100 {
+            vt100.process(bytes);
+        }
         self.parser.advance(&mut self.model, bytes);
+    }
+
+    /// What the two emulators show in a cell.
+    pub(crate) fn emulated(&self) -> impl Fn(u16, u16) -> [Cell; 2] {
+        let (avt, vt100) = (self.avt.as_ref().expect("avt is asked"), self.vt100.as_ref().expect("vt100 is asked"));
+        |column, row| [seen_by_avt(avt, column, row), seen_by_vt100(vt100, column, row)]
     }
 
     /// Each of them shows exactly this grid.
@@ -91,71 +121,88 @@ impl Screens {
     fn assert_show_as(&self, grid: &Grid, look: fn(Cell) -> Cell) {
         for row in 0..grid.size().rows {
             for column in 0..grid.size().columns {
-                let wanted = seen_of(*grid.cell(column, row));
+                let wanted = seen_of(grid.cell(column, row).clone());
+                let look = |cell: &Cell| look(cell.clone());
                 let place = format!("column {column}, row {row}");
-                assert_eq!(look(self.model.cells[self.model.index(column, row)]), look(wanted), "the model, {place}");
-                assert_eq!(look(self.seen_by_avt(column, row)), look(wanted.as_known(AVT_KNOWS)), "avt, {place}");
-                let mut by_vt100 = wanted.as_known(VT100_KNOWS);
-                let seen = self.seen_by_vt100(column, row);
-                if seen.glyph == Cell::COVERED {
-                    by_vt100 = Cell { glyph: by_vt100.glyph, ..seen };
+                assert_eq!(look(&self.model.cells[self.model.index(column, row)]), look(&wanted), "the model, {place}");
+                if let Some(avt) = &self.avt {
+                    assert_eq!(look(&seen_by_avt(avt, column, row)), look(&wanted.as_known(AVT_KNOWS)), "avt, {place}");
                 }
-                assert_eq!(look(seen), look(by_vt100), "vt100, {place}");
+                if let Some(vt100) = &self.vt100 {
+                    let mut by_vt100 = wanted.as_known(VT100_KNOWS);
+                    let seen = seen_by_vt100(vt100, column, row);
+                    if seen.glyph == Glyph::Covered {
+                        by_vt100 = Cell { glyph: by_vt100.glyph, ..seen.clone() };
+                    }
+                    assert_eq!(look(&seen), look(&by_vt100), "vt100, {place}");
+                }
             }
         }
     }
+}
 
-    fn seen_by_avt(&self, column: u16, row: u16) -> Cell {
-        let line = self.avt.screen().line(row.into()).expect("the row is on the screen");
-        let cell = line.cells()[usize::from(column)];
-        let ink = |color: Option<avt::Color>| match color {
-            None => Ink::Default,
-            Some(avt::Color::Indexed(index)) => Ink::Indexed(index),
-            Some(avt::Color::RGB(c)) => Ink::Rgb(Srgb8::new(c.r, c.g, c.b)),
-        };
-        let pen = cell.pen();
-        let modifier = modifier_of([
-            (pen.is_bold(), Modifier::BOLD),
-            (pen.is_faint(), Modifier::DIM),
-            (pen.is_italic(), Modifier::ITALIC),
-            (pen.is_underline(), Modifier::UNDERLINED),
-            (pen.is_blink(), Modifier::SLOW_BLINK),
-            (pen.is_inverse(), Modifier::REVERSED),
-            (pen.is_strikethrough(), Modifier::CROSSED_OUT),
-        ]);
-        let glyph = if cell.width() == 0 { Cell::COVERED } else { cell.char() };
-        seen_of(Cell { glyph, fg: ink(pen.foreground()), bg: ink(pen.background()), modifier })
-    }
+fn seen_by_avt(avt: &avt::Terminal, column: u16, row: u16) -> Cell {
+    let line = avt.screen().line(row.into()).expect("the row is on the screen");
+    let cell = line.cells()[usize::from(column)];
+    let ink = |color: Option<avt::Color>| match color {
+        None => Ink::Default,
+        Some(avt::Color::Indexed(index)) => Ink::Indexed(index),
+        Some(avt::Color::RGB(c)) => Ink::Rgb(Srgb8::new(c.r, c.g, c.b)),
+    };
+    let pen = cell.pen();
+    let modifier = modifier_of([
+        (pen.is_bold(), Modifier::BOLD),
+        (pen.is_faint(), Modifier::DIM),
+        (pen.is_italic(), Modifier::ITALIC),
+        (pen.is_underline(), Modifier::UNDERLINED),
+        (pen.is_blink(), Modifier::SLOW_BLINK),
+        (pen.is_inverse(), Modifier::REVERSED),
+        (pen.is_strikethrough(), Modifier::CROSSED_OUT),
+    ]);
+    let glyph = if cell.width() == 0 { Glyph::Covered } else { cell.char().into() };
+    seen_of(Cell { glyph, fg: ink(pen.foreground()), bg: ink(pen.background()), underline: Ink::Default, modifier })
+}
 
-    fn seen_by_vt100(&self, column: u16, row: u16) -> Cell {
-        let cell = self.vt100.screen().cell(row, column).expect("the cell is on the screen");
-        let ink = |color: vt100::Color| match color {
-            vt100::Color::Default => Ink::Default,
-            vt100::Color::Idx(index) => Ink::Indexed(index),
-            vt100::Color::Rgb(r, g, b) => Ink::Rgb(Srgb8::new(r, g, b)),
-        };
-        let modifier = modifier_of([
-            (cell.bold(), Modifier::BOLD),
-            (cell.dim(), Modifier::DIM),
-            (cell.italic(), Modifier::ITALIC),
-            (cell.underline(), Modifier::UNDERLINED),
-            (cell.inverse(), Modifier::REVERSED),
-        ]);
-        let mut characters = cell.contents().chars();
-        let glyph = if cell.is_wide_continuation() { Cell::COVERED } else { characters.next().unwrap_or('?') };
-        assert_eq!(characters.next(), None, "one character in a cell");
-        seen_of(Cell { glyph, fg: ink(cell.fgcolor()), bg: ink(cell.bgcolor()), modifier })
-    }
+fn seen_by_vt100(vt100: &vt100::Parser, column: u16, row: u16) -> Cell {
+    let cell = vt100.screen().cell(row, column).expect("the cell is on the screen");
+    let ink = |color: vt100::Color| match color {
+        vt100::Color::Default => Ink::Default,
+        vt100::Color::Idx(index) => Ink::Indexed(index),
+        vt100::Color::Rgb(r, g, b) => Ink::Rgb(Srgb8::new(r, g, b)),
+    };
+    let modifier = modifier_of([
+        (cell.bold(), Modifier::BOLD),
+        (cell.dim(), Modifier::DIM),
+        (cell.italic(), Modifier::ITALIC),
+        (cell.underline(), Modifier::UNDERLINED),
+        (cell.inverse(), Modifier::REVERSED),
+    ]);
+    let glyph = if cell.is_wide_continuation() { Glyph::Covered } else { glyph_of(cell.contents()) };
+    seen_of(Cell { glyph, fg: ink(cell.fgcolor()), bg: ink(cell.bgcolor()), underline: Ink::Default, modifier })
 }
 
 fn modifier_of<const N: usize>(flags: [(bool, Modifier); N]) -> Modifier {
     flags.into_iter().filter_map(|(is_on, flag)| is_on.then_some(flag)).collect()
 }
 
-/// What can be seen of a cell: a plain space has no colour of its own.
+/// A text as the grid holds it: one character, or several that belong together.
+pub(crate) fn glyph_of(text: &str) -> Glyph {
+    let mut characters = text.chars();
+    match (characters.next(), characters.next()) {
+        (Some(c), None) => c.into(),
+        _ => Glyph::Cluster(text.into()),
+    }
+}
+
+/// What can be seen of a cell: a plain space has no colour of its own, nor has a line that is not drawn.
 fn seen_of(cell: Cell) -> Cell {
-    let unseen = cell.glyph == ' ' && cell.modifier.is_empty();
-    Cell { fg: if unseen { Ink::Default } else { cell.fg }, ..cell }
+    let no_glyph = cell.glyph == ' ' && cell.modifier.is_empty();
+    let no_line = !cell.modifier.contains(Modifier::UNDERLINED);
+    Cell {
+        fg: if no_glyph { Ink::Default } else { cell.fg },
+        underline: if no_line { Ink::Default } else { cell.underline },
+        ..cell
+    }
 }
 
 /// A cell of two colours as its lower half on its upper one's colour. The terminal's own colours stay where they are:
@@ -165,8 +212,8 @@ fn lower_half(cell: Cell) -> Cell {
         return cell;
     }
     match cell.glyph {
-        '▀' if cell.fg != Ink::Default => Cell::new('▄', cell.bg, cell.fg),
-        ' ' => Cell::new('▄', cell.bg, cell.bg),
+        Glyph::Char('▀') if cell.fg != Ink::Default => Cell::new('▄', cell.bg, cell.fg),
+        Glyph::Char(' ') => Cell::new('▄', cell.bg, cell.bg),
         _ => cell,
     }
 }
@@ -184,25 +231,27 @@ impl Known for Cell {
             modifier.remove(Modifier::BOLD);
         }
         // Rapid blinking is blinking, or nothing: either way the model has looked at it.
-        seen_of(Cell { modifier, ..*self })
+        seen_of(Cell { modifier, underline: Ink::Default, ..self.clone() })
     }
 }
 
 /// A terminal in raw mode that knows CUP, CUF, CHA, CR, BS, LF, SGR and characters. At anything else it panics: erasing,
 /// scrolling, going over an edge, going anywhere from beyond the last column (where terminals disagree), other control
-/// characters. What the encoder learns to say, this has to learn to read.
+/// characters, and anything but a place after a cluster (where terminals disagree, too). What the encoder learns to say, this has to learn to read.
 struct Model {
     size: Size,
     cells: Vec<Cell>,
     pen: Cell,
     /// Where the next character goes; none until something says so. Beyond the last column only CUP is allowed.
     cursor: Option<(u16, u16)>,
+    /// Where the last character went: the next one may be part of the same cluster, if nothing comes between.
+    last: Option<(u16, u16)>,
 }
 
 impl Model {
     fn new(size: Size) -> Self {
-        let cells = vec![Cell { glyph: '?', ..Cell::BLANK }; size.cell_count()];
-        Self { size, cells, pen: Cell::BLANK, cursor: None }
+        let cells = vec![Cell { glyph: '?'.into(), ..Cell::BLANK }; size.cell_count()];
+        Self { size, cells, pen: Cell::BLANK, cursor: None, last: None }
     }
 
     fn index(&self, column: u16, row: u16) -> usize {
@@ -212,11 +261,11 @@ impl Model {
     /// Where half of a wide character goes, the other half is a blank.
     fn break_up(&mut self, column: u16, row: u16) {
         let at = self.index(column, row);
-        if self.cells[at].glyph == Cell::COVERED {
-            self.cells[at - 1].glyph = ' ';
+        if self.cells[at].glyph == Glyph::Covered {
+            self.cells[at - 1].glyph = ' '.into();
         }
-        if column + 1 < self.size.columns && self.cells[at + 1].glyph == Cell::COVERED {
-            self.cells[at + 1].glyph = ' ';
+        if column + 1 < self.size.columns && self.cells[at + 1].glyph == Glyph::Covered {
+            self.cells[at + 1].glyph = ' '.into();
         }
     }
 
@@ -230,6 +279,42 @@ impl Model {
     fn place(&mut self, column: u16, row: u16) {
         assert!(column < self.size.columns && row < self.size.rows, "({column}, {row}) is not on the screen");
         self.cursor = Some((column, row));
+        self.last = None;
+    }
+
+    /// What is shown with that character, if it goes on with the last one.
+    fn cluster_with(&self, c: char) -> Option<(u16, u16, String)> {
+        let (column, row) = self.last?;
+        let text = format!("{}{c}", self.cells[self.index(column, row)].glyph);
+        (text.graphemes(true).count() == 1).then_some((column, row, text))
+    }
+
+    /// Puts a text into the cells that it takes; the cursor is behind it.
+    fn put(&mut self, column: u16, row: u16, text: &str) {
+        let width = text.width() as u16;
+        assert!(width > 0, "{text:?} takes no cell");
+        assert!(column + width <= self.size.columns, "{text:?} at column {column} goes over the edge");
+        for column in column..column + width {
+            self.break_up(column, row);
+        }
+        let at = self.index(column, row);
+        self.cells[at] = seen_of(Cell { glyph: glyph_of(text), ..self.pen.clone() });
+        if width == 2 {
+            self.cells[at + 1] = seen_of(Cell { glyph: Glyph::Covered, ..self.pen.clone() });
+        }
+        self.last = Some((column, row));
+        self.cursor = Some((column + width, row));
+    }
+
+    /// The colour of the line below: with colons, in a sequence of its own.
+    fn select_underline(&mut self, numbers: &[u16]) {
+        let byte = |number: u16| u8::try_from(number).expect("a colour's number is a byte");
+        self.pen.underline = match *numbers {
+            [58, 5, index] => Ink::Indexed(byte(index)),
+            [58, 2, 0, r, g, b] => Ink::Rgb(Srgb8::new(byte(r), byte(g), byte(b))),
+            [59] => Ink::Default,
+            _ => panic!("SGR {numbers:?}"),
+        };
     }
 
     /// One SGR sequence.
@@ -273,25 +358,23 @@ impl Model {
 
 impl vte::Perform for Model {
     fn print(&mut self, c: char) {
-        let (column, row) = self.cursor.expect("the place is said before a character");
-        let width = c.width().unwrap_or(0) as u16;
-        assert!(width > 0, "{c:?} takes no cell");
-        assert!(column + width <= self.size.columns, "{c:?} at column {column} goes over the edge");
-        for column in column..column + width {
-            self.break_up(column, row);
+        if let Some((column, row, text)) = self.cluster_with(c) {
+            self.put(column, row, &text);
+            self.cursor = None;
+        } else {
+            let (column, row) = self.cursor.expect("the place is said before a character");
+            self.put(column, row, c.encode_utf8(&mut [0; 4]));
         }
-        let at = self.index(column, row);
-        self.cells[at] = seen_of(Cell { glyph: c, ..self.pen });
-        if width == 2 {
-            self.cells[at + 1] = Cell { glyph: Cell::COVERED, ..self.pen };
-        }
-        self.cursor = Some((column + width, row));
     }
 
     fn csi_dispatch(&mut self, params: &vte::Params, intermediates: &[u8], ignore: bool, action: char) {
         let numbers: Vec<u16> = params.iter().flatten().copied().collect();
         assert!(intermediates.is_empty() && !ignore, "{intermediates:?} {numbers:?} {action:?}");
+        let alone = params.iter().count() == 1;
+        let colons = params.iter().any(|group| group.len() > 1);
+        assert!(!colons || alone && numbers[0] == 58, "colons in {numbers:?}");
         match (action, &numbers[..]) {
+            ('m', numbers @ [58 | 59, ..]) if alone => self.select_underline(numbers),
             ('m', numbers) => self.select(numbers),
             // A number that is not said is read as 0, which means 1.
             ('H', &[row]) => self.place(0, row.max(1) - 1),
