@@ -195,6 +195,19 @@ impl ViewRectangle {
         Ok(Self { height, width: self.width.map(|width| width * (height / self.height)), ..self })
     }
 
+    /// The rectangle of the same shape and shift with sides that many times as long.
+    ///
+    /// # Errors
+    /// Unless both sides stay greater than 0 and finite.
+    pub fn scaled(self, factor: f32) -> Result<Self, CameraError> {
+        let (width, height) = (self.width.map(|width| width * factor), self.height * factor);
+        if is_length(height) && width.is_none_or(is_length) {
+            Ok(Self { width, height, ..self })
+        } else {
+            Err(CameraError::ViewRectangle)
+        }
+    }
+
     /// The rectangle of the same height with that aspect ratio (width / height) of its own.
     ///
     /// # Errors

@@ -37,6 +37,7 @@
 //! - [`material`]: diffuse reflectance
 //! - [`light`]: point lights
 //! - [`camera`]: eye, target, up, field of view -> basis u, v, w -> eye rays
+//! - [`camera_path`]: the camera over time: an orbit, or through keyframes
 //! - [`scene`]: all of it, and the one conversion from what was written
 //!
 //! From the eye to the light:
@@ -95,6 +96,7 @@ pub mod shape;
 pub mod material;
 pub mod light;
 pub mod camera;
+pub mod camera_path;
 pub mod scene;
 pub mod hit;
 pub mod shade;

@@ -1,6 +1,6 @@
 //! What the author wrote, typed, in his own units: degrees, sRGB strings, normals of any length.
 //!
-//! [`SceneFile::read`] knows the grammar of scenes: which fields there are, of which types, which must be given. It
+//! [`SceneFile::read`] knows the grammar of scenes, [`PathFile::read`] that of camera paths: which fields there are, of which types, which must be given. It
 //! goes on after a fault, so that one run tells of all. Whether a radius is greater than 0, whether a material exists,
 //! is asked by the next stage that knows, [`scene`](crate::scene); for that each value keeps its place in the text.
 //!
@@ -8,11 +8,13 @@
 
 mod colors;
 mod objects;
+mod path;
 mod reader;
 mod words;
 
 pub use colors::WrittenColor;
 pub(crate) use colors::color_named;
+pub use path::{PathFile, WrittenKeyframe};
 pub(crate) use words::{closest, listed};
 
 use crate::scene_text::{Faults, Node, Span, Value, quoted};

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use termtrace::camera_path::CameraPath;
 use termtrace::control::BINDINGS;
 use termtrace::scene::Scene;
 
@@ -16,12 +17,19 @@ fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn every_scene_in_it_loads() {
+fn every_scene_and_path_in_it_loads() {
     let readme = readme();
     let scenes = blocks(&readme, "ron");
     assert!(scenes.len() >= 2, "the scenes were found");
-    for scene in scenes {
-        if let Err(error) = Scene::from_ron("README.md", scene) {
+    let camera = Scene::from_ron("README.md", scenes[0]).unwrap_or_else(|error| panic!("{error}")).camera;
+    for text in scenes {
+        // The camera path, too, is RON.
+        let read = if text.contains("keyframes:") {
+            CameraPath::from_ron("README.md", text, &camera).map(|_| ())
+        } else {
+            Scene::from_ron("README.md", text).map(|_| ())
+        };
+        if let Err(error) = read {
             panic!("{error}");
         }
     }
@@ -52,7 +60,7 @@ fn every_scene_file_is_listed() {
     let readme = readme();
     for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")).expect("scenes are there") {
         let name = entry.expect("it can be read").file_name().into_string().expect("a plain name");
-        assert!(readme.contains(&format!("`{name}`")), "{name} is not in the README");
+        assert!(readme.contains(&format!("`{name}`")) || name == "paths", "{name} is not in the README");
     }
 }
 

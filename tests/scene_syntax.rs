@@ -96,7 +96,7 @@ fn large_files_take_linear_time() {
 #[test]
 fn files_beyond_the_limit_are_not_read() {
     let error = read(&vec![b' '; MAX_BYTES + 1]).unwrap_err();
-    assert_eq!(error.to_string(), "x.ron:1:1: the file is larger than 16 MiB, too large for a scene");
+    assert_eq!(error.to_string(), "x.ron:1:1: the file is larger than 16 MiB, too large to be read");
 }
 
 /// Our tree, in a notation of the test's own.

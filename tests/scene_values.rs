@@ -128,8 +128,8 @@ fn files_that_cannot_be_read_say_why() {
     let folder = tempfile::tempdir().unwrap();
     let missing = folder.path().join("no\u{1b}such.ron");
     assert!(load(&missing).ends_with("no\u{fffd}such.ron: there is no such file"));
-    assert!(load(folder.path()).ends_with(": this is a directory, not a scene file"));
+    assert!(load(folder.path()).ends_with(": this is a directory, not a file"));
     let large = folder.path().join("large.ron");
     std::fs::File::create(&large).unwrap().set_len(1 << 40).unwrap();
-    assert!(load(&large).ends_with(": the file is larger than 16 MiB, too large for a scene"));
+    assert!(load(&large).ends_with(": the file is larger than 16 MiB, too large to be read"));
 }

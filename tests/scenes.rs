@@ -1,6 +1,7 @@
 //! The scenes that come with the program.
 
 use std::path::Path;
+use termtrace::camera_path::CameraPath;
 use termtrace::scene::Scene;
 
 #[test]
@@ -19,4 +20,23 @@ fn every_scene_loads_and_says_what_to_look_at() {
         count += 1;
     }
     assert!(count >= 11, "only {count} scenes");
+}
+
+#[test]
+fn every_path_through_a_scene_gives_a_picture_at_every_time() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let scene = Scene::load(&scenes.join("three_spheres.ron")).unwrap_or_else(|error| panic!("{error}"));
+    let mut count = 0;
+    for entry in std::fs::read_dir(scenes.join("paths")).unwrap() {
+        let file = entry.unwrap().path();
+        let path = CameraPath::load(&file, &scene.camera).unwrap_or_else(|error| panic!("{error}"));
+        let frames = (120.0 * path.seconds()) as usize;
+        let cameras = path.cameras(frames, 120).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        assert!(cameras.len() >= 120, "{}", file.display());
+        let text = std::fs::read_to_string(&file).unwrap();
+        assert!(text.starts_with("// "), "{} begins with a comment", file.display());
+        assert!(text.contains("three_spheres.ron"), "{} says which scene it is for", file.display());
+        count += 1;
+    }
+    assert!(count >= 1, "no path");
 }

@@ -4,6 +4,7 @@
 //! Nothing stops at a fault. What is missing has its fault already, and is left out.
 
 mod camera;
+pub(super) mod path;
 
 pub(super) use camera::radians;
 

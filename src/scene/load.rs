@@ -1,8 +1,10 @@
-//! File, bytes or text -> scene.
+//! File, bytes or text -> scene or camera path.
 
 use super::{Scene, checked};
-use crate::scene_file::SceneFile;
-use crate::scene_text::{Fault, Faults, MAX_BYTES, SceneError, Span, parse, visible};
+use crate::camera::Camera;
+use crate::camera_path::CameraPath;
+use crate::scene_file::{PathFile, SceneFile};
+use crate::scene_text::{Fault, Faults, MAX_BYTES, Node, SceneError, Span, parse, visible};
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
@@ -31,14 +33,9 @@ impl Scene {
     /// The first fault of the syntax; if there is none, all others: unknown and missing fields, wrong types, and values
     /// that make no picture.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
-        check_size(text.len())
-            .and_then(|()| not_empty(text))
-            .and_then(|()| no_nul(text.as_bytes()))
-            .map_err(|fault| SceneError::new(name, text, fault))?;
-        let root = parse(text).map_err(|fault| SceneError::new(name, text, fault))?;
-        let mut faults = Faults::default();
-        let file = SceneFile::read(&root, &mut faults);
-        checked::check(&file, &mut faults).ok_or_else(|| SceneError::new(name, text, faults))
+        read(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", |root, faults| {
+            checked::check(&SceneFile::read(root, faults), faults)
+        })
     }
 
     /// The scene that the bytes describe, which should be UTF-8 text.
@@ -53,14 +50,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::from_ron`], and for bytes that are no text.
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, SceneError> {
-        match text_from(bytes) {
-            Ok(text) => Self::from_ron(name, text),
-            Err(fault) => {
-                // Of a file that is no text from its first byte, no line is worth showing.
-                let shown = if fault.span.start == 0 { &[] } else { bytes };
-                Err(SceneError::new(name, &String::from_utf8_lossy(shown), fault))
-            }
-        }
+        Self::from_ron(name, text_from(name, bytes)?)
     }
 
     /// The scene in that file.
@@ -78,16 +68,52 @@ impl Scene {
     /// # Errors
     /// If the file cannot be read, or as [`Scene::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, LoadError> {
-        let cannot_read = |error| LoadError::CannotRead { path: path.to_owned(), error };
-        let mut bytes = Vec::new();
-        File::open(path)
-            .and_then(|file| file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
-            .map_err(cannot_read)?;
-        Self::from_bytes(&path.to_string_lossy(), &bytes).map_err(LoadError::Scene)
+        Ok(Self::from_bytes(&path.to_string_lossy(), &bytes_of(path)?)?)
     }
 }
 
-/// Why a file gave no scene.
+impl CameraPath {
+    /// The camera path that the text describes. What a keyframe does not say, `up` or the field of view, is as `camera`
+    /// has it. The name is used in messages only.
+    ///
+    /// ```
+    /// use termtrace::{camera_path::CameraPath, scene::Scene};
+    ///
+    /// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")?;
+    /// let text = "(keyframes: [
+    ///     (time: 0, eye: (0, 0, 5), target: (0, 0, 0)),
+    ///     (time: 2, eye: (4, 1, 5), target: (0, 0, 0), vertical_fov: 30),
+    /// ])";
+    /// let path = CameraPath::from_ron("flight.ron", text, &scene.camera)?;
+    /// assert_eq!(path.camera_at(1.0).unwrap().pose().eye, glam::Vec3::new(2.0, 0.5, 5.0));
+    /// # Ok::<(), termtrace::scene_text::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Scene::from_ron`], and for times that do not rise.
+    pub fn from_ron(name: &str, text: &str, camera: &Camera) -> Result<Self, SceneError> {
+        let smallest = "camera path is (keyframes: [(time: 0, eye: (0, 0, 5), target: (0, 0, 0))])";
+        read(name, text, smallest, |root, faults| checked::path::check(&PathFile::read(root, faults), camera, faults))
+    }
+
+    /// The camera path that the bytes describe, which should be UTF-8 text.
+    ///
+    /// # Errors
+    /// As [`CameraPath::from_ron`], and for bytes that are no text.
+    pub fn from_bytes(name: &str, bytes: &[u8], camera: &Camera) -> Result<Self, SceneError> {
+        Self::from_ron(name, text_from(name, bytes)?, camera)
+    }
+
+    /// The camera path in that file.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or as [`CameraPath::from_bytes`].
+    pub fn load(path: &Path, camera: &Camera) -> Result<Self, LoadError> {
+        Ok(Self::from_bytes(&path.to_string_lossy(), &bytes_of(path)?, camera)?)
+    }
+}
+
+/// Why a file gave no scene, or no camera path.
 #[derive(Debug)]
 pub enum LoadError {
     /// It could not be read.
@@ -97,7 +123,7 @@ pub enum LoadError {
         /// What the system said.
         error: io::Error,
     },
-    /// What it says is no scene.
+    /// What it says is none.
     Scene(SceneError),
 }
 
@@ -108,7 +134,7 @@ impl fmt::Display for LoadError {
                 let path = visible(&path.to_string_lossy());
                 match error.kind() {
                     io::ErrorKind::NotFound => write!(f, "{path}: there is no such file"),
-                    io::ErrorKind::IsADirectory => write!(f, "{path}: this is a directory, not a scene file"),
+                    io::ErrorKind::IsADirectory => write!(f, "{path}: this is a directory, not a file"),
                     io::ErrorKind::PermissionDenied => write!(f, "{path}: no permission to read this file"),
                     _ => write!(f, "{path}: cannot be read: {error}"),
                 }
@@ -127,8 +153,48 @@ impl std::error::Error for LoadError {
     }
 }
 
+impl From<SceneError> for LoadError {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(error)
+    }
+}
+
+/// As many bytes of a file as are looked at: one more than may be.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, LoadError> {
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
+        .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error })?;
+    Ok(bytes)
+}
+
+/// What the text describes: the first fault of its syntax, or all that `check` finds. An empty text is told what the
+/// `smallest` could be.
+fn read<T>(
+    name: &str,
+    text: &str,
+    smallest: &str,
+    check: impl FnOnce(&Node<'_>, &mut Faults) -> Option<T>,
+) -> Result<T, SceneError> {
+    let root = check_size(text.len())
+        .and_then(|()| not_empty(text, smallest))
+        .and_then(|()| no_nul(text.as_bytes()))
+        .and_then(|()| parse(text))
+        .map_err(|fault| SceneError::new(name, text, fault))?;
+    let mut faults = Faults::default();
+    check(&root, &mut faults).ok_or_else(|| SceneError::new(name, text, faults))
+}
+
 /// The bytes as text, if they are that.
-fn text_from(bytes: &[u8]) -> Result<&str, Fault> {
+fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError> {
+    decoded(bytes).map_err(|fault| {
+        // Of a file that is no text from its first byte, no line is worth showing.
+        let shown = if fault.span.start == 0 { &[] } else { bytes };
+        SceneError::new(name, &String::from_utf8_lossy(shown), fault)
+    })
+}
+
+fn decoded(bytes: &[u8]) -> Result<&str, Fault> {
     check_size(bytes.len())?;
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(fault_at(0, "the file is UTF-16; save it as UTF-8".to_owned()));
@@ -143,15 +209,14 @@ fn text_from(bytes: &[u8]) -> Result<&str, Fault> {
 
 fn check_size(bytes: usize) -> Result<(), Fault> {
     if bytes > MAX_BYTES {
-        return Err(fault_at(0, "the file is larger than 16 MiB, too large for a scene".to_owned()));
+        return Err(fault_at(0, "the file is larger than 16 MiB, too large to be read".to_owned()));
     }
     Ok(())
 }
 
-fn not_empty(text: &str) -> Result<(), Fault> {
+fn not_empty(text: &str, smallest: &str) -> Result<(), Fault> {
     if text.trim().is_empty() {
-        let message = "the file is empty; the smallest scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))";
-        return Err(fault_at(0, message.to_owned()));
+        return Err(fault_at(0, format!("the file is empty; the smallest {smallest}")));
     }
     Ok(())
 }

@@ -45,7 +45,7 @@ impl From<Fault> for Faults {
     }
 }
 
-/// Why a text is no scene: every fault that was found in it. Printed, it reads like a compiler's message:
+/// Why a text is no scene, or no camera path: every fault that was found in it. Printed, it reads like a compiler's message:
 ///
 /// ```text
 /// scenes/x.ron:3:32: unknown field "radus"; did you mean "radius"?

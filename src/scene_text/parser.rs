@@ -14,13 +14,13 @@ pub fn parse(text: &str) -> Result<Node<'_>, Fault> {
     let (next, span) = tokens.next()?;
     let mut parser = Parser { text, tokens, next, span, previous_end: 0, open: Vec::new(), misaligned: None };
     if parser.next == Token::End {
-        let message = "there is no scene here: nothing but comments or white space".to_owned();
+        let message = "there is nothing here but comments or white space".to_owned();
         return Err(Fault { message, span: Span::at(text.len()) });
     }
     let root = parser.value()?;
     match parser.next {
         Token::End => Ok(root),
-        _ => Err(parser.here(format!("unexpected {} after the end of the scene", parser.found()))),
+        _ => Err(parser.here(format!("unexpected {} where the file should end", parser.found()))),
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{Checker, SHORTEST};
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle};
 use crate::scene_file::{Spanned, WrittenCamera, WrittenLens, WrittenNumber, WrittenVector};
+use crate::scene_text::Span;
 use glam::{Vec2, Vec3};
 
 /// Of the view rectangle's sides to its focal length and each other.
@@ -29,20 +30,34 @@ impl Checker<'_> {
             None => ViewRectangle::from_vertical_fov(1.0).ok()?,
         };
         let rectangle = rectangle.with_shift(shift?).ok()?;
-        match Camera::new(Pose { eye, target, up }, rectangle) {
-            Ok(camera) => Some(camera),
-            Err(error) => {
-                let target = written.target.map(|target| target.span);
-                let place = match error {
-                    CameraError::UpIsZero | CameraError::UpAlongView => written.up.map(|up| up.span).or(target),
-                    _ => target,
-                };
-                self.fault(place.unwrap_or(written.span), || pose_fault(error, written.up.is_some()))
-            }
-        }
+        let places = Places {
+            whole: written.span,
+            target: written.target.map(|target| target.span),
+            up: written.up.map(|up| up.span),
+            up_if_none: "its up vector (0, 1, 0)",
+        };
+        self.camera_of(Pose { eye, target, up }, rectangle, places)
     }
 
-    fn up(&mut self, written: WrittenVector) -> Option<Vec3> {
+    /// The camera, or a fault where its pose was written.
+    pub(super) fn camera_of(&mut self, pose: Pose, rectangle: ViewRectangle, places: Places) -> Option<Camera> {
+        let error = match Camera::new(pose, rectangle) {
+            Ok(camera) => return Some(camera),
+            Err(error) => error,
+        };
+        let place = match error {
+            CameraError::UpIsZero | CameraError::UpAlongView => places.up.or(places.target),
+            _ => places.target,
+        };
+        self.fault(place.unwrap_or(places.whole), || match error {
+            CameraError::UpAlongView if places.up.is_none() => {
+                format!("the camera looks straight up or down, along {}; give it another `up`", places.up_if_none)
+            }
+            _ => error.to_string(),
+        })
+    }
+
+    pub(super) fn up(&mut self, written: WrittenVector) -> Option<Vec3> {
         self.unit_vector("up vector", written)?;
         let up = self.point(written)?;
         if up.abs().max_element() < SHORTEST as f32 {
@@ -55,7 +70,7 @@ impl Checker<'_> {
         match *lens {
             WrittenLens::FieldOfView { vertical_fov, aspect_ratio } => {
                 let rectangle = match vertical_fov {
-                    Some(degrees) => self.rectangle_from_degrees(degrees),
+                    Some(degrees) => self.rectangle_from_degrees(degrees, ViewRectangle::from_vertical_fov),
                     None => ViewRectangle::from_vertical_fov(radians(45.0)).ok(),
                 };
                 match aspect_ratio {
@@ -72,9 +87,14 @@ impl Checker<'_> {
         }
     }
 
-    fn rectangle_from_degrees(&mut self, written: WrittenNumber) -> Option<ViewRectangle> {
+    /// The rectangle that is made from the angle.
+    pub(super) fn rectangle_from_degrees(
+        &mut self,
+        written: WrittenNumber,
+        from_radians: impl FnOnce(f32) -> Result<ViewRectangle, CameraError>,
+    ) -> Option<ViewRectangle> {
         let Spanned { value, span } = written;
-        match ViewRectangle::from_vertical_fov(radians(value)) {
+        match from_radians(radians(value)) {
             Ok(rectangle) => Some(rectangle),
             Err(_) => self.fault(span, || {
                 "the vertical field of view is an angle between 0 and 180 degrees, both excluded".to_owned()
@@ -125,13 +145,14 @@ impl Checker<'_> {
     }
 }
 
-fn pose_fault(error: CameraError, up_is_given: bool) -> String {
-    match error {
-        CameraError::UpAlongView if !up_is_given => {
-            "the camera looks straight up or down, along its up vector (0, 1, 0); give it another `up`".to_owned()
-        }
-        _ => error.to_string(),
-    }
+/// Where a pose was written, to point there when it is wrong.
+#[derive(Clone, Copy)]
+pub(super) struct Places {
+    pub(super) whole: Span,
+    pub(super) target: Option<Span>,
+    pub(super) up: Option<Span>,
+    /// What up is where none was written.
+    pub(super) up_if_none: &'static str,
 }
 
 /// Rounded once.

@@ -1,0 +1,70 @@
+//! A camera path, checked: times rise, and every keyframe is a camera.
+
+use super::Checker;
+use super::camera::Places;
+use crate::camera::{Camera, Pose};
+use crate::camera_path::{CameraPath, Keyframe};
+use crate::scene_file::{PathFile, Spanned, WrittenKeyframe, WrittenNumber};
+use crate::scene_text::Faults;
+
+/// In seconds; more than eleven days.
+const LATEST: f64 = 1e6;
+
+/// The path, if nothing is wrong with it; else every fault has been added. What a keyframe does not say is as `camera`
+/// has it.
+pub(in crate::scene) fn check(file: &PathFile, camera: &Camera, faults: &mut Faults) -> Option<CameraPath> {
+    let mut checker = Checker { faults };
+    let (written, span) = file.keyframes.as_ref()?;
+    let cameras: Vec<_> = written.iter().map(|keyframe| checker.keyframe(keyframe, camera)).collect();
+    checker.rising(written);
+    if !checker.faults.is_empty() {
+        return None;
+    }
+    let cameras: Option<Vec<Keyframe>> = cameras.into_iter().collect();
+    let path = CameraPath::through(cameras?);
+    path.or_else(|| checker.fault(*span, || "a camera path needs at least one keyframe".to_owned()))
+}
+
+impl Checker<'_> {
+    fn keyframe(&mut self, written: &WrittenKeyframe, camera: &Camera) -> Option<Keyframe> {
+        let time = written.time.and_then(|time| self.time(time));
+        let eye = written.eye.and_then(|eye| self.point(eye));
+        let target = written.target.and_then(|target| self.point(target));
+        let up = match written.up {
+            Some(up) => self.up(up),
+            None => Some(camera.pose().up),
+        };
+        let rectangle = match written.vertical_fov {
+            Some(degrees) => self.rectangle_from_degrees(degrees, |fov| camera.rectangle().with_vertical_fov(fov)),
+            None => Some(camera.rectangle()),
+        };
+        let pose = Pose { eye: eye?, target: target?, up: up? };
+        let places = Places {
+            whole: written.span,
+            target: written.target.map(|target| target.span),
+            up: written.up.map(|up| up.span),
+            up_if_none: "the scene's up vector",
+        };
+        // Where the angle is wrong, the pose may be wrong as well.
+        let camera = self.camera_of(pose, rectangle.unwrap_or(camera.rectangle()), places)?;
+        rectangle.and(Some(Keyframe { time: time?, camera }))
+    }
+
+    fn time(&mut self, written: WrittenNumber) -> Option<f64> {
+        let Spanned { value, span } = written;
+        if (0.0..=LATEST).contains(&value) {
+            return Some(value);
+        }
+        self.fault(span, || "the time must lie between 0 and 1e6 seconds".to_owned())
+    }
+
+    /// Notes each time that is not after the one before.
+    fn rising(&mut self, written: &[WrittenKeyframe]) {
+        let times: Vec<WrittenNumber> = written.iter().filter_map(|keyframe| keyframe.time).collect();
+        for pair in times.windows(2).filter(|pair| pair[1].value <= pair[0].value) {
+            self.faults.add(pair[1].span, || {
+                format!("the times of keyframes must rise; the one before is at {} seconds", pair[0].value)
+            });
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Camera paths as they are written.
+
+use super::reader::Reader;
+use super::{WrittenNumber, WrittenVector};
+use crate::scene_text::{Faults, Node, Span};
+
+/// A whole file of a camera path.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PathFile {
+    /// The keyframes, in the order of the file, and where they stand.
+    pub keyframes: Option<(Vec<WrittenKeyframe>, Span)>,
+}
+
+/// Where the camera is to be at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenKeyframe {
+    /// Where to point when it is wrong as a whole.
+    pub span: Span,
+    /// In seconds from the film's beginning.
+    pub time: Option<WrittenNumber>,
+    /// The eye point.
+    pub eye: Option<WrittenVector>,
+    /// The target point.
+    pub target: Option<WrittenVector>,
+    /// The up vector; the scene's own if none is given.
+    pub up: Option<WrittenVector>,
+    /// In degrees; the scene's own if none is given.
+    pub vertical_fov: Option<WrittenNumber>,
+}
+
+impl PathFile {
+    /// What the tree says, as far as it is a camera path; the rest goes to `faults`.
+    pub fn read(root: &Node<'_>, faults: &mut Faults) -> Self {
+        const FORM: &str = "a camera path (keyframes: [(time: ..., eye: ..., target: ...), ...])";
+        let mut reader = Reader::new(faults);
+        let fields = reader.fields(root, "a camera path", FORM, &["keyframes"]);
+        Self { keyframes: fields.and_then(|fields| reader.required(&fields, "keyframes", Reader::keyframes)) }
+    }
+}
+
+impl Reader<'_> {
+    fn keyframes(&mut self, node: &Node<'_>) -> Option<(Vec<WrittenKeyframe>, Span)> {
+        let items = self.list(node, "a list of keyframes [(time: ..., eye: ..., target: ...), ...]")?;
+        Some((items.iter().filter_map(|item| self.keyframe(item)).collect(), node.span))
+    }
+
+    fn keyframe(&mut self, node: &Node<'_>) -> Option<WrittenKeyframe> {
+        const FORM: &str = "a keyframe (time: ..., eye: ..., target: ...)";
+        const FIELDS: &[&str] = &["time", "eye", "target", "up", "vertical_fov"];
+        let fields = self.fields(node, "a keyframe", FORM, FIELDS)?;
+        Some(WrittenKeyframe {
+            span: node.head(),
+            time: self.required(&fields, "time", Reader::number),
+            eye: self.required(&fields, "eye", Reader::point),
+            target: self.required(&fields, "target", Reader::point),
+            up: self.optional(&fields, "up", Reader::direction),
+            vertical_fov: self.optional(&fields, "vertical_fov", Reader::number),
+        })
+    }
+}
