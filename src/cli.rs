@@ -4,6 +4,8 @@ mod check;
 mod encoding;
 mod frame;
 mod live;
+mod picture;
+mod record;
 
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
@@ -43,6 +45,7 @@ Examples:
   termtrace frame scenes/three_spheres.ron               one frame as text
   termtrace frame scenes/three_spheres.ron -o ball.png --pixels 800x600 --samples 16
   termtrace frame my.ron --check my.txt                  compare with a golden frame (--bless writes it)
+  termtrace record scenes/three_spheres.ron --seconds 4 -o orbit.cast
   termtrace check my.ron                                 say what is wrong with a scene file
   generate_scene | termtrace -                           read the scene from standard input
 
@@ -62,6 +65,8 @@ struct Cli {
 enum Command {
     /// Print one frame, or compare it with a golden one
     Frame(frame::FrameArgs),
+    /// Record a film along a camera path: asciicast, GIF or numbered PNGs
+    Record(record::RecordArgs),
     /// Say what is wrong with a scene file, or that it is fine
     Check(check::CheckArgs),
 }
@@ -152,6 +157,7 @@ pub(crate) fn main() -> ExitCode {
     };
     let done = match cli.command {
         Some(Command::Frame(args)) => frame::run(&args),
+        Some(Command::Record(args)) => record::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         None => live::run(&cli.live),
     };

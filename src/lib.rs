@@ -53,6 +53,7 @@
 //! - [`overlay`]: any ratatui buffer laid over the grid
 //! - [`encode`]: wanted grid, shown grid, pen -> bytes
 //! - [`export`]: grid or picture -> text, ANSI, PNG
+//! - [`record`]: frames over time -> asciicast, GIF
 //!
 //! With a person:
 //! - [`input`]: bytes -> events and replies
@@ -108,6 +109,7 @@ pub mod cell;
 pub mod overlay;
 pub mod encode;
 pub mod export;
+pub mod record;
 pub mod input;
 pub mod terminal;
 pub mod control;

@@ -27,6 +27,11 @@ enum Order {
 }
 
 impl EncodingArgs {
+    /// Whether anything of it was said.
+    pub(super) fn is_given(&self) -> bool {
+        self.order.is_some() || self.compressed_link
+    }
+
     pub(super) fn order(&self) -> encode::Order {
         match self.order {
             Some(Order::Raster) => encode::Order::Raster,

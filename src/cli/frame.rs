@@ -2,19 +2,17 @@
 
 mod golden;
 
+use super::picture::PictureArgs;
 use super::{Done, Failure, SceneArgs, reason, write_stdout};
 use clap::{Args, ValueEnum};
 use std::fs;
 use std::io::{self, IsTerminal};
-use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use termtrace::capabilities::{CellMode, USUAL_CELL_ASPECT};
+use termtrace::capabilities::CellMode;
 use termtrace::cell;
 use termtrace::export;
-use termtrace::framebuffer::Resolution;
 use termtrace::render::render;
-use termtrace::scene::Scene;
-use termtrace::tone::{Picture, tone};
+use termtrace::tone::tone;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -29,24 +27,11 @@ Examples:
 pub(super) struct FrameArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// The frame's size in cells [default: 80x24]
-    #[arg(long, value_name = "COLSxROWS", value_parser = parse_size, conflicts_with = "pixels")]
-    size: Option<(u32, u32)>,
-    /// The frame's size in pixels; a cell has two of them, one above the other
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
-    pixels: Option<(u32, u32)>,
+    #[command(flatten)]
+    picture: PictureArgs,
     /// What to write [default: as the file name's ending says, or text]
     #[arg(long)]
     format: Option<Format>,
-    /// Rays per pixel; one goes through the pixel's centre
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=65_536))]
-    samples: u32,
-    /// A cell's height over its width
-    #[arg(long, value_name = "A", default_value_t = USUAL_CELL_ASPECT, value_parser = parse_cell_aspect)]
-    cell_aspect: f32,
-    /// PNG: make each pixel N by N of the file's [default: 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
-    scale: Option<u32>,
     /// Write to a file; - is standard output [default: -]
     #[arg(short, long, value_name = "FILE", conflicts_with = "check")]
     output: Option<PathBuf>,
@@ -69,9 +54,6 @@ enum Format {
     Png,
 }
 
-/// The most pixels that a frame may have, and a scaled PNG: some 900 MB while it is traced.
-const MAX_PIXELS: u64 = 1 << 25;
-
 impl FrameArgs {
     /// What is to be written, by the flag, or by the file's name.
     fn format(&self) -> Result<Format, Failure> {
@@ -87,45 +69,25 @@ impl FrameArgs {
         self.output.as_deref().filter(|&path| path != Path::new("-"))
     }
 
-    fn resolution(&self) -> Result<Resolution, Failure> {
-        let (across, down) = CellMode::HalfBlock.pixels_per_cell();
-        let (columns, rows) = self.size.unwrap_or((80, 24));
-        let (width, height) = self.pixels.unwrap_or((columns.saturating_mul(across), rows.saturating_mul(down)));
-        let limit = u32::from(u16::MAX);
-        if width > limit || height > 2 * limit || u64::from(width) * u64::from(height) > MAX_PIXELS {
-            return Err(too_large(width.into(), height.into()));
-        }
-        Ok(Resolution { width, height, pixel_aspect: self.cell_aspect * across as f32 / down as f32 })
-    }
-
-    fn picture(&self, scene: &Scene, resolution: Resolution) -> Result<Picture, Failure> {
-        let samples = NonZeroU32::new(self.samples).unwrap_or(NonZeroU32::MIN);
-        self.scene.on_threads(|| tone(&render(scene, &scene.camera, resolution, samples), scene))
-    }
-
     /// The frame in a format.
     fn contents(&self, format: Format) -> Result<Vec<u8>, Failure> {
         let scene = self.scene.load()?;
-        let resolution = self.resolution()?;
-        let scale = self.scale.unwrap_or(1);
-        let [width, height] = [resolution.width, resolution.height].map(|side| u64::from(side) * u64::from(scale));
-        if width * height > MAX_PIXELS {
-            return Err(too_large(width, height));
-        }
-        let picture = self.picture(&scene, resolution)?;
+        let resolution = self.picture.resolution()?;
+        self.picture.fits_scaled(resolution)?;
+        let samples = self.picture.samples();
+        let picture = self.scene.on_threads(|| tone(&render(&scene, &scene.camera, resolution, samples), &scene))?;
         Ok(match format {
             Format::Text => export::text(&cell::grid_from_picture(CellMode::Ramp, &picture)).into_bytes(),
             Format::Ansi => export::ansi(&cell::grid_from_picture(CellMode::HalfBlock, &picture)),
-            Format::Png => {
-                export::png(&picture, resolution.pixel_aspect, scale).map_err(|error| Failure::runtime("PNG", error))?
-            }
+            Format::Png => export::png(&picture, resolution.pixel_aspect, self.picture.scale())
+                .map_err(|error| Failure::runtime("PNG", error))?,
         })
     }
 }
 
 pub(super) fn run(args: &FrameArgs) -> Done {
     let format = args.format()?;
-    if format != Format::Png && args.scale.is_some() {
+    if format != Format::Png && args.picture.has_scale() {
         return Err(Failure::Usage("--scale is for PNG; text and ANSI frames take their size from --size".to_owned()));
     }
     if format == Format::Png && args.output().is_none() && args.check.is_none() && io::stdout().is_terminal() {
@@ -155,24 +117,4 @@ fn format_by_ending(path: &Path) -> Result<Format, Failure> {
             path.display()
         ))),
     }
-}
-
-fn too_large(width: u64, height: u64) -> Failure {
-    Failure::Usage(format!(
-        "a frame of {width}x{height} pixels is too large; at most 65535 across, 131070 down and {MAX_PIXELS} in all"
-    ))
-}
-
-/// `80x24`, both at least 1.
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let sides = text.split_once(['x', 'X']).and_then(|(across, down)| Some((across.parse().ok()?, down.parse().ok()?)));
-    sides
-        .filter(|&(across, down)| across > 0 && down > 0)
-        .ok_or_else(|| "expected two whole numbers from 1 on with an x between them, such as 80x24".to_owned())
-}
-
-/// A cell that anybody could read in.
-pub(super) fn parse_cell_aspect(text: &str) -> Result<f32, String> {
-    let aspect = text.parse().ok().filter(|aspect| (0.1..=10.0).contains(aspect));
-    aspect.ok_or_else(|| "expected a number from 0.1 to 10, such as 2".to_owned())
 }

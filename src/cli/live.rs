@@ -1,7 +1,8 @@
 //! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
 
 use super::encoding::EncodingArgs;
-use super::{Done, Failure, SceneArgs, complain_of_panic, frame, reason, write_stdout};
+use super::picture::parse_cell_aspect;
+use super::{Done, Failure, SceneArgs, complain_of_panic, reason, write_stdout};
 use clap::{Args, ValueEnum};
 use std::io::{self, IsTerminal};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,7 +14,7 @@ use termtrace::scene::Scene;
 use termtrace::terminal::{Signals, die_of};
 
 /// The names of the commands, for who misspells one.
-const COMMANDS: [&str; 2] = ["frame", "check"];
+const COMMANDS: [&str; 3] = ["frame", "record", "check"];
 
 #[derive(Args)]
 pub(super) struct LiveArgs {
@@ -26,7 +27,7 @@ pub(super) struct LiveArgs {
     #[arg(long, value_name = "WHEN", default_value = "auto")]
     color: Color,
     /// A cell's height over its width [default: as the terminal says, or 2]
-    #[arg(long, value_name = "A", value_parser = frame::parse_cell_aspect)]
+    #[arg(long, value_name = "A", value_parser = parse_cell_aspect)]
     cell_aspect: Option<f32>,
     #[command(flatten)]
     encoding: EncodingArgs,

@@ -1,5 +1,6 @@
 //! Signals as something to wait for.
 
+use rustix::event::{PollFd, PollFlags};
 use rustix::fd::{AsFd, BorrowedFd};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGWINCH};
 use std::io::{self, Read, Write};
@@ -63,6 +64,18 @@ impl Signals {
         match self.deadly.load(Ordering::SeqCst) {
             0 => None,
             signal => i32::try_from(signal).ok(),
+        }
+    }
+
+    /// Waits until a signal asks the program to end.
+    pub fn wait_for_deadly(&mut self) -> i32 {
+        loop {
+            if let Some(signal) = self.deadly() {
+                return signal;
+            }
+            // Whatever interrupts it, the next look finds out why.
+            let _ = rustix::event::poll(&mut [PollFd::new(&self.read, PollFlags::IN)], None);
+            self.drain();
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::{BALL, Folder};
 
-const COMMANDS: [&str; 3] = ["frame ball.ron", "ball.ron", "check ball.ron"];
+const COMMANDS: [&str; 4] = ["frame ball.ron", "ball.ron", "record ball.ron --seconds 0.1", "check ball.ron"];
 
 /// The camera said by flags is the camera said in the file.
 #[test]

@@ -2,7 +2,7 @@
 
 use super::{BALL, Folder, shipped_scenes};
 
-const COMMANDS: [&str; 3] = ["", "frame", "check"];
+const COMMANDS: [&str; 4] = ["", "frame", "record", "check"];
 
 #[test]
 fn check_says_what_is_wrong_or_that_all_is_fine() {

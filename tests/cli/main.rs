@@ -1,5 +1,5 @@
-//! The program from outside: arguments, files and pipes in; bytes and an exit code out. No terminal is needed here;
-//! the live view has tests of its own.
+//! The program from outside: arguments, files and pipes in; bytes and an exit code out. Only the progress of `record`
+//! needs a terminal here; the live view has tests of its own.
 
 mod camera;
 mod errors;
@@ -7,6 +7,9 @@ mod formats;
 mod golden;
 mod pictures;
 mod pipes;
+#[path = "../pty/mod.rs"]
+mod pty;
+mod record;
 mod sizes;
 
 use std::fs::{self, File};

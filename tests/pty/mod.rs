@@ -11,7 +11,7 @@
 //! Nothing here sleeps in the place of knowing: every wait is for a condition, with a deadline.
 
 // Each test target that says `mod pty;` uses a part of it.
-#![allow(dead_code)]
+#![allow(dead_code, unused_imports)]
 
 mod modes;
 mod output;

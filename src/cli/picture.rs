@@ -1,0 +1,89 @@
+//! How large frames are, and how finely traced: the flags of `frame` and `record`.
+
+use super::{Done, Failure};
+use clap::Args;
+use std::num::NonZeroU32;
+use termtrace::capabilities::{CellMode, USUAL_CELL_ASPECT};
+use termtrace::framebuffer::Resolution;
+
+#[derive(Args)]
+pub(super) struct PictureArgs {
+    /// The frame's size in cells [default: 80x24]
+    #[arg(long, value_name = "COLSxROWS", value_parser = parse_size, conflicts_with = "pixels")]
+    size: Option<(u32, u32)>,
+    /// The frame's size in pixels; a cell has two of them, one above the other
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pixels: Option<(u32, u32)>,
+    /// Rays per pixel; one goes through the pixel's centre
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    samples: u32,
+    /// A cell's height over its width
+    #[arg(long, value_name = "A", default_value_t = USUAL_CELL_ASPECT, value_parser = parse_cell_aspect)]
+    cell_aspect: f32,
+    /// Picture files: make each pixel N by N of the file's [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    scale: Option<u32>,
+}
+
+/// The most pixels that a frame may have, and a scaled picture: some 900 MB while it is traced.
+const MAX_PIXELS: u64 = 1 << 25;
+
+impl PictureArgs {
+    pub(super) fn resolution(&self) -> Result<Resolution, Failure> {
+        let (across, down) = CellMode::HalfBlock.pixels_per_cell();
+        let (columns, rows) = self.size.unwrap_or((80, 24));
+        let (width, height) = self.pixels.unwrap_or((columns.saturating_mul(across), rows.saturating_mul(down)));
+        let limit = u32::from(u16::MAX);
+        if width > limit || height > 2 * limit {
+            return Err(too_large(width.into(), height.into()));
+        }
+        fits(width.into(), height.into())?;
+        Ok(Resolution { width, height, pixel_aspect: self.cell_aspect * across as f32 / down as f32 })
+    }
+
+    pub(super) fn samples(&self) -> NonZeroU32 {
+        NonZeroU32::new(self.samples).unwrap_or(NonZeroU32::MIN)
+    }
+
+    /// How many pixels of a file make up one of the picture, each way.
+    pub(super) fn scale(&self) -> u32 {
+        self.scale.unwrap_or(1)
+    }
+
+    /// Whether a file with the picture at that scale is not too large.
+    pub(super) fn fits_scaled(&self, resolution: Resolution) -> Done {
+        let [width, height] =
+            [resolution.width, resolution.height].map(|side| u64::from(side) * u64::from(self.scale()));
+        fits(width, height)
+    }
+
+    /// Whether anybody has asked for it.
+    pub(super) fn has_scale(&self) -> bool {
+        self.scale.is_some()
+    }
+}
+
+/// No picture is larger than memory can be expected to hold.
+pub(super) fn fits(width: u64, height: u64) -> Done {
+    if width.saturating_mul(height) > MAX_PIXELS { Err(too_large(width, height)) } else { Ok(()) }
+}
+
+fn too_large(width: u64, height: u64) -> Failure {
+    Failure::Usage(format!(
+        "a frame of {width}x{height} pixels is too large; at most 65535 across, 131070 down and {MAX_PIXELS} in all"
+    ))
+}
+
+/// `80x24`, both at least 1.
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(['x', 'X']).and_then(|(across, down)| Some((across.parse().ok()?, down.parse().ok()?)));
+    sides
+        .filter(|&(across, down)| across > 0 && down > 0)
+        .ok_or_else(|| "expected two whole numbers from 1 on with an x between them, such as 80x24".to_owned())
+}
+
+/// A cell that anybody could read in.
+pub(super) fn parse_cell_aspect(text: &str) -> Result<f32, String> {
+    let aspect = text.parse().ok().filter(|aspect| (0.1..=10.0).contains(aspect));
+    aspect.ok_or_else(|| "expected a number from 0.1 to 10, such as 2".to_owned())
+}

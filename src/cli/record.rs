@@ -1,0 +1,266 @@
+//! `termtrace record`: a film along a camera path. Nothing is read from the environment.
+
+mod numbered;
+mod progress;
+
+use super::encoding::{self, EncodingArgs};
+use super::picture::{PictureArgs, fits};
+use super::{Done, Failure, SceneArgs, reason};
+use clap::Args;
+use numbered::Numbered;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use termtrace::camera::Camera;
+use termtrace::camera_path::CameraPath;
+use termtrace::capabilities::CellMode;
+use termtrace::cell;
+use termtrace::encode::Encoder;
+use termtrace::export;
+use termtrace::framebuffer::Resolution;
+use termtrace::grid::Size;
+use termtrace::record::{Cast, Gif, gif_size};
+use termtrace::render::render;
+use termtrace::scene::Scene;
+use termtrace::tone::{Picture, tone};
+
+const EXAMPLES: &str = "\
+Camera paths:
+  orbit       once around the scene's target at constant height, in --seconds (8), beginning with the scene's own view
+  FILE.ron    through keyframes: (keyframes: [(time: 0, eye: (0, 1, 5), target: (0, 0, 0)), ...]); a keyframe may also
+              say up and vertical_fov; the film ends with the last one, or after --seconds
+
+Examples:
+  termtrace record my.ron -o my.cast                          an orbit, 80x24 cells; asciinema play my.cast
+  termtrace record my.ron --seconds 4 --fps 20 --scale 6 -o my.gif
+  termtrace record my.ron --path flight.ron --pixels 640x360 --samples 4 -o frame-%04d.png
+  termtrace record my.ron --compressed-link | gzip >my.cast.gz";
+
+#[derive(Args)]
+#[command(after_help = format!("{}\n\n{EXAMPLES}", encoding::EXPLAINED))]
+pub(super) struct RecordArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// How the camera moves: orbit, or a file of keyframes
+    #[arg(long, value_name = "orbit|FILE", default_value = "orbit")]
+    path: PathBuf,
+    /// How long the film is [default: 8, or as long as the path file]
+    #[arg(long, value_name = "S", value_parser = parse_seconds)]
+    seconds: Option<f64>,
+    /// Frames per second
+    #[arg(long, value_name = "N", default_value = "30", value_parser = clap::value_parser!(u32).range(1..=120))]
+    fps: u32,
+    #[command(flatten)]
+    picture: PictureArgs,
+    #[command(flatten)]
+    encoding: EncodingArgs,
+    /// Write to FILE.cast (asciicast), FILE.gif, or numbered from 1 to FILE-%04d.png; - is an asciicast to standard
+    /// output [default: -]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// An hour at 25 frames per second, and more than anybody waits for.
+const MAX_FRAMES: usize = 100_000;
+/// Viewers show a delay of one hundredth of a second as ten.
+const MAX_GIF_FPS: u32 = 50;
+const ORBIT_SECONDS: f64 = 8.0;
+
+/// What the film becomes.
+enum Format {
+    /// An asciicast, on standard output if there is no file.
+    Cast(Option<PathBuf>),
+    Gif(PathBuf),
+    Png(Numbered),
+}
+
+/// All that has been asked for, found to be possible.
+struct Film {
+    scene: Scene,
+    cameras: Vec<Camera>,
+    resolution: Resolution,
+    format: Format,
+}
+
+impl RecordArgs {
+    fn format(&self) -> Result<Format, Failure> {
+        let Some(path) = self.output.as_deref().filter(|&path| path != Path::new("-")) else {
+            return Ok(Format::Cast(None));
+        };
+        match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("cast") => Ok(Format::Cast(Some(path.to_owned()))),
+            Some("gif") => Ok(Format::Gif(path.to_owned())),
+            Some("png") => Numbered::parse(path).map(Format::Png),
+            _ => Err(Failure::Usage(format!("{}: the name does not end in .cast, .gif or .png", path.display()))),
+        }
+    }
+
+    fn film(&self) -> Result<Film, Failure> {
+        let format = self.format()?;
+        let resolution = self.picture.resolution()?;
+        self.check_flags(&format, resolution)?;
+        let scene = self.scene.load()?;
+        let cameras = self.cameras(&scene.camera)?;
+        Ok(Film { scene, cameras, resolution, format })
+    }
+
+    /// Turns away what the format cannot be, or makes no use of.
+    fn check_flags(&self, format: &Format, resolution: Resolution) -> Done {
+        let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
+        let is_cast = matches!(format, Format::Cast(_));
+        if matches!(format, Format::Cast(None)) && io::stdout().is_terminal() {
+            return wrong("an asciicast would garble the terminal; name a file with -o, or pipe it");
+        }
+        if is_cast && self.picture.has_scale() {
+            return wrong("--scale is for GIF and PNG; an asciicast takes its size from --size");
+        }
+        if !is_cast && self.encoding.is_given() {
+            return wrong("--order and --compressed-link are for an asciicast; no GIF or PNG has an order of cells");
+        }
+        let (width, height) = gif_size(resolution, self.picture.scale());
+        match format {
+            Format::Cast(_) => Ok(()),
+            Format::Png(_) => self.picture.fits_scaled(resolution),
+            Format::Gif(_) if self.fps > MAX_GIF_FPS => {
+                wrong("a GIF has at most 50 frames per second: viewers slow down one that has more")
+            }
+            Format::Gif(_) if width.max(height) > u16::MAX.into() => {
+                Err(Failure::Usage(format!("a GIF of {width}x{height} pixels is too large; at most 65535 each way")))
+            }
+            Format::Gif(_) => fits(width, height),
+        }
+    }
+
+    /// The camera of each frame.
+    fn cameras(&self, camera: &Camera) -> Result<Vec<Camera>, Failure> {
+        let path = self.camera_path(camera)?;
+        let name = self.path.display();
+        let seconds = self.seconds.unwrap_or(path.seconds());
+        if seconds == 0.0 {
+            return Err(Failure::Usage(format!("{name}: the path ends at 0 seconds; say --seconds for a longer film")));
+        }
+        // At most 120 million.
+        let frames = ((seconds * f64::from(self.fps)).round() as usize).max(1);
+        if frames > MAX_FRAMES {
+            return Err(Failure::Usage(format!("a film of {frames} frames is too long; at most {MAX_FRAMES}")));
+        }
+        path.cameras(frames, self.fps).map_err(|error| Failure::Usage(format!("{name}: {error}")))
+    }
+
+    fn camera_path(&self, camera: &Camera) -> Result<CameraPath, Failure> {
+        if self.path == Path::new("orbit") {
+            return Ok(CameraPath::orbit(*camera, self.seconds.unwrap_or(ORBIT_SECONDS)));
+        }
+        if self.scene.eye.is_some() || self.scene.target.is_some() {
+            return Err(Failure::Usage(
+                "--eye and --target are for the orbit; a path file says both itself".to_owned(),
+            ));
+        }
+        CameraPath::load(&self.path, camera).map_err(|error| Failure::Usage(error.to_string()))
+    }
+
+    fn sink(&self, film: &Film) -> io::Result<Sink> {
+        let resolution = film.resolution;
+        Ok(match &film.format {
+            Format::Cast(path) => {
+                let out: Out = match path {
+                    Some(path) => Box::new(BufWriter::new(File::create(path)?)),
+                    None => Box::new(BufWriter::new(io::stdout())),
+                };
+                let (across, down) = CellMode::HalfBlock.pixels_per_cell();
+                // A resolution is checked to have no more cells.
+                let size = Size::new((resolution.width / across) as u16, resolution.height.div_ceil(down) as u16);
+                let encoder = Encoder::new().with_order(self.encoding.order());
+                Sink::Cast(Cast::begin(out, size, encoder, self.fps)?)
+            }
+            Format::Gif(path) => {
+                let out = BufWriter::new(File::create(path)?);
+                Sink::Gif(Gif::begin(out, resolution, self.picture.scale(), self.fps)?)
+            }
+            Format::Png(_) => Sink::Png { pixel_aspect: resolution.pixel_aspect, scale: self.picture.scale() },
+        })
+    }
+}
+
+type Out = Box<dyn Write + Send>;
+
+/// Where frames go.
+enum Sink {
+    Cast(Cast<Out>),
+    Gif(Gif<BufWriter<File>>),
+    Png { pixel_aspect: f32, scale: u32 },
+}
+
+impl Sink {
+    fn take(&mut self, picture: &Picture, file: &Path) -> io::Result<()> {
+        match self {
+            Self::Cast(cast) => cast.frame(&cell::grid_from_picture(CellMode::HalfBlock, picture)),
+            Self::Gif(gif) => gif.frame(picture),
+            Self::Png { pixel_aspect, scale } => {
+                let bytes = export::png(picture, *pixel_aspect, *scale).map_err(io::Error::other)?;
+                fs::write(file, bytes)
+            }
+        }
+    }
+
+    fn end(self) -> io::Result<()> {
+        match self {
+            Self::Cast(cast) => cast.end(),
+            Self::Gif(gif) => gif.end(),
+            Self::Png { .. } => Ok(()),
+        }
+    }
+}
+
+impl Film {
+    /// The file that a frame, counted from 0, goes to.
+    fn file(&self, frame: usize) -> PathBuf {
+        match &self.format {
+            Format::Cast(None) => "standard output".into(),
+            Format::Cast(Some(path)) | Format::Gif(path) => path.clone(),
+            Format::Png(numbered) => numbered.file(frame + 1),
+        }
+    }
+
+    /// A reader that has seen enough (`| head`) is no error.
+    fn written<T>(&self, frame: usize, result: io::Result<T>) -> Result<T, Stop> {
+        result.map_err(|error| match self.format {
+            Format::Cast(None) if error.kind() == io::ErrorKind::BrokenPipe => Stop::NoReader,
+            _ => Stop::Failure(Failure::runtime(self.file(frame).display(), reason(&error))),
+        })
+    }
+}
+
+/// Why a film ends early.
+enum Stop {
+    NoReader,
+    Failure(Failure),
+}
+
+pub(super) fn run(args: &RecordArgs) -> Done {
+    let film = args.film()?;
+    let written = args.scene.on_threads(|| write(args, &film))?;
+    match written {
+        Ok(()) | Err(Stop::NoReader) => Ok(()),
+        Err(Stop::Failure(failure)) => Err(failure),
+    }
+}
+
+/// Frame by frame: no more than one is there at a time.
+fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
+    let mut sink = film.written(0, args.sink(film))?;
+    let bar = progress::bar(film.cameras.len() as u64);
+    for (frame, camera) in film.cameras.iter().enumerate() {
+        let light = render(&film.scene, camera, film.resolution, args.picture.samples());
+        let picture = tone(&light, &film.scene);
+        film.written(frame, sink.take(&picture, &film.file(frame)))?;
+        bar.inc(1);
+    }
+    film.written(0, sink.end())
+}
+
+/// Greater than 0, and not beyond what a path file can say.
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|&seconds| seconds > 0.0 && seconds <= 1e6);
+    seconds.ok_or_else(|| "expected a number of seconds greater than 0 and at most 1e6, such as 8".to_owned())
+}

@@ -1,0 +1,103 @@
+//! Names of files that are numbered from 1: `frame-%04d.png`.
+
+use crate::cli::Failure;
+use std::path::{Path, PathBuf};
+
+/// What stands before and after the number, and with how many digits it is written at least.
+#[derive(Debug, PartialEq)]
+pub(super) struct Numbered {
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl Numbered {
+    /// As `printf` reads it: `%d` or `%04d` once, and `%%` for a percent sign.
+    pub(super) fn parse(path: &Path) -> Result<Self, Failure> {
+        let name = path.to_str().ok_or_else(|| wrong(path, "the name is not UTF-8"))?;
+        let (mut before, mut after, mut digits) = (String::new(), String::new(), None);
+        let mut rest = name;
+        while let Some((text, sign)) = rest.split_once('%') {
+            let part = if digits.is_none() { &mut before } else { &mut after };
+            part.push_str(text);
+            if let Some(behind) = sign.strip_prefix('%') {
+                part.push('%');
+                rest = behind;
+            } else if let (None, Some((width, behind))) = (digits, sign.split_once('d')) {
+                digits = Some(least_digits(width).ok_or_else(|| wrong(path, NUMBER))?);
+                rest = behind;
+            } else {
+                return Err(wrong(path, NUMBER));
+            }
+        }
+        let Some(digits) = digits else { return Err(wrong(path, &without_number(path))) };
+        after.push_str(rest);
+        Ok(Self { before, digits, after })
+    }
+
+    pub(super) fn file(&self, number: usize) -> PathBuf {
+        let Self { before, digits, after } = self;
+        format!("{before}{number:0digits$}{after}").into()
+    }
+}
+
+const NUMBER: &str = "one %d or %04d says where a frame's number goes; a percent sign is %%";
+
+/// What stands between `%` and `d`.
+fn least_digits(width: &str) -> Option<usize> {
+    let is_number = width.bytes().all(|byte| byte.is_ascii_digit());
+    match width.strip_prefix('0') {
+        Some(width) if is_number => width.parse().ok().filter(|digits| (1..=20).contains(digits)),
+        _ => width.is_empty().then_some(1),
+    }
+}
+
+fn without_number(path: &Path) -> String {
+    let stem = path.with_extension("");
+    format!("each frame is a file of its own; write where its number goes, as in {}-%04d.png", stem.display())
+}
+
+fn wrong(path: &Path, why: &str) -> Failure {
+    Failure::Usage(format!("{}: {why}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn files(name: &str) -> Option<[String; 3]> {
+        let numbered = Numbered::parse(Path::new(name)).ok()?;
+        Some([1, 42, 123_456].map(|number| numbered.file(number).display().to_string()))
+    }
+
+    #[test]
+    fn the_number_goes_where_printf_would_write_it() {
+        for (name, expected) in [
+            ("frame-%04d.png", ["frame-0001.png", "frame-0042.png", "frame-123456.png"]),
+            ("%d.png", ["1.png", "42.png", "123456.png"]),
+            ("a/%03d/x.png", ["a/001/x.png", "a/042/x.png", "a/123456/x.png"]),
+            ("100%%-%01d-%%d.png", ["100%-1-%d.png", "100%-42-%d.png", "100%-123456-%d.png"]),
+        ] {
+            assert_eq!(files(name), Some(expected.map(str::to_owned)), "{name}");
+        }
+    }
+
+    #[test]
+    fn other_forms_are_turned_away() {
+        for name in [
+            "x.png",
+            "%s.png",
+            "%4d.png",
+            "%-4d.png",
+            "%0d.png",
+            "%00d.png",
+            "%099d.png",
+            "%d%d.png",
+            "%",
+            "%d%",
+            "%%d",
+        ] {
+            assert_eq!(files(name), None, "{name}");
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! How far the recording has come: on standard error where that is a terminal, nowhere else.
+
+use console::Term;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle, TermLike};
+use std::io;
+use std::thread;
+use termtrace::terminal::{Signals, die_of};
+
+/// A bar over so many frames. Nothing is left of it when it is dropped.
+pub(super) fn bar(frames: u64) -> ProgressBar {
+    let terminal = Term::buffered_stderr();
+    let is_dumb = std::env::var_os("TERM").is_some_and(|name| name == "dumb");
+    if !terminal.is_term() || is_dumb {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("[{wide_bar}] {pos}/{len} frames, {eta}");
+    let style = style.map_or_else(|_| ProgressStyle::default_bar(), |style| style.progress_chars("=> "));
+    let target = ProgressDrawTarget::term_like_with_hz(Box::new(Narrower(terminal)), 10);
+    let bar = ProgressBar::with_draw_target(Some(frames), target).with_style(style);
+    let bar = bar.with_finish(ProgressFinish::AndClear);
+    clear_before_dying(&bar);
+    bar.tick();
+    bar
+}
+
+/// Who ends the recording by a signal finds a clean line as well. Where signals cannot be caught, the bar stays: no
+/// reason to give up the recording.
+fn clear_before_dying(bar: &ProgressBar) {
+    let Ok(mut signals) = Signals::catch() else { return };
+    let bar = bar.downgrade();
+    thread::spawn(move || {
+        let signal = signals.wait_for_deadly();
+        if let Some(bar) = bar.upgrade() {
+            bar.finish_and_clear();
+        }
+        die_of(signal);
+    });
+}
+
+/// The terminal without its last columns: what it echoes of Ctrl-C then stays on the bar's line, and goes with it.
+#[derive(Debug)]
+struct Narrower(Term);
+
+impl TermLike for Narrower {
+    fn width(&self) -> u16 {
+        TermLike::width(&self.0).saturating_sub(4)
+    }
+
+    fn move_cursor_up(&self, n: usize) -> io::Result<()> {
+        self.0.move_cursor_up(n)
+    }
+
+    fn move_cursor_down(&self, n: usize) -> io::Result<()> {
+        self.0.move_cursor_down(n)
+    }
+
+    fn move_cursor_right(&self, n: usize) -> io::Result<()> {
+        self.0.move_cursor_right(n)
+    }
+
+    fn move_cursor_left(&self, n: usize) -> io::Result<()> {
+        self.0.move_cursor_left(n)
+    }
+
+    fn write_line(&self, text: &str) -> io::Result<()> {
+        self.0.write_line(text)
+    }
+
+    fn write_str(&self, text: &str) -> io::Result<()> {
+        self.0.write_str(text)
+    }
+
+    fn clear_line(&self) -> io::Result<()> {
+        self.0.clear_line()
+    }
+
+    fn flush(&self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
