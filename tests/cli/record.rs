@@ -113,6 +113,9 @@ fn a_cast_shows_each_frame_of_the_orbit() {
         ("--seconds 2 --fps 8 --size 33x9 --order color", 8, Resolution::square(33, 18), 2.0, 16),
         ("--seconds 2 --fps 8 --size 33x9 --order=raster", 8, Resolution::square(33, 18), 2.0, 16),
         ("--seconds 0.3 --fps 10 --pixels 21x15", 10, Resolution::square(21, 15), 0.3, 3),
+        // The nearest number of frames, and never none.
+        ("--seconds 0.33 --fps 10 --size 9x4", 10, Resolution::square(9, 8), 0.33, 3),
+        ("--seconds 0.28 --fps 10 --size 9x4", 10, Resolution::square(9, 8), 0.28, 3),
         (
             "--seconds 0.1 --fps 120 --size 30x8 --cell-aspect 1",
             120,
@@ -127,6 +130,8 @@ fn a_cast_shows_each_frame_of_the_orbit() {
         assert_ne!(cameras[frames - 1].pose().eye, cameras[0].pose().eye, "and does not end with it");
         assert_shows(&cast, fps, resolution, &cameras);
     }
+    let cast = folder.run("record ball.ron --seconds 1e-9 --size 9x4").done();
+    assert_shows(&cast, 30, Resolution::square(9, 8), &[scene.camera]);
 }
 
 #[test]
@@ -470,6 +475,16 @@ fn a_bar_shows_the_progress_and_leaves_nothing() {
     let mut session = on_a_terminal(&folder, "--seconds 2 -o /missing/%d.png").spawn();
     assert_eq!(session.wait_exit(SOON).code(), Some(1));
     assert!(session.seen().screen().text()[0].starts_with("termtrace: /missing/1.png: No such file"));
+}
+
+/// A terminal that cannot go back on its line is not written full.
+#[test]
+fn a_dumb_terminal_gets_no_bar() {
+    let folder = Folder::new();
+    let mut session =
+        on_a_terminal(&folder, "--seconds 1").arg("-o").arg(folder.path("x.cast")).env("TERM", "dumb").spawn();
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    assert_eq!(session.seen().bytes(), b"");
 }
 
 /// The bar is for a person, the film for the pipe: neither gets the other's bytes.
