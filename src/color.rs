@@ -1,4 +1,5 @@
-//! Light as numbers: linear RGB, 8-bit sRGB, and the transfer function between them.
+//! Light as numbers: linear RGB, 8-bit sRGB, the transfer function between them, and OKLab for how different two colours
+//! look.
 //!
 //! Every colour in the crate is one of two types, because a mix-up would give a picture that looks plausible and is
 //! wrong: [`LinearRgb`] is an amount of light, which may be added and scaled; [`Srgb8`] is what a file or a terminal
@@ -86,7 +87,7 @@ impl Mul<f32> for LinearRgb {
 }
 
 /// A colour as files and terminals take it: sRGB, 8 bits a band, transfer function applied.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Srgb8 {
     /// Red, 0..=255.
     pub r: u8,
@@ -106,6 +107,39 @@ impl Srgb8 {
     /// NaN counts as no light.
     pub fn from_linear(light: LinearRgb) -> Self {
         Self::new(srgb8_from_linear(light.r), srgb8_from_linear(light.g), srgb8_from_linear(light.b))
+    }
+}
+
+/// A colour in OKLab (Björn Ottosson, "A perceptual color space for image processing", 2020): equal distances look about
+/// equally different. It only ever judges what a screen shows; nothing is painted with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Oklab {
+    /// Lightness: 0 is black, 1 the screen's white.
+    pub l: f32,
+    /// From green (negative) to red, about -0.24..=0.28 on a screen.
+    pub a: f32,
+    /// From blue (negative) to yellow, about -0.32..=0.20 on a screen.
+    pub b: f32,
+}
+
+impl Oklab {
+    /// The colour of a screen, by the matrices of the source.
+    pub fn from_srgb8(color: Srgb8) -> Self {
+        let LinearRgb { r, g, b } = LinearRgb::from_srgb8(color);
+        let l = libm::cbrtf(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);
+        let m = libm::cbrtf(0.211_903_5 * r + 0.680_699_5 * g + 0.107_396_96 * b);
+        let s = libm::cbrtf(0.088_302_46 * r + 0.281_718_85 * g + 0.629_978_7 * b);
+        Self {
+            l: 0.210_454_26 * l + 0.793_617_8 * m - 0.004_072_047 * s,
+            a: 1.977_998_5 * l - 2.428_592_2 * m + 0.450_593_7 * s,
+            b: 0.025_904_037 * l + 0.782_771_77 * m - 0.808_675_77 * s,
+        }
+    }
+
+    /// How different two colours look: the distance between them, of which black and white have 1.
+    pub fn distance(self, other: Self) -> f32 {
+        let (l, a, b) = (self.l - other.l, self.a - other.a, self.b - other.b);
+        (l * l + a * a + b * b).sqrt()
     }
 }
 
@@ -217,6 +251,22 @@ mod tests {
             [(-1.0, 0), (-0.0, 0), (f32::NAN, 0), (f32::NEG_INFINITY, 0), (1.0, 255), (7.0, 255), (f32::INFINITY, 255)]
         {
             assert_eq!(srgb8_from_linear(x), code, "{x}");
+        }
+    }
+
+    /// Values worked out in f64 from the source's formulas.
+    #[test]
+    fn oklab_has_the_sources_values() {
+        for (color, [l, a, b]) in [
+            (Srgb8::new(0, 0, 0), [0.0, 0.0, 0.0]),
+            (Srgb8::new(255, 255, 255), [1.0, 0.0, 0.0]),
+            (Srgb8::new(255, 0, 0), [0.627_955, 0.224_863, 0.125_846]),
+            (Srgb8::new(0, 255, 0), [0.866_440, -0.233_888, 0.179_498]),
+            (Srgb8::new(0, 0, 255), [0.452_014, -0.032_457, -0.311_528]),
+            (Srgb8::new(128, 128, 128), [0.599_871, 0.0, 0.0]),
+        ] {
+            let distance = Oklab::from_srgb8(color).distance(Oklab { l, a, b });
+            assert!(distance < 2e-6, "{color:?} is {distance} away");
         }
     }
 
