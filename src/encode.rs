@@ -8,6 +8,9 @@
 //!   neighbourhoods are those of the frame before.
 //! - [`Order::Color`] goes from cell to cell by the colours they share: about a fifth less on a raw link.
 //!
+//! [`Encoder::encode`] shows exactly what is wanted. [`Encoder::encode_within`] may show something near it for a while
+//! (see [`Quality`]), which halves the bytes of a moving picture or better.
+//!
 //! The escape sequences used are the safe core that every terminal and multiplexer understands: CUP, CUF, CHA, CR, BS,
 //! LF and SGR with `38;2`/`48;2`; and `58:2`, the colour of an underline, which others pass over. Nothing that repeats,
 //! erases or scrolls. A terminal in raw mode is taken for granted: a line feed keeps the column.
@@ -15,12 +18,17 @@
 use crate::grid::{Cell, Glyph, Grid, Size};
 
 mod by_color;
+mod lossy;
 mod moves;
+mod palette;
 mod pen;
+mod stillness;
 mod strokes;
 
 use moves::Place;
 pub(crate) use pen::Pen;
+use std::time::Duration;
+use stillness::Stillness;
 use unicode_width::UnicodeWidthChar;
 
 /// The order in which cells are sent.
@@ -33,15 +41,57 @@ pub enum Order {
     Color,
 }
 
+/// How near a moving picture is to the wanted one. Text is always exact, and so is what stands still: half a second after
+/// a cell was last wanted otherwise, it gets its exact colours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// Every half cell has its colour.
+    #[default]
+    Exact,
+    /// Nobody sees a difference: every half cell is within 0.01 of its colour in OKLab, and the picture has a peak
+    /// signal-to-noise ratio of 44 dB or more.
+    Equal,
+    /// Hardly anybody does: within 0.02, and 41 dB.
+    Fast,
+}
+
+/// What a frame may differ in, and what it may take.
+#[derive(Clone, Copy, Debug)]
+pub struct Allowance {
+    /// How near to the wanted picture it is.
+    pub quality: Quality,
+    /// When it is sent, from any start that all frames share.
+    pub now: Duration,
+    /// The most bytes that it should take: what does not fit, the least errors, waits for a later frame, even if it
+    /// exceeds the quality's caps. `None`: nothing that exceeds them waits; exact colours do, beyond 8 bytes for each cell
+    /// of the screen, of which tmux throws away what it cannot take. (Text never waits, nor what has to replace text or
+    /// an unknown screen, nor the largest error, and with [`Quality::Exact`] nothing does.)
+    pub most_bytes: Option<usize>,
+}
+
 /// Turns wanted grids into bytes, and remembers what the terminal shows.
 #[derive(Clone, Debug, Default)]
 pub struct Encoder {
     order: Order,
     upper_half: bool,
-    /// What the terminal shows; nothing is known at first and after a resize.
-    shown: Option<Grid>,
+    /// Nothing at first and after a resize.
+    known: Option<Known>,
+    stillness: Stillness,
+    due: Option<Duration>,
+}
+
+/// What is known of the terminal.
+#[derive(Clone, Debug)]
+struct Known {
+    /// What it shows.
+    shown: Grid,
+    /// What it would write with now.
     pen: Pen,
 }
+
+/// tmux holds back what it cannot pass on, and throws it away when it is more than this for each cell of the screen (its
+/// `TTY_BLOCK_START`).
+const BYTES_PER_CELL: usize = 8;
 
 impl Encoder {
     /// For a terminal of which nothing is known: row by row, every cell with the character that it has in the grid.
@@ -61,31 +111,90 @@ impl Encoder {
         Self { upper_half, ..self }
     }
 
-    /// From here on nothing is known of the screen: the next frame is drawn whole.
-    pub fn forget(&mut self) {
-        self.shown = None;
+    /// The same for an encoder in use: a window may have come to other cells.
+    pub fn set_upper_half(&mut self, upper_half: bool) {
+        self.upper_half = upper_half;
     }
 
-    /// Appends the bytes that make the terminal show `wanted`; none if it does already.
+    /// From here on nothing is known of the screen: the next frame is drawn whole.
+    pub fn forget(&mut self) {
+        self.known = None;
+    }
+
+    /// Appends the bytes that make the terminal show `wanted`, exactly; none if it does already.
     pub fn encode(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) {
-        let mut shown = self.shown.take().filter(|shown| shown.size() == wanted.size()).unwrap_or_else(|| {
-            // Whatever the pen was, it is known from here on.
-            self.pen.reset(bytes);
-            unknown(wanted.size())
+        let mut known = self.take_known(wanted.size(), bytes);
+        self.write(wanted, &mut known, bytes);
+        self.known = Some(known);
+        self.due = None;
+    }
+
+    /// Appends the bytes that make the terminal show `wanted`, or something near it for a while; none if it does already.
+    pub fn encode_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) {
+        let Some(caps) = lossy::Caps::of(allowance.quality) else { return self.encode(wanted, bytes) };
+        self.stillness.note(wanted, allowance.now);
+        let known = self.take_known(wanted.size(), bytes);
+        let has_waited = |at| self.stillness.due(at) <= allowance.now;
+        let plan = lossy::Plan::new(lossy::Frame {
+            shown: &known.shown,
+            wanted,
+            caps,
+            either_half: self.upper_half,
+            pen: [known.pen.fg, known.pen.bg],
+            has_waited: &has_waited,
         });
-        let changed = update(&mut shown, wanted);
+        let most_bytes = allowance.most_bytes.unwrap_or(BYTES_PER_CELL * wanted.size().cell_count());
+        // One at least, or all might wait for ever.
+        let fewest = plan.fewest_writes(allowance.most_bytes.is_none()).max(1);
+        let mut writes = plan.writes();
+        let start = bytes.len();
+        let next = loop {
+            let mut next = known.clone();
+            self.write(&plan.grid(writes), &mut next, bytes);
+            let taken = bytes.len() - start;
+            if taken <= most_bytes || writes <= fewest {
+                break next;
+            }
+            bytes.truncate(start);
+            // A little less than the share that fits, so that few tries are needed.
+            writes = (writes * most_bytes / taken * 15 / 16).clamp(fewest, writes - 1);
+        };
+        let is_cut = writes < plan.writes();
+        let refines = plan.inexact(&next.shown).map(|at| self.stillness.due(at)).min();
+        self.due = if is_cut { Some(allowance.now) } else { refines };
+        self.known = Some(next);
+    }
+
+    /// When to encode the last wanted grid again, if nothing else is wanted until then: what is not shown exactly yet is
+    /// to be so then. `None`: all is exact, and nothing would be sent.
+    pub fn due(&self) -> Option<Duration> {
+        self.due
+    }
+
+    /// What is known of a terminal of that size.
+    fn take_known(&mut self, size: Size, bytes: &mut Vec<u8>) -> Known {
+        self.known.take().filter(|known| known.shown.size() == size).unwrap_or_else(|| {
+            let mut pen = Pen::default();
+            // Whatever the pen was, it is known from here on.
+            pen.reset(bytes);
+            Known { shown: unknown(size), pen }
+        })
+    }
+
+    /// Appends the bytes that make the terminal show the grid.
+    fn write(&self, wanted: &Grid, known: &mut Known, bytes: &mut Vec<u8>) {
+        let changed = update(&mut known.shown, wanted);
         let strokes = match self.order {
-            Order::Raster => strokes::choose(wanted, &changed, self.upper_half, self.pen),
+            Order::Raster => strokes::choose(wanted, &changed, self.upper_half, known.pen),
             Order::Color => {
-                let order = by_color::order(wanted, &changed, self.upper_half, self.pen);
-                let mut strokes = strokes::choose(wanted, &order, self.upper_half, self.pen);
+                let order = by_color::order(wanted, &changed, self.upper_half, known.pen);
+                let mut strokes = strokes::choose(wanted, &order, self.upper_half, known.pen);
                 // Not row by row: a compressor finds fewer repetitions then, which costs more than this saves.
                 strokes::look_ahead(wanted, &mut strokes);
                 strokes
             }
         };
-        strokes::write(wanted, &strokes, &mut self.pen, bytes);
-        self.shown = Some(shown);
+        strokes::write(wanted, &strokes, &mut known.pen, bytes);
     }
 }
 

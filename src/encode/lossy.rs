@@ -1,0 +1,270 @@
+//! Wanted grid -> one that nobody can tell from it and that takes fewer bytes to show.
+//!
+//! What may differ is the picture, never text. A half cell may have another colour than the wanted one if that is within
+//! the quality's cap in OKLab, and if the whole picture keeps its signal-to-noise ratio. Both liberties are used: a cell
+//! that shows a colour near enough is left alone, and the others take colours that serve many of them (see
+//! [`palette`](super::palette)).
+
+use super::Quality;
+use super::palette;
+use crate::color::{Oklab, Srgb8};
+use crate::grid::{Cell, Glyph, Grid, Ink};
+use std::cmp::Reverse;
+
+/// How far the picture that is shown may be from the wanted one.
+#[derive(Clone, Copy)]
+pub(super) struct Caps {
+    /// The most that a half cell may differ: a distance in OKLab.
+    distance: f32,
+    /// The most that the halves may differ in the mean: the square of the differences of 8-bit sRGB, per band. A peak
+    /// signal-to-noise ratio of `d` decibels is `255^2 / 10^(d / 10)`.
+    mean_square: f64,
+}
+
+impl Caps {
+    pub(super) fn of(quality: Quality) -> Option<Self> {
+        match quality {
+            Quality::Exact => None,
+            // 44 and 41 decibels.
+            Quality::Equal => Some(Self { distance: 0.01, mean_square: 2.588_6 }),
+            Quality::Fast => Some(Self { distance: 0.02, mean_square: 5.165_1 }),
+        }
+    }
+}
+
+/// How far a half cell may be from the wanted one in this frame.
+#[derive(Clone, Copy)]
+pub(super) struct Tolerance {
+    /// In OKLab.
+    pub(super) distance: f32,
+    /// The square of the difference in 8-bit sRGB, over all three bands.
+    pub(super) square: u32,
+}
+
+impl Tolerance {
+    fn allows(self, shown: Srgb8, wanted: Srgb8) -> bool {
+        shown == wanted
+            || square(shown, wanted) <= self.square
+                && Oklab::from_srgb8(shown).distance(Oklab::from_srgb8(wanted)) <= self.distance
+    }
+}
+
+/// The square of the difference of two colours, over all three bands.
+pub(super) fn square(a: Srgb8, b: Srgb8) -> u32 {
+    [a.r.abs_diff(b.r), a.g.abs_diff(b.g), a.b.abs_diff(b.b)].map(|band| u32::from(band).pow(2)).iter().sum()
+}
+
+/// The upper and the lower colour of a picture's cell.
+pub(super) type Halves = [Srgb8; 2];
+
+/// Those of a half block or a space in truecolor; anything else is text.
+pub(super) fn halves(cell: &Cell) -> Option<Halves> {
+    let (Ink::Rgb(bg), true) = (cell.bg, cell.modifier.is_empty()) else { return None };
+    match (&cell.glyph, cell.fg) {
+        (Glyph::Char(' '), _) => Some([bg; 2]),
+        (Glyph::Char('▄'), Ink::Rgb(fg)) => Some([bg, fg]),
+        (Glyph::Char('▀'), Ink::Rgb(fg)) => Some([fg, bg]),
+        _ => None,
+    }
+}
+
+/// A cell with these halves, its block the same way up as the wanted one's.
+fn cell([upper, lower]: Halves, wanted: &Cell) -> Cell {
+    if upper == lower {
+        Cell::new(' ', Ink::Default, Ink::Rgb(upper))
+    } else if wanted.glyph == '▀' {
+        Cell::new('▀', Ink::Rgb(upper), Ink::Rgb(lower))
+    } else {
+        Cell::new('▄', Ink::Rgb(lower), Ink::Rgb(upper))
+    }
+}
+
+/// What a lossy frame is made from.
+pub(super) struct Frame<'a> {
+    pub(super) shown: &'a Grid,
+    pub(super) wanted: &'a Grid,
+    pub(super) caps: Caps,
+    /// Whether a cell may be written with either half, so that two colours serve both ways round.
+    pub(super) either_half: bool,
+    /// The colours that the pen has already.
+    pub(super) pen: [Ink; 2],
+    /// Which cells are to have their exact colours now.
+    pub(super) has_waited: &'a dyn Fn(usize) -> bool,
+}
+
+/// A cell of the picture that does not show what is wanted.
+struct Difference {
+    /// Where it is among the grid's cells.
+    at: usize,
+    wanted: Halves,
+    /// What it shows, if it is of a picture.
+    shown: Option<Halves>,
+    need: Need,
+}
+
+/// Whether a cell is to be written: the larger, the more it is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Need {
+    /// It is near enough.
+    Waits,
+    /// It differs by so much, and has waited long enough for its exact colours.
+    Refines(u32),
+    /// It differs by so much, which is too much.
+    Differs(u32),
+    /// No picture is shown there.
+    Appears,
+}
+
+/// What differs between a frame's two grids, that first which needs most to be written.
+pub(super) struct Plan<'a> {
+    frame: Frame<'a>,
+    tolerance: Tolerance,
+    differences: Vec<Difference>,
+    /// How many of them are to be written.
+    writes: usize,
+    /// The places of text.
+    text: Vec<usize>,
+}
+
+impl<'a> Plan<'a> {
+    pub(super) fn new(frame: Frame<'a>) -> Self {
+        let mut plan = Self {
+            tolerance: Tolerance { distance: frame.caps.distance, square: 0 },
+            frame,
+            differences: Vec::new(),
+            writes: 0,
+            text: Vec::new(),
+        };
+        plan.compare();
+        plan.tolerance.square = plan.widest_square();
+        plan.decide();
+        plan
+    }
+
+    fn compare(&mut self) {
+        let wanted = self.frame.wanted.cells();
+        let shown = self.frame.shown.cells();
+        for (at, cell) in wanted.iter().enumerate() {
+            let Some(wanted) = halves(cell) else {
+                self.text.push(at);
+                continue;
+            };
+            let shown = halves(&shown[at]);
+            if shown != Some(wanted) {
+                self.differences.push(Difference { at, wanted, shown, need: Need::Appears });
+            }
+        }
+    }
+
+    /// The largest square that leaves the mean of all halves within its cap: what differs more is taken for written, and
+    /// then for differing by anything up to that square, by a third of it in the mean.
+    fn widest_square(&self) -> u32 {
+        const MOST: usize = 1024;
+        let mut counts = [0_usize; MOST];
+        for difference in &self.differences {
+            let squares = difference.shown.map_or([u32::MAX; 2], |shown| squares(shown, difference.wanted));
+            for square in squares {
+                counts[(square as usize).min(MOST - 1)] += 1;
+            }
+        }
+        let (mut beyond, mut sum, mut widest) = (2 * self.differences.len(), 0.0, 0);
+        for (square, count) in counts.into_iter().enumerate() {
+            beyond -= count;
+            sum += (square * count) as f64;
+            if sum + (beyond * square) as f64 / 3.0 > self.most() {
+                break;
+            }
+            widest = square as u32;
+        }
+        widest
+    }
+
+    /// The most that the squares of all halves may sum up to.
+    fn most(&self) -> f64 {
+        let halves = 2 * (self.frame.wanted.cells().len() - self.text.len());
+        self.frame.caps.mean_square * (3 * halves) as f64
+    }
+
+    fn decide(&mut self) {
+        for difference in &mut self.differences {
+            let Some(shown) = difference.shown else { continue };
+            let square = squares(shown, difference.wanted).into_iter().fold(0, u32::max);
+            let is_near = (0..2).all(|half| self.tolerance.allows(shown[half], difference.wanted[half]));
+            difference.need = match (is_near, (self.frame.has_waited)(difference.at)) {
+                (false, _) => Need::Differs(square),
+                (true, true) => Need::Refines(square),
+                (true, false) => Need::Waits,
+            };
+        }
+        self.differences.sort_by_key(|difference| Reverse(difference.need));
+        self.writes = self.count(Need::Refines(0));
+    }
+
+    fn count(&self, least: Need) -> usize {
+        self.differences.partition_point(|difference| difference.need >= least)
+    }
+
+    /// How many cells of the picture are to be written.
+    pub(super) fn writes(&self) -> usize {
+        self.writes
+    }
+
+    /// How many of them cannot wait for a later frame; `within_caps`: nor can those that differ too much.
+    pub(super) fn fewest_writes(&self, within_caps: bool) -> usize {
+        self.count(if within_caps { Need::Differs(0) } else { Need::Appears })
+    }
+
+    /// The grid to show next: the wanted text, and so many of the picture's cells written.
+    pub(super) fn grid(&self, writes: usize) -> Grid {
+        let (written, left) = self.differences.split_at(writes);
+        let left: u64 = left.iter().filter_map(|left| Some(sum(squares(left.shown?, left.wanted)))).sum();
+        let mut tolerance = self.tolerance;
+        let painted = loop {
+            let painted = self.painted(written, tolerance);
+            let squares = painted.iter().zip(written).map(|(&painted, write)| sum(squares(painted, write.wanted)));
+            // It is seldom that all cells snap far; then they snap less far.
+            let is_limited = writes < self.fewest_writes(true);
+            if is_limited || tolerance.square == 0 || (left + squares.sum::<u64>()) as f64 <= self.most() {
+                break painted;
+            }
+            tolerance.square = tolerance.square * 3 / 4;
+        };
+        let mut grid = self.unpainted();
+        for (write, halves) in written.iter().zip(painted) {
+            grid.cells_mut()[write.at] = cell(halves, &self.frame.wanted.cells()[write.at]);
+        }
+        grid
+    }
+
+    /// The halves with which cells are written: exactly where they have waited for it.
+    fn painted(&self, written: &[Difference], tolerance: Tolerance) -> Vec<Halves> {
+        let mut painted: Vec<Halves> = written.iter().map(|write| write.wanted).collect();
+        let inexact = written.iter().zip(&mut painted).filter(|(write, _)| !(self.frame.has_waited)(write.at));
+        let mut inexact: Vec<&mut Halves> = inexact.map(|(_, halves)| halves).collect();
+        palette::snap(&mut inexact, self.frame.pen, tolerance, self.frame.either_half);
+        painted
+    }
+
+    /// The wanted text, and the picture as it is shown.
+    fn unpainted(&self) -> Grid {
+        let mut grid = self.frame.shown.clone();
+        for &at in &self.text {
+            grid.cells_mut()[at].clone_from(&self.frame.wanted.cells()[at]);
+        }
+        grid
+    }
+
+    /// The places where the grid does not show exactly what is wanted.
+    pub(super) fn inexact(&self, grid: &Grid) -> impl Iterator<Item = usize> {
+        let is_inexact = |difference: &&Difference| halves(&grid.cells()[difference.at]) != Some(difference.wanted);
+        self.differences.iter().filter(is_inexact).map(|difference| difference.at)
+    }
+}
+
+fn squares(a: Halves, b: Halves) -> [u32; 2] {
+    [square(a[0], b[0]), square(a[1], b[1])]
+}
+
+fn sum(squares: [u32; 2]) -> u64 {
+    u64::from(squares[0]) + u64::from(squares[1])
+}

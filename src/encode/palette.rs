@@ -1,0 +1,142 @@
+//! Few colours for many cells: each half takes a colour within its tolerance that many others can take too.
+//!
+//! First a palette: the colour that the most halves can take, then the one that the most of the rest can take, and so on
+//! (the greedy set cover of Johnson 1974). Then pairs of its colours, in the same way: the pair that the most cells can
+//! show, and so on, because the cells of one pair are written without a change of the pen.
+
+use super::lossy::{Halves, Tolerance, square};
+use crate::color::{Oklab, Srgb8};
+use crate::grid::Ink;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Exchanges the cells' colours for those of a palette, each within the tolerance of the one that it stands for. With
+/// `either_half`, two colours serve both ways round. The pen's colours are taken into the palette where they serve.
+pub(super) fn snap(cells: &mut [&mut Halves], pen: [Ink; 2], tolerance: Tolerance, either_half: bool) {
+    let shades = Shades::of(cells, pen);
+    let choices = shades.choices(tolerance);
+    let wanted: Vec<[usize; 2]> = cells.iter().map(|cell| cell.map(|color| shades.index(color))).collect();
+    let pairs = pairs(&wanted, &choices, either_half);
+    for ((cell, wanted), pair) in cells.iter_mut().zip(wanted).zip(pairs) {
+        let [a, b] = pair.map(|shade| shades.colors[shade]);
+        let fits = |pair: [usize; 2]| (0..2).all(|half| choices[wanted[half]].contains(&pair[half]));
+        let error = |halves: Halves| square(halves[0], cell[0]) + square(halves[1], cell[1]);
+        let turned = either_half && fits([pair[1], pair[0]]) && (!fits(pair) || error([b, a]) < error([a, b]));
+        **cell = if turned { [b, a] } else { [a, b] };
+    }
+}
+
+/// The colours of some cells and of the pen, each once.
+struct Shades {
+    /// Sorted.
+    colors: Vec<Srgb8>,
+    /// How many halves are to have each.
+    halves: Vec<usize>,
+    oklab: Vec<Oklab>,
+}
+
+/// How many colours of the palette a half chooses from, those first that the most halves can take: more than a few would
+/// gain nothing, and each makes more pairs.
+const CHOICES: usize = 4;
+
+impl Shades {
+    fn of(cells: &[&mut Halves], pen: [Ink; 2]) -> Self {
+        let of_pen = pen.into_iter().filter_map(|ink| if let Ink::Rgb(color) = ink { Some((color, 0)) } else { None });
+        let of_cells = cells.iter().flat_map(|cell| cell.map(|color| (color, 1)));
+        let mut all: Vec<(Srgb8, usize)> = of_cells.chain(of_pen).collect();
+        all.sort_unstable();
+        let same = || all.chunk_by(|a, b| a.0 == b.0);
+        let colors: Vec<Srgb8> = same().map(|same| same[0].0).collect();
+        let halves = same().map(|same| same.iter().map(|&(_, halves)| halves).sum()).collect();
+        let oklab = colors.iter().map(|&color| Oklab::from_srgb8(color)).collect();
+        Self { colors, halves, oklab }
+    }
+
+    fn index(&self, color: Srgb8) -> usize {
+        self.colors.binary_search(&color).expect("the cells' colours are all here")
+    }
+
+    /// For each colour, those of the palette that it can be exchanged for.
+    fn choices(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
+        let near = self.near(tolerance);
+        let mut choices: Vec<Vec<usize>> = vec![Vec::new(); self.colors.len()];
+        for color in cover(&near, &self.halves) {
+            for &half in &near[color] {
+                if choices[half].len() < CHOICES {
+                    choices[half].push(color);
+                }
+            }
+        }
+        choices
+    }
+
+    /// For each colour, those within the tolerance, itself among them. Sorted by lightness they are in a window.
+    fn near(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
+        let mut order: Vec<usize> = (0..self.colors.len()).collect();
+        order.sort_unstable_by(|&a, &b| self.oklab[a].l.total_cmp(&self.oklab[b].l));
+        let mut near: Vec<Vec<usize>> = (0..order.len()).map(|color| vec![color]).collect();
+        for (at, &a) in order.iter().enumerate() {
+            let lightest = self.oklab[a].l + tolerance.distance;
+            for &b in order[at + 1..].iter().take_while(|&&b| self.oklab[b].l <= lightest) {
+                if square(self.colors[a], self.colors[b]) <= tolerance.square
+                    && self.oklab[a].distance(self.oklab[b]) <= tolerance.distance
+                {
+                    near[a].push(b);
+                    near[b].push(a);
+                }
+            }
+        }
+        near
+    }
+}
+
+/// For each cell, by its halves' colours, a pair of colours that it can show, so that there are few pairs.
+fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], either_half: bool) -> Vec<[usize; 2]> {
+    let mut possible: Vec<([usize; 2], usize)> = Vec::new();
+    for (cell, &[upper, lower]) in wanted.iter().enumerate() {
+        for &a in &choices[upper] {
+            for &b in &choices[lower] {
+                possible.push((if either_half { [a.min(b), a.max(b)] } else { [a, b] }, cell));
+            }
+        }
+    }
+    possible.sort_unstable();
+    possible.dedup();
+    let groups: Vec<&[([usize; 2], usize)]> = possible.chunk_by(|x, y| x.0 == y.0).collect();
+    let cells: Vec<Vec<usize>> = groups.iter().map(|group| group.iter().map(|&(_, cell)| cell).collect()).collect();
+    let mut chosen = vec![None; wanted.len()];
+    for group in cover(&cells, &vec![1; wanted.len()]) {
+        for &cell in &cells[group] {
+            chosen[cell].get_or_insert(groups[group][0].0);
+        }
+    }
+    chosen.into_iter().zip(wanted).map(|(pair, wanted)| pair.unwrap_or(*wanted)).collect()
+}
+
+/// Sets that together have all members of any weight: always the one that adds the most, until nothing is left to add.
+fn cover(sets: &[Vec<usize>], weights: &[usize]) -> Vec<usize> {
+    let mut left = weights.to_vec();
+    // What a set adds only shrinks: one that still adds what it was sorted by is the best of all (Minoux 1978).
+    let mut heap: BinaryHeap<(usize, Reverse<usize>)> =
+        sets.iter().enumerate().map(|(at, set)| (adds(set, &left), Reverse(at))).collect();
+    let mut chosen = Vec::new();
+    while let Some((promised, Reverse(at))) = heap.pop() {
+        let added = adds(&sets[at], &left);
+        if added == 0 {
+            continue;
+        }
+        if added < promised {
+            heap.push((added, Reverse(at)));
+            continue;
+        }
+        chosen.push(at);
+        for &member in &sets[at] {
+            left[member] = 0;
+        }
+    }
+    chosen
+}
+
+fn adds(set: &[usize], left: &[usize]) -> usize {
+    set.iter().map(|&member| left[member]).sum()
+}
