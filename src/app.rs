@@ -8,7 +8,7 @@ use crate::camera::Camera;
 use crate::capabilities::{Capabilities, CellMode, USUAL_CELL_ASPECT};
 use crate::cell;
 use crate::control::{self, Command, Motion};
-use crate::encode::Order;
+use crate::encode::{Order, Quality};
 use crate::framebuffer::Resolution;
 use crate::grid::Size;
 use crate::input::{Input, Parser};
@@ -18,10 +18,12 @@ use crossterm::event::{Event, KeyEvent, KeyEventKind};
 use std::io;
 use std::time::{Duration, Instant};
 
+mod link;
 mod panels;
 mod renderer;
 mod screen;
 
+use link::Link;
 use renderer::{Job, Renderer};
 use screen::Screen;
 
@@ -35,6 +37,10 @@ pub struct Options {
     pub cell_aspect: Option<f32>,
     /// In which order changed cells are sent.
     pub order: Order,
+    /// How near a moving picture is to the wanted one.
+    pub quality: Quality,
+    /// The most bytes a second that are sent in the mean; `None`: as many as there are.
+    pub max_rate: Option<u32>,
     /// How many threads trace; `None`: as many as there are cores.
     pub threads: Option<usize>,
     /// Where to panic when `!` is pressed, so that tests can see how the terminal is left.
@@ -49,6 +55,8 @@ impl Options {
             cell_mode,
             cell_aspect: None,
             order: Order::Color,
+            quality: Quality::Exact,
+            max_rate: None,
             threads: None,
             #[cfg(debug_assertions)]
             test_panic: None,
@@ -120,6 +128,7 @@ struct Live {
     parser: Parser,
     motion: Motion,
     screen: Screen,
+    link: Link,
     start: Instant,
     /// Up to when the motion has been carried out; `None` at rest.
     moved_until: Option<Duration>,
@@ -137,10 +146,15 @@ impl Live {
             camera,
             speed: control::speed(&camera),
             size: window.size,
-            capabilities: Capabilities { cell_mode: options.cell_mode, cell_aspect: USUAL_CELL_ASPECT },
+            capabilities: Capabilities {
+                cell_mode: options.cell_mode,
+                cell_aspect: USUAL_CELL_ASPECT,
+                halves_meet: false,
+            },
             parser: Parser::new(),
             motion: Motion::default(),
-            screen: Screen::new(options.cell_mode, options.order),
+            screen: Screen::new(options.cell_mode, options.order, options.quality),
+            link: Link::new(options.max_rate),
             start: Instant::now(),
             moved_until: None,
             stale: true,
@@ -158,7 +172,8 @@ impl Live {
             if self.stale && idle && self.now() >= self.next_frame() {
                 self.begin_frame(renderer);
             }
-            let woken = terminal.wait(signals.wake_pipe(), self.timeout(idle && !renderer.is_busy()))?;
+            let woken =
+                terminal.wait(signals.wake_pipe(), self.timeout(idle && !renderer.is_busy(), terminal.is_sending()))?;
             if woken.wake {
                 signals.drain();
             }
@@ -196,8 +211,9 @@ impl Live {
     fn resize(&mut self, window: Window) {
         self.size = window.size;
         self.capabilities.cell_aspect = self.options.cell_aspect.or(window.cell_aspect).unwrap_or(USUAL_CELL_ASPECT);
+        self.capabilities.halves_meet = window.halves_meet;
         // The terminal has moved what it shows to wherever it thought right.
-        self.screen.redraw();
+        self.screen.redraw(window.halves_meet);
         self.stale = true;
     }
 
@@ -214,7 +230,13 @@ impl Live {
     /// The earliest time for the next frame, and for the next look at what moves.
     fn next_frame(&self) -> Duration {
         let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + FRAME);
-        if self.stale { next(self.begun) } else { next(self.moved_until).max(next(self.begun)) }
+        let next = if self.stale { next(self.begun) } else { next(self.moved_until).max(next(self.begun)) };
+        next.max(self.link.free_at())
+    }
+
+    /// The earliest time at which the screen has bytes to send, if nothing else happens.
+    fn next_bytes(&self) -> Option<Duration> {
+        self.screen.due(self.size).map(|due| due.max(self.link.free_at()))
     }
 
     fn begin_frame(&mut self, renderer: &mut Renderer) {
@@ -224,11 +246,12 @@ impl Live {
     }
 
     /// How long there is nothing to do if nobody wakes us: for ever when nothing moves.
-    fn timeout(&self, idle: bool) -> Option<Duration> {
+    fn timeout(&self, idle: bool, is_sending: bool) -> Option<Duration> {
         let frame = (self.stale || self.moved_until.is_some()) && idle;
         let until_frame = frame.then(|| self.next_frame().saturating_sub(self.now()));
         let until_escape = self.parser.is_waiting().then_some(ESCAPE_WAIT);
-        until_frame.into_iter().chain(until_escape).min()
+        let until_bytes = self.next_bytes().map(|due| due.saturating_sub(self.now())).filter(|_| !is_sending);
+        until_frame.into_iter().chain(until_escape).chain(until_bytes).min()
     }
 
     fn read_keys(&mut self, terminal: &mut Terminal, renderer: &mut Renderer) -> io::Result<Stay> {
@@ -265,7 +288,7 @@ impl Live {
             Some(Command::Status) => self.screen.toggle_status(),
             Some(Command::Help) => self.screen.toggle_help(),
             Some(Command::Close) => self.screen.close_help(),
-            Some(Command::Redraw) => self.screen.redraw(),
+            Some(Command::Redraw) => self.screen.redraw(self.capabilities.halves_meet),
             Some(Command::Move(_) | Command::Look(_)) | None => {}
         }
         Stay::Stay
@@ -287,11 +310,16 @@ impl Live {
 
     /// Brings the screen up to date: nothing is written if it is, or while the terminal is behind.
     fn present(&mut self, terminal: &mut Terminal) -> io::Result<()> {
-        if terminal.is_sending() {
+        let now = self.now();
+        if terminal.is_sending() || self.next_bytes().is_none_or(|due| now < due) {
             return Ok(());
         }
-        let bytes = self.screen.bytes(self.size, &self.camera);
-        if bytes.is_empty() { Ok(()) } else { terminal.send(bytes) }
+        let bytes = self.screen.bytes(self.size, &self.camera, now, self.link.most_bytes());
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        self.link.count(bytes.len(), now);
+        terminal.send(bytes)
     }
 
     #[cfg(debug_assertions)]

@@ -7,6 +7,8 @@ pub struct Capabilities {
     pub cell_mode: CellMode,
     /// A cell's height over its width, greater than 0.
     pub cell_aspect: f32,
+    /// Whether the upper and the lower half block meet in the same line: only then may a picture mix them.
+    pub halves_meet: bool,
 }
 
 /// How pixels become cells.
@@ -84,6 +86,15 @@ pub fn cell_aspect(columns: u16, rows: u16, width: u16, height: u16) -> Option<f
     (0.25..=8.0).contains(&aspect).then_some(aspect)
 }
 
+/// Whether the two half blocks meet in the same line, from a window's height in cells and in pixels: where a cell has an
+/// even number of pixel rows. With an odd number, some terminals give the middle one to either half, others to the
+/// glyph, and their mix would show.
+pub fn halves_meet(rows: u16, height: u16) -> bool {
+    // A remainder may be a border, or say that the figure is no cell's.
+    let cell_height = height.checked_div(rows).filter(|cell_height| cell_height * rows == height);
+    cell_height.is_some_and(|cell_height| cell_height > 0 && cell_height % 2 == 0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,6 +122,15 @@ mod tests {
             (Never, &[("TERM", "xterm-kitty")], Ramp),
         ] {
             assert_eq!(mode(choice, environment), expected, "{choice:?} {environment:?}");
+        }
+    }
+
+    #[test]
+    fn halves_meet_in_cells_of_even_height() {
+        for (rows, height, expected) in
+            [(24, 480, true), (24, 456, false), (24, 24 * 17, false), (24, 497, false), (24, 0, false), (0, 480, false)]
+        {
+            assert_eq!(halves_meet(rows, height), expected, "{rows} rows in {height} pixels");
         }
     }
 

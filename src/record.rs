@@ -3,22 +3,29 @@
 //! Each frame is written as it comes; no film is ever held whole. A film is a pure function of its frames: nothing of
 //! the clock and nothing of the environment is in it.
 
-use crate::encode::Encoder;
+use crate::encode::{Allowance, Encoder, Quality};
 use crate::framebuffer::Resolution;
 use crate::grid::{Grid, Size};
 use crate::tone::Picture;
 use gif::{EncodingError, Repeat};
 use std::io::{self, Write};
+use std::time::Duration;
 
 /// An asciicast (version 2, as asciinema plays it) of what an encoder sends to a terminal: one output event for each
-/// frame, empty where nothing is to be sent, at the frame's number over the frames per second.
+/// frame, empty where nothing is to be sent, at the frame's number over the frames per second. The last frame, which stays,
+/// is exact whatever the quality.
 ///
 /// Only frames are in it: nothing that switches a mode or asks the viewer's terminal a question.
 pub struct Cast<W: Write> {
     out: W,
     encoder: Encoder,
+    quality: Quality,
+    /// Bytes per second.
+    max_rate: Option<u32>,
     frames_per_second: u32,
     frame: u64,
+    /// The last frame and its bytes, which may not be all yet.
+    last: Option<(Grid, Vec<u8>)>,
 }
 
 impl<W: Write> Cast<W> {
@@ -29,21 +36,36 @@ impl<W: Write> Cast<W> {
     pub fn begin(mut out: W, size: Size, encoder: Encoder, frames_per_second: u32) -> io::Result<Self> {
         let Size { columns, rows } = size;
         writeln!(out, r#"{{"version":2,"width":{columns},"height":{rows}}}"#)?;
-        Ok(Self { out, encoder, frames_per_second, frame: 0 })
+        let (quality, max_rate) = (Quality::Exact, None);
+        Ok(Self { out, encoder, quality, max_rate, frames_per_second: frames_per_second.max(1), frame: 0, last: None })
+    }
+
+    /// Of that quality.
+    pub fn with_quality(self, quality: Quality) -> Self {
+        Self { quality, ..self }
+    }
+
+    /// For a link that takes so many bytes a second: no frame has more than its share, if the quality allows it (see
+    /// [`Allowance::most_bytes`]).
+    pub fn with_max_rate(self, max_rate: Option<u32>) -> Self {
+        Self { max_rate, ..self }
     }
 
     /// The next frame.
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn frame(&mut self, grid: &Grid) -> io::Result<()> {
+    pub fn frame(&mut self, grid: Grid) -> io::Result<()> {
+        self.write_last()?;
         let mut bytes = Vec::new();
-        self.encoder.encode(grid, &mut bytes);
-        let time = self.frame as f64 / f64::from(self.frames_per_second);
-        let mut line = serde_json::to_vec(&(time, "o", String::from_utf8_lossy(&bytes)))?;
-        line.push(b'\n');
-        self.frame += 1;
-        self.out.write_all(&line)
+        let allowance = Allowance {
+            quality: self.quality,
+            now: Duration::from_secs_f64(self.time()),
+            most_bytes: self.max_rate.map(|rate| (rate / self.frames_per_second) as usize),
+        };
+        self.encoder.encode_within(&grid, allowance, &mut bytes);
+        self.last = Some((grid, bytes));
+        Ok(())
     }
 
     /// That was the last one.
@@ -51,7 +73,24 @@ impl<W: Write> Cast<W> {
     /// # Errors
     /// If the rest cannot be written.
     pub fn end(mut self) -> io::Result<()> {
+        if let Some((grid, bytes)) = &mut self.last {
+            self.encoder.encode(grid, bytes);
+        }
+        self.write_last()?;
         self.out.flush()
+    }
+
+    /// When the next frame is shown, in seconds.
+    fn time(&self) -> f64 {
+        self.frame as f64 / f64::from(self.frames_per_second)
+    }
+
+    fn write_last(&mut self) -> io::Result<()> {
+        let Some((_, bytes)) = self.last.take() else { return Ok(()) };
+        let mut line = serde_json::to_vec(&(self.time(), "o", String::from_utf8_lossy(&bytes)))?;
+        line.push(b'\n');
+        self.frame += 1;
+        self.out.write_all(&line)
     }
 }
 

@@ -50,6 +50,8 @@ pub struct Window {
     pub size: Size,
     /// A cell's height over its width, if the terminal says how large it is in pixels.
     pub cell_aspect: Option<f32>,
+    /// Whether the upper and the lower half block are known to meet in the same line.
+    pub halves_meet: bool,
 }
 
 impl Terminal {
@@ -75,7 +77,7 @@ impl Terminal {
         // A terminal that nobody told its size has none.
         let size = if columns == 0 || rows == 0 { Size::new(80, 24) } else { Size::new(columns, rows) };
         let cell_aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
-        Ok(Window { size, cell_aspect })
+        Ok(Window { size, cell_aspect, halves_meet: capabilities::halves_meet(rows, window.ws_ypixel) })
     }
 
     /// Sends a frame, in one write where the terminal takes it whole. What it does not take at once goes out while

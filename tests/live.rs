@@ -45,15 +45,28 @@ fn colour(ink: Ink) -> Colour {
     }
 }
 
-/// Whether the emulator shows exactly these cells.
+/// Whether the emulator shows exactly these cells: of a picture the halves' colours, whichever block shows them.
 fn shows(screen: &pty::Screen, grid: &Grid) -> bool {
     let columns = usize::from(grid.size().columns);
     grid.cells().iter().enumerate().all(|(at, wanted)| {
         let shown = screen.cell(at % columns, at / columns);
-        // The colour of a space's character is nobody's business.
-        let same_fg = wanted.glyph == ' ' || shown.foreground == colour(wanted.fg);
-        wanted.glyph == shown.glyph && same_fg && shown.background == colour(wanted.bg)
+        let same = wanted.glyph == shown.glyph
+            && shown.foreground == colour(wanted.fg)
+            && shown.background == colour(wanted.bg);
+        let halves = ['▄', '▀', ' '].into_iter().find(|&glyph| wanted.glyph == glyph);
+        let wanted = halves.and_then(|glyph| halves_of(glyph, colour(wanted.fg), colour(wanted.bg)));
+        same || wanted.is_some() && wanted == halves_of(shown.glyph, shown.foreground, shown.background)
     })
+}
+
+/// The colours of a cell's upper and lower half, if it is of a picture.
+fn halves_of(glyph: char, fg: Colour, bg: Colour) -> Option<[Colour; 2]> {
+    match glyph {
+        '▄' => Some([bg, fg]),
+        '▀' => Some([fg, bg]),
+        ' ' => Some([bg, bg]),
+        _ => None,
+    }
 }
 
 #[track_caller]
@@ -106,7 +119,8 @@ fn the_first_frame_is_sent_in_the_order_that_is_asked_for() {
     ] {
         let mut session = looking(flags.iter().fold(termtrace(), Start::arg));
         let mut wanted = Vec::new();
-        Encoder::new().with_order(order).encode(&picture(CellMode::HalfBlock, Size::cells(80, 24)), &mut wanted);
+        let mut encoder = Encoder::new().with_order(order).with_upper_half(true);
+        encoder.encode(&picture(CellMode::HalfBlock, Size::cells(80, 24)), &mut wanted);
         let sent = session.seen().bytes();
         assert!(sent.windows(wanted.len()).any(|bytes| bytes == wanted), "{flags:?}");
     }
@@ -230,6 +244,83 @@ fn the_status_line_tells_size_and_eye() {
     session.send(b"i");
     wait_for_picture(&mut session, Size::cells(80, 24));
     leave(&mut session);
+}
+
+/// A second after the last movement every cell has its exact colour, and nothing more is sent.
+#[test]
+fn any_quality_is_exact_at_rest() {
+    for quality in ["exact", "equal", "fast"] {
+        let mut session = looking(termtrace().arg("--quality").arg(quality));
+        session.send(b"d");
+        let wanted = picture(CellMode::HalfBlock, Size::cells(80, 24));
+        session.wait_for("another picture", SOON, |seen| !shows(seen.screen(), &wanted));
+        session.send(b"r");
+        wait_for_picture(&mut session, Size::cells(80, 24));
+        let bytes = session.seen().bytes().len();
+        assert!(!session.sees(Duration::from_millis(700), |seen| seen.bytes().len() != bytes), "{quality}: at rest");
+        leave(&mut session);
+    }
+}
+
+/// The same walk, frame for frame the same time: what nobody sees is not sent.
+#[test]
+fn an_equal_picture_takes_fewer_bytes_while_it_moves() {
+    let [exact, equal] = ["exact", "equal"].map(|quality| {
+        let mut session = looking(termtrace().arg("--quality").arg(quality));
+        // What was left for later has come.
+        session.sees(Duration::from_secs(1), |_| false);
+        let before = session.seen().bytes().len();
+        session.send(b"ia");
+        let mut eyes = std::collections::HashSet::new();
+        session.sees(Duration::from_millis(700), |seen| {
+            eyes.insert(seen.screen().text().concat().rsplit("eye").next().map(str::to_owned));
+            false
+        });
+        let bytes = session.seen().bytes().len() - before;
+        leave(&mut session);
+        bytes / eyes.len()
+    });
+    assert!(equal * 3 < exact * 2, "{equal} bytes a frame against {exact}");
+}
+
+#[test]
+fn the_rate_is_kept_and_all_arrives_in_the_end() {
+    for quality in ["exact", "equal"] {
+        let mut session = termtrace().arg("--max-rate").arg("20k").arg("--quality").arg(quality).spawn();
+        session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+        // The first frame is through.
+        session.sees(Duration::from_secs(2), |_| false);
+        let before = session.seen().bytes().len();
+        for _ in 0..20 {
+            session.send(b"d");
+            session.sees(Duration::from_millis(100), |_| false);
+        }
+        let bytes = session.seen().bytes().len() - before;
+        // Two seconds, and a frame that has just been sent.
+        assert!((10_000..70_000).contains(&bytes), "{quality}: {bytes} bytes in 2 s");
+        session.send(b"r");
+        wait_for_picture(&mut session, Size::cells(80, 24));
+        leave(&mut session);
+    }
+}
+
+/// The two half blocks are mixed only where cells have an even number of pixel rows.
+#[test]
+fn the_upper_half_is_used_where_it_meets_the_lower_one() {
+    let even = Size::cells(80, 24);
+    for (size, mixes) in [(even, true), (even.of_pixels(10, 19), false), (even.of_pixels(0, 0), false)] {
+        let mut session = termtrace().size(size).spawn();
+        session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+        session.sees(Duration::from_millis(300), |_| false);
+        assert_eq!(session.seen().has("▀".as_bytes()), mixes, "{:?}", size.cell);
+        // A resize may change it.
+        let before = session.seen().bytes().len();
+        session.resize(Size::cells(90, 24).of_pixels(10, 21));
+        session.sees(Duration::from_millis(500), |_| false);
+        let after = String::from_utf8_lossy(&session.seen().bytes()[before..]).into_owned();
+        assert!(after.contains('▄') && !after.contains('▀'), "{:?}", size.cell);
+        leave(&mut session);
+    }
 }
 
 #[test]

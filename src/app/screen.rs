@@ -5,22 +5,29 @@ use super::renderer::Frame;
 use crate::camera::Camera;
 use crate::capabilities::CellMode;
 use crate::cell;
-use crate::encode::{Encoder, Order};
+use crate::encode::{Allowance, Encoder, Order, Quality};
 use crate::grid::{Grid, Size};
 use crate::overlay;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::time::{Duration, Instant};
 
+/// How long the terminal is left alone before more is sent that nobody waits for: colours become exact in a few steps, of
+/// which tmux throws none away.
+const BREATH: Duration = Duration::from_millis(33);
+
 /// What the user sees.
 pub(super) struct Screen {
     cell_mode: CellMode,
     encoder: Encoder,
+    quality: Quality,
     frame: Option<Frame>,
     status: bool,
     help: bool,
     /// Whether anything has changed since the last bytes.
     changed: bool,
+    /// When the last bytes were written.
+    written: Duration,
     pace: Pace,
     /// How long cells and bytes of the last frame took.
     encode: Duration,
@@ -28,14 +35,16 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    pub(super) fn new(cell_mode: CellMode, order: Order) -> Self {
+    pub(super) fn new(cell_mode: CellMode, order: Order, quality: Quality) -> Self {
         Self {
             cell_mode,
             encoder: Encoder::new().with_order(order),
+            quality,
             frame: None,
             status: false,
             help: false,
             changed: false,
+            written: Duration::ZERO,
             pace: Pace::default(),
             encode: Duration::ZERO,
             bytes: Vec::new(),
@@ -64,26 +73,37 @@ impl Screen {
         self.help = false;
     }
 
-    /// The terminal may show anything: the next bytes draw everything.
-    pub(super) fn redraw(&mut self) {
+    /// The terminal may show anything: the next bytes draw everything, with either half block if both meet in one line.
+    pub(super) fn redraw(&mut self, halves_meet: bool) {
         self.encoder.forget();
+        self.encoder.set_upper_half(halves_meet);
         self.changed = true;
     }
 
-    /// The bytes that are to be sent now. Nothing is shown before the first frame of the wanted size is there.
-    pub(super) fn bytes(&mut self, size: Size, camera: &Camera) -> &[u8] {
+    /// When there are bytes to send: never, if all is shown as it should be, or before the first frame of the wanted size
+    /// is there.
+    pub(super) fn due(&self, size: Size) -> Option<Duration> {
+        self.frame_of(size)?;
+        if self.changed { Some(Duration::ZERO) } else { Some(self.encoder.due()?.max(self.written + BREATH)) }
+    }
+
+    fn frame_of(&self, size: Size) -> Option<&Frame> {
+        let wanted = cell::resolution(self.cell_mode, size, 1.0);
+        self.frame.as_ref().filter(|frame| (frame.picture.width, frame.picture.height) == (wanted.width, wanted.height))
+    }
+
+    /// The bytes that are to be sent now.
+    pub(super) fn bytes(&mut self, size: Size, camera: &Camera, now: Duration, most_bytes: Option<usize>) -> &[u8] {
         self.bytes.clear();
-        if self.changed
-            && let Some(frame) = &self.frame
-        {
+        if let Some(frame) = self.frame_of(size) {
             let start = Instant::now();
             let mut grid = cell::grid_from_picture(self.cell_mode, &frame.picture);
-            if grid.size() == size {
-                self.lay_panels_over(&mut grid, frame, camera);
-                self.encoder.encode(&grid, &mut self.bytes);
-                self.encode = start.elapsed();
-                self.changed = false;
-            }
+            self.lay_panels_over(&mut grid, frame, camera);
+            let allowance = Allowance { quality: self.quality, now, most_bytes };
+            self.encoder.encode_within(&grid, allowance, &mut self.bytes);
+            self.encode = start.elapsed();
+            self.changed = false;
+            self.written = now;
         }
         &self.bytes
     }

@@ -67,6 +67,8 @@ impl LiveArgs {
         let mut options = Options::new(cell_mode(self.color(), |name| std::env::var(name).ok()));
         options.cell_aspect = self.cell_aspect;
         options.order = self.encoding.order();
+        options.quality = self.encoding.quality();
+        options.max_rate = self.encoding.max_rate();
         options.threads = self.scene.threads.map(usize::from);
         #[cfg(debug_assertions)]
         {

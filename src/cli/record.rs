@@ -115,7 +115,9 @@ impl RecordArgs {
             return wrong("--scale is for GIF and PNG; an asciicast takes its size from --size");
         }
         if !is_cast && self.encoding.is_given() {
-            return wrong("--order and --compressed-link are for an asciicast; no GIF or PNG has an order of cells");
+            return wrong(
+                "--order, --compressed-link, --quality and --max-rate are for an asciicast; other films have no bytes to save",
+            );
         }
         let (width, height) = gif_size(resolution, self.picture.scale());
         match format {
@@ -170,8 +172,10 @@ impl RecordArgs {
                 let (across, down) = CellMode::HalfBlock.pixels_per_cell();
                 // A resolution is checked to have no more cells.
                 let size = Size::new((resolution.width / across) as u16, resolution.height.div_ceil(down) as u16);
-                let encoder = Encoder::new().with_order(self.encoding.order());
-                Sink::Cast(Cast::begin(out, size, encoder, self.fps)?)
+                // Players draw the two halves of a cell alike.
+                let encoder = Encoder::new().with_order(self.encoding.order()).with_upper_half(true);
+                let cast = Cast::begin(out, size, encoder, self.fps)?;
+                Sink::Cast(cast.with_quality(self.encoding.quality()).with_max_rate(self.encoding.max_rate()))
             }
             Format::Gif(path) => {
                 let out = BufWriter::new(File::create(path)?);
@@ -194,7 +198,7 @@ enum Sink {
 impl Sink {
     fn take(&mut self, picture: &Picture, file: &Path) -> io::Result<()> {
         match self {
-            Self::Cast(cast) => cast.frame(&cell::grid_from_picture(CellMode::HalfBlock, picture)),
+            Self::Cast(cast) => cast.frame(cell::grid_from_picture(CellMode::HalfBlock, picture)),
             Self::Gif(gif) => gif.frame(picture),
             Self::Png { pixel_aspect, scale } => {
                 let bytes = export::png(picture, *pixel_aspect, *scale).map_err(io::Error::other)?;

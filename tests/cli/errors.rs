@@ -149,6 +149,10 @@ fn a_wrong_command_line_is_told_and_helped() {
     folder.run("ball.ron --samples 2").is_misused("--samples");
     folder.run("ball.ron --order rows").is_misused("color, raster");
     folder.run("ball.ron --order color --compressed-link").is_misused("cannot be used with");
+    folder.run("ball.ron --quality good").is_misused("exact, equal, fast");
+    for rate in ["999", "0k", "1.5k", "k", "", "9999999M", "-5k", "50kB"] {
+        folder.run(&format!("ball.ron --max-rate={rate}")).is_misused("bytes per second from 1000 on");
+    }
     folder.run("check ball.ron --size 2x2").is_misused("--size");
     folder.run("ball.ron other.ron").fails_in_a_line(2, "one scene at a time");
     folder.run("fram ball.ron").fails_in_a_line(2, "did you mean \"frame\"?");

@@ -13,6 +13,7 @@ use termtrace::camera::Camera;
 use termtrace::camera_path::CameraPath;
 use termtrace::capabilities::CellMode;
 use termtrace::cell::grid_from_picture;
+use termtrace::color::{Oklab, Srgb8};
 use termtrace::framebuffer::Resolution;
 use termtrace::grid::{Grid, Ink};
 use termtrace::render::render;
@@ -134,6 +135,68 @@ fn a_cast_shows_each_frame_of_the_orbit() {
     assert_shows(&cast, 30, Resolution::square(9, 8), &[scene.camera]);
 }
 
+/// How far two screens are apart: the largest distance of two halves in OKLab.
+fn distance(shown: &[[Option<avt::Color>; 2]], wanted: &[[Option<avt::Color>; 2]]) -> f32 {
+    let oklab = |color: Option<avt::Color>| match color {
+        Some(avt::Color::RGB(c)) => Oklab::from_srgb8(Srgb8::new(c.r, c.g, c.b)),
+        other => panic!("{other:?} is not of a picture"),
+    };
+    let halves = shown.iter().flatten().zip(wanted.iter().flatten());
+    halves.map(|(&shown, &wanted)| oklab(shown).distance(oklab(wanted))).fold(0.0, f32::max)
+}
+
+/// Within its cap while it moves; exact where it has stood still for a second, and in the end.
+#[test]
+fn a_cast_of_less_quality_is_near_and_becomes_exact() {
+    let folder = Folder::new();
+    folder.write("flight.ron", FLIGHT);
+    let scene = ball();
+    let path = CameraPath::from_ron("flight.ron", FLIGHT, &scene.camera).expect("the path is fine");
+    let cameras = path.cameras(36, 20).expect("a path");
+    let wanted = |camera| {
+        halves_wanted(&grid_from_picture(CellMode::HalfBlock, &picture(&scene, camera, Resolution::square(80, 48))))
+    };
+    let bytes = |cast: &[u8]| played(cast).events.iter().map(|(_, data)| data.len()).sum::<usize>();
+    let record = |flags: &str| folder.run(&format!("record ball.ron --path flight.ron --fps 20 {flags}")).done();
+    let exact = bytes(&record("--seconds 1.8"));
+    for (quality, cap) in [("equal", 0.01), ("fast", 0.02)] {
+        let cast = record(&format!("--seconds 1.8 --quality {quality}"));
+        let mut terminal = avt::Terminal::new(80, 24).expect("a screen has cells");
+        let mut distances = Vec::new();
+        for ((_, data), camera) in played(&cast).events.iter().zip(&cameras) {
+            terminal.feed(data);
+            distances.push(distance(&halves_shown(&terminal, 80, 24), &wanted(camera)));
+        }
+        assert!(distances.iter().all(|&distance| distance <= cap), "{quality}: {distances:?}");
+        assert!(distances[6..15].iter().all(|&distance| distance > cap / 2.0), "{quality} uses its cap: {distances:?}");
+        // It stands from frame 15 on.
+        assert!(distances[15 + 20..].iter().all(|&distance| distance == 0.0), "{quality} at rest: {distances:?}");
+        assert!(bytes(&cast) < exact, "{quality}: {} bytes against {exact}", bytes(&cast));
+
+        // Cut off in motion, the last frame is exact all the same.
+        let cast = record(&format!("--seconds 0.6 --quality {quality}"));
+        let mut terminal = avt::Terminal::new(80, 24).expect("a screen has cells");
+        let events = played(&cast).events;
+        assert_eq!(events.len(), 12);
+        for (_, data) in &events {
+            terminal.feed(data);
+        }
+        assert_eq!(distance(&halves_shown(&terminal, 80, 24), &wanted(&cameras[11])), 0.0, "{quality}: the last frame");
+    }
+}
+
+/// Every frame but the first, which has to draw all, and the last, which has to be exact, keeps to its share.
+#[test]
+fn a_cast_keeps_to_its_rate() {
+    let folder = Folder::new();
+    let cast = folder.run("record ball.ron --seconds 2 --fps 20 --quality equal --max-rate 20k").done();
+    let sizes: Vec<usize> = played(&cast).events.iter().map(|(_, data)| data.len()).collect();
+    assert!(sizes[1..39].iter().all(|&size| size <= 1_000), "{sizes:?}");
+    assert!(sizes[1..39].iter().sum::<usize>() > 30_000, "and uses it: {sizes:?}");
+    let free = folder.run("record ball.ron --seconds 2 --fps 20 --quality equal").done();
+    assert!(played(&free).events[1..39].iter().any(|(_, data)| data.len() > 1_000), "a share that is too small");
+}
+
 #[test]
 fn a_cast_shows_each_frame_of_a_path() {
     let folder = Folder::new();
@@ -161,7 +224,8 @@ fn the_defaults() {
     let folder = Folder::new();
     let cast = folder.run("record ball.ron").done();
     assert_eq!(played(&cast).events.len(), 240);
-    let said = "--path orbit --seconds 8 --fps 30 --size 80x24 --samples 1 --cell-aspect 2 --order color";
+    let said =
+        "--path orbit --seconds 8 --fps 30 --size 80x24 --samples 1 --cell-aspect 2 --order color --quality exact";
     assert!(cast == folder.run(&format!("record ball.ron {said}")).done());
     assert!(cast == folder.run_on("record -", BALL).done());
     assert_eq!(folder.run("record ball.ron -o x.cast").done(), b"");
@@ -339,8 +403,10 @@ fn what_cannot_be_recorded_is_turned_away() {
         ("-o x%s.png", "one %d or %04d"),
         ("-o x%d-%d.png", "one %d or %04d"),
         ("-o x.gif --fps 51", "at most 50 frames per second"),
-        ("-o x.gif --order color", "--order and --compressed-link are for an asciicast"),
-        ("-o x%d.png --compressed-link", "--order and --compressed-link are for an asciicast"),
+        ("-o x.gif --order color", "are for an asciicast"),
+        ("-o x%d.png --compressed-link", "are for an asciicast"),
+        ("-o x.gif --quality exact", "are for an asciicast"),
+        ("-o x.gif --max-rate 1M", "are for an asciicast"),
         ("-o x.cast --scale 2", "--scale is for GIF and PNG"),
         ("-o x.gif --pixels 60000x9 --cell-aspect 1", "at most 65535 each way"),
         ("-o x.gif --size 1000x500 --scale 10", "too large"),
