@@ -160,7 +160,8 @@ impl Encoder {
             writes = (writes * most_bytes / taken * 15 / 16).clamp(fewest, writes - 1);
         };
         let is_cut = writes < plan.writes();
-        let refines = plan.inexact(&next.shown).map(|at| self.stillness.due(at)).min();
+        // All at once, when the last of them is due: one after another they take more bytes.
+        let refines = plan.inexact(&next.shown).map(|at| self.stillness.due(at)).max();
         self.due = if is_cut { Some(allowance.now) } else { refines };
         self.known = Some(next);
     }

@@ -102,13 +102,14 @@ struct Difference {
     need: Need,
 }
 
-/// Whether a cell is to be written: the larger, the more it is worth.
+/// Whether a cell is to be written: the larger, the more it is worth; of as much, the first comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Need {
     /// It is near enough.
     Waits,
-    /// It differs by so much, and has waited long enough for its exact colours.
-    Refines(u32),
+    /// It is near enough, but has waited long enough for its exact colours. Nobody sees how much it differs: neighbours
+    /// are written in one frame, which costs the fewest bytes.
+    Refines,
     /// It differs by so much, which is too much.
     Differs(u32),
     /// No picture is shown there.
@@ -192,12 +193,12 @@ impl<'a> Plan<'a> {
             let is_near = (0..2).all(|half| self.tolerance.allows(shown[half], difference.wanted[half]));
             difference.need = match (is_near, (self.frame.has_waited)(difference.at)) {
                 (false, _) => Need::Differs(square),
-                (true, true) => Need::Refines(square),
+                (true, true) => Need::Refines,
                 (true, false) => Need::Waits,
             };
         }
         self.differences.sort_by_key(|difference| Reverse(difference.need));
-        self.writes = self.count(Need::Refines(0));
+        self.writes = self.count(Need::Refines);
     }
 
     fn count(&self, least: Need) -> usize {
