@@ -1,21 +1,32 @@
 //! The encoder's bytes, judged by what three terminals show of them: random grids, changes, panels and resizes, and
-//! after each frame every cell of every screen is the wanted one.
+//! after each frame every cell of every screen is the wanted one, or, where that is allowed, near it.
 
 mod bytes;
+#[path = "../corpus/mod.rs"]
+mod corpus;
+mod fuzzed;
+mod grids;
+mod lossy;
+mod near;
 mod overlay;
 mod pictures;
+#[path = "../../benches/bytes/scenes.rs"]
+mod scenes;
 mod screens;
+mod sequences;
+mod watched;
 
+use grids::{filled, put_at};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
-use screens::{Clusters, Screens, glyph_of};
+use screens::{Clusters, glyph_of};
 use termtrace::color::Srgb8;
-use termtrace::encode::{Encoder, Order};
+use termtrace::encode::Order;
 use termtrace::grid::{Cell, Grid, Ink, Size};
-use unicode_width::UnicodeWidthStr;
+use watched::Watched;
 
 pub(crate) const fn rgb(r: u8, g: u8, b: u8) -> Ink {
     Ink::Rgb(Srgb8::new(r, g, b))
@@ -65,27 +76,6 @@ const CELLS: usize = 60;
 
 fn size() -> impl Strategy<Value = Size> {
     (1_u16..=12, 1_u16..=5).prop_map(|(columns, rows)| Size::new(columns, rows))
-}
-
-/// Puts a glyph where it has room.
-fn put(grid: &mut Grid, column: u16, row: u16, cell: &Cell) {
-    let columns = cell.glyph.to_string().width() as u16;
-    if column + columns <= grid.size().columns {
-        grid.put(column, row, cell, columns);
-    }
-}
-
-fn filled(size: Size, cells: &[Cell]) -> Grid {
-    let mut grid = Grid::new(size);
-    for (place, cell) in (0..size.cell_count()).zip(cells) {
-        put_at(&mut grid, place, cell);
-    }
-    grid
-}
-
-fn put_at(grid: &mut Grid, place: usize, cell: &Cell) {
-    let columns = usize::from(grid.size().columns);
-    put(grid, (place % columns) as u16, (place / columns) as u16, cell);
 }
 
 /// A ratatui buffer somewhere over the grid, perhaps beyond its edge, with a line of text.
@@ -151,25 +141,25 @@ fn step(clusters: Clusters) -> impl Strategy<Value = Step> {
     ]
 }
 
-/// An encoder, the terminals that read its bytes, and the grid that is wanted.
+/// A watched encoder, and the grid that is wanted.
 pub(crate) struct Stage {
-    encoder: Encoder,
-    upper_half: bool,
+    watched: Watched,
     clusters: Clusters,
-    screens: Screens,
     grid: Grid,
 }
 
+/// Each way of encoding.
+pub(crate) const WAYS: [(Order, bool); 4] =
+    [(Order::Raster, false), (Order::Raster, true), (Order::Color, false), (Order::Color, true)];
+
 impl Stage {
-    fn new(order: Order, upper_half: bool, grid: Grid, clusters: Clusters) -> Self {
-        let encoder = Encoder::new().with_order(order).with_upper_half(upper_half);
-        Self { encoder, upper_half, clusters, screens: Screens::disturbed(grid.size(), clusters), grid }
+    fn new((order, upper_half): (Order, bool), grid: Grid, clusters: Clusters) -> Self {
+        Self { watched: Watched::new(order, upper_half, grid.size(), clusters), clusters, grid }
     }
 
     /// One for each way of encoding.
     pub(crate) fn all(grid: &Grid, clusters: Clusters) -> [Self; 4] {
-        let ways = [(Order::Raster, false), (Order::Raster, true), (Order::Color, false), (Order::Color, true)];
-        ways.map(|(order, upper_half)| Self::new(order, upper_half, grid.clone(), clusters))
+        WAYS.map(|way| Self::new(way, grid.clone(), clusters))
     }
 
     /// Takes the step; what the bytes have to be fewer than.
@@ -194,32 +184,20 @@ impl Stage {
                 overlay::assert_lies_over(&self.grid, &filled(self.grid.size(), cells), &panel.buffer());
             }
             Step::Resize(size, cells) => {
-                self.screens.resize(*size);
+                self.watched.resize(*size);
                 self.grid = filled(*size, cells);
                 return 4 + size.cell_count() * MOST_BYTES;
             }
-            Step::Disturb => {
-                self.screens = Screens::disturbed(self.grid.size(), self.clusters);
-                self.encoder.forget();
-            }
+            Step::Disturb => self.watched.disturb(self.grid.size()),
         }
         all
     }
 
     /// Sends the wanted grid.
+    #[track_caller]
     pub(crate) fn send(&mut self, most: usize) {
-        let mut bytes = Vec::new();
-        self.encoder.encode(&self.grid, &mut bytes);
-        assert!(bytes.len() <= most, "{} bytes, at most {most} are needed", bytes.len());
-        self.screens.feed(&bytes);
-        if self.upper_half {
-            self.screens.assert_show_halves(&self.grid);
-        } else {
-            self.screens.assert_show(&self.grid);
-        }
-        let mut more = Vec::new();
-        self.encoder.encode(&self.grid, &mut more);
-        assert!(more.is_empty(), "nothing has changed, and {:?} is sent", String::from_utf8_lossy(&more));
+        let bytes = self.watched.send(&self.grid);
+        assert!(bytes <= most, "{bytes} bytes, at most {most} are needed");
     }
 }
 
@@ -259,4 +237,9 @@ proptest! {
     fn families_and_flags_stay_together(story in story(Clusters::Joined)) {
         assert_told(&story, Clusters::Joined);
     }
+}
+
+#[test]
+fn the_fuzzers_corpus_holds() {
+    corpus::replay("encoder", fuzzed::hold_for);
 }

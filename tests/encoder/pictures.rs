@@ -1,7 +1,8 @@
 //! Whole pictures of kinds that are hard on an encoder, and what moves in them.
 
+use super::grids::put;
 use super::screens::Clusters;
-use super::{Stage, put, rgb};
+use super::{Stage, rgb};
 use termtrace::grid::{Cell, Grid, Ink, Size};
 
 const SIZE: Size = Size::new(53, 17);
@@ -20,7 +21,7 @@ fn picture(size: Size, mut color: impl FnMut(u16, u16) -> Ink) -> Grid {
 }
 
 /// Marsaglia's xorshift: noise that is the same every time.
-fn noise(mut state: u32) -> impl FnMut() -> u32 {
+pub(crate) fn noise(mut state: u32) -> impl FnMut() -> u32 {
     move || {
         state ^= state << 13;
         state ^= state >> 17;

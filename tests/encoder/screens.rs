@@ -83,6 +83,12 @@ impl Screens {
     /// Shows one frame's bytes, which are whole characters and whole sequences.
     #[track_caller]
     pub(crate) fn feed(&mut self, bytes: &[u8]) {
+        self.feed_in(&[usize::MAX], bytes);
+    }
+
+    /// Shows one frame's bytes, read in pieces of these lengths, one after another and then from the first again.
+    #[track_caller]
+    pub(crate) fn feed_in(&mut self, lengths: &[usize], bytes: &[u8]) {
         let text = std::str::from_utf8(bytes).expect("a frame ends in no character's middle");
         if let Some((_, last)) = text.rsplit_once('\x1b') {
             assert!(last.contains(|c: char| c.is_ascii_alphabetic()), "a frame ends in a sequence's middle: {last:?}");
@@ -91,12 +97,21 @@ impl Screens {
         self.model.cursor = None;
         self.model.last = None;
         if let Some(avt) = &mut self.avt {
-            avt.feed(text);
+            for piece in whole_characters(text, lengths) {
+                avt.feed(piece);
+            }
         }
-        if let Some(vt100) = &mut self.vt100 {
-            vt100.process(bytes);
+        for piece in pieces(text, lengths) {
+            if let Some(vt100) = &mut self.vt100 {
+                vt100.process(piece);
+            }
+            self.parser.advance(&mut self.model, piece);
         }
-        self.parser.advance(&mut self.model, bytes);
+    }
+
+    /// What the model shows, row by row from the top.
+    pub(crate) fn shown(&self) -> &[Cell] {
+        &self.model.cells
     }
 
     /// What the two emulators show in a cell.
@@ -139,6 +154,33 @@ impl Screens {
             }
         }
     }
+}
+
+/// The bytes in pieces of these lengths. The rest of a character that is cut is a piece of its own: `vte` 0.15 loses what
+/// follows it in one (as `a` in C3, A9 61 C3, A9).
+fn pieces<'a>(text: &'a str, lengths: &'a [usize]) -> impl Iterator<Item = &'a [u8]> {
+    let (mut lengths, mut start) = (lengths.iter().cycle(), 0);
+    std::iter::from_fn(move || {
+        let length = if text.is_char_boundary(start) { *lengths.next()? } else { next_boundary(text, start) - start };
+        let piece = &text.as_bytes()[start..][..length.min(text.len() - start)];
+        start += piece.len();
+        (!piece.is_empty()).then_some(piece)
+    })
+}
+
+/// In pieces of these lengths, or somewhat longer: `avt` takes whole characters.
+fn whole_characters<'a>(text: &'a str, lengths: &'a [usize]) -> impl Iterator<Item = &'a str> {
+    let (mut lengths, mut rest) = (lengths.iter().cycle(), text);
+    std::iter::from_fn(move || {
+        let (piece, after) = rest.split_at(next_boundary(rest, *lengths.next()?));
+        rest = after;
+        (!piece.is_empty()).then_some(piece)
+    })
+}
+
+/// The first end of a character at that byte or after it.
+fn next_boundary(text: &str, at: usize) -> usize {
+    (at..text.len()).find(|&at| text.is_char_boundary(at)).unwrap_or(text.len())
 }
 
 fn seen_by_avt(avt: &avt::Terminal, column: u16, row: u16) -> Cell {

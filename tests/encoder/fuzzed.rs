@@ -1,0 +1,90 @@
+//! What holds for any grids, any pen and any damage, drawn from bytes: said once, for the fuzzer and for the replay of its
+//! corpus.
+
+use super::grids::{filled, put_at};
+use super::screens::{Clusters, glyph_of};
+use super::watched::Watched;
+use arbitrary::{Result, Unstructured};
+use ratatui::style::Modifier;
+use std::time::Duration;
+use termtrace::color::Srgb8;
+use termtrace::encode::{Allowance, Order, Quality};
+use termtrace::grid::{Cell, Grid, Ink, Size};
+
+const GLYPHS: [&str; 9] = ["▄", "▀", " ", "a", "@", "é", "│", "世", "🙂"];
+
+/// Panics if a terminal shows anything else than it should.
+pub(crate) fn hold_for(data: &[u8]) {
+    // Bytes that have come to their end are a story's end.
+    let _ = tell(&mut Unstructured::new(data));
+}
+
+fn tell(bytes: &mut Unstructured<'_>) -> Result<()> {
+    let order = if bytes.arbitrary()? { Order::Color } else { Order::Raster };
+    let mut grid = Grid::new(size(bytes)?);
+    let mut watched = Watched::new(order, bytes.arbitrary()?, grid.size(), Clusters::None)
+        .in_pieces(vec![bytes.int_in_range(1..=64)?, bytes.int_in_range(1..=8)?]);
+    let mut now = Duration::ZERO;
+    while !bytes.is_empty() {
+        match bytes.int_in_range(0..=15)? {
+            0 => watched.disturb(grid.size()),
+            1 => {
+                grid = Grid::new(size(bytes)?);
+                watched.resize(grid.size());
+            }
+            2 => grid = filled(grid.size(), &vec![cell(bytes)?; grid.cells().len()]),
+            3 => {
+                watched.send(&grid);
+            }
+            4..=6 => {
+                now += Duration::from_millis(bytes.int_in_range(0..=700)?);
+                let last = Allowance { quality: quality(bytes)?, now, most_bytes: most_bytes(bytes)? };
+                watched.send_within(&grid, last);
+                if bytes.ratio(1, 4)? {
+                    now += watched.rest(&grid, last).after;
+                }
+            }
+            _ => {
+                let place = bytes.int_in_range(0..=grid.cells().len() - 1)?;
+                put_at(&mut grid, place, &cell(bytes)?);
+            }
+        }
+    }
+    watched.send(&grid);
+    Ok(())
+}
+
+fn size(bytes: &mut Unstructured<'_>) -> Result<Size> {
+    Ok(Size::new(bytes.int_in_range(1..=12)?, bytes.int_in_range(1..=5)?))
+}
+
+fn quality(bytes: &mut Unstructured<'_>) -> Result<Quality> {
+    bytes.choose(&[Quality::Equal, Quality::Fast, Quality::Exact]).copied()
+}
+
+fn most_bytes(bytes: &mut Unstructured<'_>) -> Result<Option<usize>> {
+    Ok(if bytes.arbitrary()? { Some(bytes.int_in_range(0..=1_000)?) } else { None })
+}
+
+fn cell(bytes: &mut Unstructured<'_>) -> Result<Cell> {
+    let underline = if bytes.ratio(1, 8)? { ink(bytes)? } else { Ink::Default };
+    let modifier = if bytes.ratio(1, 4)? { bytes.arbitrary()? } else { 0 };
+    Ok(Cell {
+        glyph: glyph_of(bytes.choose(&GLYPHS)?),
+        fg: ink(bytes)?,
+        bg: ink(bytes)?,
+        underline,
+        modifier: Modifier::from_bits_truncate(modifier),
+    })
+}
+
+/// Many of few colours, which neighbours share, and of colours that are near each other.
+fn ink(bytes: &mut Unstructured<'_>) -> Result<Ink> {
+    Ok(match bytes.int_in_range(0..=9)? {
+        0 => Ink::Default,
+        1 => Ink::Indexed(bytes.arbitrary()?),
+        2 => Ink::Rgb(Srgb8::new(bytes.arbitrary()?, bytes.arbitrary()?, bytes.arbitrary()?)),
+        3..=5 => Ink::Rgb(Srgb8::new(100, 100 + bytes.int_in_range(0..=7)?, 120)),
+        near => Ink::Rgb(Srgb8::new(near, 255, 0)),
+    })
+}

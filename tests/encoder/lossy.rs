@@ -1,0 +1,274 @@
+//! Frames that may be near the wanted ones: the stories of the exact ones, told at a pace, at every quality and under
+//! limits, and then until all is exact.
+
+use super::grids::filled;
+use super::screens::Clusters;
+use super::watched::Watched;
+use super::{CELLS, PICTURE, Stage, Step, WAYS, anything, cell, panel, rgb, size, step};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use std::time::Duration;
+use termtrace::encode::{Allowance, Encoder, Order, Quality};
+use termtrace::grid::{Cell, Grid, Ink, Size};
+
+/// Colours that are near each other, further than a quality allows, and in between.
+fn near_ink() -> impl Strategy<Value = Ink> {
+    prop_oneof![
+        4 => (0_u8..8).prop_map(|step| rgb(100 + step, 120, 140 - step)),
+        3 => (0_u8..12).prop_map(|step| rgb(60 + 3 * step, 60, 60 + step)),
+        1 => (0_u8..6).prop_map(|step| rgb(step, 2, 0)),
+        1 => any::<[u8; 3]>().prop_map(|[r, g, b]| rgb(r, g, b)),
+    ]
+}
+
+fn picture_cell() -> impl Strategy<Value = Cell> {
+    let glyph = prop::sample::select(&['▄', '▄', '▄', ' ', '▀'][..]);
+    (glyph, near_ink(), near_ink()).prop_map(|(glyph, fg, bg)| Cell::new(glyph, fg, bg))
+}
+
+/// A picture with text here and there.
+fn cells() -> impl Strategy<Value = Vec<Cell>> {
+    vec(prop_oneof![9 => picture_cell(), 1 => cell(anything(Clusters::None))], CELLS)
+}
+
+fn lossy_step() -> impl Strategy<Value = Step> {
+    let other = prop_oneof![picture_cell(), cell(PICTURE)];
+    prop_oneof![
+        2 => step(Clusters::None),
+        4 => vec((0..CELLS, other), 1..30).prop_map(Step::Change),
+        3 => cells().prop_map(Step::Redraw),
+        1 => (cells(), panel(Clusters::None)).prop_map(|(cells, panel)| Step::Panel(cells, panel)),
+    ]
+}
+
+/// How the next frame is sent.
+#[derive(Clone, Copy, Debug)]
+struct Pace {
+    wait: Duration,
+    quality: Quality,
+    most_bytes: Option<usize>,
+}
+
+fn pace() -> impl Strategy<Value = Pace> {
+    let wait = prop_oneof![Just(33), Just(250), Just(500), Just(1_000), 0_u64..1_200].prop_map(Duration::from_millis);
+    let quality = prop_oneof![1 => Just(Quality::Exact), 4 => Just(Quality::Equal), 4 => Just(Quality::Fast)];
+    let most_bytes = prop_oneof![3 => Just(None), 2 => (0_usize..2_000).prop_map(Some)];
+    (wait, quality, most_bytes).prop_map(|(wait, quality, most_bytes)| Pace { wait, quality, most_bytes })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(600) })]
+
+    #[test]
+    fn every_terminal_shows_nearly_every_frame(
+        size in size(),
+        cells in cells(),
+        first in pace(),
+        steps in vec((lossy_step(), pace()), 1..8),
+        pieces in vec(1_usize..40, 1..9),
+    ) {
+        for way in WAYS {
+            let mut stage = Stage::new(way, filled(size, &cells), Clusters::None);
+            stage.watched = stage.watched.in_pieces(pieces.clone());
+            let mut last = Allowance { quality: first.quality, now: first.wait, most_bytes: first.most_bytes };
+            stage.watched.send_within(&stage.grid, last);
+            for (step, Pace { wait, quality, most_bytes }) in &steps {
+                stage.take(step);
+                last = Allowance { quality: *quality, now: last.now + *wait, most_bytes: *most_bytes };
+                stage.watched.send_within(&stage.grid, last);
+            }
+            let rest = stage.watched.rest(&stage.grid, last);
+            let in_time = last.most_bytes.is_some() || rest.after <= Duration::from_secs(1);
+            prop_assert!(in_time, "all is exact only after {:?}", rest.after);
+        }
+    }
+
+    /// The exact ones too, read in any pieces.
+    #[test]
+    fn a_frame_is_the_same_in_any_pieces(
+        size in size(),
+        cells in vec(cell(anything(Clusters::None)), CELLS),
+        steps in vec(step(Clusters::None), 1..5),
+        pieces in vec(1_usize..12, 1..9),
+    ) {
+        for mut stage in Stage::all(&filled(size, &cells), Clusters::None) {
+            stage.watched = stage.watched.in_pieces(pieces.clone());
+            stage.send(usize::MAX);
+            for step in &steps {
+                stage.take(step);
+                stage.send(usize::MAX);
+            }
+        }
+    }
+}
+
+fn allowance(millis: u64, quality: Quality, most_bytes: Option<usize>) -> Allowance {
+    Allowance { quality, now: Duration::from_millis(millis), most_bytes }
+}
+
+/// Flat cells of one grey.
+fn grey(size: Size, level: u8) -> Grid {
+    let mut grid = Grid::new(size);
+    grid.cells_mut().fill(Cell::new(' ', Ink::Default, rgb(level, level, level)));
+    grid
+}
+
+fn encoded(encoder: &mut Encoder, grid: &Grid, allowance: Allowance) -> String {
+    let mut bytes = Vec::new();
+    encoder.encode_within(grid, allowance, &mut bytes);
+    String::from_utf8(bytes).expect("UTF-8")
+}
+
+/// What nobody sees is left out at first, and said half a second after the change: neither earlier nor twice.
+#[test]
+fn a_small_change_waits_for_half_a_second() {
+    for quality in [Quality::Equal, Quality::Fast] {
+        let size = Size::new(9, 3);
+        let mut encoder = Encoder::new();
+        encoded(&mut encoder, &grey(size, 100), allowance(0, quality, None));
+        assert_eq!(encoder.due(), None, "one colour is shown exactly at once");
+        let wanted = grey(size, 101);
+        assert_eq!(encoded(&mut encoder, &wanted, allowance(1_000, quality, None)), "", "{quality:?}");
+        assert_eq!(encoder.due(), Some(Duration::from_millis(1_500)));
+        assert_eq!(encoded(&mut encoder, &wanted, allowance(1_499, quality, None)), "");
+        assert_ne!(encoded(&mut encoder, &wanted, allowance(1_500, quality, None)), "");
+        assert_eq!(encoder.due(), None);
+        assert_eq!(encoded(&mut encoder, &wanted, allowance(2_500, quality, None)), "");
+    }
+}
+
+/// 7 steps of this grey are 0.0242 in `OKLab`, 4 are 0.0139, and 2 are 0.0069.
+#[test]
+fn each_quality_has_its_own_cap() {
+    for (level, sent) in [(102, [false, false]), (104, [true, false]), (107, [true, true])] {
+        for (quality, sent) in [Quality::Equal, Quality::Fast].into_iter().zip(sent) {
+            let size = Size::new(40, 10);
+            let mut encoder = Encoder::new();
+            encoded(&mut encoder, &grey(size, 100), allowance(0, quality, None));
+            // One cell of many: the signal-to-noise ratio does not matter.
+            let mut wanted = grey(size, 100);
+            wanted.cell_mut(7, 7).bg = rgb(level, level, level);
+            let bytes = encoded(&mut encoder, &wanted, allowance(10, quality, None));
+            assert_eq!(!bytes.is_empty(), sent, "{level} at {quality:?}");
+        }
+    }
+}
+
+/// The lower half counts as the upper one does.
+#[test]
+fn either_half_may_be_what_differs() {
+    let base = Cell::new('▄', rgb(100, 100, 100), rgb(30, 30, 30));
+    for change in [Cell { fg: rgb(130, 100, 100), ..base.clone() }, Cell { bg: rgb(60, 30, 30), ..base.clone() }] {
+        let mut grid = Grid::new(Size::new(20, 20));
+        grid.cells_mut().fill(base.clone());
+        let mut watched = Watched::new(Order::Color, true, grid.size(), Clusters::None);
+        watched.send_within(&grid, allowance(0, Quality::Fast, None));
+        *grid.cell_mut(3, 3) = change;
+        assert_ne!(watched.send_within(&grid, allowance(1, Quality::Fast, None)), 0);
+    }
+}
+
+/// Of several changes under a limit the largest comes first, and each frame keeps the limit.
+#[test]
+fn the_largest_errors_come_first() {
+    let size = Size::new(30, 8);
+    for quality in [Quality::Equal, Quality::Fast] {
+        let mut watched = Watched::new(Order::Raster, true, size, Clusters::None);
+        watched.send(&grey(size, 20));
+        let mut wanted = grey(size, 20);
+        for (at, cell) in wanted.cells_mut().iter_mut().enumerate() {
+            let level = 20 + (at * 37 % 200) as u8;
+            *cell = Cell::new('▄', rgb(level, 20, 20), rgb(20, level, 20));
+        }
+        // Judged by what is watched: no frame above the limit, nothing written before what is worse.
+        let limited = allowance(0, quality, Some(300));
+        let sent = watched.send_within(&wanted, limited);
+        assert!((1..=300).contains(&sent), "{sent} bytes");
+        let rest = watched.rest(&wanted, limited);
+        assert!(rest.after >= Duration::from_millis(500));
+    }
+}
+
+/// Text goes through any limit; the picture waits.
+#[test]
+fn a_limit_does_not_keep_text_back() {
+    let size = Size::new(30, 8);
+    let mut watched = Watched::new(Order::Color, true, size, Clusters::None);
+    watched.send(&grey(size, 20));
+    let mut wanted = grey(size, 200);
+    for column in 0..30 {
+        *wanted.cell_mut(column, 3) = Cell::new('x', rgb(255, column as u8, 0), Ink::Default);
+    }
+    let limited = allowance(0, Quality::Fast, Some(100));
+    assert!(watched.send_within(&wanted, limited) > 100);
+    watched.rest(&wanted, limited);
+}
+
+/// A picture of noise comes to rest in frames that tmux does not throw away, unless there is nothing else to do.
+#[test]
+fn exact_colours_are_spread_over_frames() {
+    let size = Size::new(40, 10);
+    let mut number = super::pictures::noise(5);
+    let mut noise = |spread: u32, base: u32| {
+        let mut grid = Grid::new(size);
+        for cell in grid.cells_mut() {
+            let mut ink = || {
+                let [a, b, c, _] = number().to_le_bytes().map(|byte| base as u8 + byte % spread as u8);
+                rgb(a, b, c)
+            };
+            *cell = Cell::new('▄', ink(), ink());
+        }
+        grid
+    };
+    let (first, near) = (noise(4, 100), noise(4, 100));
+    let mut watched = Watched::new(Order::Color, true, size, Clusters::None);
+    watched.send(&first);
+    let allowed = allowance(0, Quality::Fast, None);
+    assert_eq!(watched.send_within(&near, allowed), 0, "nobody sees the difference");
+    let mut now = Duration::from_millis(500);
+    let mut frames = 0;
+    loop {
+        let sent = watched.send_within(&near, Allowance { now, ..allowed });
+        if sent == 0 {
+            break;
+        }
+        frames += 1;
+        assert!(sent <= 8 * size.cell_count(), "{sent} bytes in one frame");
+        now += Duration::from_millis(33);
+    }
+    assert!(frames > 1, "there was more to send than one frame may take");
+}
+
+/// However small the screen, all becomes exact.
+#[test]
+fn small_screens_come_to_rest() {
+    for size in [(1, 1), (2, 1), (1, 2), (3, 1), (10, 1), (5, 3)] {
+        let size = Size::new(size.0, size.1);
+        let mut watched = Watched::new(Order::Raster, true, size, Clusters::None);
+        watched.send(&grey(size, 100));
+        let mut wanted = grey(size, 101);
+        for (at, cell) in wanted.cells_mut().iter_mut().enumerate() {
+            cell.bg = rgb(101, 100 + (at % 2) as u8, 100);
+        }
+        let allowed = allowance(0, Quality::Fast, None);
+        watched.send_within(&wanted, allowed);
+        watched.rest(&wanted, allowed);
+    }
+}
+
+/// `Exact` is what `encode` does, whatever the limit.
+#[test]
+fn exact_is_exact() {
+    let size = Size::new(9, 3);
+    for (level, most_bytes) in [(1, None), (2, Some(0)), (3, Some(50))] {
+        let (mut one, mut other) = (Encoder::new(), Encoder::new());
+        let mut bytes = Vec::new();
+        for level in [0, level] {
+            bytes.clear();
+            one.encode(&grey(size, level), &mut bytes);
+            let within = encoded(&mut other, &grey(size, level), allowance(0, Quality::Exact, most_bytes));
+            assert_eq!(within.as_bytes(), bytes);
+            assert_eq!(other.due(), None);
+        }
+    }
+}

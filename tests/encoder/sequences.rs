@@ -1,0 +1,119 @@
+//! The sequences of `cargo bench --bench bytes`, and two that are drawn from a seed, in every order, with either half and
+//! at every quality: every frame of them is shown as it is wanted, or near it, and exactly in the end. Of the 120 frames
+//! every eighth is asked for on a small screen and every thirtieth on a large one; all of them by hand:
+//! `cargo test --release --test encoder -- --ignored`.
+
+use super::WAYS;
+use super::near::halves;
+use super::scenes::{FRAMES, Kind, Sequence};
+use super::screens::Clusters;
+use super::watched::Watched;
+use std::time::Duration;
+use termtrace::capabilities::CellMode;
+use termtrace::cell::grid_from_picture;
+use termtrace::encode::{Allowance, Encoder, Order, Quality};
+use termtrace::grid::{Grid, Size};
+
+const SMALL: Size = Size::new(80, 24);
+const LARGE: Size = Size::new(200, 60);
+
+/// Every `step`-th frame, and when it is sent.
+fn frames(sequence: &Sequence, size: Size, step: usize) -> Vec<(Duration, Grid)> {
+    let time = |k: usize| Duration::from_secs(k as u64) / 30;
+    let grid = |k| grid_from_picture(CellMode::HalfBlock, &sequence.frame(k, size));
+    (0..FRAMES).step_by(step).map(|k| (time(k), grid(k))).collect()
+}
+
+/// Sends the frames and what is due after them, and judges each.
+#[track_caller]
+fn assert_played((order, upper_half): (Order, bool), quality: Quality, frames: &[(Duration, Grid)]) {
+    let (end, last) = frames.last().expect("there are frames");
+    let mut watched = Watched::new(order, upper_half, last.size(), Clusters::None);
+    let allowed = |now| Allowance { quality, now, most_bytes: None };
+    for (now, grid) in frames {
+        watched.send_within(grid, allowed(*now));
+    }
+    let rest = watched.rest(last, allowed(*end));
+    assert!(rest.after <= Duration::from_secs(1), "at rest only after {:?}", rest.after);
+    let mut whole = Vec::new();
+    Encoder::new().with_order(order).with_upper_half(upper_half).encode(last, &mut whole);
+    let parts = rest.bytes as f64 / whole.len() as f64;
+    assert!(parts <= 1.5, "{parts} full frames until all was at rest");
+    if !upper_half {
+        watched.assert_no_upper_half();
+    }
+}
+
+fn assert_all_played(sequence: &Sequence, size: Size, step: usize) {
+    let frames = frames(sequence, size, step);
+    for quality in [Quality::Exact, Quality::Equal, Quality::Fast] {
+        for way in WAYS {
+            println!("{}: {sequence}; {size:?}, {quality:?}, {way:?}", sequence.kind.name());
+            assert_played(way, quality, &frames);
+        }
+    }
+}
+
+#[test]
+fn orbit() {
+    assert_all_played(&Sequence::of(Kind::Orbit), SMALL, 8);
+    assert_all_played(&Sequence::of(Kind::Orbit), LARGE, 30);
+}
+
+#[test]
+fn plain() {
+    assert_all_played(&Sequence::of(Kind::Plain), SMALL, 8);
+    assert_all_played(&Sequence::of(Kind::Plain), LARGE, 30);
+}
+
+#[test]
+fn sphere() {
+    assert_all_played(&Sequence::of(Kind::Sphere), SMALL, 8);
+    assert_all_played(&Sequence::of(Kind::Sphere), LARGE, 30);
+}
+
+#[test]
+fn gradient() {
+    assert_all_played(&Sequence::of(Kind::Gradient), SMALL, 8);
+    assert_all_played(&Sequence::of(Kind::Gradient), LARGE, 30);
+}
+
+#[test]
+fn drawn_ones() {
+    for sequence in Sequence::drawn(11) {
+        assert_all_played(&sequence, SMALL, 8);
+    }
+}
+
+/// While one sphere moves, what has been still for a second is exact.
+#[test]
+fn what_is_still_is_exact() {
+    let frames = frames(&Sequence::of(Kind::Sphere), SMALL, 1);
+    for quality in [Quality::Equal, Quality::Fast] {
+        let mut watched = Watched::new(Order::Color, true, SMALL, Clusters::None);
+        let mut since = vec![Duration::ZERO; SMALL.cell_count()];
+        let mut last = &frames[0].1;
+        for (now, grid) in &frames {
+            for (since, (a, b)) in since.iter_mut().zip(last.cells().iter().zip(grid.cells())) {
+                *since = if halves(a) == halves(b) { *since } else { *now };
+            }
+            last = grid;
+            watched.send_within(grid, Allowance { quality, now: *now, most_bytes: None });
+            let still = (0..since.len()).filter(|&at| since[at] + Duration::from_secs(1) <= *now);
+            watched.assert_exact_at(still, grid);
+        }
+        let still = since.iter().filter(|&&since| since == Duration::ZERO).count();
+        assert!(still > SMALL.cell_count() / 2, "most of the picture was still, and so was judged");
+    }
+}
+
+#[test]
+#[ignore = "minutes: by hand, in a release build"]
+fn all_frames_of_all_sequences() {
+    let drawn = [11, 12].into_iter().flat_map(Sequence::drawn);
+    for sequence in Kind::ALL.into_iter().map(Sequence::of).chain(drawn) {
+        for size in [SMALL, LARGE] {
+            assert_all_played(&sequence, size, 1);
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! An encoder whose bytes three terminals read; after each frame they are asked.
+
+use super::near::{Caps, assert_text_is_exact, assert_within, distance, halves, square};
+use super::screens::{Clusters, Screens};
+use std::time::Duration;
+use termtrace::encode::{Allowance, Encoder, Order, Quality};
+use termtrace::grid::{Cell, Grid, Size};
+
+/// The encoder, and the terminals.
+pub(crate) struct Watched {
+    encoder: Encoder,
+    upper_half: bool,
+    clusters: Clusters,
+    screens: Screens,
+    /// How long the pieces are in which the terminals read, one after another and then from the first again.
+    pieces: Vec<usize>,
+}
+
+/// How long it took from a frame until all was exact, and how many bytes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rest {
+    pub(crate) bytes: usize,
+    pub(crate) after: Duration,
+}
+
+impl Watched {
+    pub(crate) fn new(order: Order, upper_half: bool, size: Size, clusters: Clusters) -> Self {
+        let encoder = Encoder::new().with_order(order).with_upper_half(upper_half);
+        Self { encoder, upper_half, clusters, screens: Screens::disturbed(size, clusters), pieces: vec![usize::MAX] }
+    }
+
+    /// From here on the terminals read pieces of these lengths, which are not 0.
+    pub(crate) fn in_pieces(self, pieces: Vec<usize>) -> Self {
+        Self { pieces, ..self }
+    }
+
+    /// The window has another size.
+    pub(crate) fn resize(&mut self, size: Size) {
+        self.screens.resize(size);
+    }
+
+    /// Something else has written on the screen, and the encoder has been told so.
+    pub(crate) fn disturb(&mut self, size: Size) {
+        self.screens = Screens::disturbed(size, self.clusters);
+        self.encoder.forget();
+    }
+
+    /// Sends a frame that is exact at once; how many bytes that took.
+    #[track_caller]
+    pub(crate) fn send(&mut self, wanted: &Grid) -> usize {
+        let mut bytes = Vec::new();
+        self.encoder.encode(wanted, &mut bytes);
+        self.screens.feed_in(&self.pieces, &bytes);
+        self.assert_exact(wanted);
+        let mut more = Vec::new();
+        self.encoder.encode(wanted, &mut more);
+        assert!(more.is_empty(), "nothing has changed, and {:?} is sent", String::from_utf8_lossy(&more));
+        bytes.len()
+    }
+
+    #[track_caller]
+    fn assert_exact(&self, wanted: &Grid) {
+        if self.upper_half {
+            self.screens.assert_show_halves(wanted);
+        } else {
+            self.screens.assert_show(wanted);
+        }
+        assert_eq!(self.encoder.due(), None, "all is exact");
+    }
+
+    /// Sends a frame that may be near the wanted one; how many bytes that took.
+    #[track_caller]
+    pub(crate) fn send_within(&mut self, wanted: &Grid, allowance: Allowance) -> usize {
+        let before = self.screens.shown().to_vec();
+        let mut bytes = Vec::new();
+        self.encoder.encode_within(wanted, allowance, &mut bytes);
+        self.screens.feed_in(&self.pieces, &bytes);
+        let seen = assert_text_is_exact(&self.screens, wanted);
+        let caps = Caps::of(allowance.quality);
+        match allowance.most_bytes {
+            Some(most) if allowance.quality != Quality::Exact => {
+                assert_limited(&before, &seen, wanted, (bytes.len(), most));
+                assert_largest_first(&before, &seen, wanted, caps);
+            }
+            _ => assert_within(caps, &seen, wanted),
+        }
+        self.assert_due(&seen, wanted, allowance);
+        bytes.len()
+    }
+
+    /// Something is due where anything is not exact; until then nothing is sent.
+    #[track_caller]
+    fn assert_due(&mut self, seen: &Grid, wanted: &Grid, allowance: Allowance) {
+        let is_exact = seen.cells().iter().zip(wanted.cells()).all(|(a, b)| halves(a) == halves(b));
+        assert_eq!(self.encoder.due().is_none(), is_exact, "due: {:?}", self.encoder.due());
+        let Some(due) = self.encoder.due() else { return };
+        assert!(due >= allowance.now, "{due:?} is before {:?}", allowance.now);
+        if due > allowance.now {
+            let mut more = Vec::new();
+            self.encoder.encode_within(wanted, allowance, &mut more);
+            assert!(more.is_empty(), "nothing is due, and {:?} is sent", String::from_utf8_lossy(&more));
+            assert_eq!(self.encoder.due(), Some(due), "what is due does not change");
+        }
+    }
+
+    /// Sends the wanted grid again whenever something is due, until nothing is: all is exact then, and stays.
+    #[track_caller]
+    pub(crate) fn rest(&mut self, wanted: &Grid, from: Allowance) -> Rest {
+        let mut rest = Rest { bytes: 0, after: Duration::ZERO };
+        // A frame for each cell that a limit lets through, and for each time at which one was changed.
+        let mut left = 2 * wanted.size().cell_count() + 40;
+        while let Some(due) = self.encoder.due() {
+            rest.after = due.saturating_sub(from.now);
+            rest.bytes += self.send_within(wanted, Allowance { now: due, ..from });
+            left = left.checked_sub(1).expect("something is due for ever");
+        }
+        self.screens.assert_show_halves(wanted);
+        let mut more = Vec::new();
+        self.encoder.encode_within(wanted, Allowance { now: from.now + Duration::from_secs(99), ..from }, &mut more);
+        assert!(more.is_empty(), "all is exact, and {:?} is sent", String::from_utf8_lossy(&more));
+        rest
+    }
+
+    /// Every one of these cells has its exact colours.
+    #[track_caller]
+    pub(crate) fn assert_exact_at(&self, places: impl Iterator<Item = usize>, wanted: &Grid) {
+        for at in places {
+            let (shown, wanted) = (&self.screens.shown()[at], &wanted.cells()[at]);
+            assert!(halves(wanted).is_some(), "only the picture is asked for");
+            assert_eq!(halves(shown), halves(wanted), "cell {at}");
+        }
+    }
+
+    /// No cell is written with its upper half: all are, but for the colours, as they are wanted.
+    #[track_caller]
+    pub(crate) fn assert_no_upper_half(&self) {
+        assert!(self.screens.shown().iter().all(|cell| cell.glyph != '▀'), "an upper half is shown");
+    }
+}
+
+/// The halves before and after and those that are wanted, of each cell where all of them are a picture's.
+fn pictures<'a>(
+    before: &'a [Cell],
+    seen: &'a Grid,
+    wanted: &'a Grid,
+) -> impl Iterator<Item = [[termtrace::color::Srgb8; 2]; 3]> {
+    let cells = before.iter().zip(seen.cells()).zip(wanted.cells());
+    cells.filter_map(|((before, seen), wanted)| Some([halves(before)?, halves(seen)?, halves(wanted)?]))
+}
+
+/// A limit is kept; where it is not, nothing was written that could wait but the one cell that always may be.
+#[track_caller]
+fn assert_limited(before: &[Cell], seen: &Grid, wanted: &Grid, (bytes, most): (usize, usize)) {
+    let written = pictures(before, seen, wanted).filter(|[before, seen, _]| before != seen).count();
+    assert!(bytes <= most || written <= 1, "{bytes} bytes for {written} cells, where {most} are allowed");
+}
+
+/// What is left differs no more than what was written did.
+#[track_caller]
+fn assert_largest_first(before: &[Cell], seen: &Grid, wanted: &Grid, caps: Caps) {
+    let error = |a: [_; 2], b: [_; 2]| (0..2).map(|half| square(a[half], b[half])).max();
+    let is_beyond = |a: [_; 2], b: [_; 2]| (0..2).any(|half| distance(a[half], b[half]) > caps.distance + 1e-6);
+    let cells = || pictures(before, seen, wanted);
+    let written = cells().filter(|[before, seen, _]| before != seen).map(|[before, _, wanted]| error(before, wanted));
+    let left = cells().filter(|[before, seen, wanted]| before == seen && is_beyond(*seen, *wanted));
+    let left = left.map(|[_, seen, wanted]| error(seen, wanted));
+    if let (Some(written), Some(left)) = (written.min(), left.max()) {
+        assert!(written >= left, "{written:?} was written before {left:?}");
+    }
+}
