@@ -219,16 +219,17 @@ impl<'a> Plan<'a> {
     pub(super) fn grid(&self, writes: usize) -> Grid {
         let (written, left) = self.differences.split_at(writes);
         let left: u64 = left.iter().filter_map(|left| Some(sum(squares(left.shown?, left.wanted)))).sum();
+        let most = if writes < self.fewest_writes(true) { f64::INFINITY } else { self.most() - left as f64 };
         let mut tolerance = self.tolerance;
         let painted = loop {
             let painted = self.painted(written, tolerance);
             let squares = painted.iter().zip(written).map(|(&painted, write)| sum(squares(painted, write.wanted)));
-            // It is seldom that all cells snap far; then they snap less far.
-            let is_limited = writes < self.fewest_writes(true);
-            if is_limited || tolerance.square == 0 || (left + squares.sum::<u64>()) as f64 <= self.most() {
+            let squares = squares.sum::<u64>() as f64;
+            if squares <= most || tolerance.square == 0 {
                 break painted;
             }
-            tolerance.square = tolerance.square * 3 / 4;
+            // It is seldom that all cells snap far; then they snap less far.
+            tolerance.square = (f64::from(tolerance.square) * (most / squares).clamp(0.0, 0.75)) as u32;
         };
         let mut grid = self.unpainted();
         for (write, halves) in written.iter().zip(painted) {

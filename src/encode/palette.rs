@@ -9,6 +9,7 @@ use crate::color::{Oklab, Srgb8};
 use crate::grid::Ink;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::mem;
 
 /// Exchanges the cells' colours for those of a palette, each within the tolerance of the one that it stands for. With
 /// `either_half`, two colours serve both ways round. The pen's colours are taken into the palette where they serve.
@@ -38,6 +39,10 @@ struct Shades {
 /// How many colours of the palette a half chooses from, those first that the most halves can take: more than a few would
 /// gain nothing, and each makes more pairs.
 const CHOICES: usize = 4;
+
+/// How many colours, next in lightness, a colour is compared with on either side: in pictures the ones that can be
+/// exchanged are among them, and noise, where they are not, is not to take long.
+const NEIGHBOURS: usize = 24;
 
 impl Shades {
     fn of(cells: &[&mut Halves], pen: [Ink; 2]) -> Self {
@@ -70,14 +75,15 @@ impl Shades {
         choices
     }
 
-    /// For each colour, those within the tolerance, itself among them. Sorted by lightness they are in a window.
+    /// For each colour, those within the tolerance, itself among them. Sorted by lightness they are in a window, of which
+    /// the middle is looked at.
     fn near(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.colors.len()).collect();
         order.sort_unstable_by(|&a, &b| self.oklab[a].l.total_cmp(&self.oklab[b].l));
         let mut near: Vec<Vec<usize>> = (0..order.len()).map(|color| vec![color]).collect();
         for (at, &a) in order.iter().enumerate() {
             let lightest = self.oklab[a].l + tolerance.distance;
-            for &b in order[at + 1..].iter().take_while(|&&b| self.oklab[b].l <= lightest) {
+            for &b in order[at + 1..].iter().take(NEIGHBOURS).take_while(|&&b| self.oklab[b].l <= lightest) {
                 if square(self.colors[a], self.colors[b]) <= tolerance.square
                     && self.oklab[a].distance(self.oklab[b]) <= tolerance.distance
                 {
@@ -102,26 +108,40 @@ fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], either_half: bool) -> Ve
     }
     possible.sort_unstable();
     possible.dedup();
-    let groups: Vec<&[([usize; 2], usize)]> = possible.chunk_by(|x, y| x.0 == y.0).collect();
-    let cells: Vec<Vec<usize>> = groups.iter().map(|group| group.iter().map(|&(_, cell)| cell).collect()).collect();
-    let mut chosen = vec![None; wanted.len()];
-    for group in cover(&cells, &vec![1; wanted.len()]) {
-        for &cell in &cells[group] {
-            chosen[cell].get_or_insert(groups[group][0].0);
+    let (pairs, cells): (Vec<[usize; 2]>, Vec<usize>) = possible.into_iter().unzip();
+    let mut groups = Vec::new();
+    let mut start = 0;
+    for same in pairs.chunk_by(|a, b| a == b) {
+        // What one cell alone can show saves nothing.
+        if same.len() > 1 {
+            groups.push((same[0], &cells[start..start + same.len()]));
+        }
+        start += same.len();
+    }
+    let sets: Vec<&[usize]> = groups.iter().map(|group| group.1).collect();
+    // Of a pair of its own, each colour is the one that the most halves can take.
+    let mut chosen: Vec<[usize; 2]> = wanted.iter().map(|cell| cell.map(|color| choices[color][0])).collect();
+    let mut is_chosen = vec![false; wanted.len()];
+    for group in cover(&sets, &vec![1; wanted.len()]) {
+        let (pair, cells) = groups[group];
+        for &cell in cells {
+            if !mem::replace(&mut is_chosen[cell], true) {
+                chosen[cell] = pair;
+            }
         }
     }
-    chosen.into_iter().zip(wanted).map(|(pair, wanted)| pair.unwrap_or(*wanted)).collect()
+    chosen
 }
 
 /// Sets that together have all members of any weight: always the one that adds the most, until nothing is left to add.
-fn cover(sets: &[Vec<usize>], weights: &[usize]) -> Vec<usize> {
+fn cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
     let mut left = weights.to_vec();
     // What a set adds only shrinks: one that still adds what it was sorted by is the best of all (Minoux 1978).
     let mut heap: BinaryHeap<(usize, Reverse<usize>)> =
-        sets.iter().enumerate().map(|(at, set)| (adds(set, &left), Reverse(at))).collect();
+        sets.iter().enumerate().map(|(at, set)| (adds(set.as_ref(), &left), Reverse(at))).collect();
     let mut chosen = Vec::new();
     while let Some((promised, Reverse(at))) = heap.pop() {
-        let added = adds(&sets[at], &left);
+        let added = adds(sets[at].as_ref(), &left);
         if added == 0 {
             continue;
         }
@@ -130,7 +150,7 @@ fn cover(sets: &[Vec<usize>], weights: &[usize]) -> Vec<usize> {
             continue;
         }
         chosen.push(at);
-        for &member in &sets[at] {
+        for &member in sets[at].as_ref() {
             left[member] = 0;
         }
     }
