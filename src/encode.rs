@@ -12,8 +12,8 @@
 //! (see [`Quality`]), which halves the bytes of a moving picture or better.
 //!
 //! The escape sequences used are the safe core that every terminal and multiplexer understands: CUP, CUF, CHA, CR, BS,
-//! LF and SGR with `38;2`/`48;2`; and `58:2`, the colour of an underline, which others pass over. Nothing that repeats,
-//! erases or scrolls. A terminal in raw mode is taken for granted: a line feed keeps the column.
+//! LF and SGR with `38;2`/`48;2`, with `7`/`27` (also for spaces of a colour that the pen has for glyphs), and with
+//! `58:2`, the colour of an underline, which those that do not know it pass over. Nothing that repeats, erases or scrolls. A terminal in raw mode is taken for granted: a line feed keeps the column.
 
 use crate::grid::{Cell, Glyph, Grid, Size};
 
@@ -195,7 +195,7 @@ impl Encoder {
                 strokes
             }
         };
-        strokes::write(wanted, &strokes, &mut known.pen, bytes);
+        strokes::write(wanted, &strokes, self.upper_half, &mut known.pen, bytes);
     }
 }
 

@@ -131,7 +131,7 @@ impl Screen {
             other => panic!("({column}, {row}) is {other:?}"),
         };
         match cell.contents() {
-            " " => [color(cell.bgcolor()); 2],
+            " " => [color(if cell.inverse() { cell.fgcolor() } else { cell.bgcolor() }); 2],
             "▄" => [color(cell.bgcolor()), color(cell.fgcolor())],
             "▀" => [color(cell.fgcolor()), color(cell.bgcolor())],
             other => panic!("({column}, {row}) is {other:?}"),

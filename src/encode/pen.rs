@@ -3,6 +3,7 @@
 use super::moves::{digits, write_number};
 use crate::grid::{Cell, Glyph, Ink};
 use ratatui::style::Modifier;
+use std::mem;
 
 /// The colours and modifiers that the terminal would write with now.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,15 +24,36 @@ impl Pen {
     /// The cell's character in its colours, for a file; only what differs from the pen is said, one colour at a time: what
     /// saves bytes on a screen does not change files.
     pub(crate) fn write_cell(&mut self, cell: &Cell, bytes: &mut Vec<u8>) {
-        let wanted = self.wanted_by(cell);
+        let wanted = self.as_it_stands(cell);
         self.become_pen(Self { fg: self.before_colors(wanted.modifier).fg, ..wanted }, bytes);
         self.become_pen(wanted, bytes);
         write_glyph(&cell.glyph, bytes);
     }
 
-    /// The pen with which the cell is to be written. The colour of a plain space's character is not seen, nor that of a
-    /// line that is not drawn: nothing is said for their sake.
+    /// The pen with which the cell is to be written. A plain space of the colour that the pen has for glyphs is cheapest
+    /// with the pen's two colours exchanged: to say so takes four bytes, to say the colour again, as the one behind, about
+    /// nineteen.
     pub(super) fn wanted_by(&self, cell: &Cell) -> Self {
+        let plain = self.as_it_stands(cell);
+        if !self.can_be_exchanged_for(cell) {
+            return plain;
+        }
+        let exchanged = Self { modifier: Modifier::REVERSED, ..*self };
+        if self.cost_of(&exchanged) < self.cost_of(&plain) { exchanged } else { plain }
+    }
+
+    /// Whether a space looks like the cell when the pen's two colours are exchanged. The terminal's own colour for glyphs
+    /// cannot be said behind them.
+    fn can_be_exchanged_for(&self, cell: &Cell) -> bool {
+        self.fg == cell.bg
+            && cell.bg != Ink::Default
+            && Modifier::REVERSED.contains(self.modifier)
+            && is_plain_space(cell)
+    }
+
+    /// The pen of the cell as the grid has it. The colour of a plain space's character is not seen, nor that of a line
+    /// that is not drawn: nothing is said for their sake.
+    fn as_it_stands(&self, cell: &Cell) -> Self {
         let mut pen = self.before_colors(cell.modifier);
         pen.bg = cell.bg;
         if !is_plain_space(cell) {
@@ -44,31 +66,44 @@ impl Pen {
     }
 
     /// The pen once the modifiers are these: terminals disagree on how to switch single ones off, so all is switched off
-    /// first, colours too, which is understood everywhere.
+    /// first, colours too, which is understood everywhere. Only for the exchange of the two colours they all know an off
+    /// of its own.
     pub(super) fn before_colors(self, modifier: Modifier) -> Self {
-        if self.modifier == modifier { self } else { Self { modifier, ..Self::default() } }
+        let from = if self.starts_anew(modifier) { Self::default() } else { self };
+        Self { modifier, ..from }
+    }
+
+    /// Whether all is switched off on the way to these modifiers.
+    fn starts_anew(&self, modifier: Modifier) -> bool {
+        !Modifier::REVERSED.contains(self.modifier ^ modifier)
+    }
+
+    /// The code on the way to these modifiers that exchanges the two colours, or ends that, where nothing starts anew.
+    fn exchange(&self, modifier: Modifier) -> Option<&'static [u8]> {
+        if self.modifier == modifier || self.starts_anew(modifier) {
+            return None;
+        }
+        Some(if modifier.contains(Modifier::REVERSED) { b"7" } else { b"27" })
     }
 
     /// How many bytes [`become_pen`](Self::become_pen) takes.
     pub(super) fn cost_of(&self, wanted: &Self) -> usize {
-        if self.modifier != wanted.modifier {
+        if self.starts_anew(wanted.modifier) {
             let codes = modifier_codes(wanted.modifier).count();
             return 4 + 2 * codes + self.before_colors(wanted.modifier).cost_of(wanted);
         }
-        let colors = match (self.fg != wanted.fg, self.bg != wanted.bg) {
-            (false, false) => 0,
-            (true, false) => 3 + ink_len(wanted.fg),
-            (false, true) => 3 + ink_len(wanted.bg),
-            (true, true) => 4 + ink_len(wanted.fg) + ink_len(wanted.bg),
-        };
+        let exchange = self.exchange(wanted.modifier).map_or(0, |code| 1 + code.len());
+        let fg = if self.fg == wanted.fg { 0 } else { 1 + ink_len(wanted.fg) };
+        let bg = if self.bg == wanted.bg { 0 } else { 1 + ink_len(wanted.bg) };
         let underline = if self.underline == wanted.underline { 0 } else { underline_len(wanted.underline) };
-        colors + underline
+        let codes = exchange + fg + bg;
+        underline + if codes == 0 { 0 } else { 2 + codes }
     }
 
-    /// Says what differs: the modifiers in one sequence, the colours in another, the line's in a third. (All in one could
-    /// be more numbers than some terminals take.)
+    /// Says what differs: modifiers that start anew in one sequence, the colours in another, the line's in a third. (All
+    /// in one could be more numbers than some terminals take.)
     pub(super) fn become_pen(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
-        if self.modifier != wanted.modifier {
+        if self.starts_anew(wanted.modifier) {
             bytes.extend_from_slice(b"\x1b[0");
             for code in modifier_codes(wanted.modifier) {
                 bytes.extend_from_slice(&[b';', code]);
@@ -76,18 +111,18 @@ impl Pen {
             bytes.push(b'm');
         }
         let from = self.before_colors(wanted.modifier);
-        let (fg, bg) = (from.fg != wanted.fg, from.bg != wanted.bg);
-        if fg || bg {
-            bytes.extend_from_slice(b"\x1b[");
-            if fg {
-                write_ink(wanted.fg, 30, bytes);
+        let mut lead: &[u8] = b"\x1b[";
+        if let Some(code) = self.exchange(wanted.modifier) {
+            bytes.extend_from_slice(mem::replace(&mut lead, b";"));
+            bytes.extend_from_slice(code);
+        }
+        for (from, to, base) in [(from.fg, wanted.fg, 30), (from.bg, wanted.bg, 40)] {
+            if from != to {
+                bytes.extend_from_slice(mem::replace(&mut lead, b";"));
+                write_ink(to, base, bytes);
             }
-            if fg && bg {
-                bytes.push(b';');
-            }
-            if bg {
-                write_ink(wanted.bg, 40, bytes);
-            }
+        }
+        if lead == b";" {
             bytes.push(b'm');
         }
         if from.underline != wanted.underline {
@@ -214,7 +249,8 @@ mod tests {
     #[test]
     fn costs_are_true() {
         let inks = [Ink::Default, Ink::Indexed(7), Ink::Indexed(200), Ink::Rgb(Srgb8::new(0, 10, 100))];
-        let modifiers = [Modifier::empty(), Modifier::BOLD, Modifier::BOLD | Modifier::REVERSED, Modifier::all()];
+        let reversed = Modifier::REVERSED;
+        let modifiers = [Modifier::empty(), reversed, Modifier::BOLD, Modifier::BOLD | reversed, Modifier::all()];
         let colors = || inks.into_iter().flat_map(|fg| inks.map(|bg| (fg, bg)));
         let looks = || colors().flat_map(|colors| inks.map(|underline| (colors, underline)));
         let pens: Vec<Pen> = looks()

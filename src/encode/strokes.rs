@@ -7,6 +7,7 @@
 use super::moves::{Move, Place, cheapest};
 use super::pen::{Pen, is_plain_space, write_char, write_glyph};
 use crate::grid::{Cell, Glyph, Grid, Ink};
+use std::ops::Range;
 
 /// A cell, the form in which it is written, and the pen.
 pub(super) struct Stroke {
@@ -26,12 +27,13 @@ pub(super) fn choose(wanted: &Grid, order: &[Place], upper_half: bool, mut pen: 
 }
 
 /// The colour of a plain space's character is free: let it be the one that the next cell wants, if that wants nothing
-/// else changed. Where the space changes the colour behind it, one sequence then says both.
+/// else changed. Where the space changes the colour behind it, one sequence then says both. (Not with the two colours
+/// exchanged: the character's is the one that is seen then.)
 pub(super) fn look_ahead(wanted: &Grid, strokes: &mut [Stroke]) {
     for at in (1..strokes.len()).rev() {
         let next = strokes[at].pen;
         let stroke = &mut strokes[at - 1];
-        let only_fg = Pen { fg: next.fg, ..stroke.pen } == next;
+        let only_fg = stroke.pen.modifier.is_empty() && Pen { fg: next.fg, ..stroke.pen } == next;
         if only_fg && is_plain_space(wanted.cell(stroke.place.column, stroke.place.row)) {
             stroke.pen = next;
         }
@@ -40,10 +42,10 @@ pub(super) fn look_ahead(wanted: &Grid, strokes: &mut [Stroke]) {
 
 /// Writes them. Where the cursor is at first is not asked: whatever else has been written to the terminal since the last
 /// frame may have moved it.
-pub(super) fn write(wanted: &Grid, strokes: &[Stroke], pen: &mut Pen, bytes: &mut Vec<u8>) {
+pub(super) fn write(wanted: &Grid, strokes: &[Stroke], upper_half: bool, pen: &mut Pen, bytes: &mut Vec<u8>) {
     let mut cursor = None;
     for stroke in strokes {
-        move_to(wanted, cursor, stroke.place, pen, bytes);
+        move_to(wanted, cursor, stroke.place, upper_half, pen, bytes);
         pen.become_pen(stroke.pen, bytes);
         write_cell(wanted, stroke, bytes);
         cursor = after(wanted, stroke.place);
@@ -102,15 +104,20 @@ fn can_be_turned(cell: &Cell) -> bool {
 #[derive(Clone, Copy)]
 struct Path {
     pen: Pen,
-    cost: usize,
+    cost: Cost,
 }
+
+/// Bytes; of as many, how often the lower half is written. Which half it is hardly matters, but it has to be the same
+/// wherever both cost the same, or a compressor does not know the frame before again. With the upper one, the colours are
+/// said in the order in which the pixels lie.
+type Cost = (usize, usize);
 
 /// The form of each cell, such that the changes of the pen between them take the fewest bytes.
 fn choose_forms(wanted: &Grid, order: &[Place], upper_half: bool, pen: Pen) -> Vec<Form> {
     if !upper_half {
         return vec![Form::Plain; order.len()];
     }
-    let mut paths = [Path { pen, cost: 0 }; 2];
+    let mut paths = [Path { pen, cost: (0, 0) }; 2];
     // For each cell and each form of it, the form of the cell before.
     let mut before = Vec::with_capacity(order.len());
     for place in order {
@@ -148,38 +155,44 @@ fn extend(paths: &[Path; 2], cell: &Cell, form: Form) -> (Path, u8) {
 
 fn step(path: &Path, cell: &Cell, form: Form) -> Path {
     let pen = form.pen(cell, &path.pen);
-    Path { pen, cost: path.cost + path.pen.cost_of(&pen) }
+    let (bytes, lower) = path.cost;
+    let is_lower = (cell.glyph == '▄') == (form == Form::Plain);
+    Path { pen, cost: (bytes + path.pen.cost_of(&pen), lower + usize::from(is_lower)) }
 }
 
 /// Brings the cursor there: by the cheapest move, or by writing again what lies on the way, where the pen happens to be
-/// right for all of it and that is cheaper.
-fn move_to(wanted: &Grid, cursor: Option<Place>, place: Place, pen: &Pen, bytes: &mut Vec<u8>) {
+/// right for all of it and that takes no more bytes. (As many are fewer to a compressor: a run of one glyph goes on.)
+fn move_to(wanted: &Grid, cursor: Option<Place>, place: Place, upper_half: bool, pen: &Pen, bytes: &mut Vec<u8>) {
     let by_move = cheapest(cursor, place);
-    let Some(between) = same_row(cursor, place) else {
-        return by_move.write(bytes);
-    };
     let start = bytes.len();
-    for column in between {
-        let again = again(wanted.cell(column, place.row), pen);
-        let Some(glyph) = again.filter(|_| bytes.len() - start < by_move.len()) else {
-            bytes.truncate(start);
-            return by_move.write(bytes);
-        };
-        bytes.push(glyph);
+    let is_there = same_row(cursor, place).is_some_and(|mut between| {
+        between.all(|column| {
+            let again = again(wanted.cell(column, place.row), upper_half, pen);
+            again.is_some_and(|glyph| {
+                write_char(glyph, bytes);
+                bytes.len() - start <= by_move.len()
+            })
+        })
+    });
+    if !is_there {
+        bytes.truncate(start);
+        by_move.write(bytes);
     }
 }
 
 /// The columns from the cursor to a place further right in its row.
-fn same_row(cursor: Option<Place>, place: Place) -> Option<std::ops::Range<u16>> {
+fn same_row(cursor: Option<Place>, place: Place) -> Option<Range<u16>> {
     let cursor = cursor.filter(|cursor| cursor.row == place.row && cursor.column < place.column)?;
     Some(cursor.column..place.column)
 }
 
-/// The character that shows the cell with this very pen, if one byte does. (More bytes would not be cheaper than the
-/// move, and a wide character is more.)
-fn again(cell: &Cell, pen: &Pen) -> Option<u8> {
-    match cell.glyph {
-        Glyph::Char(character) if character.is_ascii() && pen.wanted_by(cell) == *pen => Some(character as u8),
+/// The character that shows the cell with this very pen. (Only ASCII and half blocks: anything else takes more bytes than
+/// a move, or more cells than one.)
+fn again(cell: &Cell, upper_half: bool, pen: &Pen) -> Option<char> {
+    let shows = |form: Form| form.pen(cell, pen) == *pen;
+    match (&cell.glyph, other_half(&cell.glyph)) {
+        (_, Some(other)) if upper_half && can_be_turned(cell) && shows(Form::Turned) => Some(other),
+        (Glyph::Char(own), other) if (other.is_some() || own.is_ascii()) && shows(Form::Plain) => Some(*own),
         _ => None,
     }
 }

@@ -60,7 +60,9 @@ fn halves_shown(terminal: &avt::Terminal, columns: usize, rows: usize) -> Vec<[O
     let cell = |row: usize, column: usize| {
         let line = terminal.screen().line(row).expect("the row is on the screen");
         let cell = line.cells()[column];
-        let (fg, bg) = (cell.pen().foreground(), cell.pen().background());
+        let pen = cell.pen();
+        let (fg, bg) = (pen.foreground(), pen.background());
+        let (fg, bg) = if pen.is_inverse() { (bg, fg) } else { (fg, bg) };
         match cell.char() {
             ' ' => [bg, bg],
             '▄' => [bg, fg],

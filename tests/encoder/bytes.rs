@@ -49,8 +49,9 @@ fn one_changed_cell_is_a_place_a_colour_and_a_character() {
         (Cell::new('x', C, A), "\x1b[2;4H\x1b[48;2;10;20;30mx"),
         (Cell::new('x', B, C), "\x1b[2;4H\x1b[38;2;200;100;0;48;2;1;2;3mx"),
         // The colour of a space is not seen, and the pen's stays.
-        (Cell::new(' ', A, B), "\x1b[2;4H\x1b[48;2;200;100;0m "),
-        (Cell::new('▄', B, B), "\x1b[2;4H▄"),
+        (Cell::new(' ', A, A), "\x1b[2;4H\x1b[48;2;10;20;30m "),
+        (Cell::new('▄', B, A), "\x1b[2;4H▄"),
+        (Cell::new('▄', B, B), "\x1b[2;4H\x1b[48;2;200;100;0m▄"),
         (Cell::new('x', Ink::Default, B), "\x1b[2;4H\x1b[39mx"),
         (Cell::new('x', Ink::Indexed(7), Ink::Indexed(255)), "\x1b[2;4H\x1b[38;5;7;48;5;255mx"),
         (Cell::BLANK, "\x1b[2;4H\x1b[49m "),
@@ -143,6 +144,62 @@ fn either_half_saves_a_colour() {
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[0m\x1b[H\x1b[38;2;200;100;0;48;2;10;20;30m▀\x1b[48;2;1;2;3m▄");
     *grid.cell_mut(0, 0) = Cell::new('▄', C, Ink::Default);
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[38;2;1;2;3;49m▄");
+    *grid.cell_mut(0, 0) = Cell::new('▄', Ink::Indexed(9), Ink::Indexed(200));
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[38;5;200;48;5;9m▀", "the upper one, where both cost the same");
+}
+
+/// The pen has the colour already, for glyphs: its two are exchanged, and stay so as long as that serves. Never the
+/// terminal's own: the one for glyphs is not the one behind them.
+#[test]
+fn a_space_takes_the_colour_that_glyphs_have() {
+    let mut encoder = Encoder::new();
+    let mut grid = flat(&Cell::new('▄', A, B));
+    encoded(&mut encoder, &grid);
+    let mut cells = |cells: [Cell; 4]| {
+        for (column, cell) in (0..).zip(cells) {
+            *grid.cell_mut(column, 0) = cell;
+        }
+        encoded(&mut encoder, &grid)
+    };
+    let space = |color| Cell::new(' ', Ink::Default, color);
+    let x = |fg, bg| Cell::new('x', fg, bg);
+    assert_eq!(cells([space(A), space(A), x(A, B), x(A, C)]), "\x1b[H\x1b[7m  \x1b[27mx\x1b[48;2;1;2;3mx");
+    assert_eq!(cells([space(A), space(C), x(C, C), space(B)]), "\x1b[1;2H \x1b[38;2;1;2;3mx\x1b[48;2;200;100;0m ");
+    let reversed = Cell { modifier: Modifier::REVERSED, ..x(C, B) };
+    assert_eq!(cells([space(C), space(C), reversed.clone(), space(C)]), "\x1b[H\x1b[7m  x ");
+    let bold = Cell { modifier: Modifier::BOLD, ..x(C, B) };
+    let colors = "\x1b[38;2;1;2;3;48;2;200;100;0m";
+    assert_eq!(cells([space(C), space(C), bold, reversed]), format!("\x1b[1;3H\x1b[0;1m{colors}x\x1b[0;7m{colors}x"));
+    let default = "\x1b[H\x1b[27;39;48;2;1;2;3mx\x1b[49m \x1b[48;2;1;2;3m  ";
+    assert_eq!(cells([x(Ink::Default, C), space(Ink::Default), space(C), space(C)]), default);
+}
+
+/// By colour too, where a space looks ahead to the colour of the next glyph.
+#[test]
+fn an_exchanged_space_keeps_its_colour() {
+    let (one, two) = (Ink::Indexed(1), Ink::Indexed(200));
+    let mut grid = Grid::new(Size::new(3, 1));
+    *grid.cell_mut(0, 0) = Cell::new('x', one, two);
+    *grid.cell_mut(1, 0) = Cell::new(' ', Ink::Default, one);
+    *grid.cell_mut(2, 0) = Cell { modifier: Modifier::REVERSED, ..Cell::new('x', Ink::Indexed(9), two) };
+    assert_eq!(
+        encoded(&mut Encoder::new().with_order(Order::Color), &grid),
+        "\x1b[0m\x1b[H\x1b[38;5;1;48;5;200mx\x1b[7m \x1b[38;5;9mx"
+    );
+}
+
+/// A gap of one half block takes three bytes either way: it is written again, with the half for which the pen is right.
+#[test]
+fn a_half_block_on_the_way_is_written_again() {
+    for (turned, expected) in [(false, "\x1b[1;2Hx▄x"), (true, "\x1b[1;2Hx▀x")] {
+        let mut encoder = Encoder::new().with_upper_half(true);
+        let mut grid = flat(&Cell::new('y', A, B));
+        *grid.cell_mut(2, 0) = if turned { Cell::new('▄', B, A) } else { Cell::new('▄', A, B) };
+        encoded(&mut encoder, &grid);
+        grid.cell_mut(1, 0).glyph = 'x'.into();
+        grid.cell_mut(3, 0).glyph = 'x'.into();
+        assert_eq!(encoded(&mut encoder, &grid), expected);
+    }
 }
 
 /// What is not seen is not sent.

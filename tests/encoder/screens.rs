@@ -236,8 +236,12 @@ pub(crate) fn glyph_of(text: &str) -> Glyph {
     }
 }
 
-/// What can be seen of a cell: a plain space has no colour of its own, nor has a line that is not drawn.
+/// What can be seen of a cell: a plain space has no colour of its own, nor has a line that is not drawn. A space whose
+/// colours are exchanged is one of the other colour, but the terminal's own for glyphs cannot be said behind them.
 fn seen_of(cell: Cell) -> Cell {
+    if cell.glyph == ' ' && cell.modifier == Modifier::REVERSED && cell.fg != Ink::Default {
+        return Cell::new(' ', Ink::Default, cell.fg);
+    }
     let no_glyph = cell.glyph == ' ' && cell.modifier.is_empty();
     let no_line = !cell.modifier.contains(Modifier::UNDERLINED);
     Cell {
@@ -370,6 +374,10 @@ impl Model {
             }
             [code @ 1..=9, ref rest @ ..] => {
                 self.pen.modifier.insert(Modifier::from_bits_truncate(1 << (code - 1)));
+                rest
+            }
+            [27, ref rest @ ..] => {
+                self.pen.modifier.remove(Modifier::REVERSED);
                 rest
             }
             [code @ (30..=37 | 39), ref rest @ ..] => {

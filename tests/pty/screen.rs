@@ -78,11 +78,10 @@ impl Screen {
     pub(crate) fn cell(&self, column: usize, row: usize) -> Cell {
         let line = self.terminal.screen().line(row).expect("the row is on the screen");
         let cell = &line.cells()[column];
-        Cell {
-            glyph: cell.char(),
-            foreground: cell.pen().foreground().into(),
-            background: cell.pen().background().into(),
-        }
+        let pen = cell.pen();
+        let (fg, bg) = (pen.foreground().into(), pen.background().into());
+        let (foreground, background) = if pen.is_inverse() { (bg, fg) } else { (fg, bg) };
+        Cell { glyph: cell.char(), foreground, background }
     }
 
     /// The column and row of the cursor, both from 0, if it is shown.
