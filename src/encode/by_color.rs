@@ -18,11 +18,10 @@ pub(super) fn order(wanted: &Grid, changed: &[Place], upper_half: bool, pen: Pen
     let is_picture = |place: &&Place| inks(wanted.cell(place.column, place.row)).is_some();
     let picture: Vec<Place> = changed.iter().filter(is_picture).copied().collect();
     let mut order: Vec<Place> = changed.iter().filter(|place| !is_picture(place)).copied().collect();
+    let last = order.last().copied();
+    let pen = last.map_or(pen, |place| pen.wanted_by(wanted.cell(place.column, place.row)));
     let mut tour = Tour::new(wanted, &picture, upper_half, pen);
-    if let Some(last) = order.last() {
-        tour.pen = pen.wanted_by(wanted.cell(last.column, last.row));
-        tour.cursor = after(wanted, *last);
-    }
+    tour.cursor = last.and_then(|place| after(wanted, place));
     tour.walk(&mut order);
     order
 }
@@ -62,30 +61,41 @@ struct Tour<'a> {
     wanted: &'a Grid,
     upper_half: bool,
     pen: Pen,
+    /// The numbers of its two colours in `colors`, for glyphs and behind them, if the picture has them.
+    pen_colors: [Option<usize>; 2],
     cursor: Option<Place>,
+    /// How many neighbours may still be looked at.
+    looks: usize,
     places: Vec<Place>,
     /// In reading order of their first cells.
     pairs: Vec<Pair>,
     /// All colours, sorted by number.
     colors: Vec<Color>,
+    /// The pairs of each colour.
+    neighbours: Vec<usize>,
 }
 
 struct Color {
     number: u32,
-    /// The pairs that have it, the first in reading order last; those visited are dropped when they are met.
-    pairs: Vec<usize>,
+    /// The pairs that have it, in `Tour::neighbours`, the first in reading order last; those visited are dropped when they
+    /// are met.
+    pairs: Range<usize>,
     /// How many of them are not visited.
     left: usize,
 }
 
-/// How many neighbours over one colour are looked at: with all of them, a frame in which thousands of pairs share a
-/// colour would take the square of that.
+/// How many neighbours over one colour are looked at, at most: with all of them, a frame in which thousands of pairs share
+/// a colour would take the square of that.
 const NEIGHBOURS: usize = 64;
+
+/// How many neighbours are looked at for each pair in the mean, at most: few have many, unless the picture is noise.
+const LOOKS: usize = 8;
 
 impl<'a> Tour<'a> {
     fn new(wanted: &'a Grid, picture: &[Place], upper_half: bool, pen: Pen) -> Self {
         let mut cells: Vec<(u32, u32, Place)> = picture.iter().map(|&place| keyed(wanted, place, upper_half)).collect();
-        cells.sort_unstable_by_key(|&(a, b, place)| (a, b, place.row, place.column));
+        // In reading order within a pair: the sort is stable.
+        cells.sort_by_key(|&(a, b, _)| u64::from(a) << 32 | u64::from(b));
         let mut numbers: Vec<u32> = cells.iter().flat_map(|&(a, b, _)| [a, b]).collect();
         numbers.sort_unstable();
         numbers.dedup();
@@ -98,20 +108,14 @@ impl<'a> Tour<'a> {
             pairs.push(Pair { fg, bg, places: start..start + group.len(), colors, visited: false });
             start += group.len();
         }
-        pairs.sort_unstable_by_key(|pair| {
+        pairs.sort_by_cached_key(|pair| {
             let first = cells[pair.places.start].2;
             (first.row, first.column)
         });
-        let mut colors: Vec<Color> =
-            numbers.into_iter().map(|number| Color { number, pairs: Vec::new(), left: 0 }).collect();
-        for (at, pair) in pairs.iter().enumerate().rev() {
-            for &color in distinct(&pair.colors) {
-                colors[color].pairs.push(at);
-                colors[color].left += 1;
-            }
-        }
+        let (colors, neighbours) = neighbours(&numbers, &pairs);
         let places = cells.into_iter().map(|(_, _, place)| place).collect();
-        Self { wanted, upper_half, pen, cursor: None, places, pairs, colors }
+        let pen_colors = [pen.fg, pen.bg].map(|ink| numbers.binary_search(&number(ink)).ok());
+        Self { wanted, upper_half, pen, pen_colors, cursor: None, looks: 0, places, pairs, colors, neighbours }
     }
 
     /// Appends the places in the order of the tour.
@@ -127,18 +131,24 @@ impl<'a> Tour<'a> {
     /// The cheapest of the pairs that share a colour with the pen, and of `next`.
     fn best(&mut self, next: usize) -> usize {
         let mut best = (self.price(next), next);
-        for ink in [self.pen.fg, self.pen.bg] {
-            let Ok(color) = self.colors.binary_search_by_key(&number(ink), |color| color.number) else { continue };
+        self.looks += LOOKS;
+        for color in self.pen_colors.into_iter().flatten() {
             let mut near = Vec::new();
-            while near.len() < NEIGHBOURS
-                && let Some(pair) = self.colors[color].pairs.pop()
+            while near.len() < NEIGHBOURS.min(self.looks)
+                && let Some(at) = self.colors[color].pairs.next_back()
             {
+                let pair = self.neighbours[at];
                 if !self.pairs[pair].visited {
                     best = best.min((self.price(pair), pair));
                     near.push(pair);
                 }
             }
-            self.colors[color].pairs.extend(near.iter().rev());
+            self.looks -= near.len();
+            for pair in near.into_iter().rev() {
+                let end = &mut self.colors[color].pairs.end;
+                self.neighbours[*end] = pair;
+                *end += 1;
+            }
         }
         best.1
     }
@@ -168,6 +178,14 @@ impl<'a> Tour<'a> {
         self.pen = self.pen_for(&self.pairs[at]);
         let pair = &mut self.pairs[at];
         pair.visited = true;
+        let [a, b] = pair.colors;
+        self.pen_colors = if a == b {
+            [self.pen_colors[0], Some(a)]
+        } else if self.colors[a].number == number(self.pen.fg) {
+            [Some(a), Some(b)]
+        } else {
+            [Some(b), Some(a)]
+        };
         for &color in distinct(&pair.colors) {
             self.colors[color].left -= 1;
         }
@@ -175,6 +193,28 @@ impl<'a> Tour<'a> {
         order.extend_from_slice(places);
         self.cursor = places.last().and_then(|last| after(self.wanted, *last));
     }
+}
+
+/// All colours, and the pairs of each.
+fn neighbours(numbers: &[u32], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>) {
+    let mut colors: Vec<Color> = numbers.iter().map(|&number| Color { number, pairs: 0..0, left: 0 }).collect();
+    for color in pairs.iter().flat_map(|pair| distinct(&pair.colors)) {
+        colors[*color].left += 1;
+    }
+    let mut end = 0;
+    for color in &mut colors {
+        color.pairs = end..end;
+        end += color.left;
+    }
+    let mut neighbours = vec![0; end];
+    for (at, pair) in pairs.iter().enumerate().rev() {
+        for &color in distinct(&pair.colors) {
+            let end = &mut colors[color].pairs.end;
+            neighbours[*end] = at;
+            *end += 1;
+        }
+    }
+    (colors, neighbours)
 }
 
 /// The two colours, or the one that both are.
