@@ -11,12 +11,16 @@
 //! [`Encoder::encode`] shows exactly what is wanted. [`Encoder::encode_within`] may show something near it for a while
 //! (see [`Quality`]), which halves the bytes of a moving picture or better.
 //!
+//! [`EncoderBackend`] is an encoder for ratatui's programs.
+//!
 //! The escape sequences used are the safe core that every terminal and multiplexer understands: CUP, CUF, CHA, CR, BS,
 //! LF and SGR with `38;2`/`48;2`, with `7`/`27` (also for spaces of a colour that the pen has for glyphs), and with
-//! `58:2`, the colour of an underline, which those that do not know it pass over. Nothing that repeats, erases or scrolls. A terminal in raw mode is taken for granted: a line feed keeps the column.
+//! `58:2`, the colour of an underline, which those that do not know it pass over. Nothing that repeats, erases or
+//! scrolls. A terminal in raw mode is taken for granted: a line feed keeps the column.
 
 use crate::grid::{Cell, Glyph, Grid, Size};
 
+mod backend;
 mod by_color;
 mod lossy;
 mod moves;
@@ -25,8 +29,10 @@ mod pen;
 mod stillness;
 mod strokes;
 
+pub use backend::EncoderBackend;
 use moves::Place;
 pub(crate) use pen::Pen;
+use std::io::{self, Write};
 use std::time::Duration;
 use stillness::Stillness;
 use unicode_width::UnicodeWidthChar;
@@ -74,6 +80,7 @@ pub struct Allowance {
 pub struct Encoder {
     order: Order,
     upper_half: bool,
+    synchronized: bool,
     /// Nothing at first and after a resize.
     known: Option<Known>,
     stillness: Stillness,
@@ -92,6 +99,12 @@ struct Known {
 /// tmux holds back what it cannot pass on, and throws it away when it is more than this for each cell of the screen (its
 /// `TTY_BLOCK_START`).
 const BYTES_PER_CELL: usize = 8;
+
+/// What makes a terminal hold the screen back (DEC private mode 2026).
+const BEGIN_SYNCHRONIZED: &[u8] = b"\x1b[?2026h";
+
+/// What makes it show all that has come since.
+const END_SYNCHRONIZED: &[u8] = b"\x1b[?2026l";
 
 impl Encoder {
     /// For a terminal of which nothing is known: row by row, every cell with the character that it has in the grid.
@@ -116,6 +129,12 @@ impl Encoder {
         self.upper_half = upper_half;
     }
 
+    /// Whether frames stand in the brackets of synchronized output: a terminal that knows them shows each frame at once,
+    /// others pass over them.
+    pub fn with_synchronized_output(self, synchronized: bool) -> Self {
+        Self { synchronized, ..self }
+    }
+
     /// From here on nothing is known of the screen: the next frame is drawn whole.
     pub fn forget(&mut self) {
         self.known = None;
@@ -123,16 +142,26 @@ impl Encoder {
 
     /// Appends the bytes that make the terminal show `wanted`, exactly; none if it does already.
     pub fn encode(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) {
-        let mut known = self.take_known(wanted.size(), bytes);
-        self.write(wanted, &mut known, bytes);
-        self.known = Some(known);
-        self.due = None;
+        let start = bytes.len();
+        self.draw(wanted, bytes);
+        self.bracket(start, bytes);
+    }
+
+    /// Writes the bytes that make the terminal show `wanted`, exactly, all at once; nothing if it does already.
+    ///
+    /// # Errors
+    /// If the writer has one. As nobody knows then how much has arrived, the next frame is drawn whole.
+    pub fn encode_to(&mut self, writer: &mut impl Write, wanted: &Grid) -> io::Result<()> {
+        let mut bytes = Vec::new();
+        self.encode(wanted, &mut bytes);
+        self.send(&bytes, writer)
     }
 
     /// Appends the bytes that make the terminal show `wanted`, or something near it for a while; none if it does already.
     pub fn encode_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) {
         let Some(caps) = lossy::Caps::of(allowance.quality) else { return self.encode(wanted, bytes) };
         self.stillness.note(wanted, allowance.now);
+        let before = bytes.len();
         let known = self.take_known(wanted.size(), bytes);
         let has_waited = |at| self.stillness.due(at) <= allowance.now;
         let plan = lossy::Plan::new(lossy::Frame {
@@ -151,7 +180,7 @@ impl Encoder {
         let next = loop {
             let mut next = known.clone();
             self.write(&plan.grid(writes), &mut next, bytes);
-            let taken = bytes.len() - start;
+            let taken = bytes.len() - start + self.bracket_len();
             if taken <= most_bytes || writes <= fewest {
                 break next;
             }
@@ -164,6 +193,7 @@ impl Encoder {
         let refines = plan.inexact(&next.shown).map(|at| self.stillness.due(at)).max();
         self.due = if is_cut { Some(allowance.now) } else { refines };
         self.known = Some(next);
+        self.bracket(before, bytes);
     }
 
     /// When to encode the last wanted grid again, if nothing else is wanted until then: what is not shown exactly yet is
@@ -178,12 +208,65 @@ impl Encoder {
             let mut pen = Pen::default();
             // Whatever the pen was, it is known from here on.
             pen.reset(bytes);
-            Known { shown: unknown(size), pen }
+            Known { shown: Grid::foreign(size), pen }
         })
     }
 
-    /// Appends the bytes that make the terminal show the grid.
-    fn write(&self, wanted: &Grid, known: &mut Known, bytes: &mut Vec<u8>) {
+    /// A frame without its brackets; where the cursor is after it, if that is sure.
+    fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<Place> {
+        let mut known = self.take_known(wanted.size(), bytes);
+        let cursor = self.write(wanted, &mut known, bytes);
+        self.known = Some(known);
+        self.due = None;
+        cursor
+    }
+
+    /// Puts the frame that begins there into its brackets, if there is anything in it.
+    fn bracket(&self, start: usize, bytes: &mut Vec<u8>) {
+        if self.synchronized && bytes.len() > start {
+            bytes.extend_from_slice(BEGIN_SYNCHRONIZED);
+            bytes[start..].rotate_right(BEGIN_SYNCHRONIZED.len());
+            bytes.extend_from_slice(END_SYNCHRONIZED);
+        }
+    }
+
+    fn bracket_len(&self) -> usize {
+        if self.synchronized { BEGIN_SYNCHRONIZED.len() + END_SYNCHRONIZED.len() } else { 0 }
+    }
+
+    fn send(&mut self, bytes: &[u8], writer: &mut impl Write) -> io::Result<()> {
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        writer.write_all(bytes).and_then(|()| writer.flush()).inspect_err(|_| self.forget())
+    }
+
+    /// From here on nothing is known of that cell.
+    fn forget_cell(&mut self, Place { column, row }: Place) {
+        if let Some(known) = &mut self.known {
+            *known.shown.cell_mut(column, row) = Cell::FOREIGN;
+        }
+    }
+
+    /// Whatever comes from elsewhere is not to be in our colours.
+    fn lay_down_pen(&mut self, bytes: &mut Vec<u8>) {
+        if let Some(known) = &mut self.known
+            && known.pen != Pen::default()
+        {
+            known.pen.reset(bytes);
+        }
+    }
+
+    /// The content of the screen moves up by so many rows. (Many terminals fill the rows that come in with the pen's
+    /// colour: it has to be laid down.)
+    fn scroll_up(&mut self, rows: u16) {
+        if let Some(known) = &mut self.known {
+            known.shown.scroll_up(rows);
+        }
+    }
+
+    /// Appends the bytes that make the terminal show the grid; where the cursor is after them, if that is sure.
+    fn write(&self, wanted: &Grid, known: &mut Known, bytes: &mut Vec<u8>) -> Option<Place> {
         let changed = update(&mut known.shown, wanted);
         let strokes = match self.order {
             Order::Raster => strokes::choose(wanted, &changed, self.upper_half, known.pen),
@@ -195,18 +278,12 @@ impl Encoder {
                 strokes
             }
         };
-        strokes::write(wanted, &strokes, self.upper_half, &mut known.pen, bytes);
+        strokes::write(wanted, &strokes, self.upper_half, &mut known.pen, bytes)
     }
 }
 
-/// A screen of which nothing is known: every cell is another than any that can be wanted.
-fn unknown(size: Size) -> Grid {
-    let mut grid = Grid::new(size);
-    grid.cells_mut().fill(Cell { glyph: Glyph::Covered, ..Cell::BLANK });
-    grid
-}
-
-/// Makes the grid show what is wanted; the places that are to be written for it, row by row. A covered cell is never one.
+/// Makes the grid show what is wanted; the places that are to be written for it, row by row. A covered cell is never one,
+/// nor a foreign one.
 fn update(shown: &mut Grid, wanted: &Grid) -> Vec<Place> {
     let mut changed = Vec::new();
     for (row, (shown, wanted)) in (0..).zip(shown.rows_mut().zip(wanted.rows())) {
@@ -223,7 +300,8 @@ fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
         let end = column + columns(&wanted[column..]);
         let (shown, wanted) = (&mut shown[column..end], &wanted[column..end]);
         let differs = !shown.iter().zip(wanted).all(|(shown, wanted)| pen::look_alike(shown, wanted));
-        if wanted[0].glyph != Glyph::Covered && (differs || column < safe_from) {
+        let is_ours = !matches!(wanted[0].glyph, Glyph::Covered | Glyph::Foreign);
+        if is_ours && (differs || column < safe_from) {
             shown.clone_from_slice(wanted);
             write(column as u16);
             if let Glyph::Cluster(text) = &wanted[0].glyph {

@@ -50,6 +50,8 @@ pub enum Glyph {
     Cluster(Arc<str>),
     /// Nothing of its own: what stands to the left takes this cell too.
     Covered,
+    /// Whatever else is there: wanted, it is left alone; shown, it is unknown.
+    Foreign,
 }
 
 impl From<char> for Glyph {
@@ -64,13 +66,14 @@ impl PartialEq<char> for Glyph {
     }
 }
 
-/// Its text: none where it is covered.
+/// Its text: none where it is covered, a blank where it is foreign.
 impl fmt::Display for Glyph {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Char(character) => write!(f, "{character}"),
             Self::Cluster(text) => f.write_str(text),
             Self::Covered => Ok(()),
+            Self::Foreign => f.write_str(" "),
         }
     }
 }
@@ -94,9 +97,16 @@ impl Cell {
     /// A space in the terminal's own colours.
     pub const BLANK: Self = Self::new(' ', Ink::Default, Ink::Default);
 
+    /// What is not ours.
+    pub const FOREIGN: Self = Self::with_glyph(Glyph::Foreign, Ink::Default, Ink::Default);
+
     /// A character in these colours, without modifiers.
     pub const fn new(character: char, fg: Ink, bg: Ink) -> Self {
-        Self { glyph: Glyph::Char(character), fg, bg, underline: Ink::Default, modifier: Modifier::empty() }
+        Self::with_glyph(Glyph::Char(character), fg, bg)
+    }
+
+    const fn with_glyph(glyph: Glyph, fg: Ink, bg: Ink) -> Self {
+        Self { glyph, fg, bg, underline: Ink::Default, modifier: Modifier::empty() }
     }
 }
 
@@ -111,6 +121,11 @@ impl Grid {
     /// All blank.
     pub fn new(size: Size) -> Self {
         Self { size, cells: vec![Cell::BLANK; size.cell_count()] }
+    }
+
+    /// All foreign: of a screen of which nothing is known, or on which nothing is wanted.
+    pub fn foreign(size: Size) -> Self {
+        Self { size, cells: vec![Cell::FOREIGN; size.cell_count()] }
     }
 
     /// Its size.
@@ -190,6 +205,13 @@ impl Grid {
         for column in start..end {
             self.cell_mut(column, row).glyph = Glyph::Char(' ');
         }
+    }
+
+    /// Moves everything up by so many rows; blanks come in at the bottom.
+    pub fn scroll_up(&mut self, rows: u16) {
+        let gone = Size { rows: rows.min(self.size.rows), ..self.size }.cell_count();
+        self.cells.drain(..gone);
+        self.cells.resize(self.size.cell_count(), Cell::BLANK);
     }
 
     fn index(&self, column: u16, row: u16) -> usize {

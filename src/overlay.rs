@@ -23,7 +23,7 @@ pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
 
 /// Puts one cell into the grid, where there is room for so many columns; how many it takes. A skipped one leaves what is
 /// there: ratatui's programs skip where a picture is.
-fn put(grid: &mut Grid, place: Position, cell: &ratatui::buffer::Cell, room: u16) -> u16 {
+pub(crate) fn put(grid: &mut Grid, place: Position, cell: &ratatui::buffer::Cell, room: u16) -> u16 {
     if is_skipped(cell) {
         return 1;
     }

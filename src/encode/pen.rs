@@ -156,6 +156,7 @@ pub(super) fn write_glyph(glyph: &Glyph, bytes: &mut Vec<u8>) {
         Glyph::Char(character) => write_char(*character, bytes),
         Glyph::Cluster(text) => bytes.extend_from_slice(text.as_bytes()),
         Glyph::Covered => {}
+        Glyph::Foreign => bytes.push(b' '),
     }
 }
 

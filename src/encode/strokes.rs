@@ -41,8 +41,14 @@ pub(super) fn look_ahead(wanted: &Grid, strokes: &mut [Stroke]) {
 }
 
 /// Writes them. Where the cursor is at first is not asked: whatever else has been written to the terminal since the last
-/// frame may have moved it.
-pub(super) fn write(wanted: &Grid, strokes: &[Stroke], upper_half: bool, pen: &mut Pen, bytes: &mut Vec<u8>) {
+/// frame may have moved it. Where it is at last is the answer, if that is sure.
+pub(super) fn write(
+    wanted: &Grid,
+    strokes: &[Stroke],
+    upper_half: bool,
+    pen: &mut Pen,
+    bytes: &mut Vec<u8>,
+) -> Option<Place> {
     let mut cursor = None;
     for stroke in strokes {
         move_to(wanted, cursor, stroke.place, upper_half, pen, bytes);
@@ -50,6 +56,7 @@ pub(super) fn write(wanted: &Grid, strokes: &[Stroke], upper_half: bool, pen: &m
         write_cell(wanted, stroke, bytes);
         cursor = after(wanted, stroke.place);
     }
+    cursor
 }
 
 /// A wide cluster takes one cell in some terminals: what stood in the others is wiped out before it.
