@@ -2,7 +2,9 @@
 
 use super::rgb;
 use ratatui::style::Modifier;
-use termtrace::encode::{Encoder, Order};
+use std::io::{self, Write};
+use std::time::Duration;
+use termtrace::encode::{Allowance, Encoder, Order, Quality};
 use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
 
 const A: Ink = rgb(10, 20, 30);
@@ -319,5 +321,90 @@ fn places_have_five_digits_where_they_need_them() {
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;65535Hx");
     for empty in [Size::new(0, 0), Size::new(0, 5), Size::new(5, 0)] {
         assert!(encoded(&mut encoder, &Grid::new(empty)).len() <= "\x1b[0m".len());
+    }
+}
+
+const BRACKETS: [&str; 2] = ["\x1b[?2026h", "\x1b[?2026l"];
+
+fn bracketed(frame: &str) -> String {
+    let [begin, end] = BRACKETS;
+    if frame.is_empty() { String::new() } else { format!("{begin}{frame}{end}") }
+}
+
+/// Around what would be sent without them, if anything is.
+#[test]
+fn synchronized_frames_are_bracketed() {
+    let mut plain = Encoder::new();
+    let mut synchronized = Encoder::new().with_synchronized_output(true);
+    for cell in [Cell::BLANK, Cell::BLANK, Cell::new('▄', A, B)] {
+        let grid = flat(&cell);
+        assert_eq!(encoded(&mut synchronized, &grid), bracketed(&encoded(&mut plain, &grid)));
+    }
+    let mut bytes = b"before".to_vec();
+    synchronized.encode(&flat(&Cell::BLANK), &mut bytes);
+    assert!(bytes.starts_with(b"before\x1b[?2026h") && bytes.ends_with(b" \x1b[?2026l"));
+}
+
+/// With any quality; what the brackets take is of what a frame may take.
+#[test]
+fn lossy_frames_are_bracketed_too() {
+    let sent = |encoder: &mut Encoder, cell, quality, most_bytes, now| {
+        let mut bytes = Vec::new();
+        encoder.encode_within(
+            &flat(cell),
+            Allowance { quality, now: Duration::from_secs(now), most_bytes },
+            &mut bytes,
+        );
+        String::from_utf8(bytes).expect("UTF-8")
+    };
+    let [light, dark] = [Cell::new('▄', A, B), Cell::new('▄', C, A)];
+    for quality in [Quality::Exact, Quality::Equal, Quality::Fast] {
+        let mut plain = Encoder::new();
+        let mut synchronized = Encoder::new().with_synchronized_output(true);
+        for (now, cell) in (0..).zip([&light, &light, &dark, &dark]) {
+            let expected = sent(&mut plain, cell, quality, None, now);
+            assert_eq!(sent(&mut synchronized, cell, quality, None, now), bracketed(&expected), "{quality:?}, {now}");
+        }
+        if quality != Quality::Exact {
+            let most = 2 + BRACKETS.concat().len() + "\x1b[H\x1b[38;2;1;2;3;48;2;10;20;30m▄▄".len();
+            let frame = sent(&mut synchronized, &light, quality, Some(most), 9);
+            assert!(!frame.is_empty() && frame.len() <= most, "{} of {most} bytes", frame.len());
+        }
+    }
+}
+
+/// A line that takes so many bytes, and then fails once.
+struct Line(Vec<u8>, usize);
+
+impl Write for Line {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.1 == 0 {
+            self.1 = usize::MAX;
+            return Err(io::Error::other("cut"));
+        }
+        let taken = bytes.len().min(self.1);
+        self.0.extend_from_slice(&bytes[..taken]);
+        self.1 -= taken;
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// What `encode` would append; after a fault all of it again, because nobody knows what has arrived.
+#[test]
+fn frames_are_written_to_a_line() {
+    let grid = flat(&Cell::new('▄', A, B));
+    let expected = encoded(&mut Encoder::new(), &grid);
+    let mut encoder = Encoder::new();
+    let mut line = Line(Vec::new(), 20);
+    encoder.encode_to(&mut line, &grid).expect_err("the line is cut");
+    assert_eq!(line.0, expected.as_bytes()[..20]);
+    line.0.clear();
+    for _ in 0..2 {
+        encoder.encode_to(&mut line, &grid).expect("the line is whole again");
+        assert_eq!(line.0, expected.as_bytes());
     }
 }

@@ -1,6 +1,7 @@
 //! The encoder's bytes, judged by what three terminals show of them: random grids, changes, panels and resizes, and
 //! after each frame every cell of every screen is the wanted one, or, where that is allowed, near it.
 
+mod backend;
 mod bytes;
 #[path = "../corpus/mod.rs"]
 mod corpus;
@@ -15,6 +16,7 @@ mod scenes;
 mod screens;
 mod sequences;
 mod watched;
+mod widgets;
 
 use grids::{filled, put_at};
 use proptest::collection::vec;

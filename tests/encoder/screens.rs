@@ -183,7 +183,7 @@ fn next_boundary(text: &str, at: usize) -> usize {
     (at..text.len()).find(|&at| text.is_char_boundary(at)).unwrap_or(text.len())
 }
 
-fn seen_by_avt(avt: &avt::Terminal, column: u16, row: u16) -> Cell {
+pub(crate) fn seen_by_avt(avt: &avt::Terminal, column: u16, row: u16) -> Cell {
     let line = avt.screen().line(row.into()).expect("the row is on the screen");
     let cell = line.cells()[usize::from(column)];
     let ink = |color: Option<avt::Color>| match color {
@@ -205,7 +205,7 @@ fn seen_by_avt(avt: &avt::Terminal, column: u16, row: u16) -> Cell {
     seen_of(Cell { glyph, fg: ink(pen.foreground()), bg: ink(pen.background()), underline: Ink::Default, modifier })
 }
 
-fn seen_by_vt100(vt100: &vt100::Parser, column: u16, row: u16) -> Cell {
+pub(crate) fn seen_by_vt100(vt100: &vt100::Parser, column: u16, row: u16) -> Cell {
     let cell = vt100.screen().cell(row, column).expect("the cell is on the screen");
     let ink = |color: vt100::Color| match color {
         vt100::Color::Default => Ink::Default,

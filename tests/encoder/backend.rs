@@ -1,0 +1,682 @@
+//! The encoder as ratatui's backend: any program's screen is the one that it has with ratatui's own backend, on two
+//! emulators, with the cursor and with what has gone into the scrollback.
+
+use super::panel;
+use super::screens::{Clusters, Screens, glyph_of, seen_by_avt, seen_by_vt100};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use ratatui::backend::{Backend, ClearType, WindowSize};
+use ratatui::buffer::{Buffer, CellWidth};
+use ratatui::layout::{Position, Rect, Size};
+use ratatui::style::{Color, Modifier, Stylize};
+use ratatui::widgets::{Paragraph, Widget};
+use ratatui::{Frame, Terminal, TerminalOptions, Viewport, text};
+use ratatui_crossterm::CrosstermBackend;
+use std::cell::RefCell;
+use std::io::{self, Write};
+use std::num::NonZeroU16;
+use std::rc::Rc;
+use termtrace::encode::{Encoder, EncoderBackend, Order};
+use termtrace::grid::{Cell, Grid, Ink};
+use termtrace::{grid, overlay};
+
+/// Two emulators on one line, and what has come over it.
+#[derive(Clone)]
+pub(crate) struct Line(Rc<RefCell<Emulators>>);
+
+struct Emulators {
+    avt: avt::Terminal,
+    vt100: vt100::Parser,
+    /// One for each write.
+    writes: Vec<String>,
+}
+
+const SCROLLBACK: usize = 100;
+
+fn side(length: u16) -> NonZeroU16 {
+    NonZeroU16::new(length).expect("a screen has cells")
+}
+
+impl Line {
+    fn new(Size { width, height }: Size) -> Self {
+        let avt = avt::Terminal::new(width.into(), height.into()).expect("a screen has cells");
+        let vt100 = vt100::Parser::new(side(height), side(width), SCROLLBACK);
+        Self(Rc::new(RefCell::new(Emulators { avt, vt100, writes: Vec::new() })))
+    }
+
+    fn feed(&self, text: &str) {
+        let emulators = &mut *self.0.borrow_mut();
+        emulators.avt.feed(text);
+        emulators.vt100.process(text.as_bytes());
+    }
+
+    fn resize(&self, Size { width, height }: Size) {
+        let emulators = &mut *self.0.borrow_mut();
+        emulators.avt.resize(width.into(), height.into());
+        emulators.vt100.screen_mut().set_size(side(height), side(width));
+    }
+
+    fn size(&self) -> Size {
+        let (rows, columns) = self.0.borrow().vt100.screen().size();
+        Size::new(columns.into(), rows.into())
+    }
+
+    fn cursor(&self) -> Position {
+        let (y, x) = self.0.borrow().vt100.screen().cursor_position();
+        Position::new(x.min(self.size().width - 1), y)
+    }
+
+    fn is_cursor_visible(&self) -> bool {
+        let emulators = self.0.borrow();
+        let visible = !emulators.vt100.screen().hide_cursor();
+        assert_eq!(emulators.avt.cursor().visible, visible, "the emulators agree");
+        visible
+    }
+
+    fn cells(&self, column: u16, row: u16) -> [Cell; 2] {
+        let emulators = self.0.borrow();
+        let cells = [seen_by_avt(&emulators.avt, column, row), seen_by_vt100(&emulators.vt100, column, row)];
+        // What has been erased is blank.
+        cells.map(|cell| if cell.glyph == glyph_of("") { Cell { glyph: ' '.into(), ..cell } } else { cell })
+    }
+
+    fn text(&self) -> String {
+        self.0.borrow().vt100.screen().contents()
+    }
+
+    /// What has gone out of the screen at its top, and what is on it; erased or blank is all the same.
+    fn scrollback(&self) -> Vec<String> {
+        let screen = &mut self.0.borrow_mut().vt100;
+        let screen = screen.screen_mut();
+        screen.set_scrollback(SCROLLBACK);
+        let lines = (0..=screen.scrollback()).rev().map(|above| {
+            screen.set_scrollback(above);
+            screen.rows(0, u16::MAX).map(|row| row.trim_end().to_owned() + "\n").collect()
+        });
+        lines.collect()
+    }
+
+    /// What has been written since the last time, write by write.
+    pub(crate) fn take_writes(&self) -> Vec<String> {
+        std::mem::take(&mut self.0.borrow_mut().writes)
+    }
+}
+
+impl Write for Line {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let text = std::str::from_utf8(bytes).expect("whole characters");
+        self.feed(text);
+        self.0.borrow_mut().writes.push(text.to_owned());
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// ratatui's own backend, with the emulator for the terminal that it would ask.
+struct Theirs(CrosstermBackend<Line>, Line);
+
+impl Backend for Theirs {
+    type Error = io::Error;
+
+    fn draw<'a, I: Iterator<Item = (u16, u16, &'a ratatui::buffer::Cell)>>(&mut self, content: I) -> io::Result<()> {
+        self.0.draw(content)
+    }
+
+    fn append_lines(&mut self, lines: u16) -> io::Result<()> {
+        self.0.append_lines(lines)
+    }
+
+    fn hide_cursor(&mut self) -> io::Result<()> {
+        self.0.hide_cursor()
+    }
+
+    fn show_cursor(&mut self) -> io::Result<()> {
+        self.0.show_cursor()
+    }
+
+    fn get_cursor_position(&mut self) -> io::Result<Position> {
+        Ok(self.1.cursor())
+    }
+
+    fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
+        self.0.set_cursor_position(position)
+    }
+
+    fn clear(&mut self) -> io::Result<()> {
+        self.0.clear()
+    }
+
+    fn clear_region(&mut self, clear_type: ClearType) -> io::Result<()> {
+        self.0.clear_region(clear_type)
+    }
+
+    fn size(&self) -> io::Result<Size> {
+        Ok(self.1.size())
+    }
+
+    fn window_size(&mut self) -> io::Result<WindowSize> {
+        Ok(WindowSize { columns_rows: self.1.size(), pixels: Size::ZERO })
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Backend::flush(&mut self.0)
+    }
+}
+
+/// The same program twice.
+pub(crate) struct Pair {
+    ours: Terminal<EncoderBackend<Line>>,
+    theirs: Terminal<Theirs>,
+    pub(crate) line: Line,
+    other_line: Line,
+}
+
+const SIZE: Size = Size::new(12, 6);
+
+/// What a shell has left, the cursor in the row behind it.
+fn shell(rows: u16) -> String {
+    let lines: Vec<String> = (0..rows).map(|row| format!("$ \x1b[3{}mls -l {row}\x1b[m\r\n", row % 8)).collect();
+    lines.concat()
+}
+
+impl Pair {
+    pub(crate) fn new(size: Size, encoder: Encoder, viewport: &Viewport, before: &str) -> Self {
+        let [line, other_line] = [Line::new(size), Line::new(size)];
+        line.feed(before);
+        other_line.feed(before);
+        let mut backend = EncoderBackend::new(line.clone(), size).with_encoder(encoder);
+        backend.set_cursor_position(line.cursor()).expect("it can be written");
+        let options = || TerminalOptions { viewport: viewport.clone() };
+        let ours = Terminal::with_options(backend, options()).expect("it can be written");
+        let backend = Theirs(CrosstermBackend::new(other_line.clone()), other_line.clone());
+        let theirs = Terminal::with_options(backend, options()).expect("it can be written");
+        Self { ours, theirs, line, other_line }
+    }
+
+    fn inline(rows_before: u16, height: u16) -> Self {
+        Self::new(SIZE, Encoder::new(), &Viewport::Inline(height), &shell(rows_before))
+    }
+
+    fn fullscreen() -> Self {
+        Self::new(SIZE, Encoder::new(), &Viewport::Fullscreen, "")
+    }
+
+    #[track_caller]
+    pub(crate) fn draw(&mut self, render: impl Fn(&mut Frame<'_>)) {
+        self.ours.draw(&render).expect("it can be written");
+        self.theirs.draw(&render).expect("it can be written");
+        self.assert_equal();
+    }
+
+    #[track_caller]
+    fn insert_before(&mut self, height: u16, draw: impl Fn(&mut Buffer)) {
+        self.ours.insert_before(height, &draw).expect("it can be written");
+        self.theirs.insert_before(height, &draw).expect("it can be written");
+        self.assert_equal();
+    }
+
+    #[track_caller]
+    pub(crate) fn clear(&mut self) {
+        self.ours.clear().expect("it can be written");
+        self.theirs.clear().expect("it can be written");
+        self.assert_equal();
+    }
+
+    /// The window gets another size; its owner tells our backend of it.
+    fn resize(&mut self, size: Size) {
+        self.line.resize(size);
+        self.other_line.resize(size);
+        let cursor = self.line.cursor();
+        let backend = self.ours.backend_mut();
+        backend.resize(size);
+        backend.set_cursor_position(cursor).expect("it can be written");
+    }
+
+    /// The same call of both backends.
+    #[track_caller]
+    fn call(&mut self, call: impl Fn(&mut dyn Calls) -> io::Result<()>) {
+        call(self.ours.backend_mut()).expect("it can be written");
+        call(self.theirs.backend_mut()).expect("it can be written");
+        self.assert_equal();
+    }
+
+    /// Something else writes on both screens.
+    fn disturb(&self, text: &str) {
+        self.line.feed(text);
+        self.other_line.feed(text);
+    }
+
+    #[track_caller]
+    fn assert_equal(&mut self) {
+        let Size { width, height } = self.line.size();
+        for (row, column) in (0..height).flat_map(|row| (0..width).map(move |column| (row, column))) {
+            let shown = self.line.cells(column, row);
+            assert_eq!(shown, self.other_line.cells(column, row), "({column}, {row}) of\n{}", self.line.text());
+        }
+        assert_eq!(self.line.scrollback(), self.other_line.scrollback());
+        let is_visible = self.other_line.is_cursor_visible();
+        assert_eq!(self.line.is_cursor_visible(), is_visible);
+        assert_eq!(self.line.cursor(), self.other_line.cursor(), "cursor");
+        assert_eq!(
+            self.ours.get_cursor_position().expect("it is known"),
+            self.line.cursor(),
+            "what our cursor is said to be"
+        );
+    }
+}
+
+/// The calls of a backend that a program makes past its `Terminal`.
+trait Calls {
+    fn append(&mut self, lines: u16) -> io::Result<()>;
+    fn put_cursor(&mut self, x: u16, y: u16) -> io::Result<()>;
+    fn wipe(&mut self, region: ClearType) -> io::Result<()>;
+}
+
+impl<B: Backend<Error = io::Error>> Calls for B {
+    fn append(&mut self, lines: u16) -> io::Result<()> {
+        self.append_lines(lines)
+    }
+
+    fn put_cursor(&mut self, x: u16, y: u16) -> io::Result<()> {
+        self.set_cursor_position((x, y))
+    }
+
+    fn wipe(&mut self, region: ClearType) -> io::Result<()> {
+        self.clear_region(region)
+    }
+}
+
+const REGIONS: [ClearType; 5] =
+    [ClearType::All, ClearType::AfterCursor, ClearType::BeforeCursor, ClearType::CurrentLine, ClearType::UntilNewLine];
+
+/// Letters and colours in every cell.
+fn full(frame: &mut Frame<'_>) {
+    for (at, cell) in (0_u8..).zip(&mut frame.buffer_mut().content) {
+        cell.set_char(char::from(b'a' + at % 26)).set_bg(Color::Indexed(at % 7));
+    }
+}
+
+#[test]
+fn each_region_is_cleared() {
+    for region in REGIONS {
+        for (x, y) in (0..SIZE.height).flat_map(|y| [0, 5, SIZE.width - 1].map(|x| (x, y))) {
+            let mut pair = Pair::fullscreen();
+            pair.draw(full);
+            pair.call(|backend| backend.put_cursor(x, y));
+            pair.call(|backend| backend.wipe(region));
+            // Nor is anything of it taken for shown.
+            pair.draw(|frame| frame.render_widget(Paragraph::new("new"), frame.area()));
+            pair.clear();
+            pair.draw(full);
+        }
+    }
+}
+
+/// It mends what something else has written there, and only there.
+#[test]
+fn clearing_is_not_believed_to_be_done() {
+    for region in REGIONS {
+        let mut pair = Pair::fullscreen();
+        pair.draw(|_| ());
+        pair.disturb(&format!("\x1b[H{}\x1b[H", "?".repeat(SIZE.area() as usize)));
+        pair.call(|backend| backend.put_cursor(4, 2));
+        pair.call(|backend| backend.wipe(region));
+    }
+}
+
+#[test]
+fn lines_are_appended() {
+    for y in 0..SIZE.height {
+        for lines in 0..=SIZE.height + 3 {
+            let mut pair = Pair::new(SIZE, Encoder::new(), &Viewport::Fullscreen, &shell(4));
+            pair.draw(|frame| frame.render_widget(Paragraph::new("a\n\nb").on_blue(), Rect::new(2, 1, 3, 5)));
+            pair.call(|backend| backend.put_cursor(3, y));
+            pair.call(|backend| backend.append(lines));
+            pair.call(|backend| backend.append(1));
+            pair.draw(|frame| frame.render_widget(Paragraph::new("c").on_red(), frame.area()));
+        }
+    }
+}
+
+/// What the shell has left stands above an inline viewport, and what is inserted comes in between.
+#[test]
+fn inline_viewports() {
+    for (rows_before, height) in (0..=7).flat_map(|rows| [1, 2, 3, 6, 9].map(|height| (rows, height))) {
+        let mut pair = Pair::inline(rows_before, height);
+        let status = |step: u16| {
+            move |frame: &mut Frame<'_>| {
+                frame.render_widget(Paragraph::new(format!("step {step}")).on_dark_gray(), frame.area());
+            }
+        };
+        pair.draw(status(0));
+        for (step, inserted) in (1_u16..).zip([1, 0, 2, 5, 6, 13]) {
+            pair.insert_before(inserted, |buffer| {
+                let lines: Vec<_> = (0..inserted).map(|line| text::Line::from(format!("{line} of {step}"))).collect();
+                Paragraph::new(lines).green().render(buffer.area, buffer);
+            });
+            pair.draw(status(step));
+        }
+        pair.clear();
+        pair.draw(status(99));
+    }
+}
+
+#[test]
+fn windows_change_their_size() {
+    for (viewport, before) in [(Viewport::Fullscreen, 0), (Viewport::Inline(3), 2), (Viewport::Inline(2), 5)] {
+        let mut pair = Pair::new(SIZE, Encoder::new(), &viewport, &shell(before));
+        pair.draw(full);
+        for size in [(20, 6), (20, 9), (9, 9), (9, 2), (12, 6)] {
+            pair.resize(size.into());
+            pair.draw(|frame| frame.render_widget(Paragraph::new("after").on_red(), frame.area()));
+            pair.draw(full);
+        }
+    }
+}
+
+/// A viewport in the midst of others' text: what is not drawn stays, in gaps and beside it.
+#[test]
+fn what_is_not_drawn_is_left_alone() {
+    for order in [Order::Raster, Order::Color] {
+        let viewport = Viewport::Fixed(Rect::new(2, 1, 8, 4));
+        let mut pair = Pair::new(SIZE, Encoder::new().with_order(order), &viewport, &shell(6));
+        for text in ["a b  c", "a b  d 世", "    d", "a b  d"] {
+            pair.draw(|frame| frame.render_widget(Paragraph::new(text), frame.area()));
+            pair.draw(|frame| frame.render_widget(Paragraph::new(text).on_blue(), Rect::new(3, 2, 5, 2)));
+        }
+    }
+}
+
+#[test]
+fn the_cursor_is_where_the_program_wants_it() {
+    let mut pair = Pair::fullscreen();
+    for step in 0..12 {
+        pair.draw(|frame| {
+            frame.render_widget(Paragraph::new(format!("{step}")), frame.area());
+            if step % 4 != 3 {
+                frame.set_cursor_position((step % 3, step % 5));
+            }
+        });
+        assert_eq!(pair.line.is_cursor_visible(), step % 4 != 3);
+    }
+}
+
+/// Where the frame is, the cursor is no news.
+#[test]
+fn nothing_new_is_nothing_sent() {
+    for synchronized in [false, true] {
+        let encoder = Encoder::new().with_synchronized_output(synchronized);
+        let mut pair = Pair::new(SIZE, encoder, &Viewport::Fullscreen, "");
+        for with_cursor in [false, true] {
+            let render = |frame: &mut Frame<'_>| {
+                full(frame);
+                if with_cursor {
+                    frame.set_cursor_position((4, 4));
+                }
+            };
+            pair.draw(render);
+            pair.line.take_writes();
+            pair.draw(render);
+            assert_eq!(pair.line.take_writes(), Vec::<String>::new());
+        }
+    }
+}
+
+/// The cursor goes with the frame, and both stand in the brackets.
+#[test]
+fn a_frame_is_one_write() {
+    for synchronized in [false, true] {
+        let encoder = Encoder::new().with_synchronized_output(synchronized);
+        let mut pair = Pair::new(SIZE, encoder, &Viewport::Fullscreen, "");
+        for step in 0..6 {
+            pair.line.take_writes();
+            pair.draw(|frame| {
+                frame.render_widget(Paragraph::new(format!("{step}")).on_green(), frame.area());
+                if step % 2 == 0 {
+                    frame.set_cursor_position((7, 3));
+                }
+            });
+            let writes = pair.line.take_writes();
+            assert_eq!(writes.len(), 1, "{writes:?}");
+            assert_bracketed(&writes[0], synchronized);
+        }
+    }
+}
+
+/// One frame in its brackets, or without any.
+#[track_caller]
+pub(crate) fn assert_bracketed(frame: &str, synchronized: bool) {
+    let inside = frame.strip_prefix("\x1b[?2026h").and_then(|frame| frame.strip_suffix("\x1b[?2026l"));
+    assert_eq!(inside.is_some(), synchronized, "{frame:?}");
+    assert!(!inside.unwrap_or(frame).contains("2026"), "{frame:?}");
+}
+
+/// What the program writes itself is in no colour of ours; the next frame is right all the same.
+#[test]
+fn what_the_program_writes_itself() {
+    let mut pair = Pair::fullscreen();
+    for x in 3..6 {
+        let look = |frame: &mut Frame<'_>| {
+            let text = Paragraph::new(format!("{x}")).bold().underlined().red().on_blue();
+            frame.render_widget(text, Rect::new(x, 0, 2, 2));
+            frame.set_cursor_position((0, 4));
+        };
+        pair.draw(look);
+        let (ours, theirs) = (pair.ours.backend_mut(), pair.theirs.backend_mut());
+        ours.writer_mut().write_all(b"own\r").expect("it can be written");
+        theirs.0.write_all(b"own\r").expect("it can be written");
+        pair.assert_equal();
+        assert_eq!(pair.line.cells(0, 4), [const { Cell::new('o', Ink::Default, Ink::Default) }; 2]);
+    }
+}
+
+/// It has been lost, and the program knows: what it draws or clears is sent, even if it should be there.
+#[test]
+fn what_is_drawn_again_is_sent_again() {
+    let mut pair = Pair::fullscreen();
+    pair.draw(full);
+    pair.disturb("\x1b[2J");
+    let cell = ratatui::buffer::Cell::new("a");
+    for _ in 0..2 {
+        pair.disturb("\x1b[1;1H?\x1b[1;1H");
+        pair.ours.backend_mut().draw([(0, 0, &cell)].into_iter()).expect("it can be written");
+        Backend::flush(pair.ours.backend_mut()).expect("it can be written");
+        assert_eq!(pair.line.cells(0, 0)[0].glyph, 'a');
+    }
+}
+
+/// After a fault in the line nobody knows what has arrived: all is drawn again, the cursor's state too.
+#[test]
+fn a_line_that_fails() {
+    struct Failing(Line, bool);
+    impl Write for Failing {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            if self.1 { Err(io::Error::other("cut")) } else { self.0.write(bytes) }
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    let line = Line::new(SIZE);
+    let mut terminal =
+        Terminal::new(EncoderBackend::new(Failing(line.clone(), false), SIZE)).expect("it can be written");
+    terminal.draw(full).expect("it can be written");
+    let shown = line.text();
+    line.feed("\x1b[2J\x1b[?25h\x1b[31m");
+    terminal.backend_mut().writer_mut().1 = true;
+    let render = |frame: &mut Frame<'_>| {
+        full(frame);
+        frame.buffer_mut()[(0, 0)].set_char('!');
+    };
+    terminal.draw(render).expect_err("the line is cut");
+    terminal.backend_mut().writer_mut().1 = false;
+    terminal.draw(render).expect("it can be written");
+    assert_eq!(line.text(), shown.replacen('a', "!", 1));
+    assert!(!line.is_cursor_visible());
+}
+
+/// Neither a screen without cells nor cells without a screen are a fault.
+#[test]
+fn anywhere_and_nowhere() {
+    let cell = ratatui::buffer::Cell::new("世");
+    for size in [(0, 0), (0, 5), (5, 0), (1, 1), (3, 2)] {
+        let mut backend = EncoderBackend::new(Vec::new(), size);
+        for (x, y) in [(0, 0), (2, 1), (u16::MAX, u16::MAX)] {
+            backend.draw([(x, y, &cell)].into_iter()).expect("a Vec");
+            backend.set_cursor_position((x, y)).expect("a Vec");
+            for region in REGIONS {
+                backend.clear_region(region).expect("a Vec");
+            }
+            backend.append_lines(x).expect("a Vec");
+            Backend::flush(&mut backend).expect("a Vec");
+        }
+        backend.resize((2, 2));
+        assert_eq!(backend.size().expect("it is known"), Size::new(2, 2));
+    }
+}
+
+#[test]
+fn the_size_is_its_owners() {
+    let mut backend = EncoderBackend::new(Vec::new(), (80, 24));
+    backend.set_pixels((800, 480));
+    let window = |width, height, pixels| WindowSize { columns_rows: Size::new(width, height), pixels };
+    assert_eq!(backend.window_size().expect("it is known"), window(80, 24, Size::new(800, 480)));
+    backend.resize((100, 30));
+    assert_eq!(backend.window_size().expect("it is known"), window(100, 30, Size::ZERO));
+}
+
+/// What the strict model of a terminal takes for the screen: without what it does not know.
+fn without_modes(bytes: &str) -> String {
+    ["\x1b[?25h", "\x1b[?25l", "\x1b[?2026h", "\x1b[?2026l"]
+        .iter()
+        .fold(bytes.to_owned(), |bytes, mode| bytes.replace(mode, ""))
+}
+
+/// A ratatui program on the strict model: what it shows is what the program has drawn, the lines below in their colours,
+/// what is wide, and clusters.
+pub(crate) struct Strict {
+    terminal: Terminal<EncoderBackend<Vec<u8>>>,
+    screens: Screens,
+    read: usize,
+}
+
+impl Strict {
+    pub(crate) fn new(size: Size, encoder: Encoder, clusters: Clusters) -> Self {
+        let backend = EncoderBackend::new(Vec::new(), size).with_encoder(encoder);
+        let terminal = Terminal::new(backend).expect("a Vec");
+        let screens = Screens::disturbed(grid::Size::new(size.width, size.height), clusters);
+        let mut strict = Self { terminal, screens, read: 0 };
+        strict.terminal.clear().expect("a Vec");
+        strict
+    }
+
+    #[track_caller]
+    pub(crate) fn draw(&mut self, render: impl FnOnce(&mut Frame<'_>)) {
+        let drawn = self.terminal.draw(render).expect("a Vec").buffer.clone();
+        let mut wanted = Grid::new(grid::Size::new(drawn.area.width, drawn.area.height));
+        overlay::lay_over(&mut wanted, &drawn);
+        let bytes = self.terminal.backend().writer();
+        let text = without_modes(std::str::from_utf8(&bytes[self.read..]).expect("whole characters"));
+        self.read = bytes.len();
+        self.screens.feed(text.as_bytes());
+        self.screens.assert_show(&wanted);
+    }
+}
+
+/// Buffers of some texts in some styles.
+fn panels(clusters: Clusters) -> impl Strategy<Value = Vec<Vec<Buffer>>> {
+    let frame = vec(panel(clusters).prop_map(|panel| panel.buffer()), 0..4);
+    vec(frame, 1..6)
+}
+
+fn render(buffers: &[Buffer], frame: &mut Frame<'_>) {
+    for buffer in buffers {
+        let target = frame.buffer_mut();
+        let area = buffer.area.intersection(target.area);
+        for place in area.positions() {
+            target[place] = buffer[place].clone();
+        }
+        // Half of what is wide is nothing.
+        for y in area.rows().map(|row| row.y) {
+            halve(target, y);
+        }
+    }
+}
+
+/// No cell of a row stands on the second half of another, or goes over the edge; that half has the first one's style, or
+/// ratatui would not say what is to be there once only the first is gone.
+fn halve(buffer: &mut Buffer, y: u16) {
+    let right = buffer.area.right();
+    let mut x = buffer.area.left();
+    while x < right {
+        let width = buffer[(x, y)].cell_width().max(1);
+        let fits = x + width <= right && (x + 1..x + width).all(|x| buffer[(x, y)].symbol() == " ");
+        if !fits {
+            buffer[(x, y)].set_symbol(" ");
+        } else if width == 2 {
+            buffer[(x + 1, y)] = buffer[(x, y)].clone();
+            buffer[(x + 1, y)].set_symbol(" ");
+        }
+        x += if fits { width } else { 1 };
+    }
+}
+
+fn encoder() -> impl Strategy<Value = Encoder> {
+    (prop::sample::select(vec![Order::Raster, Order::Color]), any::<bool>())
+        .prop_map(|(order, synchronized)| Encoder::new().with_order(order).with_synchronized_output(synchronized))
+}
+
+/// What the emulators take from ratatui's own backend as they do from ours: bold and dim are one scale to them, of two
+/// speeds of blinking one is switched off with the other, the colour of a line they take for other things, and of half a
+/// wide character they make what they like.
+pub(crate) fn commonly_known(mut buffer: Buffer) -> Buffer {
+    for cell in &mut buffer.content {
+        if cell.cell_width() != 1 {
+            cell.set_symbol("w");
+        }
+        if cell.modifier.contains(Modifier::BOLD) {
+            cell.modifier.remove(Modifier::DIM);
+        }
+        cell.modifier.remove(Modifier::RAPID_BLINK);
+        cell.underline_color = Color::Reset;
+    }
+    buffer
+}
+
+fn assert_strict(frames: &[Vec<Buffer>], encoder: Encoder, clusters: Clusters) {
+    let mut strict = Strict::new(SIZE, encoder, clusters);
+    for buffers in frames {
+        strict.draw(|frame| render(buffers, frame));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+
+    #[test]
+    fn any_frames_are_shown(frames in panels(Clusters::None), encoder in encoder()) {
+        assert_strict(&frames, encoder, Clusters::None);
+    }
+
+    #[test]
+    fn any_frames_with_marks_are_shown(frames in panels(Clusters::Marks), encoder in encoder()) {
+        assert_strict(&frames, encoder, Clusters::Marks);
+    }
+
+    #[test]
+    fn any_frames_with_families_are_shown(frames in panels(Clusters::Joined), encoder in encoder()) {
+        assert_strict(&frames, encoder, Clusters::Joined);
+    }
+
+    #[test]
+    fn any_frames_are_those_of_ratatui(frames in panels(Clusters::None), encoder in encoder()) {
+        let mut pair = Pair::new(SIZE, encoder, &Viewport::Fullscreen, "");
+        for buffers in &frames {
+            let buffers: Vec<Buffer> = buffers.iter().cloned().map(commonly_known).collect();
+            pair.draw(|frame| render(&buffers, frame));
+        }
+    }
+}
