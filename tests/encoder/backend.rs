@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::{Buffer, CellWidth};
 use ratatui::layout::{Position, Rect, Size};
-use ratatui::style::{Color, Modifier, Stylize};
+use ratatui::style::{Color, Modifier, Style, Stylize};
 use ratatui::widgets::{Paragraph, Widget};
 use ratatui::{Frame, Terminal, TerminalOptions, Viewport, text};
 use ratatui_crossterm::CrosstermBackend;
@@ -22,7 +22,7 @@ use termtrace::{grid, overlay};
 
 /// Two emulators on one line, and what has come over it.
 #[derive(Clone)]
-pub(crate) struct Line(Rc<RefCell<Emulators>>);
+pub(crate) struct Wire(Rc<RefCell<Emulators>>);
 
 struct Emulators {
     avt: avt::Terminal,
@@ -37,7 +37,7 @@ fn side(length: u16) -> NonZeroU16 {
     NonZeroU16::new(length).expect("a screen has cells")
 }
 
-impl Line {
+impl Wire {
     fn new(Size { width, height }: Size) -> Self {
         let avt = avt::Terminal::new(width.into(), height.into()).expect("a screen has cells");
         let vt100 = vt100::Parser::new(side(height), side(width), SCROLLBACK);
@@ -102,7 +102,7 @@ impl Line {
     }
 }
 
-impl Write for Line {
+impl Write for Wire {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let text = std::str::from_utf8(bytes).expect("whole characters");
         self.feed(text);
@@ -116,7 +116,7 @@ impl Write for Line {
 }
 
 /// ratatui's own backend, with the emulator for the terminal that it would ask.
-struct Theirs(CrosstermBackend<Line>, Line);
+struct Theirs(CrosstermBackend<Wire>, Wire);
 
 impl Backend for Theirs {
     type Error = io::Error;
@@ -168,10 +168,10 @@ impl Backend for Theirs {
 
 /// The same program twice.
 pub(crate) struct Pair {
-    ours: Terminal<EncoderBackend<Line>>,
+    ours: Terminal<EncoderBackend<Wire>>,
     theirs: Terminal<Theirs>,
-    pub(crate) line: Line,
-    other_line: Line,
+    pub(crate) line: Wire,
+    pub(crate) other_line: Wire,
 }
 
 const SIZE: Size = Size::new(12, 6);
@@ -184,7 +184,7 @@ fn shell(rows: u16) -> String {
 
 impl Pair {
     pub(crate) fn new(size: Size, encoder: Encoder, viewport: &Viewport, before: &str) -> Self {
-        let [line, other_line] = [Line::new(size), Line::new(size)];
+        let [line, other_line] = [Wire::new(size), Wire::new(size)];
         line.feed(before);
         other_line.feed(before);
         let mut backend = EncoderBackend::new(line.clone(), size).with_encoder(encoder);
@@ -325,6 +325,28 @@ fn clearing_is_not_believed_to_be_done() {
         pair.call(|backend| backend.put_cursor(4, 2));
         pair.call(|backend| backend.wipe(region));
     }
+}
+
+/// Whatever pen something else has left is laid down with that, and the cursor is hidden again.
+#[test]
+fn clearing_the_screen_mends_it_all() {
+    let line = Wire::new(SIZE);
+    let mut terminal = Terminal::new(EncoderBackend::new(line.clone(), SIZE)).expect("it can be written");
+    terminal.draw(full).expect("it can be written");
+    line.feed("\x1b[1;4;31;44m\x1b[?25h\x1b[3;3H?");
+    terminal.clear().expect("it can be written");
+    assert_eq!([line.cells(0, 0), line.cells(2, 2)], [const { [const { Cell::BLANK }; 2] }; 2]);
+    assert!(!line.is_cursor_visible());
+}
+
+/// What an encoder has drawn elsewhere is not on this screen.
+#[test]
+fn an_encoder_that_has_drawn_before() {
+    let mut encoder = Encoder::new();
+    encoder.encode(&Grid::new(grid::Size::new(SIZE.width, SIZE.height)), &mut Vec::new());
+    let mut pair = Pair::new(SIZE, encoder, &Viewport::Fullscreen, &shell(3));
+    pair.draw(|frame| frame.buffer_mut().set_string(0, 1, "  x", Style::new().on_red()));
+    pair.clear();
 }
 
 #[test]
@@ -491,7 +513,7 @@ fn what_is_drawn_again_is_sent_again() {
 /// After a fault in the line nobody knows what has arrived: all is drawn again, the cursor's state too.
 #[test]
 fn a_line_that_fails() {
-    struct Failing(Line, bool);
+    struct Failing(Wire, bool);
     impl Write for Failing {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
             if self.1 { Err(io::Error::other("cut")) } else { self.0.write(bytes) }
@@ -500,7 +522,7 @@ fn a_line_that_fails() {
             Ok(())
         }
     }
-    let line = Line::new(SIZE);
+    let line = Wire::new(SIZE);
     let mut terminal =
         Terminal::new(EncoderBackend::new(Failing(line.clone(), false), SIZE)).expect("it can be written");
     terminal.draw(full).expect("it can be written");
