@@ -320,7 +320,7 @@ fn each_region_is_cleared() {
 fn clearing_is_not_believed_to_be_done() {
     for region in REGIONS {
         let mut pair = Pair::fullscreen();
-        pair.draw(|_| ());
+        pair.clear();
         pair.disturb(&format!("\x1b[H{}\x1b[H", "?".repeat(SIZE.area() as usize)));
         pair.call(|backend| backend.put_cursor(4, 2));
         pair.call(|backend| backend.wipe(region));
@@ -342,11 +342,43 @@ fn clearing_the_screen_mends_it_all() {
 /// What an encoder has drawn elsewhere is not on this screen.
 #[test]
 fn an_encoder_that_has_drawn_before() {
+    let mut grid = Grid::new(grid::Size::new(SIZE.width, SIZE.height));
+    *grid.cell_mut(2, 1) = Cell::new('x', Ink::Default, Ink::Default);
     let mut encoder = Encoder::new();
-    encoder.encode(&Grid::new(grid::Size::new(SIZE.width, SIZE.height)), &mut Vec::new());
+    encoder.encode(&grid, &mut Vec::new());
     let mut pair = Pair::new(SIZE, encoder, &Viewport::Fullscreen, &shell(3));
-    pair.draw(|frame| frame.buffer_mut().set_string(0, 1, "  x", Style::new().on_red()));
-    pair.clear();
+    pair.draw(|frame| frame.buffer_mut().set_string(2, 1, "x", Style::new()));
+}
+
+/// Something else has changed it: what the program says of it is sent, even if it has said so before.
+#[test]
+fn the_cursor_is_not_believed_to_be_there() {
+    let mut pair = Pair::fullscreen();
+    let render = |frame: &mut Frame<'_>| frame.set_cursor_position((4, 4));
+    pair.draw(render);
+    pair.disturb("\x1b[H");
+    pair.call(|backend| backend.put_cursor(4, 4));
+    pair.disturb("\x1b[?25l");
+    pair.ours.show_cursor().expect("it can be written");
+    pair.theirs.show_cursor().expect("it can be written");
+    pair.assert_equal();
+    // A window of the same size, of which nothing is known.
+    pair.disturb("\x1b[H\x1b[?25l");
+    pair.ours.backend_mut().resize(SIZE);
+    pair.draw(render);
+}
+
+/// A terminal that takes a cluster apart writes over what stands behind it, which is then sent again; not so what is not
+/// the program's.
+#[test]
+fn what_stands_behind_a_cluster() {
+    let line = Wire::new(SIZE);
+    line.feed("$ shell tex");
+    let mut backend = EncoderBackend::new(line.clone(), SIZE);
+    let cell = ratatui::buffer::Cell::new("e\u{301}");
+    backend.draw([(3, 0, &cell)].into_iter()).expect("it can be written");
+    Backend::flush(&mut backend).expect("it can be written");
+    assert_eq!(line.text(), "$ se\u{301}ell tex");
 }
 
 #[test]
