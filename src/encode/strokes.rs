@@ -88,9 +88,14 @@ impl Form {
         let plain = before.wanted_by(cell);
         match self {
             Self::Plain => plain,
-            Self::Turned => Pen { fg: plain.bg, bg: plain.fg, ..plain },
+            Self::Turned => turned(plain),
         }
     }
+}
+
+/// The pen for the other half.
+fn turned(pen: Pen) -> Pen {
+    Pen { fg: pen.bg, bg: pen.fg, ..pen }
 }
 
 fn other_half(glyph: &Glyph) -> Option<char> {
@@ -129,16 +134,19 @@ fn choose_forms(wanted: &Grid, order: &[Place], upper_half: bool, pen: Pen) -> V
     let mut before = Vec::with_capacity(order.len());
     for place in order {
         let cell = wanted.cell(place.column, place.row);
-        let (plain, from_plain) = extend(&paths, cell, Form::Plain);
-        if can_be_turned(cell) {
-            let (turned, from_turned) = extend(&paths, cell, Form::Turned);
-            before.push([from_plain, from_turned]);
-            paths = [plain, turned];
-        } else if is_plain_space(cell) {
+        let pens = paths.map(|path| path.pen.wanted_by(cell));
+        let is_lower = cell.glyph == '▄';
+        if is_plain_space(cell) {
             // The character's colour is carried on: both paths stay open.
             before.push([0, 1]);
-            paths = paths.map(|path| step(&path, cell, Form::Plain));
+            paths = [paths[0].step(pens[0], false), paths[1].step(pens[1], false)];
+        } else if can_be_turned(cell) {
+            let (plain, from_plain) = cheaper(&paths, pens, is_lower);
+            let (turned, from_turned) = cheaper(&paths, pens.map(turned), !is_lower);
+            before.push([from_plain, from_turned]);
+            paths = [plain, turned];
         } else {
+            let (plain, from_plain) = cheaper(&paths, pens, is_lower);
             before.push([from_plain; 2]);
             paths = [plain; 2];
         }
@@ -154,17 +162,17 @@ fn choose_forms(wanted: &Grid, order: &[Place], upper_half: bool, pen: Pen) -> V
     forms
 }
 
-/// The cheaper of two paths, with the cell written, and which of them it was.
-fn extend(paths: &[Path; 2], cell: &Cell, form: Form) -> (Path, u8) {
-    let [first, second] = [step(&paths[0], cell, form), step(&paths[1], cell, form)];
+/// The cheaper of two paths, with a cell written by these pens, and which of them it was.
+fn cheaper(paths: &[Path; 2], pens: [Pen; 2], is_lower: bool) -> (Path, u8) {
+    let [first, second] = [paths[0].step(pens[0], is_lower), paths[1].step(pens[1], is_lower)];
     if second.cost < first.cost { (second, 1) } else { (first, 0) }
 }
 
-fn step(path: &Path, cell: &Cell, form: Form) -> Path {
-    let pen = form.pen(cell, &path.pen);
-    let (bytes, lower) = path.cost;
-    let is_lower = (cell.glyph == '▄') == (form == Form::Plain);
-    Path { pen, cost: (bytes + path.pen.cost_of(&pen), lower + usize::from(is_lower)) }
+impl Path {
+    fn step(&self, pen: Pen, is_lower: bool) -> Self {
+        let (bytes, lower) = self.cost;
+        Self { pen, cost: (bytes + self.pen.cost_of(&pen), lower + usize::from(is_lower)) }
+    }
 }
 
 /// Brings the cursor there: by the cheapest move, or by writing again what lies on the way, where the pen happens to be
