@@ -13,7 +13,7 @@ use crate::framebuffer::Resolution;
 use crate::grid::Size;
 use crate::input::{Input, Parser};
 use crate::scene::Scene;
-use crate::terminal::{Signals, Terminal, Window};
+use crate::terminal::{self, Signals, Stopped, Terminal, Window};
 use crossterm::event::{Event, KeyEvent, KeyEventKind};
 use std::io;
 use std::time::{Duration, Instant};
@@ -43,9 +43,6 @@ pub struct Options {
     pub max_rate: Option<u32>,
     /// How many threads trace; `None`: as many as there are cores.
     pub threads: Option<usize>,
-    /// Where to panic when `!` is pressed, so that tests can see how the terminal is left.
-    #[cfg(debug_assertions)]
-    pub test_panic: Option<TestPanic>,
 }
 
 impl Options {
@@ -58,20 +55,8 @@ impl Options {
             quality: Quality::Exact,
             max_rate: None,
             threads: None,
-            #[cfg(debug_assertions)]
-            test_panic: None,
         }
     }
-}
-
-/// Which thread panics.
-#[cfg(debug_assertions)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TestPanic {
-    /// The one that runs the loop.
-    Main,
-    /// One of those that trace.
-    Worker,
 }
 
 /// How the live view ended.
@@ -104,10 +89,13 @@ pub enum Ending {
 pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<Outcome> {
     let camera = scene.camera;
     // The terminal is declared last, and so is given back first: nothing that comes after can keep it.
-    let mut renderer = Renderer::start(scene, options.threads, signals.waker()?)?;
+    let waker = signals.waker()?;
+    let mut renderer = terminal::without_signals(|| Renderer::start(scene, options.threads, waker))?;
     let mut terminal = Terminal::take()?;
     let mut live = Live::new(camera, options, terminal.window()?);
-    let ending = live.run(&mut terminal, &mut renderer, signals)?;
+    let ended = live.run(&mut terminal, &mut renderer, signals);
+    // When the terminal vanishes, the system says so by a signal too.
+    let ending = ended.or_else(|error| signals.deadly().map(Ending::Signal).ok_or(error))?;
     let heard = terminal.give_back();
     Ok(Outcome { ending, moved: (live.camera != camera).then_some(live.camera), heard })
 }
@@ -167,6 +155,7 @@ impl Live {
     fn run(&mut self, terminal: &mut Terminal, renderer: &mut Renderer, signals: &mut Signals) -> io::Result<Ending> {
         loop {
             self.move_camera();
+            self.panic_if_asked(renderer);
             // Nothing is rendered that cannot be sent.
             let idle = !renderer.is_busy() && !terminal.is_sending();
             if self.stale && idle && self.now() >= self.next_frame() {
@@ -177,20 +166,32 @@ impl Live {
             if woken.wake {
                 signals.drain();
             }
+            if signals.take_stop() {
+                self.suspend(terminal, signals, Some(Stopped::Process))?;
+            } else if signals.take_continued() {
+                // Stopped unasked, and whoever had the terminal since then left it as he liked.
+                self.suspend(terminal, signals, None)?;
+            }
             if let Some(signal) = signals.deadly() {
                 return Ok(Ending::Signal(signal));
             }
             if signals.take_resized() {
+                terminal::reach("resize")?;
                 self.resize(terminal.window()?);
             }
             if woken.keys {
-                if self.read_keys(terminal, renderer)? == Stay::Leave {
-                    return Ok(Ending::Left);
+                match self.read_keys(terminal)? {
+                    Next::Leave => return Ok(Ending::Left),
+                    Next::Suspend => {
+                        self.suspend(terminal, signals, Some(Stopped::Group))?;
+                        continue;
+                    }
+                    Next::Stay => {}
                 }
             } else if !woken.wake && self.parser.is_waiting() {
                 let mut inputs = Vec::new();
                 self.parser.give_up_waiting(&mut inputs);
-                self.take_inputs(&inputs, renderer);
+                self.take_inputs(&inputs);
             }
             if let Some(frame) = renderer.finished() {
                 self.screen.take_frame(frame, self.moved_until.is_some().then(|| self.now()));
@@ -254,7 +255,7 @@ impl Live {
         until_frame.into_iter().chain(until_escape).chain(until_bytes).min()
     }
 
-    fn read_keys(&mut self, terminal: &mut Terminal, renderer: &mut Renderer) -> io::Result<Stay> {
+    fn read_keys(&mut self, terminal: &mut Terminal) -> io::Result<Next> {
         let mut buffer = [0; 4096];
         let bytes = terminal.read(&mut buffer)?;
         if bytes.is_empty() {
@@ -262,28 +263,32 @@ impl Live {
         }
         let mut inputs = Vec::new();
         self.parser.feed(bytes, &mut inputs);
-        Ok(self.take_inputs(&inputs, renderer))
+        Ok(self.take_inputs(&inputs))
     }
 
-    fn take_inputs(&mut self, inputs: &[Input], renderer: &mut Renderer) -> Stay {
+    fn take_inputs(&mut self, inputs: &[Input]) -> Next {
         for input in inputs {
-            if let Input::Event(Event::Key(key)) = input
-                && self.take_key(key, renderer) == Stay::Leave
-            {
-                return Stay::Leave;
+            let next = match input {
+                Input::Event(Event::Key(key)) => self.take_key(key),
+                // Nobody says when the keys held now are let go.
+                Input::Event(Event::FocusLost) => self.stand_still(),
+                _ => Next::Stay,
+            };
+            if next != Next::Stay {
+                return next;
             }
         }
-        Stay::Stay
+        Next::Stay
     }
 
-    fn take_key(&mut self, key: &KeyEvent, renderer: &mut Renderer) -> Stay {
-        self.panic_if_asked(key, renderer);
+    fn take_key(&mut self, key: &KeyEvent) -> Next {
         self.take_motion(key);
         if key.kind != KeyEventKind::Press {
-            return Stay::Stay;
+            return Next::Stay;
         }
         match control::command(key).map(|(command, _)| command) {
-            Some(Command::Quit) => return Stay::Leave,
+            Some(Command::Quit) => return Next::Leave,
+            Some(Command::Suspend) => return Next::Suspend,
             Some(Command::Reset) => self.reset(),
             Some(Command::Status) => self.screen.toggle_status(),
             Some(Command::Help) => self.screen.toggle_help(),
@@ -291,7 +296,7 @@ impl Live {
             Some(Command::Redraw) => self.screen.redraw(self.capabilities.halves_meet),
             Some(Command::Move(_) | Command::Look(_)) | None => {}
         }
-        Stay::Stay
+        Next::Stay
     }
 
     /// What was going on is carried out before the key changes it.
@@ -301,6 +306,36 @@ impl Live {
         self.motion.key(key, now);
         // From rest, the first frame already shows a frame's worth of movement.
         self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
+    }
+
+    fn stand_still(&mut self) -> Next {
+        self.move_camera();
+        self.motion.stop();
+        self.moved_until = None;
+        Next::Stay
+    }
+
+    /// Gives the terminal back, stops if that is wanted, and takes the terminal again: at its size of then, and with all
+    /// drawn anew. With a signal to end, it stays given back.
+    fn suspend(&mut self, terminal: &mut Terminal, signals: &mut Signals, stop: Option<Stopped>) -> io::Result<()> {
+        self.stand_still();
+        self.parser = Parser::new();
+        terminal.give_back();
+        if let Some(who) = stop {
+            signals.stop(who);
+        }
+        if signals.deadly().is_some() {
+            return Ok(());
+        }
+        terminal.take_again()?;
+        self.resize(terminal.window()?);
+        Ok(())
+    }
+
+    fn panic_if_asked(&self, renderer: &mut Renderer) {
+        if terminal::take_worker_panic() {
+            renderer.begin(Job { camera: self.camera, resolution: self.resolution(), test_panic: true });
+        }
     }
 
     fn reset(&mut self) {
@@ -321,28 +356,12 @@ impl Live {
         self.link.count(bytes.len(), now);
         terminal.send(bytes)
     }
-
-    #[cfg(debug_assertions)]
-    fn panic_if_asked(&self, key: &KeyEvent, renderer: &mut Renderer) {
-        if key.code != crossterm::event::KeyCode::Char('!') {
-            return;
-        }
-        match self.options.test_panic {
-            Some(TestPanic::Main) => panic!("a test asked for a panic in the loop"),
-            Some(TestPanic::Worker) => {
-                renderer.begin(Job { camera: self.camera, resolution: self.resolution(), test_panic: true });
-            }
-            None => {}
-        }
-    }
-
-    #[cfg(not(debug_assertions))]
-    fn panic_if_asked(&self, _: &KeyEvent, _: &mut Renderer) {}
 }
 
-/// Whether the loop goes on.
+/// What the loop does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stay {
+enum Next {
     Stay,
+    Suspend,
     Leave,
 }

@@ -179,7 +179,9 @@ fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Cli, ExitCode> {
 
 fn complain(message: &str, code: u8) -> ExitCode {
     // Nobody may be listening any more; the exit code says it too.
-    let _ = writeln!(io::stderr(), "termtrace: {}", visible(message));
+    if termtrace::terminal::stderr_is_read() {
+        let _ = writeln!(io::stderr(), "termtrace: {}", visible(message));
+    }
     ExitCode::from(code)
 }
 
@@ -200,8 +202,11 @@ fn reason(error: &io::Error) -> String {
 
 /// Says what the threads said when they panicked, and ends as a panic does.
 fn complain_of_panic() -> ! {
-    for message in termtrace::terminal::take_panic_messages() {
-        let _ = writeln!(io::stderr(), "{message}");
+    let messages = termtrace::terminal::take_panic_messages();
+    if termtrace::terminal::stderr_is_read() {
+        for message in messages {
+            let _ = writeln!(io::stderr(), "{message}");
+        }
     }
     std::process::exit(101)
 }

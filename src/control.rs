@@ -24,6 +24,8 @@ pub enum Command {
     Close,
     /// The whole screen again, in case something else wrote on it.
     Redraw,
+    /// Back to the shell, to come again.
+    Suspend,
     /// Out.
     Quit,
 }
@@ -112,6 +114,7 @@ pub const BINDINGS: &[Binding] = &[
     binding(&[letter('?')], "?", Command::Help, "this help"),
     binding(&[named(KeyCode::Esc)], "Esc", Command::Close, "close it"),
     binding(&[ctrl('l')], "Ctrl-L", Command::Redraw, "draw the screen again"),
+    binding(&[ctrl('z')], "Ctrl-Z", Command::Suspend, "to the shell; fg comes back"),
     binding(&[letter('q'), ctrl('c')], "q Ctrl-C", Command::Quit, "leave"),
 ];
 

@@ -73,7 +73,8 @@
 //!    threads, and the same bits on any CPU, because only + - * / and the square root are on its path, with libm in
 //!    Rust at set-up (clippy bans the rest; `tests/hashes.txt` has the bits).
 //! 5. Only [`terminal`] touches the operating system's terminal and signals, and it is the one owner of what is turned
-//!    on. Everything above bytes runs without a terminal.
+//!    on. Everything above bytes runs without a terminal. The feature `test-hooks`, which this crate's tests turn on for
+//!    themselves (a dev-dependency of the crate on itself), lets them say where it is to fail; no other build has it.
 //! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no
 //!    timer runs.
 //! 7. The library neither prints nor exits, and installs nothing by itself.

@@ -2,8 +2,8 @@
 //!
 //! The terminal is given back when [`Terminal`] is dropped: on return, on an error, while a panic unwinds. Signals
 //! that would end the process end the loop of [`app`](crate::app) instead, and so drop it too; `main` then lets the
-//! signal do its work. Messages of panics are kept until the terminal is back (see [`hold_panic_messages`]), or they
-//! would vanish with the alternate screen.
+//! signal do its work. Before a stop (Ctrl-Z, SIGTSTP) it is given back, and taken again after. Messages of panics are
+//! kept until the terminal is back (see [`hold_panic_messages`]), or they would vanish with the alternate screen.
 //!
 //! `O_NONBLOCK` is never set on what is shared with the shell, which would find it set after us: the screen is opened
 //! a second time for that. So a terminal that has stopped reading never keeps us from hearing keys and signals.
@@ -20,12 +20,17 @@ use std::time::Duration;
 mod modes;
 mod output;
 mod panics;
+mod rehearsal;
 mod signals;
 
 use modes::Modes;
+pub use output::stderr_is_read;
 use output::{Output, timespec};
 pub use panics::{hold_panic_messages, take_panic_messages};
-pub use signals::{Signals, Waker, die_of};
+#[cfg(feature = "test-hooks")]
+pub use rehearsal::rehearse;
+pub(crate) use rehearsal::{reach, take_worker_panic};
+pub use signals::{Signals, Stopped, Waker, die_of, without_signals};
 
 /// A terminal in raw mode with the alternate screen, to be read, written and asked for its size.
 pub struct Terminal {
@@ -61,10 +66,18 @@ impl Terminal {
     /// # Errors
     /// If either is not a terminal, or cannot be set up; it is then as it was.
     pub fn take() -> io::Result<Self> {
-        let mut output = Output::open()?;
-        let keys = keys_file()?;
-        let modes = Modes::take(&keys, &mut output)?;
-        Ok(Self { keys, output, modes })
+        let output = Output::open()?;
+        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::none() };
+        terminal.take_again()?;
+        Ok(terminal)
+    }
+
+    /// Takes the terminal over after [`give_back`](Self::give_back).
+    ///
+    /// # Errors
+    /// If it cannot be set up; what was done is undone when this is dropped.
+    pub fn take_again(&mut self) -> io::Result<()> {
+        self.modes.turn_on(&self.keys, &mut self.output)
     }
 
     /// The window's size now.
@@ -96,7 +109,7 @@ impl Terminal {
 
     /// Gives the terminal back, as dropping it does. Whether it took all that was sent: one that has stopped reading is
     /// left after a second, and is not to be written to any more.
-    pub fn give_back(mut self) -> bool {
+    pub fn give_back(&mut self) -> bool {
         self.modes.give_back(&self.keys, &mut self.output)
     }
 
@@ -120,7 +133,7 @@ impl Terminal {
     /// # Errors
     /// If the terminal is gone, or the operating system refuses.
     pub fn wait(&mut self, wake: BorrowedFd<'_>, timeout: Option<Duration>) -> io::Result<Woken> {
-        // Without anything to send, only its end would be told of the screen, and the keys tell of that too.
+        // Without anything to send, only its end is told of the screen.
         let sending = if self.is_sending() { PollFlags::OUT } else { PollFlags::empty() };
         let mut fds = [
             PollFd::new(&self.keys, PollFlags::IN),
@@ -132,6 +145,10 @@ impl Terminal {
             // A signal: what it was is in the wake pipe, and the next call finds it there.
             Err(rustix::io::Errno::INTR) => Woken::default(),
             Err(error) => return Err(error.into()),
+            // The keys may come from another terminal, which knows nothing of the screen's end.
+            Ok(_) if fds[2].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL) => {
+                return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
+            }
             Ok(_) => Woken { keys: !fds[0].revents().is_empty(), wake: !fds[1].revents().is_empty() },
         };
         self.output.push()?;
@@ -141,7 +158,7 @@ impl Terminal {
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        self.modes.give_back(&self.keys, &mut self.output);
+        self.give_back();
     }
 }
 

@@ -144,26 +144,6 @@ fn signals_are_died_of_with_the_terminal_given_back() {
     }
 }
 
-#[cfg(debug_assertions)]
-#[test]
-fn a_panic_is_told_after_the_terminal_is_given_back() {
-    for (place, message) in [("main", "a panic in the loop"), ("worker", "a panic in a worker")] {
-        let mut session = looking(termtrace().arg("--test-panic").arg(place));
-        session.send(b"!");
-        assert_eq!(session.wait_exit(SOON).code(), Some(101), "{place}");
-        session.assert_clean();
-        let seen = session.seen();
-        assert!(!seen.screen().is_alternate());
-        let text = seen.screen().text().join("");
-        assert!(text.contains(message), "{place}: {text}");
-        // Given back first, told then; and told once.
-        let told = String::from_utf8_lossy(seen.bytes()).into_owned();
-        let (back, message_at) = (told.rfind("\x1b[?1049l"), told.find(message));
-        assert!(back < message_at, "{place}");
-        assert_eq!(told.matches(message).count(), 1, "{place}");
-    }
-}
-
 /// The eye of the `camera:` line that is printed on leaving.
 fn eye_in(said: &str) -> [f32; 3] {
     let numbers = said.split("eye: (").nth(1).and_then(|rest| rest.split(')').next()).expect("an eye point is printed");

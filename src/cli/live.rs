@@ -34,10 +34,6 @@ pub(super) struct LiveArgs {
     /// Do not print the camera on leaving
     #[arg(long)]
     quiet: bool,
-    /// Panic when ! is pressed
-    #[cfg(debug_assertions)]
-    #[arg(long, hide = true)]
-    test_panic: Option<TestPanic>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -45,13 +41,6 @@ enum Color {
     Auto,
     Always,
     Never,
-}
-
-#[cfg(debug_assertions)]
-#[derive(Clone, Copy, ValueEnum)]
-enum TestPanic {
-    Main,
-    Worker,
 }
 
 impl LiveArgs {
@@ -70,13 +59,6 @@ impl LiveArgs {
         options.quality = self.encoding.quality();
         options.max_rate = self.encoding.max_rate();
         options.threads = self.scene.threads.map(usize::from);
-        #[cfg(debug_assertions)]
-        {
-            options.test_panic = self.test_panic.map(|panic| match panic {
-                TestPanic::Main => app::TestPanic::Main,
-                TestPanic::Worker => app::TestPanic::Worker,
-            });
-        }
         options
     }
 }
@@ -114,6 +96,8 @@ fn print(args: &LiveArgs, scene: &Scene) -> Done {
 
 /// The live view. Whatever happens in it, the terminal is given back before a word is said.
 fn look(args: &LiveArgs, scene: Scene) -> Done {
+    #[cfg(feature = "test-hooks")]
+    rehearse();
     let options = args.options();
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::run(scene, options, &mut signals)));
@@ -128,5 +112,14 @@ fn look(args: &LiveArgs, scene: Scene) -> Done {
         // With a comma: a line for the scene file.
         Some(camera) if heard && !args.quiet => write_stdout(format!("{},\n", camera.to_ron()).as_bytes()),
         _ => Ok(()),
+    }
+}
+
+/// Lets the test that started us say where things are to go wrong.
+#[cfg(feature = "test-hooks")]
+fn rehearse() {
+    let path = std::env::var_os("TERMTRACE_TEST_SOCKET");
+    if let Some(Ok(test)) = path.map(std::os::unix::net::UnixStream::connect) {
+        termtrace::terminal::rehearse(test);
     }
 }

@@ -1,7 +1,7 @@
 //! What is turned on, in order, and how each is turned off.
 
 use super::output::Output;
-use super::panics;
+use super::{panics, rehearsal, signals};
 use crossterm::{Command, cursor, event, style, terminal};
 use rustix::termios::{self, OptionalActions, QueueSelector, Termios};
 use std::fs::File;
@@ -25,31 +25,31 @@ enum Mode {
 const PATIENCE: Duration = Duration::from_secs(1);
 
 impl Modes {
-    /// Raw mode, the alternate screen, no cursor, pastes in brackets.
-    pub(super) fn take(keys: &File, output: &mut Output) -> io::Result<Self> {
-        let mut modes = Self { on: Vec::new() };
-        let taken = modes.turn_on(keys, output);
-        if taken.is_err() {
-            modes.give_back(keys, output);
-        }
-        taken.map(|()| modes)
+    /// Nothing is turned on yet.
+    pub(super) fn none() -> Self {
+        Self { on: Vec::new() }
     }
 
-    /// What is about to be turned on is listed first: half done is undone too.
-    fn turn_on(&mut self, keys: &File, output: &mut Output) -> io::Result<()> {
+    /// Raw mode, the alternate screen, no cursor, pastes in brackets, word of the focus. What is about to be turned on is
+    /// listed first: half done is undone too.
+    pub(super) fn turn_on(&mut self, keys: &File, output: &mut Output) -> io::Result<()> {
         let before = termios::tcgetattr(keys)?;
         let mut raw = before.clone();
         raw.make_raw();
         self.on.push(Mode::Raw(Box::new(before)));
         panics::hold(true);
+        // In the background this stops the process, until it is brought to the foreground.
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
+        rehearsal::reach("raw mode")?;
         let mut turn_on = String::new();
         self.list(&mut turn_on, terminal::EnterAlternateScreen, terminal::LeaveAlternateScreen);
         // Nothing to turn on: the pen is the picture's, and no colour is left for the shell.
         self.on.push(Mode::Screen(ansi(style::ResetColor)));
         self.list(&mut turn_on, cursor::Hide, cursor::Show);
         self.list(&mut turn_on, event::EnableBracketedPaste, event::DisableBracketedPaste);
-        output.send(turn_on.as_bytes())
+        self.list(&mut turn_on, event::EnableFocusChange, event::DisableFocusChange);
+        output.send(turn_on.as_bytes())?;
+        rehearsal::reach("all modes")
     }
 
     fn list(&mut self, turn_on: &mut String, on: impl Command, off: impl Command) {
@@ -64,21 +64,23 @@ impl Modes {
         let mut heard = true;
         while let Some(mode) = self.on.pop() {
             match mode {
-                Mode::Screen(off) => {
-                    let _ = output.send(off.as_bytes());
-                    heard = output.finish(deadline);
-                }
+                Mode::Screen(off) => output.put(off.as_bytes()),
                 Mode::Raw(before) => {
-                    // Keys that were meant for us are not left for the shell. (TCSAFLUSH would do both, but it waits
-                    // for the output to be read, and a terminal stopped by Ctrl-S does not read.)
-                    let _ = termios::tcflush(keys, QueueSelector::IFlush);
-                    let _ = termios::tcsetattr(keys, OptionalActions::Now, &before);
+                    heard = output.finish(deadline);
+                    signals::in_the_background(|| restore(keys, &before));
                 }
             }
         }
         panics::hold(false);
         heard
     }
+}
+
+/// Keys that were meant for us are not left for the shell. (TCSAFLUSH would do both, but it waits for the output to be
+/// read, and a terminal stopped by Ctrl-S does not read.)
+fn restore(keys: &File, before: &Termios) {
+    let _ = termios::tcflush(keys, QueueSelector::IFlush);
+    let _ = termios::tcsetattr(keys, OptionalActions::Now, before);
 }
 
 /// A command's escape sequence.

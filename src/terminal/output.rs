@@ -1,12 +1,13 @@
 //! The screen's side of the terminal: bytes go out as fast as it takes them, and nothing here waits for ever.
 
+use super::rehearsal;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fd::AsFd;
 use rustix::fs::OFlags;
-use rustix::termios;
+use rustix::{process, termios};
 use std::ffi::OsStr;
 use std::fs::{File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::OpenOptionsExt;
 use std::time::{Duration, Instant};
@@ -14,16 +15,29 @@ use std::time::{Duration, Instant};
 /// Bytes on their way to the screen.
 pub(super) struct Output {
     file: File,
-    /// What the terminal has not taken yet.
+    /// The file is the shell's too, and may block.
+    shared: bool,
+    /// What the terminal has not taken yet, from `taken` on.
     pending: Vec<u8>,
+    taken: usize,
 }
+
+/// So much is written at once where writing may block. A terminal that says it has room has room for this: Linux counts
+/// the room of a pseudo-terminal in blocks of 256 bytes.
+const ROOM: usize = 256;
 
 impl Output {
     /// The terminal of standard output.
     pub(super) fn open() -> io::Result<Self> {
         let shared = File::from(io::stdout().as_fd().try_clone_to_owned()?);
-        let file = opened_again(&shared).unwrap_or(shared);
-        Ok(Self { file, pending: Vec::new() })
+        Ok(match opened_again(&shared) {
+            Some(own) => Self::of(own, false),
+            None => Self::of(shared, true),
+        })
+    }
+
+    fn of(file: File, shared: bool) -> Self {
+        Self { file, shared, pending: Vec::new(), taken: 0 }
     }
 
     /// What to ask for the window's size, and to poll.
@@ -38,17 +52,22 @@ impl Output {
 
     /// Sends bytes after those before: in one write where the terminal takes them whole.
     pub(super) fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.pending.extend_from_slice(bytes);
+        self.put(bytes);
         self.push()
+    }
+
+    /// Adds to what is pending.
+    pub(super) fn put(&mut self, bytes: &[u8]) {
+        self.pending.extend_from_slice(bytes);
     }
 
     /// Sends as much of what is pending as the terminal takes.
     pub(super) fn push(&mut self) -> io::Result<()> {
         while self.is_pending() {
-            match self.file.write(&self.pending) {
+            match self.write() {
                 Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
-                Ok(taken) => drop(self.pending.drain(..taken)),
-                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return Ok(()),
+                Ok(count) => self.count(count),
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return rehearsal::reach("frame"),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => return Err(error),
             }
@@ -56,32 +75,98 @@ impl Output {
         Ok(())
     }
 
+    fn write(&mut self) -> io::Result<usize> {
+        let mut bytes = &self.pending[self.taken..];
+        if self.shared {
+            if !has_room(&self.file, Duration::ZERO) {
+                return Err(io::ErrorKind::WouldBlock.into());
+            }
+            bytes = &bytes[..bytes.len().min(ROOM)];
+        }
+        self.file.write(bytes)
+    }
+
+    fn count(&mut self, taken: usize) {
+        self.taken += taken;
+        if self.taken == self.pending.len() {
+            self.pending.clear();
+            self.taken = 0;
+        }
+    }
+
     /// Waits until the terminal has taken everything, at most until the deadline. Whether it has.
     pub(super) fn finish(&mut self, deadline: Instant) -> bool {
-        while self.push().is_ok() {
+        while self.push().is_ok() && self.is_pending() {
             let left = deadline.saturating_duration_since(Instant::now());
-            if !self.is_pending() || left.is_zero() {
+            if left.is_zero() {
                 break;
             }
-            let mut fds = [PollFd::new(&self.file, PollFlags::OUT)];
-            let _ = poll(&mut fds, Some(&timespec(left)));
+            has_room(&self.file, left);
         }
         !self.is_pending()
     }
 }
 
-/// The terminal by its name, without blocking. Opened anew it has flags of its own; `O_NONBLOCK` on the shell's would
-/// stay there when we are gone. Where it cannot be opened (after `su`, it may belong to somebody else) the shell's must
-/// do, and a terminal that has stopped reading stops us too.
+/// Waits until the terminal takes bytes, or is gone, at most so long. Whether it does, or is.
+fn has_room(file: &impl AsFd, patience: Duration) -> bool {
+    let mut fds = [PollFd::new(file, PollFlags::OUT)];
+    poll(&mut fds, Some(&timespec(patience))).is_ok_and(|ready| ready > 0)
+}
+
+/// Whether words to standard error are read, or can wait: a terminal that has stopped reading would stop us too. It gets
+/// a moment.
+pub fn stderr_is_read() -> bool {
+    let stderr = io::stderr();
+    !stderr.is_terminal() || has_room(&stderr, Duration::from_millis(250))
+}
+
+/// The terminal without blocking. Opened anew it has flags of its own; `O_NONBLOCK` on the shell's would stay there when
+/// we are gone. By its name it cannot be opened where it belongs to somebody else (after `su`); as the session's own
+/// terminal it can.
 fn opened_again(terminal: &File) -> Option<File> {
-    let name = termios::ttyname(terminal, Vec::new()).ok()?;
-    let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits().try_into().ok()?;
-    OpenOptions::new().write(true).custom_flags(flags).open(OsStr::from_bytes(name.as_bytes())).ok()
+    let open = |name: &[u8]| {
+        let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits().try_into().ok()?;
+        OpenOptions::new().write(true).custom_flags(flags).open(OsStr::from_bytes(name)).ok()
+    };
+    let by_name = || open(termios::ttyname(terminal, Vec::new()).ok()?.as_bytes());
+    let is_ours = || termios::tcgetsid(terminal).ok() == process::getsid(None).ok();
+    by_name().or_else(|| is_ours().then(|| open(b"/dev/tty"))?)
 }
 
 pub(super) fn timespec(duration: Duration) -> rustix::event::Timespec {
     rustix::event::Timespec {
         tv_sec: i64::try_from(duration.as_secs()).unwrap_or(i64::MAX),
         tv_nsec: duration.subsec_nanos().into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Read;
+    use std::sync::mpsc::channel;
+    use std::thread;
+
+    /// Where the terminal can only be had as the shell has it, blocking, a frame that it does not take stops nobody.
+    #[test]
+    fn a_terminal_that_blocks_is_not_waited_for() {
+        let (mut master, slave) = pty_process::blocking::open().expect("a pseudo-terminal can be had");
+        let slave = slave.as_fd().try_clone_to_owned().expect("a file descriptor can be doubled");
+        let frame: Vec<u8> = (b'a'..=b'z').cycle().take(300_000).collect();
+        let sent = frame.clone();
+        let (done, wait) = channel();
+        thread::spawn(move || {
+            let mut output = Output::of(File::from(slave), true);
+            output.send(&frame).expect("the terminal is there");
+            let _ = done.send(output.is_pending());
+            let finished = output.finish(Instant::now() + Duration::from_secs(10));
+            let _ = done.send(finished);
+        });
+        let soon = Duration::from_secs(10);
+        assert_eq!(wait.recv_timeout(soon), Ok(true), "nobody reads: something is left");
+        let mut read = vec![0; sent.len()];
+        master.read_exact(&mut read).expect("all of it comes");
+        assert_eq!(wait.recv_timeout(soon), Ok(true), "all is sent");
+        assert!(read == sent, "in order");
     }
 }

@@ -1,12 +1,19 @@
-//! Signals as something to wait for.
+//! Signals as something to wait for, and job control.
+//!
+//! A signal that whoever started the program ignores stays ignored: a shell's `trap '' HUP`, or a job in the background
+//! of a shell without job control.
 
+use nix::sys::signal::{SigSet, SigmaskHow, Signal, raise};
 use rustix::event::{PollFd, PollFlags};
 use rustix::fd::{AsFd, BorrowedFd};
-use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGWINCH};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGWINCH};
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::Duration;
 
 /// Catches signals, and carries all that wakes the loop besides keys: the wake pipe.
 pub struct Signals {
@@ -15,29 +22,51 @@ pub struct Signals {
     /// The last signal that asked the program to end; 0: none.
     deadly: Arc<AtomicUsize>,
     resized: Arc<AtomicBool>,
+    continued: Arc<AtomicBool>,
+    /// Something for each SIGTSTP; nobody to ask if it is ignored.
+    stops: Option<Receiver<()>>,
 }
 
 /// The signals by which a program is asked to end.
 const DEADLY: [i32; 4] = [SIGTERM, SIGHUP, SIGINT, SIGQUIT];
 
+/// How long our own copy of a signal to the whole group may take.
+const DELIVERY: Duration = Duration::from_millis(100);
+
+/// Who is to be stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// This process.
+    Process,
+    /// All of its process group, as when the terminal itself understands Ctrl-Z.
+    Group,
+}
+
 impl Signals {
-    /// From now on signals are caught.
+    /// From now on signals are caught, by the calling thread alone if the others are begun by [`without_signals`].
     ///
     /// # Errors
     /// If the operating system refuses.
     pub fn catch() -> io::Result<Self> {
         let (read, write) = UnixStream::pair()?;
         read.set_nonblocking(true)?;
+        let ignored = ignored();
+        let is_ignored = |signal: i32| ignored >> (signal - 1) & 1 == 1;
         let deadly = Arc::new(AtomicUsize::new(0));
-        let resized = Arc::new(AtomicBool::new(false));
         // The flag before the pipe: who is woken must find it set.
-        for signal in DEADLY {
+        for signal in DEADLY.into_iter().filter(|&signal| !is_ignored(signal)) {
             signal_hook::flag::register_usize(signal, Arc::clone(&deadly), signal as usize)?;
             signal_hook::low_level::pipe::register(signal, write.try_clone()?)?;
         }
-        signal_hook::flag::register(SIGWINCH, Arc::clone(&resized))?;
-        signal_hook::low_level::pipe::register(SIGWINCH, write.try_clone()?)?;
-        Ok(Self { read, write, deadly, resized })
+        let flag = |signal| -> io::Result<Arc<AtomicBool>> {
+            let flag = Arc::new(AtomicBool::new(false));
+            signal_hook::flag::register(signal, Arc::clone(&flag))?;
+            signal_hook::low_level::pipe::register(signal, write.try_clone()?)?;
+            Ok(flag)
+        };
+        let (resized, continued) = (flag(SIGWINCH)?, flag(SIGCONT)?);
+        let stops = if is_ignored(SIGTSTP) { None } else { Some(hear_stops(Waker(write.try_clone()?))?) };
+        Ok(Self { read, write, deadly, resized, continued, stops })
     }
 
     /// What becomes readable when there is something to do.
@@ -83,6 +112,85 @@ impl Signals {
     pub fn take_resized(&self) -> bool {
         self.resized.swap(false, Ordering::SeqCst)
     }
+
+    /// Whether a signal asked the program to stop since the last call.
+    pub fn take_stop(&self) -> bool {
+        self.stops.as_ref().is_some_and(|stops| stops.try_recv().is_ok())
+    }
+
+    /// Whether the program was stopped by something that it cannot hear of (SIGSTOP), and continued, since the last
+    /// call.
+    pub fn take_continued(&self) -> bool {
+        self.continued.swap(false, Ordering::SeqCst)
+    }
+
+    /// Stops until a shell says to go on: to be called by the thread that called [`catch`](Self::catch), with the
+    /// terminal given back. It returns at once where stops are ignored, or where nobody is there to say it.
+    pub fn stop(&mut self, who: Stopped) {
+        let Some(stops) = &self.stops else { return };
+        if who == Stopped::Group && rustix::process::kill_current_process_group(rustix::process::Signal::TSTP).is_ok() {
+            // We are in the group too, and would be stopped a second time.
+            let _ = stops.recv_timeout(DELIVERY);
+        }
+        // To this thread alone: the one that hears of stops does not get it.
+        if raise(Signal::SIGTSTP).is_ok() {
+            // Here it stops.
+            let _ = stop_signal().thread_unblock();
+            let _ = stop_signal().thread_block();
+        }
+        while stops.try_recv().is_ok() {}
+        self.take_continued();
+    }
+}
+
+/// SIGTSTP is not caught. It is held off from all threads and taken by one, so that its action stays the system's: that
+/// alone stops a process as its shell expects, and does not where nobody could continue it (started by a terminal
+/// without a shell, it is of an orphaned process group, and would hang for ever after SIGSTOP).
+fn hear_stops(mut waker: Waker) -> io::Result<Receiver<()>> {
+    let stop = stop_signal();
+    stop.thread_block()?;
+    let (heard, stops) = channel();
+    let listen = move || {
+        while stop.wait().is_ok() && heard.send(()).is_ok() {
+            waker.wake();
+        }
+    };
+    without_signals(|| thread::Builder::new().name("stops".to_owned()).spawn(listen))?;
+    Ok(stops)
+}
+
+fn stop_signal() -> SigSet {
+    SigSet::from_iter([Signal::SIGTSTP])
+}
+
+/// Does something without any signal. Threads begun in it never get one, so that all go to the thread that knows what
+/// to do: it has then seen the signals that came while it was stopped when it goes on.
+pub fn without_signals<T>(work: impl FnOnce() -> T) -> T {
+    without(&SigSet::all(), work)
+}
+
+/// Does something for which the system would stop a process in the background.
+pub(super) fn in_the_background<T>(work: impl FnOnce() -> T) -> T {
+    without(&SigSet::from_iter([Signal::SIGTTOU]), work)
+}
+
+fn without<T>(signals: &SigSet, work: impl FnOnce() -> T) -> T {
+    let before = signals.thread_swap_mask(SigmaskHow::SIG_BLOCK);
+    let done = work();
+    if let Ok(before) = before {
+        let _ = before.thread_set_mask();
+    }
+    done
+}
+
+/// The signals that are ignored now, a bit for each. Only Linux says so; elsewhere the ignored ones are caught too.
+fn ignored() -> u64 {
+    ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
+}
+
+fn ignored_in(status: &str) -> u64 {
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
 /// Wakes the loop from another thread.
@@ -100,4 +208,17 @@ impl Waker {
 pub fn die_of(signal: i32) {
     // If even that fails, the caller goes on to exit.
     let _ = signal_hook::low_level::emulate_default_handler(signal);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ignored_signals_are_read_from_the_processs_status() {
+        let ignored =
+            ignored_in("Name:\tsh\nSigBlk:\t0000000000000002\nSigIgn:\t0000000000000001\nSigCgt:\t0000000000000002\n");
+        assert_eq!(ignored, 1 << (SIGHUP - 1));
+        assert_eq!(ignored_in("no such line"), 0);
+    }
 }

@@ -15,7 +15,9 @@
 
 mod modes;
 mod output;
+mod phases;
 mod screen;
+mod storm;
 mod termios;
 
 use std::{
@@ -40,7 +42,9 @@ use rustix::{
 
 pub(crate) use modes::Modes;
 use output::Output;
+pub(crate) use phases::{Answer, Phases};
 pub(crate) use screen::{Colour, Screen};
+pub(crate) use storm::Storm;
 
 /// A deadline for what happens at once, unless the machine is very busy.
 pub(crate) const SOON: Duration = Duration::from_secs(10);
@@ -328,6 +332,34 @@ impl Session {
         self.pump();
     }
 
+    /// What the child writes is read again.
+    pub(crate) fn start_reading(&mut self) {
+        self.output.start(Arc::clone(&self.master)).expect("a pipe and a thread can be had");
+    }
+
+    /// From now on the terminal gets one size after the other, until the storm is dropped.
+    pub(crate) fn storm(&self) -> Storm {
+        Storm::over(Arc::clone(&self.master))
+    }
+
+    /// The terminal is gone, as when its window is closed or the link is cut.
+    pub(crate) fn vanish(&mut self) {
+        self.output.stop();
+        self.pump();
+        let (other, _) = open().expect("a pseudo-terminal can be had");
+        self.master = Arc::new(other);
+        let null = std::fs::OpenOptions::new().read(true).write(true).open("/dev/null");
+        self.slave_side = null.expect("there is always /dev/null");
+    }
+
+    /// The terminal's own side, for another process to use.
+    pub(crate) fn terminal(&self) -> std::fs::File {
+        let name = rustix::termios::ttyname(&self.slave_side, Vec::new()).expect("a terminal has a name");
+        let mut options = std::fs::OpenOptions::new();
+        options.read(true).write(true).custom_flags(OFlags::NOCTTY.bits().try_into().expect("this flag is small"));
+        options.open(OsStr::from_bytes(name.as_bytes())).expect("the slave side can be opened again")
+    }
+
     /// Waits until the child has read all that was typed, and then some, so that what is typed next it may never read.
     #[track_caller]
     pub(crate) fn wait_for_no_reader(&mut self) {
@@ -408,6 +440,17 @@ impl Session {
                 return signal;
             }
             assert!(Instant::now() < deadline, "not stopped within {limit:?}");
+            self.output.wait_for_more(Instant::now() + LOOK);
+            self.pump();
+        }
+    }
+
+    /// Waits until the child has exited, and no longer.
+    #[track_caller]
+    pub(crate) fn wait_until_gone(&mut self, limit: Duration) {
+        let deadline = Instant::now() + limit;
+        while self.look_for_exit().is_none() {
+            assert!(Instant::now() < deadline, "still running after {limit:?}");
             self.output.wait_for_more(Instant::now() + LOOK);
             self.pump();
         }

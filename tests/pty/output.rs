@@ -41,11 +41,19 @@ pub(super) struct Output {
 impl Output {
     /// Begins to read.
     pub(super) fn read_from(master: Arc<Pty>) -> io::Result<Self> {
+        let mut output = Self { shared: Arc::default(), stop: None, thread: None };
+        output.start(master)?;
+        Ok(output)
+    }
+
+    /// Begins again after [`stop`](Self::stop).
+    pub(super) fn start(&mut self, master: Arc<Pty>) -> io::Result<()> {
         let (stopped, stop) = io::pipe()?;
-        let shared = Arc::new(Shared::default());
-        let into = Arc::clone(&shared);
-        let thread = std::thread::spawn(move || read_all(&master, &stopped, &into));
-        Ok(Self { shared, stop: Some(stop), thread: Some(thread) })
+        let into = Arc::clone(&self.shared);
+        into.lock().ended = false;
+        self.thread = Some(std::thread::spawn(move || read_all(&master, &stopped, &into)));
+        self.stop = Some(stop);
+        Ok(())
     }
 
     /// What has come since the last time.

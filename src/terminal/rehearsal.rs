@@ -1,0 +1,49 @@
+//! For this crate's own tests: what they are told, and what they have go wrong. Without the feature `test-hooks`, which
+//! only tests turn on, nothing of it is left.
+
+use std::io::{self, Read, Write};
+use std::os::unix::net::UnixStream;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock};
+
+/// The test, if one listens.
+static TEST: OnceLock<Mutex<UnixStream>> = OnceLock::new();
+/// Whether a worker is to panic.
+static WORKER: AtomicBool = AtomicBool::new(false);
+
+/// From now on this test is told of every phase that is reached, and says what is to happen there.
+#[cfg(feature = "test-hooks")]
+pub fn rehearse(test: UnixStream) {
+    // A second test would have nobody to talk to.
+    let _ = TEST.set(Mutex::new(test));
+}
+
+/// Tells the test of the phase and does what it answers: an error or a panic here or in a worker. Any other answer, or
+/// none, and it goes on.
+pub(crate) fn reach(phase: &str) -> io::Result<()> {
+    match answer(phase) {
+        Some(b'e') => Err(io::Error::other("a test asked for an error")),
+        Some(b'p') => panic!("a test asked for a panic in the loop"),
+        Some(b'w') => {
+            WORKER.store(true, Ordering::SeqCst);
+            Ok(())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether the test wants a panic in a worker: said once.
+pub(crate) fn take_worker_panic() -> bool {
+    cfg!(feature = "test-hooks") && WORKER.swap(false, Ordering::SeqCst)
+}
+
+fn answer(phase: &str) -> Option<u8> {
+    if !cfg!(feature = "test-hooks") {
+        return None;
+    }
+    let mut test = TEST.get()?.lock().ok()?;
+    writeln!(test, "{phase}").ok()?;
+    let mut answer = [0];
+    test.read_exact(&mut answer).ok()?;
+    Some(answer[0])
+}

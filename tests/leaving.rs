@@ -1,0 +1,505 @@
+//! Every way out of the live view, at every time: the terminal is as it was, and whoever waits knows why it ended.
+
+mod pty;
+
+use pty::{Answer, Phases, SOON, Session, Size, Start};
+use rustix::process::{Signal, kill_process};
+use std::os::unix::process::ExitStatusExt;
+use std::process::ExitStatus;
+use std::time::Duration;
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
+const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
+
+/// A way out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    Key(&'static [u8]),
+    Fault(Answer),
+    Death(Signal),
+    /// A stop, and `fg`.
+    StopKey,
+    StopSignal,
+}
+
+/// Where the child is when it happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// In raw mode, with nothing sent yet.
+    RawMode,
+    /// All modes are sent, and no frame.
+    AllModes,
+    /// The terminal has taken a part of a frame, and no more.
+    MidFrame,
+    /// The window is dragged about.
+    Storm,
+}
+
+impl Phase {
+    fn name(self) -> &'static str {
+        match self {
+            Self::RawMode => "raw mode",
+            Self::AllModes => "all modes",
+            Self::MidFrame => "frame",
+            Self::Storm => "resize",
+        }
+    }
+
+    /// No pseudo-terminal takes a frame of the larger size in one go.
+    fn size(self) -> Size {
+        if self == Self::MidFrame { Size::cells(300, 120) } else { Size::cells(80, 24) }
+    }
+}
+
+/// The way's tests: one for each phase.
+macro_rules! ways_out {
+    ($($name:ident: $way:expr;)*) => {$(
+        mod $name {
+            use super::*;
+
+            #[test]
+            fn in_raw_mode_with_nothing_sent() {
+                leave($way, Phase::RawMode);
+            }
+
+            #[test]
+            fn before_the_first_frame() {
+                leave($way, Phase::AllModes);
+            }
+
+            #[test]
+            fn in_mid_frame() {
+                leave($way, Phase::MidFrame);
+            }
+
+            #[test]
+            fn in_a_storm_of_resizes() {
+                leave($way, Phase::Storm);
+            }
+        }
+    )*};
+}
+
+ways_out! {
+    q: Way::Key(b"q");
+    ctrl_c: Way::Key(b"\x03");
+    error_return: Way::Fault(Answer::Error);
+    panic_in_main: Way::Fault(Answer::Panic);
+    panic_in_a_worker: Way::Fault(Answer::WorkerPanic);
+    sigterm: Way::Death(Signal::TERM);
+    sighup: Way::Death(Signal::HUP);
+    sigint: Way::Death(Signal::INT);
+    sigquit: Way::Death(Signal::QUIT);
+    stop_by_sigtstp: Way::StopSignal;
+    stop_by_the_ctrl_z_key: Way::StopKey;
+}
+
+fn leave(way: Way, phase: Phase) {
+    let mut phases = Phases::new();
+    let stops = matches!(way, Way::StopKey | Way::StopSignal);
+    let start = if stops { job() } else { Start::new(PROGRAM).arg(SCENE) };
+    let mut session = start.env("TERMTRACE_TEST_SOCKET", phases.path()).size(phase.size()).spawn();
+    let storm = (phase == Phase::Storm).then(|| session.storm());
+    if phase == Phase::MidFrame {
+        session.stop_reading();
+    }
+    phases.wait_for(phase.name());
+    act(way, &session);
+    phases.answer(if let Way::Fault(answer) = way { answer } else { Answer::GoOn });
+    if phase == Phase::MidFrame {
+        session.start_reading();
+    }
+    if stops {
+        come_back(&mut session, storm);
+    } else {
+        let status = session.wait_exit(SOON);
+        drop(storm);
+        check_end(way, status, &mut session);
+    }
+}
+
+/// Types or signals; faults are the answer's.
+fn act(way: Way, session: &Session) {
+    match way {
+        Way::Key(key) => session.send(key),
+        Way::Fault(_) => {}
+        Way::Death(signal) => session.signal(signal),
+        Way::StopKey => session.send(b"\x1a"),
+        Way::StopSignal => {
+            // The job's group has its leader's number.
+            kill_process(session.foreground_group(), Signal::TSTP).expect("a job takes signals");
+        }
+    }
+}
+
+fn check_end(way: Way, status: ExitStatus, session: &mut Session) {
+    session.assert_clean();
+    assert!(!session.seen().screen().is_alternate());
+    let (code, signal, message) = match way {
+        Way::Fault(Answer::Error) => (Some(1), None, Some("termtrace: terminal: a test asked for an error")),
+        Way::Fault(Answer::Panic) => (Some(101), None, Some("a test asked for a panic in the loop")),
+        Way::Fault(_) => (Some(101), None, Some("a test asked for a panic in a worker")),
+        Way::Death(signal) => (None, Some(signal.as_raw()), None),
+        _ => (Some(0), None, None),
+    };
+    assert_eq!((status.code(), status.signal()), (code, signal));
+    if let Some(message) = message {
+        check_message(message, session);
+    }
+}
+
+/// Given back first, told then, and told once; and it can be read.
+fn check_message(message: &str, session: &mut Session) {
+    let seen = session.seen();
+    let told = String::from_utf8_lossy(seen.bytes()).into_owned();
+    assert_eq!(told.matches(message).count(), 1, "{told:?}");
+    assert!(told.rfind("\x1b[?") < told.find(message), "told before the terminal is given back");
+    let shown = seen.screen().text().concat();
+    assert!(shown.contains(message), "{shown}");
+}
+
+/// A shell with job control, which says how its job ended or stopped, and takes it back when Return is pressed.
+fn job() -> Start {
+    job_of(&format!("'{PROGRAM}' '{SCENE}'"))
+}
+
+fn job_of(command: &str) -> Start {
+    Start::shell(&format!(
+        "set -m; {command}; echo \"status <$?>\"; read line; fg >/dev/null; echo \"ended <$?>\"; read line"
+    ))
+}
+
+/// The job is stopped with the terminal given back; it comes back with the whole picture at the size of then, and goes.
+fn come_back(session: &mut Session, storm: Option<pty::Storm>) {
+    session.wait_for_text("status <148>");
+    drop(storm);
+    session.assert_clean();
+    let (size, before) = (Size::cells(70, 20), session.seen().bytes().len());
+    session.resize(size);
+    session.send(b"\n");
+    session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes().get(before..).unwrap_or(&[]), size));
+    session.send(b"q");
+    session.wait_for_text("ended <0>");
+    session.assert_clean();
+}
+
+/// Whether a fresh terminal that gets only these bytes shows a picture in every cell: the scene has no black in it.
+fn shows_all(bytes: &[u8], size: Size) -> bool {
+    let mut screen = pty::Screen::new(size.columns, size.rows);
+    screen.feed(bytes);
+    let cells = (0..size.rows).flat_map(|row| (0..size.columns).map(move |column| (column, row)));
+    screen.is_alternate()
+        && cells.into_iter().all(|(column, row)| {
+            let cell = screen.cell(column.into(), row.into());
+            cell.background != pty::Colour::Default
+        })
+}
+
+fn looking() -> Session {
+    looking_of(Start::new(PROGRAM).arg(SCENE))
+}
+
+fn looking_of(start: Start) -> Session {
+    let mut session = start.spawn();
+    session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
+    session
+}
+
+/// The numbers of a seed, one after the other (xorshift).
+fn random(seed: &mut u32) -> u32 {
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 17;
+    *seed ^= *seed << 5;
+    *seed
+}
+
+/// Fifty kills at random times, from before the start to the middle of a flight.
+fn kill_at_random_times(signal: Signal) {
+    let mut seed = 0x5eed_0000 + signal.as_raw().unsigned_abs();
+    for _ in 0..50 {
+        let mut session = Start::new(PROGRAM).arg(SCENE).spawn();
+        session.send(b"w");
+        let time = Duration::from_micros(u64::from(random(&mut seed) % 150_000));
+        session.sees(time, |_| false);
+        session.signal(signal);
+        let status = session.wait_exit(SOON);
+        assert_eq!(status.signal(), Some(signal.as_raw()), "after {time:?}");
+        // What was typed before raw mode was on is echoed: that is nobody's fault.
+        session.assert_clean();
+        assert!(!session.seen().screen().is_alternate());
+        assert!(session.seen().screen().cursor().is_some());
+    }
+}
+
+#[test]
+fn fifty_kills_by_sigterm() {
+    kill_at_random_times(Signal::TERM);
+}
+
+#[test]
+fn fifty_kills_by_sighup() {
+    kill_at_random_times(Signal::HUP);
+}
+
+#[test]
+fn fifty_kills_by_sigint() {
+    kill_at_random_times(Signal::INT);
+}
+
+#[test]
+fn fifty_kills_by_sigquit() {
+    kill_at_random_times(Signal::QUIT);
+}
+
+/// After a storm of resizes the picture is whole, at the last size.
+#[test]
+fn a_storm_of_resizes_leaves_a_whole_picture() {
+    let mut session = looking();
+    let storm = session.storm();
+    session.sees(Duration::from_millis(300), |_| false);
+    drop(storm);
+    let (size, before) = (Size::cells(71, 21), session.seen().bytes().len());
+    session.resize(size);
+    session.wait_for("the picture", SOON, |seen| shows_all_at_the_end(&seen.bytes()[before..], size));
+    session.send(b"q");
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+}
+
+/// The same for a terminal that has seen the alternate screen before.
+fn shows_all_at_the_end(bytes: &[u8], size: Size) -> bool {
+    shows_all(&[b"\x1b[?1049h", bytes].concat(), size)
+}
+
+/// A stop that nobody can hear of, and a CONT for nothing: what is on the screen then is drawn anew.
+#[test]
+fn a_continue_draws_everything_anew() {
+    for stop in [true, false] {
+        let mut session = looking();
+        let before = session.seen().bytes().len();
+        if stop {
+            session.signal(Signal::STOP);
+            session.wait_stopped(SOON);
+        }
+        session.signal(Signal::CONT);
+        session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
+        session.send(b"q");
+        assert_eq!(session.wait_exit(SOON).code(), Some(0));
+        session.assert_clean();
+    }
+}
+
+/// Where nobody could continue it (a terminal that runs it without a shell), it goes on by itself.
+#[test]
+fn without_a_shell_ctrl_z_does_not_hang() {
+    for start in [Start::new(PROGRAM).arg(SCENE), Start::shell(&format!("trap '' TSTP; exec '{PROGRAM}' '{SCENE}'"))] {
+        let mut session = looking_of(start);
+        let before = session.seen().bytes().len();
+        session.send(b"\x1a");
+        session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
+        session.send(b"q");
+        assert_eq!(session.wait_exit(SOON).code(), Some(0));
+        session.assert_clean();
+    }
+}
+
+/// The key stops the process's whole group, as the terminal itself would: the shell must not wait for somebody else.
+#[test]
+fn ctrl_z_stops_the_whole_group() {
+    let mut session = job_of(&format!("sh -c \"'{PROGRAM}' '{SCENE}'; echo inner\"")).spawn();
+    session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
+    session.send(b"\x1a");
+    come_back(&mut session, None);
+    session.wait_for_text("inner");
+}
+
+/// Stopped again and again.
+#[test]
+fn it_comes_back_as_often_as_it_goes() {
+    let rounds = 5;
+    let script =
+        format!("set -m; '{PROGRAM}' '{SCENE}'; while echo \"status <$?>\"; read line; do fg >/dev/null; done");
+    let mut session = Start::shell(&script).spawn();
+    let mut before = 0;
+    for _ in 0..rounds {
+        session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
+        session.send(b"w\x1a");
+        session.wait_for("the shell", SOON, |seen| seen.bytes().ends_with(b"status <148>\r\n"));
+        session.assert_clean();
+        before = session.seen().bytes().len();
+        session.send(b"\n");
+    }
+}
+
+/// A stopped job that is killed dies, with the terminal left alone: the shell has it.
+#[test]
+fn a_stopped_job_can_be_killed() {
+    let script = format!(
+        "set -m; '{PROGRAM}' '{SCENE}'; echo \"status <$?>\"; read line; kill %1; kill -CONT %1; \
+         while wait %1; s=$?; [ $s = 148 ]; do sleep 0.05; done; echo \"ended <$s>\"; read line"
+    );
+    let mut session = looking_of(Start::shell(&script));
+    session.send(b"\x1a");
+    session.wait_for_text("status <148>");
+    let before = session.seen().bytes().len();
+    session.send(b"\n");
+    session.wait_for_text("ended <143>");
+    let said = String::from_utf8_lossy(&session.seen().bytes()[before..]).into_owned();
+    assert!(!said.contains('\x1b'), "{said:?}");
+    session.assert_clean();
+}
+
+/// In the background it waits to be brought to the foreground before it touches the terminal; after `bg` too.
+#[test]
+fn in_the_background_it_leaves_the_terminal_alone() {
+    let script = format!(
+        "set -m; '{PROGRAM}' '{SCENE}' & read line; jobs; fg >/dev/null; echo \"status <$?>\"; read line; bg; \
+         read line; fg >/dev/null; echo \"ended <$?>\"; read line"
+    );
+    let mut session = Start::shell(&script).spawn();
+    assert!(!session.sees(Duration::from_millis(400), |seen| seen.has(b"\x1b")), "escapes from the background");
+    session.assert_clean();
+    session.send(b"\n");
+    session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
+    session.send(b"\x1a");
+    session.wait_for_text("status <148>");
+    let before = session.seen().bytes().len();
+    session.send(b"\n");
+    assert!(!session.sees(Duration::from_millis(400), |seen| seen.bytes()[before..].contains(&0x1b)), "after bg");
+    session.assert_clean();
+    session.send(b"\n");
+    session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
+    session.send(b"q");
+    session.wait_for_text("ended <0>");
+    session.assert_clean();
+}
+
+/// What was held when the program was stopped is not held when it comes back; nor after the focus is lost.
+#[test]
+fn no_key_is_stuck() {
+    let mut session = job().spawn();
+    session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
+    session.send(b"iW\x1a");
+    session.wait_for_text("status <148>");
+    let before = session.seen().bytes().len();
+    session.send(b"\n");
+    session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
+    stands_still(&mut session);
+    session.send(b"W\x1b[O");
+    stands_still(&mut session);
+}
+
+/// Within a quarter of a glide the eye comes to rest.
+fn stands_still(session: &mut Session) {
+    session.sees(Duration::from_millis(175), |_| false);
+    let before = eye_line(session);
+    session.sees(Duration::from_millis(175), |_| false);
+    assert_eq!(eye_line(session), before);
+}
+
+fn eye_line(session: &mut Session) -> String {
+    let text = session.seen().screen().text().concat();
+    text.rsplit_once("eye").expect("the status line shows the eye").1.to_owned()
+}
+
+/// A signal that is ignored when the program starts stays ignored.
+#[cfg(target_os = "linux")]
+#[test]
+fn ignored_signals_stay_ignored() {
+    let script = format!("trap '' HUP INT QUIT; exec '{PROGRAM}' '{SCENE}'");
+    let mut session = looking_of(Start::shell(&script));
+    for signal in [Signal::HUP, Signal::INT, Signal::QUIT] {
+        session.signal(signal);
+    }
+    let before = session.seen().bytes().len();
+    session.send(b"\x0c");
+    session.wait_for("the picture", SOON, |seen| shows_all_at_the_end(&seen.bytes()[before..], Size::cells(80, 24)));
+    session.signal(Signal::TERM);
+    assert_eq!(session.wait_exit(SOON).signal(), Some(Signal::TERM.as_raw()));
+    session.assert_clean();
+}
+
+/// The number of write calls that a process has made.
+#[cfg(target_os = "linux")]
+fn writes(session: &Session) -> u64 {
+    let io = std::fs::read_to_string(format!("/proc/{}/io", session.pid().as_raw_nonzero())).expect("it runs");
+    let count = io.lines().find_map(|line| line.strip_prefix("syscw: ")).expect("writes are counted");
+    count.parse().expect("a number")
+}
+
+/// Ctrl-L draws a picture that is there already: nothing else is written to anybody. (A pseudo-terminal takes some ten
+/// thousand bytes at once: of a larger frame it takes a part, and the rest in as few writes as it wants.)
+#[cfg(target_os = "linux")]
+#[test]
+fn a_frame_is_one_write() {
+    let mut session = Start::new(PROGRAM).arg(SCENE).size(Size::cells(40, 8)).spawn();
+    session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(40, 8)));
+    session.sees(Duration::from_millis(300), |_| false);
+    for key in [&b"\x0c"[..], b"i", b"\x0c", b"?"] {
+        let (before, bytes) = (writes(&session), session.seen().bytes().len());
+        session.send(key);
+        session.wait_for("a frame", SOON, |seen| seen.bytes().len() > bytes);
+        session.sees(Duration::from_millis(200), |_| false);
+        if key == b"\x0c" {
+            assert!(session.seen().bytes().len() - bytes > 2_000, "a whole frame");
+        }
+        assert_eq!(writes(&session) - before, 1, "{}", key.escape_ascii());
+    }
+    session.send(b"q");
+    session.wait_exit(SOON);
+}
+
+/// What a shell's redirections leave: the status, and all that was written to the standard streams and the terminal.
+fn run_with(redirections: &str) -> (Option<i32>, String) {
+    let mut session = Start::shell(&format!("exec '{PROGRAM}' '{SCENE}' {redirections}")).spawn();
+    let status = session.wait_exit(SOON);
+    session.assert_clean();
+    (status.code(), String::from_utf8_lossy(session.seen().bytes()).into_owned())
+}
+
+#[test]
+fn standard_output_that_is_no_terminal_gets_one_plain_frame_or_a_line_of_error() {
+    let file = tempfile::NamedTempFile::new().expect("a file can be made");
+    let path = file.path().display();
+    for (redirections, code, says) in [
+        (format!(">{path}"), 0, ""),
+        (format!("</dev/null >{path} 2>&1"), 0, ""),
+        ("| cat >/dev/null".to_owned(), 0, ""),
+        (">&-".to_owned(), 0, ""),
+        ("<&- >&- 2>&-".to_owned(), 0, ""),
+        ("| :".to_owned(), 0, ""),
+    ] {
+        assert_eq!(run_with(&redirections), (Some(code), says.to_owned()), "{redirections}");
+        let written = std::fs::read_to_string(file.path()).expect("text");
+        assert!(!written.contains('\x1b'), "{redirections}");
+    }
+    assert_eq!(std::fs::read_to_string(file.path()).expect("text").lines().count(), 24);
+    let (code, said) = run_with("| cat");
+    assert_eq!((code, said.lines().count(), said.contains('\x1b')), (Some(0), 24, false));
+    let (code, said) = run_with("--color=always | cat");
+    assert!(code == Some(0) && said.contains("\x1b[38;2;"), "asked for");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_in_one_line() {
+    let (code, said) = run_with(">/dev/full");
+    assert_eq!((code, said.as_str()), (Some(1), "termtrace: standard output: No space left on device\r\n"));
+}
+
+/// A screen without keys: a line, and nothing is turned on.
+#[cfg(target_os = "linux")]
+#[test]
+fn without_keys_there_is_one_line() {
+    let mut session = Start::shell(&format!("setsid -w '{PROGRAM}' '{SCENE}' </dev/null")).spawn();
+    assert_eq!(session.wait_exit(SOON).code(), Some(1));
+    session.assert_clean();
+    let said = String::from_utf8_lossy(session.seen().bytes()).into_owned();
+    assert!(said.starts_with("termtrace: terminal: no terminal to read keys from") && !said.contains('\x1b'), "{said}");
+    assert_eq!(said.lines().count(), 1);
+    // With keys, it needs no controlling terminal.
+    let mut session = looking_of(Start::shell(&format!("setsid -w '{PROGRAM}' '{SCENE}'")));
+    session.send(b"q");
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+}

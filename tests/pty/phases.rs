@@ -1,0 +1,97 @@
+//! How far the child is: it says so before it goes on, and is told what shall go wrong there.
+
+use std::{
+    io::{BufRead, BufReader, Write},
+    os::unix::net::{UnixListener, UnixStream},
+    path::PathBuf,
+};
+
+use rustix::event::{PollFd, PollFlags};
+use tempfile::TempDir;
+
+/// What is to happen where the child is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// Nothing: it goes on.
+    GoOn,
+    /// An error.
+    Error,
+    /// A panic in the thread that runs the loop.
+    Panic,
+    /// A panic in one of those that trace.
+    WorkerPanic,
+}
+
+/// A child's phases, told through a socket that its test-only hooks connect to.
+pub(crate) struct Phases {
+    listener: UnixListener,
+    path: PathBuf,
+    _folder: TempDir,
+    child: Option<BufReader<UnixStream>>,
+}
+
+impl Phases {
+    /// A socket for one child.
+    pub(crate) fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let path = folder.path().join("phases");
+        let listener = UnixListener::bind(&path).expect("a socket can be had");
+        Self { listener, path, _folder: folder, child: None }
+    }
+
+    /// Where the child finds it.
+    pub(crate) fn path(&self) -> &PathBuf {
+        &self.path
+    }
+
+    /// Waits until the child reaches this phase, where it stays. It passes through all others.
+    #[track_caller]
+    pub(crate) fn wait_for(&mut self, phase: &str) {
+        loop {
+            let reached = self.next();
+            if reached == phase {
+                return;
+            }
+            self.send(Answer::GoOn);
+        }
+    }
+
+    /// Lets the child go on, with that, and hears nothing of it any more.
+    pub(crate) fn answer(mut self, answer: Answer) {
+        self.send(answer);
+    }
+
+    /// Lets the child go on to its next phase.
+    pub(crate) fn send(&mut self, answer: Answer) {
+        let byte = match answer {
+            Answer::GoOn => b'g',
+            Answer::Error => b'e',
+            Answer::Panic => b'p',
+            Answer::WorkerPanic => b'w',
+        };
+        let child = self.child.as_mut().expect("the child has said where it is");
+        child.get_mut().write_all(&[byte]).expect("the child listens");
+    }
+
+    #[track_caller]
+    fn next(&mut self) -> String {
+        let child = match &mut self.child {
+            Some(child) => child,
+            none => none.insert(accept(&self.listener)),
+        };
+        let mut line = String::new();
+        child.read_line(&mut line).expect("the child reaches its phases soon");
+        assert!(line.ends_with('\n'), "the child reaches no more phases");
+        line.trim_end().to_owned()
+    }
+}
+
+#[track_caller]
+fn accept(listener: &UnixListener) -> BufReader<UnixStream> {
+    let soon = super::SOON.try_into().expect("it is soon");
+    let ready = rustix::event::poll(&mut [PollFd::new(listener, PollFlags::IN)], Some(&soon));
+    assert!(matches!(ready, Ok(1..)), "the child does not say where it is");
+    let (child, _) = listener.accept().expect("the child connects");
+    child.set_read_timeout(Some(super::SOON)).expect("a socket has timeouts");
+    BufReader::new(child)
+}
