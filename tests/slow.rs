@@ -1,0 +1,152 @@
+//! Limits in time, each at three times what is promised: a busy machine is not a fault. The figures themselves are taken
+//! by hand, from what these tests print (`cargo test --test slow -- --nocapture --test-threads 1`).
+
+mod pty;
+
+use pty::{Answer, Phases, SOON, Session, Size, Start};
+use rustix::process::Signal;
+use std::os::unix::process::ExitStatusExt;
+use std::process::ExitStatus;
+use std::time::{Duration, Instant};
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
+const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
+
+/// A terminal that has stopped reading is left within this.
+const STOPPED: Duration = Duration::from_secs(2);
+/// A terminal that has vanished is left within this,
+const VANISHED: Duration = Duration::from_secs(1);
+/// with so many hundredths of a second of CPU.
+const VANISHED_TICKS: u64 = 10;
+
+/// Waits for the exit, which has a limit.
+#[track_caller]
+fn exit_within(limit: Duration, what: &str, session: &mut Session) -> ExitStatus {
+    let start = Instant::now();
+    session.wait_until_gone(SOON);
+    let took = start.elapsed();
+    println!("{what}: left in {took:?}");
+    assert!(took < 3 * limit, "{what}: {took:?}");
+    session.wait_exit(SOON)
+}
+
+/// In the middle of a frame nobody reads any more (Ctrl-S, a dead link): then a key, a signal or a fault.
+fn a_reader_that_stopped(what: &str, code: Option<i32>, act: impl FnOnce(&Session) -> Answer) -> ExitStatus {
+    let mut phases = Phases::new();
+    let start = Start::new(PROGRAM).arg(SCENE).size(Size::cells(300, 120));
+    let mut session = start.env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
+    session.stop_reading();
+    phases.wait_for("frame");
+    let answer = act(&session);
+    phases.answer(answer);
+    let status = exit_within(STOPPED, what, &mut session);
+    assert_eq!(status.code(), code, "{what}");
+    assert_eq!(session.termios_changes(), Vec::<String>::new(), "{what}");
+    status
+}
+
+#[test]
+fn a_reader_that_stopped_is_left_by_key() {
+    for key in [&b"q"[..], b"\x03"] {
+        a_reader_that_stopped("key", Some(0), |session| {
+            session.send(key);
+            Answer::GoOn
+        });
+    }
+}
+
+#[test]
+fn a_reader_that_stopped_is_left_by_signal() {
+    for signal in [Signal::TERM, Signal::HUP, Signal::INT, Signal::QUIT] {
+        let status = a_reader_that_stopped("signal", None, |session| {
+            session.signal(signal);
+            Answer::GoOn
+        });
+        assert_eq!(status.signal(), Some(signal.as_raw()));
+    }
+}
+
+/// Standard error is the terminal too: the message must not wait for it.
+#[test]
+fn a_reader_that_stopped_is_left_by_fault() {
+    for (fault, code) in [(Answer::Error, 1), (Answer::Panic, 101), (Answer::WorkerPanic, 101)] {
+        a_reader_that_stopped("fault", Some(code), |_| fault);
+    }
+}
+
+/// The clock ticks of CPU that a process has used; a hundred are a second.
+#[cfg(target_os = "linux")]
+fn ticks(session: &Session) -> u64 {
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", session.pid().as_raw_nonzero())).expect("it is there");
+    let fields: Vec<&str> = stat.rsplit(") ").next().expect("after the name").split(' ').collect();
+    fields[11].parse::<u64>().expect("user time") + fields[12].parse::<u64>().expect("system time")
+}
+
+/// The terminal goes; whether by a signal that is heard or not, the process goes too.
+#[cfg(target_os = "linux")]
+fn a_terminal_that_vanishes(what: &str, hears: bool, before: impl FnOnce(&mut Session)) {
+    let what = format!("{what}, SIGHUP {}", if hears { "heard" } else { "ignored" });
+    vanish(&what, hears, if hears { looking() } else { looking_without_sighup() }, before);
+}
+
+#[cfg(target_os = "linux")]
+fn vanish(what: &str, hears: bool, start: Start, before: impl FnOnce(&mut Session)) {
+    let mut session = start.spawn();
+    session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+    session.sees(Duration::from_millis(200), |_| false);
+    before(&mut session);
+    let used = ticks(&session);
+    session.vanish();
+    let status = exit_within(VANISHED, what, &mut session);
+    let used = ticks(&session) - used;
+    println!("{what}: {used} ticks, {status}");
+    assert!(used < 3 * VANISHED_TICKS, "{what}: {used} ticks");
+    let (code, signal) = if hears { (None, Some(Signal::HUP.as_raw())) } else { (Some(1), None) };
+    assert_eq!((status.code(), status.signal()), (code, signal), "{what}");
+}
+
+#[cfg(target_os = "linux")]
+fn looking() -> Start {
+    Start::new(PROGRAM).arg(SCENE)
+}
+
+#[cfg(target_os = "linux")]
+fn looking_without_sighup() -> Start {
+    Start::shell(&format!("trap '' HUP; exec '{PROGRAM}' '{SCENE}'"))
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_that_vanishes_at_rest() {
+    for hears in [true, false] {
+        a_terminal_that_vanishes("at rest", hears, |_| {});
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_that_vanishes_in_flight() {
+    for hears in [true, false] {
+        a_terminal_that_vanishes("in flight", hears, |session| session.send(b"w"));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_that_vanishes_in_mid_frame() {
+    for hears in [true, false] {
+        a_terminal_that_vanishes("in mid-frame", hears, |session| {
+            session.stop_reading();
+            session.send(b"\x0c");
+            session.wait_for_no_reader();
+        });
+    }
+}
+
+/// The keys come from another terminal, which stays.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_screen_that_vanishes_while_the_keys_stay() {
+    let keys = Start::shell("read line").spawn();
+    vanish("the screen alone", false, looking_without_sighup().stdin(keys.terminal()), |_| {});
+}
