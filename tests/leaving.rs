@@ -1,5 +1,7 @@
 //! Every way out of the live view, at every time: the terminal is as it was, and whoever waits knows why it ended.
 
+#![cfg(feature = "test-hooks")]
+
 mod pty;
 
 use pty::{Answer, Phases, SOON, Session, Size, Start};

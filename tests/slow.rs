@@ -1,6 +1,8 @@
 //! Limits in time, each at three times what is promised: a busy machine is not a fault. The figures themselves are taken
 //! by hand, from what these tests print (`cargo test --test slow -- --nocapture --test-threads 1`).
 
+#![cfg(feature = "test-hooks")]
+
 mod pty;
 
 use pty::{Answer, Phases, SOON, Session, Size, Start};
