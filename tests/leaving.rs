@@ -351,6 +351,24 @@ fn a_stopped_job_can_be_killed() {
     session.assert_clean();
 }
 
+/// Stopped by something that it cannot hear of, with the terminal as it was, it still gives it back when it is killed,
+/// although the shell has it by then.
+#[test]
+fn a_job_stopped_in_flight_can_be_killed() {
+    let stopped = 128 + Signal::STOP.as_raw();
+    let script = format!(
+        "set -m; '{PROGRAM}' '{SCENE}'; echo \"status <$?>\"; read line; kill %1; kill -CONT %1; \
+         while wait %1; s=$?; [ $s = {stopped} ]; do sleep 0.05; done; echo \"ended <$s>\"; read line"
+    );
+    let mut session = looking_of(Start::shell(&script));
+    kill_process(session.foreground_group(), Signal::STOP).expect("a job takes signals");
+    // The shell writes over the picture, wherever the cursor is.
+    session.wait_for("the shell", SOON, |seen| seen.has(format!("status <{stopped}>").as_bytes()));
+    session.send(b"\n");
+    session.wait_for_text(&format!("ended <{}>", 128 + Signal::TERM.as_raw()));
+    session.assert_clean();
+}
+
 /// In the background it waits to be brought to the foreground before it touches the terminal; after `bg` too.
 #[test]
 fn in_the_background_it_leaves_the_terminal_alone() {
@@ -387,6 +405,10 @@ fn no_key_is_stuck() {
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
     stands_still(&mut session);
+    // A sixtieth of a second and what passed until the stop, but not the rest of the glide, which is 8 units long.
+    let eye = eye_line(&mut session);
+    let forward: f32 = eye.split_whitespace().nth(2).and_then(|z| z.parse().ok()).expect("the eye's third number");
+    assert!(forward > 4.0, "{eye}");
     session.send(b"W\x1b[O");
     stands_still(&mut session);
 }

@@ -119,6 +119,9 @@ fn modes_are_told_from_bytes() {
         b"\x1b[>4;2m",
         b"\x1b[2 q",
         b"\x1b[?25",
+        b"\x1b[38;2;1\x1b[0m",
+        b"\x1b]0;title\x1b[m",
+        b"\xe2\x96\x1b[0m",
     ] {
         assert_eq!(left(dirty).len(), 1, "{}: {:?}", dirty.escape_ascii(), left(dirty));
     }

@@ -132,11 +132,18 @@ impl Signals {
             // We are in the group too, and would be stopped a second time.
             let _ = stops.recv_timeout(DELIVERY);
         }
-        // To this thread alone: the one that hears of stops does not get it.
-        if raise(Signal::SIGTSTP).is_ok() {
+        // To this thread alone, where it is held off: the one that hears of stops does not get it. A SIGCONT from now on
+        // takes it away again.
+        let stop = stop_signal();
+        let _ = raise(Signal::SIGTSTP);
+        if self.take_continued() {
+            // The shell saw the rest of the group stop, and was quick: who stops now is never continued.
+            let _ = raise(Signal::SIGTSTP);
+            let _ = stop.wait();
+        } else {
             // Here it stops.
-            let _ = stop_signal().thread_unblock();
-            let _ = stop_signal().thread_block();
+            let _ = stop.thread_unblock();
+            let _ = stop.thread_block();
         }
         while stops.try_recv().is_ok() {}
         self.take_continued();

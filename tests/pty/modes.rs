@@ -39,6 +39,7 @@ const CURSOR_SHAPE: &str = "cursor shape left changed";
 const SCROLL_REGION: &str = "scroll region left set";
 const LINE_DRAWING: &str = "line drawing characters left on";
 const SHIFTED_OUT: &str = "shifted out";
+const CUT: &str = "a sequence or a character was cut off by the next";
 const LINK: &str = "hyperlink left open";
 
 /// The state in which bytes leave a terminal that was in its ground state before.
@@ -70,6 +71,7 @@ impl Modes {
         let mut probe = Probe::default();
         parser.advance(&mut probe, b"x");
         modes.torn = probe.heard != ['x'];
+        modes.set(CUT, is_cut(bytes));
         modes
     }
 
@@ -271,6 +273,49 @@ impl Perform for Modes {
             (b" ", 'q') => self.set(CURSOR_SHAPE, first != 0),
             (b"!", 'p') => self.soft_reset(),
             _ => {}
+        }
+    }
+}
+
+/// Whether a sequence or a character was broken off by what came next. A terminal forgives it, but it was torn.
+fn is_cut(bytes: &[u8]) -> bool {
+    let broken_character = std::str::from_utf8(bytes).is_err_and(|error| error.error_len().is_some());
+    let mut place = Place::Ground;
+    let cut = bytes.iter().any(|&byte| match place.after(byte) {
+        Some(next) => {
+            place = next;
+            false
+        }
+        None => true,
+    });
+    broken_character || cut
+}
+
+/// Where a byte stands: outside of any sequence, or inside which kind.
+#[derive(Clone, Copy)]
+enum Place {
+    Ground,
+    Escape,
+    Csi,
+    Text,
+    TextEscape,
+}
+
+impl Place {
+    /// Where the next byte stands; nowhere, if this byte has no business here.
+    fn after(self, byte: u8) -> Option<Self> {
+        match (self, byte) {
+            (Self::Ground, 0x1b) | (Self::Escape, 0x20..=0x2f) => Some(Self::Escape),
+            (Self::Escape, b'[') | (Self::Csi, 0x20..=0x3f) => Some(Self::Csi),
+            (Self::Escape, b']' | b'P' | b'X' | b'^' | b'_') => Some(Self::Text),
+            (Self::Text, 0x1b) => Some(Self::TextEscape),
+            (Self::Ground, _)
+            | (Self::Escape, 0x30..=0x7e)
+            | (Self::Csi, 0x40..=0x7e)
+            | (Self::Text, 0x07)
+            | (Self::TextEscape, b'\\') => Some(Self::Ground),
+            (Self::Text, _) => Some(Self::Text),
+            (Self::Escape | Self::Csi | Self::TextEscape, _) => None,
         }
     }
 }
