@@ -6,8 +6,8 @@ use std::hint::black_box;
 use std::num::NonZeroU32;
 use std::path::Path;
 use termtrace::camera::{Camera, Pose};
-use termtrace::capabilities::CellMode;
-use termtrace::cell;
+use termtrace::capabilities::{CellMode, Colors, Glyphs};
+use termtrace::cell::{self, Painter};
 use termtrace::encode::{Encoder, Order};
 use termtrace::grid::{Grid, Size};
 use termtrace::render::render;
@@ -22,7 +22,7 @@ fn scene(name: &str) -> Scene {
 }
 
 fn picture(scene: &Scene, camera: &Camera, size: Size) -> Picture {
-    let resolution = cell::resolution(CellMode::HalfBlock, size, 2.0);
+    let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0);
     tone(&render(scene, camera, resolution, NonZeroU32::MIN), scene)
 }
 
@@ -36,7 +36,7 @@ fn turn(scene: &Scene, size: Size, frames: usize) -> Vec<Grid> {
             arm = Vec3::new(cos * arm.x + sin * arm.z, arm.y, cos * arm.z - sin * arm.x);
             let camera =
                 scene.camera.with_pose(Pose { eye: target + arm, target, up }).expect("a pose all the way round");
-            cell::grid_from_picture(CellMode::HalfBlock, &picture(scene, &camera, size))
+            cell::grid_from_picture(CellMode::HALF_BLOCK, &picture(scene, &camera, size))
         })
         .collect()
 }
@@ -46,7 +46,7 @@ fn trace(criterion: &mut Criterion) {
     for name in ["three_spheres.ron", "many_spheres.ron"] {
         let scene = scene(name);
         for size in SIZES {
-            let resolution = cell::resolution(CellMode::HalfBlock, size, 2.0);
+            let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0);
             group.bench_with_input(BenchmarkId::new(name, format!("{size:?}")), &resolution, |bencher, &resolution| {
                 bencher.iter(|| render(black_box(&scene), &scene.camera, resolution, NonZeroU32::MIN));
             });
@@ -56,12 +56,22 @@ fn trace(criterion: &mut Criterion) {
 
 fn light_to_cells(criterion: &mut Criterion) {
     let scene = scene("three_spheres.ron");
-    let light = render(&scene, &scene.camera, cell::resolution(CellMode::HalfBlock, SIZES[1], 2.0), NonZeroU32::MIN);
+    let light = render(&scene, &scene.camera, cell::resolution(CellMode::HALF_BLOCK, SIZES[1], 2.0), NonZeroU32::MIN);
     criterion.bench_function("tone", |bencher| bencher.iter(|| tone(black_box(&light), &scene)));
-    let picture = tone(&light, &scene);
-    for mode in [CellMode::HalfBlock, CellMode::Ramp] {
-        criterion.bench_function(&format!("cells {mode:?}"), |bencher| {
-            bencher.iter(|| cell::grid_from_picture(mode, black_box(&picture)));
+    for (name, glyphs, colors) in [
+        ("half blocks in truecolor", Glyphs::Half, Colors::Truecolor),
+        ("half blocks in 256 colours", Glyphs::Half, Colors::Indexed256),
+        ("half blocks in 16 colours", Glyphs::Half, Colors::SIXTEEN),
+        ("shapes", Glyphs::Shape, Colors::None),
+        ("coloured shapes", Glyphs::Shape, Colors::Truecolor),
+        ("the ramp", Glyphs::Ramp, Colors::None),
+    ] {
+        let mode = CellMode { glyphs, colors };
+        let resolution = cell::resolution(mode, SIZES[1], 2.0);
+        let picture = tone(&render(&scene, &scene.camera, resolution, NonZeroU32::MIN), &scene);
+        let mut painter = Painter::new(mode);
+        criterion.bench_function(&format!("cells: {name}"), |bencher| {
+            bencher.iter(|| painter.grid(black_box(&picture)));
         });
     }
 }

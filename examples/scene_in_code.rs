@@ -26,9 +26,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         falloff: Falloff::InverseSquare,
     });
 
-    let resolution = cell::resolution(CellMode::HalfBlock, Size::new(80, 24), USUAL_CELL_ASPECT);
+    let resolution = cell::resolution(CellMode::HALF_BLOCK, Size::new(80, 24), USUAL_CELL_ASPECT);
     let picture = tone(&render(&scene, &scene.camera, resolution, NonZeroU32::MIN), &scene);
-    io::stdout().write_all(&export::ansi(&cell::grid_from_picture(CellMode::HalfBlock, &picture)))?;
+    io::stdout().write_all(&export::ansi(&cell::grid_from_picture(CellMode::HALF_BLOCK, &picture)))?;
     Ok(())
 }
 

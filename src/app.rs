@@ -128,20 +128,22 @@ struct Live {
 
 impl Live {
     fn new(camera: Camera, options: Options, window: Window) -> Self {
+        let capabilities = Capabilities {
+            cell_mode: options.cell_mode,
+            cell_aspect: USUAL_CELL_ASPECT,
+            halves_meet: false,
+            light_background: false,
+        };
         let mut live = Self {
             options,
             home: camera,
             camera,
             speed: control::speed(&camera),
             size: window.size,
-            capabilities: Capabilities {
-                cell_mode: options.cell_mode,
-                cell_aspect: USUAL_CELL_ASPECT,
-                halves_meet: false,
-            },
+            capabilities,
             parser: Parser::new(),
             motion: Motion::default(),
-            screen: Screen::new(options.cell_mode, options.order, options.quality),
+            screen: Screen::new(&capabilities, options.order, options.quality),
             link: Link::new(options.max_rate),
             start: Instant::now(),
             moved_until: None,

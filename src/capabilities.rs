@@ -1,4 +1,12 @@
-//! What a terminal can show: a plain value, and how the environment tells it.
+//! What a terminal can show: plain values, and how the environment tells them.
+
+use crate::color::Srgb8;
+
+mod detection;
+mod terminfo;
+
+pub use detection::{Clues, Found, GlyphChoice, Source, colors, glyphs};
+pub use terminfo::terminfo_colors;
 
 /// What the screen's cells can be made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,22 +17,79 @@ pub struct Capabilities {
     pub cell_aspect: f32,
     /// Whether the upper and the lower half block meet in the same line: only then may a picture mix them.
     pub halves_meet: bool,
+    /// Whether the terminal writes dark on light: where its own colours are all there are, more ink is then less light.
+    pub light_background: bool,
 }
 
-/// How pixels become cells.
+/// How pixels become cells: what stands in them, and in which colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CellMode {
-    /// Two truecolor pixels, one above the other, in each cell.
-    HalfBlock,
-    /// A plain character by lightness, in the terminal's own colours.
+pub struct CellMode {
+    /// What stands in a cell.
+    pub glyphs: Glyphs,
+    /// What it may be coloured with.
+    pub colors: Colors,
+}
+
+/// What stands in a cell of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Glyphs {
+    /// Half blocks: two pixels, one above the other.
+    Half,
+    /// The printable character of ASCII that has its ink where the picture has its light.
+    Shape,
+    /// A character of a fixed ramp, by lightness alone.
     Ramp,
 }
 
+/// The colours that a cell may have, fewer before more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Colors {
+    /// The terminal's own two: nothing is said of colours at all.
+    None,
+    /// Sixteen, which look like this; users choose them.
+    Indexed16([Srgb8; 16]),
+    /// The 240 of 256 that are the same in every terminal: a cube of six levels to a band, and 24 greys.
+    Indexed256,
+    /// Any 8-bit sRGB.
+    Truecolor,
+}
+
+impl Colors {
+    /// Sixteen colours, taken to be xterm's own.
+    pub const SIXTEEN: Self = Self::Indexed16(XTERM_16);
+}
+
+/// The sixteen colours of xterm where nobody has changed them.
+const XTERM_16: [Srgb8; 16] = [
+    Srgb8::new(0, 0, 0),
+    Srgb8::new(205, 0, 0),
+    Srgb8::new(0, 205, 0),
+    Srgb8::new(205, 205, 0),
+    Srgb8::new(0, 0, 238),
+    Srgb8::new(205, 0, 205),
+    Srgb8::new(0, 205, 205),
+    Srgb8::new(229, 229, 229),
+    Srgb8::new(127, 127, 127),
+    Srgb8::new(255, 0, 0),
+    Srgb8::new(0, 255, 0),
+    Srgb8::new(255, 255, 0),
+    Srgb8::new(92, 92, 255),
+    Srgb8::new(255, 0, 255),
+    Srgb8::new(0, 255, 255),
+    Srgb8::new(255, 255, 255),
+];
+
 impl CellMode {
+    /// Half blocks in truecolor.
+    pub const HALF_BLOCK: Self = Self { glyphs: Glyphs::Half, colors: Colors::Truecolor };
+    /// The ramp in the terminal's own colours: the text that people compare.
+    pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
+
     /// How many pixels a cell wants, across and down.
     pub const fn pixels_per_cell(self) -> (u32, u32) {
-        match self {
-            Self::HalfBlock | Self::Ramp => (1, 2),
+        match self.glyphs {
+            Glyphs::Half | Glyphs::Ramp => (1, 2),
+            Glyphs::Shape => (2, 4),
         }
     }
 }
@@ -32,48 +97,18 @@ impl CellMode {
 /// The aspect of a cell of which nothing is known.
 pub const USUAL_CELL_ASPECT: f32 = 2.0;
 
-/// Whether pictures may be coloured, as the user says it.
+/// Whether pictures may be coloured, and how, as the user says it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorChoice {
-    /// Where the terminal is likely to show them.
+    /// As the terminal is likely to show them.
     #[default]
     Auto,
-    /// Yes, whatever the environment says.
+    /// At least sixteen, whatever `NO_COLOR` says.
     Always,
-    /// No colour and no block characters.
+    /// None at all.
     Never,
-}
-
-/// The cell mode for a terminal, from what the user says and the environment, looked up by name.
-///
-/// Without colour, half blocks would be a screen full of equal characters; where characters are not UTF-8 they would
-/// be garbage. Both then get the ramp.
-pub fn cell_mode(choice: ColorChoice, variable: impl Fn(&str) -> Option<String>) -> CellMode {
-    let ramp = match choice {
-        ColorChoice::Always => false,
-        ColorChoice::Never => true,
-        ColorChoice::Auto => no_color(&variable) || is_dumb(&variable) || !is_utf8(&variable),
-    };
-    if ramp { CellMode::Ramp } else { CellMode::HalfBlock }
-}
-
-/// The custom of no-color.org: set, and not empty.
-fn no_color(variable: impl Fn(&str) -> Option<String>) -> bool {
-    variable("NO_COLOR").is_some_and(|value| !value.is_empty())
-}
-
-fn is_dumb(variable: impl Fn(&str) -> Option<String>) -> bool {
-    variable("TERM").is_some_and(|term| term == "dumb")
-}
-
-/// The locale's character set, by POSIX's order of the variables. Where none is set, nobody has said anything against
-/// UTF-8, and a terminal of today shows it.
-fn is_utf8(variable: impl Fn(&str) -> Option<String>) -> bool {
-    let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().filter_map(variable).find(|value| !value.is_empty());
-    locale.is_none_or(|locale| {
-        let locale = locale.to_ascii_lowercase();
-        locale.contains("utf-8") || locale.contains("utf8")
-    })
+    /// Exactly these.
+    Exactly(Colors),
 }
 
 /// A cell's height over its width from a window's size in cells and in pixels, where it gives a sensible one.
@@ -98,32 +133,6 @@ pub fn halves_meet(rows: u16, height: u16) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn mode(choice: ColorChoice, environment: &[(&str, &str)]) -> CellMode {
-        cell_mode(choice, |name| environment.iter().find(|(n, _)| *n == name).map(|(_, value)| (*value).to_owned()))
-    }
-
-    #[test]
-    fn the_environment_decides_unless_the_user_does() {
-        use CellMode::{HalfBlock, Ramp};
-        use ColorChoice::{Always, Auto, Never};
-        for (choice, environment, expected) in [
-            (Auto, &[("TERM", "xterm-256color"), ("LANG", "en_US.UTF-8")][..], HalfBlock),
-            (Auto, &[], HalfBlock),
-            (Auto, &[("LANG", "C.utf8")], HalfBlock),
-            (Auto, &[("NO_COLOR", "1")], Ramp),
-            (Auto, &[("NO_COLOR", "")], HalfBlock),
-            (Auto, &[("TERM", "dumb")], Ramp),
-            (Auto, &[("LANG", "C")], Ramp),
-            (Auto, &[("LC_ALL", "POSIX"), ("LANG", "en_US.UTF-8")], Ramp),
-            (Auto, &[("LC_ALL", ""), ("LANG", "en_US.UTF-8")], HalfBlock),
-            (Auto, &[("LC_CTYPE", "de_DE.ISO-8859-1")], Ramp),
-            (Always, &[("NO_COLOR", "1"), ("TERM", "dumb")], HalfBlock),
-            (Never, &[("TERM", "xterm-kitty")], Ramp),
-        ] {
-            assert_eq!(mode(choice, environment), expected, "{choice:?} {environment:?}");
-        }
-    }
 
     #[test]
     fn halves_meet_in_cells_of_even_height() {

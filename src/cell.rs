@@ -1,12 +1,19 @@
 //! Picture -> cell grid.
 
-use crate::capabilities::CellMode;
+use crate::capabilities::{CellMode, Colors, Glyphs};
+use crate::color::Srgb8;
 use crate::framebuffer::Resolution;
 use crate::grid::{Grid, Size};
 use crate::tone::Picture;
+use inks::Inks;
 
+mod blue_noise;
 mod half;
+mod inks;
+mod palette;
 mod ramp;
+mod shape;
+mod tint;
 
 pub use ramp::RAMP;
 
@@ -20,25 +27,81 @@ pub fn resolution(mode: CellMode, size: Size, cell_aspect: f32) -> Resolution {
     }
 }
 
-/// The cells that show the picture; at its lower edge a cell may be filled only in part.
+/// The cells that show the picture, as a new [`Painter`] paints them.
 ///
 /// # Panics
 /// If the picture needs more than 65,535 columns or rows.
 pub fn grid_from_picture(mode: CellMode, picture: &Picture) -> Grid {
-    let (across, down) = mode.pixels_per_cell();
+    Painter::new(mode).grid(picture)
+}
+
+/// Turns pictures into cells, and keeps what it has found out about few colours from frame to frame.
+pub struct Painter {
+    mode: CellMode,
+    light_background: bool,
+    inks: Inks,
+}
+
+impl Painter {
+    /// For a terminal that writes light on dark, where it is asked to write in its own colours.
+    pub fn new(mode: CellMode) -> Self {
+        Self { mode, light_background: false, inks: Inks::of(mode.colors) }
+    }
+
+    /// Whether it writes dark on light instead: what is light is then left blank.
+    pub fn with_light_background(self, light_background: bool) -> Self {
+        Self { light_background, ..self }
+    }
+
+    /// How it turns pixels into cells.
+    pub fn mode(&self) -> CellMode {
+        self.mode
+    }
+
+    /// The cells that show the picture: a function of nothing else. At its right and lower edge a cell may be filled
+    /// only in part.
+    ///
+    /// # Panics
+    /// If the picture needs more than 65,535 columns or rows.
+    pub fn grid(&mut self, picture: &Picture) -> Grid {
+        let pixels_per_cell = self.mode.pixels_per_cell();
+        let mut grid = Grid::new(size_in_cells(picture, pixels_per_cell));
+        if self.mode.colors == Colors::None {
+            let negative = self.light_background.then(|| negative(picture));
+            self.fill(&mut grid, negative.as_ref().unwrap_or(picture));
+        } else if self.mode.glyphs == Glyphs::Half {
+            self.fill(&mut grid, picture);
+        } else {
+            self.fill(&mut grid, &tint::brightness(picture));
+            tint::fill(&mut grid, picture, pixels_per_cell, &mut self.inks);
+        }
+        grid
+    }
+
+    fn fill(&mut self, grid: &mut Grid, picture: &Picture) {
+        match self.mode.glyphs {
+            Glyphs::Half => half::fill(grid, picture, &mut self.inks),
+            Glyphs::Shape => shape::fill(grid, picture),
+            Glyphs::Ramp => ramp::fill(grid, picture),
+        }
+    }
+}
+
+fn size_in_cells(picture: &Picture, (across, down): (u32, u32)) -> Size {
     let cells = |pixels: u32, per_cell| {
         u16::try_from(pixels.div_ceil(per_cell)).expect("a grid has at most 65,535 columns and rows")
     };
-    let mut grid = Grid::new(Size::new(cells(picture.width, across), cells(picture.height, down)));
-    match mode {
-        CellMode::HalfBlock => half::fill(&mut grid, picture),
-        CellMode::Ramp => ramp::fill(&mut grid, picture),
-    }
-    grid
+    Size::new(cells(picture.width, across), cells(picture.height, down))
+}
+
+/// Dark where the picture is light.
+fn negative(picture: &Picture) -> Picture {
+    let turned = |pixel: &Srgb8| Srgb8::new(255 - pixel.r, 255 - pixel.g, 255 - pixel.b);
+    Picture { pixels: picture.pixels.iter().map(turned).collect(), ..*picture }
 }
 
 /// The two pixels of a cell, upper and lower; there is no lower one below the picture's edge.
-fn pixel_pair(picture: &Picture, column: u16, row: u16) -> (crate::color::Srgb8, Option<crate::color::Srgb8>) {
+fn pixel_pair(picture: &Picture, column: u16, row: u16) -> (Srgb8, Option<Srgb8>) {
     let width = picture.width as usize;
     let upper = usize::from(row) * 2 * width + usize::from(column);
     (picture.pixels[upper], picture.pixels.get(upper + width).copied())

@@ -1,5 +1,6 @@
 //! The command line: what it says, and what is then done.
 
+mod cells;
 mod check;
 mod encoding;
 mod frame;
@@ -52,7 +53,7 @@ Examples:
 Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wrong arguments or a wrong scene";
 
 #[derive(Parser)]
-#[command(name = "termtrace", version, about = ABOUT, after_help = format!("{}\n\n{EXAMPLES}", encoding::EXPLAINED))]
+#[command(name = "termtrace", version, about = ABOUT, after_help = format!("{}\n{}\n\n{EXAMPLES}", cells::EXPLAINED, encoding::EXPLAINED))]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true, disable_help_subcommand = true)]
 struct Cli {
     #[command(subcommand)]

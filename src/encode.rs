@@ -81,6 +81,7 @@ pub struct Encoder {
     order: Order,
     upper_half: bool,
     synchronized: bool,
+    colorless: bool,
     /// Nothing at first and after a resize.
     known: Option<Known>,
     stillness: Stillness,
@@ -133,6 +134,11 @@ impl Encoder {
     /// others pass over them.
     pub fn with_synchronized_output(self, synchronized: bool) -> Self {
         Self { synchronized, ..self }
+    }
+
+    /// Whether the terminal is told anything of colours: where not, not even to go back to its own.
+    pub fn with_colors(self, colors: bool) -> Self {
+        Self { colorless: !colors, ..self }
     }
 
     /// From here on nothing is known of the screen: the next frame is drawn whole.
@@ -206,8 +212,10 @@ impl Encoder {
     fn take_known(&mut self, size: Size, bytes: &mut Vec<u8>) -> Known {
         self.known.take().filter(|known| known.shown.size() == size).unwrap_or_else(|| {
             let mut pen = Pen::default();
-            // Whatever the pen was, it is known from here on.
-            pen.reset(bytes);
+            if !self.colorless {
+                // Whatever the pen was, it is known from here on.
+                pen.reset(bytes);
+            }
             Known { shown: Grid::foreign(size), pen }
         })
     }

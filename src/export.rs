@@ -31,7 +31,7 @@ use std::num::NonZeroU32;
 /// assert_eq!(text_frame(&scene, Size::new(12, 6)), rows.map(|row| format!("{row}\n")).concat());
 /// ```
 pub fn text_frame(scene: &Scene, size: Size) -> String {
-    text(&frame_grid(scene, CellMode::Ramp, size, USUAL_CELL_ASPECT))
+    text(&frame_grid(scene, CellMode::RAMP, size, USUAL_CELL_ASPECT))
 }
 
 /// The scene's own view as the cells of a screen of that size and cell aspect, one ray through each pixel's centre.

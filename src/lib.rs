@@ -49,7 +49,7 @@
 //! From light to the screen:
 //! - [`tone`]: exposure, tone curve, transfer function, 8 bits
 //! - [`grid`]: the cell grid
-//! - [`cell`]: picture -> grid, by half blocks or by a ramp of characters
+//! - [`cell`]: picture -> grid, by half blocks or characters, in the colours that there are
 //! - [`overlay`]: any ratatui buffer laid over the grid
 //! - [`encode`]: wanted grid, shown grid, pen -> bytes
 //! - [`export`]: grid or picture -> text, ANSI, PNG

@@ -1,8 +1,9 @@
 //! Pictures made by hand, and the cells that show them.
 
-use termtrace::capabilities::CellMode;
-use termtrace::cell::{RAMP, grid_from_picture, resolution};
+use termtrace::capabilities::{CellMode, Colors, Glyphs};
+use termtrace::cell::{Painter, RAMP, grid_from_picture, resolution};
 use termtrace::color::Srgb8;
+use termtrace::encode::Encoder;
 use termtrace::export;
 use termtrace::framebuffer::Resolution;
 use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
@@ -37,7 +38,7 @@ fn written(grid: &Grid) -> Vec<String> {
 
 #[track_caller]
 fn assert_half_blocks(rows: &[&str], expected: &[&str]) {
-    assert_eq!(written(&grid_from_picture(CellMode::HalfBlock, &picture(rows))), expected, "{rows:?}");
+    assert_eq!(written(&grid_from_picture(CellMode::HALF_BLOCK, &picture(rows))), expected, "{rows:?}");
 }
 
 /// The lower half block: its colour is the lower pixel's, the upper one's lies behind it.
@@ -66,7 +67,7 @@ fn an_odd_row_fills_the_upper_half() {
 fn a_grid_is_as_wide_as_its_picture() {
     for (width, height, rows) in [(1, 1, 1), (1, 2, 1), (2, 3, 2), (7, 4, 2), (300, 1, 1), (1, 301, 151)] {
         let picture = Picture { width, height, pixels: vec![Srgb8::default(); (width * height) as usize] };
-        for mode in [CellMode::HalfBlock, CellMode::Ramp] {
+        for mode in [CellMode::HALF_BLOCK, CellMode::RAMP] {
             let grid = grid_from_picture(mode, &picture);
             assert_eq!(grid.size(), Size::new(width as u16, rows), "{width}x{height}");
             assert!(grid.cells().iter().all(|cell| cell.modifier.is_empty()));
@@ -76,7 +77,7 @@ fn a_grid_is_as_wide_as_its_picture() {
 
 #[track_caller]
 fn assert_ramp(rows: &[&str], expected: &str) {
-    let grid = grid_from_picture(CellMode::Ramp, &picture(rows));
+    let grid = grid_from_picture(CellMode::RAMP, &picture(rows));
     assert_eq!(export::text(&grid), expected, "{rows:?}");
     assert!(grid.cells().iter().all(|cell| (cell.fg, cell.bg) == (Ink::Default, Ink::Default)), "no colour");
 }
@@ -111,20 +112,212 @@ fn trailing_blanks_are_kept() {
 /// Two pixels to a cell, one above the other, each as high as half of it.
 #[test]
 fn pixels_of_a_screen() {
-    for mode in [CellMode::HalfBlock, CellMode::Ramp] {
+    for mode in [CellMode::HALF_BLOCK, CellMode::RAMP] {
         for (cell_aspect, pixel_aspect) in [(2.0, 1.0), (1.0, 0.5), (3.0, 1.5)] {
             let expected = Resolution { width: 80, height: 48, pixel_aspect };
             assert_eq!(resolution(mode, Size::new(80, 24), cell_aspect), expected);
         }
     }
     // 65,535 rows are more pixels than 16 bits can count.
-    assert_eq!(resolution(CellMode::HalfBlock, Size::new(1, 65_535), 2.0).height, 131_070);
+    assert_eq!(resolution(CellMode::HALF_BLOCK, Size::new(1, 65_535), 2.0).height, 131_070);
+}
+
+/// Two by four pixels to a cell of characters by shape.
+#[test]
+fn pixels_of_shapes() {
+    let mode = CellMode { glyphs: Glyphs::Shape, colors: Colors::None };
+    let expected = Resolution { width: 160, height: 96, pixel_aspect: 1.0 };
+    assert_eq!(resolution(mode, Size::new(80, 24), 2.0), expected);
+    for (width, height, columns, rows) in [(1, 1, 1, 1), (2, 4, 1, 1), (3, 5, 2, 2), (160, 96, 80, 24)] {
+        let picture = Picture { width, height, pixels: vec![Srgb8::new(255, 255, 255); (width * height) as usize] };
+        let grid = grid_from_picture(mode, &picture);
+        assert_eq!(grid.size(), Size::new(columns, rows), "{width}x{height}");
+        assert!(grid.cells().iter().all(|cell| cell.glyph == 'Q'), "the densest that is so all over");
+    }
+}
+
+/// All that cells can be made of.
+fn modes() -> impl Iterator<Item = CellMode> {
+    let colors = [Colors::None, Colors::SIXTEEN, Colors::Indexed256, Colors::Truecolor];
+    let glyphs = [Glyphs::Half, Glyphs::Shape, Glyphs::Ramp];
+    glyphs.into_iter().flat_map(move |glyphs| colors.map(|colors| CellMode { glyphs, colors }))
+}
+
+/// Every colour there is, in no order, and none twice beside each other.
+fn confetti(seed: u32) -> Picture {
+    let (width, height) = (80, 96);
+    let mix = |at: u32| (at + seed).wrapping_mul(0x9e37_79b1) >> 8;
+    let pixels = (0..width * height).map(mix).map(|c| Srgb8::new((c >> 16) as u8, (c >> 8) as u8, c as u8));
+    Picture { width, height, pixels: pixels.collect() }
+}
+
+fn inks(grid: &Grid) -> impl Iterator<Item = Ink> {
+    grid.cells().iter().flat_map(|cell| [cell.fg, cell.bg])
+}
+
+#[test]
+fn only_the_colours_of_the_mode_are_used() {
+    for mode in modes() {
+        let grid = grid_from_picture(mode, &confetti(1));
+        for ink in inks(&grid) {
+            let is_allowed = match (ink, mode.colors) {
+                (Ink::Default, _) | (Ink::Rgb(_), Colors::Truecolor) => true,
+                (Ink::Indexed(index), Colors::Indexed16(_)) => index < 16,
+                // Users choose what the first sixteen look like.
+                (Ink::Indexed(index), Colors::Indexed256) => index >= 16,
+                _ => false,
+            };
+            assert!(is_allowed, "{mode:?}: {ink:?}");
+        }
+        let has_color = inks(&grid).any(|ink| ink != Ink::Default);
+        assert_eq!(has_color, mode.colors != Colors::None, "{mode:?}");
+        let is_ascii = grid.cells().iter().all(|cell| matches!(cell.glyph, Glyph::Char(c) if c.is_ascii()));
+        assert_eq!(is_ascii, mode.glyphs != Glyphs::Half, "{mode:?}");
+    }
+}
+
+/// Nothing that the painter has seen before is in its cells.
+#[test]
+fn a_still_picture_sends_nothing() {
+    for mode in modes() {
+        let mut painter = Painter::new(mode);
+        let mut encoder = Encoder::new();
+        encoder.encode(&painter.grid(&confetti(1)), &mut Vec::new());
+        assert_ne!(painter.grid(&confetti(2)), grid_from_picture(mode, &confetti(1)));
+        let mut bytes = Vec::new();
+        encoder.encode(&painter.grid(&confetti(1)), &mut bytes);
+        assert!(bytes.is_empty(), "{mode:?}: {} bytes", bytes.len());
+        assert_eq!(painter.grid(&confetti(2)), grid_from_picture(mode, &confetti(2)), "{mode:?}");
+    }
+}
+
+/// What a pixel becomes depends on its colour and its place alone: a picture in a part of another is the same there.
+#[test]
+fn dithering_keeps_to_its_pixel() {
+    let mut other = confetti(1);
+    let width = other.width as usize;
+    for (at, pixel) in other.pixels.iter_mut().enumerate() {
+        if at % width >= width / 2 {
+            *pixel = Srgb8::new(200, 10, 90);
+        }
+    }
+    for colors in [Colors::None, Colors::SIXTEEN, Colors::Indexed256] {
+        let mode = CellMode { glyphs: Glyphs::Half, colors };
+        let (whole, part) = (grid_from_picture(mode, &confetti(1)), grid_from_picture(mode, &other));
+        for (whole, part) in whole.rows().zip(part.rows()) {
+            assert_eq!(whole[..width / 2], part[..width / 2], "{colors:?}");
+        }
+    }
+}
+
+/// Black is black and white is white, not a mix of others; a grey between two is a mix of greys.
+#[test]
+fn few_colours_of_flat_pictures() {
+    let indices = |colors, grey| -> std::collections::BTreeSet<u8> {
+        let picture = Picture { width: 32, height: 32, pixels: vec![Srgb8::new(grey, grey, grey); 1024] };
+        let grid = grid_from_picture(CellMode { glyphs: Glyphs::Half, colors }, &picture);
+        let indices = inks(&grid).filter_map(|ink| match ink {
+            Ink::Indexed(index) => Some(index),
+            _ => None,
+        });
+        indices.collect()
+    };
+    assert_eq!(indices(Colors::SIXTEEN, 0), [0].into());
+    assert_eq!(indices(Colors::SIXTEEN, 255), [15].into());
+    assert_eq!(indices(Colors::Indexed256, 0), [16].into());
+    assert_eq!(indices(Colors::Indexed256, 255), [231].into());
+    let greys = indices(Colors::Indexed256, 100);
+    assert!(greys.len() > 1 && greys.iter().all(|&index| index >= 232 || index == 59 || index == 102), "{greys:?}");
+    // With other sixteen colours, the white may be elsewhere.
+    let mut turned = [Srgb8::new(0, 0, 0); 16];
+    turned[3] = Srgb8::new(255, 255, 255);
+    assert_eq!(indices(Colors::Indexed16(turned), 255), [3].into());
+}
+
+/// Where the terminal's own colours are all there are, and it writes dark on light, what is light is left blank.
+#[test]
+fn a_light_background_turns_what_has_no_colour() {
+    for mode in modes() {
+        let size = mode.pixels_per_cell();
+        let glyph = |pixel: Srgb8, light| {
+            let picture = Picture { width: size.0, height: size.1, pixels: vec![pixel; (size.0 * size.1) as usize] };
+            let grid = Painter::new(mode).with_light_background(light).grid(&picture);
+            grid.cell(0, 0).clone()
+        };
+        let (black, white) = (color('b'), color('w'));
+        if mode.colors == Colors::None {
+            assert_eq!(glyph(black, true), glyph(white, false), "{mode:?}");
+            assert_eq!(glyph(white, true), Cell::BLANK, "{mode:?}");
+            assert_ne!(glyph(black, true), Cell::BLANK, "{mode:?}");
+        } else {
+            assert_eq!(glyph(black, true), glyph(black, false), "{mode:?}");
+            assert_eq!(glyph(white, true), glyph(white, false), "{mode:?}");
+        }
+    }
+}
+
+#[test]
+fn without_colour_a_half_is_lit_or_not() {
+    let mode = CellMode { glyphs: Glyphs::Half, colors: Colors::None };
+    assert_eq!(export::text(&grid_from_picture(mode, &picture(&["bwbw", "bbww", "wwbb"]))), " ▀▄█\n▀▀  \n");
+}
+
+/// The glyph says how bright the brightest band is, its colour the rest; on black, whatever the terminal's own is.
+#[test]
+fn characters_are_coloured_as_bright_as_can_be() {
+    let flat = |glyphs, pixel| {
+        let picture = Picture { width: 2, height: 4, pixels: vec![pixel; 8] };
+        grid_from_picture(CellMode { glyphs, colors: Colors::Truecolor }, &picture).cell(0, 0).clone()
+    };
+    let black = Ink::Rgb(color('b'));
+    for (glyphs, densest) in [(Glyphs::Shape, 'Q'), (Glyphs::Ramp, '@')] {
+        assert_eq!(flat(glyphs, color('r')), Cell::new(densest, Ink::Rgb(color('r')), black));
+        assert_eq!(flat(glyphs, color('b')), Cell::new(' ', Ink::Default, black));
+        let dim = flat(glyphs, Srgb8::new(0, 60, 120));
+        assert_eq!(dim.fg, Ink::Rgb(Srgb8::new(0, 127, 255)));
+        assert_eq!(dim.glyph, flat(glyphs, Srgb8::new(120, 120, 120)).glyph);
+    }
+}
+
+/// A golden frame of each kind that a person can read: characters, or the number of each half's colour in hexadecimal.
+#[test]
+fn goldens() {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.set_snapshot_path("snapshots/cells");
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/three_spheres.ron");
+    let scene = termtrace::scene::Scene::load(&path).expect("the scene is fine");
+    for (name, glyphs, colors, digits) in [
+        ("shape", Glyphs::Shape, Colors::None, 0),
+        ("half", Glyphs::Half, Colors::None, 0),
+        ("256_colors", Glyphs::Half, Colors::Indexed256, 2),
+        ("16_colors", Glyphs::Half, Colors::SIXTEEN, 1),
+    ] {
+        let grid = export::frame_grid(&scene, CellMode { glyphs, colors }, Size::new(38, 12), 2.0);
+        let frame = if digits == 0 { export::text(&grid) } else { numbers(&grid, digits) };
+        let framed = format!("|{}|", frame.trim_end_matches('\n').replace('\n', "|\n|"));
+        settings.bind(|| insta::assert_snapshot!(name, framed));
+    }
+}
+
+/// Two lines for each row of cells, the upper halves' colours and the lower ones'.
+fn numbers(grid: &Grid, digits: usize) -> String {
+    let number = |ink| match ink {
+        Ink::Indexed(index) => format!("{index:0digits$x}"),
+        _ => "?".repeat(digits),
+    };
+    let lower = |cell: &Cell| if cell.glyph == ' ' { cell.bg } else { cell.fg };
+    let line = |row: &[Cell], half: &dyn Fn(&Cell) -> Ink| -> String {
+        row.iter().map(|cell| number(half(cell))).chain(["\n".to_owned()]).collect()
+    };
+    grid.rows().flat_map(|row| [line(row, &|cell| cell.bg), line(row, &lower)]).collect()
 }
 
 /// The escape sequences of a file by hand: only what differs is said, and no colour is left on at a line's end.
 #[test]
 fn ansi_of_a_picture() {
-    let grid = grid_from_picture(CellMode::HalfBlock, &picture(&["bb", "ww", "rr"]));
+    let grid = grid_from_picture(CellMode::HALF_BLOCK, &picture(&["bb", "ww", "rr"]));
     let expected = "\x1b[48;2;0;0;0m\x1b[38;2;255;255;255m▄▄\x1b[0m\n\x1b[38;2;255;0;0m▀▀\x1b[0m\n";
     assert_eq!(String::from_utf8_lossy(&export::ansi(&grid)), expected);
 }

@@ -9,7 +9,7 @@ use std::io::Write;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::time::Duration;
-use termtrace::capabilities::CellMode;
+use termtrace::capabilities::{CellMode, Colors, Glyphs};
 use termtrace::cell;
 use termtrace::control::BINDINGS;
 use termtrace::encode::{Encoder, Order};
@@ -71,7 +71,7 @@ fn halves_of(glyph: char, fg: Colour, bg: Colour) -> Option<[Colour; 2]> {
 
 #[track_caller]
 fn wait_for_picture(session: &mut Session, size: Size) {
-    let wanted = picture(CellMode::HalfBlock, size);
+    let wanted = picture(CellMode::HALF_BLOCK, size);
     session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
 }
 
@@ -120,7 +120,7 @@ fn the_first_frame_is_sent_in_the_order_that_is_asked_for() {
         let mut session = looking(flags.iter().fold(termtrace(), Start::arg));
         let mut wanted = Vec::new();
         let mut encoder = Encoder::new().with_order(order).with_upper_half(true);
-        encoder.encode(&picture(CellMode::HalfBlock, Size::cells(80, 24)), &mut wanted);
+        encoder.encode(&picture(CellMode::HALF_BLOCK, Size::cells(80, 24)), &mut wanted);
         let sent = session.seen().bytes();
         assert!(sent.windows(wanted.len()).any(|bytes| bytes == wanted), "{flags:?}");
     }
@@ -185,7 +185,7 @@ fn a_glide_ends_by_itself_at_the_same_place_every_time() {
 fn reset_brings_the_first_view_back_and_quiet_is_quiet() {
     let mut session = looking(termtrace());
     session.send(b"d");
-    let wanted = picture(CellMode::HalfBlock, Size::cells(80, 24));
+    let wanted = picture(CellMode::HALF_BLOCK, Size::cells(80, 24));
     session.wait_for("another picture", SOON, |seen| !shows(seen.screen(), &wanted));
     session.send(b"r");
     wait_for_picture(&mut session, Size::cells(80, 24));
@@ -232,7 +232,7 @@ fn any_quality_is_exact_at_rest() {
     for quality in ["exact", "equal", "fast"] {
         let mut session = looking(termtrace().arg("--quality").arg(quality));
         session.send(b"d");
-        let wanted = picture(CellMode::HalfBlock, Size::cells(80, 24));
+        let wanted = picture(CellMode::HALF_BLOCK, Size::cells(80, 24));
         session.wait_for("another picture", SOON, |seen| !shows(seen.screen(), &wanted));
         session.send(b"r");
         wait_for_picture(&mut session, Size::cells(80, 24));
@@ -436,7 +436,7 @@ fn keys_that_were_meant_for_us_are_not_left_for_the_shell() {
 fn pasted_text_presses_no_keys() {
     let mut session = looking(termtrace());
     session.send(b"\x1b[200~q\x03wasd\x1b[201~");
-    let wanted = picture(CellMode::HalfBlock, Size::cells(80, 24));
+    let wanted = picture(CellMode::HALF_BLOCK, Size::cells(80, 24));
     let moved = session.sees(Duration::from_millis(300), |seen| !shows(seen.screen(), &wanted));
     assert!(!moved, "the paste moved the eye");
     leave(&mut session);
@@ -450,7 +450,7 @@ fn redraw_repairs_a_screen_that_something_else_wrote_on() {
     session.wait_for("a whole frame", SOON, |seen| seen.bytes().len() > before + 80 * 24);
     // A fresh terminal that gets only these bytes shows the whole picture.
     let mut fresh = pty::Screen::new(80, 24);
-    let wanted = picture(CellMode::HalfBlock, Size::cells(80, 24));
+    let wanted = picture(CellMode::HALF_BLOCK, Size::cells(80, 24));
     session.wait_for("the end of it", SOON, |seen| {
         fresh = pty::Screen::new(80, 24);
         fresh.feed(&seen.bytes()[before..]);
@@ -491,18 +491,67 @@ fn the_flag_says_the_cell_aspect_where_the_terminal_does_not() {
     leave(&mut session);
 }
 
+/// A terminal with that environment and these flags shows cells of that kind; the help and the status line lie over it.
+#[track_caller]
+fn assert_cells(environment: &[(&str, &str)], flags: &[&str], glyphs: Glyphs, colors: Colors) -> Session {
+    let start = environment.iter().fold(termtrace(), |start, (name, value)| start.env(name, value));
+    let mut session = flags.iter().fold(start, Start::arg).spawn();
+    let wanted = picture(CellMode { glyphs, colors }, Size::cells(80, 24));
+    let what = format!("{glyphs:?} in {colors:?} with {environment:?} and {flags:?}");
+    session.wait_for(&what, SOON, |seen| shows(seen.screen(), &wanted));
+    session.send(b"?i");
+    session.wait_for_text("move forward");
+    session.wait_for_text("rays/s");
+    session
+}
+
+/// Whether there is an SGR among the bytes.
+fn has_sgr(bytes: &[u8]) -> bool {
+    let sequences = bytes.split(|&byte| byte == 0x1b).skip(1);
+    sequences.into_iter().any(|sequence: &[u8]| {
+        let end = sequence.iter().position(u8::is_ascii_alphabetic);
+        end.is_some_and(|end| sequence[end] == b'm')
+    })
+}
+
 #[test]
-fn without_colour_or_utf8_the_picture_is_plain_characters() {
-    let wanted = picture(CellMode::Ramp, Size::cells(80, 24));
-    for (name, value) in [("NO_COLOR", "1"), ("TERM", "dumb"), ("LC_ALL", "C")] {
-        let mut session = termtrace().env(name, value).spawn();
-        session.wait_for("the ramp", SOON, |seen| shows(seen.screen(), &wanted));
-        session.send(b"?i");
-        session.wait_for_text("move forward");
-        session.wait_for_text("rays/s");
+fn without_colour_nothing_is_said_of_any() {
+    for (environment, flags, glyphs) in [
+        (&[("NO_COLOR", "1")][..], &[][..], Glyphs::Shape),
+        (&[("TERM", "dumb"), ("COLORTERM", "")], &[], Glyphs::Shape),
+        (&[("FORCE_COLOR", "0")], &[], Glyphs::Shape),
+        (&[], &["--color=never"], Glyphs::Shape),
+        (&[], &["--color=never", "--glyphs=ramp"], Glyphs::Ramp),
+        (&[], &["--color=never", "--glyphs=half"], Glyphs::Half),
+    ] {
+        let mut session = assert_cells(environment, flags, glyphs, Colors::None);
         let seen = session.seen();
-        assert!(seen.bytes().is_ascii(), "{name}={value}");
-        assert!(!seen.has(b"38;") && !seen.has(b"48;"), "{name}={value}: a colour");
+        assert_eq!(seen.bytes().is_ascii(), glyphs != Glyphs::Half, "{environment:?} {flags:?}");
+        assert!(!has_sgr(seen.bytes()), "{environment:?} {flags:?}");
+        leave(&mut session);
+    }
+}
+
+#[test]
+fn without_utf8_the_picture_is_coloured_characters() {
+    let mut session = assert_cells(&[("LC_ALL", "C")], &[], Glyphs::Shape, Colors::Truecolor);
+    assert!(session.seen().bytes().is_ascii());
+    assert!(has_sgr(session.seen().bytes()));
+    leave(&mut session);
+}
+
+#[test]
+fn the_colours_are_those_of_the_environment_or_the_flag() {
+    for (environment, flags, colors) in [
+        (&[("COLORTERM", "")][..], &[][..], Colors::Indexed256),
+        (&[("COLORTERM", ""), ("TERM", "linux")], &[], Colors::SIXTEEN),
+        (&[("COLORTERM", ""), ("TERM", "dumb"), ("CLICOLOR_FORCE", "1")], &[], Colors::SIXTEEN),
+        (&[("NO_COLOR", "1")], &["--color=always"], Colors::Truecolor),
+        (&[], &["--color=256"], Colors::Indexed256),
+        (&[], &["--color=16"], Colors::SIXTEEN),
+        (&[("COLORTERM", "")], &["--color=truecolor"], Colors::Truecolor),
+    ] {
+        let mut session = assert_cells(environment, flags, Glyphs::Half, colors);
         leave(&mut session);
     }
 }

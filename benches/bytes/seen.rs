@@ -71,7 +71,7 @@ const MOST_DUE: usize = 30;
 /// The bytes of a picture where nothing is known of the screen.
 fn whole(picture: &Picture) -> usize {
     let mut bytes = Vec::new();
-    encoder(Order::Color).encode(&grid_from_picture(CellMode::HalfBlock, picture), &mut bytes);
+    encoder(Order::Color).encode(&grid_from_picture(CellMode::HALF_BLOCK, picture), &mut bytes);
     bytes.len()
 }
 

@@ -34,7 +34,7 @@ impl Way {
                 let mut bytes = Vec::new();
                 for picture in frames {
                     bytes.clear();
-                    encoder.encode(&grid_from_picture(CellMode::HalfBlock, picture), &mut bytes);
+                    encoder.encode(&grid_from_picture(CellMode::HALF_BLOCK, picture), &mut bytes);
                     take(&bytes);
                 }
             }
@@ -73,7 +73,7 @@ impl Lossy {
     pub(crate) fn send(&mut self, picture: &Picture, now: Duration) -> &[u8] {
         self.bytes.clear();
         let allowance = Allowance { quality: self.quality, now, most_bytes: None };
-        self.encoder.encode_within(&grid_from_picture(CellMode::HalfBlock, picture), allowance, &mut self.bytes);
+        self.encoder.encode_within(&grid_from_picture(CellMode::HALF_BLOCK, picture), allowance, &mut self.bytes);
         &self.bytes
     }
 

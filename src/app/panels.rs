@@ -1,6 +1,6 @@
 //! What is written over the picture: the status line and the help.
 
-use crate::capabilities::CellMode;
+use crate::capabilities::{CellMode, Colors, Glyphs};
 use crate::control::BINDINGS;
 use crate::grid::Size;
 use glam::Vec3;
@@ -21,13 +21,17 @@ pub(super) struct Look {
 
 impl Look {
     pub(super) fn of(cell_mode: CellMode) -> Self {
-        match cell_mode {
-            CellMode::HalfBlock => {
-                let style = Style::new().fg(Color::Rgb(0xe6, 0xe6, 0xe6)).bg(Color::Rgb(0x18, 0x1c, 0x24));
-                Self { style, border: border::ROUNDED }
-            }
-            CellMode::Ramp => Self { style: Style::new(), border: ASCII_BORDER },
-        }
+        let style = match cell_mode.colors {
+            Colors::Truecolor => Style::new().fg(Color::Rgb(0xe6, 0xe6, 0xe6)).bg(Color::Rgb(0x18, 0x1c, 0x24)),
+            Colors::Indexed256 => Style::new().fg(Color::Indexed(254)).bg(Color::Indexed(234)),
+            Colors::Indexed16(_) => Style::new().fg(Color::White).bg(Color::Black),
+            Colors::None => Style::new(),
+        };
+        let border = match cell_mode.glyphs {
+            Glyphs::Half => border::ROUNDED,
+            Glyphs::Shape | Glyphs::Ramp => ASCII_BORDER,
+        };
+        Self { style, border }
     }
 }
 

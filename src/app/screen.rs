@@ -3,8 +3,8 @@
 use super::panels;
 use super::renderer::Frame;
 use crate::camera::Camera;
-use crate::capabilities::CellMode;
-use crate::cell;
+use crate::capabilities::{Capabilities, Colors};
+use crate::cell::{self, Painter};
 use crate::encode::{Allowance, Encoder, Order, Quality};
 use crate::grid::{Grid, Size};
 use crate::overlay;
@@ -18,7 +18,7 @@ const BREATH: Duration = Duration::from_millis(33);
 
 /// What the user sees.
 pub(super) struct Screen {
-    cell_mode: CellMode,
+    painter: Painter,
     encoder: Encoder,
     quality: Quality,
     frame: Option<Frame>,
@@ -35,10 +35,11 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    pub(super) fn new(cell_mode: CellMode, order: Order, quality: Quality) -> Self {
+    pub(super) fn new(capabilities: &Capabilities, order: Order, quality: Quality) -> Self {
+        let mode = capabilities.cell_mode;
         Self {
-            cell_mode,
-            encoder: Encoder::new().with_order(order),
+            painter: Painter::new(mode).with_light_background(capabilities.light_background),
+            encoder: Encoder::new().with_order(order).with_colors(mode.colors != Colors::None),
             quality,
             frame: None,
             status: false,
@@ -83,21 +84,26 @@ impl Screen {
     /// When there are bytes to send: never, if all is shown as it should be, or before the first frame of the wanted size
     /// is there.
     pub(super) fn due(&self, size: Size) -> Option<Duration> {
-        self.frame_of(size)?;
+        if !self.is_frame_of(size) {
+            return None;
+        }
         if self.changed { Some(Duration::ZERO) } else { Some(self.encoder.due()?.max(self.written + BREATH)) }
     }
 
-    fn frame_of(&self, size: Size) -> Option<&Frame> {
-        let wanted = cell::resolution(self.cell_mode, size, 1.0);
-        self.frame.as_ref().filter(|frame| (frame.picture.width, frame.picture.height) == (wanted.width, wanted.height))
+    fn is_frame_of(&self, size: Size) -> bool {
+        let wanted = cell::resolution(self.painter.mode(), size, 1.0);
+        let is_wanted = |frame: &Frame| (frame.picture.width, frame.picture.height) == (wanted.width, wanted.height);
+        self.frame.as_ref().is_some_and(is_wanted)
     }
 
     /// The bytes that are to be sent now.
     pub(super) fn bytes(&mut self, size: Size, camera: &Camera, now: Duration, most_bytes: Option<usize>) -> &[u8] {
         self.bytes.clear();
-        if let Some(frame) = self.frame_of(size) {
+        if self.is_frame_of(size)
+            && let Some(frame) = &self.frame
+        {
             let start = Instant::now();
-            let mut grid = cell::grid_from_picture(self.cell_mode, &frame.picture);
+            let mut grid = self.painter.grid(&frame.picture);
             self.lay_panels_over(&mut grid, frame, camera);
             let allowance = Allowance { quality: self.quality, now, most_bytes };
             self.encoder.encode_within(&grid, allowance, &mut self.bytes);
@@ -111,7 +117,7 @@ impl Screen {
     fn lay_panels_over(&self, grid: &mut Grid, frame: &Frame, camera: &Camera) {
         let Size { columns, rows } = grid.size();
         let area = Rect::new(0, 0, columns, rows);
-        let look = panels::Look::of(self.cell_mode);
+        let look = panels::Look::of(self.painter.mode());
         let mut lay = |area: Rect, draw: &dyn Fn(Rect, &mut Buffer)| {
             let mut buffer = Buffer::empty(area);
             draw(area, &mut buffer);

@@ -1,21 +1,48 @@
 //! Half blocks: each half of a cell is a pixel.
 
+use super::inks::Inks;
+use super::palette::Palette;
 use super::pixel_pair;
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
 
 /// The lower half block, coloured by the lower pixel, on the upper one. (The upper half block would do as well, but
 /// where the font draws it, it covers a pixel row of the wrong half at odd cell heights; one glyph everywhere keeps
-/// the split straight.) Two equal pixels are a space: a full block shows hairlines in some fonts.
-pub(super) fn fill(grid: &mut Grid, picture: &Picture) {
+/// the split straight.) Two equal halves are a space: a full block shows hairlines in some fonts.
+pub(super) fn fill(grid: &mut Grid, picture: &Picture, inks: &mut Inks) {
+    if let Inks::Own(palette) = inks {
+        return fill_own(grid, picture, palette);
+    }
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
             let (upper, lower) = pixel_pair(picture, column, row);
+            let (x, y) = (usize::from(column), 2 * usize::from(row));
+            let upper = inks.ink(upper, x, y);
+            let lower = lower.map(|lower| inks.ink(lower, x, y + 1));
             *grid.cell_mut(column, row) = match lower {
-                Some(lower) if lower != upper => Cell::new('▄', Ink::Rgb(lower), Ink::Rgb(upper)),
-                Some(_) => Cell::new(' ', Ink::Default, Ink::Rgb(upper)),
-                None => Cell::new('▀', Ink::Rgb(upper), Ink::Default),
+                Some(lower) if lower != upper => Cell::new('▄', lower, upper),
+                Some(_) => Cell::new(' ', Ink::Default, upper),
+                None => Cell::new('▀', upper, Ink::Default),
             };
+        }
+    }
+}
+
+/// Without colours a half is lit or not.
+fn fill_own(grid: &mut Grid, picture: &Picture, palette: &mut Palette) {
+    for row in 0..grid.size().rows {
+        for column in 0..grid.size().columns {
+            let (upper, lower) = pixel_pair(picture, column, row);
+            let (x, y) = (usize::from(column), 2 * usize::from(row));
+            let upper = palette.index(upper, x, y) > 0;
+            let lower = lower.is_some_and(|lower| palette.index(lower, x, y + 1) > 0);
+            let glyph = match (upper, lower) {
+                (false, false) => ' ',
+                (false, true) => '▄',
+                (true, false) => '▀',
+                (true, true) => '█',
+            };
+            *grid.cell_mut(column, row) = Cell::new(glyph, Ink::Default, Ink::Default);
         }
     }
 }

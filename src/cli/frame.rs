@@ -2,33 +2,41 @@
 
 mod golden;
 
+use super::cells::{self, CellArgs};
 use super::picture::PictureArgs;
 use super::{Done, Failure, SceneArgs, reason, write_stdout};
 use clap::{Args, ValueEnum};
 use std::fs;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
-use termtrace::capabilities::CellMode;
+use termtrace::capabilities::{CellMode, Colors};
 use termtrace::cell;
 use termtrace::export;
 use termtrace::render::render;
 use termtrace::tone::tone;
 
+const FILES: &str = "\
+A frame does not depend on the terminal or the environment: auto is the ramp without colour for text, and half blocks in
+truecolor for ANSI.";
+
 const EXAMPLES: &str = "\
 Examples:
   termtrace frame my.ron                                      text, 80x24 cells, to standard output
   termtrace frame my.ron --format ansi --size 120x40          truecolor half blocks
+  termtrace frame my.ron --glyphs shape                       text whose characters follow the shapes
   termtrace frame my.ron -o my.png --pixels 800x600 --samples 16
   termtrace frame my.ron --check my.txt --bless               write the golden frame
   termtrace frame my.ron --check my.txt                       compare with it";
 
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = format!("{}\n{FILES}\n\n{EXAMPLES}", cells::EXPLAINED))]
 pub(super) struct FrameArgs {
     #[command(flatten)]
     scene: SceneArgs,
     #[command(flatten)]
     picture: PictureArgs,
+    #[command(flatten)]
+    cells: CellArgs,
     /// What to write [default: as the file name's ending says, or text]
     #[arg(long)]
     format: Option<Format>,
@@ -46,9 +54,9 @@ pub(super) struct FrameArgs {
 /// What a frame can be written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// Plain characters by lightness
+    /// Characters without colour
     Text,
-    /// Truecolor half blocks
+    /// Cells in colour
     Ansi,
     /// A picture file, one pixel per half cell
     Png,
@@ -69,16 +77,42 @@ impl FrameArgs {
         self.output.as_deref().filter(|&path| path != Path::new("-"))
     }
 
+    /// What the frame's cells are made of; a picture file has the pixels of half blocks.
+    fn cell_mode(&self, format: Format) -> CellMode {
+        match format {
+            Format::Text => self.cells.in_file(Colors::None),
+            Format::Ansi => self.cells.in_file(Colors::Truecolor),
+            Format::Png => CellMode::HALF_BLOCK,
+        }
+    }
+
+    /// Turns away what the format makes no use of.
+    fn check_flags(&self, format: Format) -> Done {
+        let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
+        match format {
+            Format::Text | Format::Ansi if self.picture.has_scale() => {
+                wrong("--scale is for PNG; text and ANSI frames take their size from --size")
+            }
+            Format::Text if self.cells.wants_color() => wrong("text has no colours; say --format ansi"),
+            Format::Png if self.cells.is_given() => wrong("--color and --glyphs are for cells; a PNG has pixels"),
+            Format::Png if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
+                wrong("a PNG would garble the terminal; name a file with -o, or pipe it")
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The frame in a format.
     fn contents(&self, format: Format) -> Result<Vec<u8>, Failure> {
         let scene = self.scene.load()?;
-        let resolution = self.picture.resolution()?;
+        let mode = self.cell_mode(format);
+        let resolution = self.picture.resolution(mode)?;
         self.picture.fits_scaled(resolution)?;
         let samples = self.picture.samples();
         let picture = self.scene.on_threads(|| tone(&render(&scene, &scene.camera, resolution, samples), &scene))?;
         Ok(match format {
-            Format::Text => export::text(&cell::grid_from_picture(CellMode::Ramp, &picture)).into_bytes(),
-            Format::Ansi => export::ansi(&cell::grid_from_picture(CellMode::HalfBlock, &picture)),
+            Format::Ansi if mode.colors != Colors::None => export::ansi(&cell::grid_from_picture(mode, &picture)),
+            Format::Text | Format::Ansi => export::text(&cell::grid_from_picture(mode, &picture)).into_bytes(),
             Format::Png => export::png(&picture, resolution.pixel_aspect, self.picture.scale())
                 .map_err(|error| Failure::runtime("PNG", error))?,
         })
@@ -87,12 +121,7 @@ impl FrameArgs {
 
 pub(super) fn run(args: &FrameArgs) -> Done {
     let format = args.format()?;
-    if format != Format::Png && args.picture.has_scale() {
-        return Err(Failure::Usage("--scale is for PNG; text and ANSI frames take their size from --size".to_owned()));
-    }
-    if format == Format::Png && args.output().is_none() && args.check.is_none() && io::stdout().is_terminal() {
-        return Err(Failure::Usage("a PNG would garble the terminal; name a file with -o, or pipe it".to_owned()));
-    }
+    args.check_flags(format)?;
     let frame = args.contents(format)?;
     match (&args.check, args.output()) {
         (Some(golden), _) if args.bless => write_file(golden, &frame),

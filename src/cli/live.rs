@@ -1,13 +1,15 @@
 //! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
 
+use super::cells::CellArgs;
 use super::encoding::EncodingArgs;
 use super::picture::parse_cell_aspect;
 use super::{Done, Failure, SceneArgs, complain_of_panic, reason, write_stdout};
-use clap::{Args, ValueEnum};
+use clap::Args;
+#[cfg(debug_assertions)]
 use std::io::{self, IsTerminal};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use termtrace::app::{self, Ending, Options, Outcome};
-use termtrace::capabilities::{CellMode, ColorChoice, USUAL_CELL_ASPECT, cell_mode};
+use termtrace::capabilities::{Colors, USUAL_CELL_ASPECT};
 use termtrace::export;
 use termtrace::grid::Size;
 use termtrace::scene::Scene;
@@ -23,9 +25,8 @@ pub(super) struct LiveArgs {
     /// What is too much, kept to say so
     #[arg(hide = true)]
     more: Vec<String>,
-    /// Whether to use colour; auto asks NO_COLOR, TERM and the locale
-    #[arg(long, value_name = "WHEN", default_value = "auto")]
-    color: Color,
+    #[command(flatten)]
+    cells: CellArgs,
     /// A cell's height over its width [default: as the terminal says, or 2]
     #[arg(long, value_name = "A", value_parser = parse_cell_aspect)]
     cell_aspect: Option<f32>,
@@ -36,24 +37,9 @@ pub(super) struct LiveArgs {
     quiet: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Color {
-    Auto,
-    Always,
-    Never,
-}
-
 impl LiveArgs {
-    fn color(&self) -> ColorChoice {
-        match self.color {
-            Color::Auto => ColorChoice::Auto,
-            Color::Always => ColorChoice::Always,
-            Color::Never => ColorChoice::Never,
-        }
-    }
-
     fn options(&self) -> Options {
-        let mut options = Options::new(cell_mode(self.color(), |name| std::env::var(name).ok()));
+        let mut options = Options::new(self.cells.on_terminal());
         options.cell_aspect = self.cell_aspect;
         options.order = self.encoding.order();
         options.quality = self.encoding.quality();
@@ -83,14 +69,11 @@ fn too_much(first: &str, more: &[String]) -> Failure {
 /// One frame, as `termtrace frame` prints it.
 fn print(args: &LiveArgs, scene: &Scene) -> Done {
     let cell_aspect = args.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
-    let cell_mode = match args.color {
-        Color::Always => CellMode::HalfBlock,
-        Color::Auto | Color::Never => CellMode::Ramp,
-    };
+    let cell_mode = args.cells.in_file(Colors::None);
     let grid = args.scene.on_threads(|| export::frame_grid(scene, cell_mode, Size::new(80, 24), cell_aspect))?;
-    write_stdout(&match cell_mode {
-        CellMode::HalfBlock => export::ansi(&grid),
-        CellMode::Ramp => export::text(&grid).into_bytes(),
+    write_stdout(&match cell_mode.colors {
+        Colors::None => export::text(&grid).into_bytes(),
+        _ => export::ansi(&grid),
     })
 }
 

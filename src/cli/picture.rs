@@ -11,7 +11,7 @@ pub(super) struct PictureArgs {
     /// The frame's size in cells [default: 80x24]
     #[arg(long, value_name = "COLSxROWS", value_parser = parse_size, conflicts_with = "pixels")]
     size: Option<(u32, u32)>,
-    /// The frame's size in pixels; a cell has two of them, one above the other
+    /// The frame's size in pixels; a cell has two of them, one above the other, or with --glyphs shape two by four
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pixels: Option<(u32, u32)>,
     /// Rays per pixel; one goes through the pixel's centre
@@ -29,12 +29,12 @@ pub(super) struct PictureArgs {
 const MAX_PIXELS: u64 = 1 << 25;
 
 impl PictureArgs {
-    pub(super) fn resolution(&self) -> Result<Resolution, Failure> {
-        let (across, down) = CellMode::HalfBlock.pixels_per_cell();
+    pub(super) fn resolution(&self, mode: CellMode) -> Result<Resolution, Failure> {
+        let (across, down) = mode.pixels_per_cell();
         let (columns, rows) = self.size.unwrap_or((80, 24));
         let (width, height) = self.pixels.unwrap_or((columns.saturating_mul(across), rows.saturating_mul(down)));
         let limit = u32::from(u16::MAX);
-        if width > limit || height > 2 * limit {
+        if width > across * limit || height > down * limit {
             return Err(too_large(width.into(), height.into()));
         }
         fits(width.into(), height.into())?;
@@ -70,7 +70,7 @@ pub(super) fn fits(width: u64, height: u64) -> Done {
 
 fn too_large(width: u64, height: u64) -> Failure {
     Failure::Usage(format!(
-        "a frame of {width}x{height} pixels is too large; at most 65535 across, 131070 down and {MAX_PIXELS} in all"
+        "a frame of {width}x{height} pixels is too large; at most 65535 cells each way, and {MAX_PIXELS} pixels in all"
     ))
 }
 

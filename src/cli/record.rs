@@ -97,7 +97,7 @@ impl RecordArgs {
 
     fn film(&self) -> Result<Film, Failure> {
         let format = self.format()?;
-        let resolution = self.picture.resolution()?;
+        let resolution = self.picture.resolution(CellMode::HALF_BLOCK)?;
         self.check_flags(&format, resolution)?;
         let scene = self.scene.load()?;
         let cameras = self.cameras(&scene.camera)?;
@@ -169,7 +169,7 @@ impl RecordArgs {
                     Some(path) => Box::new(BufWriter::new(File::create(path)?)),
                     None => Box::new(BufWriter::new(io::stdout())),
                 };
-                let (across, down) = CellMode::HalfBlock.pixels_per_cell();
+                let (across, down) = CellMode::HALF_BLOCK.pixels_per_cell();
                 // A resolution is checked to have no more cells.
                 let size = Size::new((resolution.width / across) as u16, resolution.height.div_ceil(down) as u16);
                 // Players draw the two halves of a cell alike.
@@ -198,7 +198,7 @@ enum Sink {
 impl Sink {
     fn take(&mut self, picture: &Picture, file: &Path) -> io::Result<()> {
         match self {
-            Self::Cast(cast) => cast.frame(cell::grid_from_picture(CellMode::HalfBlock, picture)),
+            Self::Cast(cast) => cast.frame(cell::grid_from_picture(CellMode::HALF_BLOCK, picture)),
             Self::Gif(gif) => gif.frame(picture),
             Self::Png { pixel_aspect, scale } => {
                 let bytes = export::png(picture, *pixel_aspect, *scale).map_err(io::Error::other)?;

@@ -2,6 +2,7 @@
 //! needs a terminal here; the live view has tests of its own.
 
 mod camera;
+mod cells;
 mod errors;
 mod formats;
 mod golden;

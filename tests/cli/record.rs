@@ -102,7 +102,7 @@ fn assert_shows(cast: &[u8], fps: u32, resolution: Resolution, cameras: &[Camera
         // The reader of JSON rounds in its own way.
         assert!((time - frame as f64 / f64::from(fps)).abs() < 1e-12, "{time}");
         terminal.feed(data);
-        let wanted = grid_from_picture(CellMode::HalfBlock, &picture(&scene, camera, resolution));
+        let wanted = grid_from_picture(CellMode::HALF_BLOCK, &picture(&scene, camera, resolution));
         assert!(halves_shown(&terminal, columns, rows) == halves_wanted(&wanted), "frame {frame}");
     }
 }
@@ -156,7 +156,7 @@ fn a_cast_of_less_quality_is_near_and_becomes_exact() {
     let path = CameraPath::from_ron("flight.ron", FLIGHT, &scene.camera).expect("the path is fine");
     let cameras = path.cameras(36, 20).expect("a path");
     let wanted = |camera| {
-        halves_wanted(&grid_from_picture(CellMode::HalfBlock, &picture(&scene, camera, Resolution::square(80, 48))))
+        halves_wanted(&grid_from_picture(CellMode::HALF_BLOCK, &picture(&scene, camera, Resolution::square(80, 48))))
     };
     let bytes = |cast: &[u8]| played(cast).events.iter().map(|(_, data)| data.len()).sum::<usize>();
     let record = |flags: &str| folder.run(&format!("record ball.ron --path flight.ron --fps 20 {flags}")).done();

@@ -20,7 +20,7 @@ const LARGE: Size = Size::new(200, 60);
 /// Every `step`-th frame, and when it is sent.
 fn frames(sequence: &Sequence, size: Size, step: usize) -> Vec<(Duration, Grid)> {
     let time = |k: usize| Duration::from_secs(k as u64) / 30;
-    let grid = |k| grid_from_picture(CellMode::HalfBlock, &sequence.frame(k, size));
+    let grid = |k| grid_from_picture(CellMode::HALF_BLOCK, &sequence.frame(k, size));
     (0..FRAMES).step_by(step).map(|k| (time(k), grid(k))).collect()
 }
 

@@ -104,7 +104,7 @@ pub(crate) struct Start {
 impl Start {
     /// A program, found by its path or in this process's PATH, on 80x24 cells of 10x20 pixels.
     ///
-    /// Of the environment it gets PATH, a TERM and a locale of UTF-8, and what is added.
+    /// Of the environment it gets PATH, a TERM with truecolor and a locale of UTF-8, and what is added.
     pub(crate) fn new(program: impl AsRef<OsStr>) -> Self {
         let start = Self {
             program: program.as_ref().to_owned(),
@@ -118,6 +118,7 @@ impl Start {
         start
             .env("PATH", std::env::var_os("PATH").unwrap_or_default())
             .env("TERM", "xterm-256color")
+            .env("COLORTERM", "truecolor")
             .env("LC_ALL", "C.UTF-8")
     }
 

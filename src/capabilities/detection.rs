@@ -1,0 +1,246 @@
+//! What the environment tells of a terminal: pure functions, each answer with where it came from.
+
+use super::{ColorChoice, Colors, Glyphs};
+
+/// An answer, and who gave it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Found<T> {
+    /// The answer.
+    pub value: T,
+    /// Who gave it.
+    pub source: Source,
+}
+
+/// Who has told something of the terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The command line.
+    Flag,
+    /// The environment variable of that name.
+    Variable(&'static str),
+    /// The terminal itself.
+    Reply,
+    /// The terminfo database.
+    Terminfo,
+    /// Nobody: it is so nearly everywhere.
+    Assumed,
+}
+
+/// All that can be asked for what a terminal shows.
+pub struct Clues<'a> {
+    /// The value of an environment variable.
+    pub variable: &'a dyn Fn(&str) -> Option<String>,
+    /// Whether the terminal has kept a 24-bit colour that it was given, if it has said so (DECRQSS of SGR).
+    pub truecolor_reply: Option<bool>,
+    /// What terminfo says of a terminal of that name, if it is there: see [`terminfo_colors`](super::terminfo_colors).
+    pub terminfo: &'a dyn Fn(&str) -> Option<Colors>,
+}
+
+/// What the user chooses the glyphs to be; `None` leaves it to the terminal.
+pub type GlyphChoice = Option<Glyphs>;
+
+/// The colours to use.
+///
+/// In this order, and the first to answer is believed: the flag; `NO_COLOR`; `COLORTERM`; the terminal's own reply;
+/// terminfo; the name in `TERM`. `CLICOLOR_FORCE`, `FORCE_COLOR` and `--color=always` say the least that it has to be.
+pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Found<Colors> {
+    let least = match choice {
+        ColorChoice::Never => return Found { value: Colors::None, source: Source::Flag },
+        ColorChoice::Exactly(value) => return Found { value, source: Source::Flag },
+        ColorChoice::Always => Some(Found { value: Colors::SIXTEEN, source: Source::Flag }),
+        ColorChoice::Auto => match refused(clues).or_else(|| forced(clues)) {
+            Some(refused) if refused.value == Colors::None => return refused,
+            forced => forced,
+        },
+    };
+    let found =
+        colorterm(clues).or_else(|| replied(clues)).or_else(|| by_terminfo(clues)).unwrap_or_else(|| by_name(clues));
+    least.filter(|least| least.value > found.value).unwrap_or(found)
+}
+
+/// What stands in cells: half blocks, unless they would be garbage, or there is no colour to tell one from another.
+pub fn glyphs(choice: GlyphChoice, colors: Found<Colors>, clues: &Clues<'_>) -> Found<Glyphs> {
+    if let Some(value) = choice {
+        return Found { value, source: Source::Flag };
+    }
+    if colors.value == Colors::None {
+        return Found { value: Glyphs::Shape, source: colors.source };
+    }
+    match locale(clues) {
+        Some((name, locale)) => {
+            let value = if is_utf8(&locale) { Glyphs::Half } else { Glyphs::Shape };
+            Found { value, source: Source::Variable(name) }
+        }
+        // Nobody has said anything against UTF-8, and a terminal of today shows it.
+        None => Found { value: Glyphs::Half, source: Source::Assumed },
+    }
+}
+
+/// The variable's value, if it is set and not empty.
+fn value(clues: &Clues<'_>, name: &str) -> Option<String> {
+    (clues.variable)(name).filter(|value| !value.is_empty())
+}
+
+/// The custom of no-color.org: set, and not empty.
+fn refused(clues: &Clues<'_>) -> Option<Found<Colors>> {
+    value(clues, "NO_COLOR").map(|_| Found { value: Colors::None, source: Source::Variable("NO_COLOR") })
+}
+
+/// The customs of bixense.com/clicolors and of Node: a level, or just that there is to be colour.
+fn forced(clues: &Clues<'_>) -> Option<Found<Colors>> {
+    let found = |value, name| Some(Found { value, source: Source::Variable(name) });
+    if value(clues, "CLICOLOR_FORCE").is_some_and(|force| force != "0") {
+        return found(Colors::SIXTEEN, "CLICOLOR_FORCE");
+    }
+    let value = match (clues.variable)("FORCE_COLOR")?.as_str() {
+        "0" | "false" => Colors::None,
+        "2" => Colors::Indexed256,
+        "3" => Colors::Truecolor,
+        _ => Colors::SIXTEEN,
+    };
+    found(value, "FORCE_COLOR")
+}
+
+/// Other values than these two tell of colour, but not of how many.
+fn colorterm(clues: &Clues<'_>) -> Option<Found<Colors>> {
+    let colorterm = value(clues, "COLORTERM")?.to_ascii_lowercase();
+    let is_truecolor = colorterm == "truecolor" || colorterm == "24bit";
+    is_truecolor.then_some(Found { value: Colors::Truecolor, source: Source::Variable("COLORTERM") })
+}
+
+/// A terminal that has not kept the colour may have any other number of them.
+fn replied(clues: &Clues<'_>) -> Option<Found<Colors>> {
+    let kept = clues.truecolor_reply?;
+    kept.then_some(Found { value: Colors::Truecolor, source: Source::Reply })
+}
+
+fn by_terminfo(clues: &Clues<'_>) -> Option<Found<Colors>> {
+    let value = (clues.terminfo)(&value(clues, "TERM")?)?;
+    Some(Found { value, source: Source::Terminfo })
+}
+
+/// By the customs of names; every emulator of the last twenty years has 256 colours.
+fn by_name(clues: &Clues<'_>) -> Found<Colors> {
+    let Some(term) = value(clues, "TERM") else {
+        return Found { value: Colors::Indexed256, source: Source::Assumed };
+    };
+    let term = term.to_ascii_lowercase();
+    let has = |parts: &[&str]| parts.iter().any(|part| term.contains(part));
+    let value = if term == "dumb" || term.starts_with("vt") {
+        Colors::None
+    } else if has(&["direct", "truecolor", "24bit", "kitty", "alacritty", "foot", "wezterm", "ghostty"]) {
+        Colors::Truecolor
+    } else if term == "linux" || term == "ansi" || has(&["16color"]) {
+        Colors::SIXTEEN
+    } else {
+        Colors::Indexed256
+    };
+    Found { value, source: Source::Variable("TERM") }
+}
+
+/// The locale's character set is named in the first of these that is set, by POSIX's order.
+fn locale(clues: &Clues<'_>) -> Option<(&'static str, String)> {
+    ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, value(clues, name)?)))
+}
+
+fn is_utf8(locale: &str) -> bool {
+    let locale = locale.to_ascii_lowercase();
+    locale.contains("utf-8") || locale.contains("utf8")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ColorChoice::{Always, Auto, Exactly, Never};
+    use super::Colors::{Indexed256, None as NoColors, Truecolor};
+    use super::*;
+
+    const SIXTEEN: Colors = Colors::SIXTEEN;
+
+    /// A terminfo that knows three terminals.
+    fn terminfo(term: &str) -> Option<Colors> {
+        match term {
+            "xterm-256color" => Some(Indexed256),
+            "xterm-direct" => Some(Truecolor),
+            "vt100" | "dumb" => Some(NoColors),
+            _ => None,
+        }
+    }
+
+    fn with_clues<T>(environment: &[(&str, &str)], reply: Option<bool>, ask: impl Fn(&Clues<'_>) -> T) -> T {
+        let variable = |name: &str| environment.iter().find(|(n, _)| *n == name).map(|(_, value)| (*value).to_owned());
+        ask(&Clues { variable: &variable, truecolor_reply: reply, terminfo: &terminfo })
+    }
+
+    #[test]
+    fn the_first_to_answer_for_colours_is_believed() {
+        let variable = Source::Variable;
+        let xterm = ("TERM", "xterm-256color");
+        let truecolor = ("COLORTERM", "truecolor");
+        let dumb = ("TERM", "dumb");
+        for (choice, environment, reply, value, source) in [
+            // The flag.
+            (Never, &[truecolor][..], Some(true), NoColors, Source::Flag),
+            (Exactly(Indexed256), &[truecolor, ("NO_COLOR", "1")], None, Indexed256, Source::Flag),
+            (Always, &[dumb, ("NO_COLOR", "1")], None, SIXTEEN, Source::Flag),
+            (Always, &[xterm, ("NO_COLOR", "1")], None, Indexed256, Source::Terminfo),
+            // NO_COLOR.
+            (Auto, &[truecolor, ("NO_COLOR", "1"), ("FORCE_COLOR", "3")], None, NoColors, variable("NO_COLOR")),
+            (Auto, &[truecolor, ("NO_COLOR", "")], None, Truecolor, variable("COLORTERM")),
+            // What is forced is the least.
+            (Auto, &[dumb, ("CLICOLOR_FORCE", "1")], None, SIXTEEN, variable("CLICOLOR_FORCE")),
+            (Auto, &[dumb, ("CLICOLOR_FORCE", "0")], None, NoColors, Source::Terminfo),
+            (Auto, &[xterm, ("CLICOLOR_FORCE", "1")], None, Indexed256, Source::Terminfo),
+            (Auto, &[xterm, ("FORCE_COLOR", "3")], None, Truecolor, variable("FORCE_COLOR")),
+            (Auto, &[dumb, ("FORCE_COLOR", "2")], None, Indexed256, variable("FORCE_COLOR")),
+            (Auto, &[dumb, ("FORCE_COLOR", "")], None, SIXTEEN, variable("FORCE_COLOR")),
+            (Auto, &[dumb, ("FORCE_COLOR", "true")], None, SIXTEEN, variable("FORCE_COLOR")),
+            (Auto, &[truecolor, ("FORCE_COLOR", "0")], None, NoColors, variable("FORCE_COLOR")),
+            // COLORTERM.
+            (Auto, &[xterm, truecolor], None, Truecolor, variable("COLORTERM")),
+            (Auto, &[xterm, ("COLORTERM", "24bit")], None, Truecolor, variable("COLORTERM")),
+            (Auto, &[xterm, ("COLORTERM", "rxvt")], None, Indexed256, Source::Terminfo),
+            // The terminal's reply.
+            (Auto, &[xterm], Some(true), Truecolor, Source::Reply),
+            (Auto, &[xterm], Some(false), Indexed256, Source::Terminfo),
+            // terminfo.
+            (Auto, &[("TERM", "xterm-direct")], None, Truecolor, Source::Terminfo),
+            (Auto, &[("TERM", "vt100")], None, NoColors, Source::Terminfo),
+            // The name.
+            (Auto, &[("TERM", "vt220")], None, NoColors, variable("TERM")),
+            (Auto, &[("TERM", "xterm-kitty")], None, Truecolor, variable("TERM")),
+            (Auto, &[("TERM", "linux")], None, SIXTEEN, variable("TERM")),
+            (Auto, &[("TERM", "rxvt-16color")], None, SIXTEEN, variable("TERM")),
+            (Auto, &[("TERM", "screen-256color")], None, Indexed256, variable("TERM")),
+            (Auto, &[("TERM", "new-terminal")], None, Indexed256, variable("TERM")),
+            (Auto, &[("TERM", "")], None, Indexed256, Source::Assumed),
+            (Auto, &[], None, Indexed256, Source::Assumed),
+        ] {
+            let found = with_clues(environment, reply, |clues| colors(choice, clues));
+            assert_eq!(found, Found { value, source }, "{choice:?} {environment:?} {reply:?}");
+        }
+    }
+
+    #[test]
+    fn half_blocks_need_colour_and_utf8() {
+        use Glyphs::{Half, Ramp, Shape};
+        let utf8 = ("LANG", "en_US.UTF-8");
+        let variable = Source::Variable;
+        for (choice, colors, environment, value, source) in [
+            (None, Truecolor, &[utf8][..], Half, variable("LANG")),
+            (None, SIXTEEN, &[utf8], Half, variable("LANG")),
+            (None, NoColors, &[utf8], Shape, Source::Terminfo),
+            (None, Truecolor, &[], Half, Source::Assumed),
+            (None, Truecolor, &[("LANG", "C.utf8")], Half, variable("LANG")),
+            (None, Truecolor, &[("LANG", "C")], Shape, variable("LANG")),
+            (None, Truecolor, &[("LC_ALL", "POSIX"), utf8], Shape, variable("LC_ALL")),
+            (None, Truecolor, &[("LC_ALL", ""), utf8], Half, variable("LANG")),
+            (None, Truecolor, &[("LC_CTYPE", "de_DE.ISO-8859-1"), utf8], Shape, variable("LC_CTYPE")),
+            (Some(Half), NoColors, &[("LC_ALL", "C")], Half, Source::Flag),
+            (Some(Ramp), Truecolor, &[utf8], Ramp, Source::Flag),
+        ] {
+            let colors = Found { value: colors, source: Source::Terminfo };
+            let found = with_clues(environment, None, |clues| glyphs(choice, colors, clues));
+            assert_eq!(found, Found { value, source }, "{choice:?} {colors:?} {environment:?}");
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What the terminfo database says of a terminal's colours.
+
+use super::Colors;
+use termini::{NumberCapability, TermInfo};
+
+/// The colours of a terminal of that name, if the database has it: truecolor by the capabilities `RGB` and `Tc`, else by
+/// their number. The database is looked for where ncurses does, which the environment may say.
+pub fn terminfo_colors(term: &str) -> Option<Colors> {
+    // A name is no path: the file to be read is one of the database's.
+    if term.contains('/') {
+        return None;
+    }
+    TermInfo::from_name(term).ok().map(|entry| entry_colors(&entry))
+}
+
+fn entry_colors(entry: &TermInfo) -> Colors {
+    let has = |name| entry.extended_cap(name).is_some();
+    match entry.number_cap(NumberCapability::MaxColors) {
+        _ if has("RGB") || has("Tc") => Colors::Truecolor,
+        Some(256..) => Colors::Indexed256,
+        // The bright ones of a terminal that says it has eight are there too, or look as the others.
+        Some(8..) => Colors::SIXTEEN,
+        _ => Colors::None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An entry as term(5) says: that number of colours, and that extended flag beside an extended string.
+    fn entry(colors: Option<i16>, flag: &str) -> Vec<u8> {
+        let len = |text: &str| i16::try_from(text.len()).expect("it is short");
+        let shorts = |numbers: &[i16]| -> Vec<u8> { numbers.iter().flat_map(|number| number.to_le_bytes()).collect() };
+        let mut bytes = shorts(&[0o432, 2, 0, 14, 0, 0]);
+        bytes.extend_from_slice(b"x\0");
+        bytes.extend(shorts(&[-1; 13]));
+        bytes.extend(shorts(&[colors.unwrap_or(-1)]));
+        let table = format!("v\0{flag}\0Xv\0");
+        bytes.extend(shorts(&[1, 0, 1, 3, len(&table)]));
+        bytes.extend_from_slice(&[1, 0]);
+        bytes.extend(shorts(&[0, 0, len(flag) + 1]));
+        bytes.extend_from_slice(table.as_bytes());
+        bytes
+    }
+
+    #[test]
+    fn colours_are_by_flag_then_by_number() {
+        for (colors, flag, expected) in [
+            (Some(256), "AX", Colors::Indexed256),
+            (Some(256), "Tc", Colors::Truecolor),
+            (Some(8), "RGB", Colors::Truecolor),
+            (Some(88), "AX", Colors::SIXTEEN),
+            (Some(8), "AX", Colors::SIXTEEN),
+            (Some(2), "AX", Colors::None),
+            (None, "AX", Colors::None),
+        ] {
+            let entry = TermInfo::parse(&entry(colors, flag)[..]).expect("it is an entry");
+            assert_eq!(entry_colors(&entry), expected, "{colors:?} {flag}");
+        }
+    }
+
+    /// Every entry cut short, and every entry with one byte another: an answer or none, and no panic.
+    #[test]
+    fn broken_entries_are_no_answer() {
+        let whole = entry(Some(256), "Tc");
+        for end in 0..whole.len() {
+            let _ = TermInfo::parse(&whole[..end]).map(|entry| entry_colors(&entry));
+        }
+        assert!(TermInfo::parse(&whole[..30]).is_err());
+        for at in 0..whole.len() {
+            for byte in 0..=255 {
+                let mut broken = whole.clone();
+                broken[at] = byte;
+                let _ = TermInfo::parse(&broken[..]).map(|entry| entry_colors(&entry));
+            }
+        }
+    }
+
+    #[test]
+    fn names_that_nobody_has_are_no_answer() {
+        for name in ["", "no-such-terminal", "../x/xterm", "/etc/passwd", ".", "..", "x\0y"] {
+            assert_eq!(terminfo_colors(name), None, "{name:?}");
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! A pixel's colour -> one that the terminal has.
+
+use super::palette::Palette;
+use crate::capabilities::Colors;
+use crate::color::Srgb8;
+use crate::grid::Ink;
+
+/// The colours of a terminal.
+pub(super) enum Inks {
+    /// Its own two, dark and light, as a palette's numbers 0 and 1.
+    Own(Palette),
+    /// Some of the 256, and which of them is black.
+    Indexed(Palette, u8),
+    /// All.
+    Truecolor,
+}
+
+impl Inks {
+    pub(super) fn of(colors: Colors) -> Self {
+        match colors {
+            Colors::None => Self::Own(Palette::few(&[Srgb8::new(0, 0, 0), Srgb8::new(255, 255, 255)])),
+            Colors::Indexed16(values) => Self::Indexed(Palette::few(&values), 0),
+            Colors::Indexed256 => Self::Indexed(Palette::cube(), 16),
+            Colors::Truecolor => Self::Truecolor,
+        }
+    }
+
+    /// What a pixel of the screen is painted with.
+    pub(super) fn ink(&mut self, color: Srgb8, x: usize, y: usize) -> Ink {
+        match self {
+            Self::Own(_) => Ink::Default,
+            Self::Indexed(palette, _) => Ink::Indexed(palette.index(color, x, y)),
+            Self::Truecolor => Ink::Rgb(color),
+        }
+    }
+
+    /// What lies behind characters.
+    pub(super) fn black(&self) -> Ink {
+        match self {
+            Self::Own(_) => Ink::Default,
+            Self::Indexed(_, black) => Ink::Indexed(*black),
+            Self::Truecolor => Ink::Rgb(Srgb8::new(0, 0, 0)),
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! ASCII by shape: the character whose ink lies where the picture has its light.
+//!
+//! Cell and glyphs are compared as they look from some way off, where a character is a spot that runs into its
+//! neighbours: eight samples of each, after a blur. Without the blur, a glyph that fits a cell in detail wins over one
+//! that is as light as it, and the picture gets dark and spotty.
+
+use crate::color::Srgb8;
+use crate::grid::{Cell, Grid, Ink};
+use crate::tone::Picture;
+use std::sync::LazyLock;
+
+mod glyphs;
+
+use glyphs::{ACROSS, DOWN, INK};
+
+const SAMPLES: usize = ACROSS * DOWN;
+/// One for each part of a cell, row by row from the top.
+type Samples = [f32; SAMPLES];
+
+/// Each cell by the samples in it.
+pub(super) fn fill(grid: &mut Grid, picture: &Picture) {
+    let matcher = &*MATCHER;
+    for row in 0..grid.size().rows {
+        for column in 0..grid.size().columns {
+            let glyph = matcher.nearest(&samples(picture, column, row));
+            *grid.cell_mut(column, row) = Cell::new(glyph, Ink::Default, Ink::Default);
+        }
+    }
+}
+
+/// The lightness of a cell's pixels; beyond the picture's edge lies more of what is at the edge.
+fn samples(picture: &Picture, column: u16, row: u16) -> Samples {
+    let (left, top) = (usize::from(column) * ACROSS, usize::from(row) * DOWN);
+    let (last_x, last_y) = (picture.width as usize - 1, picture.height as usize - 1);
+    std::array::from_fn(|at| {
+        let (x, y) = ((left + at % ACROSS).min(last_x), (top + at / ACROSS).min(last_y));
+        lightness(picture.pixels[y * picture.width as usize + x])
+    })
+}
+
+/// How light a pixel looks, near enough: the luminance of the encoded bands (luma, of 0..=1).
+fn lightness(pixel: Srgb8) -> f32 {
+    (0.2126 * f32::from(pixel.r) + 0.7152 * f32::from(pixel.g) + 0.0722 * f32::from(pixel.b)) / 255.0
+}
+
+/// All glyphs, made ready to be compared with cells.
+struct Matcher {
+    glyphs: [Weighed; INK.len()],
+}
+
+/// A glyph: after the blur, the square of its distance from samples `x` is `square - weights * x`, and something that is
+/// the same for all glyphs.
+#[derive(Clone, Copy)]
+struct Weighed {
+    weights: Samples,
+    square: f32,
+}
+
+static MATCHER: LazyLock<Matcher> = LazyLock::new(|| {
+    let ink = INK.map(|ink| ink.map(|part| f32::from(part) / 255.0));
+    // The densest glyph is white.
+    let white = ink.iter().map(|ink| ink.iter().sum::<f32>() / SAMPLES as f32).fold(0.0, f32::max);
+    Matcher {
+        glyphs: ink.map(|ink| {
+            let seen = blurred(&blurred(&ink));
+            let square = ink.iter().zip(&seen).map(|(ink, seen)| ink * seen).sum();
+            Weighed { weights: seen.map(|seen| 2.0 * white * seen), square }
+        }),
+    }
+});
+
+impl Matcher {
+    fn nearest(&self, samples: &Samples) -> char {
+        let distance = |glyph: &Weighed| {
+            glyph.square - glyph.weights.iter().zip(samples).map(|(weight, sample)| weight * sample).sum::<f32>()
+        };
+        let mut nearest = (f32::INFINITY, b' ');
+        for (character, glyph) in (b' '..).zip(&self.glyphs) {
+            let distance = distance(glyph);
+            if distance < nearest.0 {
+                nearest = (distance, character);
+            }
+        }
+        char::from(nearest.1)
+    }
+}
+
+/// Samples after a Gaussian blur whose standard deviation is 0.35 of the cell's width, on a screen full of such cells.
+fn blurred(samples: &Samples) -> Samples {
+    let across: [f32; ACROSS] = shares(0.35 * ACROSS as f64);
+    let down: [f32; DOWN] = shares(0.175 * DOWN as f64);
+    std::array::from_fn(|to| {
+        let share = |from: usize| {
+            let (x, y) = (ACROSS + to % ACROSS - from % ACROSS, DOWN + to / ACROSS - from / ACROSS);
+            across[x % ACROSS] * down[y % DOWN]
+        };
+        samples.iter().enumerate().map(|(from, sample)| share(from) * sample).sum()
+    })
+}
+
+/// What a sample gets of itself, of the next one and so on, in a row of them that begins again at its end.
+fn shares<const N: usize>(deviation: f64) -> [f32; N] {
+    let mut shares = [0.0; N];
+    shares[0] = 1.0;
+    for distance in 1..8 * N {
+        let far = distance as f64 / deviation;
+        let share = libm::exp(-0.5 * far * far);
+        // One to the right, one to the left.
+        shares[distance % N] += share;
+        shares[(N - distance % N) % N] += share;
+    }
+    let sum: f64 = shares.iter().sum();
+    shares.map(|share| (share / sum) as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::framebuffer::Resolution;
+
+    /// The character for a cell of so many rows of two pixels, each a letter from a (black) to z (white).
+    fn character(pixels: &str) -> String {
+        let grey = |letter: char| ((letter as u32 - 'a' as u32) * 255 / 25) as u8;
+        let pixels = pixels.chars().map(|letter| Srgb8::new(grey(letter), grey(letter), grey(letter)));
+        let Resolution { width, height, .. } = Resolution::square(2, 4);
+        let mut grid = Grid::new(crate::grid::Size::new(1, 1));
+        fill(&mut grid, &Picture { width, height, pixels: pixels.collect() });
+        grid.cell(0, 0).glyph.to_string()
+    }
+
+    /// A cell that is lit as a glyph's ink is shown by it, or by one with as much ink in the same places.
+    #[test]
+    fn a_glyph_stands_for_itself() {
+        let white = INK.iter().map(|ink| ink.iter().map(|&part| u32::from(part)).sum::<u32>()).max().expect("95");
+        let mut found = 0;
+        for (character, ink) in (b' '..).zip(&INK) {
+            let samples = ink.map(|part| f32::from(part) * SAMPLES as f32 / white as f32);
+            found += usize::from(MATCHER.nearest(&samples) == char::from(character));
+        }
+        assert!(found >= 90, "{found} of 95");
+    }
+
+    #[test]
+    fn ink_lies_where_the_light_is() {
+        assert_eq!(character("aaaaaaaa"), " ");
+        assert_eq!(character("zzzzzzzz"), "Q");
+        // The first four samples are the upper half, every other one is on the left.
+        for (pixels, lit) in [
+            ("zzzzaaaa", [0, 1, 2, 3]),
+            ("aaaazzzz", [4, 5, 6, 7]),
+            ("zazazaza", [0, 2, 4, 6]),
+            ("azazazaz", [1, 3, 5, 7]),
+        ] {
+            let character = character(pixels);
+            let ink = INK[usize::from(character.as_bytes()[0] - b' ')];
+            let sum = |is_lit| {
+                (0..SAMPLES).filter(|&at| lit.contains(&at) == is_lit).map(|at| u32::from(ink[at])).sum::<u32>()
+            };
+            assert!(sum(true) > sum(false), "{pixels}: {character}");
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What the picture's cells are made of: the flags of the commands that show cells.
+
+use clap::{Args, ValueEnum};
+use termtrace::capabilities::{
+    CellMode, Clues, ColorChoice, Colors, GlyphChoice, Glyphs, colors, glyphs, terminfo_colors,
+};
+
+/// Stands below the options in the help.
+pub(super) const EXPLAINED: &str = "\
+The colours (--color):
+  auto       as many as the terminal has, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, terminfo and TERM
+  always     the same, but at least 16 and whatever NO_COLOR says
+  never      none: no escape sequence says anything of colours
+  truecolor, 256, 16
+             just these; of few colours the picture is mixed by dithering
+What stands in the cells (--glyphs):
+  auto       half blocks; shape where there is no colour, or the locale is not UTF-8
+  half       two pixels, one above the other
+  shape      the character of ASCII that has its ink where the picture has its light
+  ramp       one of ten characters, by lightness";
+
+#[derive(Args)]
+pub(super) struct CellArgs {
+    /// Which colours the picture may have [default: auto]
+    #[arg(long, value_name = "WHICH")]
+    color: Option<Color>,
+    /// What its cells are made of [default: auto]
+    #[arg(long, value_name = "KIND")]
+    glyphs: Option<Kind>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Color {
+    Auto,
+    Always,
+    Never,
+    Truecolor,
+    #[value(name = "256")]
+    Indexed256,
+    #[value(name = "16")]
+    Indexed16,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    Auto,
+    Half,
+    Shape,
+    Ramp,
+}
+
+impl CellArgs {
+    /// Whether anything of it was said.
+    pub(super) fn is_given(&self) -> bool {
+        self.color.is_some() || self.glyphs.is_some()
+    }
+
+    /// Whether colours were asked for.
+    pub(super) fn wants_color(&self) -> bool {
+        !matches!(self.color_choice(), ColorChoice::Auto | ColorChoice::Never)
+    }
+
+    fn color_choice(&self) -> ColorChoice {
+        match self.color {
+            None | Some(Color::Auto) => ColorChoice::Auto,
+            Some(Color::Always) => ColorChoice::Always,
+            Some(Color::Never) => ColorChoice::Never,
+            Some(Color::Truecolor) => ColorChoice::Exactly(Colors::Truecolor),
+            Some(Color::Indexed256) => ColorChoice::Exactly(Colors::Indexed256),
+            Some(Color::Indexed16) => ColorChoice::Exactly(Colors::SIXTEEN),
+        }
+    }
+
+    fn glyph_choice(&self) -> GlyphChoice {
+        match self.glyphs {
+            None | Some(Kind::Auto) => None,
+            Some(Kind::Half) => Some(Glyphs::Half),
+            Some(Kind::Shape) => Some(Glyphs::Shape),
+            Some(Kind::Ramp) => Some(Glyphs::Ramp),
+        }
+    }
+
+    /// For the terminal that the environment tells of.
+    pub(super) fn on_terminal(&self) -> CellMode {
+        let variable = |name: &str| std::env::var(name).ok();
+        let clues = Clues { variable: &variable, truecolor_reply: None, terminfo: &terminfo_colors };
+        let colors = colors(self.color_choice(), &clues);
+        let glyphs = glyphs(self.glyph_choice(), colors, &clues);
+        CellMode { glyphs: glyphs.value, colors: colors.value }
+    }
+
+    /// For a file or a pipe, of which the environment says nothing: in these colours if any will do. Without colours it is
+    /// the ramp, which is the text that people compare.
+    pub(super) fn in_file(&self, auto: Colors) -> CellMode {
+        let colors = match self.color_choice() {
+            ColorChoice::Auto => auto,
+            ColorChoice::Always => Colors::Truecolor,
+            ColorChoice::Never => Colors::None,
+            ColorChoice::Exactly(colors) => colors,
+        };
+        let auto = if colors == Colors::None { Glyphs::Ramp } else { Glyphs::Half };
+        CellMode { glyphs: self.glyph_choice().unwrap_or(auto), colors }
+    }
+}

@@ -1,0 +1,205 @@
+//! How near cells come to their picture, seen from some way off: measured here by a blur and a colour space of our own.
+
+use std::path::Path;
+use termtrace::capabilities::{CellMode, Colors, Glyphs};
+use termtrace::cell::grid_from_picture;
+use termtrace::color::Srgb8;
+use termtrace::export::text;
+use termtrace::framebuffer::Resolution;
+use termtrace::grid::{Grid, Ink};
+use termtrace::render::render;
+use termtrace::scene::Scene;
+use termtrace::tone::{Picture, tone};
+
+const SCENES: [&str; 3] = ["three_spheres", "many_spheres", "inside_sphere"];
+
+/// A shipped scene at that size in pixels, of a screen of 60x20 cells.
+fn picture(scene: &str, width: u32, height: u32) -> Picture {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{scene}.ron"));
+    let scene = Scene::load(&path).expect("the scene is fine");
+    let pixel_aspect = 60.0 * 10.0 / width as f32 / (20.0 * 20.0 / height as f32);
+    let resolution = Resolution { width, height, pixel_aspect: 1.0 / pixel_aspect };
+    tone(&render(&scene, &scene.camera, resolution, std::num::NonZeroU32::MIN), &scene)
+}
+
+/// A number for each pixel.
+#[derive(Clone)]
+struct Plane {
+    width: usize,
+    values: Vec<f64>,
+}
+
+impl Plane {
+    fn of(picture: &Picture, value: impl Fn(Srgb8) -> f64) -> Self {
+        Self { width: picture.width as usize, values: picture.pixels.iter().map(|&pixel| value(pixel)).collect() }
+    }
+
+    /// After a Gaussian blur; beyond the edge the picture is mirrored.
+    fn blurred(&self, deviation: f64) -> Self {
+        self.blurred_rows(deviation).turned().blurred_rows(deviation).turned()
+    }
+
+    fn turned(&self) -> Self {
+        let height = self.values.len() / self.width;
+        let columns = (0..self.width).flat_map(|x| (0..height).map(move |y| self.values[y * self.width + x]));
+        Self { width: height, values: columns.collect() }
+    }
+
+    fn blurred_rows(&self, deviation: f64) -> Self {
+        let reach = (4.0 * deviation + 0.5) as usize;
+        let weight = |at: usize| libm::exp(-0.5 * square((at as f64 - reach as f64) / deviation));
+        let weights: Vec<f64> = (0..=2 * reach).map(weight).collect();
+        let sum: f64 = weights.iter().sum();
+        let mut values = Vec::new();
+        for row in self.values.chunks(self.width) {
+            let (first, end) = (reach, reach + row.len());
+            // Places are counted from `reach` before the row.
+            let mirrored = |at: usize| match at {
+                _ if at < first => row[first - 1 - at],
+                _ if at < end => row[at - first],
+                _ => row[2 * row.len() - 1 - (at - first)],
+            };
+            let blurred = |x: usize| {
+                weights.iter().enumerate().map(|(far, weight)| weight * mirrored(x + far)).sum::<f64>() / sum
+            };
+            values.extend((0..row.len()).map(blurred));
+        }
+        Self { width: self.width, values }
+    }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
+}
+
+fn linear(code: u8) -> f64 {
+    let encoded = f64::from(code) / 255.0;
+    if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
+}
+
+fn oklab([r, g, b]: [f64; 3]) -> [f64; 3] {
+    let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
+    let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
+    let s = libm::cbrt(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);
+    [
+        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
+        1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
+        0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
+    ]
+}
+
+/// The mean difference of two pictures in OKLab, times 100, after a blur of their light by 1.5 pixels.
+fn difference(a: &Picture, b: &Picture) -> f64 {
+    let seen = |picture: &Picture| {
+        let bands = [|c: Srgb8| linear(c.r), |c: Srgb8| linear(c.g), |c: Srgb8| linear(c.b)];
+        bands.map(|band| Plane::of(picture, band).blurred(1.5).values)
+    };
+    let (a, b) = (seen(a), seen(b));
+    let pixels = a[0].len();
+    let distance = |at: usize| {
+        let [a, b] = [&a, &b].map(|bands| oklab([bands[0][at], bands[1][at], bands[2][at]]));
+        a.iter().zip(b).map(|(a, b)| square(a - b)).sum::<f64>().sqrt()
+    };
+    100.0 * (0..pixels).map(distance).sum::<f64>() / pixels as f64
+}
+
+/// What xterm shows for an index.
+fn shown(index: u8) -> Srgb8 {
+    let Colors::Indexed16(sixteen) = Colors::SIXTEEN else { unreachable!() };
+    let level = |step: u8| if step == 0 { 0 } else { 55 + 40 * step };
+    match index {
+        0..16 => sixteen[usize::from(index)],
+        16..232 => Srgb8::new(level((index - 16) / 36), level((index - 16) / 6 % 6), level((index - 16) % 6)),
+        232.. => [8 + 10 * (index - 232)].map(|grey| Srgb8::new(grey, grey, grey))[0],
+    }
+}
+
+/// The pixels that half blocks show.
+fn pixels(grid: &Grid) -> Picture {
+    let shown = |ink| match ink {
+        Ink::Indexed(index) => shown(index),
+        other => panic!("{other:?} is none of the few colours"),
+    };
+    let lower = |cell: &termtrace::grid::Cell| shown(if cell.glyph == ' ' { cell.bg } else { cell.fg });
+    let (width, height) = (u32::from(grid.size().columns), 2 * u32::from(grid.size().rows));
+    let rows = grid.rows().flat_map(|row| {
+        let upper = row.iter().map(|cell| shown(cell.bg));
+        upper.chain(row.iter().map(lower))
+    });
+    Picture { width, height, pixels: rows.collect() }
+}
+
+/// The nearest colour to each pixel by its bands: what is done where nobody thinks of it.
+fn nearest(picture: &Picture, indices: std::ops::RangeInclusive<u8>) -> Picture {
+    let apart = |a: Srgb8, b: Srgb8| {
+        [a.r.abs_diff(b.r), a.g.abs_diff(b.g), a.b.abs_diff(b.b)].map(|band| u32::from(band).pow(2)).iter().sum::<u32>()
+    };
+    let nearest =
+        |&pixel: &Srgb8| indices.clone().map(shown).min_by_key(|&color| apart(color, pixel)).expect("a range");
+    Picture { pixels: picture.pixels.iter().map(nearest).collect(), ..*picture }
+}
+
+#[test]
+fn few_colours_look_like_the_picture_from_some_way_off() {
+    for (colors, indices, most, naive) in
+        [(Colors::Indexed256, 16..=255, 1.0, 2.0), (Colors::SIXTEEN, 0..=15, 3.1, 8.0)]
+    {
+        let pictures = SCENES.map(|scene| picture(scene, 60, 40));
+        let mean = |show: &dyn Fn(&Picture) -> Picture| {
+            pictures.iter().map(|picture| difference(&show(picture), picture)).sum::<f64>() / pictures.len() as f64
+        };
+        let mode = CellMode { glyphs: Glyphs::Half, colors };
+        let ours = mean(&|picture| pixels(&grid_from_picture(mode, picture)));
+        let nearest = mean(&|picture| nearest(picture, indices.clone()));
+        println!("{} colours: {ours:.2}, nearest {nearest:.2}", indices.len());
+        assert!(ours <= most, "{indices:?}: {ours}");
+        assert!(nearest >= naive, "the measure sees nothing: {nearest}");
+    }
+}
+
+/// The characters as a terminal draws them in cells of 10x20 pixels, side by side: how much ink each pixel has.
+fn glyph_sheet() -> Vec<Vec<f64>> {
+    let file = std::io::Cursor::new(include_bytes!("cells/dejavu_sans_mono_16.png"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
+    let mut ink = vec![0; reader.output_buffer_size().expect("it is small")];
+    reader.next_frame(&mut ink).expect("a PNG");
+    let row = |glyph: usize, y: usize| ink[(y * 95 + glyph) * 10..][..10].iter().map(|&ink| f64::from(ink) / 255.0);
+    (0..95).map(|glyph| (0..20).flat_map(|y| row(glyph, y)).collect()).collect()
+}
+
+/// What lines of characters look like, white on black.
+fn drawn(lines: &str, sheet: &[Vec<f64>]) -> Plane {
+    let row = |line: &str, y: usize| -> Vec<f64> {
+        line.bytes().flat_map(|byte| sheet[usize::from(byte) - 32][y * 10..][..10].to_vec()).collect()
+    };
+    let values = lines.lines().flat_map(|line| (0..20).flat_map(move |y| row(line, y))).collect();
+    Plane { width: 600, values }
+}
+
+/// The peak signal-to-noise ratio in decibels after a blur of 4 pixels, the picture no lighter than the densest glyph.
+fn psnr(lines: &str, picture: &Picture, sheet: &[Vec<f64>]) -> f64 {
+    let white = sheet.iter().map(|ink| ink.iter().sum::<f64>() / ink.len() as f64).fold(0.0, f64::max);
+    let luma = |c: Srgb8| (0.2126 * f64::from(c.r) + 0.7152 * f64::from(c.g) + 0.0722 * f64::from(c.b)) / 255.0;
+    let wanted = Plane::of(picture, |pixel| white * luma(pixel)).blurred(4.0).values;
+    let shown = drawn(lines, sheet).blurred(4.0).values;
+    let squares: f64 = wanted.iter().zip(&shown).map(|(a, b)| square(a - b)).sum();
+    10.0 * libm::log10(white * white / (squares / wanted.len() as f64))
+}
+
+#[test]
+fn characters_by_shape_look_like_the_picture_from_some_way_off() {
+    let sheet = glyph_sheet();
+    let mean = |glyphs| {
+        let mode = CellMode { glyphs, colors: Colors::None };
+        let (across, down) = mode.pixels_per_cell();
+        let psnr = |scene: &&str| {
+            let lines = text(&grid_from_picture(mode, &picture(scene, 60 * across, 20 * down)));
+            psnr(&lines, &picture(scene, 600, 400), &sheet)
+        };
+        SCENES.iter().map(psnr).sum::<f64>() / SCENES.len() as f64
+    };
+    let (shape, ramp) = (mean(Glyphs::Shape), mean(Glyphs::Ramp));
+    println!("shape {shape:.2} dB, ramp {ramp:.2} dB");
+    assert!(shape >= 19.0, "{shape}");
+    assert!(ramp <= 15.0, "the measure sees nothing: {ramp}");
+}

@@ -1,0 +1,119 @@
+//! `--color` and `--glyphs`: what cells are made of, where no terminal is.
+
+use super::{Folder, finish};
+
+/// The numbers after each 38;5 and 48;5, and whether anything else is said of colours.
+fn indices(ansi: &[u8]) -> (Vec<u8>, bool) {
+    let text = String::from_utf8_lossy(ansi).into_owned();
+    let mut others = false;
+    let mut indices = Vec::new();
+    for sequence in text.split("\x1b[").skip(1) {
+        let sequence = sequence.split('m').next().expect("it ends");
+        match sequence.strip_prefix("38;5;").or(sequence.strip_prefix("48;5;")) {
+            Some(index) => indices.push(index.parse().expect("a number of 8 bits")),
+            None => others |= sequence != "0",
+        }
+    }
+    (indices, others)
+}
+
+#[test]
+fn an_ansi_frame_has_the_colours_asked_for() {
+    let folder = Folder::new();
+    let frame = |flags: &str| folder.frame(&format!("ball.ron --format ansi --size 20x8 {flags}"));
+    for flags in ["", "--color auto", "--color always", "--color truecolor --glyphs half"] {
+        assert!(frame(flags) == frame("--color=truecolor"), "{flags}");
+    }
+    for glyphs in ["auto", "half", "shape", "ramp"] {
+        let (found, others) = indices(&frame(&format!("--color 256 --glyphs {glyphs}")));
+        assert!(!found.is_empty() && found.iter().all(|&index| index >= 16) && !others, "{glyphs}");
+        let (found, others) = indices(&frame(&format!("--color 16 --glyphs {glyphs}")));
+        assert!(!found.is_empty() && found.iter().all(|&index| index < 16) && !others, "{glyphs}");
+        let (found, others) = indices(&frame(&format!("--color truecolor --glyphs {glyphs}")));
+        assert!(found.is_empty() && others, "{glyphs}");
+        assert!(!frame(&format!("--color never --glyphs {glyphs}")).contains(&0x1b), "{glyphs}: an escape");
+    }
+}
+
+#[test]
+fn a_text_frame_is_the_ramp_unless_asked() {
+    let folder = Folder::new();
+    let frame = |flags: &str| String::from_utf8(folder.frame(&format!("ball.ron --size 20x8 {flags}"))).expect("text");
+    let ramp = frame("");
+    assert!(ramp.chars().all(|c| " .:-=+*#%@\n".contains(c)));
+    for flags in ["--color auto", "--color never", "--glyphs auto", "--glyphs ramp", "--format ansi --color never"] {
+        assert_eq!(frame(flags), ramp, "{flags}");
+    }
+    let shape = frame("--glyphs shape");
+    assert!(shape.is_ascii() && shape != ramp);
+    let half = frame("--glyphs half");
+    assert!(half.chars().all(|c| " ▀▄█\n".contains(c)) && half.contains('▄'));
+    for text in [shape, half] {
+        assert!(text.lines().count() == 8 && text.lines().all(|line| line.chars().count() == 20));
+    }
+}
+
+#[test]
+fn goldens_are_of_any_kind() {
+    let folder = Folder::new();
+    for (name, flags) in
+        [("a.txt", "--glyphs shape"), ("b.ansi", "--color 256"), ("c.ansi", "--color 16 --glyphs shape")]
+    {
+        folder.run(&format!("frame ball.ron --check {name} --bless {flags}")).done();
+        folder.run(&format!("frame ball.ron --check {name} {flags}")).done();
+        assert_eq!(folder.run(&format!("frame ball.ron --check {name}")).code, Some(1), "{name} is of no other kind");
+    }
+}
+
+#[test]
+fn frames_are_no_function_of_the_environment() {
+    let folder = Folder::new();
+    for flags in ["", "--format ansi", "--format ansi --color always", "--glyphs auto", "--format ansi --color auto"] {
+        let expected = folder.frame(&format!("ball.ron --size 20x8 {flags}"));
+        for environment in [
+            [("TERM", "xterm-256color"), ("COLORTERM", ""), ("LC_ALL", "C.UTF-8")],
+            [("TERM", "dumb"), ("NO_COLOR", "1"), ("LC_ALL", "C")],
+            [("TERM", "linux"), ("FORCE_COLOR", "3"), ("CLICOLOR_FORCE", "1")],
+        ] {
+            let mut command = folder.command(&format!("frame ball.ron --size 20x8 {flags}"));
+            command.env_clear().envs(environment);
+            assert!(finish(&mut command).done() == expected, "{flags} with {environment:?}");
+        }
+    }
+}
+
+#[test]
+fn without_a_terminal_the_flags_say_what_is_printed() {
+    let folder = Folder::new();
+    for (flags, same) in [
+        ("--glyphs shape", "--glyphs shape"),
+        ("--color 256", "--format ansi --color 256"),
+        ("--color never --glyphs half", "--glyphs half"),
+        ("--color always --glyphs shape", "--format ansi --glyphs shape"),
+    ] {
+        let printed = folder.run(&format!("ball.ron {flags}")).done();
+        assert!(printed == folder.frame(&format!("ball.ron {same}")), "{flags}");
+    }
+}
+
+#[test]
+fn flags_that_a_format_has_no_use_for_are_turned_away() {
+    let folder = Folder::new();
+    for color in ["always", "truecolor", "256", "16"] {
+        folder.run(&format!("frame ball.ron --color {color}")).fails_in_a_line(2, "text has no colours");
+    }
+    for flags in ["--color never", "--color 256", "--glyphs half"] {
+        folder.run(&format!("frame ball.ron -o ball.png {flags}")).fails_in_a_line(2, "a PNG has pixels");
+    }
+    folder.run("ball.ron --color 88").is_misused("auto, always, never, truecolor, 256, 16");
+    folder.run("frame ball.ron --glyphs octants").is_misused("auto, half, shape, ramp");
+}
+
+/// Two by four pixels make a cell of shapes.
+#[test]
+fn sizes_are_in_cells_of_the_mode() {
+    let folder = Folder::new();
+    let frame = |flags: &str| folder.frame(&format!("ball.ron {flags}"));
+    assert!(frame("--glyphs shape --pixels 40x32") == frame("--glyphs shape --size 20x8"));
+    assert!(frame("--glyphs ramp --pixels 20x16") == frame("--glyphs ramp --size 20x8"));
+}
