@@ -43,40 +43,37 @@ fn lightness(pixel: Srgb8) -> f32 {
     (0.2126 * f32::from(pixel.r) + 0.7152 * f32::from(pixel.g) + 0.0722 * f32::from(pixel.b)) / 255.0
 }
 
-/// All glyphs, made ready to be compared with cells.
-struct Matcher {
-    glyphs: [Weighed; INK.len()],
-}
+const GLYPHS: usize = INK.len();
 
-/// A glyph: after the blur, the square of its distance from samples `x` is `square - weights * x`, and something that is
-/// the same for all glyphs.
-#[derive(Clone, Copy)]
-struct Weighed {
-    weights: Samples,
-    square: f32,
+/// All glyphs, made ready to be compared with cells. After the blur, the square of a glyph's distance from samples `x` is
+/// its `square - weights * x`, and something that is the same for all glyphs.
+struct Matcher {
+    /// For each sample those of all glyphs, which are compared side by side.
+    weights: [[f32; GLYPHS]; SAMPLES],
+    squares: [f32; GLYPHS],
 }
 
 static MATCHER: LazyLock<Matcher> = LazyLock::new(|| {
-    let ink = INK.map(|ink| ink.map(|part| f32::from(part) / 255.0));
+    let inks = INK.map(|ink| ink.map(|part| f32::from(part) / 255.0));
     // The densest glyph is white.
-    let white = ink.iter().map(|ink| ink.iter().sum::<f32>() / SAMPLES as f32).fold(0.0, f32::max);
+    let white = inks.iter().map(|ink| ink.iter().sum::<f32>() / SAMPLES as f32).fold(0.0, f32::max);
+    let seen = inks.map(|ink| blurred(&blurred(&ink)));
     Matcher {
-        glyphs: ink.map(|ink| {
-            let seen = blurred(&blurred(&ink));
-            let square = ink.iter().zip(&seen).map(|(ink, seen)| ink * seen).sum();
-            Weighed { weights: seen.map(|seen| 2.0 * white * seen), square }
-        }),
+        weights: std::array::from_fn(|sample| seen.map(|seen| 2.0 * white * seen[sample])),
+        squares: std::array::from_fn(|glyph| inks[glyph].iter().zip(&seen[glyph]).map(|(ink, seen)| ink * seen).sum()),
     }
 });
 
 impl Matcher {
     fn nearest(&self, samples: &Samples) -> char {
-        let distance = |glyph: &Weighed| {
-            glyph.square - glyph.weights.iter().zip(samples).map(|(weight, sample)| weight * sample).sum::<f32>()
-        };
+        let mut distances = self.squares;
+        for (weights, sample) in self.weights.iter().zip(samples) {
+            for (distance, weight) in distances.iter_mut().zip(weights) {
+                *distance -= weight * sample;
+            }
+        }
         let mut nearest = (f32::INFINITY, b' ');
-        for (character, glyph) in (b' '..).zip(&self.glyphs) {
-            let distance = distance(glyph);
+        for (character, distance) in (b' '..).zip(distances) {
             if distance < nearest.0 {
                 nearest = (distance, character);
             }
