@@ -5,7 +5,6 @@ use super::encoding::EncodingArgs;
 use super::picture::parse_cell_aspect;
 use super::{Done, Failure, SceneArgs, complain_of_panic, reason, write_stdout};
 use clap::Args;
-#[cfg(debug_assertions)]
 use std::io::{self, IsTerminal};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use termtrace::app::{self, Ending, Options, Outcome};
