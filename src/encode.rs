@@ -47,8 +47,8 @@ pub enum Order {
     Color,
 }
 
-/// How near a moving picture is to the wanted one. Text is always exact, and so is what stands still: half a second after
-/// a cell was last wanted otherwise, it gets its exact colours.
+/// How near a moving picture is to the wanted one. Text is always exact, and so is the picture within a second after it
+/// last changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
     /// Every half cell has its colour.
@@ -69,8 +69,8 @@ pub struct Allowance {
     /// When it is sent, from any start that all frames share.
     pub now: Duration,
     /// The most bytes that it should take: what does not fit, the least errors, waits for a later frame, even if it
-    /// exceeds the quality's caps. `None`: nothing that exceeds them waits; exact colours do, beyond 8 bytes for each cell
-    /// of the screen, of which tmux throws away what it cannot take. (Text never waits, nor what has to replace text or
+    /// exceeds the quality's caps. `None`: nothing that exceeds them waits. Exact colours also wait beyond 8 bytes for each
+    /// cell of the screen, of which tmux throws away what it cannot take. (Text never waits, nor what has to replace text or
     /// an unknown screen, nor the largest error, and with [`Quality::Exact`] nothing does.)
     pub most_bytes: Option<usize>,
 }
@@ -141,9 +141,10 @@ impl Encoder {
         Self { colorless: !colors, ..self }
     }
 
-    /// From here on nothing is known of the screen: the next frame is drawn whole.
+    /// From here on nothing is known of the screen: the next frame is drawn whole, and is due at once.
     pub fn forget(&mut self) {
         self.known = None;
+        self.due = Some(Duration::ZERO);
     }
 
     /// Appends the bytes that make the terminal show `wanted`, exactly; none if it does already.
@@ -178,21 +179,25 @@ impl Encoder {
             pen: [known.pen.fg, known.pen.bg],
             has_waited: &has_waited,
         });
-        let most_bytes = allowance.most_bytes.unwrap_or(BYTES_PER_CELL * wanted.size().cell_count());
-        // One at least, or all might wait for ever.
-        let fewest = plan.fewest_writes(allowance.most_bytes.is_none()).max(1);
+        let most = allowance.most_bytes.unwrap_or(usize::MAX);
+        let usual = most.min(BYTES_PER_CELL * wanted.size().cell_count());
+        let refines_from = plan.fewest_writes(true);
         let mut writes = plan.writes();
         let start = bytes.len();
         let next = loop {
             let mut next = known.clone();
             self.write(&plan.grid(writes), &mut next, bytes);
             let taken = bytes.len() - start + self.bracket_len();
-            if taken <= most_bytes || writes <= fewest {
+            let refines = writes > refines_from;
+            let (limit, fewest) = if refines { (usual, refines_from) } else { (most, plan.fewest_writes(false)) };
+            // One at least, or all might wait for ever.
+            let fewest = fewest.max(1);
+            if taken <= limit || writes <= fewest {
                 break next;
             }
             bytes.truncate(start);
             // A little less than the share that fits, so that few tries are needed.
-            writes = (writes * most_bytes / taken * 15 / 16).clamp(fewest, writes - 1);
+            writes = (writes * limit / taken * 15 / 16).clamp(fewest, writes - 1);
         };
         let is_cut = writes < plan.writes();
         // All at once, when the last of them is due: one after another they take more bytes.
@@ -294,7 +299,7 @@ impl Encoder {
 /// nor a foreign one.
 fn update(shown: &mut Grid, wanted: &Grid) -> Vec<Place> {
     let mut changed = Vec::new();
-    for (row, (shown, wanted)) in (0..).zip(shown.rows_mut().zip(wanted.rows())) {
+    for ((shown, wanted), row) in shown.rows_mut().zip(wanted.rows()).zip(0..) {
         update_row(shown, wanted, |column| changed.push(Place { column, row }));
     }
     changed
@@ -309,8 +314,11 @@ fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
         let (shown, wanted) = (&mut shown[column..end], &wanted[column..end]);
         let differs = !shown.iter().zip(wanted).all(|(shown, wanted)| pen::look_alike(shown, wanted));
         let is_ours = !matches!(wanted[0].glyph, Glyph::Covered | Glyph::Foreign);
-        if is_ours && (differs || column < safe_from) {
+        if is_ours && shown != wanted {
+            // Also where it looks alike: a panel's blank is not the picture's.
             shown.clone_from_slice(wanted);
+        }
+        if is_ours && (differs || column < safe_from) {
             write(column as u16);
             if let Glyph::Cluster(text) = &wanted[0].glyph {
                 safe_from = safe_from.max(column + columns_apart(text));

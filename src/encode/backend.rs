@@ -280,6 +280,8 @@ impl<W: Write> Backend for EncoderBackend<W> {
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.send()
+        self.send()?;
+        // There may be more than ours in it.
+        self.writer.flush()
     }
 }

@@ -57,11 +57,11 @@ pub(super) fn square(a: Srgb8, b: Srgb8) -> u32 {
 /// The upper and the lower colour of a picture's cell.
 pub(super) type Halves = [Srgb8; 2];
 
-/// Those of a half block or a space in truecolor; anything else is text.
+/// Those of a half block or a space in truecolor; anything else is text, also a space that has a colour for characters.
 pub(super) fn halves(cell: &Cell) -> Option<Halves> {
     let (Ink::Rgb(bg), true) = (cell.bg, cell.modifier.is_empty()) else { return None };
     match (&cell.glyph, cell.fg) {
-        (Glyph::Char(' '), _) => Some([bg; 2]),
+        (Glyph::Char(' '), Ink::Default) => Some([bg; 2]),
         (Glyph::Char('▄'), Ink::Rgb(fg)) => Some([bg, fg]),
         (Glyph::Char('▀'), Ink::Rgb(fg)) => Some([fg, bg]),
         _ => None,

@@ -319,6 +319,10 @@ fn places_have_five_digits_where_they_need_them() {
     encoded(&mut encoder, &grid);
     grid.cell_mut(65_534, 0).glyph = 'x'.into();
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;65535Hx");
+    let mut grid = Grid::new(Size::new(1, 65_535));
+    encoded(&mut encoder, &grid);
+    grid.cell_mut(0, 65_534).glyph = 'x'.into();
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[65535Hx");
     for empty in [Size::new(0, 0), Size::new(0, 5), Size::new(5, 0)] {
         assert!(encoded(&mut encoder, &Grid::new(empty)).len() <= "\x1b[0m".len());
     }

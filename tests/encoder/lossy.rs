@@ -23,7 +23,10 @@ fn near_ink() -> impl Strategy<Value = Ink> {
 
 fn picture_cell() -> impl Strategy<Value = Cell> {
     let glyph = prop::sample::select(&['▄', '▄', '▄', ' ', '▀'][..]);
-    (glyph, near_ink(), near_ink()).prop_map(|(glyph, fg, bg)| Cell::new(glyph, fg, bg))
+    (glyph, near_ink(), near_ink()).prop_map(|(glyph, ink, bg)| {
+        let fg = if glyph == ' ' { Ink::Default } else { ink };
+        Cell::new(glyph, fg, bg)
+    })
 }
 
 /// A picture with text here and there.
@@ -271,4 +274,58 @@ fn exact_is_exact() {
             assert_eq!(other.due(), None);
         }
     }
+}
+
+/// A panel's blanks are text: they do not wait, and the picture comes back from under them, and to rest.
+#[test]
+fn blanks_of_text_do_not_wait() {
+    let size = Size::new(30, 8);
+    let mut watched = Watched::new(Order::Color, true, size, Clusters::None);
+    watched.send(&grey(size, 20));
+    let mut panel = grey(size, 20);
+    for column in 3..20 {
+        *panel.cell_mut(column, 3) = Cell::new(' ', rgb(255, 255, 255), rgb(21, 20, 20));
+    }
+    let allowed = allowance(0, Quality::Fast, Some(0));
+    assert!(watched.send_within(&panel, allowed) > 0);
+    assert_eq!(watched.rest(&panel, allowed).bytes, 0, "all was there at once");
+    let mut alike = grey(size, 20);
+    for column in 3..20 {
+        *alike.cell_mut(column, 3) = Cell::new(' ', Ink::Default, rgb(21, 20, 20));
+    }
+    let later = allowance(10, Quality::Fast, None);
+    assert_eq!(watched.send_within(&alike, later), 0, "it looks as before");
+    watched.rest(&alike, later);
+}
+
+/// A limit beyond what one frame may take is none.
+#[test]
+fn a_generous_limit_does_not_loosen_the_usual_one() {
+    let size = Size::new(40, 10);
+    let mut number = super::pictures::noise(7);
+    let mut noise = || {
+        let mut grid = Grid::new(size);
+        for cell in grid.cells_mut() {
+            let mut ink = || rgb(100 + (number() >> 9) as u8 % 3, 100 + (number() >> 9) as u8 % 3, 100);
+            *cell = Cell::new('▄', ink(), ink());
+        }
+        grid
+    };
+    let (first, near) = (noise(), noise());
+    let mut watched = Watched::new(Order::Raster, true, size, Clusters::None);
+    watched.send(&first);
+    let generous = |millis| allowance(millis, Quality::Fast, Some(usize::MAX));
+    watched.send_within(&near, generous(0));
+    let sent = watched.send_within(&near, generous(500));
+    assert!((1..=8 * size.cell_count()).contains(&sent), "{sent} bytes");
+    watched.rest(&near, generous(533));
+}
+
+#[test]
+fn a_forgotten_screen_is_due_at_once() {
+    let mut encoder = Encoder::new();
+    encoded(&mut encoder, &grey(Size::new(3, 1), 9), allowance(0, Quality::Exact, None));
+    assert_eq!(encoder.due(), None);
+    encoder.forget();
+    assert_eq!(encoder.due(), Some(Duration::ZERO));
 }

@@ -25,12 +25,13 @@ impl Caps {
     }
 }
 
-/// The upper and the lower colour of a cell of the picture: of a half block or a space in truecolor, without modifiers.
+/// The upper and the lower colour of a cell of the picture: of a half block in truecolor, or of a space that has no other
+/// colour, without modifiers.
 /// Everything else is text.
 pub(crate) fn halves(cell: &Cell) -> Option<[Srgb8; 2]> {
     let (Ink::Rgb(bg), true) = (cell.bg, cell.modifier.is_empty()) else { return None };
     match (&cell.glyph, cell.fg) {
-        (Glyph::Char(' '), _) => Some([bg; 2]),
+        (Glyph::Char(' '), Ink::Default) => Some([bg; 2]),
         (Glyph::Char('▄'), Ink::Rgb(fg)) => Some([bg, fg]),
         (Glyph::Char('▀'), Ink::Rgb(fg)) => Some([fg, bg]),
         _ => None,

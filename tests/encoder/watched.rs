@@ -12,6 +12,8 @@ pub(crate) struct Watched {
     upper_half: bool,
     clusters: Clusters,
     screens: Screens,
+    /// The last wanted grid. (A blank of text looks like one of the picture.)
+    last: Option<Grid>,
     /// How long the pieces are in which the terminals read, one after another and then from the first again.
     pieces: Vec<usize>,
 }
@@ -26,7 +28,14 @@ pub(crate) struct Rest {
 impl Watched {
     pub(crate) fn new(order: Order, upper_half: bool, size: Size, clusters: Clusters) -> Self {
         let encoder = Encoder::new().with_order(order).with_upper_half(upper_half);
-        Self { encoder, upper_half, clusters, screens: Screens::disturbed(size, clusters), pieces: vec![usize::MAX] }
+        Self {
+            encoder,
+            upper_half,
+            clusters,
+            screens: Screens::disturbed(size, clusters),
+            last: None,
+            pieces: vec![usize::MAX],
+        }
     }
 
     /// From here on the terminals read pieces of these lengths, which are not 0.
@@ -51,6 +60,7 @@ impl Watched {
         let mut bytes = Vec::new();
         self.encoder.encode(wanted, &mut bytes);
         self.screens.feed_in(&self.pieces, &bytes);
+        self.last = Some(wanted.clone());
         self.assert_exact(wanted);
         let mut more = Vec::new();
         self.encoder.encode(wanted, &mut more);
@@ -71,7 +81,7 @@ impl Watched {
     /// Sends a frame that may be near the wanted one; how many bytes that took.
     #[track_caller]
     pub(crate) fn send_within(&mut self, wanted: &Grid, allowance: Allowance) -> usize {
-        let before = self.screens.shown().to_vec();
+        let before = self.pictures_shown();
         let mut bytes = Vec::new();
         self.encoder.encode_within(wanted, allowance, &mut bytes);
         self.screens.feed_in(&self.pieces, &bytes);
@@ -84,8 +94,21 @@ impl Watched {
             }
             _ => assert_within(caps, &seen, wanted),
         }
+        self.last = Some(wanted.clone());
         self.assert_due(&seen, wanted, allowance);
         bytes.len()
+    }
+
+    /// What the screen shows of a picture, and something else where it shows text.
+    fn pictures_shown(&self) -> Vec<Cell> {
+        let last = self.last.iter().flat_map(Grid::cells).map(|cell| halves(cell).is_some());
+        let is_picture = last.chain(std::iter::repeat(true));
+        self.screens
+            .shown()
+            .iter()
+            .zip(is_picture)
+            .map(|(cell, is)| if is { cell.clone() } else { Cell::BLANK })
+            .collect()
     }
 
     /// Something is due where anything is not exact; until then nothing is sent.
