@@ -102,6 +102,18 @@ impl SceneArgs {
         self.scene.as_deref().unwrap_or(Path::new("-"))
     }
 
+    /// Refuses to write over the scene, or another file that it is shown with.
+    fn keeps(&self, others: &[&Path], output: &Path) -> Done {
+        let is_output = |input: &&Path| match (input.canonicalize(), output.canonicalize()) {
+            (Ok(input), Ok(output)) => input == output,
+            _ => false,
+        };
+        if [&[self.path()], others].concat().iter().any(is_output) {
+            return Err(Failure::Usage(format!("{} would be written over what it is made from", output.display())));
+        }
+        Ok(())
+    }
+
     /// The scene, with the camera that the command line wants.
     fn load(&self) -> Result<Scene, Failure> {
         let mut scene = if self.path() == Path::new("-") {

@@ -24,6 +24,8 @@ pub struct Cast<W: Write> {
     max_rate: Option<u32>,
     frames_per_second: u32,
     frame: u64,
+    /// When all that was sent is through, at the highest rate.
+    free_at: Duration,
     /// The last frame and its bytes, which may not be all yet.
     last: Option<(Grid, Vec<u8>)>,
 }
@@ -36,8 +38,16 @@ impl<W: Write> Cast<W> {
     pub fn begin(mut out: W, size: Size, encoder: Encoder, frames_per_second: u32) -> io::Result<Self> {
         let Size { columns, rows } = size;
         writeln!(out, r#"{{"version":2,"width":{columns},"height":{rows}}}"#)?;
-        let (quality, max_rate) = (Quality::Exact, None);
-        Ok(Self { out, encoder, quality, max_rate, frames_per_second: frames_per_second.max(1), frame: 0, last: None })
+        Ok(Self {
+            out,
+            encoder,
+            quality: Quality::Exact,
+            max_rate: None,
+            frames_per_second: frames_per_second.max(1),
+            frame: 0,
+            free_at: Duration::ZERO,
+            last: None,
+        })
     }
 
     /// Of that quality.
@@ -45,8 +55,8 @@ impl<W: Write> Cast<W> {
         Self { quality, ..self }
     }
 
-    /// For a link that takes so many bytes a second: no frame has more than its share, if the quality allows it (see
-    /// [`Allowance::most_bytes`]).
+    /// For a link that takes so many bytes a second: while they are on their way, frames are left out (their events are
+    /// empty). But for the last frame, which waits for nothing.
     pub fn with_max_rate(self, max_rate: Option<u32>) -> Self {
         Self { max_rate, ..self }
     }
@@ -58,12 +68,15 @@ impl<W: Write> Cast<W> {
     pub fn frame(&mut self, grid: Grid) -> io::Result<()> {
         self.write_last()?;
         let mut bytes = Vec::new();
-        let allowance = Allowance {
-            quality: self.quality,
-            now: Duration::from_secs_f64(self.time()),
-            most_bytes: self.max_rate.map(|rate| (rate / self.frames_per_second) as usize),
-        };
-        self.encoder.encode_within(&grid, allowance, &mut bytes);
+        let now = Duration::from_secs_f64(self.time());
+        if self.free_at <= now {
+            let most_bytes = self.max_rate.map(|rate| (rate / self.frames_per_second) as usize);
+            let allowance = Allowance { quality: self.quality, now, most_bytes };
+            self.encoder.encode_within(&grid, allowance, &mut bytes);
+        }
+        if let Some(rate) = self.max_rate.filter(|_| !bytes.is_empty()) {
+            self.free_at = now + Duration::from_secs_f64(bytes.len() as f64 / f64::from(rate.max(1)));
+        }
         self.last = Some((grid, bytes));
         Ok(())
     }

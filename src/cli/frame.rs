@@ -122,6 +122,9 @@ impl FrameArgs {
 pub(super) fn run(args: &FrameArgs) -> Done {
     let format = args.format()?;
     args.check_flags(format)?;
+    if let Some(file) = args.output().or(args.check.as_deref().filter(|_| args.bless)) {
+        args.scene.keeps(&[], file)?;
+    }
     let frame = args.contents(format)?;
     match (&args.check, args.output()) {
         (Some(golden), _) if args.bless => write_file(golden, &frame),

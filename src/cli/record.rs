@@ -97,6 +97,9 @@ impl RecordArgs {
 
     fn film(&self) -> Result<Film, Failure> {
         let format = self.format()?;
+        if let Some(output) = &self.output {
+            self.scene.keeps(&[&self.path], output)?;
+        }
         let resolution = self.picture.resolution(CellMode::HALF_BLOCK)?;
         self.check_flags(&format, resolution)?;
         let scene = self.scene.load()?;

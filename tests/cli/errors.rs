@@ -193,3 +193,24 @@ fn a_dash_is_standard_output() {
     assert_eq!(folder.frame("ball.ron -o -"), folder.frame("ball.ron"));
     assert_eq!(folder.frame("ball.ron --format png -o -"), folder.frame("ball.ron --format png"));
 }
+
+/// A scene may have any name: its file, or the path's, is not written over.
+#[test]
+fn what_a_picture_is_made_from_is_kept() {
+    let folder = Folder::new();
+    for name in ["scene.cast", "scene.gif", "scene.txt"] {
+        folder.write(name, BALL);
+    }
+    for line in [
+        "record scene.cast -o scene.cast",
+        "record scene.gif -o ./scene.gif",
+        "record ball.ron --path scene.gif -o scene.gif",
+        "frame scene.txt -o scene.txt",
+        "frame scene.txt --check scene.txt --bless",
+    ] {
+        folder.run(line).fails_in_a_line(2, "would be written over what it is made from");
+    }
+    for name in ["scene.cast", "scene.gif", "scene.txt"] {
+        assert_eq!(folder.run(&format!("check {name}")).text(), format!("{name}: fine (2 objects, 1 light)\n"));
+    }
+}

@@ -191,12 +191,21 @@ fn a_cast_of_less_quality_is_near_and_becomes_exact() {
 #[test]
 fn a_cast_keeps_to_its_rate() {
     let folder = Folder::new();
-    let cast = folder.run("record ball.ron --seconds 2 --fps 20 --quality equal --max-rate 20k").done();
-    let sizes: Vec<usize> = played(&cast).events.iter().map(|(_, data)| data.len()).collect();
-    assert!(sizes[1..39].iter().all(|&size| size <= 1_000), "{sizes:?}");
-    assert!(sizes[1..39].iter().sum::<usize>() > 30_000, "and uses it: {sizes:?}");
-    let free = folder.run("record ball.ron --seconds 2 --fps 20 --quality equal").done();
-    assert!(played(&free).events[1..39].iter().any(|(_, data)| data.len() > 1_000), "a share that is too small");
+    for quality in ["exact", "equal"] {
+        let flags = format!("--size 40x10 --seconds 3 --fps 20 --quality {quality}");
+        let cast = folder.run(&format!("record ball.ron {flags} --max-rate 20k")).done();
+        let mut sent = 0;
+        for (time, data) in &played(&cast).events[..59] {
+            assert!(data.is_empty() || sent as f64 <= 20_000.0 * time + 1.0, "{quality}: {sent} bytes before {time} s");
+            sent += data.len();
+        }
+        assert!(sent > 30_000, "{quality}: and uses it: {sent} bytes");
+        let free = folder.run(&format!("record ball.ron {flags}")).done();
+        assert!(
+            played(&free).events[1..59].iter().map(|(_, data)| data.len()).sum::<usize>() > 60_000
+                || quality == "equal"
+        );
+    }
 }
 
 #[test]
