@@ -5,15 +5,15 @@
 //! the meantime is in the next frame, and nothing is queued.
 
 use crate::camera::Camera;
-use crate::capabilities::{Capabilities, CellMode, USUAL_CELL_ASPECT};
+use crate::capabilities::{Capabilities, Findings, Hints};
 use crate::cell;
 use crate::control::{self, Command, Motion};
 use crate::encode::{Order, Quality};
 use crate::framebuffer::Resolution;
 use crate::grid::Size;
-use crate::input::{Input, Parser};
+use crate::input::{Input, Parser, Reply};
 use crate::scene::Scene;
-use crate::terminal::{self, Signals, Stopped, Terminal, Window};
+use crate::terminal::{self, Questions, Signals, Stopped, Terminal, Window};
 use crossterm::event::{Event, KeyEvent, KeyEventKind};
 use std::io;
 use std::time::{Duration, Instant};
@@ -28,13 +28,11 @@ use renderer::{Job, Renderer};
 use screen::Screen;
 
 /// How the user wants the live view: made by [`Options::new`], then changed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Options {
-    /// How pixels become cells.
-    pub cell_mode: CellMode,
-    /// A cell's height over its width; `None`: as the terminal says it is, or 2.
-    pub cell_aspect: Option<f32>,
+    /// What is wanted and known of the terminal before it is asked.
+    pub hints: Hints,
     /// In which order changed cells are sent.
     pub order: Order,
     /// How near a moving picture is to the wanted one.
@@ -46,16 +44,9 @@ pub struct Options {
 }
 
 impl Options {
-    /// With that cell mode, for a link that does not compress; the rest as terminal and machine say.
-    pub fn new(cell_mode: CellMode) -> Self {
-        Self {
-            cell_mode,
-            cell_aspect: None,
-            order: Order::Color,
-            quality: Quality::Exact,
-            max_rate: None,
-            threads: None,
-        }
+    /// For a terminal of which that is known, on a link that does not compress; the rest as terminal and machine say.
+    pub fn new(hints: Hints) -> Self {
+        Self { hints, order: Order::Color, quality: Quality::Exact, max_rate: None, threads: None }
     }
 }
 
@@ -93,7 +84,8 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
     let mut renderer = terminal::without_signals(|| Renderer::start(scene, options.threads, waker))?;
     let mut terminal = Terminal::take()?;
     let mut live = Live::new(camera, options, terminal.window()?);
-    let ended = live.run(&mut terminal, &mut renderer, signals);
+    let asked = terminal.ask(live.questions.bytes());
+    let ended = asked.and_then(|()| live.run(&mut terminal, &mut renderer, signals));
     // When the terminal vanishes, the system says so by a signal too.
     let ending = ended.or_else(|error| signals.deadly().map(Ending::Signal).ok_or(error))?;
     let heard = terminal.give_back();
@@ -105,6 +97,9 @@ const FRAME: Duration = Duration::from_micros(16_667);
 /// How long the rest of a key's escape sequence may take before a lone Escape is taken for the key.
 const ESCAPE_WAIT: Duration = Duration::from_millis(50);
 
+/// The same while answers are on their way: the first byte of one may come alone.
+const ANSWER_WAIT: Duration = Duration::from_secs(1);
+
 /// The state of the live view.
 struct Live {
     options: Options,
@@ -112,8 +107,12 @@ struct Live {
     camera: Camera,
     speed: f32,
     size: Size,
+    window: Window,
     capabilities: Capabilities,
+    questions: Questions,
     parser: Parser,
+    /// When the last bytes came from the terminal.
+    read: Duration,
     motion: Motion,
     screen: Screen,
     link: Link,
@@ -128,23 +127,22 @@ struct Live {
 
 impl Live {
     fn new(camera: Camera, options: Options, window: Window) -> Self {
-        let capabilities = Capabilities {
-            cell_mode: options.cell_mode,
-            cell_aspect: USUAL_CELL_ASPECT,
-            halves_meet: false,
-            light_background: false,
-        };
+        let questions = Questions::needed(&options.hints);
+        let capabilities = Findings::new(&options.hints, window.cell, questions.answers()).capabilities();
         let mut live = Self {
-            options,
             home: camera,
             camera,
             speed: control::speed(&camera),
             size: window.size,
+            window,
             capabilities,
+            questions,
             parser: Parser::new(),
+            read: Duration::ZERO,
             motion: Motion::default(),
             screen: Screen::new(&capabilities, options.order, options.quality),
             link: Link::new(options.max_rate),
+            options,
             start: Instant::now(),
             moved_until: None,
             stale: true,
@@ -163,8 +161,8 @@ impl Live {
             if self.stale && idle && self.now() >= self.next_frame() {
                 self.begin_frame(renderer);
             }
-            let woken =
-                terminal.wait(signals.wake_pipe(), self.timeout(idle && !renderer.is_busy(), terminal.is_sending()))?;
+            let timeout = self.timeout(idle && !renderer.is_busy(), terminal);
+            let woken = terminal.wait(signals.wake_pipe(), timeout)?;
             if woken.wake {
                 signals.drain();
             }
@@ -190,7 +188,7 @@ impl Live {
                     }
                     Next::Stay => {}
                 }
-            } else if !woken.wake && self.parser.is_waiting() {
+            } else if self.parser.is_waiting() && self.now() >= self.escape_at(terminal) {
                 let mut inputs = Vec::new();
                 self.parser.give_up_waiting(&mut inputs);
                 self.take_inputs(&inputs);
@@ -213,11 +211,31 @@ impl Live {
 
     fn resize(&mut self, window: Window) {
         self.size = window.size;
-        self.capabilities.cell_aspect = self.options.cell_aspect.or(window.cell_aspect).unwrap_or(USUAL_CELL_ASPECT);
-        self.capabilities.halves_meet = window.halves_meet;
+        self.window = window;
+        self.learn();
         // The terminal has moved what it shows to wherever it thought right.
-        self.screen.redraw(window.halves_meet);
+        self.screen.redraw(self.capabilities.halves_meet);
         self.stale = true;
+    }
+
+    /// Goes by what is known of the terminal now.
+    fn learn(&mut self) {
+        let before = self.resolution();
+        let findings = Findings::new(&self.options.hints, self.window.cell, self.questions.answers());
+        let capabilities = findings.capabilities();
+        if capabilities != self.capabilities {
+            self.capabilities = capabilities;
+            self.screen.set_capabilities(&capabilities);
+            self.stale |= self.resolution() != before;
+        }
+    }
+
+    /// Answers change things all at once, when the last is there.
+    fn take_reply(&mut self, reply: &Reply) -> Next {
+        if self.questions.take(reply) {
+            self.learn();
+        }
+        Next::Stay
     }
 
     /// Carries the motion out up to now.
@@ -249,12 +267,18 @@ impl Live {
     }
 
     /// How long there is nothing to do if nobody wakes us: for ever when nothing moves.
-    fn timeout(&self, idle: bool, is_sending: bool) -> Option<Duration> {
+    fn timeout(&self, idle: bool, terminal: &Terminal) -> Option<Duration> {
         let frame = (self.stale || self.moved_until.is_some()) && idle;
         let until_frame = frame.then(|| self.next_frame().saturating_sub(self.now()));
-        let until_escape = self.parser.is_waiting().then_some(ESCAPE_WAIT);
-        let until_bytes = self.next_bytes().map(|due| due.saturating_sub(self.now())).filter(|_| !is_sending);
+        let until_escape = self.parser.is_waiting().then(|| self.escape_at(terminal).saturating_sub(self.now()));
+        let until_bytes =
+            self.next_bytes().map(|due| due.saturating_sub(self.now())).filter(|_| !terminal.is_sending());
         until_frame.into_iter().chain(until_escape).chain(until_bytes).min()
+    }
+
+    /// When half a sequence is taken for all that there is of it.
+    fn escape_at(&self, terminal: &Terminal) -> Duration {
+        self.read + if terminal.awaits_answers() { ANSWER_WAIT } else { ESCAPE_WAIT }
     }
 
     fn read_keys(&mut self, terminal: &mut Terminal) -> io::Result<Next> {
@@ -265,6 +289,7 @@ impl Live {
         }
         let mut inputs = Vec::new();
         self.parser.feed(bytes, &mut inputs);
+        self.read = self.now();
         Ok(self.take_inputs(&inputs))
     }
 
@@ -274,7 +299,8 @@ impl Live {
                 Input::Event(Event::Key(key)) => self.take_key(key),
                 // Nobody says when the keys held now are let go.
                 Input::Event(Event::FocusLost) => self.stand_still(),
-                _ => Next::Stay,
+                Input::Reply(reply) => self.take_reply(reply),
+                Input::Event(_) => Next::Stay,
             };
             if next != Next::Stay {
                 return next;
@@ -330,6 +356,10 @@ impl Live {
             return Ok(());
         }
         terminal.take_again()?;
+        // What was on its way then is lost.
+        if self.questions.is_open() {
+            terminal.ask(self.questions.bytes())?;
+        }
         self.resize(terminal.window()?);
         Ok(())
     }

@@ -1,11 +1,15 @@
-//! What a terminal can show: plain values, and how the environment tells them.
+//! What a terminal can show: plain values, and how the environment and its own answers tell them.
 
 use crate::color::Srgb8;
 
+mod answers;
 mod detection;
+mod findings;
 mod terminfo;
 
+pub use answers::{Answers, TEST_COLOR};
 pub use detection::{Clues, Found, GlyphChoice, Source, colors, glyphs};
+pub use findings::{Asking, CellShape, Findings, Hints, VARIABLES};
 pub use terminfo::terminfo_colors;
 
 /// What the screen's cells can be made of.
@@ -19,6 +23,8 @@ pub struct Capabilities {
     pub halves_meet: bool,
     /// Whether the terminal writes dark on light: where its own colours are all there are, more ink is then less light.
     pub light_background: bool,
+    /// Whether it knows synchronized output: each frame is then shown at once.
+    pub synchronized_output: bool,
 }
 
 /// How pixels become cells: what stands in them, and in which colours.

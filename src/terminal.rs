@@ -8,7 +8,7 @@
 //! `O_NONBLOCK` is never set on what is shared with the shell, which would find it set after us: the screen is opened
 //! a second time for that. So a terminal that has stopped reading never keeps us from hearing keys and signals.
 
-use crate::capabilities;
+use crate::capabilities::{self, CellShape};
 use crate::grid::Size;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fd::{AsFd, BorrowedFd};
@@ -17,16 +17,20 @@ use std::fs::File;
 use std::io::{self, IsTerminal, Read};
 use std::time::Duration;
 
+mod fence;
 mod modes;
 mod output;
 mod panics;
+mod questions;
 mod rehearsal;
 mod signals;
 
+use fence::Fence;
 use modes::Modes;
 pub use output::stderr_is_read;
 use output::{Output, timespec};
 pub use panics::{hold_panic_messages, take_panic_messages};
+pub use questions::{FENCE, Questions};
 #[cfg(feature = "test-hooks")]
 pub use rehearsal::rehearse;
 pub(crate) use rehearsal::{reach, take_worker_panic};
@@ -37,6 +41,7 @@ pub struct Terminal {
     keys: File,
     output: Output,
     modes: Modes,
+    fence: Fence,
 }
 
 /// What woke [`Terminal::wait`].
@@ -53,10 +58,8 @@ pub struct Woken {
 pub struct Window {
     /// In cells.
     pub size: Size,
-    /// A cell's height over its width, if the terminal says how large it is in pixels.
-    pub cell_aspect: Option<f32>,
-    /// Whether the upper and the lower half block are known to meet in the same line.
-    pub halves_meet: bool,
+    /// What its size in pixels tells.
+    pub cell: CellShape,
 }
 
 impl Terminal {
@@ -67,7 +70,7 @@ impl Terminal {
     /// If either is not a terminal, or cannot be set up; it is then as it was.
     pub fn take() -> io::Result<Self> {
         let output = Output::open()?;
-        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::none() };
+        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::none(), fence: Fence::default() };
         terminal.take_again()?;
         Ok(terminal)
     }
@@ -89,8 +92,9 @@ impl Terminal {
         let (columns, rows) = (window.ws_col, window.ws_row);
         // A terminal that nobody told its size has none.
         let size = if columns == 0 || rows == 0 { Size::new(80, 24) } else { Size::new(columns, rows) };
-        let cell_aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
-        Ok(Window { size, cell_aspect, halves_meet: capabilities::halves_meet(rows, window.ws_ypixel) })
+        let aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
+        let cell = CellShape { aspect, halves_meet: capabilities::halves_meet(rows, window.ws_ypixel) };
+        Ok(Window { size, cell })
     }
 
     /// Sends a frame, in one write where the terminal takes it whole. What it does not take at once goes out while
@@ -102,6 +106,24 @@ impl Terminal {
         self.output.send(bytes)
     }
 
+    /// Asks something that ends with [`FENCE`]. Giving the terminal back waits for the answer, for as long as it does for
+    /// the last bytes to be taken, so that the shell is not sent it. No questions: nothing is sent.
+    ///
+    /// # Errors
+    /// If the terminal is gone.
+    pub fn ask(&mut self, questions: &[u8]) -> io::Result<()> {
+        if questions.is_empty() {
+            return Ok(());
+        }
+        self.fence.ask();
+        self.output.send(questions)
+    }
+
+    /// Whether answers may be on their way.
+    pub fn awaits_answers(&self) -> bool {
+        self.fence.patience().is_some()
+    }
+
     /// Whether the terminal has not taken the last frame yet.
     pub fn is_sending(&self) -> bool {
         self.output.is_pending()
@@ -110,7 +132,7 @@ impl Terminal {
     /// Gives the terminal back, as dropping it does. Whether it took all that was sent: one that has stopped reading is
     /// left after a second, and is not to be written to any more.
     pub fn give_back(&mut self) -> bool {
-        self.modes.give_back(&self.keys, &mut self.output)
+        self.modes.give_back(&self.keys, &mut self.output, &mut self.fence)
     }
 
     /// The bytes that are there. None at all: the terminal is gone.
@@ -120,7 +142,10 @@ impl Terminal {
     pub fn read<'a>(&mut self, buffer: &'a mut [u8]) -> io::Result<&'a [u8]> {
         loop {
             match self.keys.read(buffer) {
-                Ok(count) => return Ok(&buffer[..count]),
+                Ok(count) => {
+                    self.fence.hear(&buffer[..count]);
+                    return Ok(&buffer[..count]);
+                }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => return Err(error),
             }

@@ -36,10 +36,9 @@ pub(super) struct Screen {
 
 impl Screen {
     pub(super) fn new(capabilities: &Capabilities, order: Order, quality: Quality) -> Self {
-        let mode = capabilities.cell_mode;
         Self {
-            painter: Painter::new(mode).with_light_background(capabilities.light_background),
-            encoder: Encoder::new().with_order(order).with_colors(mode.colors != Colors::None),
+            painter: painter(capabilities),
+            encoder: encoder(Encoder::new().with_order(order), capabilities),
             quality,
             frame: None,
             status: false,
@@ -50,6 +49,18 @@ impl Screen {
             encode: Duration::ZERO,
             bytes: Vec::new(),
         }
+    }
+
+    /// More is known of the terminal than before.
+    pub(super) fn set_capabilities(&mut self, capabilities: &Capabilities) {
+        let mode = self.painter.mode();
+        self.painter = painter(capabilities);
+        self.encoder = encoder(std::mem::take(&mut self.encoder), capabilities);
+        self.changed = true;
+        if mode != self.painter.mode() {
+            self.encoder.forget();
+        }
+        self.encoder.set_upper_half(capabilities.halves_meet);
     }
 
     /// A frame, and the time while something moves.
@@ -142,6 +153,15 @@ impl Screen {
             });
         }
     }
+}
+
+fn painter(capabilities: &Capabilities) -> Painter {
+    Painter::new(capabilities.cell_mode).with_light_background(capabilities.light_background)
+}
+
+fn encoder(encoder: Encoder, capabilities: &Capabilities) -> Encoder {
+    let has_colors = capabilities.cell_mode.colors != Colors::None;
+    encoder.with_colors(has_colors).with_synchronized_output(capabilities.synchronized_output)
 }
 
 /// How many frames are shown per second while something moves.

@@ -18,6 +18,8 @@ pub enum Source {
     Flag,
     /// The environment variable of that name.
     Variable(&'static str),
+    /// The window, by its size in cells and in pixels.
+    Window,
     /// The terminal itself.
     Reply,
     /// The terminfo database.
@@ -42,7 +44,7 @@ pub type GlyphChoice = Option<Glyphs>;
 /// The colours to use.
 ///
 /// In this order, and the first to answer is believed: the flag; `NO_COLOR`; `COLORTERM`; the terminal's own reply;
-/// terminfo; the name in `TERM`. `CLICOLOR_FORCE`, `FORCE_COLOR` and `--color=always` say the least that it has to be.
+/// terminfo's flags; the name in `TERM`, where it is known for truecolor; terminfo's number; the name. `CLICOLOR_FORCE`, `FORCE_COLOR` and `--color=always` say the least that it has to be.
 pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Found<Colors> {
     let least = match choice {
         ColorChoice::Never => return Found { value: Colors::None, source: Source::Flag },
@@ -53,8 +55,7 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Found<Colors> {
             forced => forced,
         },
     };
-    let found =
-        colorterm(clues).or_else(|| replied(clues)).or_else(|| by_terminfo(clues)).unwrap_or_else(|| by_name(clues));
+    let found = colorterm(clues).or_else(|| replied(clues)).unwrap_or_else(|| by_term(clues));
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
@@ -114,6 +115,16 @@ fn replied(clues: &Clues<'_>) -> Option<Found<Colors>> {
     kept.then_some(Found { value: Colors::Truecolor, source: Source::Reply })
 }
 
+/// terminfo's flags, then what is known of the name, then terminfo's number, which says less than the terminal can where it
+/// stands for a name that has truecolor.
+fn by_term(clues: &Clues<'_>) -> Found<Colors> {
+    let (terminfo, name) = (by_terminfo(clues), by_name(clues));
+    match terminfo {
+        Some(terminfo) if terminfo.value == Colors::Truecolor || name.value != Colors::Truecolor => terminfo,
+        _ => name,
+    }
+}
+
 fn by_terminfo(clues: &Clues<'_>) -> Option<Found<Colors>> {
     let value = (clues.terminfo)(&value(clues, "TERM")?)?;
     Some(Found { value, source: Source::Terminfo })
@@ -128,7 +139,9 @@ fn by_name(clues: &Clues<'_>) -> Found<Colors> {
     let has = |parts: &[&str]| parts.iter().any(|part| term.contains(part));
     let value = if term == "dumb" || term.starts_with("vt") {
         Colors::None
-    } else if has(&["direct", "truecolor", "24bit", "kitty", "alacritty", "foot", "wezterm", "ghostty"]) {
+    } else if term.starts_with("st-")
+        || has(&["direct", "truecolor", "24bit", "kitty", "alacritty", "foot", "wezterm", "ghostty"])
+    {
         Colors::Truecolor
     } else if term == "linux" || term == "ansi" || has(&["16color"]) {
         Colors::SIXTEEN
@@ -156,10 +169,10 @@ mod tests {
 
     const SIXTEEN: Colors = Colors::SIXTEEN;
 
-    /// A terminfo that knows three terminals.
+    /// A terminfo that knows some terminals.
     fn terminfo(term: &str) -> Option<Colors> {
         match term {
-            "xterm-256color" => Some(Indexed256),
+            "xterm-256color" | "alacritty" => Some(Indexed256),
             "xterm-direct" => Some(Truecolor),
             "vt100" | "dumb" => Some(NoColors),
             _ => None,
@@ -205,7 +218,10 @@ mod tests {
             // terminfo.
             (Auto, &[("TERM", "xterm-direct")], None, Truecolor, Source::Terminfo),
             (Auto, &[("TERM", "vt100")], None, NoColors, Source::Terminfo),
+            // A name that says more than terminfo's number.
+            (Auto, &[("TERM", "alacritty")], None, Truecolor, variable("TERM")),
             // The name.
+            (Auto, &[("TERM", "st-256color")], None, Truecolor, variable("TERM")),
             (Auto, &[("TERM", "vt220")], None, NoColors, variable("TERM")),
             (Auto, &[("TERM", "xterm-kitty")], None, Truecolor, variable("TERM")),
             (Auto, &[("TERM", "linux")], None, SIXTEEN, variable("TERM")),

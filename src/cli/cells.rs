@@ -1,20 +1,19 @@
 //! What the picture's cells are made of: the flags of the commands that show cells.
 
 use clap::{Args, ValueEnum};
-use termtrace::capabilities::{
-    CellMode, Clues, ColorChoice, Colors, GlyphChoice, Glyphs, colors, glyphs, terminfo_colors,
-};
+use termtrace::capabilities::{CellMode, ColorChoice, Colors, GlyphChoice, Glyphs, Hints, terminfo_colors};
 
 /// Stands below the options in the help.
 pub(super) const EXPLAINED: &str = "\
 The colours (--color):
-  auto       as many as the terminal has, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, terminfo and TERM
+  auto       as many as the terminal has, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own answer,
+             terminfo and TERM
   always     the same, but at least 16 and whatever NO_COLOR says
   never      none: no escape sequence says anything of colours
   truecolor, 256, 16
              just these; of few colours the picture is mixed by dithering
 What stands in the cells (--glyphs):
-  auto       half blocks; shape where there is no colour, or the locale is not UTF-8
+  auto       half blocks; shape where there is no colour, the locale is not UTF-8, or a block is not one column wide
   half       two pixels, one above the other
   shape      the character of ASCII that has its ink where the picture has its light
   ramp       one of ten characters, by lightness";
@@ -80,13 +79,13 @@ impl CellArgs {
         }
     }
 
-    /// For the terminal that the environment tells of.
-    pub(super) fn on_terminal(&self) -> CellMode {
-        let variable = |name: &str| std::env::var(name).ok();
-        let clues = Clues { variable: &variable, truecolor_reply: None, terminfo: &terminfo_colors };
-        let colors = colors(self.color_choice(), &clues);
-        let glyphs = glyphs(self.glyph_choice(), colors, &clues);
-        CellMode { glyphs: glyphs.value, colors: colors.value }
+    /// What is wanted of a terminal, and what the environment tells of it.
+    pub(super) fn hints(&self, cell_aspect: Option<f32>) -> Hints {
+        let mut hints = Hints::gather(&|name| std::env::var(name).ok(), &terminfo_colors);
+        hints.color = self.color_choice();
+        hints.glyphs = self.glyph_choice();
+        hints.cell_aspect = cell_aspect;
+        hints
     }
 
     /// For a file or a pipe, of which the environment says nothing: in these colours if any will do. Without colours it is

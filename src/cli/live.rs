@@ -38,8 +38,7 @@ pub(super) struct LiveArgs {
 
 impl LiveArgs {
     fn options(&self) -> Options {
-        let mut options = Options::new(self.cells.on_terminal());
-        options.cell_aspect = self.cell_aspect;
+        let mut options = Options::new(self.cells.hints(self.cell_aspect));
         options.order = self.encoding.order();
         options.quality = self.encoding.quality();
         options.max_rate = self.encoding.max_rate();

@@ -1,5 +1,6 @@
 //! What is turned on, in order, and how each is turned off.
 
+use super::fence::Fence;
 use super::output::Output;
 use super::{panics, rehearsal, signals};
 use crossterm::{Command, cursor, event, style, terminal};
@@ -58,8 +59,9 @@ impl Modes {
     }
 
     /// Turns everything off, newest first, after what is still on its way, so that nothing is torn. What fails is passed
-    /// over: the rest must be undone all the same. Whether the terminal took it all; asked again, it did.
-    pub(super) fn give_back(&mut self, keys: &File, output: &mut Output) -> bool {
+    /// over: the rest must be undone all the same. Replies that are on their way are waited for. Whether the terminal
+    /// took it all; asked again, it did.
+    pub(super) fn give_back(&mut self, keys: &File, output: &mut Output, fence: &mut Fence) -> bool {
         let deadline = Instant::now() + PATIENCE;
         let mut heard = true;
         while let Some(mode) = self.on.pop() {
@@ -67,6 +69,10 @@ impl Modes {
                 Mode::Screen(off) => output.put(off.as_bytes()),
                 Mode::Raw(before) => {
                     heard = output.finish(deadline);
+                    // A terminal that has stopped reading does not answer either.
+                    if heard {
+                        fence.drain(keys, deadline);
+                    }
                     signals::in_the_background(|| restore(keys, &before));
                 }
             }

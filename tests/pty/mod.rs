@@ -55,6 +55,9 @@ const LOOK: Duration = Duration::from_millis(2);
 /// How long the terminal of a dead child may take to hand on its output. Only one that was stopped takes so long.
 const LAST_OUTPUT: Duration = Duration::from_secs(1);
 
+/// The question that every terminal answers.
+const DA1: &[u8] = b"\x1b[c";
+
 /// What the harness itself writes after the child's last byte, so as to know that nothing is still on its way.
 const END_OF_OUTPUT: &[u8] = b"\x1b_the end of the output\x1b\\";
 
@@ -99,6 +102,7 @@ pub(crate) struct Start {
     stdin: Option<Stdio>,
     stdout: Option<Stdio>,
     stderr: Option<Stdio>,
+    mute: bool,
 }
 
 impl Start {
@@ -114,6 +118,7 @@ impl Start {
             stdin: None,
             stdout: None,
             stderr: None,
+            mute: false,
         };
         start
             .env("PATH", std::env::var_os("PATH").unwrap_or_default())
@@ -160,6 +165,11 @@ impl Start {
         Self { stderr: Some(stderr.into()), ..self }
     }
 
+    /// A terminal that answers no question. Otherwise it answers DA1, as every terminal does, and nothing else.
+    pub(crate) fn mute(self) -> Self {
+        Self { mute: true, ..self }
+    }
+
     fn command(self) -> Command {
         let mut command = Command::new(self.program).args(self.arguments).env_clear().envs(self.environment);
         if let Some(stdin) = self.stdin {
@@ -178,7 +188,7 @@ impl Start {
     #[track_caller]
     pub(crate) fn spawn(self) -> Session {
         let (master, slave) = open().expect("a pseudo-terminal can be had");
-        let size = self.size;
+        let (size, mute) = (self.size, self.mute);
         rustix::termios::tcsetwinsize(&master, size.winsize()).expect("a terminal has a size");
         let slave_side = open_slave_again(&slave).expect("the slave side can be opened twice");
         set_nonblocking(&master).expect("a file descriptor has flags");
@@ -195,6 +205,7 @@ impl Start {
             slave_side,
             before,
             output,
+            unanswered: (!mute).then_some(0),
             seen: Seen { bytes: Vec::new(), screen: Screen::new(size.columns, size.rows) },
         }
     }
@@ -292,6 +303,8 @@ pub(crate) struct Session {
     slave_side: std::fs::File,
     before: Termios,
     output: Output,
+    /// From where on questions in the output are unanswered; `None`: for ever.
+    unanswered: Option<usize>,
     seen: Seen,
 }
 
@@ -394,6 +407,20 @@ impl Session {
 
     fn pump(&mut self) {
         self.seen.take(&self.output.take());
+        self.answer();
+    }
+
+    /// Answers each DA1, whole or in pieces in the output, once.
+    fn answer(&mut self) {
+        let Some(from) = self.unanswered else { return };
+        let asked = &self.seen.bytes[from..];
+        let asked = asked.windows(DA1.len()).rposition(|bytes| bytes == DA1).map(|last| (asked, last));
+        if let Some((bytes, last)) = asked {
+            let count = bytes.windows(DA1.len()).filter(|bytes| *bytes == DA1).count();
+            self.unanswered = Some(from + last + DA1.len());
+            // Nobody may be there any more to hear it.
+            let _ = write_before(&mut &*self.master, &b"\x1b[?62;22c".repeat(count), Instant::now() + LOOK);
+        }
     }
 
     /// Waits until what came out fulfils a condition; whether it did so in time.

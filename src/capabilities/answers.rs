@@ -1,0 +1,192 @@
+//! What a terminal has answered to questions, as plain values.
+
+use crate::color::{LinearRgb, Srgb8};
+
+/// The answers so far. `None`: it has not said.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Answers {
+    /// Whether it has kept [`TEST_COLOR`] as its background colour (DECRQSS of SGR).
+    pub truecolor: Option<bool>,
+    /// Whether it knows synchronized output (DECRQM of mode 2026).
+    pub synchronized_output: Option<bool>,
+    /// Whether it knows the kitty keyboard protocol: there is no answer for "no".
+    pub kitty_keyboard: Option<bool>,
+    /// Whether it knows SGR mouse reports (DECRQM of mode 1006).
+    pub sgr_mouse: Option<bool>,
+    /// Whether it knows mouse reports in pixels (DECRQM of mode 1016).
+    pub pixel_mouse: Option<bool>,
+    /// A cell's width and height in pixels (`CSI 16 t`).
+    pub cell_pixels: Option<(u16, u16)>,
+    /// The colour of the background (OSC 11).
+    pub background: Option<Srgb8>,
+    /// How the first sixteen colours look (OSC 4).
+    pub sixteen: [Option<Srgb8>; 16],
+    /// How many columns a half block takes, by a cursor report after one.
+    pub block_width: Option<u16>,
+}
+
+/// What a terminal is told to use for its background before it is asked which colour that is: none of the 256.
+pub const TEST_COLOR: Srgb8 = Srgb8::new(1, 2, 3);
+
+impl Answers {
+    /// How a private mode stands, as DECRPM tells it: 0 not known, 4 off for good.
+    pub fn take_mode(&mut self, mode: u16, state: u16) {
+        let known = Some(matches!(state, 1..=3));
+        match mode {
+            2026 => self.synchronized_output = known,
+            1006 => self.sgr_mouse = known,
+            1016 => self.pixel_mouse = known,
+            _ => {}
+        }
+    }
+
+    /// A colour, such as `11;rgb:1e1e/1e1e/1e1e`: what stands between the ends of an operating-system command.
+    pub fn take_osc(&mut self, text: &[u8]) {
+        let Ok(text) = std::str::from_utf8(text) else { return };
+        if let Some(color) = text.strip_prefix("11;") {
+            self.background = color_named(color).or(self.background);
+        } else if let Some((index, color)) = text.strip_prefix("4;").and_then(|rest| rest.split_once(';'))
+            && let Some(place) = index.parse().ok().and_then(|index: usize| self.sixteen.get_mut(index))
+        {
+            *place = color_named(color).or(*place);
+        }
+    }
+
+    /// The rendition in use, such as `1$r0;48:2::1:2:3m`. A refusal (`0$r`) says nothing.
+    pub fn take_dcs(&mut self, text: &[u8]) {
+        let rendition = std::str::from_utf8(text).ok().and_then(|text| text.strip_prefix("1$r")?.strip_suffix('m'));
+        if let Some(rendition) = rendition {
+            let Srgb8 { r, g, b } = TEST_COLOR;
+            // Separated in either way, with a colour space or without one.
+            let numbers: Vec<u8> = rendition.split([';', ':']).filter_map(|number| number.parse().ok()).collect();
+            self.truecolor = Some(numbers.windows(5).any(|numbers| numbers == [48, 2, r, g, b]));
+        }
+    }
+
+    /// Where the cursor stands after a half block in the first column, both from 1.
+    pub fn take_cursor(&mut self, column: u16) {
+        // A screen of one column holds it back.
+        self.block_width = column.checked_sub(1).filter(|&width| width > 0);
+    }
+
+    /// Whether it writes on a light background.
+    pub fn light_background(&self) -> Option<bool> {
+        // Mid-grey reflects 18 % of the light.
+        self.background.map(|color| LinearRgb::from_srgb8(color).luminance() > 0.18)
+    }
+}
+
+/// `rgb:R/G/B` or `rgba:R/G/B/A` of one to four hexadecimal digits each, as X11 writes it, or `#rrggbb`.
+fn color_named(text: &str) -> Option<Srgb8> {
+    let [r, g, b] = if let Some(digits) = text.strip_prefix('#') {
+        // By bytes, so that no character is cut.
+        let pair = |at: usize| digits.get(at..at + 2).filter(|_| digits.len() == 6);
+        [pair(0)?, pair(2)?, pair(4)?]
+    } else {
+        let bands = text.strip_prefix("rgb:").or_else(|| text.strip_prefix("rgba:"))?;
+        let mut bands = bands.split('/');
+        [bands.next()?, bands.next()?, bands.next()?]
+    };
+    Some(Srgb8::new(band(r)?, band(g)?, band(b)?))
+}
+
+/// A share of the highest number with as many digits, to 8 bits.
+fn band(digits: &str) -> Option<u8> {
+    let is_hex = matches!(digits.len(), 1..=4) && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let value = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex)?;
+    let highest = (1 << (4 * digits.len())) - 1;
+    u8::try_from((value * 255 + highest / 2) / highest).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_read_in_every_spelling() {
+        for (text, expected) in [
+            ("rgb:1e1e/2020/ffff", Some(Srgb8::new(0x1e, 0x20, 0xff))),
+            ("rgb:1e/20/ff", Some(Srgb8::new(0x1e, 0x20, 0xff))),
+            ("rgb:f/0/8", Some(Srgb8::new(255, 0, 136))),
+            ("rgba:0000/8080/ffff/ffff", Some(Srgb8::new(0, 0x80, 0xff))),
+            ("#102030", Some(Srgb8::new(0x10, 0x20, 0x30))),
+            ("#1020", None),
+            ("#é0203", None),
+            ("rgb:+1/2/3", None),
+            ("rgb:12345/0/0", None),
+            ("rgb:1/2", None),
+            ("rgb://", None),
+            ("red", None),
+            ("?", None),
+        ] {
+            assert_eq!(color_named(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn backgrounds_and_the_sixteen_colours_are_kept() {
+        let mut answers = Answers::default();
+        for text in
+            ["11;rgb:ff/ff/ff", "4;15;rgb:1/2/3", "4;16;rgb:1/2/3", "4;x;rgb:1/2/3", "4;1;?", "10;#000000", "11;?"]
+        {
+            answers.take_osc(text.as_bytes());
+        }
+        answers.take_osc(b"11;\xff");
+        assert_eq!(answers.background, Some(Srgb8::new(255, 255, 255)));
+        assert_eq!(answers.sixteen[15], Some(Srgb8::new(17, 34, 51)));
+        assert_eq!(answers.sixteen.iter().flatten().count(), 1);
+    }
+
+    #[test]
+    fn a_background_is_light_or_dark() {
+        for (text, light) in
+            [("#000000", false), ("#002b36", false), ("#555555", false), ("#fdf6e3", true), ("#ffffff", true)]
+        {
+            let mut answers = Answers::default();
+            assert_eq!(answers.light_background(), None);
+            answers.take_osc(format!("11;{text}").as_bytes());
+            assert_eq!(answers.light_background(), Some(light), "{text}");
+        }
+    }
+
+    #[test]
+    fn truecolor_is_what_keeps_the_colour() {
+        for (text, expected) in [
+            ("1$r48;2;1;2;3m", Some(true)),
+            ("1$r0;48:2::1:2:3m", Some(true)),
+            ("1$r0;48:2:1:2:3m", Some(true)),
+            ("1$r0;48:5:16m", Some(false)),
+            ("1$r0;38:2::1:2:3m", Some(false)),
+            ("1$r0m", Some(false)),
+            ("0$r", None),
+            ("0$r48;2;1;2;3m", None),
+            ("1$r2 q", None),
+            (">|XTerm(379)", None),
+        ] {
+            let mut answers = Answers::default();
+            answers.take_dcs(text.as_bytes());
+            assert_eq!(answers.truecolor, expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn modes_are_known_or_not() {
+        for (state, known) in [(0, false), (1, true), (2, true), (3, true), (4, false), (9, false)] {
+            let mut answers = Answers::default();
+            for mode in [2026, 1006, 1016, 7] {
+                answers.take_mode(mode, state);
+            }
+            let expected = [Some(known); 3];
+            assert_eq!([answers.synchronized_output, answers.sgr_mouse, answers.pixel_mouse], expected, "{state}");
+        }
+    }
+
+    #[test]
+    fn a_blocks_width_is_where_the_cursor_went() {
+        for (column, width) in [(0, None), (1, None), (2, Some(1)), (3, Some(2)), (4, Some(3))] {
+            let mut answers = Answers::default();
+            answers.take_cursor(column);
+            assert_eq!(answers.block_width, width, "{column}");
+        }
+    }
+}

@@ -1,0 +1,353 @@
+//! All that is known of a terminal, from whoever knows it: the user, the environment, the window, its own answers.
+
+use super::{Answers, Capabilities, CellMode, Clues, ColorChoice, Colors, Found, GlyphChoice, Glyphs, Source};
+use super::{USUAL_CELL_ASPECT, colors, glyphs};
+
+/// What the user wants and the environment says, read once, to be judged again with each answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Hints {
+    /// Which colours the user wants.
+    pub color: ColorChoice,
+    /// Which glyphs the user wants.
+    pub glyphs: GlyphChoice,
+    /// The shape of a cell, if the user says it: its height over its width.
+    pub cell_aspect: Option<f32>,
+    variables: Vec<(&'static str, String)>,
+    terminfo: Option<Colors>,
+}
+
+/// All environment variables that say something of the terminal.
+pub const VARIABLES: [&str; 10] =
+    ["TERM", "COLORTERM", "NO_COLOR", "CLICOLOR_FORCE", "FORCE_COLOR", "LC_ALL", "LC_CTYPE", "LANG", "TMUX", "STY"];
+
+/// What a terminal may be asked without writing garbage, or confusing what lies between.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asking {
+    /// Nothing: it is dumb, or of a kind that may print what it does not know.
+    Nothing,
+    /// What the Linux console has understood from its beginnings: where the cursor is.
+    Console,
+    /// What GNU screen answers. It hands device-control strings on to the terminal outside, which would print them, and
+    /// answers nothing else.
+    Screen,
+    /// What tmux understands. It answers for itself; a cell's size and the colours are those of the terminal outside.
+    Tmux,
+    /// Everything.
+    Everything,
+}
+
+impl Hints {
+    /// What the environment says, where the user leaves all to it.
+    pub fn gather(variable: &dyn Fn(&str) -> Option<String>, terminfo: &dyn Fn(&str) -> Option<Colors>) -> Self {
+        let variables: Vec<_> = VARIABLES.into_iter().filter_map(|name| Some((name, variable(name)?))).collect();
+        let term = variables.iter().find(|(name, value)| *name == "TERM" && !value.is_empty());
+        let terminfo = term.and_then(|(_, term)| terminfo(term));
+        Self { variables, terminfo, ..Self::default() }
+    }
+
+    /// Exactly this, of a terminal of which nothing is known.
+    pub fn exactly(mode: CellMode) -> Self {
+        Self { color: ColorChoice::Exactly(mode.colors), glyphs: Some(mode.glyphs), ..Self::default() }
+    }
+
+    /// The value of an environment variable, if it is one of [`VARIABLES`], set, and not empty.
+    pub fn variable(&self, name: &str) -> Option<&str> {
+        self.raw(name).filter(|value| !value.is_empty())
+    }
+
+    fn raw(&self, name: &str) -> Option<&str> {
+        self.variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.as_str())
+    }
+
+    /// The colours, with that answer to whether there is truecolor.
+    fn colors(&self, truecolor_reply: Option<bool>) -> Found<Colors> {
+        self.judge(truecolor_reply, |clues| colors(self.color, clues))
+    }
+
+    fn judge<T>(&self, truecolor_reply: Option<bool>, judge: impl FnOnce(&Clues<'_>) -> T) -> T {
+        let variable = |name: &str| self.raw(name).map(str::to_owned);
+        judge(&Clues { variable: &variable, truecolor_reply, terminfo: &|_| self.terminfo })
+    }
+
+    /// What the terminal may be asked.
+    pub fn asking(&self) -> Asking {
+        let Some(term) = self.variable("TERM") else { return Asking::Nothing };
+        let begins = |names: &[&str]| names.iter().any(|name| term.starts_with(name));
+        if begins(&["dumb", "unknown", "vt", "ansi", "eterm", "emacs", "cons", "sun"]) {
+            Asking::Nothing
+        } else if self.variable("TMUX").is_some() || begins(&["tmux"]) {
+            Asking::Tmux
+        } else if self.variable("STY").is_some() || begins(&["screen"]) {
+            Asking::Screen
+        } else if begins(&["linux"]) {
+            Asking::Console
+        } else {
+            Asking::Everything
+        }
+    }
+
+    /// Whether an answer about truecolor would change anything. Where there is to be no colour, nothing is said of any,
+    /// not even to ask.
+    pub fn wonders_about_truecolor(&self) -> bool {
+        self.colors(Some(true)).value != self.colors(None).value
+    }
+
+    /// Whether there may be colours at all.
+    pub fn allows_color(&self) -> bool {
+        self.colors(Some(true)).value != Colors::None
+    }
+
+    /// Whether the values of the sixteen colours matter.
+    pub fn wonders_about_sixteen(&self) -> bool {
+        matches!(self.colors(None).value, Colors::Indexed16(_))
+    }
+
+    /// Whether the width of the block characters matters.
+    pub fn wonders_about_blocks(&self) -> bool {
+        self.glyphs.is_none()
+            && self.judge(None, |clues| glyphs(None, colors(self.color, clues), clues)).value == Glyphs::Half
+    }
+}
+
+/// What the window's size in pixels tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CellShape {
+    /// A cell's height over its width, if the terminal says how large it is in pixels.
+    pub aspect: Option<f32>,
+    /// Whether the upper and the lower half block are known to meet in the same line.
+    pub halves_meet: bool,
+}
+
+/// What is known of a terminal, and from where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Findings {
+    /// The colours to use.
+    pub colors: Found<Colors>,
+    /// What stands in cells.
+    pub glyphs: Found<Glyphs>,
+    /// A cell's height over its width.
+    pub cell_aspect: Found<f32>,
+    /// Whether both half blocks meet in the same line.
+    pub halves_meet: Found<bool>,
+    /// Whether it writes dark on light.
+    pub light_background: Found<bool>,
+    /// Whether it knows synchronized output.
+    pub synchronized_output: Found<bool>,
+    /// Whether it knows the kitty keyboard protocol.
+    pub kitty_keyboard: Found<bool>,
+    /// Whether it knows SGR mouse reports.
+    pub sgr_mouse: Found<bool>,
+    /// Whether it knows mouse reports in pixels.
+    pub pixel_mouse: Found<bool>,
+}
+
+impl Findings {
+    /// From all who know something.
+    pub fn new(hints: &Hints, window: CellShape, answers: &Answers) -> Self {
+        let colors = with_answered_values(hints.colors(answers.truecolor), answers);
+        let answered = |answer: Option<bool>| found(answer, Source::Reply, false);
+        let of_window = |value| Found { value, source: Source::Window };
+        let cell_aspect = hints.cell_aspect.map(|value| Found { value, source: Source::Flag });
+        let by_pixels = window.aspect.map(of_window);
+        Self {
+            colors,
+            glyphs: with_answered_width(hints.judge(None, |clues| glyphs(hints.glyphs, colors, clues)), answers),
+            cell_aspect: cell_aspect
+                .or(by_pixels)
+                .unwrap_or_else(|| found(answered_aspect(answers), Source::Reply, USUAL_CELL_ASPECT)),
+            halves_meet: match window.aspect {
+                Some(_) => Found { value: window.halves_meet, source: Source::Window },
+                None => answered(answers.cell_pixels.map(|(_, height)| height > 0 && height % 2 == 0)),
+            },
+            light_background: answered(answers.light_background()),
+            synchronized_output: answered(answers.synchronized_output),
+            kitty_keyboard: answered(answers.kitty_keyboard),
+            sgr_mouse: answered(answers.sgr_mouse),
+            pixel_mouse: answered(answers.pixel_mouse),
+        }
+    }
+
+    /// What the picture is made by.
+    pub fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            cell_mode: CellMode { glyphs: self.glyphs.value, colors: self.colors.value },
+            cell_aspect: self.cell_aspect.value,
+            halves_meet: self.halves_meet.value,
+            light_background: self.light_background.value,
+            synchronized_output: self.synchronized_output.value,
+        }
+    }
+}
+
+fn found<T>(answer: Option<T>, source: Source, otherwise: T) -> Found<T> {
+    match answer {
+        Some(value) => Found { value, source },
+        None => Found { value: otherwise, source: Source::Assumed },
+    }
+}
+
+/// Of sixteen colours, those that the terminal has told look as it says.
+fn with_answered_values(mut found: Found<Colors>, answers: &Answers) -> Found<Colors> {
+    if let Colors::Indexed16(values) = &mut found.value {
+        for (value, answer) in values.iter_mut().zip(answers.sixteen) {
+            *value = answer.unwrap_or(*value);
+        }
+    }
+    found
+}
+
+/// Blocks that take two columns, or come out as several letters, are no pixels.
+fn with_answered_width(glyphs: Found<Glyphs>, answers: &Answers) -> Found<Glyphs> {
+    let is_broken = glyphs.value == Glyphs::Half && answers.block_width.is_some_and(|width| width != 1);
+    if is_broken && glyphs.source != Source::Flag {
+        return Found { value: Glyphs::Shape, source: Source::Reply };
+    }
+    glyphs
+}
+
+fn answered_aspect(answers: &Answers) -> Option<f32> {
+    let (width, height) = answers.cell_pixels?;
+    super::cell_aspect(1, 1, width, height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Srgb8;
+
+    fn hints(environment: &[(&str, &str)]) -> Hints {
+        let variable = |name: &str| environment.iter().find(|(n, _)| *n == name).map(|(_, value)| (*value).to_owned());
+        Hints::gather(&variable, &|term| (term == "xterm-256color").then_some(Colors::Indexed256))
+    }
+
+    const XTERM: &[(&str, &str)] = &[("TERM", "xterm-256color"), ("LANG", "en_US.UTF-8")];
+
+    #[test]
+    fn only_what_does_no_harm_is_asked() {
+        for (environment, expected) in [
+            (&[("TERM", "xterm-256color")][..], Asking::Everything),
+            (&[("TERM", "xterm-kitty")], Asking::Everything),
+            (&[("TERM", "new-terminal")], Asking::Everything),
+            (&[("TERM", "tmux-256color")], Asking::Tmux),
+            (&[("TERM", "screen-256color"), ("TMUX", "/tmp/t,1,0")], Asking::Tmux),
+            (&[("TERM", "xterm-256color"), ("TMUX", "/tmp/t,1,0")], Asking::Tmux),
+            (&[("TERM", "screen.xterm-256color")], Asking::Screen),
+            (&[("TERM", "xterm"), ("STY", "1.pts")], Asking::Screen),
+            (&[("TERM", "linux")], Asking::Console),
+            (&[("TERM", "dumb")], Asking::Nothing),
+            (&[("TERM", "dumb"), ("TMUX", "/tmp/t,1,0")], Asking::Nothing),
+            (&[("TERM", "vt100")], Asking::Nothing),
+            (&[("TERM", "eterm-color")], Asking::Nothing),
+            (&[("TERM", "")], Asking::Nothing),
+            (&[], Asking::Nothing),
+        ] {
+            assert_eq!(hints(environment).asking(), expected, "{environment:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_decided_is_not_asked() {
+        for (environment, color, truecolor, sixteen, blocks) in [
+            (XTERM, ColorChoice::Auto, true, false, true),
+            (&[("TERM", "xterm-256color"), ("LANG", "C")], ColorChoice::Auto, true, false, false),
+            (&[("TERM", "xterm-256color"), ("COLORTERM", "truecolor")], ColorChoice::Auto, false, false, true),
+            (&[("TERM", "xterm-256color"), ("NO_COLOR", "1")], ColorChoice::Auto, false, false, false),
+            (XTERM, ColorChoice::Never, false, false, false),
+            (XTERM, ColorChoice::Exactly(Colors::SIXTEEN), false, true, true),
+            (&[("TERM", "linux")], ColorChoice::Auto, true, true, true),
+            (&[("TERM", "alacritty")], ColorChoice::Auto, false, false, true),
+        ] {
+            let hints = Hints { color, ..hints(environment) };
+            let asked = (hints.wonders_about_truecolor(), hints.wonders_about_sixteen(), hints.wonders_about_blocks());
+            assert_eq!(asked, (truecolor, sixteen, blocks), "{environment:?} {color:?}");
+        }
+    }
+
+    #[test]
+    fn answers_change_what_was_assumed() {
+        let answers = Answers { truecolor: Some(true), block_width: Some(1), ..Answers::default() };
+        let before = Findings::new(&hints(XTERM), CellShape::default(), &Answers::default());
+        assert_eq!(before.colors, Found { value: Colors::Indexed256, source: Source::Terminfo });
+        let after = Findings::new(&hints(XTERM), CellShape::default(), &answers);
+        assert_eq!(after.colors, Found { value: Colors::Truecolor, source: Source::Reply });
+        assert_eq!(after.glyphs, Found { value: Glyphs::Half, source: Source::Variable("LANG") });
+    }
+
+    #[test]
+    fn broken_blocks_are_not_used_unless_the_user_says_so() {
+        for (choice, width, expected) in [
+            (None, Some(1), Found { value: Glyphs::Half, source: Source::Variable("LANG") }),
+            (None, Some(2), Found { value: Glyphs::Shape, source: Source::Reply }),
+            (None, Some(3), Found { value: Glyphs::Shape, source: Source::Reply }),
+            (None, None, Found { value: Glyphs::Half, source: Source::Variable("LANG") }),
+            (Some(Glyphs::Half), Some(2), Found { value: Glyphs::Half, source: Source::Flag }),
+            (Some(Glyphs::Ramp), Some(2), Found { value: Glyphs::Ramp, source: Source::Flag }),
+        ] {
+            let hints = Hints { glyphs: choice, ..hints(XTERM) };
+            let answers = Answers { block_width: width, ..Answers::default() };
+            let findings = Findings::new(&hints, CellShape::default(), &answers);
+            assert_eq!(findings.glyphs, expected, "{choice:?} {width:?}");
+        }
+    }
+
+    #[test]
+    fn a_cells_shape_is_the_users_then_the_windows_then_the_answers() {
+        let window = CellShape { aspect: Some(1.9), halves_meet: true };
+        let nothing = CellShape::default();
+        let (flag, by_window, reply) = (Source::Flag, Source::Window, Source::Reply);
+        for (flagged, window, pixels, aspect, meet) in [
+            (Some(2.5), window, Some((8, 17)), (2.5, flag), (true, by_window)),
+            (None, window, Some((8, 17)), (1.9, by_window), (true, by_window)),
+            (None, nothing, Some((8, 18)), (2.25, reply), (true, reply)),
+            (None, nothing, Some((8, 17)), (2.125, reply), (false, reply)),
+            (None, nothing, Some((0, 18)), (2.0, Source::Assumed), (true, reply)),
+            (None, nothing, None, (2.0, Source::Assumed), (false, Source::Assumed)),
+        ] {
+            let hints = Hints { cell_aspect: flagged, ..hints(XTERM) };
+            let answers = Answers { cell_pixels: pixels, ..Answers::default() };
+            let Findings { cell_aspect, halves_meet, .. } = Findings::new(&hints, window, &answers);
+            let found = ((cell_aspect.value, cell_aspect.source), (halves_meet.value, halves_meet.source));
+            assert_eq!(found, (aspect, meet), "{flagged:?} {window:?} {pixels:?}");
+        }
+    }
+
+    #[test]
+    fn sixteen_colours_look_as_the_terminal_says() {
+        let mut answers = Answers::default();
+        answers.sixteen[3] = Some(Srgb8::new(1, 2, 3));
+        let hints = hints(&[("TERM", "linux")]);
+        let Colors::Indexed16(values) = Findings::new(&hints, CellShape::default(), &answers).colors.value else {
+            panic!("sixteen colours");
+        };
+        assert_eq!((values[3], values[1]), (Srgb8::new(1, 2, 3), Srgb8::new(205, 0, 0)));
+    }
+
+    #[test]
+    fn what_is_answered_is_there_and_nothing_else() {
+        let all = Answers {
+            synchronized_output: Some(true),
+            kitty_keyboard: Some(true),
+            sgr_mouse: Some(true),
+            pixel_mouse: Some(true),
+            background: Some(Srgb8::new(255, 255, 255)),
+            ..Answers::default()
+        };
+        for (answers, expected) in [
+            (all, Found { value: true, source: Source::Reply }),
+            (Answers::default(), Found { value: false, source: Source::Assumed }),
+        ] {
+            let f = Findings::new(&hints(XTERM), CellShape::default(), &answers);
+            let found = [f.synchronized_output, f.kitty_keyboard, f.sgr_mouse, f.pixel_mouse, f.light_background];
+            assert_eq!(found, [expected; 5]);
+            let capabilities = f.capabilities();
+            assert_eq!(capabilities.synchronized_output, expected.value);
+            assert_eq!(capabilities.light_background, expected.value);
+        }
+    }
+
+    #[test]
+    fn what_is_wanted_exactly_is_had() {
+        let findings = Findings::new(&Hints::exactly(CellMode::RAMP), CellShape::default(), &Answers::default());
+        assert_eq!(findings.capabilities().cell_mode, CellMode::RAMP);
+    }
+}

@@ -1,0 +1,73 @@
+//! Whether replies are still on their way.
+
+use super::output::timespec;
+use crate::input::{Input, Parser, Reply};
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::{process, termios};
+use std::fs::File;
+use std::io::Read;
+use std::time::{Duration, Instant};
+
+/// A terminal that has not answered after this time is taken for one that does not answer.
+const LATEST: Duration = Duration::from_secs(3);
+
+/// Counts the fences asked for, and reads along to see them answered.
+#[derive(Default)]
+pub(super) struct Fence {
+    parser: Parser,
+    /// How many answers are to come, and when the last of them was asked for.
+    open: usize,
+    asked: Option<Instant>,
+}
+
+impl Fence {
+    /// A fence is asked for now.
+    pub(super) fn ask(&mut self) {
+        self.open += 1;
+        self.asked = Some(Instant::now());
+    }
+
+    /// The terminal has sent these bytes.
+    pub(super) fn hear(&mut self, bytes: &[u8]) {
+        let mut inputs = Vec::new();
+        self.parser.feed(bytes, &mut inputs);
+        let fences = inputs.iter().filter(|input| matches!(input, Input::Reply(Reply::DeviceAttributes(_))));
+        self.open = self.open.saturating_sub(fences.count());
+    }
+
+    /// How much longer replies may come, if they may.
+    pub(super) fn patience(&self) -> Option<Duration> {
+        let left = self.asked.filter(|_| self.open > 0)? + LATEST;
+        left.checked_duration_since(Instant::now())
+    }
+
+    /// Reads and throws away what comes up to the last fence, at most until the deadline, so that no reply is left for
+    /// the shell.
+    pub(super) fn drain(&mut self, mut keys: &File, deadline: Instant) {
+        if is_in_background(keys) {
+            return;
+        }
+        let mut buffer = [0; 4096];
+        while let Some(patience) = self.patience() {
+            let left = deadline.saturating_duration_since(Instant::now()).min(patience);
+            if left.is_zero() {
+                return;
+            }
+            match poll(&mut [PollFd::new(&keys, PollFlags::IN)], Some(&timespec(left))) {
+                Ok(0) | Err(rustix::io::Errno::INTR) => continue,
+                Ok(_) => {}
+                Err(_) => return,
+            }
+            match keys.read(&mut buffer) {
+                Ok(count) if count > 0 => self.hear(&buffer[..count]),
+                // It is gone.
+                _ => return,
+            }
+        }
+    }
+}
+
+/// Whether the terminal is another job's now: reading it would stop us.
+fn is_in_background(keys: &File) -> bool {
+    termios::tcgetpgrp(keys).is_ok_and(|foreground| foreground != process::getpgrp())
+}

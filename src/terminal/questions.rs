@@ -1,0 +1,198 @@
+//! What a terminal is asked at the start, all at once, and what becomes of its replies.
+//!
+//! The batch ends with the question that every terminal answers (DA1). Terminals answer in order: when that answer is
+//! here, no other of the batch will come. Nobody waits for it.
+
+use crate::capabilities::{Answers, Asking, Hints, TEST_COLOR};
+use crate::input::Reply;
+
+/// The question behind which all are answered.
+pub const FENCE: &[u8] = b"\x1b[c";
+
+/// A batch of questions, and the answers to it.
+#[derive(Clone, Debug, Default)]
+pub struct Questions {
+    bytes: Vec<u8>,
+    answers: Answers,
+    /// Whether answers may still come.
+    open: bool,
+}
+
+impl Questions {
+    /// What is not known yet of that terminal and matters for the picture.
+    pub fn needed(hints: &Hints) -> Self {
+        let wonders = [hints.wonders_about_truecolor(), hints.wonders_about_sixteen(), hints.wonders_about_blocks()];
+        Self::of(hints.asking(), wonders)
+    }
+
+    /// All that the terminal may be asked.
+    pub fn all(hints: &Hints) -> Self {
+        Self::of(hints.asking(), [hints.allows_color(), true, true])
+    }
+
+    fn of(asking: Asking, [truecolor, sixteen, blocks]: [bool; 3]) -> Self {
+        let mut bytes = Vec::new();
+        if asking == Asking::Nothing {
+            return Self::default();
+        }
+        if blocks {
+            bytes.extend_from_slice(BLOCK_WIDTH.as_bytes());
+        }
+        if asking == Asking::Tmux || asking == Asking::Everything {
+            bytes.extend_from_slice(BACKGROUND);
+            bytes.extend_from_slice(SYNCHRONIZED);
+        }
+        if asking == Asking::Everything {
+            bytes.extend_from_slice(MOUSE_AND_KEYBOARD);
+            bytes.extend_from_slice(CELL_PIXELS);
+            if truecolor {
+                bytes.extend(truecolor_question());
+            }
+            if sixteen {
+                bytes.extend((0..16).flat_map(sixteen_question));
+            }
+        }
+        bytes.extend_from_slice(FENCE);
+        Self { bytes, answers: Answers::default(), open: true }
+    }
+
+    /// The bytes that ask; they end with [`FENCE`]. Empty, if nothing is to be asked.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// What has been answered.
+    pub fn answers(&self) -> &Answers {
+        &self.answers
+    }
+
+    /// Whether the fence's answer is still to come.
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// Takes a reply, if it may be to one of these questions. Whether it was the last: nothing that comes later counts.
+    pub fn take(&mut self, reply: &Reply) -> bool {
+        if !self.open {
+            return false;
+        }
+        let answers = &mut self.answers;
+        match reply {
+            Reply::DeviceAttributes(_) => {
+                self.open = false;
+                return true;
+            }
+            Reply::CursorPosition { column, .. } => answers.take_cursor(*column),
+            &Reply::Mode { mode, state } => answers.take_mode(mode, state),
+            &Reply::CellPixels { width, height } => answers.cell_pixels = Some((width, height)),
+            Reply::KeyboardFlags(_) => answers.kitty_keyboard = Some(true),
+            Reply::Osc(text) => answers.take_osc(text),
+            Reply::Dcs(text) => answers.take_dcs(text),
+            _ => {}
+        }
+        false
+    }
+}
+
+/// A half block in the corner, a cursor report (CPR), and the row erased.
+const BLOCK_WIDTH: &str = "\x1b[H▄\x1b[6n\r\x1b[K";
+const BACKGROUND: &[u8] = b"\x1b]11;?\x1b\\";
+const SYNCHRONIZED: &[u8] = b"\x1b[?2026$p";
+const MOUSE_AND_KEYBOARD: &[u8] = b"\x1b[?1006$p\x1b[?1016$p\x1b[?u";
+const CELL_PIXELS: &[u8] = b"\x1b[16t";
+
+/// A 24-bit background colour, the question which rendition is in use (DECRQSS of SGR), and an end to it.
+fn truecolor_question() -> Vec<u8> {
+    let crate::color::Srgb8 { r, g, b } = TEST_COLOR;
+    format!("\x1b[48;2;{r};{g};{b}m\x1bP$qm\x1b\\\x1b[0m").into_bytes()
+}
+
+fn sixteen_question(index: u8) -> Vec<u8> {
+    format!("\x1b]4;{index};?\x1b\\").into_bytes()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hints(term: &str, colorterm: &str) -> Hints {
+        let variable = |name: &str| match name {
+            "TERM" => Some(term.to_owned()),
+            "COLORTERM" => Some(colorterm.to_owned()),
+            _ => None,
+        };
+        Hints::gather(&variable, &|_| None)
+    }
+
+    fn has(questions: &Questions, part: &[u8]) -> bool {
+        questions.bytes().windows(part.len()).any(|bytes| bytes == part)
+    }
+
+    #[test]
+    fn a_batch_ends_with_its_fence_and_holds_one() {
+        for term in ["xterm", "tmux-256color", "screen", "linux"] {
+            let questions = Questions::all(&hints(term, ""));
+            assert!(questions.bytes().ends_with(FENCE) && questions.is_open(), "{term}");
+            assert_eq!(questions.bytes().windows(3).filter(|bytes| *bytes == FENCE).count(), 1, "{term}");
+        }
+    }
+
+    #[test]
+    fn each_terminal_is_asked_what_it_understands() {
+        let parts: [&[u8]; 7] =
+            [b"\x1b[6n", b"\x1b]11;?", b"?2026$p", b"?1006$p", b"\x1b[16t", b"\x1bP$qm", b"\x1b]4;15;?"];
+        for (term, expected) in [
+            ("xterm", [true; 7]),
+            ("tmux-256color", [true, true, true, false, false, false, false]),
+            ("screen", [true, false, false, false, false, false, false]),
+            ("linux", [true, false, false, false, false, false, false]),
+            ("dumb", [false; 7]),
+        ] {
+            let questions = Questions::all(&hints(term, ""));
+            assert_eq!(parts.map(|part| has(&questions, part)), expected, "{term}");
+        }
+        assert!(Questions::all(&hints("dumb", "")).bytes().is_empty());
+    }
+
+    #[test]
+    fn what_is_known_is_not_asked() {
+        let questions = Questions::needed(&hints("xterm", "truecolor"));
+        assert!(!has(&questions, b"$qm") && !has(&questions, b"\x1b]4;"));
+        assert!(has(&Questions::needed(&hints("xterm", "")), b"$qm"));
+        assert!(has(&Questions::needed(&hints("xterm-16color", "")), b"\x1b]4;0;?"));
+    }
+
+    #[test]
+    fn replies_count_up_to_the_fence() {
+        let mut questions = Questions::all(&hints("xterm", ""));
+        let replies = [
+            Reply::CursorPosition { row: 1, column: 2 },
+            Reply::Mode { mode: 2026, state: 2 },
+            Reply::KeyboardFlags(0),
+            Reply::CellPixels { width: 10, height: 20 },
+            Reply::Osc(b"11;rgb:ffff/ffff/ffff".to_vec()),
+            Reply::Dcs(b"1$r48;2;1;2;3m".to_vec()),
+            Reply::Status(0),
+        ];
+        for reply in &replies {
+            assert!(!questions.take(reply), "{reply:?}");
+        }
+        assert!(questions.take(&Reply::DeviceAttributes(vec![62])));
+        let answers = questions.answers().clone();
+        assert_eq!((answers.block_width, answers.synchronized_output), (Some(1), Some(true)));
+        assert_eq!((answers.kitty_keyboard, answers.cell_pixels), (Some(true), Some((10, 20))));
+        assert_eq!((answers.truecolor, answers.light_background()), (Some(true), Some(true)));
+        // Forged, or an answer to somebody else.
+        assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));
+        assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
+        assert_eq!(questions.answers(), &answers);
+    }
+
+    #[test]
+    fn who_is_not_asked_does_not_answer() {
+        let mut questions = Questions::all(&hints("dumb", ""));
+        assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
+        assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));
+        assert_eq!(questions.answers(), &Answers::default());
+    }
+}

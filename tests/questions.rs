@@ -1,0 +1,308 @@
+//! What the program asks its terminal, and what it makes of answers: none, all at once, late, in pieces, forged.
+
+mod pty;
+
+use pty::{Colour, SOON, Session, Size, Start};
+use rustix::process::Signal;
+use std::fmt::Write;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use termtrace::capabilities::{CellMode, Colors, Glyphs, Hints};
+use termtrace::cell;
+use termtrace::color::Srgb8;
+use termtrace::grid::{Grid, Ink};
+use termtrace::render::render;
+use termtrace::scene::Scene;
+use termtrace::terminal::Questions;
+use termtrace::tone::tone;
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
+const FENCE: &[u8] = b"\x1b[c";
+const FENCE_ANSWER: &[u8] = b"\x1b[?62;22c";
+
+/// A terminal whose name tells of 256 colours, that answers nothing by itself.
+fn live() -> Start {
+    Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).env("COLORTERM", "").mute()
+}
+
+/// What the scene looks like in these cells, whose height is `aspect` times their width.
+fn picture(glyphs: Glyphs, colors: Colors, aspect: f32) -> Grid {
+    let mode = CellMode { glyphs, colors };
+    let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
+    let resolution = cell::resolution(mode, termtrace::grid::Size::new(80, 24), aspect);
+    let framebuffer = render(&scene, &scene.camera, resolution, std::num::NonZeroU32::MIN);
+    cell::grid_from_picture(mode, &tone(&framebuffer, &scene))
+}
+
+fn colour(ink: Ink) -> Colour {
+    match ink {
+        Ink::Default => Colour::Default,
+        Ink::Indexed(index) => Colour::Indexed(index),
+        Ink::Rgb(c) => Colour::Rgb(c.r, c.g, c.b),
+    }
+}
+
+/// Whether the screen shows these cells; of a half block, by its colours.
+fn shows(screen: &pty::Screen, grid: &Grid) -> bool {
+    let columns = usize::from(grid.size().columns);
+    grid.cells().iter().enumerate().all(|(at, wanted)| {
+        let shown = screen.cell(at % columns, at / columns);
+        let (fg, bg) = (colour(wanted.fg), colour(wanted.bg));
+        match (shown.glyph, wanted.glyph == '▄' || wanted.glyph == ' ') {
+            ('▀', true) => (shown.foreground, shown.background) == (bg, if wanted.glyph == ' ' { bg } else { fg }),
+            (glyph, _) => wanted.glyph == glyph && shown.background == bg && (glyph == ' ' || shown.foreground == fg),
+        }
+    })
+}
+
+#[track_caller]
+fn wait_for(session: &mut Session, glyphs: Glyphs, colors: Colors, aspect: f32) {
+    let wanted = picture(glyphs, colors, aspect);
+    session.wait_for(&format!("{glyphs:?} in {colors:?}"), SOON, |seen| shows(seen.screen(), &wanted));
+}
+
+/// A session that shows the picture that the environment tells of, and has asked.
+#[track_caller]
+fn looking(start: Start) -> Session {
+    let mut session = start.spawn();
+    wait_for(&mut session, Glyphs::Half, Colors::Indexed256, 2.0);
+    session
+}
+
+#[track_caller]
+fn leave(session: &mut Session) -> Duration {
+    session.send(b"q");
+    let start = Instant::now();
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+    start.elapsed()
+}
+
+/// The answers of a terminal that knows everything, in the order of the questions, without the fence's.
+fn everything() -> Vec<u8> {
+    [
+        &b"\x1b[1;2R"[..],
+        b"\x1b]11;rgb:1e1e/1e1e/1e1e\x1b\\",
+        b"\x1b[?2026;2$y\x1b[?1006;2$y\x1b[?1016;2$y",
+        b"\x1b[?0u",
+        b"\x1b[6;20;10t",
+        b"\x1bP1$r0;48:2::1:2:3m\x1b\\",
+    ]
+    .concat()
+}
+
+/// Nothing was pressed: the help is not open, and the eye is where it was.
+#[track_caller]
+fn nothing_was_pressed(session: &mut Session) {
+    session.send(b"i");
+    session.wait_for_text("eye 0.00 1.00 5.00");
+    let text = session.seen().screen().text().join("");
+    assert!(!text.contains("move forward"), "{text}");
+}
+
+#[test]
+fn a_terminal_that_answers_nothing_gets_its_picture_at_once() {
+    let mut session = looking(live());
+    let bytes = session.seen().bytes();
+    let asked = bytes.windows(FENCE.len()).position(|bytes| bytes == FENCE).expect("it was asked");
+    assert!(bytes[..asked].windows(4).any(|bytes| bytes == b"$qm\x1b"), "the fence is behind the questions");
+    let waited = leave(&mut session);
+    assert!(waited < Duration::from_secs(3), "{waited:?}");
+}
+
+#[test]
+fn all_answers_at_once_improve_the_picture() {
+    let mut session = looking(live().size(Size::cells(80, 24).of_pixels(0, 0)));
+    assert!(!session.seen().has(b"\x1b[?2026h"));
+    let answers = [&everything()[..], FENCE_ANSWER].concat();
+    session.send(&String::from_utf8_lossy(&answers).replace("6;20;10t", "6;24;10t").into_bytes());
+    wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.4);
+    assert!(session.seen().has(b"\x1b[?2026h") && session.seen().has(b"\x1b[?2026l"));
+    nothing_was_pressed(&mut session);
+    let waited = leave(&mut session);
+    assert!(waited < Duration::from_millis(900), "nothing is outstanding: {waited:?}");
+}
+
+#[test]
+fn answers_count_when_the_last_is_there() {
+    let mut session = looking(live());
+    session.send(&everything());
+    let wanted = picture(Glyphs::Half, Colors::Truecolor, 2.0);
+    assert!(!session.sees(Duration::from_millis(300), |seen| shows(seen.screen(), &wanted)));
+    session.send(FENCE_ANSWER);
+    wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
+    leave(&mut session);
+}
+
+#[test]
+fn answers_two_seconds_late_count_too() {
+    let mut session = looking(live());
+    assert!(!session.sees(Duration::from_secs(2), |_| false));
+    session.send(&[&everything()[..], FENCE_ANSWER].concat());
+    wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
+    nothing_was_pressed(&mut session);
+    leave(&mut session);
+}
+
+/// Every beginning of the answers comes alone, and the rest longer after than a person's Escape key would wait; with the
+/// help open, which Escape closes.
+#[test]
+fn answers_split_at_any_byte_press_no_key() {
+    let answers = [&b"\x1b[1;2R"[..], b"\x1b]11;rgb:0/0/0\x1b\\", b"\x1bP1$r48;2;1;2;3m\x1b\\", FENCE_ANSWER].concat();
+    let mut sessions: Vec<_> = (1..answers.len()).map(|_| live().spawn()).collect();
+    for (at, session) in sessions.iter_mut().enumerate() {
+        session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
+        session.send(b"?");
+        session.wait_for_text("move forward");
+        session.send(&answers[..=at]);
+    }
+    std::thread::sleep(Duration::from_millis(150));
+    for (at, session) in sessions.iter_mut().enumerate() {
+        session.send(&answers[at + 1..]);
+    }
+    for (at, session) in sessions.iter_mut().enumerate() {
+        session.send(b"i");
+        session.wait_for_text("eye 0.00 1.00 5.00");
+        let text = session.seen().screen().text().join("");
+        assert!(text.contains("move forward"), "split after byte {at}: the help was closed");
+        session.send(b"q");
+    }
+    for session in &mut sessions {
+        assert_eq!(session.wait_exit(SOON).code(), Some(0));
+        session.assert_clean();
+    }
+}
+
+#[test]
+fn every_byte_alone_is_the_same_as_all_at_once() {
+    let mut session = looking(live());
+    for byte in [&everything()[..], FENCE_ANSWER].concat() {
+        session.send(&[byte]);
+        assert!(!session.sees(Duration::from_millis(2), |_| false));
+    }
+    wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
+    nothing_was_pressed(&mut session);
+    leave(&mut session);
+}
+
+/// What nobody asked for, or says nonsense, or comes after the last answer, changes nothing and presses nothing.
+#[test]
+fn forged_answers_change_nothing() {
+    let mut session = looking(live());
+    session.send(b"\x1b]11;rgb:q/q/q\x1b\\\x1bP1$rqqqm\x1b\\\x1b[?9999;1$y\x1b[6;0;0t\x1b]4;99;rgb:0/0/0\x07");
+    session.send(FENCE_ANSWER);
+    session.send(&everything());
+    session.send(b"\x1b[1;9R\x1b[?1;2c");
+    nothing_was_pressed(&mut session);
+    session.send(b"i");
+    wait_for(&mut session, Glyphs::Half, Colors::Indexed256, 2.0);
+    assert!(!session.seen().has(b"\x1b[?2026h"));
+    leave(&mut session);
+}
+
+#[test]
+fn blocks_that_are_not_one_column_wide_are_not_used() {
+    for (answer, glyphs) in
+        [(&b"\x1b[1;2R"[..], Glyphs::Half), (b"\x1b[1;3R", Glyphs::Shape), (b"\x1b[1;4R", Glyphs::Shape)]
+    {
+        let mut session = looking(live());
+        session.send(&[answer, FENCE_ANSWER].concat());
+        wait_for(&mut session, glyphs, Colors::Indexed256, 2.0);
+        leave(&mut session);
+    }
+}
+
+#[test]
+fn sixteen_colours_are_the_terminals_own() {
+    let mut session = live().arg("--color=16").spawn();
+    wait_for(&mut session, Glyphs::Half, Colors::SIXTEEN, 2.0);
+    assert!(session.seen().has(b"\x1b]4;15;?"));
+    let mut values = [Srgb8::default(); 16];
+    let mut answers = String::new();
+    for (index, value) in values.iter_mut().enumerate() {
+        let grey = 17 * index as u8;
+        *value = Srgb8::new(grey, grey, 255 - grey);
+        let _ =
+            write!(answers, "\x1b]4;{index};rgb:{0:02x}{0:02x}/{0:02x}{0:02x}/{1:02x}{1:02x}\x1b\\", grey, 255 - grey);
+    }
+    session.send(&[answers.as_bytes(), FENCE_ANSWER].concat());
+    wait_for(&mut session, Glyphs::Half, Colors::Indexed16(values), 2.0);
+    leave(&mut session);
+}
+
+#[test]
+fn a_light_background_turns_ink_around() {
+    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).arg("--color=never").arg("--glyphs=ramp").mute();
+    let mut session = start.spawn();
+    let dark = picture(Glyphs::Ramp, Colors::None, 2.0);
+    session.wait_for("light on dark", SOON, |seen| shows(seen.screen(), &dark));
+    session.send(&[&b"\x1b]11;rgb:ffff/ffff/ffff\x07"[..], FENCE_ANSWER].concat());
+    // What was ink is blank, and the other way round.
+    session.wait_for("dark on light", SOON, |seen| {
+        let inked = |screen: &pty::Screen, at: usize| screen.cell(at % 80, at / 80).glyph != ' ';
+        let turned = dark.cells().iter().enumerate().filter(|(_, cell)| cell.glyph == ' ');
+        turned.clone().count() > 0 && turned.into_iter().all(|(at, _)| inked(seen.screen(), at))
+    });
+    leave(&mut session);
+}
+
+#[test]
+fn answers_on_their_way_are_waited_for_and_none_is_left() {
+    let mut session = looking(live());
+    session.send(b"q");
+    session.wait_for("the terminal to be given back", SOON, |seen| !seen.screen().is_alternate());
+    session.send(&everything());
+    // In the middle of the last one, and before it.
+    session.send(&FENCE_ANSWER[..4]);
+    assert!(!session.sees(Duration::from_millis(100), |_| false));
+    session.send(&FENCE_ANSWER[4..]);
+    let start = Instant::now();
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    assert!(start.elapsed() < Duration::from_millis(700), "the last answer ends the wait: {:?}", start.elapsed());
+    session.assert_clean();
+    assert_eq!(session.typed_ahead(), b"");
+    assert!(!session.seen().has(b"rgb:"), "nothing is echoed");
+}
+
+#[test]
+fn a_signal_waits_for_answers_too_but_not_for_ever() {
+    let mut session = looking(live());
+    session.signal(Signal::TERM);
+    let start = Instant::now();
+    assert_eq!(session.wait_exit(SOON).signal(), Some(Signal::TERM.as_raw()));
+    assert!(start.elapsed() < Duration::from_secs(3), "{:?}", start.elapsed());
+    session.assert_clean();
+}
+
+/// After three seconds nobody believes any more that an answer comes.
+#[test]
+fn a_terminal_that_has_never_answered_is_left_at_once() {
+    let mut session = looking(live());
+    assert!(!session.sees(Duration::from_millis(3_200), |_| false));
+    let waited = leave(&mut session);
+    assert!(waited < Duration::from_millis(700), "{waited:?}");
+}
+
+/// Not a letter of a question is seen, nor half a sequence, nor a mode or a colour left.
+#[test]
+fn no_question_leaves_a_trace_on_the_screen() {
+    for term in ["xterm-256color", "tmux-256color", "screen-256color", "linux", "dumb", "vt100"] {
+        let variable = |name: &str| (name == "TERM").then(|| term.to_owned());
+        let questions = Questions::all(&Hints::gather(&variable, &|_| None));
+        let mut screen = pty::Screen::new(80, 24);
+        screen.feed(questions.bytes());
+        for text in [screen.text().concat(), screen.second_opinion().contents()] {
+            assert_eq!(text, "", "{term}");
+        }
+        screen.feed(b"x");
+        let shown = screen.cell(0, 0);
+        assert_eq!(
+            (shown.glyph, shown.foreground, shown.background),
+            ('x', Colour::Default, Colour::Default),
+            "{term}"
+        );
+        assert_eq!(pty::Modes::after(questions.bytes()), pty::Modes::after(b""), "{term}");
+        assert_eq!(questions.bytes().is_empty(), ["dumb", "vt100"].contains(&term), "{term}");
+    }
+}
