@@ -2,6 +2,7 @@
 
 mod cells;
 mod check;
+mod doctor;
 mod encoding;
 mod frame;
 mod live;
@@ -48,6 +49,7 @@ Examples:
   termtrace frame my.ron --check my.txt                  compare with a golden frame (--bless writes it)
   termtrace record scenes/three_spheres.ron --seconds 4 -o orbit.cast
   termtrace check my.ron                                 say what is wrong with a scene file
+  termtrace doctor                                       say what this terminal can do, with a test card
   generate_scene | termtrace -                           read the scene from standard input
 
 Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wrong arguments or a wrong scene";
@@ -70,6 +72,8 @@ enum Command {
     Record(record::RecordArgs),
     /// Say what is wrong with a scene file, or that it is fine
     Check(check::CheckArgs),
+    /// Say what this terminal can do and who says so, and draw a test card
+    Doctor(doctor::DoctorArgs),
 }
 
 /// The scene, and who looks at it: on every command.
@@ -172,6 +176,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Frame(args)) => frame::run(&args),
         Some(Command::Record(args)) => record::run(&args),
         Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Doctor(args)) => doctor::run(&args),
         None => live::run(&cli.live),
     };
     match done {

@@ -306,3 +306,51 @@ fn no_question_leaves_a_trace_on_the_screen() {
         assert_eq!(questions.bytes().is_empty(), ["dumb", "vt100"].contains(&term), "{term}");
     }
 }
+
+#[test]
+fn doctor_asks_and_tells_what_was_answered() {
+    let doctor = || Start::new(env!("CARGO_BIN_EXE_termtrace")).arg("doctor").env("COLORTERM", "").mute();
+    let mut session = doctor().size(Size::cells(80, 24)).spawn();
+    session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
+    session.send(&[&everything()[..], b"\x1b]4;0;rgb:0/0/0\x07", FENCE_ANSWER].concat());
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+    assert_eq!(session.typed_ahead(), b"");
+    let text = session.seen().screen().text();
+    let rows: Vec<String> =
+        text[1..12].iter().map(|row| row.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    assert!(rows[0].starts_with("it was asked everything answered after "), "{rows:#?}");
+    assert_eq!(
+        rows[1..],
+        [
+            "colours truecolor its answer",
+            "cells half blocks LC_ALL",
+            "half block's width 1 column its answer",
+            "cell, height/width 2.000 (10x20 pixels) the window's pixels",
+            "half blocks meet yes the window's pixels",
+            "background dark, #1e1e1e its answer",
+            "its 16 colours 1 known its answer",
+            "synchronized output yes its answer",
+            "kitty keyboard yes its answer",
+            "mouse, by pixels yes, yes its answer",
+        ]
+    );
+    let all = text.join("\n");
+    assert!(all.contains("The circle must be round;") && all.contains("--cell-aspect (it is 2.00 here)"), "{all}");
+    assert!(all.contains("The gradient must be smooth;") && all.contains("The stripes must be even"), "{all}");
+    assert!(all.contains('▄') && all.contains('▀'), "the card is of half blocks:\n{all}");
+}
+
+#[test]
+fn doctor_does_not_wait_for_ever_and_dies_of_signals() {
+    let doctor = || Start::new(env!("CARGO_BIN_EXE_termtrace")).arg("doctor").mute();
+    let mut session = doctor().spawn();
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+    session.wait_for_text("no end of answers in 2 s");
+    let mut session = doctor().spawn();
+    session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
+    session.signal(Signal::TERM);
+    assert_eq!(session.wait_exit(SOON).signal(), Some(Signal::TERM.as_raw()));
+    session.assert_clean();
+}

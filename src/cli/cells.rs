@@ -7,7 +7,7 @@ use termtrace::capabilities::{CellMode, ColorChoice, Colors, GlyphChoice, Glyphs
 pub(super) const EXPLAINED: &str = "\
 The colours (--color):
   auto       as many as the terminal has, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own answer,
-             terminfo and TERM
+             terminfo and TERM; termtrace doctor says who said what
   always     the same, but at least 16 and whatever NO_COLOR says
   never      none: no escape sequence says anything of colours
   truecolor, 256, 16

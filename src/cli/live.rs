@@ -15,7 +15,7 @@ use termtrace::scene::Scene;
 use termtrace::terminal::{Signals, die_of};
 
 /// The names of the commands, for who misspells one.
-const COMMANDS: [&str; 3] = ["frame", "record", "check"];
+const COMMANDS: [&str; 4] = ["frame", "record", "check", "doctor"];
 
 #[derive(Args)]
 pub(super) struct LiveArgs {

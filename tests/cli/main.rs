@@ -3,6 +3,7 @@
 
 mod camera;
 mod cells;
+mod doctor;
 mod errors;
 mod formats;
 mod golden;

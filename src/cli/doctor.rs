@@ -1,0 +1,89 @@
+//! `termtrace doctor`: what is known of this terminal, from where, and a card that shows whether it is right.
+
+mod card;
+mod report;
+
+use super::cells::CellArgs;
+use super::picture::parse_cell_aspect;
+use super::{Done, Failure, reason, write_stdout};
+use clap::Args;
+use report::Talk;
+use std::io::{self, IsTerminal};
+use std::time::{Duration, Instant};
+use termtrace::capabilities::{CellShape, Findings, Hints};
+use termtrace::input::{Input, Parser};
+use termtrace::terminal::{Questions, Signals, Terminal, die_of};
+
+#[derive(Args)]
+pub(super) struct DoctorArgs {
+    #[command(flatten)]
+    cells: CellArgs,
+    /// A cell's height over its width [default: as the terminal says, or 2]
+    #[arg(long, value_name = "A", value_parser = parse_cell_aspect)]
+    cell_aspect: Option<f32>,
+}
+
+/// How long the terminal may take to answer.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+pub(super) fn run(args: &DoctorArgs) -> Done {
+    let hints = args.cells.hints(args.cell_aspect);
+    let mut questions = Questions::all(&hints);
+    let mut cell = CellShape::default();
+    let is_terminal = io::stdout().is_terminal() && io::stdin().is_terminal();
+    let talk = if is_terminal {
+        talk(&mut questions, &mut cell).map_err(|error| Failure::runtime("terminal", reason(&error)))?
+    } else {
+        Talk::NoTerminal
+    };
+    let findings = Findings::new(&hints, cell, questions.answers());
+    write_stdout(said(&hints, &findings, &questions, talk).as_bytes())?;
+    if is_terminal { write_stdout(&card::bytes(&findings.capabilities())) } else { Ok(()) }
+}
+
+fn said(hints: &Hints, findings: &Findings, questions: &Questions, talk: Talk) -> String {
+    report::text(&report::Known { hints, findings, answers: questions.answers(), talk })
+}
+
+/// Takes the terminal, asks, and gives it back.
+fn talk(questions: &mut Questions, cell: &mut CellShape) -> io::Result<Talk> {
+    let mut signals = Signals::catch()?;
+    let mut terminal = Terminal::take()?;
+    *cell = terminal.window()?.cell;
+    terminal.ask(questions.bytes())?;
+    let asked = Instant::now();
+    let mut parser = Parser::new();
+    while questions.is_open() {
+        let Some(left) = PATIENCE.checked_sub(asked.elapsed()) else { return Ok(Talk::Silence) };
+        let woken = terminal.wait(signals.wake_pipe(), Some(left))?;
+        if woken.wake {
+            signals.drain();
+        }
+        if let Some(signal) = signals.deadly() {
+            drop(terminal);
+            die_of(signal);
+            return Ok(Talk::Silence);
+        }
+        if woken.keys {
+            take_replies(&mut terminal, &mut parser, questions)?;
+        }
+    }
+    Ok(Talk::Answered(asked.elapsed()))
+}
+
+/// Keys are nobody's here, and are thrown away.
+fn take_replies(terminal: &mut Terminal, parser: &mut Parser, questions: &mut Questions) -> io::Result<()> {
+    let mut buffer = [0; 4096];
+    let bytes = terminal.read(&mut buffer)?;
+    if bytes.is_empty() {
+        return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
+    }
+    let mut inputs = Vec::new();
+    parser.feed(bytes, &mut inputs);
+    for input in inputs {
+        if let Input::Reply(reply) = input {
+            questions.take(&reply);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,168 @@
+//! What is known of the terminal, as a table.
+
+use super::super::visible;
+use std::fmt::Write;
+use std::time::Duration;
+use termtrace::capabilities::{Answers, Asking, Colors, Findings, Found, Glyphs, Hints, Source};
+
+/// How the talk with the terminal went.
+#[derive(Clone, Copy)]
+pub(super) enum Talk {
+    /// There is no terminal.
+    NoTerminal,
+    /// The last answer came after that time; at once, where nothing was asked.
+    Answered(Duration),
+    /// It came too late, or never.
+    Silence,
+}
+
+/// All that is to be told.
+pub(super) struct Known<'a> {
+    pub(super) hints: &'a Hints,
+    pub(super) findings: &'a Findings,
+    pub(super) answers: &'a Answers,
+    pub(super) talk: Talk,
+}
+
+pub(super) fn text(known: &Known<'_>) -> String {
+    let term = known.hints.variable("TERM").unwrap_or_default();
+    let version = env!("CARGO_PKG_VERSION");
+    let mut text = format!("What this terminal (TERM={term}) can do, and who says so; termtrace {version}\n");
+    for (what, value, who) in known.rows() {
+        let _ = writeln!(text, "{what:<20}  {value:<28}  {who}");
+    }
+    // A name is not to steer the terminal that it is printed on.
+    visible(&text)
+}
+
+type Row = (&'static str, String, String);
+
+impl Known<'_> {
+    fn rows(&self) -> Vec<Row> {
+        let findings = self.findings;
+        vec![
+            self.questions(),
+            row("colours", findings.colors, colors),
+            row("cells", findings.glyphs, glyphs),
+            self.answered("half block's width", self.answers.block_width.map(columns)),
+            row("cell, height/width", findings.cell_aspect, |aspect| format!("{aspect:.3}{}", self.pixels())),
+            self.yes("half blocks meet", findings.halves_meet),
+            self.background(),
+            self.sixteen(),
+            self.yes("synchronized output", findings.synchronized_output),
+            self.yes("kitty keyboard", findings.kitty_keyboard),
+            self.mouse(),
+        ]
+    }
+
+    fn questions(&self) -> Row {
+        let asked = match self.hints.asking() {
+            _ if matches!(self.talk, Talk::NoTerminal) => "nothing: there is none here",
+            Asking::Nothing => "nothing, by its name",
+            Asking::Console => "what a console understands",
+            Asking::Screen => "what screen understands",
+            Asking::Tmux => "what tmux understands",
+            Asking::Everything => "everything",
+        };
+        let how = match self.talk {
+            Talk::NoTerminal => "-".to_owned(),
+            Talk::Answered(_) if self.hints.asking() == Asking::Nothing => "-".to_owned(),
+            Talk::Answered(after) => format!("answered after {} ms", after.as_millis()),
+            Talk::Silence => "no end of answers in 2 s".to_owned(),
+        };
+        ("it was asked", asked.to_owned(), how)
+    }
+
+    fn pixels(&self) -> String {
+        self.answers.cell_pixels.map_or_else(String::new, |(width, height)| format!(" ({width}x{height} pixels)"))
+    }
+
+    fn answered(&self, what: &'static str, answer: Option<String>) -> Row {
+        match answer {
+            Some(answer) => (what, answer, "its answer".to_owned()),
+            None => (what, "not known".to_owned(), self.no_answer().to_owned()),
+        }
+    }
+
+    fn no_answer(&self) -> &'static str {
+        match (self.talk, self.hints.asking()) {
+            (Talk::NoTerminal, _) | (_, Asking::Nothing) => "not asked",
+            (_, Asking::Everything) => "no answer",
+            _ => "no answer, or not asked",
+        }
+    }
+
+    fn yes(&self, what: &'static str, found: Found<bool>) -> Row {
+        if found.source == Source::Assumed {
+            return (what, "not known: no".to_owned(), self.no_answer().to_owned());
+        }
+        row(what, found, yes_or_no)
+    }
+
+    fn background(&self) -> Row {
+        let kind = if self.findings.light_background.value { "light" } else { "dark" };
+        match self.answers.background {
+            Some(c) => self.answered("background", Some(format!("{kind}, #{:02x}{:02x}{:02x}", c.r, c.g, c.b))),
+            None => ("background", format!("not known: {kind}"), self.no_answer().to_owned()),
+        }
+    }
+
+    fn sixteen(&self) -> Row {
+        let count = self.answers.sixteen.iter().flatten().count();
+        self.answered("its 16 colours", (count > 0).then(|| format!("{count} known")))
+    }
+
+    fn mouse(&self) -> Row {
+        let what = "mouse, by pixels";
+        match (self.answers.sgr_mouse, self.answers.pixel_mouse) {
+            (None, None) => self.answered(what, None),
+            (cells, pixels) => {
+                let say = |known: Option<bool>| yes_or_no(known.unwrap_or(false));
+                self.answered(what, Some(format!("{}, {}", say(cells), say(pixels))))
+            }
+        }
+    }
+}
+
+fn row<T>(what: &'static str, found: Found<T>, say: impl FnOnce(T) -> String) -> Row {
+    (what, say(found.value), who(found.source))
+}
+
+fn who(source: Source) -> String {
+    let who = match source {
+        Source::Flag => "the command line",
+        Source::Variable(name) => name,
+        Source::Window => "the window's pixels",
+        Source::Reply => "its answer",
+        Source::Terminfo => "terminfo",
+        Source::Assumed => "assumed",
+    };
+    who.to_owned()
+}
+
+fn colors(colors: Colors) -> String {
+    match colors {
+        Colors::None => "none",
+        Colors::Indexed16(_) => "16",
+        Colors::Indexed256 => "256",
+        Colors::Truecolor => "truecolor",
+    }
+    .to_owned()
+}
+
+fn glyphs(glyphs: Glyphs) -> String {
+    match glyphs {
+        Glyphs::Half => "half blocks",
+        Glyphs::Shape => "characters by shape",
+        Glyphs::Ramp => "characters by lightness",
+    }
+    .to_owned()
+}
+
+fn columns(count: u16) -> String {
+    if count == 1 { "1 column".to_owned() } else { format!("{count} columns") }
+}
+
+fn yes_or_no(yes: bool) -> String {
+    if yes { "yes" } else { "no" }.to_owned()
+}

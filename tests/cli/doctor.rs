@@ -1,0 +1,64 @@
+//! `termtrace doctor` where there is no terminal: what the environment tells.
+
+use crate::{Folder, Run, finish};
+
+/// What it says with this environment and nothing else in it.
+fn doctor(arguments: &str, environment: &[(&str, &str)]) -> Run {
+    let mut command = Folder::new().command(&format!("doctor {arguments}"));
+    finish(command.env_clear().envs(environment.iter().copied()).current_dir("/"))
+}
+
+#[test]
+fn the_environment_is_told_of_and_who_in_it_said_so() {
+    let environment = [("TERM", "some-terminal"), ("COLORTERM", "truecolor"), ("LANG", "en_US.UTF-8")];
+    let said = doctor("", &environment).text();
+    let (first, rest) = said.split_once('\n').expect("lines");
+    let version = env!("CARGO_PKG_VERSION");
+    assert_eq!(first, format!("What this terminal (TERM=some-terminal) can do, and who says so; termtrace {version}"));
+    assert_eq!(
+        rest,
+        "\
+it was asked          nothing: there is none here   -
+colours               truecolor                     COLORTERM
+cells                 half blocks                   LANG
+half block's width    not known                     not asked
+cell, height/width    2.000                         assumed
+half blocks meet      not known: no                 not asked
+background            not known: dark               not asked
+its 16 colours        not known                     not asked
+synchronized output   not known: no                 not asked
+kitty keyboard        not known: no                 not asked
+mouse, by pixels      not known                     not asked
+"
+    );
+}
+
+#[test]
+fn another_environment_and_flags_are_told_of_too() {
+    let environment = [("TERM", "dumb"), ("LC_ALL", "C"), ("LANG", "en_US.UTF-8"), ("NO_COLOR", "1")];
+    let said = doctor("--cell-aspect 2.25", &environment).text();
+    assert_eq!(
+        said.lines().skip(2).take(3).collect::<Vec<_>>(),
+        [
+            "colours               none                          NO_COLOR",
+            "cells                 characters by shape           NO_COLOR",
+            "half block's width    not known                     not asked",
+        ]
+    );
+    assert_eq!(said.lines().nth(5), Some("cell, height/width    2.250                         the command line"));
+    let said = doctor("--color=16 --glyphs=ramp", &environment).text();
+    assert!(said.contains("\ncolours               16                            the command line\n"), "{said}");
+    assert!(said.contains("\ncells                 characters by lightness       the command line\n"), "{said}");
+    let said = doctor("", &[("TERM", "some-terminal"), ("LC_ALL", "C")]).text();
+    assert!(said.contains("\ncolours               256                           TERM\n"), "{said}");
+    assert!(said.contains("\ncells                 characters by shape           LC_ALL\n"), "{said}");
+}
+
+#[test]
+fn no_escape_byte_goes_into_a_pipe() {
+    for (arguments, term) in [("", "xterm"), ("--color=always", "xterm"), ("--color=truecolor", "a\x1b[31mb")] {
+        let said = doctor(arguments, &[("TERM", term)]).text();
+        assert!(said.chars().all(|c| c == '\n' || !c.is_control()), "{said:?}");
+        assert_eq!(said.lines().count(), 12, "{said}");
+    }
+}
