@@ -265,6 +265,20 @@ fn answers_on_their_way_are_waited_for_and_none_is_left() {
     assert!(!session.seen().has(b"rgb:"), "nothing is echoed");
 }
 
+/// Stopped before the answers came, and continued, it asks again: nobody knows who has read them.
+#[test]
+fn who_was_stopped_asks_again() {
+    let mut session = looking(live());
+    session.signal(Signal::STOP);
+    session.wait_stopped(SOON);
+    session.signal(Signal::CONT);
+    let asked = |seen: &pty::Seen| seen.bytes().windows(FENCE.len()).filter(|bytes| *bytes == FENCE).count();
+    session.wait_for("the questions again", SOON, |seen| asked(seen) == 2);
+    session.send(&[&everything()[..], FENCE_ANSWER].concat());
+    wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
+    leave(&mut session);
+}
+
 #[test]
 fn a_signal_waits_for_answers_too_but_not_for_ever() {
     let mut session = looking(live());
@@ -339,6 +353,16 @@ fn doctor_asks_and_tells_what_was_answered() {
     assert!(all.contains("The circle must be round;") && all.contains("--cell-aspect (it is 2.00 here)"), "{all}");
     assert!(all.contains("The gradient must be smooth;") && all.contains("The stripes must be even"), "{all}");
     assert!(all.contains('▄') && all.contains('▀'), "the card is of half blocks:\n{all}");
+}
+
+#[test]
+fn doctor_sends_a_dumb_terminal_no_escape_byte() {
+    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg("doctor").env("TERM", "dumb").env("COLORTERM", "");
+    let mut session = start.mute().spawn();
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    assert!(!session.seen().bytes().contains(&0x1b));
+    session.wait_for_text("nothing, by its name");
+    session.wait_for_text("The circle must be round");
 }
 
 #[test]

@@ -10,7 +10,7 @@ use clap::Args;
 use report::Talk;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
-use termtrace::capabilities::{CellShape, Findings, Hints};
+use termtrace::capabilities::{Asking, CellShape, Findings, Hints};
 use termtrace::input::{Input, Parser};
 use termtrace::terminal::{Questions, Signals, Terminal, die_of};
 
@@ -30,11 +30,16 @@ pub(super) fn run(args: &DoctorArgs) -> Done {
     let hints = args.cells.hints(args.cell_aspect);
     let mut questions = Questions::all(&hints);
     let mut cell = CellShape::default();
-    let is_terminal = io::stdout().is_terminal() && io::stdin().is_terminal();
-    let talk = if is_terminal {
-        talk(&mut questions, &mut cell).map_err(|error| Failure::runtime("terminal", reason(&error)))?
-    } else {
-        Talk::NoTerminal
+    let is_terminal = io::stdout().is_terminal();
+    let talk = match hints.asking() {
+        _ if !is_terminal => Talk::NoTerminal,
+        // Nothing to ask it, and nothing that it would not print.
+        Asking::Nothing => Talk::Answered(Duration::ZERO),
+        _ => match talk(&mut questions, &mut cell) {
+            // Its answers cannot be had.
+            Err(_) if !io::stdin().is_terminal() => Talk::NoTerminal,
+            talk => talk.map_err(|error| Failure::runtime("terminal", reason(&error)))?,
+        },
     };
     let findings = Findings::new(&hints, cell, questions.answers());
     write_stdout(said(&hints, &findings, &questions, talk).as_bytes())?;
