@@ -312,16 +312,16 @@ fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
     while column < wanted.len() {
         let end = column + columns(&wanted[column..]);
         let (shown, wanted) = (&mut shown[column..end], &wanted[column..end]);
-        let differs = !shown.iter().zip(wanted).all(|(shown, wanted)| pen::look_alike(shown, wanted));
         let is_ours = !matches!(wanted[0].glyph, Glyph::Covered | Glyph::Foreign);
-        if is_ours && shown != wanted {
+        if is_ours && (column < safe_from || shown != wanted) {
+            let looks_alike = shown.iter().zip(wanted).all(|(shown, wanted)| pen::look_alike(shown, wanted));
             // Also where it looks alike: a panel's blank is not the picture's.
             shown.clone_from_slice(wanted);
-        }
-        if is_ours && (differs || column < safe_from) {
-            write(column as u16);
-            if let Glyph::Cluster(text) = &wanted[0].glyph {
-                safe_from = safe_from.max(column + columns_apart(text));
+            if !looks_alike || column < safe_from {
+                write(column as u16);
+                if let Glyph::Cluster(text) = &wanted[0].glyph {
+                    safe_from = safe_from.max(column + columns_apart(text));
+                }
             }
         }
         column = end;
