@@ -24,6 +24,7 @@ mod backend;
 mod by_color;
 mod lossy;
 mod moves;
+mod numbers;
 mod palette;
 mod pen;
 mod stillness;

@@ -4,6 +4,8 @@
 //! raw mode a line feed keeps the column, and nothing scrolls, because it is only used above the last row.) Nothing
 //! else is used: REP, ECH and tabs gain little and break in some multiplexer or other.
 
+use super::numbers::{digits, write_number};
+
 /// A place on the screen, counted from the top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {
@@ -36,6 +38,9 @@ pub(super) enum Along {
 
 /// The cheapest move. Where the cursor is unknown, or beyond the last column, only CUP is sure.
 pub(super) fn cheapest(from: Option<Place>, to: Place) -> Move {
+    if from == Some(to) {
+        return Move::Down(0, Along::Stay);
+    }
     let absolute = Move::To(to);
     let Some(from) = from.filter(|from| from.row <= to.row) else { return absolute };
     let relative = Move::Down(to.row - from.row, cheapest_along(from.column, to.column));
@@ -118,26 +123,6 @@ fn sequence(bytes: &mut Vec<u8>, number: u16, last: u8) {
     bytes.push(last);
 }
 
-/// How many digits a number has.
-pub(super) fn digits(number: u16) -> usize {
-    match number {
-        0..10 => 1,
-        10..100 => 2,
-        100..1_000 => 3,
-        1_000..10_000 => 4,
-        _ => 5,
-    }
-}
-
-/// In decimal. (`write!` takes ten times as long, and this is most of what an encoder writes.)
-pub(super) fn write_number(number: u16, bytes: &mut Vec<u8>) {
-    let mut unit = [1, 10, 100, 1_000, 10_000][digits(number) - 1];
-    while unit > 0 {
-        bytes.push(b'0' + (number / unit % 10) as u8);
-        unit /= 10;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -172,15 +157,6 @@ mod tests {
             (Some((4, 0)), (4, 50), "\x1b[51;5H"),
         ] {
             assert_eq!(bytes(from, to), expected, "{from:?} to {to:?}");
-        }
-    }
-
-    #[test]
-    fn numbers_are_written_whole() {
-        for number in [0, 7, 10, 99, 100, 255, 1_000, 9_999, 10_000, u16::MAX] {
-            let mut bytes = Vec::new();
-            write_number(number, &mut bytes);
-            assert_eq!(bytes, number.to_string().into_bytes());
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The pen: the colours and modifiers that the terminal would write with now, and what it costs to change them.
 
-use super::moves::{digits, write_number};
+use super::numbers::{band_digits, digits, write_band, write_number};
 use crate::grid::{Cell, Glyph, Ink};
 use ratatui::style::Modifier;
 use std::mem;
@@ -34,10 +34,12 @@ impl Pen {
     /// with the pen's two colours exchanged: to say so takes four bytes, to say the colour again, as the one behind, about
     /// nineteen.
     pub(super) fn wanted_by(&self, cell: &Cell) -> Self {
+        if self.can_be_exchanged_for(cell) { self.wanted_by_space(cell) } else { self.as_it_stands(cell) }
+    }
+
+    /// The same for such a space.
+    fn wanted_by_space(&self, cell: &Cell) -> Self {
         let plain = self.as_it_stands(cell);
-        if !self.can_be_exchanged_for(cell) {
-            return plain;
-        }
         let exchanged = Self { modifier: Modifier::REVERSED, ..*self };
         if self.cost_of(&exchanged) < self.cost_of(&plain) { exchanged } else { plain }
     }
@@ -45,10 +47,10 @@ impl Pen {
     /// Whether a space looks like the cell when the pen's two colours are exchanged. The terminal's own colour for glyphs
     /// cannot be said behind them.
     fn can_be_exchanged_for(&self, cell: &Cell) -> bool {
-        self.fg == cell.bg
+        is_plain_space(cell)
+            && self.fg == cell.bg
             && cell.bg != Ink::Default
             && Modifier::REVERSED.contains(self.modifier)
-            && is_plain_space(cell)
     }
 
     /// The pen of the cell as the grid has it. The colour of a plain space's character is not seen, nor that of a line
@@ -88,15 +90,25 @@ impl Pen {
 
     /// How many bytes [`become_pen`](Self::become_pen) takes.
     pub(super) fn cost_of(&self, wanted: &Self) -> usize {
+        if self.modifier == wanted.modifier { self.cost_of_colors(0, wanted) } else { self.cost_of_all(wanted) }
+    }
+
+    /// The same where modifiers change.
+    fn cost_of_all(&self, wanted: &Self) -> usize {
         if self.starts_anew(wanted.modifier) {
             let codes = modifier_codes(wanted.modifier).count();
-            return 4 + 2 * codes + self.before_colors(wanted.modifier).cost_of(wanted);
+            return 4 + 2 * codes + self.before_colors(wanted.modifier).cost_of_colors(0, wanted);
         }
         let exchange = self.exchange(wanted.modifier).map_or(0, |code| 1 + code.len());
+        self.cost_of_colors(exchange, wanted)
+    }
+
+    /// The same for the colours, and for a code that took so many bytes in their sequence.
+    fn cost_of_colors(&self, code: usize, wanted: &Self) -> usize {
         let fg = if self.fg == wanted.fg { 0 } else { 1 + ink_len(wanted.fg) };
         let bg = if self.bg == wanted.bg { 0 } else { 1 + ink_len(wanted.bg) };
         let underline = if self.underline == wanted.underline { 0 } else { underline_len(wanted.underline) };
-        let codes = exchange + fg + bg;
+        let codes = code + fg + bg;
         underline + if codes == 0 { 0 } else { 2 + codes }
     }
 
@@ -179,8 +191,7 @@ fn write_ink(ink: Ink, base: u16, bytes: &mut Vec<u8>) {
             write_number(base + 8, bytes);
             bytes.extend_from_slice(b";2");
             for band in [color.r, color.g, color.b] {
-                bytes.push(b';');
-                write_number(band.into(), bytes);
+                write_band(band, bytes);
             }
         }
     }
@@ -191,7 +202,7 @@ fn ink_len(ink: Ink) -> usize {
     match ink {
         Ink::Default => 2,
         Ink::Indexed(index) => 5 + digits(index.into()),
-        Ink::Rgb(color) => 7 + [color.r, color.g, color.b].into_iter().map(|band| digits(band.into())).sum::<usize>(),
+        Ink::Rgb(color) => 7 + [color.r, color.g, color.b].into_iter().map(band_digits).sum::<usize>(),
     }
 }
 

@@ -1,0 +1,70 @@
+//! Numbers in decimal, as escape sequences have them. (`write!` takes ten times as long, and this is most of what an
+//! encoder writes.)
+
+/// How many digits a number has.
+pub(super) fn digits(number: u16) -> usize {
+    match number {
+        0..10 => 1,
+        10..100 => 2,
+        100..1_000 => 3,
+        1_000..10_000 => 4,
+        _ => 5,
+    }
+}
+
+/// In decimal.
+pub(super) fn write_number(number: u16, bytes: &mut Vec<u8>) {
+    let mut unit = [1, 10, 100, 1_000, 10_000][digits(number) - 1];
+    while unit > 0 {
+        bytes.push(b'0' + (number / unit % 10) as u8);
+        unit /= 10;
+    }
+}
+
+/// A semicolon and a colour's band in decimal.
+pub(super) fn write_band(band: u8, bytes: &mut Vec<u8>) {
+    // All four bytes at once, then back over those that are too many: one by one takes longer.
+    bytes.extend_from_slice(&BANDS[usize::from(band)]);
+    bytes.truncate(bytes.len() + band_digits(band) - 3);
+}
+
+/// How many digits a colour's band has. (Without a branch: nothing foretells which of the three it is.)
+pub(super) fn band_digits(band: u8) -> usize {
+    1 + usize::from(band >= 10) + usize::from(band >= 100)
+}
+
+/// For each band a semicolon and its digits; what follows them is nothing.
+const BANDS: [[u8; 4]; 256] = {
+    let mut bands = [[b';', 0, 0, 0]; 256];
+    let mut band = 0;
+    while band < bands.len() {
+        let digit = [band / 100, band / 10 % 10, band % 10];
+        let [hundreds, tens, ones] = [b'0' + digit[0] as u8, b'0' + digit[1] as u8, b'0' + digit[2] as u8];
+        bands[band] = match band {
+            0..10 => [b';', ones, 0, 0],
+            10..100 => [b';', tens, ones, 0],
+            _ => [b';', hundreds, tens, ones],
+        };
+        band += 1;
+    }
+    bands
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_whole() {
+        for number in [0, 7, 10, 99, 100, 255, 1_000, 9_999, 10_000, u16::MAX] {
+            let mut bytes = Vec::new();
+            write_number(number, &mut bytes);
+            assert_eq!(bytes, number.to_string().into_bytes());
+        }
+        for band in 0..=u8::MAX {
+            let mut bytes = Vec::new();
+            write_band(band, &mut bytes);
+            assert_eq!(bytes, format!(";{band}").into_bytes());
+        }
+    }
+}
