@@ -207,23 +207,25 @@ fn a_limit_does_not_keep_text_back() {
     watched.rest(&wanted, limited);
 }
 
+/// A picture of noise, all of it near one grey.
+fn nearly_grey(size: Size, number: &mut impl FnMut() -> u32) -> Grid {
+    let mut grid = Grid::new(size);
+    for cell in grid.cells_mut() {
+        let mut ink = || {
+            let [a, b, c, _] = number().to_le_bytes().map(|byte| 100 + byte % 4);
+            rgb(a, b, c)
+        };
+        *cell = Cell::new('▄', ink(), ink());
+    }
+    grid
+}
+
 /// A picture of noise comes to rest in frames that tmux does not throw away, unless there is nothing else to do.
 #[test]
 fn exact_colours_are_spread_over_frames() {
     let size = Size::new(40, 10);
     let mut number = super::pictures::noise(5);
-    let mut noise = |spread: u32, base: u32| {
-        let mut grid = Grid::new(size);
-        for cell in grid.cells_mut() {
-            let mut ink = || {
-                let [a, b, c, _] = number().to_le_bytes().map(|byte| base as u8 + byte % spread as u8);
-                rgb(a, b, c)
-            };
-            *cell = Cell::new('▄', ink(), ink());
-        }
-        grid
-    };
-    let (first, near) = (noise(4, 100), noise(4, 100));
+    let (first, near) = (nearly_grey(size, &mut number), nearly_grey(size, &mut number));
     let mut watched = Watched::new(Order::Color, true, size, Clusters::None);
     watched.send(&first);
     let allowed = allowance(0, Quality::Fast, None);
@@ -303,15 +305,7 @@ fn blanks_of_text_do_not_wait() {
 fn a_generous_limit_does_not_loosen_the_usual_one() {
     let size = Size::new(40, 10);
     let mut number = super::pictures::noise(7);
-    let mut noise = || {
-        let mut grid = Grid::new(size);
-        for cell in grid.cells_mut() {
-            let mut ink = || rgb(100 + (number() >> 9) as u8 % 3, 100 + (number() >> 9) as u8 % 3, 100);
-            *cell = Cell::new('▄', ink(), ink());
-        }
-        grid
-    };
-    let (first, near) = (noise(), noise());
+    let (first, near) = (nearly_grey(size, &mut number), nearly_grey(size, &mut number));
     let mut watched = Watched::new(Order::Raster, true, size, Clusters::None);
     watched.send(&first);
     let generous = |millis| allowance(millis, Quality::Fast, Some(usize::MAX));
