@@ -10,7 +10,6 @@ use crate::cell;
 use crate::control::{self, Command, Motion};
 use crate::encode::{Order, Quality};
 use crate::framebuffer::Resolution;
-use crate::grid::Size;
 use crate::input::{Input, Parser, Reply};
 use crate::scene::Scene;
 use crate::terminal::{self, Questions, Signals, Stopped, Terminal, Window};
@@ -84,7 +83,7 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
     let mut renderer = terminal::without_signals(|| Renderer::start(scene, options.threads, waker))?;
     let mut terminal = Terminal::take()?;
     let mut live = Live::new(camera, options, terminal.window()?);
-    let asked = terminal.ask(live.questions.bytes());
+    let asked = terminal.send(live.questions.bytes());
     let ended = asked.and_then(|()| live.run(&mut terminal, &mut renderer, signals));
     // When the terminal vanishes, the system says so by a signal too.
     let ending = ended.or_else(|error| signals.deadly().map(Ending::Signal).ok_or(error))?;
@@ -96,7 +95,6 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
 const FRAME: Duration = Duration::from_micros(16_667);
 /// How long the rest of a key's escape sequence may take before a lone Escape is taken for the key.
 const ESCAPE_WAIT: Duration = Duration::from_millis(50);
-
 /// The same while answers are on their way: the first byte of one may come alone.
 const ANSWER_WAIT: Duration = Duration::from_secs(1);
 
@@ -106,12 +104,11 @@ struct Live {
     home: Camera,
     camera: Camera,
     speed: f32,
-    size: Size,
     window: Window,
     capabilities: Capabilities,
     questions: Questions,
     parser: Parser,
-    /// When the last bytes came from the terminal.
+    /// When the last bytes came from the terminal, or were waited for in vain.
     read: Duration,
     motion: Motion,
     screen: Screen,
@@ -133,7 +130,6 @@ impl Live {
             home: camera,
             camera,
             speed: control::speed(&camera),
-            size: window.size,
             window,
             capabilities,
             questions,
@@ -188,7 +184,8 @@ impl Live {
                     }
                     Next::Stay => {}
                 }
-            } else if self.parser.is_waiting() && self.now() >= self.escape_at(terminal) {
+            } else if self.escape_due(terminal).is_some_and(|due| due <= self.now()) {
+                self.read = self.now();
                 let mut inputs = Vec::new();
                 self.parser.give_up_waiting(&mut inputs);
                 self.take_inputs(&inputs);
@@ -206,11 +203,10 @@ impl Live {
     }
 
     fn resolution(&self) -> Resolution {
-        cell::resolution(self.capabilities.cell_mode, self.size, self.capabilities.cell_aspect)
+        cell::resolution(self.capabilities.cell_mode, self.window.size, self.capabilities.cell_aspect)
     }
 
     fn resize(&mut self, window: Window) {
-        self.size = window.size;
         self.window = window;
         self.learn();
         // The terminal has moved what it shows to wherever it thought right.
@@ -257,7 +253,7 @@ impl Live {
 
     /// The earliest time at which the screen has bytes to send, if nothing else happens.
     fn next_bytes(&self) -> Option<Duration> {
-        self.screen.due(self.size).map(|due| due.max(self.link.free_at()))
+        self.screen.due(self.window.size).map(|due| due.max(self.link.free_at()))
     }
 
     fn begin_frame(&mut self, renderer: &mut Renderer) {
@@ -270,15 +266,16 @@ impl Live {
     fn timeout(&self, idle: bool, terminal: &Terminal) -> Option<Duration> {
         let frame = (self.stale || self.moved_until.is_some()) && idle;
         let until_frame = frame.then(|| self.next_frame().saturating_sub(self.now()));
-        let until_escape = self.parser.is_waiting().then(|| self.escape_at(terminal).saturating_sub(self.now()));
+        let until_escape = self.escape_due(terminal).map(|due| due.saturating_sub(self.now()));
         let until_bytes =
             self.next_bytes().map(|due| due.saturating_sub(self.now())).filter(|_| !terminal.is_sending());
         until_frame.into_iter().chain(until_escape).chain(until_bytes).min()
     }
 
-    /// When half a sequence is taken for all that there is of it.
-    fn escape_at(&self, terminal: &Terminal) -> Duration {
-        self.read + if terminal.awaits_answers() { ANSWER_WAIT } else { ESCAPE_WAIT }
+    /// When half a sequence is taken for all that there is of it, if there is one.
+    fn escape_due(&self, terminal: &Terminal) -> Option<Duration> {
+        let wait = if terminal.awaits_answers() { ANSWER_WAIT } else { ESCAPE_WAIT };
+        self.parser.is_waiting().then_some(self.read + wait)
     }
 
     fn read_keys(&mut self, terminal: &mut Terminal) -> io::Result<Next> {
@@ -358,7 +355,7 @@ impl Live {
         terminal.take_again()?;
         // What was on its way then is lost.
         if self.questions.is_open() {
-            terminal.ask(self.questions.bytes())?;
+            terminal.send(self.questions.bytes())?;
         }
         self.resize(terminal.window()?);
         Ok(())
@@ -381,7 +378,7 @@ impl Live {
         if terminal.is_sending() || self.next_bytes().is_none_or(|due| now < due) {
             return Ok(());
         }
-        let bytes = self.screen.bytes(self.size, &self.camera, now, self.link.most_bytes());
+        let bytes = self.screen.bytes(self.window.size, &self.camera, now, self.link.most_bytes());
         if bytes.is_empty() {
             return Ok(());
         }

@@ -17,15 +17,14 @@ use std::fs::File;
 use std::io::{self, IsTerminal, Read};
 use std::time::Duration;
 
-mod fence;
 mod modes;
 mod output;
 mod panics;
 mod questions;
 mod rehearsal;
 mod signals;
+mod unanswered;
 
-use fence::Fence;
 use modes::Modes;
 pub use output::stderr_is_read;
 use output::{Output, timespec};
@@ -35,13 +34,14 @@ pub use questions::{FENCE, Questions};
 pub use rehearsal::rehearse;
 pub(crate) use rehearsal::{reach, take_worker_panic};
 pub use signals::{Signals, Stopped, Waker, die_of, without_signals};
+use unanswered::Unanswered;
 
 /// A terminal in raw mode with the alternate screen, to be read, written and asked for its size.
 pub struct Terminal {
     keys: File,
     output: Output,
     modes: Modes,
-    fence: Fence,
+    unanswered: Unanswered,
 }
 
 /// What woke [`Terminal::wait`].
@@ -70,7 +70,7 @@ impl Terminal {
     /// If either is not a terminal, or cannot be set up; it is then as it was.
     pub fn take() -> io::Result<Self> {
         let output = Output::open()?;
-        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::none(), fence: Fence::default() };
+        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::none(), unanswered: Unanswered::default() };
         terminal.take_again()?;
         Ok(terminal)
     }
@@ -97,31 +97,22 @@ impl Terminal {
         Ok(Window { size, cell })
     }
 
-    /// Sends a frame, in one write where the terminal takes it whole. What it does not take at once goes out while
-    /// [`wait`](Self::wait) waits.
+    /// Sends a frame or questions, in one write where the terminal takes them whole. What it does not take at once goes
+    /// out while [`wait`](Self::wait) waits.
+    ///
+    /// Bytes that end with [`FENCE`] are answered. Giving the terminal back waits for the answer, for as long as it does
+    /// for the last bytes to be taken, so that the shell is not sent it.
     ///
     /// # Errors
     /// If the terminal is gone.
     pub fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.unanswered.send(bytes);
         self.output.send(bytes)
-    }
-
-    /// Asks something that ends with [`FENCE`]. Giving the terminal back waits for the answer, for as long as it does for
-    /// the last bytes to be taken, so that the shell is not sent it. No questions: nothing is sent.
-    ///
-    /// # Errors
-    /// If the terminal is gone.
-    pub fn ask(&mut self, questions: &[u8]) -> io::Result<()> {
-        if questions.is_empty() {
-            return Ok(());
-        }
-        self.fence.ask();
-        self.output.send(questions)
     }
 
     /// Whether answers may be on their way.
     pub fn awaits_answers(&self) -> bool {
-        self.fence.patience().is_some()
+        self.unanswered.patience().is_some()
     }
 
     /// Whether the terminal has not taken the last frame yet.
@@ -132,7 +123,7 @@ impl Terminal {
     /// Gives the terminal back, as dropping it does. Whether it took all that was sent: one that has stopped reading is
     /// left after a second, and is not to be written to any more.
     pub fn give_back(&mut self) -> bool {
-        self.modes.give_back(&self.keys, &mut self.output, &mut self.fence)
+        self.modes.give_back(&self.keys, &mut self.output, &mut self.unanswered)
     }
 
     /// The bytes that are there. None at all: the terminal is gone.
@@ -143,7 +134,7 @@ impl Terminal {
         loop {
             match self.keys.read(buffer) {
                 Ok(count) => {
-                    self.fence.hear(&buffer[..count]);
+                    self.unanswered.hear(&buffer[..count]);
                     return Ok(&buffer[..count]);
                 }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}

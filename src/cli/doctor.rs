@@ -55,7 +55,7 @@ fn talk(questions: &mut Questions, cell: &mut CellShape) -> io::Result<Talk> {
     let mut signals = Signals::catch()?;
     let mut terminal = Terminal::take()?;
     *cell = terminal.window()?.cell;
-    terminal.ask(questions.bytes())?;
+    terminal.send(questions.bytes())?;
     let asked = Instant::now();
     let mut parser = Parser::new();
     while questions.is_open() {

@@ -1,7 +1,7 @@
 //! What is turned on, in order, and how each is turned off.
 
-use super::fence::Fence;
 use super::output::Output;
+use super::unanswered::Unanswered;
 use super::{panics, rehearsal, signals};
 use crossterm::{Command, cursor, event, style, terminal};
 use rustix::termios::{self, OptionalActions, QueueSelector, Termios};
@@ -61,7 +61,7 @@ impl Modes {
     /// Turns everything off, newest first, after what is still on its way, so that nothing is torn. What fails is passed
     /// over: the rest must be undone all the same. Replies that are on their way are waited for. Whether the terminal
     /// took it all; asked again, it did.
-    pub(super) fn give_back(&mut self, keys: &File, output: &mut Output, fence: &mut Fence) -> bool {
+    pub(super) fn give_back(&mut self, keys: &File, output: &mut Output, unanswered: &mut Unanswered) -> bool {
         let deadline = Instant::now() + PATIENCE;
         let mut heard = true;
         while let Some(mode) = self.on.pop() {
@@ -71,7 +71,7 @@ impl Modes {
                     heard = output.finish(deadline);
                     // A terminal that has stopped reading does not answer either.
                     if heard {
-                        fence.drain(keys, deadline);
+                        unanswered.drain(keys, deadline);
                     }
                     signals::in_the_background(|| restore(keys, &before));
                 }

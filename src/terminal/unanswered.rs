@@ -1,6 +1,7 @@
 //! Whether replies are still on their way.
 
 use super::output::timespec;
+use super::questions::FENCE;
 use crate::input::{Input, Parser, Reply};
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::{process, termios};
@@ -11,42 +12,48 @@ use std::time::{Duration, Instant};
 /// A terminal that has not answered after this time is taken for one that does not answer.
 const LATEST: Duration = Duration::from_secs(3);
 
-/// Counts the fences asked for, and reads along to see them answered.
+/// Counts the fences sent, and reads along to see them answered.
 #[derive(Default)]
-pub(super) struct Fence {
+pub(super) struct Unanswered {
     parser: Parser,
     /// How many answers are to come, and when the last of them was asked for.
-    open: usize,
+    count: usize,
     asked: Option<Instant>,
 }
 
-impl Fence {
-    /// A fence is asked for now.
-    pub(super) fn ask(&mut self) {
-        self.open += 1;
-        self.asked = Some(Instant::now());
+impl Unanswered {
+    /// These bytes are sent now.
+    pub(super) fn send(&mut self, bytes: &[u8]) {
+        if bytes.ends_with(FENCE) {
+            self.count += 1;
+            self.asked = Some(Instant::now());
+        }
     }
 
     /// The terminal has sent these bytes.
     pub(super) fn hear(&mut self, bytes: &[u8]) {
         let mut inputs = Vec::new();
         self.parser.feed(bytes, &mut inputs);
-        let fences = inputs.iter().filter(|input| matches!(input, Input::Reply(Reply::DeviceAttributes(_))));
-        self.open = self.open.saturating_sub(fences.count());
+        let answers = inputs.iter().filter(|input| matches!(input, Input::Reply(Reply::DeviceAttributes(_))));
+        self.count = self.count.saturating_sub(answers.count());
     }
 
     /// How much longer replies may come, if they may.
     pub(super) fn patience(&self) -> Option<Duration> {
-        let left = self.asked.filter(|_| self.open > 0)? + LATEST;
+        let left = self.asked.filter(|_| self.count > 0)? + LATEST;
         left.checked_duration_since(Instant::now())
     }
 
-    /// Reads and throws away what comes up to the last fence, at most until the deadline, so that no reply is left for
-    /// the shell.
-    pub(super) fn drain(&mut self, mut keys: &File, deadline: Instant) {
-        if is_in_background(keys) {
-            return;
+    /// Reads and throws away what comes up to the last answer, at most until the deadline, so that none is left for the
+    /// shell. It gets those that come later: they are waited for no longer.
+    pub(super) fn drain(&mut self, keys: &File, deadline: Instant) {
+        if !is_in_background(keys) {
+            self.read_up_to_last(keys, deadline);
         }
+        self.count = 0;
+    }
+
+    fn read_up_to_last(&mut self, mut keys: &File, deadline: Instant) {
         let mut buffer = [0; 4096];
         while let Some(patience) = self.patience() {
             let left = deadline.saturating_duration_since(Instant::now()).min(patience);
