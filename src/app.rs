@@ -162,33 +162,19 @@ impl Live {
             if woken.wake {
                 signals.drain();
             }
-            if signals.take_stop() {
-                self.suspend(terminal, signals, Some(Stopped::Process))?;
-            } else if signals.take_continued() {
-                // Stopped unasked, and whoever had the terminal since then left it as he liked.
-                self.suspend(terminal, signals, None)?;
+            let next = self.next(woken.keys, terminal, signals)?;
+            if let Next::Suspend(stop) = next {
+                self.suspend(terminal, signals, stop)?;
             }
             if let Some(signal) = signals.deadly() {
                 return Ok(Ending::Signal(signal));
             }
+            if next == Next::Leave {
+                return Ok(Ending::Left);
+            }
             if signals.take_resized() {
                 terminal::reach("resize")?;
                 self.resize(terminal.window()?);
-            }
-            if woken.keys {
-                match self.read_keys(terminal)? {
-                    Next::Leave => return Ok(Ending::Left),
-                    Next::Suspend => {
-                        self.suspend(terminal, signals, Some(Stopped::Group))?;
-                        continue;
-                    }
-                    Next::Stay => {}
-                }
-            } else if self.escape_due(terminal).is_some_and(|due| due <= self.now()) {
-                self.read = self.now();
-                let mut inputs = Vec::new();
-                self.parser.give_up_waiting(&mut inputs);
-                self.take_inputs(&inputs);
             }
             if let Some(frame) = renderer.finished() {
                 self.screen.take_frame(frame, self.moved_until.is_some().then(|| self.now()));
@@ -278,6 +264,26 @@ impl Live {
         self.parser.is_waiting().then_some(self.read + wait)
     }
 
+    /// What signals want, or keys if there are any. At a stop these are left to be read with the terminal's last answers.
+    fn next(&mut self, keys: bool, terminal: &mut Terminal, signals: &Signals) -> io::Result<Next> {
+        if signals.take_stop() {
+            return Ok(Next::Suspend(Some(Stopped::Process)));
+        }
+        if signals.take_continued() {
+            // Stopped unasked, and whoever had the terminal since then left it as he liked.
+            return Ok(Next::Suspend(None));
+        }
+        if keys {
+            return self.read_keys(terminal);
+        }
+        let mut inputs = Vec::new();
+        if self.escape_due(terminal).is_some_and(|due| due <= self.now()) {
+            self.read = self.now();
+            self.parser.give_up_waiting(&mut inputs);
+        }
+        Ok(self.take_inputs(&inputs))
+    }
+
     fn read_keys(&mut self, terminal: &mut Terminal) -> io::Result<Next> {
         let mut buffer = [0; 4096];
         let bytes = terminal.read(&mut buffer)?;
@@ -313,7 +319,7 @@ impl Live {
         }
         match control::command(key).map(|(command, _)| command) {
             Some(Command::Quit) => return Next::Leave,
-            Some(Command::Suspend) => return Next::Suspend,
+            Some(Command::Suspend) => return Next::Suspend(Some(Stopped::Group)),
             Some(Command::Reset) => self.reset(),
             Some(Command::Status) => self.screen.toggle_status(),
             Some(Command::Help) => self.screen.toggle_help(),
@@ -391,6 +397,7 @@ impl Live {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     Stay,
-    Suspend,
+    /// With the terminal given back; by a stop, or after one that was not ours.
+    Suspend(Option<Stopped>),
     Leave,
 }
