@@ -34,10 +34,12 @@ pub struct Options {
     pub hints: Hints,
     /// In which order changed cells are sent.
     pub order: Order,
-    /// How near a moving picture is to the wanted one.
-    pub quality: Quality,
-    /// The most bytes a second that are sent in the mean; `None`: as many as there are.
+    /// How near a moving picture is to the wanted one; `None`: exact, and equal while the link is slow.
+    pub quality: Option<Quality>,
+    /// The most bytes a second that are sent in the mean; `None`: as many as the link takes.
     pub max_rate: Option<u32>,
+    /// The most frames a second; `None`: 60. A number above zero.
+    pub max_frames: Option<f32>,
     /// How many threads trace; `None`: as many as there are cores.
     pub threads: Option<usize>,
 }
@@ -45,7 +47,7 @@ pub struct Options {
 impl Options {
     /// For a terminal of which that is known, on a link that does not compress; the rest as terminal and machine say.
     pub fn new(hints: Hints) -> Self {
-        Self { hints, order: Order::Color, quality: Quality::Exact, max_rate: None, threads: None }
+        Self { hints, order: Order::Color, quality: None, max_rate: None, max_frames: None, threads: None }
     }
 }
 
@@ -91,7 +93,7 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
     Ok(Outcome { ending, moved: (live.camera != camera).then_some(live.camera), heard })
 }
 
-/// Frames are at least this far apart.
+/// The first frame after a key already shows so much movement.
 const FRAME: Duration = Duration::from_micros(16_667);
 /// How long the rest of a key's escape sequence may take before a lone Escape is taken for the key.
 const ESCAPE_WAIT: Duration = Duration::from_millis(50);
@@ -125,6 +127,7 @@ struct Live {
 impl Live {
     fn new(camera: Camera, options: Options, window: Window) -> Self {
         let questions = Questions::needed(&options.hints);
+        let link = Link::new(options.max_rate, options.max_frames, questions.is_open());
         let capabilities = Findings::new(&options.hints, window.cell, questions.answers()).capabilities();
         let mut live = Self {
             home: camera,
@@ -137,7 +140,7 @@ impl Live {
             read: Duration::ZERO,
             motion: Motion::default(),
             screen: Screen::new(&capabilities, options.order, options.quality),
-            link: Link::new(options.max_rate),
+            link,
             options,
             start: Instant::now(),
             moved_until: None,
@@ -156,6 +159,7 @@ impl Live {
             let idle = !renderer.is_busy() && !terminal.is_sending();
             if self.stale && idle && self.now() >= self.next_frame() {
                 self.begin_frame(renderer);
+                terminal.send(self.link.probe(self.now()))?;
             }
             let timeout = self.timeout(idle && !renderer.is_busy(), terminal);
             let woken = terminal.wait(signals.wake_pipe(), timeout)?;
@@ -212,10 +216,13 @@ impl Live {
         }
     }
 
-    /// Answers change things all at once, when the last is there.
+    /// Answers to the questions change things all at once, when the last is there.
     fn take_reply(&mut self, reply: &Reply) -> Next {
-        if self.questions.take(reply) {
-            self.learn();
+        match reply {
+            // Terminals answer in order: first the questions of the start, then what ends each frame.
+            Reply::DeviceAttributes(_) if !self.questions.is_open() => self.link.answer(self.now()),
+            reply if self.questions.take(reply) => self.learn(),
+            _ => {}
         }
         Next::Stay
     }
@@ -232,14 +239,14 @@ impl Live {
 
     /// The earliest time for the next frame, and for the next look at what moves.
     fn next_frame(&self) -> Duration {
-        let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + FRAME);
+        let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.link.frame_time());
         let next = if self.stale { next(self.begun) } else { next(self.moved_until).max(next(self.begun)) };
-        next.max(self.link.free_at())
+        next.max(self.link.free_at(self.now()))
     }
 
     /// The earliest time at which the screen has bytes to send, if nothing else happens.
     fn next_bytes(&self) -> Option<Duration> {
-        self.screen.due(self.window.size).map(|due| due.max(self.link.free_at()))
+        self.screen.due(self.window.size).map(|due| due.max(self.link.free_at(self.now())))
     }
 
     fn begin_frame(&mut self, renderer: &mut Renderer) {
@@ -351,6 +358,7 @@ impl Live {
     fn suspend(&mut self, terminal: &mut Terminal, signals: &mut Signals, stop: Option<Stopped>) -> io::Result<()> {
         self.stand_still();
         self.parser = Parser::new();
+        self.link.forget();
         terminal.give_back();
         if let Some(who) = stop {
             signals.stop(who);
@@ -384,11 +392,13 @@ impl Live {
         if terminal.is_sending() || self.next_bytes().is_none_or(|due| now < due) {
             return Ok(());
         }
-        let bytes = self.screen.bytes(self.window.size, &self.camera, now, self.link.most_bytes());
+        let size = self.window.size;
+        let slow = self.link.slow(Screen::usual_bytes(size));
+        let bytes = self.screen.bytes(size, &self.camera, now, slow);
         if bytes.is_empty() {
             return Ok(());
         }
-        self.link.count(bytes.len(), now);
+        self.link.send(bytes, now);
         terminal.send(bytes)
     }
 }

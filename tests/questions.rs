@@ -92,6 +92,26 @@ fn everything() -> Vec<u8> {
     .concat()
 }
 
+/// The place in the output behind the questions of the start, which are asked again after a stop.
+fn end_of_questions(seen: &pty::Seen) -> usize {
+    let ask = b"\x1b]11;?";
+    let asked = seen.bytes().windows(ask.len()).rposition(|bytes| bytes == ask).expect("it was asked");
+    let fence = seen.bytes()[asked..].windows(FENCE.len()).position(|bytes| bytes == FENCE).expect("questions end");
+    asked + fence + FENCE.len()
+}
+
+/// The last answer to the questions of the start, and those that the frames ask for.
+fn end_answers(session: &mut Session) {
+    session.send(FENCE_ANSWER);
+    answer_frames(session);
+}
+
+/// From now on the terminal answers what the frames ask. It answers in order: so the questions before are answered.
+fn answer_frames(session: &mut Session) {
+    let from = end_of_questions(session.seen());
+    session.answer_from(from);
+}
+
 /// Nothing was pressed: the help is not open, and the eye is where it was.
 #[track_caller]
 fn nothing_was_pressed(session: &mut Session) {
@@ -115,8 +135,8 @@ fn a_terminal_that_answers_nothing_gets_its_picture_at_once() {
 fn all_answers_at_once_improve_the_picture() {
     let mut session = looking(live().size(Size::cells(80, 24).of_pixels(0, 0)));
     assert!(!session.seen().has(b"\x1b[?2026h"));
-    let answers = [&everything()[..], FENCE_ANSWER].concat();
-    session.send(&String::from_utf8_lossy(&answers).replace("6;20;10t", "6;24;10t").into_bytes());
+    session.send(&String::from_utf8_lossy(&everything()).replace("6;20;10t", "6;24;10t").into_bytes());
+    end_answers(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.4);
     assert!(session.seen().has(b"\x1b[?2026h") && session.seen().has(b"\x1b[?2026l"));
     nothing_was_pressed(&mut session);
@@ -130,7 +150,7 @@ fn answers_count_when_the_last_is_there() {
     session.send(&everything());
     let wanted = picture(Glyphs::Half, Colors::Truecolor, 2.0);
     assert!(!session.sees(Duration::from_millis(300), |seen| shows(seen.screen(), &wanted)));
-    session.send(FENCE_ANSWER);
+    end_answers(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
     leave(&mut session);
 }
@@ -139,7 +159,8 @@ fn answers_count_when_the_last_is_there() {
 fn answers_two_seconds_late_count_too() {
     let mut session = looking(live());
     assert!(!session.sees(Duration::from_secs(2), |_| false));
-    session.send(&[&everything()[..], FENCE_ANSWER].concat());
+    session.send(&everything());
+    end_answers(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
     nothing_was_pressed(&mut session);
     leave(&mut session);
@@ -160,6 +181,7 @@ fn answers_split_at_any_byte_press_no_key() {
     std::thread::sleep(Duration::from_millis(150));
     for (at, session) in sessions.iter_mut().enumerate() {
         session.send(&answers[at + 1..]);
+        answer_frames(session);
     }
     for (at, session) in sessions.iter_mut().enumerate() {
         session.send(b"i");
@@ -181,6 +203,7 @@ fn every_byte_alone_is_the_same_as_all_at_once() {
         session.send(&[byte]);
         assert!(!session.sees(Duration::from_millis(2), |_| false));
     }
+    answer_frames(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
     nothing_was_pressed(&mut session);
     leave(&mut session);
@@ -191,7 +214,7 @@ fn every_byte_alone_is_the_same_as_all_at_once() {
 fn forged_answers_change_nothing() {
     let mut session = looking(live());
     session.send(b"\x1b]11;rgb:q/q/q\x1b\\\x1bP1$rqqqm\x1b\\\x1b[?9999;1$y\x1b[6;0;0t\x1b]4;99;rgb:0/0/0\x07");
-    session.send(FENCE_ANSWER);
+    end_answers(&mut session);
     session.send(&everything());
     session.send(b"\x1b[1;9R\x1b[?1;2c");
     nothing_was_pressed(&mut session);
@@ -207,7 +230,8 @@ fn blocks_that_are_not_one_column_wide_are_not_used() {
         [(&b"\x1b[1;2R"[..], Glyphs::Half), (b"\x1b[1;3R", Glyphs::Shape), (b"\x1b[1;4R", Glyphs::Shape)]
     {
         let mut session = looking(live());
-        session.send(&[answer, FENCE_ANSWER].concat());
+        session.send(answer);
+        end_answers(&mut session);
         wait_for(&mut session, glyphs, Colors::Indexed256, 2.0);
         leave(&mut session);
     }
@@ -226,7 +250,8 @@ fn sixteen_colours_are_the_terminals_own() {
         let _ =
             write!(answers, "\x1b]4;{index};rgb:{0:02x}{0:02x}/{0:02x}{0:02x}/{1:02x}{1:02x}\x1b\\", grey, 255 - grey);
     }
-    session.send(&[answers.as_bytes(), FENCE_ANSWER].concat());
+    session.send(answers.as_bytes());
+    end_answers(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Indexed16(values), 2.0);
     leave(&mut session);
 }
@@ -237,7 +262,8 @@ fn a_light_background_turns_ink_around() {
     let mut session = start.spawn();
     let dark = picture(Glyphs::Ramp, Colors::None, 2.0);
     session.wait_for("light on dark", SOON, |seen| shows(seen.screen(), &dark));
-    session.send(&[&b"\x1b]11;rgb:ffff/ffff/ffff\x07"[..], FENCE_ANSWER].concat());
+    session.send(b"\x1b]11;rgb:ffff/ffff/ffff\x07");
+    end_answers(&mut session);
     // What was ink is blank, and the other way round.
     session.wait_for("dark on light", SOON, |seen| {
         let inked = |screen: &pty::Screen, at: usize| screen.cell(at % 80, at / 80).glyph != ' ';
@@ -257,6 +283,7 @@ fn answers_on_their_way_are_waited_for_and_none_is_left() {
     session.send(&FENCE_ANSWER[..4]);
     assert!(!session.sees(Duration::from_millis(100), |_| false));
     session.send(&FENCE_ANSWER[4..]);
+    answer_frames(&mut session);
     let start = Instant::now();
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
     assert!(start.elapsed() < Duration::from_millis(700), "the last answer ends the wait: {:?}", start.elapsed());
@@ -272,9 +299,11 @@ fn who_was_stopped_asks_again() {
     session.signal(Signal::STOP);
     session.wait_stopped(SOON);
     session.signal(Signal::CONT);
-    let asked = |seen: &pty::Seen| seen.bytes().windows(FENCE.len()).filter(|bytes| *bytes == FENCE).count();
+    let question = b"\x1bP$qm\x1b\\\x1b[0m\x1b[c";
+    let asked = |seen: &pty::Seen| seen.bytes().windows(question.len()).filter(|bytes| bytes == question).count();
     session.wait_for("the questions again", SOON, |seen| asked(seen) == 2);
-    session.send(&[&everything()[..], FENCE_ANSWER].concat());
+    session.send(&everything());
+    end_answers(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
     leave(&mut session);
 }

@@ -1,37 +1,265 @@
 //! The link to the terminal: how much may be sent, and when.
+//!
+//! The terminal is asked what it is ([`FENCE`]) after each frame. When the answer comes, the frame is through: so the
+//! answers tell how long the way there and back takes, how many bytes a second the link delivers, and how many are in
+//! flight. No more than its rate times its shortest round trip, and one frame, are ever in flight; more would only wait
+//! somewhere in between, and with it the frame that shows the next key. (Both estimates age, as in the congestion control
+//! BBR. The terminal's status, DSR 5, would be a shorter answer, but st 0.9 does not tell it.)
+//!
+//! A frame's bytes are written at once, so the link's rate shows in a single one: its bytes over what its round trip
+//! takes longer than the shortest. Frames keep a twentieth below that rate, so that what has piled up somewhere runs off,
+//! and the shortest round trip stays to be seen.
+//!
+//! Pure: it is told the time, and reads and writes nothing.
 
+use crate::terminal::FENCE;
+use std::collections::VecDeque;
 use std::time::Duration;
 
-/// How many pictures a second there are at least: what a frame may take is its share of the rate.
-const FRAMES_PER_SECOND: u32 = 10;
+mod estimates;
 
-/// A link with a highest rate, or without.
+use estimates::{Rates, RoundTrip};
+
+/// How many frames a second there are at least on a slow link: what a frame may take is its share of the rate. (A little
+/// less than a fifteenth.)
+const FRAMES_PER_SECOND: f64 = 16.0;
+/// So much of the rate is used.
+const SHARE: f64 = 0.95;
+/// So late may bytes be sent without losing their share.
+const CREDIT: Duration = Duration::from_millis(20);
+/// Frames are at least this far apart.
+const FRAME: Duration = Duration::from_micros(16_667);
+/// And so far where the terminal answers nothing.
+const SILENT_FRAME: Duration = Duration::from_micros(33_334);
+/// How long nothing is sent to a terminal that has never answered, after the first frame.
+const FIRST_PATIENCE: Duration = Duration::from_millis(500);
+/// How much later than expected an answer may be before it is taken for lost.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// The same where nothing is known of the rate yet: a whole screen may take long.
+const LONG_PATIENCE: Duration = Duration::from_secs(10);
+/// So many late answers may be waited for.
+const MOST_LOST: usize = 16;
+/// How far apart questions alone are, while frames are sent.
+const PROBE: Duration = Duration::from_secs(1);
+
+/// A link, and what is known of it.
 pub(super) struct Link {
-    /// Bytes per second.
-    max_rate: Option<u32>,
-    /// When all that was sent is through.
+    max_rate: Option<f64>,
+    frame: Duration,
+    /// Not answered yet, oldest first.
+    asked: VecDeque<Question>,
+    /// How many were given up: their answers may be late.
+    lost: usize,
+    far_end: FarEnd,
+    /// When it was last heard, if it ever was.
+    heard: Option<Duration>,
+    probed: Option<Duration>,
+    round_trip: RoundTrip,
+    rates: Rates,
+    slow: bool,
+    /// The bytes of the last frame.
+    last_frame: f64,
+    /// When all that was sent is through, at the rate that is kept.
     free_at: Duration,
+    /// The same without credit.
+    drained_at: Duration,
+}
+
+/// What is known of the terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FarEnd {
+    /// It answers, or has not had the time to.
+    Answers,
+    /// It is taken for one that does not answer.
+    Silent,
+    /// It is not to be asked: it might print the question.
+    NotAsked,
+}
+
+/// A question on its way, or its answer.
+#[derive(Clone, Copy)]
+struct Question {
+    sent: Duration,
+    /// How many bytes it ends: of a question alone, none that count.
+    bytes: usize,
+}
+
+/// What a frame may take on a slow link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Slow {
+    /// The link's rate in bytes per second.
+    pub(super) rate: f64,
+    /// The most bytes that a frame should take.
+    pub(super) most_bytes: usize,
 }
 
 impl Link {
-    pub(super) fn new(max_rate: Option<u32>) -> Self {
-        Self { max_rate, free_at: Duration::ZERO }
-    }
-
-    /// When the next bytes may be sent.
-    pub(super) fn free_at(&self) -> Duration {
-        self.free_at
-    }
-
-    /// The most that a frame should take.
-    pub(super) fn most_bytes(&self) -> Option<usize> {
-        self.max_rate.map(|rate| (rate / FRAMES_PER_SECOND) as usize)
-    }
-
-    /// So many bytes have been sent.
-    pub(super) fn count(&mut self, bytes: usize, now: Duration) {
-        if let Some(rate) = self.max_rate {
-            self.free_at = self.free_at.max(now) + Duration::from_secs_f64(bytes as f64 / f64::from(rate));
+    /// A link that is to carry at most so many bytes and frames a second, to a terminal that may be asked, or not.
+    pub(super) fn new(max_rate: Option<u32>, max_frames: Option<f32>, may_ask: bool) -> Self {
+        Self {
+            max_rate: max_rate.map(f64::from),
+            frame: max_frames.map_or(FRAME, |fps| FRAME.max(Duration::from_secs_f32(1.0 / fps))),
+            asked: VecDeque::new(),
+            lost: 0,
+            far_end: if may_ask { FarEnd::Answers } else { FarEnd::NotAsked },
+            heard: None,
+            probed: None,
+            round_trip: RoundTrip::default(),
+            rates: Rates::default(),
+            slow: false,
+            last_frame: 0.0,
+            free_at: Duration::ZERO,
+            drained_at: Duration::ZERO,
         }
     }
+
+    /// How far apart frames are at least.
+    pub(super) fn frame_time(&self) -> Duration {
+        if self.answers() { self.frame } else { self.frame.max(SILENT_FRAME) }
+    }
+
+    fn answers(&self) -> bool {
+        self.far_end == FarEnd::Answers
+    }
+
+    /// When the next bytes may be sent, if nothing is heard until then.
+    pub(super) fn free_at(&self, now: Duration) -> Duration {
+        let is_full = self.answers() && self.in_flight() > self.window();
+        // A question alone is to wait behind nothing.
+        let free_at = if self.is_probe_due(now) { self.drained_at } else { self.free_at };
+        free_at.max(if is_full { self.patience_ends() } else { Duration::ZERO })
+    }
+
+    /// Whether the link is slow for screens of so many bytes, and what a frame may take then.
+    pub(super) fn slow(&mut self, screen: usize) -> Option<Slow> {
+        let limit = self.max_rate.unwrap_or(f64::INFINITY);
+        let measured = self.rates.best();
+        let smooth = screen as f64 * FRAMES_PER_SECOND;
+        let rate = measured.map_or(f64::INFINITY, |rate| rate.bytes_per_second).min(limit);
+        // Slow as soon as a screen does not fit, and fast when two do: in between it stays what it was.
+        let is_sure = limit < smooth || measured.is_some_and(|rate| rate.is_limit);
+        self.slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.slow;
+        self.slow.then(|| Slow { rate, most_bytes: (rate / FRAMES_PER_SECOND) as usize })
+    }
+
+    /// Puts a question behind the bytes of a frame that is sent now.
+    pub(super) fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
+        self.look_at_clock(now);
+        let asks = match self.far_end {
+            FarEnd::Answers => true,
+            // It is asked again only when the last question is given up.
+            FarEnd::Silent => self.asked.is_empty(),
+            FarEnd::NotAsked => false,
+        };
+        if asks {
+            frame.extend_from_slice(FENCE);
+            self.asked.push_back(Question { sent: now, bytes: frame.len() });
+        }
+        self.last_frame = frame.len() as f64;
+        self.count(frame.len(), now);
+    }
+
+    /// A question without a frame, if it is time for one, or nothing: its round trip is the link's own, whatever the
+    /// rate.
+    pub(super) fn probe(&mut self, now: Duration) -> &'static [u8] {
+        self.look_at_clock(now);
+        if !self.is_probe_due(now) {
+            return &[];
+        }
+        self.probed = Some(now);
+        self.asked.push_back(Question { sent: now, bytes: 0 });
+        self.count(FENCE.len(), now);
+        FENCE
+    }
+
+    fn is_probe_due(&self, now: Duration) -> bool {
+        self.answers() && self.probed.is_none_or(|last| now >= last + PROBE)
+    }
+
+    /// The terminal has answered.
+    pub(super) fn answer(&mut self, now: Duration) {
+        if self.far_end == FarEnd::NotAsked {
+            return;
+        }
+        self.far_end = FarEnd::Answers;
+        self.heard = Some(now);
+        let Some(&question) = self.asked.front() else { return self.take_stray() };
+        let round_trip = now.saturating_sub(question.sent);
+        if self.round_trip.is_far_above(round_trip) {
+            return self.take_stray();
+        }
+        if self.lost > 0 && !self.round_trip.is_known() {
+            // To which of them it is nobody can say: better begun anew.
+            self.lose_all();
+            return self.take_stray();
+        }
+        self.asked.pop_front();
+        self.round_trip.take(round_trip, now);
+        let service = round_trip.saturating_sub(self.round_trip.shortest());
+        self.rates.take(question.bytes, service, now);
+    }
+
+    /// An answer to a question that was given up, or to none.
+    fn take_stray(&mut self) {
+        self.lost = self.lost.saturating_sub(1);
+    }
+
+    fn lose_all(&mut self) {
+        self.lost = MOST_LOST.min(self.lost + self.asked.len());
+        self.asked.clear();
+    }
+
+    /// What was asked will not be answered: the terminal was somebody else's in between.
+    pub(super) fn forget(&mut self) {
+        self.asked.clear();
+        self.lost = 0;
+    }
+
+    fn in_flight(&self) -> f64 {
+        self.asked.iter().map(|question| question.bytes as f64).sum()
+    }
+
+    /// How much may be in flight before another frame.
+    fn window(&self) -> f64 {
+        let Some(rate) = self.rates.best() else { return 0.0 };
+        let share = rate.bytes_per_second / FRAMES_PER_SECOND;
+        // What a frame leaves of its share others may use.
+        let spare = if self.slow { (share - self.last_frame).max(0.0) } else { 0.0 };
+        rate.bytes_per_second * self.round_trip.shortest().as_secs_f64() + spare
+    }
+
+    /// When the oldest question is taken for lost.
+    fn patience_ends(&self) -> Duration {
+        let Some(oldest) = self.asked.front() else { return Duration::MAX };
+        let patience = match self.rates.best() {
+            Some(rate) => {
+                let expected = self.in_flight() / rate.bytes_per_second;
+                PATIENCE + 4 * (self.round_trip.shortest() + Duration::try_from_secs_f64(expected).unwrap_or(PATIENCE))
+            }
+            None if self.heard.is_some() => LONG_PATIENCE,
+            None => FIRST_PATIENCE,
+        };
+        self.heard.map_or(oldest.sent, |heard| heard.max(oldest.sent)) + patience
+    }
+
+    /// Waits no longer for answers that do not come: they are lost, or there are none, or the way is another.
+    fn look_at_clock(&mut self, now: Duration) {
+        if now >= self.patience_ends() {
+            self.lose_all();
+            self.far_end = FarEnd::Silent;
+            self.round_trip = RoundTrip::default();
+        }
+    }
+
+    fn count(&mut self, bytes: usize, now: Duration) {
+        let measured = self.rates.best().filter(|rate| rate.is_limit || self.slow);
+        let measured = measured.map_or(f64::INFINITY, |rate| SHARE * rate.bytes_per_second);
+        let rate = measured.min(self.max_rate.unwrap_or(f64::INFINITY));
+        let takes = Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(PATIENCE);
+        self.free_at = self.free_at.max(now.saturating_sub(CREDIT)) + takes;
+        self.drained_at = self.drained_at.max(now) + takes;
+    }
 }
+
+#[cfg(test)]
+mod tests;

@@ -56,6 +56,8 @@ pub(super) struct Status {
     /// Frames shown per second, while something moves.
     pub(super) shown: Option<f32>,
     pub(super) rays: u64,
+    /// The rate of the link if it is slow, in bytes per second.
+    pub(super) slow: Option<f64>,
     pub(super) eye: Vec3,
 }
 
@@ -72,13 +74,18 @@ impl Status {
     fn text(&self) -> String {
         let Self { cells, eye, .. } = self;
         let shown = self.shown.map_or_else(|| "-".to_owned(), |fps| format!("{fps:.0}"));
+        // What holds the frames up.
+        let stages = match self.slow {
+            Some(rate) => format!("slow link {}B/s", short(rate)),
+            None => {
+                format!("trace {} encode {}", short(per_second(1.0, self.trace)), short(per_second(1.0, self.encode)))
+            }
+        };
         format!(
-            " {}x{}  {} rays/s  trace {} encode {} shown {shown} fps  eye {:.2} {:.2} {:.2}",
+            " {}x{}  {} rays/s  {stages} shown {shown} fps  eye {:.2} {:.2} {:.2}",
             cells.columns,
             cells.rows,
             short(per_second(self.rays as f64, self.trace)),
-            short(per_second(1.0, self.trace)),
-            short(per_second(1.0, self.encode)),
             eye.x,
             eye.y,
             eye.z,

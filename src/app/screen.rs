@@ -1,5 +1,6 @@
 //! The last frame with what lies over it, and the bytes that bring the terminal there.
 
+use super::link::Slow;
 use super::panels;
 use super::renderer::Frame;
 use crate::camera::Camera;
@@ -16,11 +17,14 @@ use std::time::{Duration, Instant};
 /// which tmux throws none away.
 const BREATH: Duration = Duration::from_millis(33);
 
+/// What a frame in which all moves takes for each cell, about.
+const BYTES_PER_CELL: usize = 8;
+
 /// What the user sees.
 pub(super) struct Screen {
     painter: Painter,
     encoder: Encoder,
-    quality: Quality,
+    quality: Option<Quality>,
     frame: Option<Frame>,
     status: bool,
     help: bool,
@@ -35,7 +39,7 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    pub(super) fn new(capabilities: &Capabilities, order: Order, quality: Quality) -> Self {
+    pub(super) fn new(capabilities: &Capabilities, order: Order, quality: Option<Quality>) -> Self {
         Self {
             painter: painter(capabilities),
             encoder: encoder(Encoder::new().with_order(order), capabilities),
@@ -49,6 +53,11 @@ impl Screen {
             encode: Duration::ZERO,
             bytes: Vec::new(),
         }
+    }
+
+    /// What a frame in which all moves takes, about.
+    pub(super) fn usual_bytes(size: Size) -> usize {
+        BYTES_PER_CELL * size.cell_count()
     }
 
     /// More is known of the terminal than before.
@@ -108,24 +117,26 @@ impl Screen {
     }
 
     /// The bytes that are to be sent now.
-    pub(super) fn bytes(&mut self, size: Size, camera: &Camera, now: Duration, most_bytes: Option<usize>) -> &[u8] {
+    pub(super) fn bytes(&mut self, size: Size, camera: &Camera, now: Duration, slow: Option<Slow>) -> &mut Vec<u8> {
         self.bytes.clear();
         if self.is_frame_of(size)
             && let Some(frame) = &self.frame
         {
             let start = Instant::now();
             let mut grid = self.painter.grid(&frame.picture);
-            self.lay_panels_over(&mut grid, frame, camera);
-            let allowance = Allowance { quality: self.quality, now, most_bytes };
+            self.lay_panels_over(&mut grid, frame, camera, slow);
+            let usual = if slow.is_some() { Quality::Equal } else { Quality::Exact };
+            let most_bytes = slow.map(|slow| slow.most_bytes);
+            let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, most_bytes };
             self.encoder.encode_within(&grid, allowance, &mut self.bytes);
             self.encode = start.elapsed();
             self.changed = false;
             self.written = now;
         }
-        &self.bytes
+        &mut self.bytes
     }
 
-    fn lay_panels_over(&self, grid: &mut Grid, frame: &Frame, camera: &Camera) {
+    fn lay_panels_over(&self, grid: &mut Grid, frame: &Frame, camera: &Camera, slow: Option<Slow>) {
         let Size { columns, rows } = grid.size();
         let area = Rect::new(0, 0, columns, rows);
         let look = panels::Look::of(self.painter.mode());
@@ -141,6 +152,7 @@ impl Screen {
                 encode: self.encode,
                 shown: self.pace.frames_per_second,
                 rays: frame.rays,
+                slow: slow.map(|slow| slow.rate),
                 eye: camera.pose().eye,
             };
             lay(panels::status_area(area), &|area, buffer| {

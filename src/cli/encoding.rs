@@ -22,7 +22,8 @@ pub(super) struct EncodingArgs {
     /// The link compresses, as ssh -C does: --order raster
     #[arg(long)]
     compressed_link: bool,
-    /// How near a moving picture is to the right one; it decides bytes, not rays [default: exact]
+    /// How near a moving picture is to the right one; it decides bytes, not rays [default: exact; live, on a link found
+    /// slow, equal]
     #[arg(long, value_name = "QUALITY")]
     quality: Option<Quality>,
     /// The most bytes per second in the mean, such as 50k or 2M; what is most wrong is sent first
@@ -57,12 +58,13 @@ impl EncodingArgs {
         }
     }
 
-    pub(super) fn quality(&self) -> encode::Quality {
-        match self.quality {
-            None | Some(Quality::Exact) => encode::Quality::Exact,
-            Some(Quality::Equal) => encode::Quality::Equal,
-            Some(Quality::Fast) => encode::Quality::Fast,
-        }
+    /// If it was said.
+    pub(super) fn quality(&self) -> Option<encode::Quality> {
+        self.quality.map(|quality| match quality {
+            Quality::Exact => encode::Quality::Exact,
+            Quality::Equal => encode::Quality::Equal,
+            Quality::Fast => encode::Quality::Fast,
+        })
     }
 
     /// In bytes per second.

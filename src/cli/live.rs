@@ -31,6 +31,9 @@ pub(super) struct LiveArgs {
     cell_aspect: Option<f32>,
     #[command(flatten)]
     encoding: EncodingArgs,
+    /// The most frames per second [default: 60]
+    #[arg(long, value_name = "N", value_parser = parse_fps)]
+    fps: Option<f32>,
     /// Do not print the camera on leaving
     #[arg(long)]
     quiet: bool,
@@ -42,9 +45,16 @@ impl LiveArgs {
         options.order = self.encoding.order();
         options.quality = self.encoding.quality();
         options.max_rate = self.encoding.max_rate();
+        options.max_frames = self.fps;
         options.threads = self.scene.threads.map(usize::from);
         options
     }
+}
+
+/// Frames per second: more than one in a hundred seconds, so that a typing error does not look like a crash.
+fn parse_fps(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|fps| (0.01..=1_000.0).contains(fps));
+    number.ok_or_else(|| "expected frames per second, from 0.01 to 1000".to_owned())
 }
 
 pub(super) fn run(args: &LiveArgs) -> Done {

@@ -178,7 +178,10 @@ impl RecordArgs {
                 // Players draw the two halves of a cell alike.
                 let encoder = Encoder::new().with_order(self.encoding.order()).with_upper_half(true);
                 let cast = Cast::begin(out, size, encoder, self.fps)?;
-                Sink::Cast(cast.with_quality(self.encoding.quality()).with_max_rate(self.encoding.max_rate()))
+                Sink::Cast(
+                    cast.with_quality(self.encoding.quality().unwrap_or_default())
+                        .with_max_rate(self.encoding.max_rate()),
+                )
             }
             Format::Gif(path) => {
                 let out = BufWriter::new(File::create(path)?);

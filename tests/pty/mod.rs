@@ -410,6 +410,12 @@ impl Session {
         self.answer();
     }
 
+    /// A mute terminal answers DA1 after all: from this byte of its output on, those from before and those to come.
+    pub(crate) fn answer_from(&mut self, from: usize) {
+        self.unanswered = Some(from);
+        self.pump();
+    }
+
     /// Answers each DA1, whole or in pieces in the output, once.
     fn answer(&mut self) {
         let Some(from) = self.unanswered else { return };

@@ -1,0 +1,89 @@
+//! What the answers say of a link: its shortest round trip and its rate. Both are of the last moments: links change.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// For so long at least, and at most twice that, the shortest round trip is remembered.
+const ROUND_TRIP_AGE: Duration = Duration::from_secs(5);
+/// For so long the highest rate is, if there are others.
+const RATE_AGE: Duration = Duration::from_millis(500);
+/// A frame that takes less than this has not been held up by the link's rate: all that is sure is that it is no less.
+const SHORT: Duration = Duration::from_millis(33);
+/// So much of a short time may be chance.
+const CHANCE: Duration = Duration::from_millis(5);
+/// A frame of fewer bytes says nothing of the rate, unless the rate is so low that it takes long.
+const TELLING: f64 = 512.0;
+
+/// The shortest round trip.
+#[derive(Default)]
+pub(super) struct RoundTrip {
+    /// The shortest of the age before this one, and of this one.
+    shortest: [Option<Duration>; 2],
+    /// When this age began.
+    since: Duration,
+}
+
+impl RoundTrip {
+    pub(super) fn take(&mut self, round_trip: Duration, now: Duration) {
+        if now.saturating_sub(self.since) >= ROUND_TRIP_AGE {
+            self.shortest = [self.shortest[1], None];
+            self.since = now;
+        }
+        self.shortest[1] = Some(self.shortest[1].map_or(round_trip, |shortest| shortest.min(round_trip)));
+    }
+
+    /// Whether anything is known.
+    pub(super) fn is_known(&self) -> bool {
+        self.shortest[1].is_some()
+    }
+
+    /// Whether one so short is that of another question.
+    pub(super) fn is_far_above(&self, round_trip: Duration) -> bool {
+        round_trip + CHANCE < self.shortest().mul_f64(0.9)
+    }
+
+    /// Zero if nothing is known.
+    pub(super) fn shortest(&self) -> Duration {
+        self.shortest.into_iter().flatten().min().unwrap_or_default()
+    }
+}
+
+/// A rate, and what it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rate {
+    pub(super) bytes_per_second: f64,
+    /// Whether the link does not deliver more; otherwise nobody has tried yet.
+    pub(super) is_limit: bool,
+}
+
+/// The rates of the last frames.
+#[derive(Default)]
+pub(super) struct Rates {
+    /// With the time of each.
+    rates: VecDeque<(Duration, Rate)>,
+}
+
+impl Rates {
+    /// So many bytes took so long, beside the round trip.
+    pub(super) fn take(&mut self, bytes: usize, service: Duration, now: Duration) {
+        let bytes = bytes as f64;
+        let best = self.best();
+        if bytes < best.map_or(TELLING, |best| TELLING.min(best.bytes_per_second / 50.0)) {
+            return;
+        }
+        let rate = if service >= SHORT {
+            Rate { bytes_per_second: bytes / service.as_secs_f64(), is_limit: true }
+        } else {
+            let shown = Rate { bytes_per_second: bytes / (service + CHANCE).as_secs_f64(), is_limit: false };
+            best.filter(|best| best.bytes_per_second >= shown.bytes_per_second).unwrap_or(shown)
+        };
+        self.rates.retain(|&(at, _)| now.saturating_sub(at) < RATE_AGE);
+        self.rates.push_back((now, rate));
+    }
+
+    /// The highest of the last moments.
+    pub(super) fn best(&self) -> Option<Rate> {
+        let rates = self.rates.iter().map(|&(_, rate)| rate);
+        rates.max_by(|a, b| a.bytes_per_second.total_cmp(&b.bytes_per_second))
+    }
+}

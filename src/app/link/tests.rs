@@ -1,0 +1,372 @@
+//! The link against a simulated one: a rate, a round trip, and a terminal that answers or not.
+
+use super::*;
+
+const SCREEN: usize = 80 * 24 * 8;
+
+fn ms(milliseconds: u64) -> Duration {
+    Duration::from_millis(milliseconds)
+}
+
+/// A frame that has been sent.
+struct Sent {
+    at: Duration,
+    bytes: usize,
+    /// How many of them the link has not passed on yet.
+    left: f64,
+    /// When its last byte came to the terminal.
+    seen: Option<Duration>,
+    is_frame: bool,
+    asks: bool,
+}
+
+/// A sender that always has something to show, and what it sends through.
+struct World {
+    link: Link,
+    rate: f64,
+    round_trip: Duration,
+    answers: bool,
+    /// How large frames are, unless the link is slow and they are to fit.
+    frame: usize,
+    fits: bool,
+    /// How much of what they may take they do.
+    fill: f64,
+    now: Duration,
+    begun: Duration,
+    sent: Vec<Sent>,
+    /// When answers come, and to how many bytes.
+    answers_due: VecDeque<(Duration, usize)>,
+    in_flight: usize,
+    /// The most bytes in flight beyond the link's rate times its round trip and one frame.
+    excess: f64,
+}
+
+impl World {
+    fn new(rate: f64, round_trip: Duration) -> Self {
+        Self {
+            link: Link::new(None, None, true),
+            rate,
+            round_trip,
+            answers: true,
+            frame: SCREEN,
+            fits: true,
+            fill: 1.0,
+            now: ms(1_000),
+            begun: Duration::ZERO,
+            sent: Vec::new(),
+            answers_due: VecDeque::new(),
+            in_flight: 0,
+            excess: f64::MIN,
+        }
+    }
+
+    fn run(&mut self, time: Duration) {
+        let end = self.now + time;
+        while self.now < end {
+            self.now += ms(1);
+            self.pass_on();
+            self.hear();
+            self.send();
+        }
+    }
+
+    fn ago(&self, milliseconds: u64) -> Duration {
+        self.now.saturating_sub(ms(milliseconds))
+    }
+
+    /// Nothing is sent.
+    fn rest(&mut self, time: Duration) {
+        let end = self.now + time;
+        while self.now < end {
+            self.now += ms(1);
+            self.pass_on();
+            self.hear();
+        }
+    }
+
+    /// The link passes on, in the order of sending.
+    fn pass_on(&mut self) {
+        let mut room = self.rate / 1_000.0;
+        for sent in self.sent.iter_mut().filter(|sent| sent.seen.is_none()) {
+            let taken = room.min(sent.left);
+            sent.left -= taken;
+            room -= taken;
+            if sent.left > 0.0 {
+                break;
+            }
+            sent.seen = Some(self.now + self.round_trip / 2);
+            if self.answers && sent.asks {
+                self.answers_due.push_back((self.now + self.round_trip, sent.bytes));
+            }
+        }
+    }
+
+    fn hear(&mut self) {
+        while self.answers_due.front().is_some_and(|answer| answer.0 <= self.now) {
+            let Some((_, bytes)) = self.answers_due.pop_front() else { break };
+            self.in_flight -= bytes;
+            self.link.answer(self.now);
+        }
+    }
+
+    fn send(&mut self) {
+        if self.now < self.link.free_at(self.now).max(self.begun + self.link.frame_time()) {
+            return;
+        }
+        self.begun = self.now;
+        let question = self.link.probe(self.now);
+        if !question.is_empty() {
+            self.push(question.len(), false, true);
+        }
+        let slow = self.link.slow(SCREEN);
+        let most = slow.filter(|_| self.fits).map_or(self.frame, |slow| {
+            let most = (slow.most_bytes as f64 * self.fill) as usize;
+            most.min(self.frame)
+        });
+        let mut frame = vec![b'x'; most.saturating_sub(FENCE.len()).max(1)];
+        self.link.send(&mut frame, self.now);
+        let asks = frame.ends_with(FENCE);
+        self.push(frame.len(), true, asks);
+        let one_frame = (frame.len() as f64).max(self.rate / 15.0);
+        let may_be = self.rate * self.round_trip.as_secs_f64() + one_frame;
+        self.excess = self.excess.max(self.in_flight as f64 - may_be);
+    }
+
+    fn push(&mut self, bytes: usize, is_frame: bool, asks: bool) {
+        self.in_flight += if asks { bytes } else { 0 };
+        self.sent.push(Sent { at: self.now, bytes, left: bytes as f64, seen: None, is_frame, asks });
+    }
+
+    /// How long after it was pressed a key is seen.
+    fn key(&self, pressed: Duration) -> Duration {
+        let heard = pressed + self.round_trip / 2;
+        let frame = self.sent.iter().find(|sent| sent.is_frame && sent.at > heard);
+        frame.and_then(|frame| frame.seen).map_or(Duration::MAX, |seen| seen.saturating_sub(pressed))
+    }
+
+    /// The median and the worst of a hundred.
+    fn keys(&self, from: Duration, to: Duration) -> [Duration; 2] {
+        let mut times: Vec<_> =
+            (from.as_millis()..to.as_millis()).step_by(7).map(|at| self.key(ms(at as u64))).collect();
+        times.sort();
+        [times[times.len() / 2], times[times.len() * 99 / 100]]
+    }
+
+    /// Frames per second, and the share of the link that was used.
+    fn throughput(&self, from: Duration, to: Duration) -> [f64; 2] {
+        let seconds = to.saturating_sub(from).as_secs_f64();
+        let sent = || self.sent.iter().filter(|sent| (from..to).contains(&sent.at));
+        let bytes: usize = sent().map(|sent| sent.bytes).sum();
+        [sent().filter(|sent| sent.is_frame).count() as f64 / seconds, bytes as f64 / seconds / self.rate]
+    }
+}
+
+#[test]
+fn keys_are_soon_seen_at_full_throughput() {
+    for (frame, fits, p50, p99) in [(SCREEN, true, 310, 400), (4_000, false, 420, 480)] {
+        let mut world = World { frame, fits, ..World::new(50_000.0, ms(200)) };
+        world.run(ms(3_000));
+        world.excess = f64::MIN;
+        let from = world.now;
+        world.run(ms(40_000));
+        let to = world.ago(2_000);
+        let [median, worst] = world.keys(from, to);
+        let [fps, share] = world.throughput(from, to);
+        assert!(median <= ms(p50) && worst <= ms(p99), "{frame}: p50 {median:?} p99 {worst:?}");
+        assert!(fps >= 10.0 && share >= 0.85, "{frame}: {fps} fps, {share} of the link");
+        assert!(world.excess <= 0.0, "{frame}: {} bytes too many in flight", world.excess);
+    }
+}
+
+/// As the encoder leaves them: what does not fit is left out in steps.
+#[test]
+fn frames_below_their_share_fill_the_link_too() {
+    for fill in [0.75, 0.8, 0.83, 0.9] {
+        let mut world = World { fill, ..World::new(50_000.0, ms(200)) };
+        world.run(ms(3_000));
+        world.excess = f64::MIN;
+        let from = world.now;
+        world.run(ms(20_000));
+        let [_, share] = world.throughput(from, world.now);
+        assert!(share >= 0.88, "{share} of the link with {fill} of each frame");
+        assert!(world.excess <= 0.0, "{} bytes too many in flight", world.excess);
+    }
+}
+
+#[test]
+fn any_link_is_used_and_never_overfilled() {
+    for rate in [3_000.0, 20_000.0, 80_000.0, 200_000.0] {
+        for round_trip in [5, 40, 90, 130, 350] {
+            let mut world = World::new(rate, ms(round_trip));
+            world.run(ms(12_000));
+            world.excess = f64::MIN;
+            let from = world.now;
+            world.run(ms(20_000));
+            let to = world.ago(3_000);
+            let [_, worst] = world.keys(from, to);
+            let [fps, share] = world.throughput(from, to);
+            let what = format!("{rate} B/s, {round_trip} ms: p99 {worst:?}, {fps} fps, {share}");
+            assert!(worst <= ms(round_trip + 200), "{what}");
+            // Frames are whole: where the round trip is about as long as one, only every other may be in flight.
+            assert!(fps >= 9.0 && share >= 0.58, "{what}");
+            assert!(world.excess <= 0.0, "{what}: {} too many", world.excess);
+        }
+    }
+}
+
+#[test]
+fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
+    let mut world = World::new(50_000.0, ms(200));
+    world.run(ms(10_000));
+    world.rate /= 10.0;
+    let dropped = world.now;
+    world.run(ms(20_000));
+    let late = (0..15_000).rev().find(|&at| world.key(dropped + ms(at)) > ms(400)).unwrap_or(0);
+    // What was in flight when it became known takes 2.2 s to run off.
+    assert!(late <= 3_000, "{late} ms");
+}
+
+#[test]
+fn a_link_that_becomes_fast_is_fast_soon() {
+    let mut world = World::new(20_000.0, ms(100));
+    world.run(ms(5_000));
+    assert!(world.link.slow(SCREEN).is_some());
+    world.rate = 1e8;
+    world.run(ms(3_000));
+    assert_eq!(world.link.slow(SCREEN), None);
+    let [fps, _] = world.throughput(world.ago(1_000), world.now);
+    assert!(fps > 55.0, "{fps} fps");
+}
+
+/// Few bytes in a frame, and a terminal that answers only when it draws.
+#[test]
+fn a_fast_link_is_never_slow() {
+    for frame in [40, 700, SCREEN] {
+        for round_trip in [0, 16, 30, 120] {
+            let mut world = World { frame, ..World::new(1e7, ms(round_trip)) };
+            world.run(ms(2_000));
+            assert_eq!(world.link.slow(SCREEN), None, "{frame} bytes, {round_trip} ms");
+            let [fps, _] = world.throughput(world.ago(1_000), world.now);
+            assert!(fps > if round_trip < 17 { 55.0 } else { 7.0 }, "{frame} bytes, {round_trip} ms: {fps} fps");
+        }
+    }
+}
+
+#[test]
+fn a_pause_does_not_make_a_link_slow_for_long() {
+    let mut world = World { frame: 2_000, ..World::new(1e7, ms(2)) };
+    world.run(ms(1_000));
+    world.rate = 1.0;
+    world.run(ms(400));
+    world.rate = 1e7;
+    world.run(ms(100));
+    assert_eq!(world.link.slow(SCREEN), None);
+}
+
+/// The first picture comes at once, what follows half a second later, and thirty times a second.
+#[test]
+fn a_terminal_that_never_answers_gets_thirty_frames_a_second() {
+    let mut world = World { answers: false, ..World::new(1e7, ms(2)) };
+    world.run(ms(500));
+    assert_eq!(world.sent.iter().filter(|sent| sent.is_frame).count(), 1);
+    world.run(ms(2_500));
+    let [fps, _] = world.throughput(world.ago(2_000), world.now);
+    assert!((28.0..=30.1).contains(&fps), "{fps} fps");
+    assert_eq!(world.link.slow(SCREEN), None);
+    assert!(world.link.lost + world.link.asked.len() <= 8, "nobody waits for many answers");
+    // It has been slow to start with.
+    world.answers = true;
+    world.run(ms(2_000));
+    let [fps, _] = world.throughput(world.ago(1_000), world.now);
+    assert!(fps > 55.0, "{fps} fps");
+}
+
+#[test]
+fn a_terminal_that_falls_silent_is_waited_for_a_while() {
+    let mut world = World::new(1e7, ms(20));
+    world.run(ms(1_000));
+    world.answers = false;
+    world.run(ms(4_000));
+    let [fps, _] = world.throughput(world.ago(2_000), world.now);
+    assert!((28.0..=30.1).contains(&fps), "{fps} fps");
+}
+
+#[test]
+fn a_lost_answer_is_forgotten() {
+    let mut world = World { frame: 2_000, ..World::new(1e7, ms(20)) };
+    world.run(ms(1_000));
+    let lost = world.answers_due.pop_front();
+    assert!(lost.is_some());
+    world.run(ms(3_000));
+    let [fps, _] = world.throughput(world.ago(1_000), world.now);
+    assert!(fps > 25.0, "{fps} fps");
+}
+
+/// The first answer comes when the terminal is taken for one that does not answer.
+#[test]
+fn a_very_long_way_is_taken_for_silence_only_at_first() {
+    let mut world = World::new(200_000.0, ms(900));
+    world.run(ms(5_000));
+    world.rest(ms(5_000));
+    world.run(ms(5_000));
+    world.excess = f64::MIN;
+    let from = world.now;
+    world.run(ms(10_000));
+    let to = world.ago(3_000);
+    let [_, worst] = world.keys(from, to);
+    let [fps, share] = world.throughput(from, to);
+    assert!(worst <= ms(1_150), "{worst:?}");
+    assert!(fps >= 10.0 && share >= 0.8, "{fps} fps, {share} of the link");
+}
+
+/// Answers that nobody asked for, and twice the same.
+#[test]
+fn answers_too_many_do_no_lasting_harm() {
+    let mut world = World::new(50_000.0, ms(200));
+    world.run(ms(5_000));
+    for _ in 0..40 {
+        world.link.answer(world.now);
+        world.run(ms(37));
+    }
+    // Each answer is taken for that to another frame until there is a pause.
+    world.rest(ms(5_000));
+    world.run(ms(7_000));
+    let from = world.now;
+    world.run(ms(10_000));
+    let to = world.ago(2_000);
+    let [_, worst] = world.keys(from, to);
+    let [fps, share] = world.throughput(from, to);
+    assert!(worst <= ms(400), "{worst:?}");
+    assert!(fps >= 10.0 && share >= 0.8, "{fps} fps, {share} of the link");
+}
+
+#[test]
+fn a_longer_way_is_noticed() {
+    let mut world = World::new(50_000.0, ms(100));
+    world.run(ms(5_000));
+    world.round_trip = ms(300);
+    world.run(ms(15_000));
+    let from = world.now;
+    world.run(ms(10_000));
+    let to = world.ago(2_000);
+    let [fps, share] = world.throughput(from, to);
+    assert!(fps >= 10.0 && share >= 0.8, "{fps} fps, {share} of the link");
+}
+
+#[test]
+fn caps_are_kept() {
+    for rate in [5_000, 50_000, 200_000, 1_000_000] {
+        let mut world = World { link: Link::new(Some(rate), None, true), ..World::new(1e8, ms(10)) };
+        world.run(ms(3_000));
+        let [_, share] = world.throughput(world.ago(2_000), world.now);
+        let share = share * 1e8 / f64::from(rate);
+        let most = SCREEN as f64 * 60.0 / f64::from(rate);
+        assert!((0.95 * most.min(1.0)..=1.05).contains(&share), "{share} of {rate} B/s");
+    }
+    for cap in [5.0, 24.0, 60.0] {
+        let mut world = World { link: Link::new(None, Some(cap), true), ..World::new(1e8, ms(1)) };
+        world.run(ms(3_000));
+        let [fps, _] = world.throughput(world.ago(2_000), world.now);
+        assert!((0.9 * f64::from(cap)..=1.05 * f64::from(cap)).contains(&fps), "{fps} fps of {cap}");
+    }
+}
