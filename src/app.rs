@@ -394,7 +394,7 @@ impl Live {
         }
         let size = self.window.size;
         let slow = self.link.slow(Screen::usual_bytes(size));
-        let bytes = self.screen.bytes(size, &self.camera, now, slow);
+        let bytes = self.screen.bytes(size, now, slow);
         if bytes.is_empty() {
             return Ok(());
         }

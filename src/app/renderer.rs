@@ -27,6 +27,8 @@ pub(super) struct Job {
 
 /// A frame that is done.
 pub(super) struct Frame {
+    /// From where it is seen.
+    pub(super) camera: Camera,
     pub(super) picture: Picture,
     /// How many rays it took.
     pub(super) rays: u64,
@@ -113,7 +115,8 @@ fn trace(pool: &ThreadPool, cancelled: &AtomicBool, scene: &Scene, job: &Job) ->
         let start = Instant::now();
         let rendered = render_unless(cancelled, scene, &job.camera, job.resolution, NonZeroU32::MIN)?;
         let trace = start.elapsed();
-        Some(Frame { picture: tone(&rendered.framebuffer, scene), rays: rendered.rays, trace })
+        let picture = tone(&rendered.framebuffer, scene);
+        Some(Frame { camera: job.camera, picture, rays: rendered.rays, trace })
     })
 }
 

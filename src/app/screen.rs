@@ -3,7 +3,6 @@
 use super::link::Slow;
 use super::panels;
 use super::renderer::Frame;
-use crate::camera::Camera;
 use crate::capabilities::{Capabilities, Colors};
 use crate::cell::{self, Painter};
 use crate::encode::{Allowance, Encoder, Order, Quality};
@@ -117,14 +116,14 @@ impl Screen {
     }
 
     /// The bytes that are to be sent now.
-    pub(super) fn bytes(&mut self, size: Size, camera: &Camera, now: Duration, slow: Option<Slow>) -> &mut Vec<u8> {
+    pub(super) fn bytes(&mut self, size: Size, now: Duration, slow: Option<Slow>) -> &mut Vec<u8> {
         self.bytes.clear();
         if self.is_frame_of(size)
             && let Some(frame) = &self.frame
         {
             let start = Instant::now();
             let mut grid = self.painter.grid(&frame.picture);
-            self.lay_panels_over(&mut grid, frame, camera, slow);
+            self.lay_panels_over(&mut grid, frame, slow);
             let usual = if slow.is_some() { Quality::Equal } else { Quality::Exact };
             let most_bytes = slow.map(|slow| slow.most_bytes);
             let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, most_bytes };
@@ -136,7 +135,7 @@ impl Screen {
         &mut self.bytes
     }
 
-    fn lay_panels_over(&self, grid: &mut Grid, frame: &Frame, camera: &Camera, slow: Option<Slow>) {
+    fn lay_panels_over(&self, grid: &mut Grid, frame: &Frame, slow: Option<Slow>) {
         let Size { columns, rows } = grid.size();
         let area = Rect::new(0, 0, columns, rows);
         let look = panels::Look::of(self.painter.mode());
@@ -153,7 +152,7 @@ impl Screen {
                 shown: self.pace.frames_per_second,
                 rays: frame.rays,
                 slow: slow.map(|slow| slow.rate),
-                eye: camera.pose().eye,
+                eye: frame.camera.pose().eye,
             };
             lay(panels::status_area(area), &|area, buffer| {
                 status.draw(look, area, buffer);
