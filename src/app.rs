@@ -155,13 +155,14 @@ impl Live {
         loop {
             self.move_camera();
             self.panic_if_asked(renderer);
+            self.present(terminal, renderer)?;
             // Nothing is rendered that cannot be sent.
             let idle = !renderer.is_busy() && !terminal.is_sending();
             if self.stale && idle && self.now() >= self.next_frame() {
                 self.begin_frame(renderer);
                 terminal.send(self.link.probe(self.now()))?;
             }
-            let timeout = self.timeout(idle && !renderer.is_busy(), terminal);
+            let timeout = self.timeout(terminal, renderer);
             let woken = terminal.wait(signals.wake_pipe(), timeout)?;
             if woken.wake {
                 signals.drain();
@@ -183,7 +184,6 @@ impl Live {
             if let Some(frame) = renderer.finished() {
                 self.screen.take_frame(frame, self.moved_until.is_some().then(|| self.now()));
             }
-            self.present(terminal)?;
         }
     }
 
@@ -244,9 +244,11 @@ impl Live {
         next.max(self.link.free_at(self.now()))
     }
 
-    /// The earliest time at which the screen has bytes to send, if nothing else happens.
-    fn next_bytes(&self) -> Option<Duration> {
-        self.screen.due(self.window.size).map(|due| due.max(self.link.free_at(self.now())))
+    /// The earliest time at which the screen has bytes to send, if nothing else happens. What would make a picture better
+    /// waits while a newer one is on its way.
+    fn next_bytes(&self, renderer: &Renderer) -> Option<Duration> {
+        let lasts = !self.stale && !renderer.is_busy();
+        self.screen.due(self.window.size, lasts).map(|due| due.max(self.link.free_at(self.now())))
     }
 
     fn begin_frame(&mut self, renderer: &mut Renderer) {
@@ -256,13 +258,12 @@ impl Live {
     }
 
     /// How long there is nothing to do if nobody wakes us: for ever when nothing moves.
-    fn timeout(&self, idle: bool, terminal: &Terminal) -> Option<Duration> {
-        let frame = (self.stale || self.moved_until.is_some()) && idle;
-        let until_frame = frame.then(|| self.next_frame().saturating_sub(self.now()));
-        let until_escape = self.escape_due(terminal).map(|due| due.saturating_sub(self.now()));
-        let until_bytes =
-            self.next_bytes().map(|due| due.saturating_sub(self.now())).filter(|_| !terminal.is_sending());
-        until_frame.into_iter().chain(until_escape).chain(until_bytes).min()
+    fn timeout(&self, terminal: &Terminal, renderer: &Renderer) -> Option<Duration> {
+        let moves = self.stale || self.moved_until.is_some();
+        let frame = (moves && !renderer.is_busy()).then(|| self.next_frame());
+        let sent = [frame, self.next_bytes(renderer)].into_iter().filter(|_| !terminal.is_sending());
+        let next = sent.chain([self.escape_due(terminal)]).flatten().min()?;
+        Some(next.saturating_sub(self.now()))
     }
 
     /// When half a sequence is taken for all that there is of it, if there is one.
@@ -387,9 +388,9 @@ impl Live {
     }
 
     /// Brings the screen up to date: nothing is written if it is, or while the terminal is behind.
-    fn present(&mut self, terminal: &mut Terminal) -> io::Result<()> {
+    fn present(&mut self, terminal: &mut Terminal, renderer: &Renderer) -> io::Result<()> {
         let now = self.now();
-        if terminal.is_sending() || self.next_bytes().is_none_or(|due| now < due) {
+        if terminal.is_sending() || self.next_bytes(renderer).is_none_or(|due| now < due) {
             return Ok(());
         }
         let size = self.window.size;

@@ -94,14 +94,18 @@ fn a_key_is_soon_seen_on_a_slow_link() {
     let bytes: usize = frames.iter().map(|frame| frame.bytes).sum();
     let largest = frames.iter().map(|frame| frame.bytes).max().unwrap_or(0);
     let (fps, share) = (frames.len() as f64 / seconds, bytes as f64 / seconds / SLOW.rate);
+    // The others make the last picture better.
+    let new = frames.windows(2).filter(|pair| eye(&pair[0].status) != eye(&pair[1].status)).count();
     let (p50, p99) = (percentile(&times, 0.5), percentile(&times, 0.99));
     println!("{} keys: p50 {p50:?} p99 {p99:?} max {:?}", times.len(), percentile(&times, 1.0));
     println!("{fps:.1} frames/s, {:.1} % of the link, frames of {largest} bytes at most", 100.0 * share);
+    println!("{new} of {} frames are of a new picture", frames.len());
     println!("in flight beyond the formula: {:.0} bytes", relay.excess);
     println!("{}", relay.frames.last().expect("there are frames").status);
     assert!(p50 <= ms(310).mul_f64(SLACK), "p50 {p50:?}");
     assert!(p99 <= ms(400).mul_f64(SLACK), "p99 {p99:?}");
     assert!(fps >= 10.0 / SLACK, "{fps} frames/s");
+    assert!(new * 10 >= frames.len() * 9, "{new} of {} frames are of a new picture", frames.len());
     assert!(share >= 0.85 / SLACK, "{share} of the link");
     assert!(largest as f64 <= SLOW.rate / 15.0 * 1.1, "a frame of {largest} bytes");
     // What the link's own delays seem to be is measured, too: on a busy machine they are longer.

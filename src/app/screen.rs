@@ -101,12 +101,15 @@ impl Screen {
     }
 
     /// When there are bytes to send: never, if all is shown as it should be, or before the first frame of the wanted size
-    /// is there.
-    pub(super) fn due(&self, size: Size) -> Option<Duration> {
+    /// is there. What is shown already is made better only if it is to last.
+    pub(super) fn due(&self, size: Size, lasts: bool) -> Option<Duration> {
         if !self.is_frame_of(size) {
             return None;
         }
-        if self.changed { Some(Duration::ZERO) } else { Some(self.encoder.due()?.max(self.written + BREATH)) }
+        if self.changed {
+            return Some(Duration::ZERO);
+        }
+        self.encoder.due().filter(|_| lasts).map(|due| due.max(self.written + BREATH))
     }
 
     fn is_frame_of(&self, size: Size) -> bool {
