@@ -44,18 +44,23 @@ fn eye(status: &str) -> Option<[f64; 3]> {
     numbers.try_into().ok()
 }
 
-/// Which of these keys moves the eye where: each along another axis than the one before.
-const WALK: [(&[u8], usize); 4] = [(b"a", 0), (b"w", 2), (b"d", 0), (b"s", 2)];
+/// Where the eye is at first.
+const HOME: [f64; 3] = [0.0, 1.0, 5.0];
+/// Which keys move the eye down and up an axis.
+const AXES: [(usize, [&[u8]; 2]); 2] = [(0, [b"a", b"d"]), (2, [b"w", b"s"])];
 
-/// Presses keys that change the direction of the movement, in irregular intervals; how long each takes to be seen.
+/// Presses keys that change the direction of the movement, in irregular intervals; how long each takes to be seen. Each is
+/// along another axis than the one before, and leads home: elsewhere there may be less to see, and to send.
 fn walk(relay: &mut Relay, keys: usize) -> Vec<Duration> {
     let mut chance = 12_345_u64;
-    let steps = WALK.iter().cycle().take(keys);
+    let steps = AXES.iter().cycle().take(keys);
     steps
-        .map(|&(key, axis)| {
+        .map(|&(axis, [down, up])| {
             let pressed = relay.now();
             let before = relay.frames.len();
-            relay.press(key);
+            let is_above =
+                relay.frames.last().and_then(|frame| eye(&frame.status)).is_none_or(|e| e[axis] >= HOME[axis]);
+            relay.press(if is_above { down } else { up });
             let mut shown = None;
             relay.run(ms(20_000), |relay| {
                 let frames = relay.frames[before - 1..].windows(2);
