@@ -23,6 +23,8 @@ use estimates::{Rates, RoundTrip};
 /// How many frames a second there are at least on a slow link: what a frame may take is its share of the rate. (A little
 /// less than a fifteenth.)
 const FRAMES_PER_SECOND: f64 = 16.0;
+/// A frame may always take so many bytes: less tells too little of a rate that was thought too low.
+const LEAST_BYTES: usize = 200;
 /// So much of the rate is used.
 const SHARE: f64 = 0.95;
 /// So late may bytes be sent without losing their share.
@@ -139,7 +141,7 @@ impl Link {
         // Slow as soon as a screen does not fit, and fast when two do: in between it stays what it was.
         let is_sure = limit < smooth || measured.is_some_and(|rate| rate.is_limit);
         self.slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.slow;
-        self.slow.then(|| Slow { rate, most_bytes: (rate / FRAMES_PER_SECOND) as usize })
+        self.slow.then(|| Slow { rate, most_bytes: LEAST_BYTES.max((rate / FRAMES_PER_SECOND) as usize) })
     }
 
     /// Puts a question behind the bytes of a frame that is sent now.

@@ -71,14 +71,22 @@ impl Rates {
         if bytes < best.map_or(TELLING, |best| TELLING.min(best.bytes_per_second / 50.0)) {
             return;
         }
+        self.rates.retain(|&(at, _)| now.saturating_sub(at) < RATE_AGE);
         let rate = if service >= SHORT {
             Rate { bytes_per_second: bytes / service.as_secs_f64(), is_limit: true }
         } else {
-            let shown = Rate { bytes_per_second: bytes / (service + CHANCE).as_secs_f64(), is_limit: false };
+            let shown = (bytes / (service + CHANCE).as_secs_f64()).min(2.0 * self.limit());
+            let shown = Rate { bytes_per_second: shown, is_limit: false };
             best.filter(|best| best.bytes_per_second >= shown.bytes_per_second).unwrap_or(shown)
         };
-        self.rates.retain(|&(at, _)| now.saturating_sub(at) < RATE_AGE);
         self.rates.push_back((now, rate));
+    }
+
+    /// The highest that the link did not exceed in the last moments. Not even one that seems faster at once may be: an
+    /// answer that nobody asked for makes it seem so, and more than twice the rate would pile up for seconds.
+    fn limit(&self) -> f64 {
+        let limits = self.rates.iter().filter(|(_, rate)| rate.is_limit).map(|(_, rate)| rate.bytes_per_second);
+        limits.reduce(f64::max).unwrap_or(f64::INFINITY)
     }
 
     /// The highest of the last moments.
