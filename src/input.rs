@@ -30,10 +30,14 @@
 //!   comes after all, unless it completes a reply, which is then reported. So Alt+`[` and Alt+O, which look like
 //!   such halves, are not understood. A control letter always gets through: Ctrl-C is never swallowed for long.
 //! - **Invalid UTF-8, U+FFFD and the C1 controls** are no keys.
+//! - **With the kitty keyboard protocol** ([`Parser::set_keys_are_sequences`]) none of that is ambiguous: every key is a
+//!   sequence, Escape too. A lone `ESC` is the beginning of something, and a character that comes as itself is typed
+//!   text: pressed and let go at once, for nobody will tell of its release.
+//! - **A release** counts however late the end of its sequence comes: it only ever ends something.
 //! - **A paste** ends with its closing bracket. Without one it ends after [`PASTE_PATIENCE`] waits in a row given up.
 //!   Past [`PASTE_LIMIT`] bytes the rest of it is thrown away.
 
-use crossterm::event::{Event, KeyEvent, KeyModifiers};
+use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 
 mod csi;
 mod key;
@@ -99,12 +103,29 @@ pub struct Parser {
     paste: Paste,
     /// The wait for the end of this sequence was given up: so many bytes of its rest may still be swallowed.
     rest: Option<usize>,
+    keys: Keys,
+}
+
+/// How the terminal writes keys.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Keys {
+    /// Characters as themselves, Escape as `ESC`, others as sequences.
+    #[default]
+    Plain,
+    /// All as sequences.
+    Sequences,
 }
 
 impl Parser {
     /// A parser at the start of a stream.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Whether the terminal writes every key as a sequence: with the flags 2 and 8 of the kitty keyboard protocol, which
+    /// tells of releases, too.
+    pub fn set_keys_are_sequences(&mut self, keys_are_sequences: bool) {
+        self.keys = if keys_are_sequences { Keys::Sequences } else { Keys::Plain };
     }
 
     /// Takes the next bytes of the stream and appends to `out` what they say.
@@ -131,11 +152,11 @@ impl Parser {
         }
         self.release_escape(out);
         match self.place {
-            Place::Escape => {
+            Place::Escape if self.keys == Keys::Plain => {
                 out.push(key::escape().into());
                 self.reset();
             }
-            Place::Ss3 | Place::Csi | Place::Text(_) | Place::TextEscape(_) => {
+            Place::Escape | Place::Ss3 | Place::Csi | Place::Text(_) | Place::TextEscape(_) => {
                 self.rest = Some(REST_LIMIT);
             }
             Place::Paste if self.paste.outlives_a_wait() => {}
@@ -169,6 +190,7 @@ impl Parser {
         };
         self.rest = Some(left - 1);
         match self.place {
+            Place::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
             Place::Text(kind) if self.text.is_empty() => kind.begins_with(byte),
             Place::Text(_) => byte >= 0x20 || byte == BEL || byte == ESC,
             Place::TextEscape(_) => byte == b'\\',
@@ -232,7 +254,7 @@ impl Parser {
         self.place = if unfinished { Place::Character } else { Place::Ground };
         for token in tokens {
             let alt = std::mem::take(&mut self.alt);
-            say_plain(&token, alt, out);
+            self.say_plain(&token, alt, out);
         }
     }
 
@@ -240,7 +262,7 @@ impl Parser {
         match byte {
             ESC => {
                 self.release_escape(out);
-                self.escaped = true;
+                self.escaped = self.keys == Keys::Plain;
             }
             b'[' => {
                 self.tokeniser.begin_csi();
@@ -281,7 +303,7 @@ impl Parser {
         for token in self.tokeniser.take(byte, &self.text) {
             match token {
                 Token::Csi(said) => meaning = Some(said),
-                other => say_plain(&other, false, out),
+                other => self.say_plain(&other, false, out),
             }
         }
         if (0x40..=0x7e).contains(&byte) {
@@ -359,7 +381,7 @@ impl Parser {
                 key.modifiers |= KeyModifiers::ALT;
             }
             self.forget_sequence();
-            if !late {
+            if !late || key.kind == KeyEventKind::Release {
                 out.push(key.into());
             }
             return;
@@ -381,19 +403,25 @@ impl Parser {
             Meaning::Event(_) | Meaning::Key(_) | Meaning::Nothing => {}
         }
     }
-}
 
-/// The key, if any, that a character or a control letter stands for.
-fn say_plain(token: &Token, alt: bool, out: &mut Vec<Input>) {
-    let key = match *token {
-        Token::Print(c) => key::from_char(c),
-        Token::Control(byte) => key::from_control(byte),
-        Token::Csi(_) => None,
-    };
-    if let Some(mut key) = key {
+    fn say_plain(&self, token: &Token, alt: bool, out: &mut Vec<Input>) {
+        let Some(mut key) = plain_key(token) else { return };
         if alt {
             key.modifiers |= KeyModifiers::ALT;
         }
         out.push(key.into());
+        if self.keys == Keys::Sequences {
+            key.kind = KeyEventKind::Release;
+            out.push(key.into());
+        }
+    }
+}
+
+/// The key, if any, that a character or a control letter stands for.
+fn plain_key(token: &Token) -> Option<KeyEvent> {
+    match *token {
+        Token::Print(c) => key::from_char(c),
+        Token::Control(byte) => key::from_control(byte),
+        Token::Csi(_) => None,
     }
 }

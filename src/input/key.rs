@@ -139,11 +139,17 @@ pub(super) fn from_other_keys(params: &[&[u16]]) -> Option<KeyEvent> {
 
 /// `CSI code : shifted : base ; modifiers : kind ; text u`: the kitty keyboard protocol.
 ///
+/// A key of an alphabet other than the Latin one goes by its place on a Latin keyboard where the terminal says it, with
+/// what Shift makes of it there: the letter is a command here, not text.
+///
 /// Unicode above U+FFFF cannot be told apart here (the tokeniser keeps 16 bits) and is no key.
 pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
     let how = How::from_params(params.get(1))?;
-    let code = params[0][0];
-    let shifted = params[0].get(1).copied().filter(|&code| code != 0);
+    let alternate = |at: usize| params[0].get(at).copied().filter(|&code| code != 0);
+    let (code, shifted) = match (params[0][0], alternate(2)) {
+        (LATIN_END.., Some(base @ 0x20..0x7f)) => (base, None),
+        (code, _) => (code, alternate(1)),
+    };
     if params.len() > 3 {
         return None;
     }
@@ -157,6 +163,9 @@ pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
     }
     key_from_code(code, shifted, how)
 }
+
+/// The first letter that is not Latin: Greek.
+const LATIN_END: u16 = 0x370;
 
 /// The key of a Unicode number, with the character that Shift makes of it where the terminal says so.
 fn key_from_code(code: u16, shifted: Option<u16>, how: How) -> Option<KeyEvent> {

@@ -137,7 +137,11 @@ fn kitty_keys() -> Vec<Row> {
             vec![key(upper, SHIFT), key(upper, SHIFT), of_kind(upper, SHIFT, Release)]
         }),
         (b"\x1b[47:63;2u\x1b[47;2u", vec![letter('?', NONE), letter('/', SHIFT)]),
-        (b"\x1b[1094::119;1u", vec![letter('ц', NONE)]),
+        (b"\x1b[1094::119;1u\x1b[1094:1062:119;2u\x1b[1089::99;5u", {
+            // By the place on a Latin keyboard; letters of a Latin one are what they are.
+            vec![letter('w', NONE), letter('W', SHIFT), letter('c', CONTROL)]
+        }),
+        (b"\x1b[1094;1u\x1b[122::119;1u\x1b[246::59;1u", ['ц', 'z', 'ö'].map(|c| letter(c, NONE)).to_vec()),
         (b"\x1b[27u\x1b[13u\x1b[127u\x1b[9u\x1b[9;2u", {
             let plain = [KeyCode::Esc, KeyCode::Enter, KeyCode::Backspace, KeyCode::Tab];
             let mut keys = plain.map(|code| key(code, NONE)).to_vec();
@@ -289,7 +293,18 @@ fn table() -> Vec<Row> {
 // -- the tests --------------------------------------------------------------------------------------------------------
 
 fn parse(pieces: &[&[u8]]) -> Vec<Input> {
-    let (mut parser, mut out) = (Parser::new(), Vec::new());
+    parse_with(Parser::new(), pieces)
+}
+
+/// For a terminal that writes every key as a sequence.
+fn of_sequences() -> Parser {
+    let mut parser = Parser::new();
+    parser.set_keys_are_sequences(true);
+    parser
+}
+
+fn parse_with(mut parser: Parser, pieces: &[&[u8]]) -> Vec<Input> {
+    let mut out = Vec::new();
     for piece in pieces {
         parser.feed(piece, &mut out);
     }
@@ -447,6 +462,53 @@ fn a_string_or_a_sequence_without_end_keeps_little() {
     }
 }
 
+#[test]
+fn where_keys_are_sequences_they_say_the_same() {
+    for (bytes, expected) in [kitty_keys(), keys_without_a_letter(), replies()].concat() {
+        // But for the last of the keys of old, which are followed by a plain x.
+        if !bytes.ends_with(b"x") {
+            assert_eq!(parse_with(of_sequences(), &[bytes]), expected, "{}", bytes.escape_ascii());
+        }
+    }
+}
+
+#[test]
+fn where_keys_are_sequences_a_character_is_pressed_and_let_go() {
+    let typed = |code, modifiers| {
+        [KeyEventKind::Press, KeyEventKind::Release].map(|kind| of_kind(code, modifiers, kind)).to_vec()
+    };
+    let (w, c) = (KeyCode::Char('w'), KeyCode::Char('c'));
+    let out = parse_with(of_sequences(), &[b"w\x03\x1bw\x1b[1;\x035A"]);
+    let mut expected = [typed(w, NONE), typed(c, CONTROL), typed(w, ALT), typed(c, CONTROL)].concat();
+    expected.push(key(KeyCode::Up, CONTROL));
+    assert_eq!(out, expected);
+}
+
+#[test]
+fn where_keys_are_sequences_a_lone_escape_is_none() {
+    let given_up = |begun: &[u8], later: &[u8]| {
+        let (mut parser, mut out) = (of_sequences(), Vec::new());
+        parser.feed(begun, &mut out);
+        parser.give_up_waiting(&mut out);
+        assert!(!parser.is_waiting());
+        assert_eq!(out, [], "{}", begun.escape_ascii());
+        parser.feed(later, &mut out);
+        out
+    };
+    for begun in [&b"\x1b"[..], b"\x1b\x1b"] {
+        assert_eq!(given_up(begun, b"\x1b[27u"), [key(KeyCode::Esc, NONE)]);
+    }
+    // What is late is dropped, but for what ends something.
+    let released = || of_kind(KeyCode::Char('w'), NONE, KeyEventKind::Release);
+    for at in 1..b"\x1b[119;1:3u".len() {
+        let (begun, rest) = b"\x1b[119;1:3u".split_at(at);
+        assert_eq!(given_up(begun, rest), [released()], "{at}");
+        let (begun, rest) = b"\x1b[119;1:1u".split_at(at);
+        assert_eq!(given_up(begun, rest), [], "{at}");
+    }
+    assert_eq!(given_up(b"\x1b", b"[?62c"), [reply(Reply::DeviceAttributes(vec![62]))]);
+}
+
 /// Bytes in which escape sequences are frequent.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     let byte = prop_oneof![
@@ -463,6 +525,7 @@ proptest! {
     fn noise_says_the_same_in_any_split(bytes in noise(), at in any::<prop::sample::Index>()) {
         let (first, second) = bytes.split_at(at.index(bytes.len() + 1));
         prop_assert_eq!(parse(&[first, second]), parse(&[&bytes]));
+        prop_assert_eq!(parse_with(of_sequences(), &[first, second]), parse_with(of_sequences(), &[&bytes]));
     }
 
     #[test]
