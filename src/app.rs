@@ -100,6 +100,10 @@ const ESCAPE_WAIT: Duration = Duration::from_millis(50);
 /// The same while answers are on their way: the first byte of one may come alone.
 const ANSWER_WAIT: Duration = Duration::from_secs(1);
 
+/// The flags of the kitty keyboard protocol without which keys are taken as a plain terminal tells of them: no ambiguity
+/// (1), releases (2), every key as a sequence (8).
+const KEYBOARD: u16 = 1 | 2 | 8;
+
 /// The state of the live view.
 struct Live {
     options: Options,
@@ -181,6 +185,9 @@ impl Live {
                 terminal::reach("resize")?;
                 self.resize(terminal.window()?);
             }
+            if self.knows_keyboard() {
+                terminal.push_keyboard()?;
+            }
             if let Some(frame) = renderer.finished() {
                 self.screen.take_frame(frame, self.moved_until.is_some().then(|| self.now()));
             }
@@ -216,8 +223,26 @@ impl Live {
         }
     }
 
+    /// Whether the terminal knows the kitty keyboard protocol.
+    fn knows_keyboard(&self) -> bool {
+        !self.questions.is_open() && self.questions.answers().kitty_keyboard == Some(true)
+    }
+
+    /// The terminal says which flags of the kitty keyboard protocol are on.
+    fn take_keyboard(&mut self, flags: u16) {
+        let hears_releases = self.knows_keyboard() && flags & KEYBOARD == KEYBOARD;
+        if self.motion.hears_releases() && !hears_releases {
+            self.stand_still();
+        }
+        self.motion.set_hears_releases(hears_releases);
+        self.parser.set_keys_are_sequences(hears_releases);
+    }
+
     /// Answers to the questions change things all at once, when the last is there.
     fn take_reply(&mut self, reply: &Reply) -> Next {
+        if let &Reply::KeyboardFlags(flags) = reply {
+            self.take_keyboard(flags);
+        }
         match reply {
             // Terminals answer in order: first the questions of the start, then what ends each frame.
             Reply::DeviceAttributes(_) if !self.questions.is_open() => self.link.answer(self.now()),
@@ -268,7 +293,8 @@ impl Live {
 
     /// When half a sequence is taken for all that there is of it, if there is one.
     fn escape_due(&self, terminal: &Terminal) -> Option<Duration> {
-        let wait = if terminal.awaits_answers() { ANSWER_WAIT } else { ESCAPE_WAIT };
+        let is_no_key = terminal.awaits_answers() || self.motion.hears_releases();
+        let wait = if is_no_key { ANSWER_WAIT } else { ESCAPE_WAIT };
         self.parser.is_waiting().then_some(self.read + wait)
     }
 
@@ -358,6 +384,7 @@ impl Live {
     /// drawn anew. With a signal to end, it stays given back.
     fn suspend(&mut self, terminal: &mut Terminal, signals: &mut Signals, stop: Option<Stopped>) -> io::Result<()> {
         self.stand_still();
+        self.motion.set_hears_releases(false);
         self.parser = Parser::new();
         self.link.forget();
         terminal.give_back();

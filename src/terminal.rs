@@ -110,6 +110,16 @@ impl Terminal {
         self.output.send(bytes)
     }
 
+    /// Has the keyboard told as the kitty protocol does, until the terminal is given back: every key as a sequence, with
+    /// its release. For a terminal that knows the protocol. It is asked whether it now does so, and answers with
+    /// [`Reply::KeyboardFlags`](crate::input::Reply::KeyboardFlags). Asked for again, nothing is sent.
+    ///
+    /// # Errors
+    /// If the terminal is gone.
+    pub fn push_keyboard(&mut self) -> io::Result<()> {
+        self.modes.push_keyboard(&mut self.output)
+    }
+
     /// Whether answers may be on their way.
     pub fn awaits_answers(&self) -> bool {
         self.unanswered.patience().is_some()

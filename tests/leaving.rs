@@ -25,6 +25,12 @@ enum Way {
     StopSignal,
 }
 
+impl Way {
+    fn stops(self) -> bool {
+        matches!(self, Self::StopKey | Self::StopSignal)
+    }
+}
+
 /// Where the child is when it happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
@@ -36,6 +42,8 @@ enum Phase {
     MidFrame,
     /// The window is dragged about.
     Storm,
+    /// The kitty keyboard protocol is asked for, and has not answered.
+    Keyboard,
 }
 
 impl Phase {
@@ -45,6 +53,7 @@ impl Phase {
             Self::AllModes => "all modes",
             Self::MidFrame => "frame",
             Self::Storm => "resize",
+            Self::Keyboard => "keyboard",
         }
     }
 
@@ -79,6 +88,21 @@ macro_rules! ways_out {
             fn in_a_storm_of_resizes() {
                 leave($way, Phase::Storm);
             }
+
+            #[test]
+            fn with_the_keyboard_pushed() {
+                leave_with_keyboard($way, Phase::Keyboard);
+            }
+
+            #[test]
+            fn with_the_keyboard_pushed_in_mid_frame() {
+                leave_with_keyboard($way, Phase::MidFrame);
+            }
+
+            #[test]
+            fn with_the_keyboard_pushed_in_a_storm_of_resizes() {
+                leave_with_keyboard($way, Phase::Storm);
+            }
         }
     )*};
 }
@@ -99,40 +123,77 @@ ways_out! {
 
 fn leave(way: Way, phase: Phase) {
     let mut phases = Phases::new();
-    let stops = matches!(way, Way::StopKey | Way::StopSignal);
-    let start = if stops { job() } else { Start::new(PROGRAM).arg(SCENE) };
-    let mut session = start.env("TERMTRACE_TEST_SOCKET", phases.path()).size(phase.size()).spawn();
+    let mut session = start(way, phase, &phases).spawn();
     let storm = (phase == Phase::Storm).then(|| session.storm());
     if phase == Phase::MidFrame {
         session.stop_reading();
     }
     phases.wait_for(phase.name());
-    act(way, &session);
+    go(way, phase, &mut session, phases, storm);
+}
+
+/// The same on a terminal that knows the kitty keyboard protocol, when it is pushed.
+fn leave_with_keyboard(way: Way, phase: Phase) {
+    let mut phases = Phases::new();
+    let mut session = start(way, phase, &phases).kitty().spawn();
+    phases.wait_for_on(Phase::Keyboard.name(), &mut session);
+    let storm = (phase == Phase::Storm).then(|| session.storm());
+    if phase == Phase::MidFrame {
+        session.stop_reading();
+        // The first frame may have gone out.
+        session.send(b"\x1b[108;5u");
+    }
+    if phase != Phase::Keyboard {
+        phases.send(Answer::GoOn);
+        phases.wait_for(phase.name());
+    }
+    go(way, phase, &mut session, phases, storm);
+}
+
+fn start(way: Way, phase: Phase, phases: &Phases) -> Start {
+    let start = if way.stops() { job() } else { Start::new(PROGRAM).arg(SCENE) };
+    start.env("TERMTRACE_TEST_SOCKET", phases.path()).size(phase.size())
+}
+
+/// The child waits in that phase: there it happens.
+fn go(way: Way, phase: Phase, session: &mut Session, phases: Phases, storm: Option<pty::Storm>) {
+    act(way, session);
     phases.answer(if let Way::Fault(answer) = way { answer } else { Answer::GoOn });
     if phase == Phase::MidFrame {
         session.start_reading();
     }
-    if stops {
-        come_back(&mut session, storm);
+    if way.stops() {
+        come_back(session, storm);
     } else {
         let status = session.wait_exit(SOON);
         drop(storm);
-        check_end(way, status, &mut session);
+        check_end(way, status, session);
     }
 }
 
 /// Types or signals; faults are the answer's.
-fn act(way: Way, session: &Session) {
+fn act(way: Way, session: &mut Session) {
     match way {
-        Way::Key(key) => session.send(key),
+        Way::Key(key) => press(key, session),
         Way::Fault(_) => {}
         Way::Death(signal) => session.signal(signal),
-        Way::StopKey => session.send(b"\x1a"),
+        Way::StopKey => press(b"\x1a", session),
         Way::StopSignal => {
             // The job's group has its leader's number.
             kill_process(session.foreground_group(), Signal::TSTP).expect("a job takes signals");
         }
     }
+}
+
+/// As the terminal writes it now.
+fn press(key: &'static [u8], session: &mut Session) {
+    let keyboard = session.seen().modes().keyboard_flags() > 0;
+    session.send(match key {
+        b"q" if keyboard => b"\x1b[113u",
+        b"\x03" if keyboard => b"\x1b[99;5u",
+        b"\x1a" if keyboard => b"\x1b[122;5u",
+        key => key,
+    });
 }
 
 fn check_end(way: Way, status: ExitStatus, session: &mut Session) {
@@ -177,11 +238,15 @@ fn come_back(session: &mut Session, storm: Option<pty::Storm>) {
     session.wait_for_text("status <148>");
     drop(storm);
     session.assert_clean();
+    let keyboard = session.seen().has(b"\x1b[>15u");
     let (size, before) = (Size::cells(70, 20), session.seen().bytes().len());
     session.resize(size);
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes().get(before..).unwrap_or(&[]), size));
-    session.send(b"q");
+    if keyboard {
+        session.wait_for("the keyboard pushed again", SOON, |seen| seen.modes().keyboard_flags() == 15);
+    }
+    press(b"q", session);
     session.wait_for_text("ended <0>");
     session.assert_clean();
 }
@@ -403,7 +468,7 @@ fn no_key_is_stuck() {
     // (Another key would end the glide, Ctrl-Z too.)
     session.send(b"iw");
     session.wait_for_text("eye");
-    act(Way::StopSignal, &session);
+    act(Way::StopSignal, &mut session);
     session.wait_for_text("status <148>");
     let before = session.seen().bytes().len();
     // The glide would be over now.

@@ -1,9 +1,10 @@
 //! What is turned on, in order, and how each is turned off.
 
 use super::output::Output;
-use super::unanswered::Unanswered;
-use super::{panics, rehearsal, signals};
-use crossterm::{Command, cursor, event, style, terminal};
+use super::unanswered::{Unanswered, is_in_background};
+use super::{FENCE, panics, rehearsal, signals};
+use crossterm::event::{self, KeyboardEnhancementFlags};
+use crossterm::{Command, cursor, style, terminal};
 use rustix::termios::{self, OptionalActions, QueueSelector, Termios};
 use std::fs::File;
 use std::io;
@@ -20,7 +21,17 @@ enum Mode {
     Raw(Box<Termios>),
     /// A mode of the screen: the bytes that end it.
     Screen(String),
+    /// The keyboard as the kitty protocol has it, on that protocol's stack.
+    Keyboard,
 }
+
+/// Every key as a sequence, with its release, and with what Shift makes of it.
+const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES
+    .union(KeyboardEnhancementFlags::REPORT_EVENT_TYPES)
+    .union(KeyboardEnhancementFlags::REPORT_ALTERNATE_KEYS)
+    .union(KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES);
+/// Asks which flags of the kitty keyboard protocol are on.
+const WHICH_KEYBOARD: &str = "\x1b[?u";
 
 /// How long the terminal may take over the last bytes. One that has stopped reading (Ctrl-S, a dead link) is left without.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -53,6 +64,21 @@ impl Modes {
         rehearsal::reach("all modes")
     }
 
+    /// The kitty keyboard protocol, once, with the question whether it is on.
+    pub(super) fn push_keyboard(&mut self, output: &mut Output) -> io::Result<()> {
+        if self.has_keyboard() {
+            return Ok(());
+        }
+        self.on.push(Mode::Keyboard);
+        let push = ansi(event::PushKeyboardEnhancementFlags(KEYBOARD));
+        output.send((push + WHICH_KEYBOARD).as_bytes())?;
+        rehearsal::reach("keyboard")
+    }
+
+    pub(super) fn has_keyboard(&self) -> bool {
+        self.on.iter().any(|mode| matches!(mode, Mode::Keyboard))
+    }
+
     fn list(&mut self, turn_on: &mut String, on: impl Command, off: impl Command) {
         self.on.push(Mode::Screen(ansi(off)));
         turn_on.push_str(&ansi(on));
@@ -64,10 +90,18 @@ impl Modes {
     pub(super) fn give_back(&mut self, keys: &File, output: &mut Output, unanswered: &mut Unanswered) -> bool {
         let deadline = Instant::now() + PATIENCE;
         let mut heard = true;
+        // It tells of releases until it has heard that it no longer should, and q is let go of about then. Its answer
+        // comes after the last of them.
+        let asks = self.has_keyboard() && !is_in_background(keys);
         while let Some(mode) = self.on.pop() {
             match mode {
                 Mode::Screen(off) => output.put(off.as_bytes()),
+                Mode::Keyboard => output.put(ansi(event::PopKeyboardEnhancementFlags).as_bytes()),
                 Mode::Raw(before) => {
+                    if asks {
+                        output.put(FENCE);
+                        unanswered.send(FENCE);
+                    }
                     heard = output.finish(deadline);
                     // A terminal that has stopped reading does not answer either.
                     if heard {

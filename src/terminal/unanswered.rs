@@ -75,6 +75,6 @@ impl Unanswered {
 }
 
 /// Whether the terminal is another job's now: reading it would stop us.
-fn is_in_background(keys: &File) -> bool {
+pub(super) fn is_in_background(keys: &File) -> bool {
     termios::tcgetpgrp(keys).is_ok_and(|foreground| foreground != process::getpgrp())
 }

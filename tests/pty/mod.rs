@@ -58,6 +58,9 @@ const LAST_OUTPUT: Duration = Duration::from_secs(1);
 /// The question that every terminal answers.
 const DA1: &[u8] = b"\x1b[c";
 
+/// The question which flags of the kitty keyboard protocol are on.
+const KEYBOARD: &[u8] = b"\x1b[?u";
+
 /// What the harness itself writes after the child's last byte, so as to know that nothing is still on its way.
 const END_OF_OUTPUT: &[u8] = b"\x1b_the end of the output\x1b\\";
 
@@ -103,6 +106,7 @@ pub(crate) struct Start {
     stdout: Option<Stdio>,
     stderr: Option<Stdio>,
     mute: bool,
+    kitty: bool,
 }
 
 impl Start {
@@ -119,6 +123,7 @@ impl Start {
             stdout: None,
             stderr: None,
             mute: false,
+            kitty: false,
         };
         start
             .env("PATH", std::env::var_os("PATH").unwrap_or_default())
@@ -170,6 +175,12 @@ impl Start {
         Self { mute: true, ..self }
     }
 
+    /// A terminal that knows the kitty keyboard protocol, and says when it is asked which of its flags are on. (Keys are
+    /// the test's to send.)
+    pub(crate) fn kitty(self) -> Self {
+        Self { kitty: true, ..self }
+    }
+
     fn command(self) -> Command {
         let mut command = Command::new(self.program).args(self.arguments).env_clear().envs(self.environment);
         if let Some(stdin) = self.stdin {
@@ -188,7 +199,7 @@ impl Start {
     #[track_caller]
     pub(crate) fn spawn(self) -> Session {
         let (master, slave) = open().expect("a pseudo-terminal can be had");
-        let (size, mute) = (self.size, self.mute);
+        let (size, mute, kitty) = (self.size, self.mute, self.kitty);
         rustix::termios::tcsetwinsize(&master, size.winsize()).expect("a terminal has a size");
         let slave_side = open_slave_again(&slave).expect("the slave side can be opened twice");
         set_nonblocking(&master).expect("a file descriptor has flags");
@@ -206,6 +217,7 @@ impl Start {
             before,
             output,
             unanswered: (!mute).then_some(0),
+            kitty,
             seen: Seen { bytes: Vec::new(), screen: Screen::new(size.columns, size.rows) },
         }
     }
@@ -305,6 +317,7 @@ pub(crate) struct Session {
     output: Output,
     /// From where on questions in the output are unanswered; `None`: for ever.
     unanswered: Option<usize>,
+    kitty: bool,
     seen: Seen,
 }
 
@@ -416,17 +429,24 @@ impl Session {
         self.pump();
     }
 
-    /// Answers each DA1, whole or in pieces in the output, once.
+    /// Answers each question, whole or in pieces in the output, once.
     fn answer(&mut self) {
         let Some(from) = self.unanswered else { return };
-        let asked = &self.seen.bytes[from..];
-        let asked = asked.windows(DA1.len()).rposition(|bytes| bytes == DA1).map(|last| (asked, last));
-        if let Some((bytes, last)) = asked {
-            let count = bytes.windows(DA1.len()).filter(|bytes| *bytes == DA1).count();
-            self.unanswered = Some(from + last + DA1.len());
-            // Nobody may be there any more to hear it.
-            let _ = write_before(&mut &*self.master, &b"\x1b[?62;22c".repeat(count), Instant::now() + LOOK);
+        let bytes = &self.seen.bytes;
+        let (mut answers, mut unanswered) = (Vec::new(), from);
+        for at in from..bytes.len() {
+            if bytes[at..].starts_with(DA1) {
+                answers.extend_from_slice(b"\x1b[?62;22c");
+                unanswered = at + DA1.len();
+            } else if self.kitty && bytes[at..].starts_with(KEYBOARD) {
+                let flags = Modes::after(&bytes[..at]).keyboard_flags();
+                answers.extend_from_slice(format!("\x1b[?{flags}u").as_bytes());
+                unanswered = at + KEYBOARD.len();
+            }
         }
+        self.unanswered = Some(unanswered);
+        // Nobody may be there any more to hear it.
+        let _ = write_before(&mut &*self.master, &answers, Instant::now() + LOOK);
     }
 
     /// Waits until what came out fulfils a condition; whether it did so in time.
@@ -437,7 +457,8 @@ impl Session {
             if wanted(&self.seen) {
                 return true;
             }
-            if !self.output.wait_for_more(deadline) {
+            // A child that always has more to say must not keep us beyond the deadline.
+            if Instant::now() >= deadline || !self.output.wait_for_more(deadline) {
                 // What came between the last look and the deadline counts.
                 self.pump();
                 return wanted(&self.seen);

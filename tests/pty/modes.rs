@@ -85,6 +85,12 @@ impl Modes {
         self.private.get(&mode).copied().unwrap_or(ON_AT_START.contains(&mode))
     }
 
+    /// The flags of the kitty keyboard protocol that are on.
+    pub(crate) fn keyboard_flags(&self) -> u16 {
+        let screen = self.screen();
+        self.keyboard[screen].last().copied().unwrap_or(self.keyboard_flags[screen])
+    }
+
     /// What is not as it was, in words; nothing if all is.
     pub(crate) fn left_on(&self) -> Vec<String> {
         let mut left: Vec<String> = self

@@ -4,10 +4,13 @@ use std::{
     io::{BufRead, BufReader, Write},
     os::unix::net::{UnixListener, UnixStream},
     path::PathBuf,
+    time::Instant,
 };
 
-use rustix::event::{PollFd, PollFlags};
+use rustix::event::{PollFd, PollFlags, poll};
 use tempfile::TempDir;
+
+use super::{SOON, Session};
 
 /// What is to happen where the child is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +59,32 @@ impl Phases {
         }
     }
 
+    /// The same, while its terminal is read, and answers.
+    #[track_caller]
+    pub(crate) fn wait_for_on(&mut self, phase: &str, session: &mut Session) {
+        let deadline = Instant::now() + SOON;
+        loop {
+            while !self.is_told() {
+                session.seen();
+                assert!(Instant::now() < deadline, "the child does not reach {phase:?}");
+            }
+            if self.next() == phase {
+                return;
+            }
+            self.send(Answer::GoOn);
+        }
+    }
+
+    /// Whether the child says something now, or in a moment.
+    fn is_told(&self) -> bool {
+        let moment = super::LOOK.try_into().expect("it is short");
+        let told = match &self.child {
+            Some(child) => poll(&mut [PollFd::new(child.get_ref(), PollFlags::IN)], Some(&moment)),
+            None => poll(&mut [PollFd::new(&self.listener, PollFlags::IN)], Some(&moment)),
+        };
+        matches!(told, Ok(1..))
+    }
+
     /// Lets the child go on, with that, and hears nothing of it any more.
     pub(crate) fn answer(mut self, answer: Answer) {
         self.send(answer);
@@ -88,10 +117,10 @@ impl Phases {
 
 #[track_caller]
 fn accept(listener: &UnixListener) -> BufReader<UnixStream> {
-    let soon = super::SOON.try_into().expect("it is soon");
-    let ready = rustix::event::poll(&mut [PollFd::new(listener, PollFlags::IN)], Some(&soon));
+    let soon = SOON.try_into().expect("it is soon");
+    let ready = poll(&mut [PollFd::new(listener, PollFlags::IN)], Some(&soon));
     assert!(matches!(ready, Ok(1..)), "the child does not say where it is");
     let (child, _) = listener.accept().expect("the child connects");
-    child.set_read_timeout(Some(super::SOON)).expect("a socket has timeouts");
+    child.set_read_timeout(Some(SOON)).expect("a socket has timeouts");
     BufReader::new(child)
 }

@@ -1,0 +1,381 @@
+//! Keys on a terminal that knows the kitty keyboard protocol, and what becomes of them when it does not answer in time,
+//! is left, or never knew it.
+
+mod pty;
+
+use pty::{SOON, Seen, Session, Size, Start};
+use rustix::process::Signal;
+use std::time::{Duration, Instant};
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
+const PUSH: &[u8] = b"\x1b[>15u";
+const POP: &[u8] = b"\x1b[<1u";
+/// The last of the questions, and its answer.
+const FENCE: &[u8] = b"\x1b[c";
+const FENCE_ANSWER: &[u8] = b"\x1b[?62;22c";
+/// What the scene's eye moves in a second.
+const SPEED: f32 = 2.5;
+
+fn termtrace() -> Start {
+    Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE)
+}
+
+/// On a terminal that has the keyboard pushed, with the status line shown and all at rest. It is small, so that the test
+/// keeps up with it.
+#[track_caller]
+fn flying() -> Session {
+    flying_of(Size::cells(80, 4))
+}
+
+#[track_caller]
+fn flying_of(size: Size) -> Session {
+    let mut session = termtrace().kitty().size(size).spawn();
+    session.wait_for("the keyboard pushed", SOON, |seen| seen.modes().keyboard_flags() == 15);
+    tap(&session, 'i');
+    session.wait_for_text("eye 0.00 1.00 5.00");
+    rest(&mut session);
+    session
+}
+
+fn press(session: &Session, key: char) {
+    session.send(format!("\x1b[{}u", key as u32).as_bytes());
+}
+
+fn repeat(session: &Session, key: char) {
+    session.send(format!("\x1b[{};1:2u", key as u32).as_bytes());
+}
+
+fn release(session: &Session, key: char) {
+    session.send(format!("\x1b[{};1:3u", key as u32).as_bytes());
+}
+
+fn tap(session: &Session, key: char) {
+    press(session, key);
+    release(session, key);
+}
+
+fn pass(session: &mut Session, milliseconds: u64) {
+    session.sees(Duration::from_millis(milliseconds), |_| false);
+}
+
+/// Waits until nothing has been sent for a while.
+#[track_caller]
+fn rest(session: &mut Session) {
+    let deadline = Instant::now() + SOON;
+    let mut before = session.seen().bytes().len();
+    while session.sees(Duration::from_millis(200), |seen| seen.bytes().len() != before) {
+        before = session.seen().bytes().len();
+        assert!(Instant::now() < deadline, "it never comes to rest");
+    }
+}
+
+/// The eye that the status line tells.
+fn eye(session: &mut Session) -> [f32; 3] {
+    let text = session.seen().screen().text().concat();
+    let numbers = text.rsplit_once("eye").expect("the status line shows the eye").1;
+    let numbers: Vec<f32> = numbers.split_whitespace().take(3).map(|n| n.parse().expect("a number")).collect();
+    numbers.try_into().expect("three numbers")
+}
+
+#[track_caller]
+fn leave(session: &mut Session) {
+    press(session, 'q');
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+}
+
+fn count(seen: &Seen, bytes: &[u8]) -> usize {
+    seen.bytes().windows(bytes.len()).filter(|window| *window == bytes).count()
+}
+
+#[test]
+fn a_key_moves_from_its_press_to_its_release() {
+    let mut session = flying();
+    let start = Instant::now();
+    press(&session, 'w');
+    session.wait_for("a movement", SOON, |seen| !seen.screen().text().concat().contains("eye 0.00 1.00 5.00"));
+    // Longer than any glide, without a repeat.
+    pass(&mut session, 1_000);
+    let before = eye(&mut session);
+    pass(&mut session, 200);
+    assert!(eye(&mut session)[2] < before[2] - 0.1, "it still moves");
+    release(&session, 'w');
+    let held = start.elapsed().as_secs_f32();
+    rest(&mut session);
+    let moved = 5.0 - eye(&mut session)[2];
+    assert!((moved / SPEED - held).abs() < 0.15, "moved {moved} in {held} s");
+    // And not a byte more.
+    let bytes = session.seen().bytes().len();
+    assert!(!session.sees(Duration::from_secs(1), |seen| seen.bytes().len() != bytes), "bytes at rest");
+    leave(&mut session);
+}
+
+#[test]
+fn any_number_of_keys_are_held_together_and_let_go_one_by_one() {
+    let mut session = flying();
+    session.send(b"\x1b[119u\x1b[100u\x1b[101u");
+    pass(&mut session, 300);
+    session.send(b"\x1b[100;1:3u\x1b[119;1:3u");
+    pass(&mut session, 100);
+    let between = eye(&mut session);
+    pass(&mut session, 300);
+    release(&session, 'e');
+    rest(&mut session);
+    let [x, y, z] = eye(&mut session);
+    // The first key from rest has a frame of its own.
+    assert!(x > 0.3 && z < 4.7 && (x + z - 5.0).abs() < 0.06, "ahead and to the right alike: {x} {z}");
+    assert_eq!([x, z], [between[0], between[2]], "both are let go");
+    assert!(y > between[1] + 0.3, "the third is not");
+    // Turned to the left on the way.
+    tap(&session, 'r');
+    press(&session, 'w');
+    session.send(b"\x1b[D");
+    pass(&mut session, 400);
+    session.send(b"\x1b[1;1:3D");
+    release(&session, 'w');
+    rest(&mut session);
+    let [x, _, z] = eye(&mut session);
+    assert!(x < -0.02 && z < 4.6, "a curve: {x} {z}");
+    leave(&mut session);
+}
+
+#[test]
+fn opposite_keys_cancel_and_cost_nothing() {
+    let mut session = flying();
+    session.send(b"\x1b[97u\x1b[100u");
+    rest(&mut session);
+    let (bytes, before) = (session.seen().bytes().len(), eye(&mut session));
+    assert!(!session.sees(Duration::from_millis(500), |seen| seen.bytes().len() != bytes), "bytes");
+    release(&session, 'a');
+    pass(&mut session, 300);
+    assert!(eye(&mut session)[0] > before[0] + 0.1, "the other is left");
+    release(&session, 'd');
+    rest(&mut session);
+    leave(&mut session);
+}
+
+#[test]
+fn only_a_press_acts() {
+    let mut session = flying_of(Size::cells(80, 24));
+    press(&session, '?');
+    session.wait_for_text("move forward");
+    for _ in 0..5 {
+        repeat(&session, '?');
+    }
+    release(&session, '?');
+    // A release of a key never pressed, a modifier alone, a key that means nothing.
+    session.send(b"\x1b[113;1:3u\x1b[99;5:3u\x1b[57441;2u\x1b[57441;1:3u\x1b[120u\x1b[57376u");
+    rest(&mut session);
+    session.wait_for_text("move forward");
+    assert_eq!(eye(&mut session), [0.0, 1.0, 5.0]);
+    leave(&mut session);
+}
+
+#[test]
+fn every_binding_works_as_a_sequence() {
+    let mut session = flying_of(Size::cells(80, 24));
+    // With what Shift makes of the key, and on a terminal that does not tell; Escape acts at once.
+    for help in [&b"\x1b[47:63;2u"[..], b"\x1b[47;2u"] {
+        session.send(help);
+        session.wait_for_text("move forward");
+        session.send(b"\x1b[27u\x1b[27;1:3u");
+        session.wait_for("no help", SOON, |seen| !seen.screen().text().concat().contains("move forward"));
+    }
+    for (pressed, released) in [
+        ("\x1b[A", "\x1b[1;1:3A"),
+        ("\x1b[1;129:1B", "\x1b[1;129:3B"),
+        ("\x1b[57417u", "\x1b[57417;1:3u"),
+        ("\x1b[5~", "\x1b[5;1:3~"),
+        ("\x1b[57422u", "\x1b[57422;1:3u"),
+        ("\x1b[119:87;2u", "\x1b[119;1:3u"),
+        ("\x1b[1094::119u", "\x1b[1094::119;1:3u"),
+    ] {
+        rest(&mut session);
+        let bytes = session.seen().bytes().len();
+        session.send(pressed.as_bytes());
+        session.wait_for(&format!("a movement by {pressed:?}"), SOON, |seen| seen.bytes().len() > bytes + 500);
+        session.send(released.as_bytes());
+    }
+    rest(&mut session);
+    let bytes = session.seen().bytes().len();
+    session.send(b"\x1b[108;5u");
+    session.wait_for("all drawn again", SOON, |seen| seen.bytes().len() > bytes + 80 * 24);
+    session.send(b"\x1b[99;5u");
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+}
+
+#[test]
+fn no_key_is_stuck_when_the_focus_is_lost() {
+    let mut session = flying();
+    press(&session, 'w');
+    press(&session, 'd');
+    pass(&mut session, 200);
+    session.send(b"\x1b[O");
+    rest(&mut session);
+    let there = eye(&mut session);
+    assert!(there[2] < 4.9, "it moved until then: {there:?}");
+    // Let go elsewhere, or here when the focus is back.
+    session.send(b"\x1b[I");
+    release(&session, 'w');
+    rest(&mut session);
+    assert_eq!(eye(&mut session), there);
+    leave(&mut session);
+}
+
+/// Typed text, such as an input method's, has no release.
+#[test]
+fn no_key_is_stuck_that_comes_as_a_character() {
+    let mut session = flying();
+    session.send(b"w\xd1\x86\xff\x1b[200~wasd\x1b[201~");
+    rest(&mut session);
+    let z = eye(&mut session)[2];
+    assert!(z > 4.8, "{z}");
+    leave(&mut session);
+}
+
+/// The half of a sequence that comes late is not the Escape key, and the release in it counts.
+#[test]
+fn a_release_in_two_pieces_presses_no_escape() {
+    let mut session = flying_of(Size::cells(80, 24));
+    tap(&session, '?');
+    session.wait_for_text("move forward");
+    press(&session, 'w');
+    pass(&mut session, 100);
+    session.send(b"\x1b");
+    pass(&mut session, 150);
+    session.send(b"[119;1:3u");
+    rest(&mut session);
+    session.wait_for_text("move forward");
+    leave(&mut session);
+}
+
+#[test]
+fn a_terminal_that_does_not_know_the_protocol_is_not_sent_it() {
+    let mut session = termtrace().spawn();
+    session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 5_000);
+    rest(&mut session);
+    session.send(b"q");
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    assert!(!session.seen().has(b"\x1b[>") && !session.seen().has(POP), "{}", session.seen().bytes().len());
+    session.assert_clean();
+}
+
+/// What was pushed counts when the terminal says that it is on, not before: until then a press glides.
+#[test]
+fn flags_that_do_not_come_back_are_not_believed() {
+    for flags in ["0", "1", "9", "4"] {
+        let mut session = termtrace().mute().spawn();
+        session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
+        session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+        session.wait_for("the keyboard pushed", SOON, |seen| seen.has(PUSH) && seen.has(b"\x1b[>15u\x1b[?u"));
+        session.send(format!("\x1b[?{flags}u").as_bytes());
+        session.send(b"i");
+        session.wait_for_text("eye 0.00 1.00 5.00");
+        press(&session, 'w');
+        rest(&mut session);
+        let moved = 5.0 - eye(&mut session)[2];
+        assert!((moved - SPEED * 0.717).abs() < 0.1, "flags {flags}: a glide is not {moved}");
+        session.send(b"q");
+        session.wait_for("the last question", SOON, |seen| seen.has(b"\x1b[?1049l\x1b[c"));
+        session.send(FENCE_ANSWER);
+        session.wait_exit(SOON);
+        session.assert_clean();
+    }
+}
+
+#[test]
+fn an_answer_two_seconds_late_pushes_the_keyboard_once() {
+    let mut session = termtrace().mute().spawn();
+    session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
+    pass(&mut session, 2_000);
+    assert!(!session.seen().has(PUSH));
+    session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+    session.wait_for("the keyboard pushed", SOON, |seen| seen.has(PUSH));
+    session.send(b"\x1b[?15u\x1b[?15u");
+    rest(&mut session);
+    assert_eq!(count(session.seen(), PUSH), 1);
+    leave_answering(&mut session);
+    assert_eq!(count(session.seen(), POP), 1);
+}
+
+/// The terminal is asked for a last answer, behind which nothing comes; what comes before is not left for the shell.
+#[track_caller]
+fn leave_answering(session: &mut Session) {
+    press(session, 'q');
+    session.wait_for("the last question", SOON, |seen| seen.has(b"\x1b[?1049l\x1b[c"));
+    release(session, 'q');
+    session.send(FENCE_ANSWER);
+    assert_eq!(session.wait_exit(Duration::from_secs(3)).code(), Some(0));
+    session.assert_clean();
+    assert_eq!(session.typed_ahead(), b"");
+    // Nor echoed.
+    assert!(!session.seen().has(b"113;1:3u"));
+}
+
+#[test]
+fn the_release_of_q_is_not_left_for_the_shell() {
+    let mut session = termtrace().mute().spawn();
+    session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
+    session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+    session.wait_for("the keyboard pushed", SOON, |seen| seen.has(PUSH));
+    session.send(b"\x1b[?15u");
+    leave_answering(&mut session);
+}
+
+/// The answers come while it is stopped: whoever read them, it asks again, and pushes once.
+#[test]
+fn answers_that_come_during_a_stop_are_asked_for_again() {
+    let mut session = termtrace().mute().spawn();
+    session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
+    session.signal(Signal::STOP);
+    session.wait_stopped(SOON);
+    session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+    session.signal(Signal::CONT);
+    session.wait_for("the questions again", SOON, |seen| count(seen, FENCE) == 2);
+    session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+    session.wait_for("the keyboard pushed", SOON, |seen| seen.has(PUSH));
+    session.send(b"\x1b[?15u");
+    rest(&mut session);
+    assert_eq!(session.seen().modes().keyboard_flags(), 15);
+    assert_eq!(count(session.seen(), PUSH), 1 + count(session.seen(), POP));
+    leave_answering(&mut session);
+}
+
+/// An answer arrives with the stop, and giving the terminal back reads it: nobody waits for another after `fg`.
+#[test]
+fn an_answer_that_comes_with_a_stop_is_not_waited_for_again() {
+    for _ in 0..10 {
+        let mut session = termtrace().kitty().spawn();
+        session.wait_for("the keyboard pushed", SOON, |seen| seen.modes().keyboard_flags() == 15);
+        session.signal(Signal::STOP);
+        session.wait_stopped(SOON);
+        // Both are there at once when it goes on.
+        session.send(b"\x1b[?15u\x1b[1;1R");
+        session.signal(Signal::CONT);
+        session.wait_for("the keyboard pushed again", SOON, |seen| count(seen, PUSH) == 2);
+        leave(&mut session);
+    }
+}
+
+/// What is held is let go of by a stop; the keyboard is popped for it, pushed after it, and believed only then.
+#[test]
+fn a_stop_pops_the_keyboard_and_lets_go_of_all_keys() {
+    let mut session = flying();
+    press(&session, 'w');
+    pass(&mut session, 100);
+    session.signal(Signal::STOP);
+    session.wait_stopped(SOON);
+    session.signal(Signal::CONT);
+    session.wait_for("the keyboard pushed again", SOON, |seen| count(seen, PUSH) == 2);
+    assert_eq!(count(session.seen(), POP), 1);
+    rest(&mut session);
+    let z = eye(&mut session)[2];
+    // The repeat of a key that is still held takes it up again.
+    repeat(&session, 'w');
+    pass(&mut session, 1_000);
+    release(&session, 'w');
+    rest(&mut session);
+    assert!(eye(&mut session)[2] < z - 1.5);
+    leave(&mut session);
+}
