@@ -1,5 +1,9 @@
-//! What holds for any bytes fed to the parser of input: said once, for the fuzzer and for the replay of its corpus.
+//! What holds for any bytes fed to the parser of input, and for what its keys move: said once, for the fuzzer and for the
+//! replay of its corpus.
 
+use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
+use std::time::Duration;
+use termtrace::control::{BINDINGS, COAST, GLIDE, Motion};
 use termtrace::input::{Input, PASTE_PATIENCE, Parser};
 
 /// Panics if a law is broken for these bytes, of which the first says how the rest is split.
@@ -7,10 +11,20 @@ pub(crate) fn hold_for(data: &[u8]) {
     let Some((&seed, bytes)) = data.split_first() else {
         return;
     };
-    let whole = events(&[bytes]);
     let pieces = split(seed, bytes);
-    assert!(events(&pieces) == whole, "split as {pieces:?}");
-    keys_come_again(&pieces);
+    for keys_are_sequences in [false, true] {
+        let start = || parser(keys_are_sequences);
+        assert!(events(start(), &pieces) == events(start(), &[bytes]), "split as {pieces:?}");
+        keys_come_again(start(), &pieces);
+        no_key_is_invented(start(), bytes);
+        no_key_is_stuck(keys_are_sequences, &pieces);
+    }
+}
+
+fn parser(keys_are_sequences: bool) -> Parser {
+    let mut parser = Parser::new();
+    parser.set_keys_are_sequences(keys_are_sequences);
+    parser
 }
 
 /// Pieces of one to eight bytes, or of sixteen times as many, as the bits of the seed have it.
@@ -29,17 +43,17 @@ fn split(seed: u8, bytes: &[u8]) -> Vec<&[u8]> {
     .collect()
 }
 
-fn events(pieces: &[&[u8]]) -> Vec<Input> {
-    let (mut parser, mut out) = (Parser::new(), Vec::new());
+fn events(mut parser: Parser, pieces: &[&[u8]]) -> Vec<Input> {
+    let mut out = Vec::new();
     for piece in pieces {
         parser.feed(piece, &mut out);
     }
     out
 }
 
-/// Gives up after each piece, and asks in the end that a key is still a key.
-fn keys_come_again(pieces: &[&[u8]]) {
-    let (mut parser, mut out) = (Parser::new(), Vec::new());
+/// Gives up after each piece, and asks in the end that a key is still a key, in either way of writing it.
+fn keys_come_again(mut parser: Parser, pieces: &[&[u8]]) {
+    let mut out = Vec::new();
     for piece in pieces {
         parser.feed(piece, &mut out);
         parser.give_up_waiting(&mut out);
@@ -49,6 +63,85 @@ fn keys_come_again(pieces: &[&[u8]]) {
     }
     assert!(!parser.is_waiting());
     out.clear();
-    parser.feed(b"\x03w", &mut out);
-    assert_eq!(out, events(&[b"\x03w"]));
+    parser.feed(b"\x03w\x1b[119;1:2u", &mut out);
+    let presses = |inputs: Vec<Input>| inputs.into_iter().filter(|input| !is_release(input)).collect::<Vec<_>>();
+    assert_eq!(presses(out), presses(events(Parser::new(), &[b"\x03w\x1b[119;1:2u"])));
+}
+
+fn is_release(input: &Input) -> bool {
+    matches!(input, Input::Event(Event::Key(KeyEvent { kind: KeyEventKind::Release, .. })))
+}
+
+fn is_key(input: &Input) -> bool {
+    matches!(input, Input::Event(Event::Key(_)))
+}
+
+/// Nothing that is pasted, or stands in an answer, is a key.
+fn no_key_is_invented(start: Parser, bytes: &[u8]) {
+    let held_by = |opening: &[u8], bytes: &[u8], closing: &[u8]| [opening, bytes, closing].concat();
+    let end = b"\x1b[201~";
+    if !bytes.windows(end.len()).any(|window| window == end) {
+        let inputs = events(start, &[&held_by(b"\x1b[200~", bytes, end)]);
+        assert!(matches!(inputs[..], [Input::Event(Event::Paste(_))]), "{inputs:?}");
+    }
+    // Control letters end an answer, or are the keys that they always are.
+    let text: Vec<u8> = bytes.iter().copied().filter(|&byte| byte >= 0x20).collect();
+    for opening in [&b"\x1b]"[..], b"\x1bP", b"\x1b_", b"\x1bX", b"\x1b^"] {
+        let inputs = events(Parser::new(), &[&held_by(opening, &text, b"\x1b\\")]);
+        assert!(!inputs.iter().any(is_key), "{inputs:?}");
+    }
+    // A number says what a private sequence is about, never that it is a key.
+    let numbers: Vec<u8> = bytes.iter().copied().filter(|&byte| matches!(byte, b'0'..=b';')).collect();
+    let inputs = events(Parser::new(), &[&held_by(b"\x1b[?", &numbers, b"u")]);
+    assert!(!inputs.iter().any(is_key), "{inputs:?}");
+}
+
+/// Moves as the live view does, a piece every 30 ms. When the focus is lost, when all keys are let go, and when a terminal
+/// without releases is silent, all stands still.
+fn no_key_is_stuck(keys_are_sequences: bool, pieces: &[&[u8]]) {
+    let mut motion = Motion::default();
+    motion.set_hears_releases(keys_are_sequences);
+    let (mut parser, mut now) = (parser(keys_are_sequences), Duration::ZERO);
+    for piece in pieces {
+        let mut out = Vec::new();
+        parser.feed(piece, &mut out);
+        for input in &out {
+            take(&mut motion, input, now);
+        }
+        now += Duration::from_millis(30);
+    }
+    let mut let_go = motion.clone();
+    for key in BINDINGS.iter().flat_map(|binding| binding.keys) {
+        for state in [crossterm::event::KeyEventState::NONE, crossterm::event::KeyEventState::KEYPAD] {
+            let kind = KeyEventKind::Release;
+            let release = KeyEvent::new_with_kind_and_state(key.code, KeyModifiers::NONE, kind, state);
+            let_go.key(&release, now);
+        }
+    }
+    assert!(!let_go.is_moving(now), "all keys are let go: {let_go:?}");
+    if !keys_are_sequences {
+        assert!(!motion.is_moving(now + GLIDE), "{motion:?}");
+    }
+    take(&mut motion, &Input::Event(Event::FocusLost), now);
+}
+
+fn take(motion: &mut Motion, input: &Input, now: Duration) {
+    match input {
+        Input::Event(Event::Key(key)) => {
+            let before = motion.is_moving(now);
+            motion.key(key, now);
+            if key.kind == KeyEventKind::Release {
+                // Of two opposite keys, the other is then alone.
+                assert!(before || motion.hears_releases() || !motion.is_moving(now), "a release began a movement");
+            }
+            if key.kind == KeyEventKind::Repeat && !motion.hears_releases() {
+                assert!(!motion.is_moving(now + COAST), "a repeat goes on for too long");
+            }
+        }
+        Input::Event(Event::FocusLost) => {
+            motion.stop();
+            assert!(!motion.is_moving(now), "the focus is lost");
+        }
+        _ => {}
+    }
 }
