@@ -342,22 +342,6 @@ fn answers_that_come_during_a_stop_are_asked_for_again() {
     leave_answering(&mut session);
 }
 
-/// An answer arrives with the stop, and giving the terminal back reads it: nobody waits for another after `fg`.
-#[test]
-fn an_answer_that_comes_with_a_stop_is_not_waited_for_again() {
-    for _ in 0..10 {
-        let mut session = termtrace().kitty().spawn();
-        session.wait_for("the keyboard pushed", SOON, |seen| seen.modes().keyboard_flags() == 15);
-        session.signal(Signal::STOP);
-        session.wait_stopped(SOON);
-        // Both are there at once when it goes on.
-        session.send(b"\x1b[?15u\x1b[1;1R");
-        session.signal(Signal::CONT);
-        session.wait_for("the keyboard pushed again", SOON, |seen| count(seen, PUSH) == 2);
-        leave(&mut session);
-    }
-}
-
 /// What is held is let go of by a stop; the keyboard is popped for it, pushed after it, and believed only then.
 #[test]
 fn a_stop_pops_the_keyboard_and_lets_go_of_all_keys() {

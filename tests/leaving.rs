@@ -381,6 +381,21 @@ fn ctrl_z_stops_the_whole_group() {
     session.wait_for_text("inner");
 }
 
+/// The keyboard's answer is there when it stops, and giving the terminal back reads it: nobody waits for another.
+#[test]
+fn what_could_be_read_before_a_stop_is_not_waited_for() {
+    let mut phases = Phases::new();
+    let start = job().env("TERMTRACE_TEST_SOCKET", phases.path()).size(Size::cells(80, 4));
+    let mut session = start.kitty().spawn();
+    phases.wait_for_on(Phase::Keyboard.name(), &mut session);
+    session.wait_for("the question, which is answered", SOON, |seen| seen.has(b"\x1b[>15u\x1b[?u"));
+    act(Way::StopSignal, &mut session);
+    // Both are known when it goes on.
+    session.sees(Duration::from_millis(100), |_| false);
+    phases.answer(Answer::GoOn);
+    come_back(&mut session, None);
+}
+
 /// Stopped again and again.
 #[test]
 fn it_comes_back_as_often_as_it_goes() {

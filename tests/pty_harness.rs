@@ -311,3 +311,19 @@ fn is_gone(pid: Pid) -> bool {
     let state = ps.expect("there is ps on every system").stdout;
     matches!(state.trim_ascii_start().first(), None | Some(b'Z'))
 }
+
+#[test]
+fn a_kitty_terminal_tells_its_flags_in_the_order_of_the_questions() {
+    let script = "stty raw -echo; \
+        printf '\\033[?u\\033[>15u\\033[?u\\033[?1049h\\033[?u\\033[?1049l\\033[<1u\\033[?u\\033[c'; \
+        head -c 30 | tr '\\033' '^'";
+    let mut session = Start::shell(script).kitty().spawn();
+    session.wait_for_text("^[?0u^[?15u^[?0u^[?0u^[?62;22c");
+}
+
+/// A child that always has more to say is not listened to for ever.
+#[test]
+fn a_wait_ends_at_its_deadline() {
+    let mut session = Start::shell("while :; do echo more; done").spawn();
+    assert!(!session.sees(Duration::from_millis(200), |_| false));
+}
