@@ -52,6 +52,9 @@ pub(super) struct Link {
     asked: VecDeque<Question>,
     /// How many were given up: their answers may be late.
     lost: usize,
+    /// Nobody can say which answers belong to which questions: none is asked until no more answers come. When the last
+    /// one came.
+    settling: Option<Duration>,
     far_end: FarEnd,
     /// When it was last heard, if it ever was.
     heard: Option<Duration>,
@@ -103,6 +106,7 @@ impl Link {
             frame: max_frames.map_or(FRAME, |fps| FRAME.max(Duration::from_secs_f32(1.0 / fps))),
             asked: VecDeque::new(),
             lost: 0,
+            settling: None,
             far_end: if may_ask { FarEnd::Answers } else { FarEnd::NotAsked },
             heard: None,
             probed: None,
@@ -148,7 +152,7 @@ impl Link {
     pub(super) fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
         self.look_at_clock(now);
         let asks = match self.far_end {
-            FarEnd::Answers => true,
+            FarEnd::Answers => self.settling.is_none(),
             // It is asked again only when the last question is given up.
             FarEnd::Silent => self.asked.is_empty(),
             FarEnd::NotAsked => false,
@@ -175,7 +179,8 @@ impl Link {
     }
 
     fn is_probe_due(&self, now: Duration) -> bool {
-        self.answers() && self.probed.is_none_or(|last| now >= last + PROBE)
+        let asks = self.answers() && self.settling.is_none();
+        asks && self.probed.is_none_or(|last| now >= last + PROBE)
     }
 
     /// The terminal has answered.
@@ -185,20 +190,41 @@ impl Link {
         }
         self.far_end = FarEnd::Answers;
         self.heard = Some(now);
+        if self.settling.is_some() {
+            self.settling = Some(now);
+            return;
+        }
         let Some(&question) = self.asked.front() else { return self.take_stray() };
         let round_trip = now.saturating_sub(question.sent);
-        if self.round_trip.is_far_above(round_trip) {
+        // The way has become shorter, or it is the answer to another question, or to none.
+        let is_early = self.round_trip.is_far_above(round_trip);
+        if is_early && self.lost > 0 {
             return self.take_stray();
         }
-        if self.lost > 0 && !self.round_trip.is_known() {
-            // To which of them it is nobody can say: better begun anew.
-            self.lose_all();
-            return self.take_stray();
+        let is_known = self.round_trip.is_known();
+        if is_early || self.lost > 0 && !is_known {
+            return self.settle(now);
         }
         self.asked.pop_front();
         self.round_trip.take(round_trip, now);
-        let service = round_trip.saturating_sub(self.round_trip.shortest());
-        self.rates.take(question.bytes, service, now);
+        // The first round trip of a link whose rate is known says nothing more of the rate.
+        if is_known || self.rates.best().is_none() {
+            let service = round_trip.saturating_sub(self.round_trip.shortest());
+            self.rates.take(question.bytes, service, now);
+        }
+    }
+
+    /// Begins anew when all answers are in. Until then what is sent goes by the rate alone; of a link whose rate is not
+    /// known, the next question is asked at once.
+    fn settle(&mut self, now: Duration) {
+        if self.rates.best().is_some() {
+            self.asked.clear();
+            self.rates.doubt();
+            self.settling = Some(now);
+        } else {
+            self.lose_all();
+            self.take_stray();
+        }
     }
 
     /// An answer to a question that was given up, or to none.
@@ -215,6 +241,7 @@ impl Link {
     pub(super) fn forget(&mut self) {
         self.asked.clear();
         self.lost = 0;
+        self.settling = None;
     }
 
     fn in_flight(&self) -> f64 {
@@ -250,6 +277,11 @@ impl Link {
             self.lose_all();
             self.far_end = FarEnd::Silent;
             self.round_trip = RoundTrip::default();
+        }
+        if self.settling.is_some_and(|last| now >= last + PATIENCE + self.round_trip.shortest()) {
+            self.forget();
+            self.round_trip = RoundTrip::default();
+            self.probed = None;
         }
     }
 

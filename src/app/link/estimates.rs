@@ -67,7 +67,8 @@ impl Rates {
     /// So many bytes took so long, beside the round trip.
     pub(super) fn take(&mut self, bytes: usize, service: Duration, now: Duration) {
         let bytes = bytes as f64;
-        let best = self.best();
+        // Of those before, also after a pause.
+        let (best, limit) = (self.best(), self.limit());
         if bytes < best.map_or(TELLING, |best| TELLING.min(best.bytes_per_second / 50.0)) {
             return;
         }
@@ -75,11 +76,18 @@ impl Rates {
         let rate = if service >= SHORT {
             Rate { bytes_per_second: bytes / service.as_secs_f64(), is_limit: true }
         } else {
-            let shown = (bytes / (service + CHANCE).as_secs_f64()).min(2.0 * self.limit());
+            let shown = (bytes / (service + CHANCE).as_secs_f64()).min(2.0 * limit);
             let shown = Rate { bytes_per_second: shown, is_limit: false };
             best.filter(|best| best.bytes_per_second >= shown.bytes_per_second).unwrap_or(shown)
         };
         self.rates.push_back((now, rate));
+    }
+
+    /// Round trips may have been taken for those of others: only what seemed slow is believed, if anything did.
+    pub(super) fn doubt(&mut self) {
+        if self.rates.iter().any(|(_, rate)| rate.is_limit) {
+            self.rates.retain(|(_, rate)| rate.is_limit);
+        }
     }
 
     /// The highest that the link did not exceed in the last moments. Not even one that seems faster at once may be: an

@@ -354,6 +354,56 @@ fn a_longer_way_is_noticed() {
 }
 
 #[test]
+fn a_shorter_way_is_noticed() {
+    for (rate, round_trip) in [(50_000.0, 20), (50_000.0, 1), (200_000.0, 5), (1e8, 20), (1e8, 1)] {
+        let mut world = World::new(50_000.0, ms(200));
+        world.run(ms(5_000));
+        (world.rate, world.round_trip) = (rate, ms(round_trip));
+        // In pieces, as keys come.
+        for _ in 0..12 {
+            world.run(ms(190));
+            world.rest(ms(30));
+        }
+        let shortest = world.link.round_trip.shortest();
+        assert!(shortest <= ms(round_trip + 30), "{shortest:?} of {round_trip} ms");
+        assert_eq!(world.link.slow(SCREEN).is_some(), rate < 1e6, "{rate} B/s, {round_trip} ms");
+    }
+}
+
+/// As it would be by one that has always been so short.
+#[test]
+fn a_way_that_is_a_little_shorter_is_used_as_well() {
+    for round_trip in [150, 100, 50] {
+        let [[now, now_share], [always, share]] = [200, round_trip].map(|before| {
+            let mut world = World::new(50_000.0, ms(before));
+            world.run(ms(5_000));
+            world.round_trip = ms(round_trip);
+            world.run(ms(5_000));
+            let from = world.now;
+            world.run(ms(20_000));
+            let to = world.ago(2_000);
+            let [_, worst] = world.keys(from, to);
+            let [_, share] = world.throughput(from, to);
+            [worst.as_secs_f64(), share]
+        });
+        assert!(now <= 1.1 * always && now_share >= 0.95 * share, "{now}, {now_share} for {always}, {share}");
+    }
+}
+
+/// Frames that are small say nothing against an old limit, but the first large one does.
+#[test]
+fn an_old_limit_does_not_last() {
+    let mut world = World::new(100_000.0, ms(20));
+    world.run(ms(3_000));
+    world.rate = 1e8;
+    (world.frame, world.fits) = (700, false);
+    world.run(ms(5_000));
+    (world.frame, world.fits) = (SCREEN, true);
+    world.run(ms(1_000));
+    assert_eq!(world.link.slow(SCREEN), None);
+}
+
+#[test]
 fn caps_are_kept() {
     for rate in [5_000, 50_000, 200_000, 1_000_000] {
         let mut world = World { link: Link::new(Some(rate), None, true), ..World::new(1e8, ms(10)) };
