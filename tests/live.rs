@@ -2,7 +2,7 @@
 
 mod pty;
 
-use pty::{Colour, SOON, Session, Size, Start};
+use pty::{SOON, Session, Size, Start, shows};
 use rustix::process::Signal;
 use std::fs::File;
 use std::io::Write;
@@ -10,13 +10,10 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::time::Duration;
 use termtrace::capabilities::{CellMode, Colors, Glyphs};
-use termtrace::cell;
 use termtrace::control::BINDINGS;
 use termtrace::encode::{Encoder, Order};
-use termtrace::grid::{Grid, Ink};
-use termtrace::render::render;
+use termtrace::grid::Grid;
 use termtrace::scene::Scene;
-use termtrace::tone::tone;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 
@@ -32,41 +29,7 @@ fn termtrace() -> Start {
 fn picture(cell_mode: CellMode, size: Size) -> Grid {
     let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
     let aspect = f32::from(size.cell.1) / f32::from(size.cell.0);
-    let resolution = cell::resolution(cell_mode, termtrace::grid::Size::new(size.columns, size.rows), aspect);
-    let framebuffer = render(&scene, &scene.camera, resolution, std::num::NonZeroU32::MIN);
-    cell::grid_from_picture(cell_mode, &tone(&framebuffer, &scene))
-}
-
-fn colour(ink: Ink) -> Colour {
-    match ink {
-        Ink::Default => Colour::Default,
-        Ink::Indexed(index) => Colour::Indexed(index),
-        Ink::Rgb(c) => Colour::Rgb(c.r, c.g, c.b),
-    }
-}
-
-/// Whether the emulator shows exactly these cells: of a picture the halves' colours, whichever block shows them.
-fn shows(screen: &pty::Screen, grid: &Grid) -> bool {
-    let columns = usize::from(grid.size().columns);
-    grid.cells().iter().enumerate().all(|(at, wanted)| {
-        let shown = screen.cell(at % columns, at / columns);
-        let same = wanted.glyph == shown.glyph
-            && shown.foreground == colour(wanted.fg)
-            && shown.background == colour(wanted.bg);
-        let halves = ['▄', '▀', ' '].into_iter().find(|&glyph| wanted.glyph == glyph);
-        let wanted = halves.and_then(|glyph| halves_of(glyph, colour(wanted.fg), colour(wanted.bg)));
-        same || wanted.is_some() && wanted == halves_of(shown.glyph, shown.foreground, shown.background)
-    })
-}
-
-/// The colours of a cell's upper and lower half, if it is of a picture.
-fn halves_of(glyph: char, fg: Colour, bg: Colour) -> Option<[Colour; 2]> {
-    match glyph {
-        '▄' => Some([bg, fg]),
-        '▀' => Some([fg, bg]),
-        ' ' => Some([bg, bg]),
-        _ => None,
-    }
+    pty::picture(&scene, cell_mode, termtrace::grid::Size::new(size.columns, size.rows), aspect)
 }
 
 #[track_caller]

@@ -2,20 +2,17 @@
 
 mod pty;
 
-use pty::{Colour, SOON, Session, Size, Start};
+use pty::{Colour, SOON, Session, Size, Start, shows};
 use rustix::process::Signal;
 use std::fmt::Write;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use termtrace::capabilities::{CellMode, Colors, Glyphs, Hints};
-use termtrace::cell;
 use termtrace::color::Srgb8;
-use termtrace::grid::{Grid, Ink};
-use termtrace::render::render;
+use termtrace::grid::Grid;
 use termtrace::scene::Scene;
 use termtrace::terminal::Questions;
-use termtrace::tone::tone;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 const FENCE: &[u8] = b"\x1b[c";
@@ -28,32 +25,8 @@ fn live() -> Start {
 
 /// What the scene looks like in these cells, whose height is `aspect` times their width.
 fn picture(glyphs: Glyphs, colors: Colors, aspect: f32) -> Grid {
-    let mode = CellMode { glyphs, colors };
     let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
-    let resolution = cell::resolution(mode, termtrace::grid::Size::new(80, 24), aspect);
-    let framebuffer = render(&scene, &scene.camera, resolution, std::num::NonZeroU32::MIN);
-    cell::grid_from_picture(mode, &tone(&framebuffer, &scene))
-}
-
-fn colour(ink: Ink) -> Colour {
-    match ink {
-        Ink::Default => Colour::Default,
-        Ink::Indexed(index) => Colour::Indexed(index),
-        Ink::Rgb(c) => Colour::Rgb(c.r, c.g, c.b),
-    }
-}
-
-/// Whether the screen shows these cells; of a half block, by its colours.
-fn shows(screen: &pty::Screen, grid: &Grid) -> bool {
-    let columns = usize::from(grid.size().columns);
-    grid.cells().iter().enumerate().all(|(at, wanted)| {
-        let shown = screen.cell(at % columns, at / columns);
-        let (fg, bg) = (colour(wanted.fg), colour(wanted.bg));
-        match (shown.glyph, wanted.glyph == '▄' || wanted.glyph == ' ') {
-            ('▀', true) => (shown.foreground, shown.background) == (bg, if wanted.glyph == ' ' { bg } else { fg }),
-            (glyph, _) => wanted.glyph == glyph && shown.background == bg && (glyph == ' ' || shown.foreground == fg),
-        }
-    })
+    pty::picture(&scene, CellMode { glyphs, colors }, termtrace::grid::Size::new(80, 24), aspect)
 }
 
 #[track_caller]
@@ -367,12 +340,13 @@ fn doctor_asks_and_tells_what_was_answered() {
     assert_eq!(session.typed_ahead(), b"");
     let text = session.seen().screen().text();
     let rows: Vec<String> =
-        text[1..12].iter().map(|row| row.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+        text[1..13].iter().map(|row| row.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
     assert!(rows[0].starts_with("it was asked everything answered after "), "{rows:#?}");
     assert_eq!(
         rows[1..],
         [
             "colours truecolor its answer",
+            "locale C.UTF-8 LC_ALL",
             "cells half blocks LC_ALL",
             "half block's width 1 column its answer",
             "cell, height/width 2.000 (10x20 pixels) the window's pixels",

@@ -152,7 +152,7 @@ fn by_name(clues: &Clues<'_>) -> Found<Colors> {
 }
 
 /// The locale's character set is named in the first of these that is set, by POSIX's order.
-fn locale(clues: &Clues<'_>) -> Option<(&'static str, String)> {
+pub(super) fn locale(clues: &Clues<'_>) -> Option<(&'static str, String)> {
     ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, value(clues, name)?)))
 }
 

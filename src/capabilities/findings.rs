@@ -1,5 +1,6 @@
 //! All that is known of a terminal, from whoever knows it: the user, the environment, the window, its own answers.
 
+use super::detection::locale;
 use super::{Answers, Capabilities, CellMode, Clues, ColorChoice, Colors, Found, GlyphChoice, Glyphs, Source};
 use super::{USUAL_CELL_ASPECT, colors, glyphs};
 
@@ -53,6 +54,11 @@ impl Hints {
     /// The value of an environment variable, if it is one of [`VARIABLES`], set, and not empty.
     pub fn variable(&self, name: &str) -> Option<&str> {
         self.raw(name).filter(|value| !value.is_empty())
+    }
+
+    /// The locale, and the variable that names it, if one does.
+    pub fn locale(&self) -> Option<(&'static str, String)> {
+        self.judge(None, locale)
     }
 
     fn raw(&self, name: &str) -> Option<&str> {

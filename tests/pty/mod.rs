@@ -16,6 +16,7 @@
 mod modes;
 mod output;
 mod phases;
+mod picture;
 mod screen;
 mod storm;
 mod termios;
@@ -43,6 +44,7 @@ use rustix::{
 pub(crate) use modes::Modes;
 use output::Output;
 pub(crate) use phases::{Answer, Phases};
+pub(crate) use picture::{halves_of, picture, shows};
 pub(crate) use screen::{Colour, Screen};
 pub(crate) use storm::Storm;
 

@@ -43,6 +43,7 @@ impl Known<'_> {
         vec![
             self.questions(),
             row("colours", findings.colors, colors),
+            self.locale(),
             row("cells", findings.glyphs, glyphs),
             self.answered("half block's width", self.answers.block_width.map(columns)),
             row("cell, height/width", findings.cell_aspect, |aspect| format!("{aspect:.3}{}", self.pixels())),
@@ -71,6 +72,14 @@ impl Known<'_> {
             Talk::Silence => "no end of answers in 2 s".to_owned(),
         };
         ("it was asked", asked.to_owned(), how)
+    }
+
+    fn locale(&self) -> Row {
+        let (value, who) = match self.hints.locale() {
+            Some((name, locale)) => (locale, name.to_owned()),
+            None => ("none: taken for UTF-8".to_owned(), who(Source::Assumed)),
+        };
+        ("locale", value, who)
     }
 
     fn pixels(&self) -> String {

@@ -1,0 +1,49 @@
+//! What the library makes of a scene, and whether a terminal shows it.
+
+use super::screen::{Colour, Screen};
+use termtrace::capabilities::CellMode;
+use termtrace::cell;
+use termtrace::grid::{Grid, Ink, Size};
+use termtrace::render::render;
+use termtrace::scene::Scene;
+use termtrace::tone::tone;
+
+/// What a scene looks like on a screen, whose cells' height is `aspect` times their width.
+pub(crate) fn picture(scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {
+    let resolution = cell::resolution(mode, size, aspect);
+    let framebuffer = render(scene, &scene.camera, resolution, std::num::NonZeroU32::MIN);
+    cell::grid_from_picture(mode, &tone(&framebuffer, scene))
+}
+
+impl From<Ink> for Colour {
+    fn from(ink: Ink) -> Self {
+        match ink {
+            Ink::Default => Self::Default,
+            Ink::Indexed(index) => Self::Indexed(index),
+            Ink::Rgb(c) => Self::Rgb(c.r, c.g, c.b),
+        }
+    }
+}
+
+/// Whether a screen shows exactly these cells: of a picture the halves' colours, whichever block shows them.
+pub(crate) fn shows(screen: &Screen, grid: &Grid) -> bool {
+    let columns = usize::from(grid.size().columns);
+    grid.cells().iter().enumerate().all(|(at, wanted)| {
+        let shown = screen.cell(at % columns, at / columns);
+        let (fg, bg) = (Colour::from(wanted.fg), Colour::from(wanted.bg));
+        let same = wanted.glyph == shown.glyph && shown.foreground == fg && shown.background == bg;
+        let halves = ['▄', '▀', ' '].into_iter().find(|&glyph| wanted.glyph == glyph);
+        let wanted = halves.and_then(|glyph| halves_of(glyph, fg, bg));
+        same || wanted.is_some() && wanted == halves_of(shown.glyph, shown.foreground, shown.background)
+    })
+}
+
+/// The colours of a cell's upper and lower half, if it is of a picture.
+pub(crate) fn halves_of(glyph: char, fg: Colour, bg: Colour) -> Option<[Colour; 2]> {
+    match glyph {
+        '▄' => Some([bg, fg]),
+        '▀' => Some([fg, bg]),
+        ' ' => Some([bg, bg]),
+        _ => None,
+    }
+}
