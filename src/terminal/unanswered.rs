@@ -78,3 +78,26 @@ impl Unanswered {
 pub(super) fn is_in_background(keys: &File) -> bool {
     termios::tcgetpgrp(keys).is_ok_and(|foreground| foreground != process::getpgrp())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A terminal may be given back more than once.
+    #[test]
+    fn the_count_starts_anew_when_the_terminal_is_given_back() {
+        let mut unanswered = Unanswered::default();
+        unanswered.send(FENCE);
+        unanswered.send(b"frame\x1b[c");
+        assert_eq!(unanswered.count, 2);
+        let gone = File::open("/dev/null").expect("there is always /dev/null");
+        unanswered.drain(&gone, Instant::now());
+        assert_eq!(unanswered.patience(), None, "nobody waits for what is lost");
+        // What is late then is nobody's answer, and what is asked then has its own.
+        unanswered.hear(b"\x1b[?62c");
+        unanswered.send(FENCE);
+        assert!(unanswered.patience().is_some());
+        unanswered.hear(b"\x1b[?62c");
+        assert_eq!(unanswered.patience(), None);
+    }
+}
