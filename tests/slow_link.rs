@@ -6,9 +6,27 @@ mod pty;
 #[path = "slow_link/relay.rs"]
 mod relay;
 
-use pty::{SOON, Start};
+use glam::Vec3;
+use pty::{Colour, SOON, Screen, Start, halves_of, shows};
 use relay::{Link, Relay};
+use std::path::Path;
 use std::time::Duration;
+use termtrace::camera::Pose;
+use termtrace::capabilities::CellMode;
+use termtrace::grid::{Grid, Size};
+use termtrace::scene::Scene;
+
+/// The program's own link, for a source of frames that is not the program.
+#[path = "../src/app"]
+mod app {
+    #[allow(dead_code, unused_imports)]
+    mod link;
+    #[path = "../../tests/slow_link/source.rs"]
+    pub(crate) mod source;
+}
+mod terminal {
+    pub(crate) use termtrace::terminal::FENCE;
+}
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 
@@ -19,8 +37,12 @@ const SLOW: Link = Link { rate: 50_000.0, round_trip: Duration::from_millis(200)
 const FAST: Link = Link { rate: 1e9, round_trip: Duration::from_micros(200), answers: true };
 
 fn termtrace() -> Start {
+    termtrace_of(SCENE)
+}
+
+fn termtrace_of(scene: &str) -> Start {
     let program = std::env::var_os("SLOW_LINK_PROGRAM").unwrap_or(env!("CARGO_BIN_EXE_termtrace").into());
-    Start::new(program).arg(SCENE)
+    Start::new(program).arg(scene)
 }
 
 fn ms(milliseconds: u64) -> Duration {
@@ -116,6 +138,109 @@ fn a_key_is_soon_seen_on_a_slow_link() {
     // What the link's own delays seem to be is measured, too: on a busy machine they are longer.
     assert!(relay.excess <= 5_000.0, "{} bytes too many in flight", relay.excess);
     assert!(relay.frames.last().is_some_and(|frame| frame.status.contains("slow link")));
+}
+
+/// Frames of one size, whatever the link: only their number can be fitted to it.
+#[test]
+fn a_key_is_soon_seen_among_frames_of_four_kilobytes() {
+    let mut relay = Relay::start(Start::shell("stty raw -echo; echo ready; exec sleep 10000"), SLOW);
+    assert!(relay.run(SOON, |relay| relay.taken() >= b"ready\n".len()), "a raw terminal");
+    let terminal = relay.session.terminal();
+    let source = std::thread::spawn(|| app::source::run(terminal));
+    relay.run(ms(3_000), |_| false);
+    let (first, since) = (relay.frames.len(), relay.now());
+    relay.excess = f64::MIN;
+    let times = walk(&mut relay, keys());
+    let seconds = relay.since(since).as_secs_f64();
+    let frames = &relay.frames[first..];
+    // A question alone comes with the frame behind it.
+    assert!(frames.iter().all(|frame| frame.bytes == 4_000), "frames of one size");
+    let (fps, share) = (frames.len() as f64 / seconds, frames.len() as f64 * 4_000.0 / seconds / SLOW.rate);
+    let (p50, p99) = (percentile(&times, 0.5), percentile(&times, 0.99));
+    println!("4 kB: {} keys: p50 {p50:?} p99 {p99:?} max {:?}", times.len(), percentile(&times, 1.0));
+    println!("4 kB: {fps:.1} frames/s, {:.1} % of the link", 100.0 * share);
+    println!("4 kB: in flight beyond the formula: {:.0} bytes", relay.excess);
+    assert!(p50 <= ms(420).mul_f64(SLACK), "p50 {p50:?}");
+    assert!(p99 <= ms(480).mul_f64(SLACK), "p99 {p99:?}");
+    assert!(fps >= 10.0 / SLACK, "{fps} frames/s");
+    assert!(share >= 0.85 / SLACK, "{share} of the link");
+    assert!(relay.excess <= 5_000.0, "{} bytes too many in flight", relay.excess);
+    relay.session.send(b"q");
+    source.join().expect("the source does not panic");
+}
+
+const SPHERES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
+
+/// What the spheres look like from there, in 80x24 cells.
+fn spheres(scene: &Scene, eye: Option<[f64; 3]>) -> Grid {
+    let mut scene = scene.clone();
+    if let Some(eye) = eye {
+        let Pose { eye: home, target, up } = scene.camera.pose();
+        let eye = Vec3::from(eye.map(|x| x as f32));
+        scene.camera = scene.camera.with_pose(Pose { eye, target: target + (eye - home), up }).expect("a pose");
+    }
+    pty::picture(&scene, CellMode::HALF_BLOCK, Size::new(80, 24), 2.0)
+}
+
+/// The halves of all cells but those of the lowest row, where the status is.
+fn halves(columns: usize, mut cell: impl FnMut(usize, usize) -> Option<[Colour; 2]>) -> Vec<[f64; 3]> {
+    let cells = (0..23).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    let halves = cells.flat_map(|(column, row)| cell(column, row).expect("a cell of a picture"));
+    halves
+        .map(|half| match half {
+            Colour::Rgb(r, g, b) => [r, g, b].map(f64::from),
+            other => panic!("{other:?} in a picture"),
+        })
+        .collect()
+}
+
+/// The ratio of the peak to the noise between what is shown and what is wanted, in decibels.
+fn psnr(screen: &Screen, wanted: &Grid) -> f64 {
+    let shown = halves(80, |column, row| {
+        let cell = screen.cell(column, row);
+        halves_of(cell.glyph, cell.foreground, cell.background)
+    });
+    let wanted = halves(80, |column, row| {
+        let cell = &wanted.cells()[row * 80 + column];
+        let glyph = ['▄', '▀', ' '].into_iter().find(|&glyph| cell.glyph == glyph)?;
+        halves_of(glyph, cell.fg.into(), cell.bg.into())
+    });
+    let squares = shown.iter().zip(&wanted).flat_map(|(a, b)| (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])));
+    10.0 * libm::log10(255.0 * 255.0 * 3.0 * shown.len() as f64 / squares.sum::<f64>())
+}
+
+/// The wanted picture is that of the eye in the status line, which is told to a hundredth.
+#[test]
+fn a_picture_in_motion_is_near_on_a_slow_link_and_exact_once_still() {
+    let scene = Scene::load(Path::new(SPHERES)).expect("the scene is fine");
+    let mut relay = looking(termtrace_of(SPHERES), SLOW);
+    let mut found = Vec::new();
+    for key in [b"a", b"w", b"d", b"s"].into_iter().cycle().take(keys().min(40)) {
+        relay.press(key);
+        let mut seen = relay.frames.len();
+        relay.run(ms(500), |relay| {
+            if relay.frames.len() > seen {
+                seen = relay.frames.len();
+                let eye = relay.frames.last().and_then(|frame| eye(&frame.status)).expect("it is told");
+                found.push(psnr(relay.screen(), &spheres(&scene, Some(eye))));
+            }
+            false
+        });
+    }
+    found.sort_by(f64::total_cmp);
+    let mean = found.iter().sum::<f64>() / found.len() as f64;
+    let median = found[found.len() / 2];
+    println!("{} frames in motion: PSNR {mean:.1} dB, median {median:.1}, least {:.1}", found.len(), found[0]);
+    // Home, where the eye is known exactly, and without the status line.
+    relay.press(b"r");
+    relay.run(ms(1_500), |_| false);
+    relay.press(b"r");
+    relay.press(b"i");
+    let (wanted, from) = (spheres(&scene, None), relay.now());
+    let is_exact = relay.run(SOON, |relay| shows(relay.screen(), &wanted));
+    println!("still and exact {:?} after the key", relay.since(from));
+    assert!(is_exact, "the picture is exact once still");
+    assert!(median >= 18.0, "{median} dB");
 }
 
 #[test]

@@ -85,6 +85,11 @@ impl Relay {
         self.taken
     }
 
+    /// What the far end shows.
+    pub(crate) fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
     /// A key is pressed at the far end.
     pub(crate) fn press(&mut self, key: &[u8]) {
         let at = self.now() + self.link.round_trip / 2;
