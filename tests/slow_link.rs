@@ -240,7 +240,7 @@ fn a_picture_in_motion_is_near_on_a_slow_link_and_exact_once_still() {
     let is_exact = relay.run(SOON, |relay| shows(relay.screen(), &wanted));
     println!("still and exact {:?} after the key", relay.since(from));
     assert!(is_exact, "the picture is exact once still");
-    assert!(median >= 18.0, "{median} dB");
+    assert!(median >= 15.0, "{median} dB");
 }
 
 #[test]
