@@ -1,6 +1,10 @@
 //! The bytes themselves, worked out by hand.
 
 use super::rgb;
+use alacritty_terminal::event::VoidListener;
+use alacritty_terminal::grid::Dimensions;
+use alacritty_terminal::term::Config;
+use alacritty_terminal::vte::ansi;
 use ratatui::style::Modifier;
 use std::io::{self, Write};
 use std::time::Duration;
@@ -374,6 +378,66 @@ fn lossy_frames_are_bracketed_too() {
             let frame = sent(&mut synchronized, &light, quality, Some(most), 9);
             assert!(!frame.is_empty() && frame.len() <= most, "{} of {most} bytes", frame.len());
         }
+    }
+}
+
+/// A terminal that knows synchronized output.
+struct Synchronizing {
+    terminal: alacritty_terminal::Term<VoidListener>,
+    parser: ansi::Processor,
+}
+
+struct Lines(usize, usize);
+
+impl Dimensions for Lines {
+    fn total_lines(&self) -> usize {
+        self.1
+    }
+
+    fn screen_lines(&self) -> usize {
+        self.1
+    }
+
+    fn columns(&self) -> usize {
+        self.0
+    }
+}
+
+impl Synchronizing {
+    fn new(size: Size) -> Self {
+        let lines = Lines(size.columns.into(), size.rows.into());
+        Self {
+            terminal: alacritty_terminal::Term::new(Config::default(), &lines, VoidListener),
+            parser: ansi::Processor::new(),
+        }
+    }
+
+    /// What is shown after these bytes, too: glyphs and both colours.
+    fn shows(&mut self, bytes: &[u8]) -> Vec<(char, ansi::Color, ansi::Color)> {
+        self.parser.advance(&mut self.terminal, bytes);
+        self.terminal.grid().display_iter().map(|cell| (cell.c, cell.fg, cell.bg)).collect()
+    }
+}
+
+/// Wherever its bytes are cut: what is shown is the frame before, or this one.
+#[test]
+fn a_synchronized_frame_is_never_shown_by_half() {
+    let size = Size::new(9, 4);
+    let mut encoder = Encoder::new().with_synchronized_output(true);
+    let mut terminal = Synchronizing::new(size);
+    for seed in 0..20_u8 {
+        let mut grid = Grid::new(size);
+        for at in 0..36_u8 {
+            let color = |n: u8| rgb(n.wrapping_mul(37), at.wrapping_mul(seed), n);
+            let glyph = if (at + seed).is_multiple_of(5) { 'x' } else { '▄' };
+            *grid.cell_mut((at % 9).into(), (at / 9).into()) = Cell::new(glyph, color(seed), color(at));
+        }
+        let frame = encoded(&mut encoder, &grid);
+        let before = terminal.shows(b"");
+        let shown: Vec<_> = frame.bytes().map(|byte| terminal.shows(&[byte])).collect();
+        let (after, halves) = shown.split_last().expect("a frame");
+        assert!(*after != before, "frame {seed} is shown");
+        assert!(halves.iter().all(|half| *half == before), "frame {seed} is shown by half");
     }
 }
 
