@@ -380,6 +380,8 @@ fn answers_that_nobody_asked_for_do_no_harm() {
     for answer in [&b"\x1b[?62;22c"[..]; 6] {
         walk(&mut relay, 1);
         relay.press(answer);
+        // Until it has begun anew it asks nothing, and frames that end without a question the relay does not tell.
+        relay.run(ms(2_500), |_| false);
     }
     let times = walk(&mut relay, 6);
     assert!(times.iter().all(|&time| time <= ms(800).mul_f64(SLACK)), "{times:?}");
