@@ -158,7 +158,6 @@ impl Live {
     fn run(&mut self, terminal: &mut Terminal, renderer: &mut Renderer, signals: &mut Signals) -> io::Result<Ending> {
         loop {
             self.move_camera();
-            self.panic_if_asked(renderer);
             self.present(terminal, renderer)?;
             // Nothing is rendered that cannot be sent.
             let idle = !renderer.is_busy() && !terminal.is_sending();
@@ -166,6 +165,7 @@ impl Live {
                 self.begin_frame(renderer);
                 terminal.send(self.link.probe(self.now()))?;
             }
+            self.panic_if_asked(renderer);
             let timeout = self.timeout(terminal, renderer);
             let woken = terminal.wait(signals.wake_pipe(), timeout)?;
             if woken.wake {
@@ -188,7 +188,7 @@ impl Live {
             if self.knows_keyboard() {
                 terminal.push_keyboard()?;
             }
-            if let Some(frame) = renderer.finished() {
+            while let Some(frame) = renderer.finished() {
                 self.screen.take_frame(frame, self.moved_until.is_some().then(|| self.now()));
             }
         }
