@@ -32,8 +32,9 @@ use screen::Screen;
 pub struct Options {
     /// What is wanted and known of the terminal before it is asked.
     pub hints: Hints,
-    /// In which order changed cells are sent.
-    pub order: Order,
+    /// In which order changed cells are sent; `None`: row by row, which takes the least time, and by colour, which takes
+    /// the fewest bytes, while the link is slow.
+    pub order: Option<Order>,
     /// How near a moving picture is to the wanted one; `None`: exact, and equal while the link is slow.
     pub quality: Option<Quality>,
     /// The most bytes a second that are sent in the mean; `None`: as many as the link takes.
@@ -47,7 +48,7 @@ pub struct Options {
 impl Options {
     /// For a terminal of which that is known, on a link that does not compress; the rest as terminal and machine say.
     pub fn new(hints: Hints) -> Self {
-        Self { hints, order: Order::Color, quality: None, max_rate: None, max_frames: None, threads: None }
+        Self { hints, order: None, quality: None, max_rate: None, max_frames: None, threads: None }
     }
 }
 

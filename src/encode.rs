@@ -119,6 +119,11 @@ impl Encoder {
         Self { order, ..self }
     }
 
+    /// The same for an encoder in use.
+    pub fn set_order(&mut self, order: Order) {
+        self.order = order;
+    }
+
     /// Whether a half-block cell may be written with either half, whichever saves a change of colour: right where a cell
     /// has an even number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and their
     /// mix would show.

@@ -75,7 +75,7 @@ fn the_first_frame_comes_without_a_clear() {
 #[test]
 fn the_first_frame_is_sent_in_the_order_that_is_asked_for() {
     for (flags, order) in [
-        (&[][..], Order::Color),
+        (&[][..], Order::Raster),
         (&["--order=color"], Order::Color),
         (&["--order=raster"], Order::Raster),
         (&["--compressed-link"], Order::Raster),

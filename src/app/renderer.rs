@@ -49,14 +49,24 @@ pub(super) struct Renderer {
 }
 
 impl Renderer {
-    /// Starts the thread, and the pool of those that it shares the tiles with.
+    /// Starts the thread, and the pool of those that it shares the tiles with. It is one of them itself: to wake another
+    /// and to be woken again takes as long as a small frame.
     pub(super) fn start(scene: Scene, threads: Option<usize>, mut waker: Waker) -> io::Result<Self> {
-        let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build().map_err(io::Error::other)?;
         let (jobs, wanted) = channel::<Job>();
+        let (begun, started) = channel();
         let (done, frames) = channel();
         let cancelled = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&cancelled);
         let thread = thread::Builder::new().name("render".to_owned()).spawn(move || {
+            let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).use_current_thread().build();
+            let pool = match pool {
+                Ok(pool) => pool,
+                Err(error) => {
+                    let _ = begun.send(Err(io::Error::other(error)));
+                    return;
+                }
+            };
+            let _ = begun.send(Ok(()));
             for job in wanted {
                 let traced = catch_unwind(AssertUnwindSafe(|| trace(&pool, &stop, &scene, &job)));
                 // Nobody listens any more: the loop has ended.
@@ -67,6 +77,7 @@ impl Renderer {
                 }
             }
         })?;
+        started.recv().map_err(io::Error::other)??;
         Ok(Self { jobs: Some(jobs), frames, cancelled, thread: Some(thread), in_work: 0 })
     }
 

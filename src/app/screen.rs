@@ -23,6 +23,7 @@ const BYTES_PER_CELL: usize = 8;
 pub(super) struct Screen {
     painter: Painter,
     encoder: Encoder,
+    order: Option<Order>,
     quality: Option<Quality>,
     frame: Option<Frame>,
     status: bool,
@@ -38,10 +39,11 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    pub(super) fn new(capabilities: &Capabilities, order: Order, quality: Option<Quality>) -> Self {
+    pub(super) fn new(capabilities: &Capabilities, order: Option<Order>, quality: Option<Quality>) -> Self {
         Self {
             painter: painter(capabilities),
-            encoder: encoder(Encoder::new().with_order(order), capabilities),
+            encoder: encoder(Encoder::new(), capabilities),
+            order,
             quality,
             frame: None,
             status: false,
@@ -127,7 +129,9 @@ impl Screen {
             let start = Instant::now();
             let mut grid = self.painter.grid(&frame.picture);
             self.lay_panels_over(&mut grid, frame, slow);
-            let usual = if slow.is_some() { Quality::Equal } else { Quality::Exact };
+            let (usual, order) =
+                if slow.is_some() { (Quality::Equal, Order::Color) } else { (Quality::Exact, Order::Raster) };
+            self.encoder.set_order(self.order.unwrap_or(order));
             let most_bytes = slow.map(|slow| slow.most_bytes);
             let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, most_bytes };
             self.encoder.encode_within(&grid, allowance, &mut self.bytes);
@@ -202,3 +206,46 @@ impl Pace {
 
 /// Frames further apart than this are not one movement.
 const PAUSE: Duration = Duration::from_millis(500);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capabilities::CellMode;
+    use crate::export;
+    use crate::scene::Scene;
+    use crate::tone::tone;
+    use std::num::NonZeroU32;
+
+    /// By colour while the link is slow, row by row otherwise, unless one of them is asked for.
+    #[test]
+    fn the_order_is_the_links() {
+        let text = include_str!("../../scenes/three_spheres.ron");
+        let scene = Scene::from_ron("three_spheres.ron", text).expect("the scene is fine");
+        let capabilities = Capabilities {
+            cell_mode: CellMode::HALF_BLOCK,
+            cell_aspect: 2.0,
+            halves_meet: false,
+            light_background: false,
+            synchronized_output: false,
+        };
+        let size = Size::new(40, 12);
+        let resolution = cell::resolution(capabilities.cell_mode, size, 2.0);
+        let light = crate::render::render(&scene, &scene.camera, resolution, NonZeroU32::MIN);
+        let frame = || Frame { camera: scene.camera, picture: tone(&light, &scene), rays: 0, trace: Duration::ZERO };
+        let grid = export::frame_grid(&scene, capabilities.cell_mode, size, 2.0);
+        let slow = Some(Slow { rate: 1e5, most_bytes: usize::MAX });
+        let exact = Some(Quality::Exact);
+        for (asked, link, order) in [
+            (None, None, Order::Raster),
+            (None, slow, Order::Color),
+            (Some(Order::Color), None, Order::Color),
+            (Some(Order::Raster), slow, Order::Raster),
+        ] {
+            let mut screen = Screen::new(&capabilities, asked, exact);
+            screen.take_frame(frame(), None);
+            let mut wanted = Vec::new();
+            Encoder::new().with_order(order).encode(&grid, &mut wanted);
+            assert!(screen.bytes(size, Duration::ZERO, link) == &wanted, "{asked:?} {link:?}");
+        }
+    }
+}

@@ -7,7 +7,8 @@ use termtrace::encode;
 pub(super) const EXPLAINED: &str = "\
 The order of cells:
   color    so that colours are reused: the fewest bytes on a plain link
-  raster   row by row: more bytes, but a compressor makes the least of them, because each frame resembles the last
+  raster   row by row: more bytes, but a compressor makes the least of them, because each frame resembles the last;
+           and less work
   ssh's own setting cannot be seen from here, so a link that compresses has to be told by --compressed-link.
 The quality of a picture in motion (what stands still is exact within a second, and text always is):
   exact    every half cell has its colour
@@ -16,7 +17,7 @@ The quality of a picture in motion (what stands still is exact within a second, 
 
 #[derive(Args)]
 pub(super) struct EncodingArgs {
-    /// In which order changed cells are sent [default: color]
+    /// In which order changed cells are sent [default: color; live, raster until the link is found slow]
     #[arg(long, value_name = "ORDER", conflicts_with = "compressed_link")]
     order: Option<Order>,
     /// The link compresses, as ssh -C does: --order raster
@@ -50,11 +51,12 @@ impl EncodingArgs {
         self.order.is_some() || self.compressed_link || self.quality.is_some() || self.max_rate.is_some()
     }
 
-    pub(super) fn order(&self) -> encode::Order {
+    /// If it was said.
+    pub(super) fn order(&self) -> Option<encode::Order> {
         match self.order {
-            Some(Order::Raster) => encode::Order::Raster,
-            None if self.compressed_link => encode::Order::Raster,
-            Some(Order::Color) | None => encode::Order::Color,
+            Some(Order::Raster) => Some(encode::Order::Raster),
+            Some(Order::Color) => Some(encode::Order::Color),
+            None => self.compressed_link.then_some(encode::Order::Raster),
         }
     }
 

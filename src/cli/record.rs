@@ -15,7 +15,7 @@ use termtrace::camera::Camera;
 use termtrace::camera_path::CameraPath;
 use termtrace::capabilities::CellMode;
 use termtrace::cell;
-use termtrace::encode::Encoder;
+use termtrace::encode::{Encoder, Order};
 use termtrace::export;
 use termtrace::framebuffer::Resolution;
 use termtrace::grid::Size;
@@ -176,7 +176,8 @@ impl RecordArgs {
                 // A resolution is checked to have no more cells.
                 let size = Size::new((resolution.width / across) as u16, resolution.height.div_ceil(down) as u16);
                 // Players draw the two halves of a cell alike.
-                let encoder = Encoder::new().with_order(self.encoding.order()).with_upper_half(true);
+                let encoder =
+                    Encoder::new().with_order(self.encoding.order().unwrap_or(Order::Color)).with_upper_half(true);
                 let cast = Cast::begin(out, size, encoder, self.fps)?;
                 Sink::Cast(
                     cast.with_quality(self.encoding.quality().unwrap_or_default())

@@ -8,7 +8,7 @@ use termtrace::grid::{Cell, Grid, Size};
 use termtrace::tone::Picture;
 
 /// With the report, all of it is on a screen of 24 rows.
-const ROWS: u16 = 7;
+const ROWS: u16 = 8;
 /// Where the parts begin, in columns, and where the last ends. What lies between them stays black.
 const GRADIENT: u16 = 24;
 const STRIPES: u16 = 50;

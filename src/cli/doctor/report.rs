@@ -44,8 +44,7 @@ impl Known<'_> {
             self.questions(),
             row("colours", findings.colors, colors),
             self.locale(),
-            row("cells", findings.glyphs, glyphs),
-            self.answered("half block's width", self.answers.block_width.map(columns)),
+            row("cells", findings.glyphs, |cells| glyphs(cells) + &self.width()),
             row("cell, height/width", findings.cell_aspect, |aspect| format!("{aspect:.3}{}", self.pixels())),
             self.yes("half blocks meet", findings.halves_meet),
             self.background(),
@@ -80,6 +79,11 @@ impl Known<'_> {
             None => ("none: taken for UTF-8".to_owned(), who(Source::Assumed)),
         };
         ("locale", value, who)
+    }
+
+    /// How many columns a half block takes.
+    fn width(&self) -> String {
+        self.answers.block_width.map_or_else(String::new, |width| format!(", {}", columns(width)))
     }
 
     fn pixels(&self) -> String {
