@@ -1,0 +1,314 @@
+//! Keys at times, and where the eye is after them.
+
+use super::*;
+use crate::camera::ViewRectangle;
+
+fn camera() -> Camera {
+    let pose = Pose { eye: Vec3::new(0.0, 0.0, 4.0), target: Vec3::ZERO, up: Vec3::Y };
+    Camera::new(pose, ViewRectangle::from_vertical_fov(0.7).unwrap()).unwrap()
+}
+
+fn press(c: char) -> KeyEvent {
+    KeyEvent::new(KeyCode::Char(c), KeyModifiers::NONE)
+}
+
+fn ms(milliseconds: u64) -> Duration {
+    Duration::from_millis(milliseconds)
+}
+
+fn event(c: char, kind: KeyEventKind) -> KeyEvent {
+    KeyEvent { kind, ..press(c) }
+}
+
+fn release(c: char) -> KeyEvent {
+    event(c, KeyEventKind::Release)
+}
+
+/// Keys pressed at time 0 on a terminal that tells of releases, and kept down.
+fn holding(keys: &str) -> Motion {
+    let mut motion = Motion::default();
+    motion.set_hears_releases(true);
+    for c in keys.chars() {
+        motion.key(&press(c), ms(0));
+    }
+    motion
+}
+
+/// Where the eye and the direction of view are after that time at speed 1.
+fn after(motion: &Motion, time: Duration) -> (Vec3, Vec3) {
+    let pose = motion.step(&camera(), 1.0, ms(0), time).pose();
+    (pose.eye, (pose.target - pose.eye).normalize())
+}
+
+#[track_caller]
+fn assert_after_a_second(keys: &str, eye: [f32; 3], view: [f32; 3]) {
+    let (at, looks) = after(&holding(keys), ms(1_000));
+    assert!(at.abs_diff_eq(Vec3::from(eye), 1e-5), "{keys}: eye {at}");
+    assert!(looks.abs_diff_eq(Vec3::from(view), 1e-5), "{keys}: view {looks}");
+}
+
+const AHEAD: [f32; 3] = [0.0, 0.0, -1.0];
+const HERE: [f32; 3] = [0.0, 0.0, 4.0];
+
+/// Key, and where eye and view direction are after a second of it at speed 1.
+#[test]
+fn each_key_moves_the_camera_its_way() {
+    let turn = std::f32::consts::FRAC_1_SQRT_2; // sine and cosine of the 45 degrees that a second turns
+    for (key, eye, view) in [
+        ("w", [0.0, 0.0, 3.0], AHEAD),
+        ("s", [0.0, 0.0, 5.0], AHEAD),
+        ("a", [-1.0, 0.0, 4.0], AHEAD),
+        ("d", [1.0, 0.0, 4.0], AHEAD),
+        ("e", [0.0, 1.0, 4.0], AHEAD),
+        ("c", [0.0, -1.0, 4.0], AHEAD),
+        ("h", HERE, [-turn, 0.0, -turn]),
+        ("l", HERE, [turn, 0.0, -turn]),
+        ("k", HERE, [0.0, turn, -turn]),
+        ("j", HERE, [0.0, -turn, -turn]),
+        ("W", [0.0, 0.0, 0.0], AHEAD),
+    ] {
+        assert_after_a_second(key, eye, view);
+        let pose = holding(key).step(&camera(), 1.0, ms(0), ms(1_000)).pose();
+        assert!((pose.target.distance(pose.eye) - 4.0).abs() < 1e-5, "{key}: the distance to the target stays");
+    }
+}
+
+#[test]
+fn any_number_of_keys_move_together() {
+    let turn = std::f32::consts::FRAC_1_SQRT_2;
+    assert_after_a_second("wa", [-1.0, 0.0, 3.0], AHEAD);
+    assert_after_a_second("wde", [1.0, 1.0, 3.0], AHEAD);
+    assert_after_a_second("ah", [-0.923_88, 0.0, 4.0 + 0.382_68], [-turn, 0.0, -turn]);
+    // To the left and upwards: 45 degrees each.
+    assert_after_a_second("hk", HERE, [-0.5, turn, -0.5]);
+    // Ahead on a curve: half of the turn before the way.
+    assert_after_a_second("wh", [-0.382_68, 0.0, 4.0 - 0.923_88], [-turn, 0.0, -turn]);
+}
+
+#[test]
+fn opposite_keys_cancel_and_two_for_the_same_are_one() {
+    for keys in ["ws", "ad", "ec", "hl", "kj", "wsadechlkj"] {
+        let motion = holding(keys);
+        assert!(!motion.is_moving(ms(10)), "{keys}");
+        assert_eq!(motion.step(&camera(), 1.0, ms(0), ms(1_000)), camera(), "{keys}");
+    }
+    assert_after_a_second("wsa", [-1.0, 0.0, 4.0], AHEAD);
+    let mut motion = holding("h");
+    motion.key(&KeyCode::Left.into(), ms(0));
+    assert_eq!(after(&motion, ms(1_000)), after(&holding("h"), ms(1_000)));
+    motion.key(&release('h'), ms(10));
+    assert!(motion.is_moving(ms(20)), "the other key is still held");
+    motion.key(&KeyEvent { kind: KeyEventKind::Release, ..KeyCode::Left.into() }, ms(20));
+    assert!(!motion.is_moving(ms(20)));
+}
+
+#[test]
+fn a_curve_does_not_depend_on_its_steps() {
+    let motion = holding("wak");
+    let at_once = motion.step(&camera(), 1.0, ms(0), ms(400)).pose();
+    let mut in_steps = camera();
+    for at in 0..400 {
+        in_steps = motion.step(&in_steps, 1.0, ms(at), ms(at + 1));
+    }
+    assert!(at_once.target.abs_diff_eq(in_steps.pose().target, 2e-2), "{at_once:?} {:?}", in_steps.pose());
+}
+
+#[test]
+fn movement_is_per_second_not_per_step() {
+    let mut motion = Motion::default();
+    motion.key(&press('h'), ms(0));
+    let at_once = motion.step(&camera(), 1.0, ms(0), ms(600));
+    let mut in_steps = camera();
+    for at in (0..600).step_by(7) {
+        in_steps = motion.step(&in_steps, 1.0, ms(at), ms((at + 7).min(600)));
+    }
+    assert!(at_once.pose().target.abs_diff_eq(in_steps.pose().target, 1e-4));
+}
+
+#[test]
+fn without_releases_a_press_glides_for_700_ms() {
+    let mut motion = Motion::default();
+    motion.key(&press('w'), ms(100));
+    assert!(motion.is_moving(ms(799)) && !motion.is_moving(ms(800)));
+    motion.key(&press('w'), ms(1_000));
+    assert!(motion.is_moving(ms(1_699)) && !motion.is_moving(ms(1_700)), "pressed anew");
+}
+
+#[test]
+fn without_releases_a_repeat_coasts_for_150_ms() {
+    let mut motion = Motion::default();
+    motion.key(&press('w'), ms(0));
+    // The first repeat of a slow terminal comes in time; the others far faster.
+    for at in [660, 700, 740] {
+        assert!(motion.is_moving(ms(at)));
+        motion.key(&press('w'), ms(at));
+    }
+    assert!(motion.is_moving(ms(889)) && !motion.is_moving(ms(890)));
+    motion.key(&press('d'), ms(2_000));
+    motion.key(&event('d', KeyEventKind::Repeat), ms(2_100));
+    assert!(motion.is_moving(ms(2_249)) && !motion.is_moving(ms(2_250)), "a repeat told as one");
+}
+
+#[test]
+fn without_releases_another_key_stops_a_glide() {
+    for other in ['d', 'i', 'x', 'R'] {
+        let mut motion = Motion::default();
+        motion.key(&press('w'), ms(0));
+        motion.key(&press(other), ms(100));
+        let z = motion.step(&camera(), 1.0, ms(100), ms(200)).pose().eye.z;
+        assert_eq!(z, 4.0, "{other}");
+        assert_eq!(motion.is_moving(ms(799)), other == 'd', "{other}: it glides itself");
+    }
+}
+
+#[test]
+fn a_release_stops_a_glide_too() {
+    let mut motion = Motion::default();
+    motion.key(&press('w'), ms(0));
+    motion.key(&release('w'), ms(50));
+    assert!(!motion.is_moving(ms(50)));
+}
+
+#[test]
+fn with_releases_a_key_is_held_from_press_to_release() {
+    let mut motion = holding("w");
+    assert!(motion.is_moving(ms(3_600_000)));
+    motion.key(&event('w', KeyEventKind::Repeat), ms(660));
+    assert!(motion.is_moving(ms(3_600_000)), "repeats change nothing");
+    motion.key(&release('w'), ms(700));
+    assert!(!motion.is_moving(ms(700)));
+}
+
+#[test]
+fn with_releases_other_keys_stop_nothing() {
+    let mut motion = holding("w");
+    for other in [press('i'), release('i'), press('x'), release('d'), release('W'), press('w')] {
+        motion.key(&press('w'), ms(100));
+        motion.key(&other, ms(200));
+        assert_eq!(motion.is_moving(ms(300)), other != release('W'), "{other:?}");
+    }
+}
+
+#[test]
+fn a_release_counts_whatever_modifiers_are_held_by_then() {
+    use KeyModifiers as Mods;
+    for modifiers in [Mods::SHIFT, Mods::CONTROL, Mods::ALT, Mods::SUPER, Mods::CONTROL | Mods::SHIFT] {
+        for c in ['w', 'W'] {
+            let mut motion = holding("wW");
+            motion.key(&KeyEvent { modifiers, ..release(c) }, ms(10));
+            assert!(!motion.is_moving(ms(10)), "{c} with {modifiers:?}");
+        }
+    }
+}
+
+#[test]
+fn a_release_without_a_press_is_nothing() {
+    let mut motion = holding("");
+    let before = motion.clone();
+    motion.key(&release('w'), ms(10));
+    assert_eq!(motion, before);
+}
+
+#[test]
+fn a_repeat_without_a_press_is_a_key_that_is_held() {
+    // It was pressed before the window had the focus.
+    let mut motion = holding("");
+    motion.key(&event('w', KeyEventKind::Repeat), ms(10));
+    assert!(motion.is_moving(ms(10_000)));
+    motion.key(&release('w'), ms(10_010));
+    assert!(!motion.is_moving(ms(10_010)));
+}
+
+#[test]
+fn the_keypad_is_another_place() {
+    let keypad = |kind| KeyEvent { kind, state: KeyEventState::KEYPAD, ..KeyCode::Left.into() };
+    let mut motion = holding("");
+    motion.key(&KeyCode::Left.into(), ms(0));
+    motion.key(&keypad(KeyEventKind::Press), ms(0));
+    motion.key(&keypad(KeyEventKind::Release), ms(10));
+    assert!(motion.is_moving(ms(20)), "the arrow itself is held");
+}
+
+#[test]
+fn shift_makes_what_is_held_faster_while_it_is_held() {
+    let shift =
+        |kind, modifiers| KeyEvent::new_with_kind(KeyCode::Modifier(ModifierKeyCode::LeftShift), modifiers, kind);
+    let way = |motion: &Motion| 4.0 - after(motion, ms(100)).0.z;
+    let mut motion = holding("w");
+    motion.key(&shift(KeyEventKind::Press, KeyModifiers::NONE), ms(0));
+    assert!((way(&motion) - 0.4).abs() < 1e-5, "{}", way(&motion));
+    motion.key(&shift(KeyEventKind::Release, KeyModifiers::SHIFT), ms(0));
+    assert!((way(&motion) - 0.4).abs() < 1e-5, "the other Shift is still held");
+    motion.key(&shift(KeyEventKind::Release, KeyModifiers::NONE), ms(0));
+    assert!((way(&motion) - 0.1).abs() < 1e-5, "{}", way(&motion));
+    motion.key(&KeyEvent { modifiers: KeyModifiers::SHIFT, ..event('W', KeyEventKind::Repeat) }, ms(0));
+    assert!((way(&motion) - 0.4).abs() < 1e-5, "the repeat says so too");
+}
+
+#[test]
+fn a_glide_from_before_releases_were_told_ends_as_a_glide() {
+    let mut motion = Motion::default();
+    motion.key(&press('w'), ms(0));
+    motion.set_hears_releases(true);
+    assert!(motion.is_moving(ms(699)) && !motion.is_moving(ms(700)));
+    let mut repeated = motion.clone();
+    repeated.key(&event('w', KeyEventKind::Repeat), ms(660));
+    assert!(repeated.is_moving(ms(5_000)), "it is held after all");
+    // Nobody knows whether it still is.
+    motion.key(&press('d'), ms(300));
+    assert_eq!(motion, holding("d"));
+}
+
+#[test]
+fn nothing_is_held_when_all_is_stopped_or_releases_are_no_longer_told() {
+    let mut motion = holding("wdh");
+    motion.stop();
+    assert!(!motion.is_moving(ms(0)));
+    motion.key(&press('w'), ms(0));
+    assert!(motion.is_moving(ms(5_000)), "pressed anew");
+    motion.set_hears_releases(false);
+    assert!(!motion.is_moving(ms(0)));
+    motion.key(&press('w'), ms(0));
+    assert!(!motion.is_moving(ms(700)), "it glides again");
+}
+
+#[test]
+fn a_step_never_goes_past_the_end_of_the_motion() {
+    let mut motion = Motion::default();
+    motion.key(&press('w'), ms(0));
+    let eye = motion.step(&camera(), 1.0, ms(0), ms(60_000)).pose().eye;
+    assert!((eye.z - 3.3).abs() < 1e-5, "{eye}");
+    assert_eq!(motion.step(&camera(), 1.0, ms(800), ms(900)), camera(), "after its end nothing moves");
+}
+
+#[test]
+fn the_view_never_turns_over_the_pole() {
+    for key in ['k', 'j'] {
+        let mut camera = camera();
+        for at in (0..10_000).step_by(100) {
+            let mut motion = Motion::default();
+            motion.key(&press(key), ms(at));
+            camera = motion.step(&camera, 1.0, ms(at), ms(at + 100));
+        }
+        let up = -camera.basis().w.y;
+        assert!(up.abs() > 0.999 && up.abs() < 1.0, "{key}: {up}");
+        assert!(camera.basis().v.y > 0.0, "up is still up");
+        // And back again.
+        let mut motion = Motion::default();
+        motion.key(&press(if key == 'k' { 'j' } else { 'k' }), ms(0));
+        assert_ne!(motion.step(&camera, 1.0, ms(0), ms(100)), camera);
+    }
+}
+
+#[test]
+fn a_tilted_up_is_what_is_turned_about() {
+    let up = Vec3::new(1.0, 1.0, 0.0);
+    let camera = camera().with_pose(Pose { up, ..camera().pose() }).unwrap();
+    let mut motion = Motion::default();
+    motion.key(&press('l'), ms(0));
+    let turned = motion.step(&camera, 1.0, ms(0), ms(500)).pose();
+    assert!((turned.target - turned.eye).dot(up).abs() < 1e-5, "the view stays perpendicular to up");
+    motion.key(&press('e'), ms(0));
+    let eye = motion.step(&camera, 1.0, ms(0), ms(500)).pose().eye;
+    assert!((eye - camera.pose().eye).abs_diff_eq(up.normalize() * 0.5, 1e-5));
+}
