@@ -157,44 +157,39 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
 ///
 /// Calling `pow` for each band of each pixel would cost more than tracing it. Rounding has only 255 steps, so the
 /// light at which each step is taken is kept instead; a band lies in the step that its exponent and first mantissa
-/// bits lead to, or in one right above it.
+/// bits lead to, or in the one above it.
 fn srgb8_from_linear(linear: f32) -> u8 {
-    // The negation also catches NaN.
-    if !(linear > 0.0) {
-        return 0;
-    }
-    if linear >= 1.0 {
-        return 255;
-    }
     let transfer = &*TRANSFER;
-    let mut code = transfer.first_code[(linear.to_bits() >> BUCKET_SHIFT) as usize];
-    while code < 255 && linear >= transfer.linear_at_step[usize::from(code)] {
-        code += 1;
-    }
-    code
+    // NaN is black, as what is below the first bucket is.
+    let linear = if linear > LEAST_LIGHT { linear.min(1.0) } else { LEAST_LIGHT };
+    let code = transfer.first_code[((linear.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT) as usize];
+    code + u8::from(linear >= transfer.linear_at_step[usize::from(code)])
 }
 
-/// A bucket is a run of floats that share sign, exponent and the first 5 bits of the mantissa: short enough that it
-/// holds at most a few of the 255 steps.
-const BUCKET_SHIFT: u32 = 18;
+/// A power of two so little that everything up to the next one is black.
+const LEAST_LIGHT: f32 = 1.0 / 16_384.0;
+/// A bucket is a run of floats that share sign, exponent and the first 7 bits of the mantissa: short enough that it
+/// holds at most one of the 255 steps.
+const BUCKET_SHIFT: u32 = 16;
 /// One bucket past 1.0's own.
-const BUCKETS: usize = (0x3f80_0000 >> BUCKET_SHIFT) + 1;
+const BUCKETS: usize = ((1.0_f32.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT) as usize + 1;
 
 /// The transfer function, tabulated.
 struct Transfer {
     /// Light of each 8-bit code.
     linear_from_srgb8: [f32; 256],
-    /// `linear_at_step[k]`: the least light that rounds to code k + 1.
-    linear_at_step: [f32; 255],
+    /// `linear_at_step[k]`: the least light that rounds to code k + 1. Nothing does to 256.
+    linear_at_step: [f32; 256],
     /// The code of the least light in each bucket.
     first_code: [u8; BUCKETS],
 }
 
 static TRANSFER: LazyLock<Transfer> = LazyLock::new(|| {
     let linear_from_srgb8 = std::array::from_fn(|code| linear_from_srgb(code as f64 / 255.0) as f32);
-    let linear_at_step = std::array::from_fn(|k| least_f32_at_or_above(linear_from_srgb((k as f64 + 0.5) / 255.0)));
+    let step = |k: usize| least_f32_at_or_above(linear_from_srgb((k as f64 + 0.5) / 255.0));
+    let linear_at_step: [f32; 256] = std::array::from_fn(|k| if k < 255 { step(k) } else { f32::INFINITY });
     let first_code = std::array::from_fn(|bucket| {
-        let least = f32::from_bits((bucket as u32) << BUCKET_SHIFT);
+        let least = f32::from_bits(LEAST_LIGHT.to_bits() + ((bucket as u32) << BUCKET_SHIFT));
         linear_at_step.iter().take_while(|&&step| least >= step).count() as u8 // at most 255 steps
     });
     Transfer { linear_from_srgb8, linear_at_step, first_code }
