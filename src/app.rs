@@ -1,8 +1,8 @@
 //! The loop of the live view: input, render, present, rest.
 //!
 //! It sleeps until a key, a signal or a finished frame wakes it. A frame is rendered only when something changed, by a
-//! thread of its own, so that keys and signals are heard while it is traced; the newest picture wins: what changes in
-//! the meantime is in the next frame, and nothing is queued.
+//! thread of its own unless it takes next to no time, so that keys and signals are heard while it is traced; the newest
+//! picture wins: what changes in the meantime is in the next frame, and nothing is queued.
 
 use crate::camera::Camera;
 use crate::capabilities::{Capabilities, Findings, Hints};
@@ -23,7 +23,7 @@ mod renderer;
 mod screen;
 
 use link::Link;
-use renderer::{Job, Renderer};
+use renderer::{Frame, Job, Renderer};
 use screen::Screen;
 
 /// How the user wants the live view: made by [`Options::new`], then changed.
@@ -163,8 +163,8 @@ impl Live {
             // Nothing is rendered that cannot be sent.
             let idle = !renderer.is_busy() && !terminal.is_sending();
             if self.stale && idle && self.now() >= self.next_frame() {
-                self.begin_frame(renderer);
                 terminal.send(self.link.probe(self.now()))?;
+                self.begin_frame(renderer);
             }
             self.panic_if_asked(renderer);
             let timeout = self.timeout(terminal, renderer);
@@ -190,7 +190,7 @@ impl Live {
                 terminal.push_keyboard()?;
             }
             while let Some(frame) = renderer.finished() {
-                self.screen.take_frame(frame, self.moved_until.is_some().then(|| self.now()));
+                self.take_frame(frame);
             }
         }
     }
@@ -280,7 +280,14 @@ impl Live {
     fn begin_frame(&mut self, renderer: &mut Renderer) {
         self.stale = false;
         self.begun = Some(self.now());
-        renderer.begin(Job { camera: self.camera, resolution: self.resolution(), test_panic: false });
+        let job = Job { camera: self.camera, resolution: self.resolution(), test_panic: false };
+        if let Some(frame) = renderer.begin(job) {
+            self.take_frame(frame);
+        }
+    }
+
+    fn take_frame(&mut self, frame: Frame) {
+        self.screen.take_frame(frame, self.moved_until.is_some().then(|| self.now()));
     }
 
     /// How long there is nothing to do if nobody wakes us: for ever when nothing moves.

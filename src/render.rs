@@ -18,6 +18,7 @@ use rayon::prelude::*;
 use std::num::NonZeroU32;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// The picture of `scene` that `camera` sees, with so many rays per pixel. One ray goes through the pixel's centre.
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Framebuffer {
@@ -33,6 +34,17 @@ pub struct Rendered {
     pub framebuffer: Framebuffer,
     /// How many rays were traced: eye rays and shadow rays.
     pub rays: u64,
+    /// How long tracing took all threads together. Nothing in the picture depends on it.
+    pub work: Duration,
+}
+
+/// [`render`] on the calling thread alone: to wake others for a frame of less than about a millisecond takes longer than
+/// they save.
+pub fn render_alone(scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Rendered {
+    let frame = Frame::new(scene, camera, resolution, samples);
+    let mut buffers = Buffers::default();
+    let traced: Vec<_> = frame.tiles.iter().map(|tile| frame.trace(tile, &mut buffers)).collect();
+    frame.rendered(&traced)
 }
 
 /// [`render`], given up as soon as `cancelled` is true.
@@ -43,17 +55,15 @@ pub fn render_unless(
     resolution: Resolution,
     samples: NonZeroU32,
 ) -> Option<Rendered> {
-    let frame = Frame { scene, eye_rays: camera.eye_rays(resolution.aspect_ratio()), resolution, samples };
-    let tiles = tiles(resolution);
-    let traced: Option<Vec<TracedTile>> = tiles
+    let frame = Frame::new(scene, camera, resolution, samples);
+    let traced: Option<Vec<_>> = frame
+        .tiles
         .par_iter()
         .map_init(Buffers::default, |buffers, tile| {
             (!cancelled.load(Ordering::Relaxed)).then(|| frame.trace(tile, buffers))
         })
         .collect();
-    let traced = traced?;
-    let rays = traced.iter().map(|tile| tile.rays).sum();
-    Some(Rendered { framebuffer: assemble(resolution, &tiles, &traced), rays })
+    traced.map(|traced| frame.rendered(&traced))
 }
 
 /// A tile's side in pixels.
@@ -65,10 +75,11 @@ struct Tile {
     rows: Range<u32>,
 }
 
-/// A tile's mean light per pixel, row by row, and the number of rays that it took.
+/// A tile's mean light per pixel, row by row, and what it took.
 struct TracedTile {
     light: Vec<LinearRgb>,
     rays: u64,
+    work: Duration,
 }
 
 /// All tiles of a picture; those at the right and lower edge may be smaller.
@@ -79,25 +90,13 @@ fn tiles(resolution: Resolution) -> Vec<Tile> {
         .collect()
 }
 
-/// The tiles' light, put where it belongs.
-fn assemble(resolution: Resolution, tiles: &[Tile], traced: &[TracedTile]) -> Framebuffer {
-    let mut framebuffer = Framebuffer::new(resolution);
-    let width = resolution.width as usize;
-    for (tile, TracedTile { light, .. }) in tiles.iter().zip(traced) {
-        let columns = tile.columns.start as usize..tile.columns.end as usize;
-        for (y, row) in tile.rows.clone().zip(light.chunks_exact(columns.len())) {
-            framebuffer.pixels[y as usize * width..][columns.clone()].copy_from_slice(row);
-        }
-    }
-    framebuffer
-}
-
-/// What all tiles of a frame have in common.
+/// A frame's tiles, and what they have in common.
 struct Frame<'a> {
     scene: &'a Scene,
     eye_rays: EyeRays,
     resolution: Resolution,
     samples: NonZeroU32,
+    tiles: Vec<Tile>,
 }
 
 /// The arrays between the steps, kept from tile to tile.
@@ -110,9 +109,15 @@ struct Buffers {
     shadows: ShadowRays,
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
+    fn new(scene: &'a Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Self {
+        let eye_rays = camera.eye_rays(resolution.aspect_ratio());
+        Self { scene, eye_rays, resolution, samples, tiles: tiles(resolution) }
+    }
+
     /// The mean light of each pixel's samples.
     fn trace(&self, tile: &Tile, buffers: &mut Buffers) -> TracedTile {
+        let start = Instant::now();
         let mut sum = vec![LinearRgb::BLACK; tile.columns.len() * tile.rows.len()];
         let mut rays = 0;
         for sample in 0..self.samples.get() {
@@ -126,7 +131,22 @@ impl Frame<'_> {
             rays += (eye_rays.len() + shadow_rays) as u64;
         }
         let share = 1.0 / self.samples.get() as f32;
-        TracedTile { light: sum.into_iter().map(|light| light * share).collect(), rays }
+        TracedTile { light: sum.into_iter().map(|light| light * share).collect(), rays, work: start.elapsed() }
+    }
+
+    /// The tiles' light, put where it belongs.
+    fn rendered(&self, traced: &[TracedTile]) -> Rendered {
+        let mut framebuffer = Framebuffer::new(self.resolution);
+        let width = self.resolution.width as usize;
+        for (tile, TracedTile { light, .. }) in self.tiles.iter().zip(traced) {
+            let columns = tile.columns.start as usize..tile.columns.end as usize;
+            for (y, row) in tile.rows.clone().zip(light.chunks_exact(columns.len())) {
+                framebuffer.pixels[y as usize * width..][columns.clone()].copy_from_slice(row);
+            }
+        }
+        let rays = traced.iter().map(|tile| tile.rays).sum();
+        let work = traced.iter().map(|tile| tile.work).sum();
+        Rendered { framebuffer, rays, work }
     }
 
     /// One eye ray for each pixel.

@@ -1,8 +1,9 @@
-//! The thread that traces, so that the loop never waits for a frame.
+//! The thread that traces, so that the loop never waits for a frame. One that takes less time than to wake the thread
+//! and to be woken by it is no wait: the loop traces it by itself.
 
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::render::render_unless;
+use crate::render::{Rendered, render_alone, render_unless};
 use crate::scene::Scene;
 use crate::terminal::Waker;
 use crate::tone::{Picture, tone};
@@ -32,20 +33,35 @@ pub(super) struct Frame {
     pub(super) picture: Picture,
     /// How many rays it took.
     pub(super) rays: u64,
-    /// How long tracing took.
+    /// How long tracing took all threads together.
+    pub(super) work: Duration,
+    /// How long it took on the clock.
     pub(super) trace: Duration,
+}
+
+impl Frame {
+    fn new(scene: &Scene, job: &Job, rendered: &Rendered, trace: Duration) -> Self {
+        let picture = tone(&rendered.framebuffer, scene);
+        Self { camera: job.camera, picture, rays: rendered.rays, work: rendered.work, trace }
+    }
 }
 
 /// The thread's result: a frame, none if it was cancelled, or what it panicked with.
 type Traced = Result<Option<Frame>, Box<dyn Any + Send>>;
 
+/// Frames that take no longer are traced by the loop.
+const SMALL: Duration = Duration::from_micros(1500);
+
 /// Our side of the thread.
 pub(super) struct Renderer {
+    scene: Arc<Scene>,
     jobs: Option<Sender<Job>>,
     frames: Receiver<Traced>,
     cancelled: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
     in_work: usize,
+    /// How many seconds a pixel of the last frame took, all threads together.
+    seconds_per_pixel: Option<f64>,
 }
 
 impl Renderer {
@@ -57,6 +73,8 @@ impl Renderer {
         let (done, frames) = channel();
         let cancelled = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&cancelled);
+        let scene = Arc::new(scene);
+        let seen = Arc::clone(&scene);
         let thread = thread::Builder::new().name("render".to_owned()).spawn(move || {
             let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).use_current_thread().build();
             let pool = match pool {
@@ -68,7 +86,7 @@ impl Renderer {
             };
             let _ = begun.send(Ok(()));
             for job in wanted {
-                let traced = catch_unwind(AssertUnwindSafe(|| trace(&pool, &stop, &scene, &job)));
+                let traced = catch_unwind(AssertUnwindSafe(|| trace(&pool, &stop, &seen, &job)));
                 // Nobody listens any more: the loop has ended.
                 let heard = done.send(traced).is_ok();
                 waker.wake();
@@ -78,7 +96,15 @@ impl Renderer {
             }
         })?;
         started.recv().map_err(io::Error::other)??;
-        Ok(Self { jobs: Some(jobs), frames, cancelled, thread: Some(thread), in_work: 0 })
+        Ok(Self {
+            scene,
+            jobs: Some(jobs),
+            frames,
+            cancelled,
+            thread: Some(thread),
+            in_work: 0,
+            seconds_per_pixel: None,
+        })
     }
 
     /// Whether a frame is on its way.
@@ -86,13 +112,19 @@ impl Renderer {
         self.in_work > 0
     }
 
-    /// Begins a frame.
-    pub(super) fn begin(&mut self, job: Job) {
+    /// Begins a frame, or traces it at once where that takes next to no time.
+    pub(super) fn begin(&mut self, job: Job) -> Option<Frame> {
+        if self.is_small(&job) {
+            let start = Instant::now();
+            let rendered = render_alone(&self.scene, &job.camera, job.resolution, NonZeroU32::MIN);
+            return Some(self.noted(Frame::new(&self.scene, &job, &rendered, start.elapsed())));
+        }
         if let Some(jobs) = &self.jobs
             && jobs.send(job).is_ok()
         {
             self.in_work += 1;
         }
+        None
     }
 
     /// The frame that has been finished since the last call, if one has.
@@ -103,7 +135,20 @@ impl Renderer {
         let traced = self.frames.try_recv().ok()?;
         self.in_work -= 1;
         // The message is out already, or kept; the panic goes on here, where the terminal is given back.
-        traced.unwrap_or_else(|panic| resume_unwind(panic))
+        let frame = traced.unwrap_or_else(|panic| resume_unwind(panic))?;
+        Some(self.noted(frame))
+    }
+
+    /// Whether a frame will take next to no time, going by the last.
+    fn is_small(&self, job: &Job) -> bool {
+        let Resolution { width, height, .. } = job.resolution;
+        let pixels = f64::from(width) * f64::from(height);
+        !job.test_panic && self.seconds_per_pixel.is_some_and(|seconds| seconds * pixels < SMALL.as_secs_f64())
+    }
+
+    fn noted(&mut self, frame: Frame) -> Frame {
+        self.seconds_per_pixel = Some(frame.work.as_secs_f64() / frame.picture.pixels.len() as f64);
+        frame
     }
 }
 
@@ -125,12 +170,42 @@ fn trace(pool: &ThreadPool, cancelled: &AtomicBool, scene: &Scene, job: &Job) ->
         }
         let start = Instant::now();
         let rendered = render_unless(cancelled, scene, &job.camera, job.resolution, NonZeroU32::MIN)?;
-        let trace = start.elapsed();
-        let picture = tone(&rendered.framebuffer, scene);
-        Some(Frame { camera: job.camera, picture, rays: rendered.rays, trace })
+        Some(Frame::new(scene, job, &rendered, start.elapsed()))
     })
 }
 
 fn panic_in_a_worker() {
     rayon::join(|| {}, || panic!("a test asked for a panic in a worker"));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terminal::Signals;
+
+    /// The loop traces what its last frames were small for, and the same picture as the thread does.
+    #[test]
+    fn small_frames_are_done_at_once() {
+        let text = include_str!("../../scenes/three_spheres.ron");
+        let scene = Scene::from_ron("three_spheres.ron", text).expect("the scene is fine");
+        let camera = scene.camera;
+        let waker = Signals::catch().and_then(|signals| signals.waker()).expect("pipes can be made");
+        let mut renderer = Renderer::start(scene, Some(2), waker).expect("threads can be started");
+        let job = |side| Job { camera, resolution: Resolution::square(side, side), test_panic: false };
+        assert!(renderer.begin(job(8)).is_none(), "nothing is known of the first");
+        let by_the_thread = wait_for(&mut renderer);
+        let by_the_loop = renderer.begin(job(8)).expect("64 pixels are a small frame");
+        assert!(by_the_loop.picture == by_the_thread.picture);
+        assert!(renderer.begin(job(1000)).is_none(), "a million pixels are not");
+        wait_for(&mut renderer);
+    }
+
+    fn wait_for(renderer: &mut Renderer) -> Frame {
+        loop {
+            if let Some(frame) = renderer.finished() {
+                return frame;
+            }
+            thread::yield_now();
+        }
+    }
 }

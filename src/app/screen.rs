@@ -231,7 +231,13 @@ mod tests {
         let size = Size::new(40, 12);
         let resolution = cell::resolution(capabilities.cell_mode, size, 2.0);
         let light = crate::render::render(&scene, &scene.camera, resolution, NonZeroU32::MIN);
-        let frame = || Frame { camera: scene.camera, picture: tone(&light, &scene), rays: 0, trace: Duration::ZERO };
+        let frame = || Frame {
+            camera: scene.camera,
+            picture: tone(&light, &scene),
+            rays: 0,
+            work: Duration::ZERO,
+            trace: Duration::ZERO,
+        };
         let grid = export::frame_grid(&scene, capabilities.cell_mode, size, 2.0);
         let slow = Some(Slow { rate: 1e5, most_bytes: usize::MAX });
         let exact = Some(Quality::Exact);
