@@ -26,6 +26,7 @@
 //! Words that all stages speak:
 //! - [`color`]: linear RGB, 8-bit sRGB, and the transfer function between them
 //! - [`ray`]: origin + t * direction, and intervals of t
+//! - [`bounds`]: boxes along the axes
 //! - [`capabilities`]: what a terminal's cells can be made of
 //!
 //! What was written:
@@ -33,6 +34,7 @@
 //! - [`scene_file`]: what the author wrote, typed, in his own units
 //!
 //! What is drawn, checked once, in radians, linear light and unit vectors:
+//! - [`bvh`]: which of many boxes a ray may meet
 //! - [`shape`]: surfaces f(p) = 0, where a ray crosses them, their normals
 //! - [`material`]: diffuse reflectance
 //! - [`light`]: point lights
@@ -82,18 +84,22 @@
 //!
 //! # What is not here
 //!
-//! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, and a new surface is one file under `shape/`
-//! and a variant; scene files then need its fields in [`scene_file`] and their check in [`scene`]. No RON library but in the tests: see [`scene_text`]. No fixed epsilon:
-//! see [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin).
+//! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, its [`Part`](shape::Part)s are what rays are
+//! tested against, and a new surface is one file under `shape/` and a variant of each; scene files then need its fields in
+//! [`scene_file`] and their check in [`scene`]. No RON library but in the tests: see [`scene_text`]. No fixed epsilon: see
+//! [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin). No order of the tree that could show: see
+//! [`Bounds::crossed`](bounds::Bounds::crossed).
 
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
 compile_error!("termtrace runs on Linux and macOS: it talks to the terminal through POSIX termios, poll and signals");
 
 pub mod color;
 pub mod ray;
+pub mod bounds;
 pub mod capabilities;
 pub mod scene_text;
 pub mod scene_file;
+pub mod bvh;
 pub mod shape;
 pub mod material;
 pub mod light;

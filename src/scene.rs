@@ -5,6 +5,7 @@
 
 mod checked;
 mod load;
+mod parts;
 mod written_camera;
 
 pub use load::LoadError;
@@ -14,6 +15,7 @@ use crate::color::LinearRgb;
 use crate::light::PointLight;
 use crate::material::Material;
 use crate::shape::Shape;
+pub(crate) use parts::{PartId, Parts};
 
 /// Everything that a picture depends on, besides its size.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +35,7 @@ pub struct Scene {
     /// How light beyond the screen's range is brought into it.
     pub tone_curve: ToneCurve,
     objects: Vec<Object>,
+    parts: Parts,
 }
 
 impl Scene {
@@ -46,6 +49,7 @@ impl Scene {
             shadows: true,
             exposure: 1.0,
             tone_curve: ToneCurve::None,
+            parts: Parts::of(&objects),
             objects,
         }
     }
@@ -54,10 +58,15 @@ impl Scene {
     pub fn objects(&self) -> &[Object] {
         &self.objects
     }
+
+    /// The parts of all objects, in a tree.
+    pub(crate) fn parts(&self) -> &Parts {
+        &self.parts
+    }
 }
 
 /// A surface and what it is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// The surface.
     pub shape: Shape,

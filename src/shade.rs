@@ -21,11 +21,7 @@ use glam::Vec3;
 /// The surface at each hit.
 pub fn surface_points(scene: &Scene, rays: &[Ray], hits: &[Option<Hit>], points: &mut Vec<Option<SurfacePoint>>) {
     points.clear();
-    points.extend(
-        rays.iter()
-            .zip(hits)
-            .map(|(ray, hit)| hit.map(|hit| scene.objects()[hit.object as usize].shape.at_crossing(ray, hit.t))),
-    );
+    points.extend(rays.iter().zip(hits).map(|(ray, hit)| hit.map(|hit| hit.surface(scene).at_crossing(ray, hit.t))));
 }
 
 /// The arrays of one light's shadow rays.
@@ -123,7 +119,7 @@ pub fn incidence(light: &PointLight, point: &SurfacePoint) -> Option<Incidence> 
     let l = to_light / distance;
     let cosine = point.normal.dot(l);
     // False also for NaN: a light that lies in the surface.
-    if !(cosine > 0.0) {
+    if !(cosine > 0.0 && point.facing.dot(l) > 0.0) {
         return None;
     }
     let weakening = match light.falloff {

@@ -7,19 +7,31 @@
 //!
 //! This module knows nothing of materials and light.
 
-use crate::ray::{Interval, Ray};
+use crate::bounds::Bounds;
+use crate::ray::{Interval, Probe, Ray};
 use glam::{Vec2, Vec3};
+use std::sync::Arc;
 
+pub mod mesh;
 pub mod plane;
 pub mod sphere;
+pub mod triangle;
 
+pub use mesh::{Facet, Mesh};
 pub use plane::Plane;
 pub use sphere::Sphere;
+pub use triangle::Triangle;
 
 /// What every surface can answer.
 pub trait Surface {
+    /// The smallest box around it; nothing where it has no end.
+    fn bounds(&self) -> Option<Bounds>;
+
     /// The least t inside the interval at which the ray crosses the surface: a root of f(origin + t direction) = 0.
-    fn closest_crossing(&self, ray: &Ray, within: Interval) -> Option<f32>;
+    ///
+    /// A surface with bounds is only met [inside them](Bounds::crossed): however rounding has moved a crossing, it is not
+    /// before the box or behind it, so that leaving out what a box cannot contain leaves out nothing.
+    fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32>;
 
     /// The surface at the crossing `t` that [`closest_crossing`](Self::closest_crossing) found for this ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint;
@@ -32,12 +44,15 @@ pub struct SurfacePoint {
     pub position: Vec3,
     /// The normal **n** on the side that the ray came from. Unit length.
     pub normal: Vec3,
+    /// The same of the surface as it is, where `normal` is that of a smooth one that it stands for. Unit length.
+    pub facing: Vec3,
     /// Which side of the surface is seen.
     pub side: Side,
-    /// How far, along the normal, the true surface may lie from `position`, and as far again as a ray that starts
+    /// How far, along `facing`, the true surface may lie from `position`, and as far again as a ray that starts
     /// there needs to be clear of it. In proportion to the coordinates involved; no constant of the scene's size.
     pub clearance: f32,
-    /// Coordinates on the surface for a pattern, in world units; zero where the surface has none.
+    /// Coordinates on the surface for a pattern: on a plane in world units, in a triangle the shares of its second and
+    /// third corner; zero where the surface has none.
     pub uv: Vec2,
 }
 
@@ -46,7 +61,7 @@ impl SurfacePoint {
     /// itself (after Waechter and Binder, Ray Tracing Gems, chapter 6, and pbrt's `OffsetRayOrigin`: the hit's error
     /// box is left behind, whatever the scale; a fixed epsilon fails in small and in large scenes).
     pub fn ray_origin(&self) -> Vec3 {
-        self.position + self.normal * self.clearance
+        self.position + self.facing * self.clearance
     }
 }
 
@@ -68,29 +83,92 @@ fn largest_coordinate(v: Vec3) -> f32 {
     v.abs().max_element()
 }
 
-/// The enum of all surfaces: a variant for each, which hands every question on to it.
-macro_rules! shapes {
-    ($($(#[$doc:meta])* $surface:ident,)*) => {
-        /// Any of the surfaces.
+/// Any of the surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// All points at one distance from a centre.
+    Sphere(Sphere),
+    /// All points whose difference to a given one is perpendicular to the normal.
+    Plane(Plane),
+    /// What lies between three points.
+    Triangle(Triangle),
+    /// Many triangles.
+    Mesh(Arc<Mesh>),
+}
+
+impl Shape {
+    /// How many parts it has, each of which is a surface: one, but for meshes.
+    pub fn part_count(&self) -> u32 {
+        match self {
+            Self::Sphere(_) | Self::Plane(_) | Self::Triangle(_) => 1,
+            Self::Mesh(mesh) => mesh.triangle_count(),
+        }
+    }
+
+    /// One of its parts.
+    ///
+    /// # Panics
+    /// If a mesh has fewer.
+    pub fn part(&self, part: u32) -> Part<'_> {
+        match self {
+            Self::Sphere(sphere) => Part::Sphere(sphere),
+            Self::Plane(plane) => Part::Plane(plane),
+            Self::Triangle(triangle) => Part::Triangle(triangle),
+            Self::Mesh(mesh) => Part::Facet(mesh.facet(part)),
+        }
+    }
+}
+
+impl From<Mesh> for Shape {
+    fn from(mesh: Mesh) -> Self {
+        Self::Mesh(Arc::new(mesh))
+    }
+}
+
+/// A part of a shape, which is a surface; a variant for each, which hands every question on to it.
+macro_rules! parts {
+    ($($(#[$doc:meta])* $name:ident($surface:ty),)*) => {
+        /// What a ray is tested against.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub enum Shape {
-            $($(#[$doc])* $surface($surface),)*
+        pub enum Part<'s> {
+            $($(#[$doc])* $name($surface),)*
         }
 
-        impl Surface for Shape {
-            fn closest_crossing(&self, ray: &Ray, within: Interval) -> Option<f32> {
+        impl Surface for Part<'_> {
+            fn bounds(&self) -> Option<Bounds> {
                 match self {
-                    $(Self::$surface(surface) => surface.closest_crossing(ray, within),)*
+                    $(Self::$name(surface) => surface.bounds(),)*
+                }
+            }
+
+            fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
+                match self {
+                    $(Self::$name(surface) => surface.closest_crossing(probe, within),)*
                 }
             }
 
             fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
                 match self {
-                    $(Self::$surface(surface) => surface.at_crossing(ray, t),)*
+                    $(Self::$name(surface) => surface.at_crossing(ray, t),)*
                 }
             }
         }
+    };
+}
 
+parts! {
+    /// A whole sphere.
+    Sphere(&'s Sphere),
+    /// A whole plane.
+    Plane(&'s Plane),
+    /// A triangle by itself.
+    Triangle(&'s Triangle),
+    /// A triangle of a mesh.
+    Facet(Facet<'s>),
+}
+
+macro_rules! shape_from {
+    ($($surface:ident)*) => {
         $(impl From<$surface> for Shape {
             fn from(surface: $surface) -> Self {
                 Self::$surface(surface)
@@ -99,9 +177,4 @@ macro_rules! shapes {
     };
 }
 
-shapes! {
-    /// All points at one distance from a centre.
-    Sphere,
-    /// All points whose difference to a given one is perpendicular to the normal.
-    Plane,
-}
+shape_from! { Sphere Plane Triangle }

@@ -11,7 +11,7 @@ use termtrace::framebuffer::{Framebuffer, Resolution};
 use termtrace::hit::any_hit;
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
-use termtrace::ray::{Interval, Ray};
+use termtrace::ray::{Interval, Probe, Ray};
 use termtrace::render::render;
 use termtrace::scene::{Background, Object, Scene, ToneCurve};
 use termtrace::shade::{TO_THE_LIGHT, incidence, shadow_ray};
@@ -201,8 +201,11 @@ fn shadow_of_a_sphere_on_a_plane() {
     let edge = 10.0 * (0.25_f64 / (1.0 - 0.0625_f64).sqrt());
     for (r, dark) in [(0.0, true), (edge - 0.01, true), (edge + 0.01, false), (2.0 * edge, false)] {
         let x = r as f32;
-        let mut scene =
-            lit(camera([x, 1.0, 9.0], [x, 0.0, 0.0], 40.0), vec![floor(), ball], vec![light([0.0, 10.0, 0.0], 100.0)]);
+        let mut scene = lit(
+            camera([x, 1.0, 9.0], [x, 0.0, 0.0], 40.0),
+            vec![floor(), ball.clone()],
+            vec![light([0.0, 10.0, 0.0], 100.0)],
+        );
         assert_eq!(seen(&scene) == 0.0, dark, "at {r} of {edge}");
         // Without shadows the light goes through.
         scene.shadows = false;
@@ -251,7 +254,7 @@ fn a_shadow_reaches_the_point_of_contact() {
     let scene = lit(camera([0.0, 2.0, 4.0], [0.0; 3], 40.0), vec![floor(), ball], vec![lamp]);
     for x in [0.01, 0.03, 0.1, 0.5] {
         let down = Ray { origin: Vec3::new(3.0 + x, 1.0, 0.0), direction: -Vec3::Y };
-        let shadow = shadow_ray(&lamp, &floor().shape.at_crossing(&down, 1.0));
+        let shadow = shadow_ray(&lamp, &floor().shape.part(0).at_crossing(&down, 1.0));
         assert!(any_hit(&scene, &shadow, TO_THE_LIGHT), "lit at {x} from the contact");
         assert!(shadow.origin.y < x * x / 2.0, "inside the ball at {x}: {}", shadow.origin);
     }
@@ -301,7 +304,7 @@ fn squares_of_a_checker() {
     for (x, z, expected) in
         [(1.5, -1.5, 0.9), (2.9, -0.1, 0.9), (3.1, -0.1, 0.1), (0.9, -1.5, 0.1), (0.9, -2.1, 0.9), (2.0, 0.1, 0.1)]
     {
-        let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], 40.0), vec![board]);
+        let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], 40.0), vec![board.clone()]);
         scene.ambient = LinearRgb::grey(1.0);
         assert_close(seen(&scene), expected);
     }
@@ -312,7 +315,7 @@ fn of_two_crossings_the_closer_one_in_front_counts() {
     let sphere = Sphere::new(Vec3::ZERO, 2.0);
     let crossing = |z: f32| {
         let ray = Ray { origin: Vec3::new(0.0, 0.0, z), direction: Vec3::new(0.0, 0.0, -0.5) };
-        sphere.closest_crossing(&ray, Interval::IN_FRONT).map(|t| (t, sphere.at_crossing(&ray, t).side))
+        sphere.closest_crossing(&Probe::new(ray), Interval::IN_FRONT).map(|t| (t, sphere.at_crossing(&ray, t).side))
     };
     assert_eq!(crossing(5.0), Some((6.0, Side::Front)), "from outside: the near one");
     assert_eq!(crossing(1.0), Some((6.0, Side::Back)), "from inside: the far one");
@@ -435,7 +438,7 @@ fn light_becomes_srgb_by_its_own_curve() {
 #[test]
 fn light_that_no_number_can_hold_is_still_a_number() {
     // A light that nearly lies in the surface: I n.l / d^2 is beyond f32, and 0 times that would be NaN.
-    let point = floor().shape.at_crossing(&Ray { origin: Vec3::Y, direction: -Vec3::Y }, 1.0);
+    let point = floor().shape.part(0).at_crossing(&Ray { origin: Vec3::Y, direction: -Vec3::Y }, 1.0);
     for height in [1e-10, 1e-18, 1e-22] {
         let lamp = PointLight { intensity: LinearRgb::new(1e24, 0.0, 1.0), ..light([0.0, height, 0.0], 0.0) };
         let arriving = incidence(&lamp, &point).expect("it faces the light").light;

@@ -1,7 +1,8 @@
 //! Ray-plane intersection (lecture, "Ray intersection").
 
 use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
-use crate::ray::{Interval, Ray};
+use crate::bounds::Bounds;
+use crate::ray::{Interval, Probe, Ray};
 use glam::{Vec2, Vec3};
 
 /// All points x with (x - a).n = 0. It has no end, and is seen from both sides.
@@ -45,8 +46,12 @@ fn pattern_axis(normal: Vec3) -> Vec3 {
 }
 
 impl Surface for Plane {
+    fn bounds(&self) -> Option<Bounds> {
+        None
+    }
+
     /// (p + t d - a).n = 0 gives t = (a - p).n / d.n; a ray along the plane never crosses it.
-    fn closest_crossing(&self, ray: &Ray, within: Interval) -> Option<f32> {
+    fn closest_crossing(&self, Probe { ray, .. }: &Probe, within: Interval) -> Option<f32> {
         let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
         // A ray along the plane divides by zero: infinite or NaN, and so not inside.
         within.contains(t).then_some(t)
@@ -61,6 +66,6 @@ impl Surface for Plane {
         let clearance = CLEARANCE * (largest_coordinate(position) + largest_coordinate(self.point));
         let from_point = position - self.point;
         let uv = Vec2::new(from_point.dot(self.u), from_point.dot(self.v));
-        SurfacePoint { position, normal, side, clearance, uv }
+        SurfacePoint { position, normal, facing: normal, side, clearance, uv }
     }
 }

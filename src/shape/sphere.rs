@@ -1,8 +1,15 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
 use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
-use crate::ray::{Interval, Ray};
+use crate::bounds::Bounds;
+use crate::ray::{Interval, Probe, Ray};
 use glam::{Vec2, Vec3};
+
+/// From so many radii on, a crossing is improved by a second look.
+const FAR: f32 = 8.0;
+
+/// The square of the cosine to the normal below which a ray only grazes the sphere.
+const GRAZING: f32 = 1e-3;
 
 /// All points x with ||x - c||^2 - r^2 = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,13 +68,35 @@ impl Sphere {
         let q = if half_b < 0.0 { half_b - root } else { half_b + root };
         let c = f.dot(f) - self.radius * self.radius;
         let (t0, t1) = (c / q, q / dd);
-        Some(if t0 <= t1 { [t0, t1] } else { [t1, t0] })
+        let crossings = if t0 <= t1 { [t0, t1] } else { [t1, t0] };
+        let is_far = f.dot(f) > FAR * FAR * self.radius * self.radius;
+        Some(if is_far { crossings.map(|t| self.improved(t, f, d)) } else { crossings })
+    }
+
+    /// One step of Newton's method towards the root near t. From afar t is a long way, off by units of its own; what is
+    /// left to the surface at its end is short, and known better. (Near the edge, where the ray only grazes the sphere,
+    /// the step would be one into the blue.)
+    fn improved(&self, t: f32, f: Vec3, d: Vec3) -> f32 {
+        let outward = f + d * t;
+        let along = outward.dot(d);
+        let squared_radius = self.radius * self.radius;
+        if along * along > GRAZING * squared_radius * d.dot(d) {
+            t - 0.5 * (outward.dot(outward) - squared_radius) / along
+        } else {
+            t
+        }
     }
 }
 
 impl Surface for Sphere {
-    fn closest_crossing(&self, ray: &Ray, within: Interval) -> Option<f32> {
-        self.crossings(ray)?.into_iter().find(|&t| within.contains(t))
+    fn bounds(&self) -> Option<Bounds> {
+        Some(Bounds { min: self.center - self.radius, max: self.center + self.radius })
+    }
+
+    fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
+        let crossings = self.crossings(&probe.ray)?;
+        let inside = self.bounds()?.crossed(probe);
+        crossings.into_iter().filter_map(|t| inside.nearest(t)).find(|&t| within.contains(t))
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
@@ -76,6 +105,6 @@ impl Surface for Sphere {
         let seen_from_outside = ray.direction.dot(outward) < 0.0;
         let (normal, side) = if seen_from_outside { (outward, Side::Front) } else { (-outward, Side::Back) };
         let clearance = CLEARANCE * (largest_coordinate(self.center) + self.radius);
-        SurfacePoint { position, normal, side, clearance, uv: Vec2::ZERO }
+        SurfacePoint { position, normal, facing: normal, side, clearance, uv: Vec2::ZERO }
     }
 }

@@ -1,0 +1,45 @@
+//! The parts of all objects: those with bounds in a tree, the others apart.
+
+use super::Object;
+use crate::bvh::Bvh;
+use crate::shape::Surface;
+
+/// A part of an object. They are ordered as they stand in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct PartId {
+    /// Which of the scene's objects.
+    pub(crate) object: u32,
+    /// Which of its shape's parts.
+    pub(crate) part: u32,
+}
+
+/// What a ray is tested against.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Parts {
+    /// Over the boxes of `bounded`.
+    pub(crate) bvh: Bvh,
+    /// In the order of the tree's leaves.
+    pub(crate) bounded: Vec<PartId>,
+    /// Those that have no end.
+    pub(crate) unbounded: Vec<PartId>,
+}
+
+impl Parts {
+    pub(super) fn of(objects: &[Object]) -> Self {
+        let (mut boxes, mut bounded, mut unbounded) = (Vec::new(), Vec::new(), Vec::new());
+        for (object, Object { shape, .. }) in (0..).zip(objects) {
+            for part in 0..shape.part_count() {
+                let id = PartId { object, part };
+                if let Some(bounds) = shape.part(part).bounds() {
+                    boxes.push(bounds);
+                    bounded.push(id);
+                } else {
+                    unbounded.push(id);
+                }
+            }
+        }
+        let bvh = Bvh::new(&boxes);
+        let bounded = bvh.order().iter().map(|&at| bounded[at as usize]).collect();
+        Self { bvh, bounded, unbounded }
+    }
+}

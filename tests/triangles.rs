@@ -1,0 +1,348 @@
+//! Triangles and the tree over them: no gaps, and nothing left out.
+
+use glam::Vec3;
+use proptest::prelude::*;
+use std::collections::HashMap;
+use std::num::NonZeroU32;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use termtrace::bounds::Bounds;
+use termtrace::bvh::Bvh;
+use termtrace::camera::{Camera, Pose, ViewRectangle};
+use termtrace::color::LinearRgb;
+use termtrace::framebuffer::Resolution;
+use termtrace::hit::{Hit, any_hit, closest_hit};
+use termtrace::light::{Falloff, PointLight};
+use termtrace::material::Material;
+use termtrace::ray::{Interval, Probe, Ray};
+use termtrace::render::render;
+use termtrace::scene::{Object, Scene};
+use termtrace::shade::{TO_THE_LIGHT, shadow_ray};
+use termtrace::shape::{Mesh, Plane, Shape, Side, Sphere, Surface, Triangle};
+
+fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
+    let pose = Pose { eye: Vec3::new(0.0, 0.0, 5.0), target: Vec3::ZERO, up: Vec3::Y };
+    let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
+    Scene::new(camera, shapes.into_iter().map(|shape| Object::new(shape, Material::DEFAULT)).collect())
+}
+
+/// The icosahedron, each of whose triangles is cut into four so many times, on the unit sphere.
+fn icosphere(cuts: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let golden = f32::midpoint(1.0, 5.0_f32.sqrt());
+    let mut points: Vec<Vec3> = [(0.0, 1.0, golden), (1.0, golden, 0.0), (golden, 0.0, 1.0)]
+        .into_iter()
+        .flat_map(|(x, y, z)| {
+            let signs = move |v: f32| if v == 0.0 { vec![v] } else { vec![v, -v] };
+            signs(x).into_iter().flat_map(move |x| {
+                signs(y)
+                    .into_iter()
+                    .flat_map(move |y| signs(z).into_iter().map(move |z| Vec3::new(x, y, z).normalize()))
+            })
+        })
+        .collect();
+    let edge = 2.0 / (1.0 + golden * golden).sqrt();
+    let near = |a: Vec3, b: Vec3| (a.distance(b) - edge).abs() < 1e-3;
+    let mut triangles = Vec::new();
+    for a in 0..12 {
+        for b in a + 1..12 {
+            for c in b + 1..12 {
+                let [p, q, r] = [points[a], points[b], points[c]];
+                if near(p, q) && near(q, r) && near(r, p) {
+                    let outward = (q - p).cross(r - p).dot(p) > 0.0;
+                    triangles.push(if outward {
+                        [a as u32, b as u32, c as u32]
+                    } else {
+                        [a as u32, c as u32, b as u32]
+                    });
+                }
+            }
+        }
+    }
+    for _ in 0..cuts {
+        let mut middles = HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                points.push((points[a as usize] + points[b as usize]).normalize());
+                points.len() as u32 - 1
+            })
+        };
+        triangles = triangles
+            .into_iter()
+            .flat_map(|[a, b, c]| {
+                let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+                [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+            })
+            .collect();
+    }
+    (points, triangles)
+}
+
+/// Rays from inside that are aimed exactly at corners and at points of edges, of a closed mesh at any place and scale.
+#[test]
+fn a_closed_mesh_lets_no_ray_out() {
+    let (points, triangles) = icosphere(4);
+    assert_eq!(triangles.len(), 5_120);
+    for (scale, center) in [
+        (1.0, Vec3::ZERO),
+        (1.0, Vec3::new(3.0, -4.0, 5.0)),
+        (1e-3, Vec3::new(1.0, 2.0, -3.0)),
+        (1e5, Vec3::new(-7.0, 11.0, 13.0)),
+    ] {
+        let points: Vec<Vec3> = points.iter().map(|&point| center + point * scale).collect();
+        let scene = scene([Mesh::new(points.clone(), triangles.clone()).into()]);
+        let mut leaks = 0;
+        let mut rays = 0;
+        for (at, corners) in triangles.iter().enumerate() {
+            let [a, b, c] = corners.map(|corner| points[corner as usize]);
+            let share = (at % 17) as f32 / 17.0;
+            for target in [a, a + (b - a) * share, b + (c - b) * 0.5, c + (a - c) * (1.0 - share)] {
+                let origin = center + Vec3::new(0.1, -0.2, 0.05) * scale;
+                rays += 1;
+                leaks += u32::from(closest_hit(&scene, &Ray { origin, direction: target - origin }).is_none());
+            }
+        }
+        assert_eq!((rays, leaks), (20_480, 0), "at scale {scale}");
+    }
+}
+
+/// From outside, too, no ray goes between two triangles of the near side and hits the far one.
+#[test]
+fn no_ray_goes_through_the_near_side() {
+    let (points, triangles) = icosphere(3);
+    let scene = scene([Mesh::new(points.clone(), triangles.clone()).into()]);
+    let origin = Vec3::new(0.3, 0.4, 4.0);
+    for corners in &triangles {
+        let [a, b, c] = corners.map(|corner| points[corner as usize]);
+        if a.z < 0.5 {
+            continue;
+        }
+        for target in [a, (a + b) * 0.5, (b + c) * 0.5] {
+            let ray = Ray { origin, direction: target - origin };
+            let hit = closest_hit(&scene, &ray).expect("it is in the way");
+            assert!((hit.t - 1.0).abs() < 1e-3, "{hit:?} behind {target}");
+            assert_eq!(hit.surface(&scene).at_crossing(&ray, hit.t).side, Side::Front);
+        }
+    }
+}
+
+/// Of the lit points of a closed mesh nearly none may seem to be in its own shadow, at any scale.
+#[test]
+fn meshes_do_not_shadow_themselves() {
+    let (points, triangles) = icosphere(3);
+    for scale in [1e-3_f32, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5] {
+        let center = Vec3::new(3.0, 4.0, -1.0) * scale;
+        let mesh = Mesh::new(points.iter().map(|&point| center + point * scale).collect(), triangles.clone());
+        let scene = scene([mesh.into()]);
+        let mut numbers = 0_u32;
+        let mut next = || {
+            numbers = numbers.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (numbers >> 8) as f32 / 8_388_608.0 - 1.0
+        };
+        let mut direction = || Vec3::new(next(), next(), next()).normalize_or(Vec3::X);
+        let shadowed = (0..100_000)
+            .filter(|_| {
+                let origin = center + direction() * (5.0 * scale);
+                let ray = Ray { origin, direction: center + direction() * (0.9 * scale) - origin };
+                let Some(hit) = closest_hit(&scene, &ray) else { return false };
+                let point = hit.surface(&scene).at_crossing(&ray, hit.t);
+                let position = center + direction() * (8.0 * scale);
+                let lamp = PointLight { position, intensity: LinearRgb::grey(1.0), falloff: Falloff::None };
+                // Convex: whatever faces the light is lit by it.
+                let faces = (position - point.position).normalize().dot(point.facing) > 1e-3;
+                faces && any_hit(&scene, &shadow_ray(&lamp, &point), TO_THE_LIGHT)
+            })
+            .count();
+        assert!(shadowed <= 10, "{shadowed} false shadows of 100,000 at scale {scale}");
+    }
+}
+
+/// One triangle seen from both sides, on its edges, and beside it.
+#[test]
+fn a_triangle_is_between_its_corners() {
+    let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y]);
+    let hit = |x: f32, y: f32, z: f32| {
+        let ray = Ray { origin: Vec3::new(x, y, z), direction: Vec3::new(0.0, 0.0, -z) };
+        let t = triangle.closest_crossing(&Probe::new(ray), Interval::IN_FRONT)?;
+        let point = triangle.at_crossing(&ray, t);
+        assert!((t - 1.0).abs() < 1e-6 && point.position.abs_diff_eq(Vec3::new(x, y, 0.0), 1e-6));
+        assert!(point.uv.abs_diff_eq(glam::Vec2::new(x, y), 1e-6), "{point:?}");
+        Some((point.side, point.normal))
+    };
+    assert_eq!(hit(0.25, 0.25, 3.0), Some((Side::Front, Vec3::Z)));
+    assert_eq!(hit(0.25, 0.25, -3.0), Some((Side::Back, -Vec3::Z)));
+    for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.0, 0.3)] {
+        assert!(hit(x, y, 2.0).is_some(), "({x}, {y}) is on an edge");
+    }
+    for (x, y) in [(-0.001, 0.5), (0.5, -0.001), (0.501, 0.5), (2.0, 2.0)] {
+        assert!(hit(x, y, 2.0).is_none(), "({x}, {y}) is beside it");
+    }
+    let edge_on = Ray { origin: Vec3::new(-1.0, 0.25, 0.0), direction: Vec3::X };
+    assert_eq!(triangle.closest_crossing(&Probe::new(edge_on), Interval::IN_FRONT), None);
+    let flat = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::X * 2.0]);
+    let ray = Ray { origin: Vec3::new(0.5, 0.0, 1.0), direction: -Vec3::Z };
+    assert_eq!(flat.closest_crossing(&Probe::new(ray), Interval::IN_FRONT), None);
+}
+
+/// Of a mesh with normals the light is smooth, but the ray that leaves it starts off the triangle.
+#[test]
+fn normals_between_corners_are_interpolated() {
+    let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+    let normals = [Vec3::Z, Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0)];
+    let smooth =
+        |normals: [Vec3; 3]| Shape::from(Mesh::new(corners.clone(), vec![[0, 1, 2]]).with_normals(normals.into()));
+    let point = |shape: &Shape, z: f32| {
+        let ray = Ray { origin: Vec3::new(0.25, 0.5, z), direction: Vec3::new(0.0, 0.0, -z) };
+        shape.part(0).at_crossing(&ray, 1.0)
+    };
+    let expected = Vec3::new(0.25, 0.5, 1.0).normalize();
+    let front = point(&smooth(normals), 1.0);
+    assert!(front.normal.abs_diff_eq(expected, 1e-6) && front.facing == Vec3::Z, "{front:?}");
+    let back = point(&smooth(normals), -1.0);
+    assert!(back.normal.abs_diff_eq(-expected, 1e-6) && back.facing == -Vec3::Z, "{back:?}");
+    let without = point(&smooth([Vec3::ZERO; 3]), 1.0);
+    assert_eq!(without.normal, Vec3::Z, "where there is none, the triangle's own");
+}
+
+// The tree -----------------------------------------------------------------------------------------------------------
+
+/// Coordinates of which many are equal: triangles without an area, boxes without a size, things in one place.
+fn coarse() -> impl Strategy<Value = Vec3> {
+    [-3..=3_i8, -3..=3_i8, -3..=3_i8].prop_map(|[x, y, z]| Vec3::new(x.into(), y.into(), z.into()))
+}
+
+fn anywhere() -> impl Strategy<Value = Vec3> {
+    [-4.0_f32..4.0, -4.0_f32..4.0, -4.0_f32..4.0].prop_map(Vec3::from)
+}
+
+fn place() -> impl Strategy<Value = Vec3> {
+    prop_oneof![coarse(), anywhere()]
+}
+
+fn mesh() -> impl Strategy<Value = Mesh> {
+    prop::collection::vec(place(), 3..30).prop_flat_map(|points| {
+        let count = points.len() as u32;
+        let triangles = prop::collection::vec([0..count, 0..count, 0..count], 1..60);
+        triangles.prop_map(move |triangles| Mesh::new(points.clone(), triangles))
+    })
+}
+
+fn shape() -> impl Strategy<Value = Shape> {
+    prop_oneof![
+        3 => [place(), place(), place()].prop_map(|corners| Triangle::new(corners).into()),
+        3 => (place(), 0.05_f32..1.5).prop_map(|(center, radius)| Sphere::new(center, radius).into()),
+        1 => place().prop_map(|point| Plane::new(point, Vec3::Y).into()),
+        1 => mesh().prop_map(Shape::from),
+    ]
+}
+
+fn ray() -> impl Strategy<Value = Ray> {
+    (place(), place())
+        .prop_map(|(origin, target)| Ray { origin, direction: target - origin })
+        .prop_filter("it goes somewhere", |ray| ray.direction != Vec3::ZERO)
+}
+
+/// Every part of every object is tried.
+fn brute_force(scene: &Scene, ray: &Ray, within: Interval) -> Option<Hit> {
+    let probe = Probe::new(*ray);
+    let objects = (0..).zip(scene.objects());
+    let parts = objects.flat_map(|(object, it)| (0..it.shape.part_count()).map(move |part| (object, part, &it.shape)));
+    parts
+        .filter_map(|(object, part, shape)| {
+            let t = shape.part(part).closest_crossing(&probe, within)?;
+            Some(Hit { t, object, part })
+        })
+        // The first of those at the same t.
+        .min_by(|a, b| a.t.partial_cmp(&b.t).expect("no t is NaN"))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1_000))]
+
+    #[test]
+    fn nothing_is_left_out(shapes in prop::collection::vec(shape(), 1..40), rays in prop::collection::vec(ray(), 1..20)) {
+        let doubled: Vec<Shape> = shapes.iter().chain(&shapes[..shapes.len() / 2]).cloned().collect();
+        let scene = scene(doubled);
+        for ray in &rays {
+            let found = closest_hit(&scene, ray);
+            prop_assert_eq!(found, brute_force(&scene, ray, Interval::IN_FRONT), "{:?}", ray);
+            for within in [TO_THE_LIGHT, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }] {
+                prop_assert_eq!(any_hit(&scene, ray, within), brute_force(&scene, ray, within).is_some(), "{:?} {:?}", ray, within);
+            }
+        }
+    }
+
+    /// Things that nobody sees make another tree, and the same picture.
+    #[test]
+    fn the_tree_does_not_show(shapes in prop::collection::vec(shape(), 1..40), hidden in prop::collection::vec(anywhere(), 1..40)) {
+        let light = PointLight { position: Vec3::new(3.0, 6.0, 5.0), intensity: LinearRgb::grey(40.0), falloff: Falloff::InverseSquare };
+        let picture = |shapes: Vec<Shape>| {
+            let mut scene = scene(shapes);
+            scene.lights.push(light);
+            render(&scene, &scene.camera, Resolution::square(24, 16), NonZeroU32::MIN).hash()
+        };
+        let behind = hidden.iter().map(|&place| Sphere::new(place * 3.0 + Vec3::Z * 40.0, 1.0).into());
+        let more: Vec<Shape> = shapes.iter().cloned().chain(behind).collect();
+        prop_assert_eq!(picture(shapes), picture(more));
+    }
+
+    /// What lies in a box is on the way through it, and a box in a box too.
+    #[test]
+    fn ways_through_boxes_contain_one_another(corners in [place(), place()], more in place(), ray in ray(), share in [0.0_f32..=1.0, 0.0..=1.0, 0.0..=1.0]) {
+        let inner = Bounds::of(corners);
+        let outer = inner.union(&Bounds::of([more]));
+        let probe = Probe::new(ray);
+        let (inside, around) = (inner.crossed(&probe), outer.crossed(&probe));
+        prop_assert!(around.min <= inside.min && around.max >= inside.max);
+        let point = inner.min + inner.extent() * Vec3::from(share);
+        let through = Ray { origin: ray.origin, direction: point - ray.origin };
+        prop_assume!(through.direction != Vec3::ZERO);
+        let way = inner.crossed(&Probe::new(through));
+        prop_assert!(way.contains(1.0), "{:?} does not have {}", way, point);
+    }
+
+    #[test]
+    fn every_box_is_in_one_leaf(boxes in prop::collection::vec([place(), place()], 0..300)) {
+        let boxes: Vec<Bounds> = boxes.into_iter().map(Bounds::of).collect();
+        let mut order = Bvh::new(&boxes).order().to_vec();
+        order.sort_unstable();
+        prop_assert_eq!(order, (0..boxes.len() as u32).collect::<Vec<_>>());
+    }
+}
+
+/// Boxes each of which is half as far off as the next: no cut between equal bins parts them well.
+#[test]
+fn a_tree_is_never_too_deep_for_its_stack() {
+    let boxes: Vec<Bounds> = (0..100_000)
+        .map(|at: u32| {
+            let x = f32::from_bits((1 + at % 250) << 23);
+            Bounds::of([Vec3::new(x, x, x), Vec3::new(x, x, -x)])
+        })
+        .collect();
+    let bvh = Bvh::new(&boxes);
+    let probe = Probe::new(Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 1.0, 0.0) });
+    let mut found = 0;
+    let _ = bvh.visit(&probe, Interval::IN_FRONT, |leaf, within| {
+        found += leaf.len();
+        ControlFlow::Continue(within.max)
+    });
+    assert_eq!(found, boxes.len(), "the ray meets them all");
+}
+
+#[test]
+fn building_tells_how_far_it_is_and_can_be_given_up() {
+    let (points, triangles) = icosphere(6);
+    let corners = |triangle: &[u32; 3]| triangle.map(|corner| points[corner as usize]);
+    let boxes: Vec<Bounds> = triangles.iter().map(|triangle| Bounds::of(corners(triangle))).collect();
+    let placed = AtomicUsize::new(0);
+    let built = Bvh::new_unless(&boxes, &|count| {
+        placed.fetch_add(count, Ordering::Relaxed);
+        ControlFlow::Continue(())
+    });
+    assert_eq!((built, placed.into_inner()), (Some(Bvh::new(&boxes)), boxes.len()));
+    let placed = AtomicUsize::new(0);
+    let given_up = Bvh::new_unless(&boxes, &|count| {
+        placed.fetch_add(count, Ordering::Relaxed);
+        ControlFlow::Break(())
+    });
+    assert_eq!((given_up, placed.into_inner()), (None, 0));
+}
