@@ -284,4 +284,10 @@ impl EyeRays {
     pub fn through(&self, qu: f32, qv: f32) -> Ray {
         Ray { origin: self.eye, direction: self.q0 + self.across * qu + self.upward * qv }
     }
+
+    /// By how much the direction changes from a pixel to the next one across and the next one upward, in a picture of so
+    /// many.
+    pub fn steps(&self, width: u32, height: u32) -> [Vec3; 2] {
+        [self.across / width as f32, self.upward / height as f32]
+    }
 }

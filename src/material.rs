@@ -31,11 +31,39 @@ impl Material {
         match *self {
             Self::Diffuse(reflectance) => reflectance,
             Self::Checker { a, b, size } => {
-                let square = (point.uv / size).floor();
-                if is_even(square.x + square.y) { a } else { b }
+                let (middle, width) = (point.uv / size, point.footprint / size);
+                let balance = mean_sign(middle.x, width.x) * mean_sign(middle.y, width.y);
+                a * (0.5 + 0.5 * balance) + b * (0.5 - 0.5 * balance)
             }
         }
     }
+}
+
+/// The mean over an interval of what is 1 from each even whole number to the next, and -1 in between. So a pattern too
+/// fine for its pixels turns grey, instead of into another one (a box filter; in a plane that is the product of the two
+/// axes' means).
+fn mean_sign(middle: f32, width: f32) -> f32 {
+    // Beyond, the mean is as good as zero, and intervals may be infinite. (The negation turns NaN away too.)
+    if !(width < 1e6) {
+        return 0.0;
+    }
+    let (start, end) = (middle - 0.5 * width, middle + 0.5 * width);
+    let (first, last) = (start.floor(), end.floor());
+    let sign = if is_even(first) { 1.0 } else { -1.0 };
+    if first == last {
+        sign
+    } else if last - first == 1.0 {
+        // Over one edge: what lies before it less what lies behind it.
+        sign * ((last - start) - (end - last)) / (end - start)
+    } else {
+        (integrated_sign(end) - integrated_sign(start)) / (end - start)
+    }
+}
+
+/// The integral of that sign from 0: up and down again.
+fn integrated_sign(x: f32) -> f32 {
+    let in_period = x - 2.0 * (0.5 * x).floor();
+    1.0 - (in_period - 1.0).abs()
 }
 
 /// For whole numbers of any size; those above 2^24 are all even in f32.

@@ -3,8 +3,9 @@
 //! What crosses a tile goes together: each step is a function over arrays of the tile's rays, so that tracing them
 //! as packets, looking at a tile's edges or explaining one ray is a choice inside a step.
 //!
-//! A frame is a pure function of scene, camera, resolution and number of samples. Tiles run on the threads of the
-//! current rayon pool; as no pixel depends on another, neither their number nor their order shows.
+//! A frame is a pure function of scene, camera, resolution and [`Sampling`]. Tiles run on the threads of the current
+//! rayon pool; as no pixel's light depends on another's, neither their number nor their order shows. Which pixels get
+//! more samples does depend on others: that is decided between two passes over the whole picture.
 
 use crate::camera::{Camera, EyeRays};
 use crate::color::LinearRgb;
@@ -12,19 +13,26 @@ use crate::framebuffer::{Framebuffer, Resolution};
 use crate::hit::{self, Hit};
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::shade::{self, ShadowRays};
+use crate::shade::{self, Arriving, ShadowRays};
 use crate::shape::SurfacePoint;
+use glam::Vec3;
+use pixel::{Pixel, Seen, Sum, Watched};
 use rayon::prelude::*;
+use sampling::{PASSES, footprint_share, sample_position};
 use std::num::NonZeroU32;
-use std::ops::Range;
+use std::ops::{AddAssign, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// The picture of `scene` that `camera` sees, with so many rays per pixel. One ray goes through the pixel's centre.
-pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Framebuffer {
+mod pixel;
+mod sampling;
+
+pub use sampling::Sampling;
+
+/// The picture of `scene` that `camera` sees. The first ray of a pixel goes through its centre.
+pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Framebuffer {
     let never = AtomicBool::new(false);
-    render_unless(&never, scene, camera, resolution, samples)
-        .map_or_else(|| unreachable!("nobody else can set the flag"), |rendered| rendered.framebuffer)
+    finished(rendered(Crew::Pool(&never), scene, camera, resolution, sampling.into())).framebuffer
 }
 
 /// A frame, and what it took.
@@ -32,19 +40,30 @@ pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, samples: N
 pub struct Rendered {
     /// The picture.
     pub framebuffer: Framebuffer,
+    /// What it took. Nothing in the picture depends on it.
+    pub cost: Cost,
+}
+
+/// What tracing took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
     /// How many rays were traced: eye rays and shadow rays.
     pub rays: u64,
-    /// How long tracing took all threads together. Nothing in the picture depends on it.
+    /// How long that took, all threads together.
     pub work: Duration,
+}
+
+impl AddAssign for Cost {
+    fn add_assign(&mut self, more: Self) {
+        self.rays += more.rays;
+        self.work += more.work;
+    }
 }
 
 /// [`render`] on the calling thread alone: to wake others for a frame of less than about a millisecond takes longer than
 /// they save.
-pub fn render_alone(scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Rendered {
-    let frame = Frame::new(scene, camera, resolution, samples);
-    let mut buffers = Buffers::default();
-    let traced: Vec<_> = frame.tiles.iter().map(|tile| frame.trace(tile, &mut buffers)).collect();
-    frame.rendered(&traced)
+pub fn render_alone(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Rendered {
+    finished(rendered(Crew::Alone, scene, camera, resolution, sampling.into()))
 }
 
 /// [`render`], given up as soon as `cancelled` is true.
@@ -53,17 +72,84 @@ pub fn render_unless(
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
-    samples: NonZeroU32,
+    sampling: impl Into<Sampling>,
 ) -> Option<Rendered> {
-    let frame = Frame::new(scene, camera, resolution, samples);
-    let traced: Option<Vec<_>> = frame
-        .tiles
-        .par_iter()
-        .map_init(Buffers::default, |buffers, tile| {
-            (!cancelled.load(Ordering::Relaxed)).then(|| frame.trace(tile, buffers))
-        })
-        .collect();
-    traced.map(|traced| frame.rendered(&traced))
+    rendered(Crew::Pool(cancelled), scene, camera, resolution, sampling.into())
+}
+
+/// Who traces.
+#[derive(Clone, Copy)]
+enum Crew<'a> {
+    /// The calling thread alone.
+    Alone,
+    /// The threads of the current rayon pool, until this becomes true.
+    Pool(&'a AtomicBool),
+}
+
+/// What a crew has done that nobody else can cancel.
+fn finished<T>(done: Option<T>) -> T {
+    done.unwrap_or_else(|| unreachable!("nobody else can set the flag"))
+}
+
+fn rendered(
+    crew: Crew<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+) -> Option<Rendered> {
+    match sampling {
+        Sampling::Coarse => Raster::<Sum>::new(camera, resolution, 2).rendered(crew, scene, 1),
+        Sampling::Each(samples) => Raster::<Sum>::new(camera, resolution, 1).rendered(crew, scene, samples.get()),
+        Sampling::UpTo(samples) => {
+            let mut picture = Refining::new(camera, resolution);
+            let cost = picture.refine(crew, scene, samples)?;
+            Some(Rendered { framebuffer: picture.framebuffer(), cost })
+        }
+    }
+}
+
+/// A picture in work, which gets more samples where it has edges, as long as that is wanted. Whatever the steps in which
+/// it is made, its light is the same to the bit as if it had been made in one.
+#[derive(Clone, Debug)]
+pub struct Refining {
+    raster: Raster<Watched>,
+    /// How many of the passes are done.
+    passes: usize,
+}
+
+impl Refining {
+    /// Nothing of it is traced yet.
+    pub fn new(camera: &Camera, resolution: Resolution) -> Self {
+        Self { raster: Raster::new(camera, resolution, 1), passes: 0 }
+    }
+
+    /// Traces what is lacking to [`Sampling::UpTo`] so many samples of that scene, which has to be the same each time.
+    /// Returns what that took. `None`: given up, because `cancelled` was true; then it cannot be gone on with.
+    pub fn refine_unless(&mut self, cancelled: &AtomicBool, scene: &Scene, samples: NonZeroU32) -> Option<Cost> {
+        self.refine(Crew::Pool(cancelled), scene, samples)
+    }
+
+    fn refine(&mut self, crew: Crew<'_>, scene: &Scene, samples: NonZeroU32) -> Option<Cost> {
+        let mut cost = Cost::default();
+        while let Some(pass) = PASSES.get(self.passes).filter(|pass| pass.end <= samples.get()) {
+            let needs_more = self.raster.unsettled(crew, scene, self.passes);
+            let columns = self.raster.columns;
+            cost += self.raster.trace(crew, scene, pass.clone(), |x, y| needs_more[(y * columns + x) as usize])?;
+            self.passes += 1;
+        }
+        Some(cost)
+    }
+
+    /// Whether no more samples will be taken anywhere.
+    pub fn is_final(&self) -> bool {
+        self.passes == PASSES.len()
+    }
+
+    /// The mean light of each pixel's samples.
+    pub fn framebuffer(&self) -> Framebuffer {
+        self.raster.framebuffer()
+    }
 }
 
 /// A tile's side in pixels.
@@ -75,28 +161,17 @@ struct Tile {
     rows: Range<u32>,
 }
 
-/// A tile's mean light per pixel, row by row, and what it took.
-struct TracedTile {
-    light: Vec<LinearRgb>,
-    rays: u64,
-    work: Duration,
-}
-
-/// All tiles of a picture; those at the right and lower edge may be smaller.
-fn tiles(resolution: Resolution) -> Vec<Tile> {
-    let spans = |length: u32| (0..length).step_by(TILE as usize).map(move |at| at..length.min(at + TILE));
-    spans(resolution.height)
-        .flat_map(|rows| spans(resolution.width).map(move |columns| Tile { columns, rows: rows.clone() }))
-        .collect()
-}
-
-/// A frame's tiles, and what they have in common.
-struct Frame<'a> {
-    scene: &'a Scene,
-    eye_rays: EyeRays,
+/// The pixels of a picture, or of one of larger ones.
+#[derive(Clone, Debug)]
+struct Raster<P> {
+    /// Of the picture.
     resolution: Resolution,
-    samples: NonZeroU32,
-    tiles: Vec<Tile>,
+    /// How many pixels of the picture each of these covers in either direction.
+    scale: u32,
+    columns: u32,
+    rows: u32,
+    eye_rays: EyeRays,
+    pixels: Vec<P>,
 }
 
 /// The arrays between the steps, kept from tile to tile.
@@ -105,70 +180,162 @@ struct Buffers {
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
     points: Vec<Option<SurfacePoint>>,
+    arriving: Vec<Arriving>,
     light: Vec<LinearRgb>,
     shadows: ShadowRays,
 }
 
-impl<'a> Frame<'a> {
-    fn new(scene: &'a Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Self {
+impl<P: Pixel> Raster<P> {
+    fn new(camera: &Camera, resolution: Resolution, scale: u32) -> Self {
+        let (columns, rows) = (resolution.width.div_ceil(scale), resolution.height.div_ceil(scale));
         let eye_rays = camera.eye_rays(resolution.aspect_ratio());
-        Self { scene, eye_rays, resolution, samples, tiles: tiles(resolution) }
+        let pixels = vec![P::default(); columns as usize * rows as usize];
+        Self { resolution, scale, columns, rows, eye_rays, pixels }
     }
 
-    /// The mean light of each pixel's samples.
-    fn trace(&self, tile: &Tile, buffers: &mut Buffers) -> TracedTile {
+    /// The picture with so many samples of each pixel.
+    fn rendered(mut self, crew: Crew<'_>, scene: &Scene, samples: u32) -> Option<Rendered> {
+        let cost = self.trace(crew, scene, 0..samples, |_, _| true)?;
+        Some(Rendered { framebuffer: self.framebuffer(), cost })
+    }
+
+    /// Adds these samples to the pixels that are wanted, tile by tile.
+    fn trace(
+        &mut self,
+        crew: Crew<'_>,
+        scene: &Scene,
+        samples: Range<u32>,
+        is_wanted: impl Fn(u32, u32) -> bool + Sync,
+    ) -> Option<Cost> {
+        let trace = |buffers: &mut Buffers, tile: &Tile| {
+            let places: Vec<_> = tile.places().filter(|&(x, y)| is_wanted(x, y)).collect();
+            self.trace_tile(scene, samples.clone(), places, buffers)
+        };
+        let traced: Vec<_> = match crew {
+            Crew::Alone => {
+                let mut buffers = Buffers::default();
+                self.tiles().iter().map(|tile| trace(&mut buffers, tile)).collect()
+            }
+            Crew::Pool(cancelled) => {
+                let wanted = || !cancelled.load(Ordering::Relaxed);
+                let trace = |buffers: &mut Buffers, tile| wanted().then(|| trace(buffers, tile));
+                self.tiles().par_iter().map_init(Buffers::default, trace).collect::<Option<_>>()?
+            }
+        };
+        let mut sum = Cost::default();
+        for TracedTile { places, pixels, cost } in traced {
+            for ((x, y), pixel) in places.into_iter().zip(pixels) {
+                *self.pixel_mut(x, y) = pixel;
+            }
+            sum += cost;
+        }
+        Some(sum)
+    }
+
+    /// These pixels with more samples.
+    fn trace_tile(
+        &self,
+        scene: &Scene,
+        samples: Range<u32>,
+        places: Vec<(u32, u32)>,
+        buffers: &mut Buffers,
+    ) -> TracedTile<P> {
         let start = Instant::now();
-        let mut sum = vec![LinearRgb::BLACK; tile.columns.len() * tile.rows.len()];
+        let mut pixels: Vec<P> = places.iter().map(|&(x, y)| *self.pixel(x, y)).collect();
         let mut rays = 0;
-        for sample in 0..self.samples.get() {
-            self.make_eye_rays(tile, sample, &mut buffers.rays);
-            let Buffers { rays: eye_rays, hits, points, light, shadows } = buffers;
-            hit::closest_hits(self.scene, eye_rays, hits);
-            shade::surface_points(self.scene, eye_rays, hits, points);
-            let shadow_rays = shade::arriving_light(self.scene, points, shadows, light);
-            shade::reflect(self.scene, eye_rays, hits, points, light);
-            sum.iter_mut().zip(light).for_each(|(sum, light)| *sum += *light);
+        for sample in samples {
+            let Buffers { rays: eye_rays, hits, points, arriving, light, shadows } = buffers;
+            self.make_eye_rays(&places, sample, eye_rays);
+            hit::closest_hits(scene, eye_rays, hits);
+            shade::surface_points(scene, eye_rays, self.steps(sample), hits, points);
+            let shadow_rays = shade::arriving_light(scene, points, shadows, arriving);
+            shade::reflect(scene, eye_rays, hits, points, arriving, light);
+            for (at, pixel) in pixels.iter_mut().enumerate() {
+                pixel.add(light[at], || Seen::of(hits[at], points[at].as_ref(), arriving[at]));
+            }
             rays += (eye_rays.len() + shadow_rays) as u64;
         }
-        let share = 1.0 / self.samples.get() as f32;
-        TracedTile { light: sum.into_iter().map(|light| light * share).collect(), rays, work: start.elapsed() }
-    }
-
-    /// The tiles' light, put where it belongs.
-    fn rendered(&self, traced: &[TracedTile]) -> Rendered {
-        let mut framebuffer = Framebuffer::new(self.resolution);
-        let width = self.resolution.width as usize;
-        for (tile, TracedTile { light, .. }) in self.tiles.iter().zip(traced) {
-            let columns = tile.columns.start as usize..tile.columns.end as usize;
-            for (y, row) in tile.rows.clone().zip(light.chunks_exact(columns.len())) {
-                framebuffer.pixels[y as usize * width..][columns.clone()].copy_from_slice(row);
-            }
-        }
-        let rays = traced.iter().map(|tile| tile.rays).sum();
-        let work = traced.iter().map(|tile| tile.work).sum();
-        Rendered { framebuffer, rays, work }
+        TracedTile { places, pixels, cost: Cost { rays, work: start.elapsed() } }
     }
 
     /// One eye ray for each pixel.
-    fn make_eye_rays(&self, tile: &Tile, sample: u32, rays: &mut Vec<Ray>) {
+    fn make_eye_rays(&self, places: &[(u32, u32)], sample: u32, rays: &mut Vec<Ray>) {
         let (sx, sy) = sample_position(sample);
         let (width, height) = (self.resolution.width as f32, self.resolution.height as f32);
+        let scale = self.scale as f32;
         rays.clear();
-        for j in tile.rows.clone() {
+        rays.extend(places.iter().map(|&(x, y)| {
             // Rows are counted from the top, the lecture's q_v from the bottom.
-            let qv = (height - (j as f32 + sy)) / height;
-            rays.extend(tile.columns.clone().map(|i| self.eye_rays.through((i as f32 + sx) / width, qv)));
-        }
+            let (x, y) = ((x as f32 + sx) * scale, (y as f32 + sy) * scale);
+            self.eye_rays.through(x / width, (height - y) / height)
+        }));
+    }
+
+    /// By how much the direction changes from an eye ray to those beside it.
+    fn steps(&self, sample: u32) -> [Vec3; 2] {
+        let share = self.scale as f32 * footprint_share(sample);
+        self.eye_rays.steps(self.resolution.width, self.resolution.height).map(|step| step * share)
+    }
+
+    /// All tiles; those at the right and lower edge may be smaller.
+    fn tiles(&self) -> Vec<Tile> {
+        let spans = |length: u32| (0..length).step_by(TILE as usize).map(move |at| at..length.min(at + TILE));
+        spans(self.rows)
+            .flat_map(|rows| spans(self.columns).map(move |columns| Tile { columns, rows: rows.clone() }))
+            .collect()
+    }
+
+    fn pixel(&self, x: u32, y: u32) -> &P {
+        &self.pixels[(y * self.columns + x) as usize]
+    }
+
+    fn pixel_mut(&mut self, x: u32, y: u32) -> &mut P {
+        &mut self.pixels[(y * self.columns + x) as usize]
+    }
+
+    fn framebuffer(&self) -> Framebuffer {
+        let Resolution { width, height, .. } = self.resolution;
+        let rows = (0..height).map(|y| y / self.scale);
+        let pixels = rows.flat_map(|y| (0..width).map(move |x| self.pixel(x / self.scale, y).mean()));
+        Framebuffer { resolution: self.resolution, pixels: pixels.collect() }
     }
 }
 
-/// Where in the pixel a sample lies, as parts of its width and height from the top left corner: the centre first, then
-/// on through Roberts' R2 sequence (multiples of the inverses of the plastic number and its square, modulo 1), whose
-/// every beginning covers the pixel evenly. Counted in integers, so that it is exact.
-fn sample_position(sample: u32) -> (f32, f32) {
-    let part = |step: u32| {
-        let position = 0x8000_0000_u32.wrapping_add(sample.wrapping_mul(step));
-        (position >> 8) as f32 / 16_777_216.0
-    };
-    (part(3_242_174_889), part(2_447_445_414))
+impl Raster<Watched> {
+    /// Which pixels the pass after so many is for.
+    fn unsettled(&self, crew: Crew<'_>, scene: &Scene, passes: usize) -> Vec<bool> {
+        let white = 1.0 / scene.exposure;
+        let is_unsettled = |at: usize| {
+            let (x, y) = (at as u32 % self.columns, at as u32 / self.columns);
+            match passes {
+                0 => true,
+                1 => self.neighbours(x, y).any(|neighbour| self.pixel(x, y).is_edge_to(neighbour, white)),
+                2 => self.pixel(x, y).count() > 1,
+                _ => self.pixel(x, y).is_rough(white),
+            }
+        };
+        match crew {
+            Crew::Alone => (0..self.pixels.len()).map(is_unsettled).collect(),
+            Crew::Pool(_) => (0..self.pixels.len()).into_par_iter().map(is_unsettled).collect(),
+        }
+    }
+
+    /// The pixel and those around it.
+    fn neighbours(&self, x: u32, y: u32) -> impl Iterator<Item = &Watched> {
+        let around = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
+        around(y, self.rows).flat_map(move |y| around(x, self.columns).map(move |x| self.pixel(x, y)))
+    }
+}
+
+/// Pixels of a tile, where they are, and what they took.
+struct TracedTile<P> {
+    places: Vec<(u32, u32)>,
+    pixels: Vec<P>,
+    cost: Cost,
+}
+
+impl Tile {
+    fn places(&self) -> impl Iterator<Item = (u32, u32)> {
+        self.rows.clone().flat_map(|y| self.columns.clone().map(move |x| (x, y)))
+    }
 }

@@ -18,10 +18,20 @@ use crate::scene::{Background, Scene};
 use crate::shape::{Surface, SurfacePoint};
 use glam::Vec3;
 
-/// The surface at each hit.
-pub fn surface_points(scene: &Scene, rays: &[Ray], hits: &[Option<Hit>], points: &mut Vec<Option<SurfacePoint>>) {
+/// The surface at each hit. The rays' neighbours in the picture differ from them by these steps.
+pub fn surface_points(
+    scene: &Scene,
+    rays: &[Ray],
+    steps: [Vec3; 2],
+    hits: &[Option<Hit>],
+    points: &mut Vec<Option<SurfacePoint>>,
+) {
+    let point = |ray: &Ray, hit: Hit| {
+        let surface = hit.surface(scene);
+        SurfacePoint { footprint: surface.footprint(ray, hit.t, steps), ..surface.at_crossing(ray, hit.t) }
+    };
     points.clear();
-    points.extend(rays.iter().zip(hits).map(|(ray, hit)| hit.map(|hit| hit.surface(scene).at_crossing(ray, hit.t))));
+    points.extend(rays.iter().zip(hits).map(|(ray, hit)| hit.map(|hit| point(ray, hit))));
 }
 
 /// The arrays of one light's shadow rays.
@@ -33,23 +43,32 @@ pub struct ShadowRays {
     blocked: Vec<bool>,
 }
 
-/// The light that arrives at each point: ambient + sum over lights of V * I * max(0, n.l) / d^2. Returns the number of
-/// shadow rays that this took.
+/// The light that arrives at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arriving {
+    /// ambient + sum over lights of V * I * max(0, n.l) / d^2.
+    pub light: LinearRgb,
+    /// Which lights it comes from, a bit for each; the thirty-third shares its bit with the first, and so on.
+    pub lit_by: u32,
+}
+
+/// What arrives at each point. Returns the number of shadow rays that this took.
 pub fn arriving_light(
     scene: &Scene,
     points: &[Option<SurfacePoint>],
     shadows: &mut ShadowRays,
-    arriving: &mut Vec<LinearRgb>,
+    arriving: &mut Vec<Arriving>,
 ) -> usize {
     let mut shadow_rays = 0;
     arriving.clear();
-    arriving.resize(points.len(), scene.ambient);
-    for light in &scene.lights {
+    arriving.resize(points.len(), Arriving { light: scene.ambient, lit_by: 0 });
+    for (number, light) in scene.lights.iter().enumerate() {
         shadows.aim(light, points);
         shadow_rays += shadows.trace(scene);
         for (&(point, light), &blocked) in shadows.arriving.iter().zip(&shadows.blocked) {
             if !blocked {
-                arriving[point] += light;
+                arriving[point].light += light;
+                arriving[point].lit_by |= 1 << (number % 32);
             }
         }
     }
@@ -88,14 +107,14 @@ pub fn reflect(
     rays: &[Ray],
     hits: &[Option<Hit>],
     points: &[Option<SurfacePoint>],
-    light: &mut [LinearRgb],
+    arriving: &[Arriving],
+    light: &mut Vec<LinearRgb>,
 ) {
-    for (at, light) in light.iter_mut().enumerate() {
-        *light = match (hits[at], &points[at]) {
-            (Some(hit), Some(point)) => scene.objects()[hit.object as usize].material.reflectance(point) * *light,
-            _ => background(scene, &rays[at]),
-        };
-    }
+    light.clear();
+    light.extend(arriving.iter().enumerate().map(|(at, arriving)| match (hits[at], &points[at]) {
+        (Some(hit), Some(point)) => scene.objects()[hit.object as usize].material.reflectance(point) * arriving.light,
+        _ => background(scene, &rays[at]),
+    }));
 }
 
 /// What one light does at a point that it faces, if nothing is in its way.

@@ -35,6 +35,12 @@ pub trait Surface {
 
     /// The surface at the crossing `t` that [`closest_crossing`](Self::closest_crossing) found for this ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint;
+
+    /// How far [`uv`](SurfacePoint::uv) reaches in a pixel: from the crossing of this ray to those of its neighbours,
+    /// whose directions differ by these steps. Zero where the surface has no pattern.
+    fn footprint(&self, _ray: &Ray, _t: f32, _steps: [Vec3; 2]) -> Vec2 {
+        Vec2::ZERO
+    }
 }
 
 /// A point on a surface, as seen from where the ray came.
@@ -54,6 +60,9 @@ pub struct SurfacePoint {
     /// Coordinates on the surface for a pattern: on a plane in world units, in a triangle the shares of its second and
     /// third corner; zero where the surface has none.
     pub uv: Vec2,
+    /// How much of them the picture's samples see at once: a pattern is to be told by its mean over so much. Zero for a
+    /// point alone.
+    pub footprint: Vec2,
 }
 
 impl SurfacePoint {
@@ -150,6 +159,12 @@ macro_rules! parts {
             fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
                 match self {
                     $(Self::$name(surface) => surface.at_crossing(ray, t),)*
+                }
+            }
+
+            fn footprint(&self, ray: &Ray, t: f32, steps: [Vec3; 2]) -> Vec2 {
+                match self {
+                    $(Self::$name(surface) => surface.footprint(ray, t, steps),)*
                 }
             }
         }

@@ -304,9 +304,25 @@ fn squares_of_a_checker() {
     for (x, z, expected) in
         [(1.5, -1.5, 0.9), (2.9, -0.1, 0.9), (3.1, -0.1, 0.1), (0.9, -1.5, 0.1), (0.9, -2.1, 0.9), (2.0, 0.1, 0.1)]
     {
-        let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], 40.0), vec![board.clone()]);
+        let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], 1.0), vec![board.clone()]);
         scene.ambient = LinearRgb::grey(1.0);
         assert_close(seen(&scene), expected);
+    }
+}
+
+/// A pixel that sees two squares, or four, has the mean of what it sees.
+#[test]
+fn edges_of_a_checker() {
+    let (a, b) = (LinearRgb::grey(0.9), LinearRgb::grey(0.1));
+    let board = Object::new(Plane::new(Vec3::ZERO, Vec3::Y), Material::Checker { a, b, size: 2.0 });
+    // From height 1 straight down a pixel is so wide.
+    let width = 2.0 * tan_of_degrees(5.0);
+    let share = |distance: f64| 0.5 - distance / width;
+    let four = share(0.02) * share(-0.03) + share(-0.02) * share(0.03);
+    for (x, z, of_a) in [(0.0, 1.0, 0.5), (2.02, 1.0, share(0.02)), (1.98, 1.0, share(-0.02)), (2.02, 1.97, four)] {
+        let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], 10.0), vec![board.clone()]);
+        scene.ambient = LinearRgb::grey(1.0);
+        assert_close(seen(&scene), 0.1 + 0.8 * of_a);
     }
 }
 

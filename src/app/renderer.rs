@@ -3,7 +3,7 @@
 
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::render::{Rendered, render_alone, render_unless};
+use crate::render::{Cost, Rendered, render_alone, render_unless};
 use crate::scene::Scene;
 use crate::terminal::Waker;
 use crate::tone::{Picture, tone};
@@ -31,10 +31,8 @@ pub(super) struct Frame {
     /// From where it is seen.
     pub(super) camera: Camera,
     pub(super) picture: Picture,
-    /// How many rays it took.
-    pub(super) rays: u64,
-    /// How long tracing took all threads together.
-    pub(super) work: Duration,
+    /// What it took.
+    pub(super) cost: Cost,
     /// How long it took on the clock.
     pub(super) trace: Duration,
 }
@@ -42,7 +40,7 @@ pub(super) struct Frame {
 impl Frame {
     fn new(scene: &Scene, job: &Job, rendered: &Rendered, trace: Duration) -> Self {
         let picture = tone(&rendered.framebuffer, scene);
-        Self { camera: job.camera, picture, rays: rendered.rays, work: rendered.work, trace }
+        Self { camera: job.camera, picture, cost: rendered.cost, trace }
     }
 }
 
@@ -147,7 +145,7 @@ impl Renderer {
     }
 
     fn noted(&mut self, frame: Frame) -> Frame {
-        self.seconds_per_pixel = Some(frame.work.as_secs_f64() / frame.picture.pixels.len() as f64);
+        self.seconds_per_pixel = Some(frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64);
         frame
     }
 }

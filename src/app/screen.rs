@@ -157,7 +157,7 @@ impl Screen {
                 trace: frame.trace,
                 encode: self.encode,
                 shown: self.pace.frames_per_second,
-                rays: frame.rays,
+                rays: frame.cost.rays,
                 slow: slow.map(|slow| slow.rate),
                 eye: frame.camera.pose().eye,
             };
@@ -212,6 +212,7 @@ mod tests {
     use super::*;
     use crate::capabilities::CellMode;
     use crate::export;
+    use crate::render::Cost;
     use crate::scene::Scene;
     use crate::tone::tone;
     use std::num::NonZeroU32;
@@ -234,8 +235,8 @@ mod tests {
         let frame = || Frame {
             camera: scene.camera,
             picture: tone(&light, &scene),
-            rays: 0,
-            work: Duration::ZERO,
+            cost: Cost::default(),
+
             trace: Duration::ZERO,
         };
         let grid = export::frame_grid(&scene, capabilities.cell_mode, size, 2.0);

@@ -5,6 +5,7 @@ use clap::Args;
 use std::num::NonZeroU32;
 use termtrace::capabilities::{CellMode, USUAL_CELL_ASPECT};
 use termtrace::framebuffer::Resolution;
+use termtrace::render::Sampling;
 
 #[derive(Args)]
 pub(super) struct PictureArgs {
@@ -14,9 +15,9 @@ pub(super) struct PictureArgs {
     /// The frame's size in pixels; a cell has two of them, one above the other, or with --glyphs shape two by four
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pixels: Option<(u32, u32)>,
-    /// Rays per pixel; one goes through the pixel's centre
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=65_536))]
-    samples: u32,
+    /// Rays per pixel, the first through its centre; or `best`: 1, and up to 64 where there are edges
+    #[arg(long, value_name = "N|best", default_value = "1", value_parser = parse_samples)]
+    samples: Sampling,
     /// A cell's height over its width
     #[arg(long, value_name = "A", default_value_t = USUAL_CELL_ASPECT, value_parser = parse_cell_aspect)]
     cell_aspect: f32,
@@ -41,8 +42,8 @@ impl PictureArgs {
         Ok(Resolution { width, height, pixel_aspect: self.cell_aspect * across as f32 / down as f32 })
     }
 
-    pub(super) fn samples(&self) -> NonZeroU32 {
-        NonZeroU32::new(self.samples).unwrap_or(NonZeroU32::MIN)
+    pub(super) fn samples(&self) -> Sampling {
+        self.samples
     }
 
     /// How many pixels of a file make up one of the picture, each way.
@@ -80,6 +81,15 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     sides
         .filter(|&(across, down)| across > 0 && down > 0)
         .ok_or_else(|| "expected two whole numbers from 1 on with an x between them, such as 80x24".to_owned())
+}
+
+/// `best`, or so many.
+fn parse_samples(text: &str) -> Result<Sampling, String> {
+    if text == "best" {
+        return Ok(Sampling::BEST);
+    }
+    let number = text.parse::<NonZeroU32>().ok().filter(|samples| samples.get() <= 65_536);
+    number.map(Sampling::Each).ok_or_else(|| "expected a whole number from 1 to 65536, or best".to_owned())
 }
 
 /// A cell that anybody could read in.

@@ -66,6 +66,17 @@ impl Surface for Plane {
         let clearance = CLEARANCE * (largest_coordinate(position) + largest_coordinate(self.point));
         let from_point = position - self.point;
         let uv = Vec2::new(from_point.dot(self.u), from_point.dot(self.v));
-        SurfacePoint { position, normal, facing: normal, side, clearance, uv }
+        SurfacePoint { position, normal, facing: normal, side, clearance, uv, footprint: Vec2::ZERO }
+    }
+
+    /// A neighbour's ray p + t (d + e) reaches the plane where t changes by -t e.n / d.n, to first order (Igehy, Tracing
+    /// Ray Differentials, 1999).
+    fn footprint(&self, ray: &Ray, t: f32, steps: [Vec3; 2]) -> Vec2 {
+        let d = ray.direction;
+        let reach = |e: Vec3| {
+            let moved = (e - d * (e.dot(self.normal) / d.dot(self.normal))) * t;
+            Vec2::new(moved.dot(self.u), moved.dot(self.v)).abs()
+        };
+        reach(steps[0]) + reach(steps[1])
     }
 }

@@ -104,6 +104,14 @@ impl Surface for Triangle {
         let seen_from_front = ray.direction.dot(front) < 0.0;
         let (normal, side) = if seen_from_front { (front, Side::Front) } else { (-front, Side::Back) };
         let largest = self.corners.into_iter().map(largest_coordinate).fold(0.0, f32::max);
-        SurfacePoint { position, normal, facing: normal, side, clearance: CLEARANCE * largest, uv: shares }
+        SurfacePoint {
+            position,
+            normal,
+            facing: normal,
+            side,
+            clearance: CLEARANCE * largest,
+            uv: shares,
+            footprint: Vec2::ZERO,
+        }
     }
 }

@@ -69,7 +69,8 @@ fn more_samples_smooth_the_edges() {
     assert!(frame("") == frame(" --samples 1"));
     assert!(frame("") != frame(" --samples 4"));
     assert!(frame(" --samples 4") != frame(" --samples 5"));
-    for samples in ["0", "-1", "many", "1.5", "99999999"] {
+    assert!(frame(" --samples best") != frame(" --samples 4"));
+    for samples in ["0", "-1", "many", "1.5", "99999999", "Best"] {
         folder.run(&format!("frame ball.ron --samples={samples}")).is_misused("--samples");
     }
 }

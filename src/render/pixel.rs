@@ -1,0 +1,116 @@
+//! What is known of a pixel: its light so far, and whether more samples would change it.
+
+use crate::color::LinearRgb;
+use crate::hit::Hit;
+use crate::shade::Arriving;
+use crate::shape::SurfacePoint;
+use glam::Vec3;
+
+/// What keeps a pixel's samples.
+pub(super) trait Pixel: Copy + Default + Send + Sync {
+    /// One more.
+    fn add(&mut self, light: LinearRgb, seen: impl FnOnce() -> Seen);
+
+    /// The mean of their light.
+    fn mean(&self) -> LinearRgb;
+}
+
+/// The samples' light, and nothing else.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sum {
+    light: LinearRgb,
+    count: u32,
+}
+
+/// With what tells whether more samples would change it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Watched {
+    sum: Sum,
+    /// What the first of them saw.
+    seen: Seen,
+    /// The least and the greatest light of them, band by band.
+    range: [LinearRgb; 2],
+}
+
+/// What a ray saw, besides light.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Seen {
+    /// The object, counted from 1; 0: none.
+    object: u32,
+    facing: Vec3,
+    lit_by: u32,
+}
+
+impl Seen {
+    pub(super) fn of(hit: Option<Hit>, point: Option<&SurfacePoint>, arriving: Arriving) -> Self {
+        let facing = point.map_or(Vec3::ZERO, |point| point.normal);
+        Self { object: hit.map_or(0, |hit| hit.object + 1), facing, lit_by: arriving.lit_by }
+    }
+
+    /// Whether there is an edge between the two: of an object, of a shadow, or where a surface bends by more than a
+    /// quarter of a right angle.
+    fn differs_from(&self, other: &Self) -> bool {
+        const BEND: f32 = 0.92;
+        self.object != other.object
+            || self.lit_by != other.lit_by
+            || self.object != 0 && self.facing.dot(other.facing) < BEND
+    }
+}
+
+impl Pixel for Sum {
+    fn add(&mut self, light: LinearRgb, _: impl FnOnce() -> Seen) {
+        self.light += light;
+        self.count += 1;
+    }
+
+    fn mean(&self) -> LinearRgb {
+        self.light * (1.0 / self.count.max(1) as f32)
+    }
+}
+
+impl Pixel for Watched {
+    fn add(&mut self, light: LinearRgb, seen: impl FnOnce() -> Seen) {
+        if self.sum.count == 0 {
+            self.seen = seen();
+            self.range = [light; 2];
+        }
+        self.range = [by_band(self.range[0], light, f32::min), by_band(self.range[1], light, f32::max)];
+        self.sum.add(light, Seen::default);
+    }
+
+    fn mean(&self) -> LinearRgb {
+        self.sum.mean()
+    }
+}
+
+impl Watched {
+    pub(super) fn count(&self) -> u32 {
+        self.sum.count
+    }
+
+    /// Whether an edge may run between the two, after one sample of each; `white` is the light that is shown as white.
+    pub(super) fn is_edge_to(&self, other: &Self, white: f32) -> bool {
+        self.seen.differs_from(&other.seen) || is_contrast(self.mean(), other.mean(), VISIBLE, white)
+    }
+
+    /// Whether its samples differ so much that their mean cannot be sure yet.
+    pub(super) fn is_rough(&self, white: f32) -> bool {
+        is_contrast(self.range[0], self.range[1], UNSURE, white)
+    }
+}
+
+/// Neighbours that differ by this share of their light have an edge between them that is seen.
+const VISIBLE: f32 = 0.05;
+
+/// Of 16 samples that differ by this share of their light, the mean may be off by a visible part of it.
+const UNSURE: f32 = 0.2;
+
+/// Whether the two differ by that share of the greater one in a band, and by more than is seen in the dark.
+fn is_contrast(a: LinearRgb, b: LinearRgb, share: f32, white: f32) -> bool {
+    const DARK: f32 = 0.005;
+    [(a.r, b.r), (a.g, b.g), (a.b, b.b)].into_iter().any(|(a, b)| (a - b).abs() > share * a.max(b) + DARK * white)
+}
+
+fn by_band(a: LinearRgb, b: LinearRgb, choose: fn(f32, f32) -> f32) -> LinearRgb {
+    LinearRgb::new(choose(a.r, b.r), choose(a.g, b.g), choose(a.b, b.b))
+}

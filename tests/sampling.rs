@@ -1,0 +1,177 @@
+//! More samples where there are edges: what they give, what they cost, and that the steps do not show.
+
+use glam::Vec3;
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use termtrace::camera::{Camera, Pose, ViewRectangle};
+use termtrace::color::LinearRgb;
+use termtrace::framebuffer::{Framebuffer, Resolution};
+use termtrace::material::Material;
+use termtrace::render::{Refining, Sampling, render, render_unless};
+use termtrace::scene::{Object, Scene};
+use termtrace::shape::Plane;
+use termtrace::tone::tone;
+
+const SIZE: Resolution = Resolution::square(80, 48);
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+fn shipped() -> impl Iterator<Item = (PathBuf, Scene)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let files = std::fs::read_dir(folder).expect("the folder is there").map(|entry| entry.unwrap().path());
+    files.filter(|path| path.extension().is_some_and(|ending| ending == "ron")).map(|path| {
+        let scene = Scene::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        (path, scene)
+    })
+}
+
+fn samples(count: u32) -> NonZeroU32 {
+    NonZeroU32::new(count).expect("at least one")
+}
+
+/// Of the colours that are shown, in dB.
+fn psnr(scene: &Scene, a: &Framebuffer, b: &Framebuffer) -> f64 {
+    let (a, b) = (tone(a, scene), tone(b, scene));
+    let bands = |p: &termtrace::color::Srgb8| [p.r, p.g, p.b].map(f64::from);
+    let pairs = a.pixels.iter().flat_map(bands).zip(b.pixels.iter().flat_map(bands));
+    let squares: f64 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
+    10.0 * libm::log10(255.0 * 255.0 * 3.0 * a.pixels.len() as f64 / squares)
+}
+
+#[test]
+fn the_steps_of_a_refinement_do_not_show() {
+    for (path, scene) in shipped() {
+        let at_once = render(&scene, &scene.camera, SIZE, Sampling::BEST).hash();
+        for steps in [&[1, 4, 16, 64][..], &[4, 64], &[1, 2, 3, 17, 63, 64], &[16, 16, 64, 64]] {
+            let mut picture = Refining::new(&scene.camera, SIZE);
+            for &step in steps {
+                picture.refine_unless(&NEVER, &scene, samples(step)).unwrap();
+            }
+            assert_eq!(picture.framebuffer().hash(), at_once, "{} in {steps:?}", path.display());
+            assert!(picture.is_final());
+        }
+    }
+}
+
+/// Nearly the picture that 64 rays through every pixel give, at a part of their price.
+#[test]
+fn samples_go_where_the_edges_are() {
+    for (path, scene) in shipped() {
+        let traced = |sampling| render_unless(&NEVER, &scene, &scene.camera, SIZE, sampling).unwrap();
+        let (all, best, one) =
+            (traced(Sampling::Each(samples(64))), traced(Sampling::BEST), traced(Sampling::Each(NonZeroU32::MIN)));
+        let [near, far] = [&best, &one].map(|it| psnr(&scene, &it.framebuffer, &all.framebuffer));
+        let share = best.cost.rays as f64 / all.cost.rays as f64;
+        println!("{}: {near:.1} dB, of one ray {far:.1} dB; {share:.3} of the rays", path.display());
+        assert!(near > 45.0 && near > far + 12.0, "{}: {near} dB, of one ray {far} dB", path.display());
+        assert!(share < 0.85, "{}: {share} of the rays", path.display());
+    }
+}
+
+/// A level that is a whole pass is what it says it is: at most so many samples, and at least one.
+#[test]
+fn one_sample_at_most_is_one_sample() {
+    for (_, scene) in shipped() {
+        let one = render(&scene, &scene.camera, SIZE, NonZeroU32::MIN);
+        for most in [1, 2, 3] {
+            assert_eq!(render(&scene, &scene.camera, SIZE, Sampling::UpTo(samples(most))).hash(), one.hash());
+        }
+        assert_ne!(render(&scene, &scene.camera, SIZE, Sampling::UpTo(samples(4))).hash(), one.hash());
+    }
+}
+
+#[test]
+fn threads_do_not_show_in_a_refined_picture() {
+    let (_, scene) = shipped().next().expect("there are scenes");
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| render(&scene, &scene.camera, Resolution::square(83, 45), Sampling::BEST).hash())
+    };
+    assert_eq!(on(1), on(2));
+    assert_eq!(on(1), on(7));
+}
+
+/// Each two by two pixels are one, and the picture as a whole stays where it is; sides may be odd.
+#[test]
+fn a_coarse_picture_is_made_of_blocks() {
+    for (path, scene) in shipped() {
+        let resolution = Resolution::square(81, 47);
+        let coarse = render_unless(&NEVER, &scene, &scene.camera, resolution, Sampling::Coarse).unwrap();
+        for y in 0..47 {
+            for x in 0..81 {
+                let block = coarse.framebuffer.pixel(x / 2 * 2, y / 2 * 2);
+                assert_eq!(coarse.framebuffer.pixel(x, y), block, "{} ({x}, {y})", path.display());
+            }
+        }
+        let fine = render_unless(&NEVER, &scene, &scene.camera, resolution, NonZeroU32::MIN).unwrap();
+        assert!(coarse.cost.rays * 3 < fine.cost.rays, "{}", path.display());
+        assert!(psnr(&scene, &coarse.framebuffer, &fine.framebuffer) > 14.0, "{}", path.display());
+    }
+}
+
+#[test]
+fn a_refinement_can_be_given_up() {
+    let (_, scene) = shipped().next().expect("there are scenes");
+    let mut picture = Refining::new(&scene.camera, SIZE);
+    assert_eq!(picture.refine_unless(&AtomicBool::new(true), &scene, samples(64)), None);
+}
+
+/// A checkered floor to the horizon, lit by ambient light alone.
+fn floor(size: f32) -> Scene {
+    let pose = Pose { eye: Vec3::new(0.3, 1.0, 0.0), target: Vec3::new(0.9, 0.8, -3.0), up: Vec3::Y };
+    let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
+    let material = Material::Checker { a: LinearRgb::grey(0.9), b: LinearRgb::grey(0.1), size };
+    let mut scene = Scene::new(camera, vec![Object::new(Plane::new(Vec3::ZERO, Vec3::Y), material)]);
+    scene.ambient = LinearRgb::grey(1.0);
+    scene
+}
+
+/// Far away a pattern is its mean: no pixel is off by what one square is, and neighbours are alike.
+#[test]
+fn far_checkers_are_grey() {
+    let scene = floor(0.02);
+    let light = render(&scene, &scene.camera, SIZE, NonZeroU32::MIN);
+    let rows = |y: u32| (0..80).map(move |x| (x, y)).collect::<Vec<_>>();
+    let floor_from = (0..48).find(|&y| light.pixel(0, y) != LinearRgb::BLACK).expect("there is a floor");
+    for y in floor_from + 1..floor_from + 8 {
+        for (x, y) in rows(y) {
+            let off = (light.pixel(x, y).r - 0.5).abs();
+            assert!(off < 0.03, "({x}, {y}) is off by {off}");
+        }
+    }
+}
+
+/// One ray with the pattern's mean over its pixel is nearer to the truth (1,024 rays that each see a point) than 16 are.
+#[test]
+fn a_filtered_pattern_is_near_the_truth() {
+    for size in [0.3, 1.0] {
+        let scene = floor(size);
+        let truth = truth(&scene, size);
+        let one = psnr(&scene, &render(&scene, &scene.camera, SIZE, NonZeroU32::MIN), &truth);
+        let best = psnr(&scene, &render(&scene, &scene.camera, SIZE, Sampling::BEST), &truth);
+        println!("squares of {size}: one ray {one:.1} dB, best {best:.1} dB");
+        assert!(one > 22.0, "one ray of squares of {size}: {one} dB");
+        assert!(best > 30.0, "squares of {size}: {best} dB");
+    }
+}
+
+/// The lecture's formula for the plane, and the colour of the square, 32 times 32 times in each pixel.
+fn truth(scene: &Scene, size: f32) -> Framebuffer {
+    let eye_rays = scene.camera.eye_rays(SIZE.aspect_ratio());
+    let shade = |x: f32, y: f32| {
+        let ray = eye_rays.through(x / 80.0, (48.0 - y) / 48.0);
+        let t = -ray.origin.y / ray.direction.y;
+        if !(t > 0.0) {
+            return 0.0;
+        }
+        let point = ray.at(t) / size;
+        if (point.x.floor() + point.z.floor()) % 2.0 == 0.0 { 0.9 } else { 0.1 }
+    };
+    let mut truth = Framebuffer::new(SIZE);
+    for (at, pixel) in (0..).zip(&mut truth.pixels) {
+        let (x, y) = ((at % 80) as f32, (at / 80) as f32);
+        let places = (0..32 * 32).map(|s| (x + ((s % 32) as f32 + 0.5) / 32.0, y + ((s / 32) as f32 + 0.5) / 32.0));
+        *pixel = LinearRgb::grey(places.map(|(x, y)| shade(x, y)).sum::<f32>() / 1024.0);
+    }
+    truth
+}
