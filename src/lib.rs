@@ -32,6 +32,7 @@
 //! What was written:
 //! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret
 //! - [`scene_file`]: what the author wrote, typed, in his own units
+//! - [`mesh_file`]: OBJ, STL, PLY or glTF -> triangles, checked
 //!
 //! What is drawn, checked once, in radians, linear light and unit vectors:
 //! - [`bvh`]: which of many boxes a ray may meet
@@ -99,6 +100,7 @@ pub mod bounds;
 pub mod capabilities;
 pub mod scene_text;
 pub mod scene_file;
+pub mod mesh_file;
 pub mod bvh;
 pub mod shape;
 pub mod material;

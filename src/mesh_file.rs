@@ -1,0 +1,251 @@
+//! OBJ, STL, PLY or glTF -> triangles, checked once: a [`MeshFile`] cannot be wrong.
+//!
+//! The format is told by the content; the file's ending decides only where that says nothing. Each format has a file of
+//! its own here. What they have in common:
+//!
+//! - Polygons are cut into triangles: convex ones into fans, others ear by ear, those of more than 64 corners always
+//!   into fans.
+//! - Numbers are finite, and rounded correctly to single precision. Coordinates are as written, whichever axis is up.
+//! - Colours become linear light. Those of vertices are sRGB in PLY and OBJ, as the programs that write them mean it;
+//!   reflectances (`Kd` of MTL, base colours and vertex colours of glTF) are linear already. Everything is opaque.
+//! - The first fault ends the reading. It is a [`MeshError`]: one line with the place.
+//! - Any bytes give a mesh or an error, in linear time. Counts that a file claims reserve nothing that the file could
+//!   not fill, so that memory stays within a small multiple of the file. At most [`MAX_BYTES`] are read, [`MAX_TRIANGLES`] made, and [`MAX_TEXELS`] unpacked.
+//!
+//! What a mesh names (its MTL file, its textures, the buffers of a glTF file) is asked for by its path relative to the
+//! mesh, through one function given from outside; no URL and no absolute path is ever asked for. What is missing is an
+//! error, because a picture without it would look plausible and be wrong.
+//!
+//! The readers are our own: a fault is to have its place, counts are not to be trusted, and no line is to cost an
+//! allocation. (An ASCII PLY file of 871,414 triangles takes half the time that the fastest crate takes.) Numbers, JSON,
+//! base64 and pictures are left to crates.
+
+mod attribute;
+mod builder;
+mod error;
+mod gltf;
+mod kind;
+mod mtl;
+mod neighbours;
+mod obj;
+mod ply;
+mod polygon;
+mod stl;
+mod text;
+mod texture;
+
+pub use attribute::Attribute;
+pub use error::{MeshError, Place};
+pub use texture::{Texture, TexturePlacement};
+
+use crate::color::LinearRgb;
+use error::{Fault, cannot_be_read};
+use glam::{Vec2, Vec3};
+use kind::Kind;
+use neighbours::Neighbours;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// The most bytes that are read for one mesh, the files that it names included: 2 GiB.
+pub const MAX_BYTES: usize = 2 << 30;
+
+/// The most triangles that a mesh has: 64 Mi. A glTF file that shows the same triangles again and again makes at most
+/// 1 Mi of them and one for each of its bytes.
+pub const MAX_TRIANGLES: usize = 64 << 20;
+
+/// The most texels in all textures of a mesh: 64 Mi, as in one texture of 8192 x 8192.
+pub const MAX_TEXELS: usize = 64 << 20;
+
+/// Triangles, and what their file says of them. All numbers are finite, all indices in range, and there is at least one
+/// triangle; some may have no area.
+///
+/// ```
+/// use termtrace::mesh_file::MeshFile;
+///
+/// let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+/// let mesh = MeshFile::from_bytes("square.obj", text, &mut |_| unreachable!("it names no other file"))?;
+/// assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
+///
+/// let error = MeshFile::from_bytes("x.obj", b"v 0 0 0\nf 1 2 3\n", &mut |_| unreachable!()).unwrap_err();
+/// assert_eq!(error.to_string(), "x.obj:2:5: vertex 2 does not exist: 1 stands above this line");
+/// # Ok::<(), termtrace::mesh_file::MeshError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshFile {
+    positions: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    normals: Attribute<Vec3>,
+    texture_coordinates: Attribute<Vec2>,
+    colors: Attribute<LinearRgb>,
+    materials: Vec<MeshMaterial>,
+    /// Where the material changes: the first triangle, and the material from there on. In the order of the triangles.
+    material_runs: Vec<(u32, Option<u32>)>,
+}
+
+/// What a triangle is made of, as its file has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshMaterial {
+    /// The diffuse reflectance, linear, each band in 0..=1.
+    pub reflectance: LinearRgb,
+    /// What the reflectance is multiplied by, place by place.
+    pub texture: Option<TexturePlacement>,
+}
+
+impl MeshFile {
+    /// These triangles and nothing else; `None` if there are none, an index has no position, or a position is not
+    /// finite.
+    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Option<Self> {
+        let mesh = Self {
+            positions,
+            triangles,
+            normals: Attribute::default(),
+            texture_coordinates: Attribute::default(),
+            colors: Attribute::default(),
+            materials: Vec::new(),
+            material_runs: Vec::new(),
+        };
+        mesh.is_valid().then_some(mesh)
+    }
+
+    /// The mesh that the bytes describe. The name is used in messages, and its ending where the content does not say
+    /// what it is; `open` gives the bytes of a file that the mesh names, by its path relative to the mesh.
+    ///
+    /// # Errors
+    /// The first fault that is found.
+    pub fn from_bytes(
+        name: &str,
+        bytes: &[u8],
+        open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
+    ) -> Result<Self, MeshError> {
+        read(name, bytes, &mut Neighbours::new(name, open)).map_err(|fault| fault.into_error(name, bytes))
+    }
+
+    /// The mesh in that file.
+    ///
+    /// ```no_run
+    /// use std::path::Path;
+    /// use termtrace::mesh_file::MeshFile;
+    ///
+    /// match MeshFile::load(Path::new("meshes/teapot.obj")) {
+    ///     Ok(mesh) => println!("{} triangles", mesh.triangles().len()),
+    ///     Err(error) => println!("{error}"),
+    /// }
+    /// ```
+    ///
+    /// # Errors
+    /// If the file cannot be read, or as [`MeshFile::from_bytes`].
+    pub fn load(path: &Path) -> Result<Self, MeshError> {
+        let name = path.to_string_lossy();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let file = File::open(path).and_then(bytes_of);
+        let bytes = file.map_err(|error| MeshError::of_file(&name, &cannot_be_read(&error)))?;
+        Self::from_bytes(&name, &bytes, &mut |relative| open_regular(&folder.join(relative)))
+    }
+
+    /// The positions of the vertices.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// The triangles in the order of the file: indices of positions, counterclockwise seen from outside.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The normals at a triangle's corners, of length 1; `None` if the file does not give all three: it is flat.
+    pub fn normals_of(&self, triangle: usize) -> Option<[Vec3; 3]> {
+        self.normals.of(triangle, &self.triangles).filter(|normals| normals.iter().all(|&n| n != Vec3::ZERO))
+    }
+
+    /// The texture coordinates at a triangle's corners: u to the right, v down from the texture's top row.
+    pub fn texture_coordinates_of(&self, triangle: usize) -> Option<[Vec2; 3]> {
+        self.texture_coordinates.of(triangle, &self.triangles)
+    }
+
+    /// The colours at a triangle's corners: reflectances that its material's is multiplied by, each band in 0..=1.
+    pub fn colors_of(&self, triangle: usize) -> Option<[LinearRgb; 3]> {
+        self.colors.of(triangle, &self.triangles)
+    }
+
+    /// All normals, of length 1, or zero where the file has none.
+    pub fn normals(&self) -> &Attribute<Vec3> {
+        &self.normals
+    }
+
+    /// All texture coordinates.
+    pub fn texture_coordinates(&self) -> &Attribute<Vec2> {
+        &self.texture_coordinates
+    }
+
+    /// All colours.
+    pub fn colors(&self) -> &Attribute<LinearRgb> {
+        &self.colors
+    }
+
+    /// The materials of the file that its triangles are made of.
+    pub fn materials(&self) -> &[MeshMaterial] {
+        &self.materials
+    }
+
+    /// What a triangle is made of, as an index of [`materials`](Self::materials); `None` if the file does not say.
+    pub fn material_of(&self, triangle: usize) -> Option<usize> {
+        let runs_so_far = self.material_runs.partition_point(|&(first, _)| first as usize <= triangle);
+        let (_, material) = *self.material_runs.get(runs_so_far.checked_sub(1)?)?;
+        material.map(|index| index as usize)
+    }
+
+    /// What the type promises.
+    fn is_valid(&self) -> bool {
+        let in_range = |index: u32| (index as usize) < self.positions.len();
+        !self.triangles.is_empty()
+            && self.triangles.len() <= MAX_TRIANGLES
+            && self.triangles.iter().flatten().all(|&index| in_range(index))
+            && self.positions.iter().all(|p| p.is_finite())
+            && self.normals.is_valid(&self.triangles, |n| *n == Vec3::ZERO || (n.length_squared() - 1.0).abs() < 1e-5)
+            && self.texture_coordinates.is_valid(&self.triangles, |uv| uv.is_finite())
+            && self.colors.is_valid(&self.triangles, |&color| is_reflectance(color))
+            && self.materials.iter().all(|material| is_reflectance(material.reflectance))
+            && self.material_runs.iter().all(|(_, m)| m.is_none_or(|m| (m as usize) < self.materials.len()))
+    }
+}
+
+fn is_reflectance(color: LinearRgb) -> bool {
+    [color.r, color.g, color.b].iter().all(|band| (0.0..=1.0).contains(band))
+}
+
+/// The one place where formats part.
+fn read(name: &str, bytes: &[u8], neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
+    if bytes.len() > MAX_BYTES {
+        return Err(Fault::of_file("the file is larger than 2 GiB, too large to be read"));
+    }
+    match kind::of(name, bytes)? {
+        Kind::Obj => obj::read(bytes, neighbours),
+        Kind::StlText => stl::read_text(bytes),
+        Kind::StlBinary => stl::read_binary(bytes),
+        Kind::Ply => ply::read(bytes),
+        Kind::Gltf => gltf::read_json(bytes, neighbours),
+        Kind::Glb => gltf::read_binary(bytes, neighbours),
+    }
+}
+
+/// As many bytes of a file as are looked at: one more than may be.
+fn bytes_of(file: File) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    // The size is a hint: a pipe has none, and a file may grow.
+    let size = file.metadata().map_or(0, |data| data.len());
+    if size > MAX_BYTES as u64 {
+        return Err(io::ErrorKind::FileTooLarge.into());
+    }
+    bytes.reserve_exact(size as usize + 1);
+    file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The bytes of a file that a mesh names: not of a pipe or a device, which might never end.
+fn open_regular(path: &Path) -> io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::other("this is not a regular file"));
+    }
+    bytes_of(File::open(path)?)
+}

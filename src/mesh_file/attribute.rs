@@ -1,0 +1,137 @@
+//! What vertices have besides a position.
+
+/// Normals, texture coordinates or colours of a mesh: values, and which of them each triangle's corners have.
+///
+/// PLY and glTF give a vertex one of each; OBJ lets every corner choose. So corners have indices of their own only where
+/// they differ from those of the positions; otherwise nothing is stored but the values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attribute<T> {
+    values: Vec<T>,
+    corners: Corners,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+enum Corners {
+    /// No triangle has it.
+    #[default]
+    Absent,
+    /// Every triangle has it, at the indices of its positions.
+    OfPositions,
+    /// Every triangle has indices of its own, `NONE` among them.
+    Own(Vec<[u32; 3]>),
+}
+
+/// The indices of a triangle that has no values.
+const NONE: [u32; 3] = [u32::MAX; 3];
+
+impl<T> Default for Attribute<T> {
+    fn default() -> Self {
+        Self { values: Vec::new(), corners: Corners::Absent }
+    }
+}
+
+impl<T: Copy> Attribute<T> {
+    /// All values, in the order of the file.
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+
+    /// The values that can still be added to.
+    pub(super) fn values_mut(&mut self) -> &mut Vec<T> {
+        &mut self.values
+    }
+
+    /// The indices of the values at a triangle's corners; `None` if it has none.
+    pub fn indices_of(&self, triangle: usize, triangles: &[[u32; 3]]) -> Option<[u32; 3]> {
+        match &self.corners {
+            Corners::Absent => None,
+            Corners::OfPositions => triangles.get(triangle).copied(),
+            Corners::Own(corners) => corners.get(triangle).copied().filter(|&corner| corner != NONE),
+        }
+    }
+
+    /// The values at a triangle's corners.
+    pub(super) fn of(&self, triangle: usize, triangles: &[[u32; 3]]) -> Option<[T; 3]> {
+        self.indices_of(triangle, triangles).map(|corners| corners.map(|index| self.values[index as usize]))
+    }
+
+    /// Says which values the triangle has that is the next after `triangles`, and whose positions are `positions`.
+    pub(super) fn push(&mut self, triangles: &[[u32; 3]], positions: [u32; 3], corner: Option<[u32; 3]>) {
+        match (&mut self.corners, corner) {
+            (Corners::Absent, None) => {}
+            (Corners::Absent, Some(corner)) if triangles.is_empty() && corner == positions => {
+                self.corners = Corners::OfPositions;
+            }
+            (Corners::OfPositions, Some(corner)) if corner == positions => {}
+            (Corners::Absent, Some(corner)) => {
+                let mut own = vec![NONE; triangles.len()];
+                own.push(corner);
+                self.corners = Corners::Own(own);
+            }
+            (Corners::OfPositions, _) => {
+                let mut own = triangles.to_vec();
+                own.push(corner.unwrap_or(NONE));
+                self.corners = Corners::Own(own);
+            }
+            (Corners::Own(own), _) => own.push(corner.unwrap_or(NONE)),
+        }
+    }
+
+    /// Gives back what memory was reserved in vain, and all of it if no triangle has a value.
+    pub(super) fn shrink(&mut self) {
+        match &mut self.corners {
+            Corners::Absent => self.values = Vec::new(),
+            Corners::OfPositions => {}
+            Corners::Own(corners) => corners.shrink_to_fit(),
+        }
+        self.values.shrink_to_fit();
+    }
+
+    /// Whether each corner has a value, and each value is as it should be.
+    pub(super) fn is_valid(&self, triangles: &[[u32; 3]], is_valid_value: impl Fn(&T) -> bool) -> bool {
+        let in_range = |corner: &[u32; 3]| corner.iter().all(|&index| (index as usize) < self.values.len());
+        let corners_are_valid = match &self.corners {
+            Corners::Absent => true,
+            Corners::OfPositions => triangles.iter().all(in_range),
+            Corners::Own(corners) => {
+                corners.len() == triangles.len() && corners.iter().all(|corner| *corner == NONE || in_range(corner))
+            }
+        };
+        corners_are_valid && self.values.iter().all(is_valid_value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: [u32; 3] = [0, 1, 2];
+    const B: [u32; 3] = [2, 1, 3];
+
+    /// What was pushed, as it is found again, and how it is kept.
+    fn pushed(corners: &[Option<[u32; 3]>]) -> (Vec<Option<[u32; 3]>>, Corners) {
+        let mut attribute = Attribute { values: vec![0.0; 9], corners: Corners::Absent };
+        let triangles: Vec<_> = [A, B].into_iter().cycle().take(corners.len()).collect();
+        for (i, &corner) in corners.iter().enumerate() {
+            attribute.push(&triangles[..i], triangles[i], corner);
+        }
+        assert!(attribute.is_valid(&triangles, |_| true));
+        ((0..corners.len()).map(|i| attribute.indices_of(i, &triangles)).collect(), attribute.corners)
+    }
+
+    #[test]
+    fn corners_have_indices_of_their_own_only_where_they_differ() {
+        assert_eq!(pushed(&[None, None]).1, Corners::Absent);
+        assert_eq!(pushed(&[Some(A), Some(B), Some(A)]).1, Corners::OfPositions);
+        for corners in [
+            [None, Some(B), None, Some([5, 6, 7])],
+            [Some(A), Some(A), Some(A), None],
+            [Some(A), None, Some(A), Some(B)],
+            [Some(B), None, Some(A), Some(B)],
+        ] {
+            let (found, kept) = pushed(&corners);
+            assert_eq!(found, corners);
+            assert!(matches!(kept, Corners::Own(_)));
+        }
+    }
+}

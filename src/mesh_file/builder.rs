@@ -1,0 +1,94 @@
+//! A mesh that grows, triangle by triangle.
+
+use super::attribute::Attribute;
+use super::error::Fault;
+use super::{MAX_TRIANGLES, MeshFile, MeshMaterial};
+use crate::color::LinearRgb;
+use glam::{DVec3, Vec2, Vec3};
+
+/// What has been read so far.
+#[derive(Default)]
+pub(super) struct Builder {
+    pub(super) positions: Vec<Vec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) normals: Attribute<Vec3>,
+    pub(super) texture_coordinates: Attribute<Vec2>,
+    pub(super) colors: Attribute<LinearRgb>,
+    pub(super) materials: Vec<MeshMaterial>,
+    pub(super) material_runs: Vec<(u32, Option<u32>)>,
+}
+
+/// A triangle: indices of what its corners have.
+#[derive(Clone, Copy)]
+pub(super) struct Triangle {
+    pub(super) positions: [u32; 3],
+    pub(super) normals: Option<[u32; 3]>,
+    pub(super) texture_coordinates: Option<[u32; 3]>,
+    pub(super) colors: Option<[u32; 3]>,
+}
+
+impl Triangle {
+    /// A triangle without more than positions.
+    pub(super) fn new(positions: [u32; 3]) -> Self {
+        Self { positions, normals: None, texture_coordinates: None, colors: None }
+    }
+}
+
+impl Builder {
+    /// The next triangle. Its indices must be in range.
+    pub(super) fn push(&mut self, triangle: Triangle) -> Result<(), Fault> {
+        if self.triangles.len() >= MAX_TRIANGLES {
+            return Err(Fault::of_file(too_many()));
+        }
+        let Triangle { positions, normals, texture_coordinates, colors } = triangle;
+        self.normals.push(&self.triangles, positions, normals);
+        self.texture_coordinates.push(&self.triangles, positions, texture_coordinates);
+        self.colors.push(&self.triangles, positions, colors);
+        self.triangles.push(positions);
+        Ok(())
+    }
+
+    /// The triangles from here on are made of that one of the materials.
+    pub(super) fn set_material(&mut self, material: Option<u32>) {
+        let from = self.triangles.len() as u32; // at most MAX_TRIANGLES
+        if self.material_runs.last().is_some_and(|&(start, _)| start == from) {
+            self.material_runs.pop();
+        }
+        if self.material_runs.last().and_then(|&(_, before)| before) != material {
+            self.material_runs.push((from, material));
+        }
+    }
+
+    /// The mesh; `nothing` says what a file without triangles has in their place.
+    pub(super) fn finish(mut self, nothing: &str) -> Result<MeshFile, Fault> {
+        if self.triangles.is_empty() {
+            return Err(Fault::of_file(format!("there are no triangles in this file: {nothing}")));
+        }
+        self.shrink();
+        let Self { positions, triangles, normals, texture_coordinates, colors, materials, material_runs } = self;
+        let mesh = MeshFile { positions, triangles, normals, texture_coordinates, colors, materials, material_runs };
+        // Readers have said so with the place already: this is the lock on the door.
+        if mesh.is_valid() { Ok(mesh) } else { Err(Fault::of_file("this mesh has numbers or indices out of range")) }
+    }
+
+    fn shrink(&mut self) {
+        self.positions.shrink_to_fit();
+        self.triangles.shrink_to_fit();
+        self.normals.shrink();
+        self.texture_coordinates.shrink();
+        self.colors.shrink();
+    }
+}
+
+/// What is said of a mesh with more triangles than may be.
+pub(super) fn too_many() -> String {
+    format!("there are more than {MAX_TRIANGLES} triangles in this file, which is the most that are read")
+}
+
+/// The direction as a vector of length 1; zero if it has no length.
+pub(super) fn unit(direction: DVec3) -> Vec3 {
+    // Scaled first, so that no square leaves the range of numbers.
+    let direction = direction / direction.abs().max_element();
+    let length = direction.length();
+    if length > 0.0 { (direction / length).as_vec3() } else { Vec3::ZERO }
+}

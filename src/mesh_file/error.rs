@@ -1,0 +1,178 @@
+//! Why a file is no mesh, and how a person is told: one line with the place in it.
+
+use crate::scene_text::{clipped, visible};
+use std::{fmt, io};
+
+/// Why a file gave no mesh: its first fault. Printed, it is one line that controls no terminal:
+///
+/// ```text
+/// bunny.obj:1042:9: vertex 35948 does not exist: 35947 stand above this line
+/// bunny.glb: byte 20: this chunk should be JSON, but is "BIN"
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeshError {
+    name: String,
+    place: Place,
+    message: String,
+}
+
+/// Where in a file a fault lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In all of it, or where its message says.
+    File,
+    /// In a text: line and column, counted from 1, the column in characters.
+    Text {
+        /// The line.
+        line: usize,
+        /// The column.
+        column: usize,
+    },
+    /// In a binary file: the byte, counted from 0.
+    Byte(usize),
+}
+
+impl MeshError {
+    /// A fault of that file as a whole.
+    pub(super) fn of_file(name: &str, message: &str) -> Self {
+        Self::at(name, Place::File, message)
+    }
+
+    fn at(name: &str, place: Place, message: &str) -> Self {
+        Self { name: visible(name), place, message: visible(message) }
+    }
+
+    /// The file that the fault is in: the mesh, or one that it names.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where the fault is.
+    pub fn place(&self) -> Place {
+        self.place
+    }
+
+    /// What is wrong: one line, no full stop.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, place, message } = self;
+        match place {
+            Place::File => write!(f, "{name}: {message}"),
+            Place::Text { line, column } => write!(f, "{name}:{line}:{column}: {message}"),
+            Place::Byte(byte) => write!(f, "{name}: byte {byte}: {message}"),
+        }
+    }
+}
+
+impl std::error::Error for MeshError {}
+
+/// A fault on its way up to where the file's name is known. In a box, because a result of eight bytes keeps the
+/// reading of numbers fast.
+#[derive(Debug)]
+pub(super) struct Fault(Box<Cause>);
+
+#[derive(Debug)]
+enum Cause {
+    Here {
+        place: FaultPlace,
+        message: String,
+    },
+    /// In another file, whose name is known.
+    Elsewhere(MeshError),
+}
+
+/// A place as readers know it: by the bytes before it.
+#[derive(Clone, Copy, Debug)]
+enum FaultPlace {
+    File,
+    Text(usize),
+    Byte(usize),
+}
+
+impl Fault {
+    /// A fault of the whole file, or one whose message says where it is.
+    #[cold]
+    pub(super) fn of_file(message: impl Into<String>) -> Self {
+        Self(Box::new(Cause::Here { place: FaultPlace::File, message: message.into() }))
+    }
+
+    /// A fault at that byte of a text.
+    #[cold]
+    pub(super) fn in_text(at: usize, message: impl Into<String>) -> Self {
+        Self(Box::new(Cause::Here { place: FaultPlace::Text(at), message: message.into() }))
+    }
+
+    /// A fault at that byte of a binary file.
+    #[cold]
+    pub(super) fn at_byte(at: usize, message: impl Into<String>) -> Self {
+        Self(Box::new(Cause::Here { place: FaultPlace::Byte(at), message: message.into() }))
+    }
+
+    /// The error of the file with these bytes.
+    pub(super) fn into_error(self, name: &str, bytes: &[u8]) -> MeshError {
+        match *self.0 {
+            Cause::Here { place: FaultPlace::File, message } => MeshError::of_file(name, &message),
+            Cause::Here { place: FaultPlace::Byte(byte), message } => MeshError::at(name, Place::Byte(byte), &message),
+            Cause::Here { place: FaultPlace::Text(at), message } => {
+                let (line, column) = line_and_column(bytes, at);
+                MeshError::at(name, Place::Text { line, column }, &message)
+            }
+            Cause::Elsewhere(error) => error,
+        }
+    }
+}
+
+impl From<MeshError> for Fault {
+    fn from(error: MeshError) -> Self {
+        Self(Box::new(Cause::Elsewhere(error)))
+    }
+}
+
+/// Lines end with a line feed, a carriage return, or both.
+fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
+    let before = &bytes[..at.min(bytes.len())];
+    let ends_line =
+        |&i: &usize| before[i] == b'\n' || (before[i] == b'\r' && bytes.get(i + 1).is_none_or(|&next| next != b'\n'));
+    let line = 1 + (0..before.len()).filter(ends_line).count();
+    let start = (0..before.len()).rev().find(ends_line).map_or(0, |end| end + 1);
+    // A byte order mark takes no column.
+    let text = before[start..].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&before[start..]);
+    let characters = |chunk: std::str::Utf8Chunk<'_>| chunk.valid().chars().count() + chunk.invalid().len().min(1);
+    (line, 1 + text.utf8_chunks().map(characters).sum::<usize>())
+}
+
+/// What the system says of a file that cannot be read, in the words of the other messages.
+pub(super) fn cannot_be_read(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::IsADirectory => "this is a directory, not a file".to_owned(),
+        io::ErrorKind::FileTooLarge => "the file is larger than 2 GiB, too large to be read".to_owned(),
+        io::ErrorKind::PermissionDenied => "no permission to read this file".to_owned(),
+        _ => format!("cannot be read: {error}"),
+    }
+}
+
+/// A piece of a file, as a message shows it.
+pub(super) fn shown(bytes: &[u8]) -> String {
+    // Of a long piece only the beginning is shown, and only that is decoded.
+    format!("\"{}\"", clipped(&String::from_utf8_lossy(&bytes[..bytes.len().min(200)])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_end_in_three_ways_and_columns_are_characters() {
+        assert_eq!(line_and_column(b"", 0), (1, 1));
+        assert_eq!(line_and_column(b"ab", 9), (1, 3));
+        assert_eq!(line_and_column(b"a\nb\r\nc\rd", 7), (4, 1));
+        assert_eq!(line_and_column(b"a\r\nb", 2), (1, 3));
+        assert_eq!(line_and_column("\u{feff}\u{e9}x".as_bytes(), 5), (1, 2));
+    }
+}

@@ -1,0 +1,133 @@
+//! glTF 2.0, as JSON and as GLB: the triangles of the default scene, where its nodes put them, with normals, colours,
+//! base colours and their textures.
+//!
+//! What is not read: skins and morph targets (a mesh stands as it was modelled), cameras and lights, everything of a
+//! material but its base colour, samplers (textures repeat).
+
+mod accessor;
+mod buffers;
+mod json;
+mod materials;
+mod nodes;
+mod primitives;
+
+use super::MeshFile;
+use super::error::{Fault, shown};
+use super::neighbours::Neighbours;
+use buffers::Buffers;
+use json::Json;
+use serde_json::Value;
+
+pub(super) fn read_json(bytes: &[u8], neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
+    read(bytes, 0, None, neighbours)
+}
+
+/// GLB: a header of 12 bytes and chunks, of which the first is JSON and the second may be a buffer.
+pub(super) fn read_binary(bytes: &[u8], neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
+    const HEADER: usize = 12;
+    let word = |at: usize| bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes);
+    let (Some(version), Some(length)) = (word(4), word(8)) else {
+        return Err(Fault::at_byte(
+            bytes.len(),
+            "the file ends within the header of 12 bytes that a GLB file begins with",
+        ));
+    };
+    if !bytes.starts_with(b"glTF") {
+        return Err(Fault::at_byte(0, "a GLB file begins with \"glTF\""));
+    }
+    if version != 2 {
+        return Err(Fault::at_byte(4, format!("this is version {version} of GLB; only version 2 is read")));
+    }
+    if length as usize > bytes.len() {
+        let found = bytes.len();
+        return Err(Fault::at_byte(
+            8,
+            format!("the file was cut short: it should have {length} bytes, and has {found}"),
+        ));
+    }
+    let chunk = |at: usize, kind: &[u8; 4], name: &str| {
+        let Some(size) = word(at) else {
+            return Err(Fault::at_byte(at, format!("the file ends where the {name} chunk should begin")));
+        };
+        if bytes.get(at + 4..at + 8) != Some(kind) {
+            let found = shown(bytes.get(at + 4..at + 8).unwrap_or_default());
+            return Err(Fault::at_byte(at + 4, format!("this chunk should be {name}, but is {found}")));
+        }
+        let rest = &bytes[at + 8..];
+        rest.get(..size as usize).ok_or_else(|| {
+            Fault::at_byte(at, format!("this chunk should have {size} bytes, but only {} are left", rest.len()))
+        })
+    };
+    let json = chunk(HEADER, b"JSON", "JSON")?;
+    let buffer_at = (HEADER + 8 + json.len()).next_multiple_of(4);
+    let buffer = if buffer_at < bytes.len() { Some(chunk(buffer_at, b"BIN\0", "BIN")?) } else { None };
+    read(json, HEADER + 8, buffer, neighbours)
+}
+
+/// The JSON, which in a GLB file begins at byte `at`.
+fn read(json: &[u8], at: usize, glb_buffer: Option<&[u8]>, neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
+    let text = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    check_count(text)?;
+    let document: Value = serde_json::from_slice(text).map_err(|error| syntax_fault(&error, json, text, at))?;
+    let root = Json::root(&document)?;
+    check_version(root)?;
+    check_extensions(root)?;
+    nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, neighbours))
+}
+
+/// The most objects, and the most items of lists and objects, in a document: as values they take 600 and 32 bytes each,
+/// many times what they take as text.
+const MAX_OBJECTS: usize = 1 << 20;
+const MAX_ITEMS: usize = 16 << 20;
+
+fn check_count(json: &[u8]) -> Result<(), Fault> {
+    let count = |wanted: &[u8]| json.iter().filter(|byte| wanted.contains(byte)).count();
+    if count(b"{") > MAX_OBJECTS || count(b"[,") > MAX_ITEMS {
+        let message = format!("the JSON has more than {MAX_OBJECTS} objects or {MAX_ITEMS} items, too many to be read");
+        return Err(Fault::of_file(message));
+    }
+    Ok(())
+}
+
+/// Where the JSON has its fault: in a text its line, in a GLB file its byte.
+fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], at: usize) -> Fault {
+    let line_start = text.split_inclusive(|&byte| byte == b'\n').take(error.line().saturating_sub(1)).map(<[u8]>::len);
+    let place = json.len() - text.len() + line_start.sum::<usize>() + error.column().saturating_sub(1);
+    let full = error.to_string();
+    let message = full.split(" at line ").next().unwrap_or(&full);
+    let message = format!("this is not JSON: {message}");
+    if at == 0 { Fault::in_text(place, message) } else { Fault::at_byte(at + place, message) }
+}
+
+fn check_version(root: Json<'_>) -> Result<(), Fault> {
+    let Some(asset) = root.field("asset")? else {
+        return Err(Fault::of_file("this JSON is no glTF: it lacks asset: {version: \"2.0\"}"));
+    };
+    let version = asset.required("version")?;
+    if version.string()?.starts_with("2.") {
+        return Ok(());
+    }
+    Err(version.fault(format!("this is glTF {}; only 2.0 is read", version.string()?)))
+}
+
+/// A file that needs what is not known here would be drawn wrong.
+fn check_extensions(root: Json<'_>) -> Result<(), Fault> {
+    for extension in root.list("extensionsRequired")? {
+        let name = extension.string()?;
+        let is_known = name.starts_with("KHR_materials_")
+            || ["KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual"].contains(&name);
+        if !is_known {
+            let what = match name {
+                "KHR_draco_mesh_compression" => "its triangles are compressed with Draco",
+                "EXT_meshopt_compression" | "KHR_meshopt_compression" => "its triangles are compressed with meshopt",
+                "KHR_texture_basisu" => "its textures are KTX2 files",
+                "EXT_texture_webp" => "its textures are WebP files",
+                "EXT_texture_avif" => "its textures are AVIF files",
+                _ => "it may not be drawn without it",
+            };
+            let name = shown(name.as_bytes());
+            return Err(extension.fault(format!("the extension {name} is not supported: {what}; export it without")));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,210 @@
+//! Accessors: bytes of a buffer as numbers.
+
+use super::buffers::{Buffers, View};
+use super::json::Json;
+use crate::mesh_file::error::Fault;
+
+/// So many elements of so many components each.
+pub(super) struct Accessor<'a> {
+    json: Json<'a>,
+    component: Component,
+    width: usize,
+    pub(super) count: usize,
+    normalized: bool,
+    /// None: all are zero.
+    elements: Option<Elements<'a>>,
+    sparse: Option<Sparse<'a>>,
+}
+
+/// Where the elements are.
+struct Elements<'a> {
+    view: View<'a>,
+    offset: usize,
+    stride: usize,
+}
+
+/// Elements that stand in for some of the others.
+struct Sparse<'a> {
+    indices: Elements<'a>,
+    index_component: Component,
+    values: Elements<'a>,
+    count: usize,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Component {
+    fn read(json: Json<'_>) -> Result<Self, Fault> {
+        let field = json.required("componentType")?;
+        Ok(match field.index()? {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            other => return Err(field.fault(format!("{other} is no component type (5120 to 5123, 5125, 5126)"))),
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+
+    fn is_index(self) -> bool {
+        matches!(self, Self::U8 | Self::U16 | Self::U32)
+    }
+
+    /// The number in these bytes, of which there are enough.
+    fn number(self, b: &[u8], normalized: bool) -> f32 {
+        let (value, largest) = match self {
+            Self::F32 => return f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+            Self::I8 => (f32::from(b[0].cast_signed()), 127.0),
+            Self::U8 => (f32::from(b[0]), 255.0),
+            Self::I16 => (f32::from(i16::from_le_bytes([b[0], b[1]])), 32767.0),
+            Self::U16 => (f32::from(u16::from_le_bytes([b[0], b[1]])), 65535.0),
+            Self::U32 => (u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32, 4_294_967_295.0),
+        };
+        if normalized { (value / largest).max(-1.0) } else { value }
+    }
+
+    /// The index in these bytes, of which there are enough.
+    fn index(self, b: &[u8]) -> u32 {
+        match self {
+            Self::I8 | Self::U8 => u32::from(b[0]),
+            Self::I16 | Self::U16 => u32::from(u16::from_le_bytes([b[0], b[1]])),
+            Self::U32 | Self::F32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+        }
+    }
+}
+
+impl<'a> Elements<'a> {
+    /// `count` elements of `size` bytes; that they lie in the view is checked here.
+    fn new(json: Json<'a>, size: usize, count: usize, buffers: &mut Buffers<'a, '_>) -> Result<Option<Self>, Fault> {
+        let Some(view) = json.field("bufferView")? else { return Ok(None) };
+        let view = buffers.view(view)?;
+        let offset = json.index_or("byteOffset", 0)?;
+        let stride = view.stride.unwrap_or(size);
+        let last = count.saturating_sub(1).checked_mul(stride);
+        let end = last.and_then(|last| last.checked_add(offset)?.checked_add(size));
+        let length = view.bytes().len();
+        if count > 0 && end.is_none_or(|end| end > length) {
+            let message = format!("{count} elements of {size} bytes do not fit into their buffer view of {length}");
+            return Err(json.fault(message));
+        }
+        if stride < size && count > 1 {
+            return Err(json.fault(format!("elements of {size} bytes lie only {stride} bytes apart (byteStride)")));
+        }
+        Ok(Some(Self { view, offset, stride }))
+    }
+
+    fn at(&self, i: usize) -> &[u8] {
+        &self.view.bytes()[self.offset + i * self.stride..]
+    }
+}
+
+impl<'a> Accessor<'a> {
+    /// The accessor that an index means.
+    pub(super) fn read(index: Json<'a>, buffers: &mut Buffers<'a, '_>) -> Result<Self, Fault> {
+        let (_, json) = index.item_of(buffers.root(), "accessors")?;
+        let component = Component::read(json)?;
+        let kind = json.required("type")?;
+        let width = match kind.string()? {
+            "SCALAR" => 1,
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => return Err(kind.fault("SCALAR, VEC2, VEC3 or VEC4 should be here")),
+        };
+        let count = json.required("count")?.index()?;
+        let elements = Elements::new(json, width * component.size(), count, buffers)?;
+        if elements.is_none() && count > buffers.most() {
+            return Err(json.fault(format!("{count} elements of zeros are too many for a file of this size")));
+        }
+        let sparse = match json.field("sparse")? {
+            Some(sparse) => Some(Sparse::read(sparse, width * component.size(), count, buffers)?),
+            None => None,
+        };
+        Ok(Self { json, component, width, count, normalized: json.is_true("normalized")?, elements, sparse })
+    }
+
+    /// A fault of this accessor.
+    pub(super) fn fault(&self, message: impl std::fmt::Display) -> Fault {
+        self.json.fault(message)
+    }
+
+    /// The elements' first N components, which are finite.
+    pub(super) fn vectors<const N: usize>(&self) -> Result<Vec<[f32; N]>, Fault> {
+        if self.width < N {
+            return Err(self.fault(format!("elements of {N} numbers should be here, not of {}", self.width)));
+        }
+        let vector = |bytes: &[u8]| -> [f32; N] {
+            std::array::from_fn(|i| self.component.number(&bytes[i * self.component.size()..], self.normalized))
+        };
+        let vectors = self.all([0.0; N], vector);
+        match vectors.iter().position(|vector| vector.iter().any(|number| !number.is_finite())) {
+            Some(i) => Err(self.fault(format!("element {i} is not finite: {:?}", vectors[i]))),
+            None => Ok(vectors),
+        }
+    }
+
+    /// The elements as indices.
+    pub(super) fn indices(&self) -> Result<Vec<u32>, Fault> {
+        if self.width != 1 || !self.component.is_index() {
+            return Err(self.fault("indices are SCALAR and of component type 5121, 5123 or 5125"));
+        }
+        Ok(self.all(0, |bytes| self.component.index(bytes)))
+    }
+
+    fn all<T: Copy>(&self, zero: T, read: impl Fn(&[u8]) -> T) -> Vec<T> {
+        let mut all = match &self.elements {
+            Some(elements) => (0..self.count).map(|i| read(elements.at(i))).collect(),
+            None => vec![zero; self.count],
+        };
+        if let Some(sparse) = &self.sparse {
+            for i in 0..sparse.count {
+                all[sparse.index_component.index(sparse.indices.at(i)) as usize] = read(sparse.values.at(i));
+            }
+        }
+        all
+    }
+}
+
+impl<'a> Sparse<'a> {
+    fn read(json: Json<'a>, size: usize, elements: usize, buffers: &mut Buffers<'a, '_>) -> Result<Self, Fault> {
+        let count = json.required("count")?.index()?;
+        if count > elements {
+            return Err(json.fault(format!("{count} of {elements} elements cannot be replaced")));
+        }
+        let indices = json.required("indices")?;
+        let values = json.required("values")?;
+        let index_component = Component::read(indices)?;
+        if !index_component.is_index() {
+            return Err(indices.fault("indices are of component type 5121, 5123 or 5125"));
+        }
+        let missing = || json.fault("the indices or values have no bufferView");
+        let sparse = Self {
+            indices: Elements::new(indices, index_component.size(), count, buffers)?.ok_or_else(missing)?,
+            values: Elements::new(values, size, count, buffers)?.ok_or_else(missing)?,
+            index_component,
+            count,
+        };
+        let out = (0..count).map(|i| index_component.index(sparse.indices.at(i))).find(|&i| i as usize >= elements);
+        match out {
+            Some(index) => Err(indices.fault(format!("index {index} is out of range: there are {elements} elements"))),
+            None => Ok(sparse),
+        }
+    }
+}

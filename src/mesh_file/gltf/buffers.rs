@@ -1,0 +1,168 @@
+//! Where the bytes are: in the GLB file, in a file beside it, or in a `data:` URI.
+
+use super::json::Json;
+use crate::mesh_file::MAX_TRIANGLES;
+use crate::mesh_file::error::{Fault, shown};
+use crate::mesh_file::neighbours::{Neighbours, local_path};
+use base64::Engine;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// All buffers of a file, each read when it is first asked for.
+pub(super) struct Buffers<'a, 'b> {
+    root: Json<'a>,
+    glb: Option<&'a [u8]>,
+    neighbours: &'a mut Neighbours<'b>,
+    read: HashMap<usize, Bytes<'a>>,
+    files: HashMap<PathBuf, Rc<[u8]>>,
+    /// How many bytes the JSON, its buffers and its pictures have so far.
+    size: usize,
+}
+
+/// The bytes of a buffer or of a picture.
+#[derive(Clone)]
+pub(super) enum Bytes<'a> {
+    Glb(&'a [u8]),
+    Read(Rc<[u8]>),
+}
+
+impl std::ops::Deref for Bytes<'_> {
+    type Target = [u8];
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Glb(bytes) => bytes,
+            Self::Read(bytes) => bytes,
+        }
+    }
+}
+
+/// A part of a buffer.
+#[derive(Clone)]
+pub(super) struct View<'a> {
+    buffer: Bytes<'a>,
+    start: usize,
+    end: usize,
+    /// From one element to the next, where the elements do not follow on each other.
+    pub(super) stride: Option<usize>,
+}
+
+impl View<'_> {
+    pub(super) fn bytes(&self) -> &[u8] {
+        &self.buffer[self.start..self.end]
+    }
+}
+
+impl<'a, 'b> Buffers<'a, 'b> {
+    /// Those of a document of `size` bytes.
+    pub(super) fn new(root: Json<'a>, size: usize, glb: Option<&'a [u8]>, neighbours: &'a mut Neighbours<'b>) -> Self {
+        let size = size + glb.map_or(0, <[u8]>::len);
+        Self { root, glb, neighbours, read: HashMap::new(), files: HashMap::new(), size }
+    }
+
+    pub(super) fn root(&self) -> Json<'a> {
+        self.root
+    }
+
+    /// How many triangles or vertices a document of this size may make: more would be a small file that fills the
+    /// memory.
+    pub(super) fn most(&self) -> usize {
+        self.size.saturating_add(1 << 20).min(MAX_TRIANGLES)
+    }
+
+    /// The buffer view that an index, a field of something, means.
+    pub(super) fn view(&mut self, index: Json<'a>) -> Result<View<'a>, Fault> {
+        let (_, view) = index.item_of(self.root, "bufferViews")?;
+        if view.extension("EXT_meshopt_compression")?.is_some() {
+            return Err(view.fault("this part of the file is compressed with meshopt, which is not supported"));
+        }
+        let buffer = self.buffer(view.required("buffer")?)?;
+        let start = view.index_or("byteOffset", 0)?;
+        let length = view.required("byteLength")?.index()?;
+        let stride = view.field("byteStride")?.map(Json::index).transpose()?;
+        let end = start.checked_add(length).filter(|&end| end <= buffer.len()).ok_or_else(|| {
+            let size = buffer.len();
+            view.fault(format!("{length} bytes from byte {start} on are not in the buffer, which has {size}"))
+        })?;
+        Ok(View { buffer, start, end, stride })
+    }
+
+    fn buffer(&mut self, index: Json<'a>) -> Result<Bytes<'a>, Fault> {
+        let (index, buffer) = index.item_of(self.root, "buffers")?;
+        if let Some(bytes) = self.read.get(&index) {
+            return Ok(bytes.clone());
+        }
+        let length = buffer.required("byteLength")?.index()?;
+        let bytes = match buffer.field("uri")? {
+            Some(uri) => self.resource(uri)?,
+            None => match self.glb.filter(|_| index == 0) {
+                Some(bytes) => Bytes::Glb(bytes),
+                None => return Err(buffer.fault("the buffer has no uri, and the file has no BIN chunk for it")),
+            },
+        };
+        if bytes.len() < length {
+            let found = bytes.len();
+            return Err(
+                buffer.fault(format!("the buffer should have {length} bytes, and has {found}: it was cut short"))
+            );
+        }
+        self.read.insert(index, bytes.clone());
+        Ok(bytes)
+    }
+
+    /// The bytes that a URI means: its own, or those of a file beside the mesh.
+    pub(super) fn resource(&mut self, uri: Json<'a>) -> Result<Bytes<'a>, Fault> {
+        let text = uri.string()?;
+        if let Some(data) = text.strip_prefix("data:") {
+            return data_of(data).map(|bytes| Bytes::Read(bytes.into())).map_err(|message| uri.fault(message));
+        }
+        let path = local_path(Path::new(""), &percent_decoded(text)).map_err(|message| uri.fault(message))?;
+        if let Some(bytes) = self.files.get(&path) {
+            return Ok(Bytes::Read(Rc::clone(bytes)));
+        }
+        let bytes = self.neighbours.read(&path).map_err(|message| uri.fault(message))?;
+        self.size += bytes.len();
+        let bytes: Rc<[u8]> = bytes.into();
+        self.files.insert(path, Rc::clone(&bytes));
+        Ok(Bytes::Read(bytes))
+    }
+}
+
+/// The bytes after `data:`.
+fn data_of(data: &str) -> Result<Vec<u8>, String> {
+    const LENIENT: GeneralPurposeConfig =
+        GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
+    let Some((_, encoded)) = data.split_once(";base64,") else {
+        return Err("the data: URI lacks \";base64,\"".to_owned());
+    };
+    let engine = GeneralPurpose::new(&base64::alphabet::STANDARD, LENIENT);
+    engine
+        .decode(encoded)
+        .map_err(|error| format!("the data: URI is not base64: {}", error.to_string().trim_end_matches('.')))
+}
+
+/// `%20` is a blank.
+fn percent_decoded(uri: &str) -> String {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, after @ ..] = rest {
+        let code = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());
+        if let Some(byte) = code.filter(|_| *first == b'%').and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
+            bytes.push(byte);
+            rest = &after[2..];
+        } else {
+            bytes.push(*first);
+            rest = after;
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// What stands in front of a picture's message.
+pub(super) fn described(uri: Option<&str>) -> String {
+    match uri.filter(|uri| !uri.starts_with("data:")) {
+        Some(uri) => shown(uri.as_bytes()),
+        None => "the picture".to_owned(),
+    }
+}

@@ -1,0 +1,166 @@
+//! Values of a JSON document that know their path in it, so that a fault can say where it is.
+
+use crate::mesh_file::error::{Fault, shown};
+use serde_json::{Map, Value};
+use std::fmt::{self, Write};
+
+/// A value, and the way to it.
+#[derive(Clone, Copy)]
+pub(super) struct Json<'a> {
+    value: &'a Value,
+    path: Path<'a>,
+}
+
+/// `meshes[2].primitives`: as much of a path as is kept without memory of its own. glTF is four steps deep where it
+/// matters.
+#[derive(Clone, Copy)]
+struct Path<'a> {
+    steps: [Option<Step<'a>>; 6],
+}
+
+#[derive(Clone, Copy)]
+enum Step<'a> {
+    Field(&'a str),
+    Item(usize),
+}
+
+impl<'a> Path<'a> {
+    fn and(mut self, step: Step<'a>) -> Self {
+        if let Some(free) = self.steps.iter_mut().find(|step| step.is_none()) {
+            *free = Some(step);
+        }
+        self
+    }
+}
+
+impl fmt::Display for Path<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, step) in self.steps.iter().flatten().enumerate() {
+            match step {
+                Step::Item(index) => write!(f, "[{index}]")?,
+                Step::Field(name) if i == 0 => f.write_str(name)?,
+                Step::Field(name) => write!(f, ".{name}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<'a> Json<'a> {
+    pub(super) fn root(value: &'a Value) -> Result<Self, Fault> {
+        let root = Self { value, path: Path { steps: [None; 6] } };
+        root.object().map(|_| root)
+    }
+
+    /// A fault of this value.
+    #[cold]
+    pub(super) fn fault(self, message: impl fmt::Display) -> Fault {
+        let mut text = self.path.to_string();
+        if !text.is_empty() {
+            text.push_str(": ");
+        }
+        // Writing to a string does not fail.
+        let _ = write!(text, "{message}");
+        Fault::of_file(text)
+    }
+
+    #[cold]
+    fn mismatch(self, wanted: &str) -> Fault {
+        let found = match self.value {
+            Value::Null => "null".to_owned(),
+            Value::Bool(value) => value.to_string(),
+            Value::Number(number) => number.to_string(),
+            Value::String(string) => shown(string.as_bytes()),
+            Value::Array(_) => "a list".to_owned(),
+            Value::Object(_) => "an object".to_owned(),
+        };
+        self.fault(format!("{found} stands where {wanted} should be"))
+    }
+
+    fn object(self) -> Result<&'a Map<String, Value>, Fault> {
+        self.value.as_object().ok_or_else(|| self.mismatch("an object"))
+    }
+
+    /// The field of that name, if there is one.
+    pub(super) fn field(self, name: &'static str) -> Result<Option<Self>, Fault> {
+        let path = self.path.and(Step::Field(name));
+        Ok(self.object()?.get(name).map(|value| Self { value, path }))
+    }
+
+    /// The field of that name.
+    pub(super) fn required(self, name: &'static str) -> Result<Self, Fault> {
+        self.field(name)?.ok_or_else(|| self.fault(format!("the field {name} is missing")))
+    }
+
+    /// The fields of that field's object, name by name; none if it is not there.
+    pub(super) fn extension(self, name: &'static str) -> Result<Option<Self>, Fault> {
+        self.field("extensions")?.map_or(Ok(None), |extensions| extensions.field(name))
+    }
+
+    /// The items of the list in that field; none if it is not there.
+    pub(super) fn list(self, name: &'static str) -> Result<impl Iterator<Item = Self> + use<'a>, Fault> {
+        let list = self.field(name)?;
+        let items = list.map_or(Ok(&[][..]), Self::items)?;
+        Ok(items
+            .iter()
+            .enumerate()
+            .filter_map(move |(i, value)| list.map(|list| Self { value, path: list.path.and(Step::Item(i)) })))
+    }
+
+    fn items(self) -> Result<&'a [Value], Fault> {
+        self.value.as_array().map(Vec::as_slice).ok_or_else(|| self.mismatch("a list"))
+    }
+
+    /// How many items the list in that field has; 0 if it is not there.
+    pub(super) fn count(self, name: &'static str) -> Result<usize, Fault> {
+        self.field(name)?.map_or(Ok(0), |list| list.items().map(<[Value]>::len))
+    }
+
+    /// The item of the root's list `name` that this value, an index, means.
+    pub(super) fn item_of(self, root: Json<'a>, name: &'static str) -> Result<(usize, Self), Fault> {
+        let index = self.index()?;
+        let list = root.field(name)?;
+        let items = list.map_or(Ok(&[][..]), Self::items)?;
+        let count = items.len();
+        let missing = || self.fault(format!("{name}[{index}] does not exist: the file has {count}"));
+        let value = items.get(index).ok_or_else(missing)?;
+        let path = root.path.and(Step::Field(name)).and(Step::Item(index));
+        Ok((index, Self { value, path }))
+    }
+
+    /// A whole number that is not negative.
+    pub(super) fn index(self) -> Result<usize, Fault> {
+        let number = self.value.as_u64().and_then(|number| usize::try_from(number).ok());
+        number.ok_or_else(|| self.mismatch("a whole number that is not negative"))
+    }
+
+    /// The same of a field, which may be missing.
+    pub(super) fn index_or(self, name: &'static str, default: usize) -> Result<usize, Fault> {
+        self.field(name)?.map_or(Ok(default), Self::index)
+    }
+
+    pub(super) fn string(self) -> Result<&'a str, Fault> {
+        self.value.as_str().ok_or_else(|| self.mismatch("a string"))
+    }
+
+    pub(super) fn is_true(self, name: &'static str) -> Result<bool, Fault> {
+        let Some(field) = self.field(name)? else { return Ok(false) };
+        field.value.as_bool().ok_or_else(|| field.mismatch("true or false"))
+    }
+
+    pub(super) fn number(self) -> Result<f64, Fault> {
+        self.value.as_f64().filter(|number| number.is_finite()).ok_or_else(|| self.mismatch("a finite number"))
+    }
+
+    /// So many numbers of a field, which may be missing.
+    pub(super) fn numbers<const N: usize>(self, name: &'static str) -> Result<Option<[f64; N]>, Fault> {
+        let Some(list) = self.field(name)? else { return Ok(None) };
+        let wanted = || list.fault(format!("{N} numbers should be here"));
+        let items: &[Value; N] = list.items()?.try_into().map_err(|_| wanted())?;
+        let mut numbers = [0.0; N];
+        for (number, value) in numbers.iter_mut().zip(items) {
+            *number = Self { value, ..list }.number()?;
+        }
+        Ok(Some(numbers))
+    }
+}

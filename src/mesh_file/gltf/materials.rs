@@ -1,0 +1,96 @@
+//! Materials: base colours and their textures.
+
+use super::buffers::{Buffers, described};
+use super::json::Json;
+use crate::color::LinearRgb;
+use crate::mesh_file::MeshMaterial;
+use crate::mesh_file::error::Fault;
+use crate::mesh_file::texture::{self, Budget, Texture, TexturePlacement};
+use glam::Vec3;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A material, and which of the texture coordinates it wants.
+pub(super) struct Material {
+    pub(super) material: MeshMaterial,
+    pub(super) texture_coordinates: usize,
+}
+
+/// All materials of the document.
+pub(super) fn read(buffers: &mut Buffers<'_, '_>) -> Result<Vec<Material>, Fault> {
+    let mut reader = Reader { buffers, textures: HashMap::new(), budget: Budget::default() };
+    reader.buffers.root().list("materials")?.map(|material| reader.material(material)).collect()
+}
+
+struct Reader<'r, 'a, 'b> {
+    buffers: &'r mut Buffers<'a, 'b>,
+    /// By the index of the image.
+    textures: HashMap<usize, Arc<Texture>>,
+    budget: Budget,
+}
+
+impl<'a> Reader<'_, 'a, '_> {
+    fn material(&mut self, json: Json<'a>) -> Result<Material, Fault> {
+        // The older way of glTF, which only says it in an extension.
+        let (base, factor, texture) = match json.extension("KHR_materials_pbrSpecularGlossiness")? {
+            Some(older) => (Some(older), "diffuseFactor", "diffuseTexture"),
+            None => (json.field("pbrMetallicRoughness")?, "baseColorFactor", "baseColorTexture"),
+        };
+        let white = LinearRgb::grey(1.0);
+        let mut material =
+            Material { material: MeshMaterial { reflectance: white, texture: None }, texture_coordinates: 0 };
+        let Some(base) = base else { return Ok(material) };
+        if let Some([r, g, b, _]) = base.numbers::<4>(factor)? {
+            let [r, g, b] = [r, g, b].map(|band| band.clamp(0.0, 1.0) as f32);
+            material.material.reflectance = LinearRgb::new(r, g, b);
+        }
+        if let Some(info) = base.field(texture)? {
+            let (placement, set) = self.placement(info)?;
+            material.material.texture = Some(placement);
+            material.texture_coordinates = set;
+        }
+        Ok(material)
+    }
+
+    /// The texture that a material names, where it puts it, and by which of the texture coordinates.
+    fn placement(&mut self, info: Json<'a>) -> Result<(TexturePlacement, usize), Fault> {
+        let (_, texture) = info.required("index")?.item_of(self.buffers.root(), "textures")?;
+        let Some(source) = texture.field("source")? else {
+            return Err(texture.fault("the texture has no source that is a PNG or JPEG picture"));
+        };
+        let mut placement = TexturePlacement::plain(self.texture(source)?);
+        let mut set = info.index_or("texCoord", 0)?;
+        if let Some(transform) = info.extension("KHR_texture_transform")? {
+            placement.transform = transform_of(transform)?;
+            set = transform.index_or("texCoord", set)?;
+        }
+        Ok((placement, set))
+    }
+
+    fn texture(&mut self, source: Json<'a>) -> Result<Arc<Texture>, Fault> {
+        let (index, image) = source.item_of(self.buffers.root(), "images")?;
+        if let Some(texture) = self.textures.get(&index) {
+            return Ok(Arc::clone(texture));
+        }
+        let uri = image.field("uri")?;
+        let decoded = match uri {
+            Some(uri) => texture::decode(&self.buffers.resource(uri)?, &mut self.budget),
+            None => texture::decode(self.buffers.view(image.required("bufferView")?)?.bytes(), &mut self.budget),
+        };
+        let name = described(uri.map(Json::string).transpose()?);
+        let texture = Arc::new(decoded.map_err(|what| image.fault(format!("{name} {what}")))?);
+        self.textures.insert(index, Arc::clone(&texture));
+        Ok(texture)
+    }
+}
+
+/// `KHR_texture_transform`: scaled, turned, moved.
+fn transform_of(json: Json<'_>) -> Result<[Vec3; 2], Fault> {
+    let [offset_u, offset_v] = json.numbers("offset")?.unwrap_or([0.0; 2]);
+    let [scale_u, scale_v] = json.numbers("scale")?.unwrap_or([1.0; 2]);
+    let angle = json.field("rotation")?.map_or(Ok(0.0), Json::number)?;
+    let (sin, cos) = libm::sincos(angle);
+    let row = |u: f64, v: f64, offset: f64| Vec3::new(u as f32, v as f32, offset as f32);
+    let rows = [row(cos * scale_u, sin * scale_v, offset_u), row(-sin * scale_u, cos * scale_v, offset_v)];
+    if rows.iter().all(|row| row.is_finite()) { Ok(rows) } else { Err(json.fault("these numbers are too large")) }
+}

@@ -1,0 +1,230 @@
+//! Primitives -> triangles where their node stands.
+
+use super::accessor::Accessor;
+use super::buffers::Buffers;
+use super::json::Json;
+use super::materials;
+use crate::color::LinearRgb;
+use crate::mesh_file::MeshFile;
+use crate::mesh_file::builder::{Builder, Triangle, unit};
+use crate::mesh_file::error::Fault;
+use glam::{DMat3, DMat4, Vec2, Vec3};
+use std::collections::HashMap;
+
+/// What has been read so far.
+pub(super) struct Primitives<'r, 'a, 'b> {
+    buffers: &'r mut Buffers<'a, 'b>,
+    mesh: Builder,
+    /// Which of the texture coordinates each material wants.
+    texture_coordinate_sets: Vec<usize>,
+    /// Positions and normals by their accessors, where the current node stands.
+    positions: Ranges,
+    normals: Ranges,
+    /// Texture coordinates and colours by their accessors: they are the same at all nodes.
+    texture_coordinates: Ranges,
+    colors: Ranges,
+}
+
+/// The elements of accessors that were read already. Primitives share them.
+type Ranges = HashMap<usize, Range>;
+
+/// Where the elements of an accessor are among a mesh's.
+#[derive(Clone, Copy)]
+struct Range {
+    start: u32,
+    count: usize,
+}
+
+/// The names of the texture coordinates.
+const TEXTURE_COORDINATES: [&str; 8] =
+    ["TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3", "TEXCOORD_4", "TEXCOORD_5", "TEXCOORD_6", "TEXCOORD_7"];
+
+impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
+    pub(super) fn new(buffers: &'r mut Buffers<'a, 'b>) -> Result<Self, Fault> {
+        let materials = materials::read(buffers)?;
+        let texture_coordinate_sets = materials.iter().map(|material| material.texture_coordinates).collect();
+        let materials = materials.into_iter().map(|material| material.material).collect();
+        Ok(Self {
+            buffers,
+            mesh: Builder { materials, ..Builder::default() },
+            texture_coordinate_sets,
+            positions: Ranges::new(),
+            normals: Ranges::new(),
+            texture_coordinates: Ranges::new(),
+            colors: Ranges::new(),
+        })
+    }
+
+    pub(super) fn finish(self) -> Result<MeshFile, Fault> {
+        self.mesh.finish("its scene shows no mesh of triangles")
+    }
+
+    /// The primitives of a mesh at a node.
+    pub(super) fn add_mesh(&mut self, mesh: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), Fault> {
+        self.positions.clear();
+        self.normals.clear();
+        for primitive in mesh.list("primitives")? {
+            self.add(primitive, node, transform)?;
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, primitive: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), Fault> {
+        let mode = primitive.index_or("mode", 4)?;
+        if mode < 4 {
+            // Points and lines.
+            return Ok(());
+        }
+        let material = primitive.field("material")?.map(|index| index.item_of(self.buffers.root(), "materials"));
+        let material = material.transpose()?.map(|(index, _)| index);
+        let attributes = primitive.required("attributes")?;
+        let positions = self.positions(attributes, node, transform)?;
+        let normals = self.normals(attributes, transform)?;
+        let texture_coordinates = self.texture_coordinates(attributes, material)?;
+        let colors = self.colors(attributes)?;
+        for range in [normals, texture_coordinates, colors].into_iter().flatten() {
+            if range.count != positions.count {
+                let (count, other) = (positions.count, range.count);
+                return Err(attributes.fault(format!("there are {count} positions but {other} of another attribute")));
+            }
+        }
+        let indices = self.indices(primitive, positions.count)?;
+        let length = indices.as_ref().map_or(positions.count, Vec::len);
+        self.mesh.set_material(material.map(|index| index as u32)); // fewer than bytes
+        let is_mirrored = DMat3::from_mat4(transform).determinant() < 0.0;
+        for mut corners in triangles(mode, length).ok_or_else(|| primitive.fault(format!("there is no mode {mode}")))? {
+            if is_mirrored {
+                corners.swap(1, 2);
+            }
+            let vertices = corners.map(|corner| indices.as_ref().map_or(corner as u32, |indices| indices[corner]));
+            let at = |range: Range| vertices.map(|vertex| range.start + vertex);
+            self.mesh.push(Triangle {
+                positions: at(positions),
+                normals: normals.map(at),
+                texture_coordinates: texture_coordinates.map(at),
+                colors: colors.map(at),
+            })?;
+        }
+        self.check_size(primitive)
+    }
+
+    fn check_size(&self, json: Json<'_>) -> Result<(), Fault> {
+        let most = self.buffers.most();
+        if self.mesh.triangles.len().max(self.mesh.positions.len()) > most {
+            return Err(
+                json.fault(format!("nodes show meshes so often that there are more than {most} triangles or vertices"))
+            );
+        }
+        Ok(())
+    }
+
+    fn positions(&mut self, attributes: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<Range, Fault> {
+        let index = attributes.required("POSITION")?;
+        let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
+        if let Some(&range) = self.positions.get(&number) {
+            return Ok(range);
+        }
+        let vectors = Accessor::read(index, self.buffers)?.vectors::<3>()?;
+        let range = range_after(self.mesh.positions.len(), vectors.len());
+        let place = |vector: [f32; 3]| transform.transform_point3(Vec3::from(vector).as_dvec3()).as_vec3();
+        self.mesh.positions.extend(vectors.into_iter().map(place));
+        if !self.mesh.positions[range.start as usize..].iter().all(|position| position.is_finite()) {
+            return Err(node.fault("this node and those above it put vertices beyond 3.4e38"));
+        }
+        self.check_size(node)?;
+        self.positions.insert(number, range);
+        Ok(range)
+    }
+
+    fn normals(&mut self, attributes: Json<'a>, transform: DMat4) -> Result<Option<Range>, Fault> {
+        let Some(index) = attributes.field("NORMAL")? else { return Ok(None) };
+        let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
+        if let Some(&range) = self.normals.get(&number) {
+            return Ok(Some(range));
+        }
+        let vectors = Accessor::read(index, self.buffers)?.vectors::<3>()?;
+        let values = self.mesh.normals.values_mut();
+        let range = range_after(values.len(), vectors.len());
+        let cofactors = cofactors(DMat3::from_mat4(transform));
+        values.extend(vectors.into_iter().map(|vector| unit(cofactors * Vec3::from(vector).as_dvec3())));
+        self.normals.insert(number, range);
+        Ok(Some(range))
+    }
+
+    fn texture_coordinates(&mut self, attributes: Json<'a>, material: Option<usize>) -> Result<Option<Range>, Fault> {
+        let set = material.map_or(0, |index| self.texture_coordinate_sets[index]);
+        let Some(name) = TEXTURE_COORDINATES.get(set) else {
+            return Err(attributes.fault(format!("the material wants TEXCOORD_{set}; only 0 to 7 are read")));
+        };
+        let Some(index) = attributes.field(name)? else { return Ok(None) };
+        let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
+        if let Some(&range) = self.texture_coordinates.get(&number) {
+            return Ok(Some(range));
+        }
+        let vectors = Accessor::read(index, self.buffers)?.vectors::<2>()?;
+        let values = self.mesh.texture_coordinates.values_mut();
+        let range = range_after(values.len(), vectors.len());
+        values.extend(vectors.into_iter().map(Vec2::from));
+        self.texture_coordinates.insert(number, range);
+        Ok(Some(range))
+    }
+
+    fn colors(&mut self, attributes: Json<'a>) -> Result<Option<Range>, Fault> {
+        let Some(index) = attributes.field("COLOR_0")? else { return Ok(None) };
+        let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
+        if let Some(&range) = self.colors.get(&number) {
+            return Ok(Some(range));
+        }
+        let vectors = Accessor::read(index, self.buffers)?.vectors::<3>()?;
+        let values = self.mesh.colors.values_mut();
+        let range = range_after(values.len(), vectors.len());
+        values.extend(vectors.into_iter().map(|bands| {
+            let [r, g, b] = bands.map(|band| band.clamp(0.0, 1.0));
+            LinearRgb::new(r, g, b)
+        }));
+        self.colors.insert(number, range);
+        Ok(Some(range))
+    }
+
+    /// The indices, each below `count`; `None` if the vertices follow on each other.
+    fn indices(&mut self, primitive: Json<'a>, count: usize) -> Result<Option<Vec<u32>>, Fault> {
+        let Some(index) = primitive.field("indices")? else { return Ok(None) };
+        let accessor = Accessor::read(index, self.buffers)?;
+        let indices = accessor.indices()?;
+        match indices.iter().position(|&index| index as usize >= count) {
+            Some(i) => {
+                let message = format!("index {} (number {i}) is out of range: there are {count} vertices", indices[i]);
+                Err(accessor.fault(message))
+            }
+            None => Ok(Some(indices)),
+        }
+    }
+}
+
+/// Counts are below 2^31: no file is larger.
+fn range_after(length: usize, count: usize) -> Range {
+    Range { start: length as u32, count }
+}
+
+/// The corners of each triangle, as places among the indices; `None` if there is no such mode.
+fn triangles(mode: usize, length: usize) -> Option<impl Iterator<Item = [usize; 3]>> {
+    let count = match mode {
+        4 => length / 3,
+        5 | 6 => length.saturating_sub(2),
+        _ => return None,
+    };
+    Some((0..count).map(move |i| match mode {
+        4 => [3 * i, 3 * i + 1, 3 * i + 2],
+        // Every second triangle of a strip goes round the other way.
+        5 => [i, i + 1 + i % 2, i + 2 - i % 2],
+        _ => [i + 1, i + 2, 0],
+    }))
+}
+
+/// What turns normals as the matrix turns surfaces: its inverse transposed, but for a factor greater than 0; also of
+/// matrices that have no inverse.
+fn cofactors(matrix: DMat3) -> DMat3 {
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = matrix;
+    let sign = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
+    DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
+}

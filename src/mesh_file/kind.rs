@@ -1,0 +1,111 @@
+//! Which format a file has, told by its content.
+
+use super::error::{Fault, shown};
+use super::{obj, stl};
+use std::path::Path;
+
+/// The formats that are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Obj,
+    StlText,
+    StlBinary,
+    Ply,
+    Gltf,
+    Glb,
+}
+
+/// What begins like this is something else, and what can be done about it.
+const OTHERS: [(&[u8], &str); 17] = [
+    (b"\x1f\x8b", "is gzip-compressed: unpack it first (gunzip)"),
+    (b"BZh", "is bzip2-compressed: unpack it first (bunzip2)"),
+    (b"\xfd7zXZ\0", "is xz-compressed: unpack it first (unxz)"),
+    (b"\x28\xb5\x2f\xfd", "is zstd-compressed: unpack it first (unzstd)"),
+    (
+        b"PK\x03\x04",
+        "is a ZIP archive (as 3MF and USDZ files are): unpack it first, or export it as OBJ, STL, PLY or glTF",
+    ),
+    (b"7z\xbc\xaf\x27\x1c", "is a 7z archive: unpack it first"),
+    (b"version https://git-lfs", "is only a pointer of Git LFS to the file: fetch it with `git lfs pull`"),
+    (b"\x89PNG", "is a PNG picture, not a mesh"),
+    (b"\xff\xd8\xff", "is a JPEG picture, not a mesh"),
+    (b"GIF8", "is a GIF picture, not a mesh"),
+    (b"%PDF", "is a PDF document, not a mesh"),
+    (b"Kaydara FBX", "is an FBX file: export it as OBJ, STL, PLY or glTF"),
+    (b"BLENDER", "is a Blender file: export it as OBJ, STL, PLY or glTF"),
+    (b"<?xml", "is XML (COLLADA or X3D?): export it as OBJ, STL, PLY or glTF"),
+    (b"<", "is a web page or XML, not a mesh; was the right link downloaded?"),
+    (b"\xff\xfe", "is UTF-16 text: save it as UTF-8"),
+    (b"\xfe\xff", "is UTF-16 text: save it as UTF-8"),
+];
+
+const READ: &str = "OBJ, STL, PLY, glTF and GLB files are read";
+
+/// The format of the bytes; the name's ending has a say only where the content has none.
+pub(super) fn of(name: &str, bytes: &[u8]) -> Result<Kind, Fault> {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    if text.is_empty() {
+        return Err(Fault::of_file(format!("the file is empty; {READ}")));
+    }
+    if let Some(kind) = by_content(bytes, text) {
+        return Ok(kind);
+    }
+    if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
+        return Err(Fault::of_file(format!("this {what}")));
+    }
+    by_ending(name).ok_or_else(|| Fault::of_file(not_known(name, bytes)))
+}
+
+fn by_content(bytes: &[u8], text: &[u8]) -> Option<Kind> {
+    match bytes {
+        [b'p', b'l', b'y', b'\r' | b'\n', ..] => Some(Kind::Ply),
+        _ if bytes.starts_with(b"glTF") => Some(Kind::Glb),
+        // Before text: the header of a binary file may begin with anything, "solid" too.
+        _ if stl::size_fits(bytes) => Some(Kind::StlBinary),
+        _ if text.starts_with(b"{") => Some(Kind::Gltf),
+        _ if is_stl_text(text) => Some(Kind::StlText),
+        _ if is_obj(text) => Some(Kind::Obj),
+        _ => None,
+    }
+}
+
+/// `solid`, and no byte in the beginning that is in no text.
+fn is_stl_text(text: &[u8]) -> bool {
+    let begins = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    let ends_word = text.get(5).is_none_or(u8::is_ascii_whitespace);
+    begins && ends_word && !text.iter().take(512).any(|&byte| byte == 0 || byte >= 0xf8)
+}
+
+/// Whether the first line that says something begins with a word of OBJ.
+fn is_obj(text: &[u8]) -> bool {
+    let lines = text.split(|byte| b"\r\n".contains(byte)).map(<[u8]>::trim_ascii);
+    let mut statements = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#")).map(first_word);
+    statements.next().is_some_and(obj::is_statement)
+}
+
+fn first_word(line: &[u8]) -> &[u8] {
+    line.split(u8::is_ascii_whitespace).next().unwrap_or_default()
+}
+
+fn by_ending(name: &str) -> Option<Kind> {
+    let ending = Path::new(name).extension()?.to_str()?.to_ascii_lowercase();
+    Some(match ending.as_str() {
+        "obj" => Kind::Obj,
+        "stl" => Kind::StlBinary,
+        "ply" => Kind::Ply,
+        "gltf" => Kind::Gltf,
+        "glb" => Kind::Glb,
+        _ => return None,
+    })
+}
+
+fn not_known(name: &str, bytes: &[u8]) -> String {
+    let ending = match Path::new(name).extension() {
+        Some(ending) => format!("neither its ending {}", shown(ending.to_string_lossy().as_bytes())),
+        None => "neither its name, which has no ending,".to_owned(),
+    };
+    format!(
+        "this is no mesh that is known: {ending} nor its first bytes {} say what it is; {READ}",
+        shown(&bytes[..bytes.len().min(8)])
+    )
+}

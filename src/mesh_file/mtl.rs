@@ -1,0 +1,190 @@
+//! MTL, the materials of OBJ files: `Kd` and `map_Kd`. All other lines are passed over.
+
+use super::MeshMaterial;
+use super::error::{Fault, shown};
+use super::neighbours::{Neighbours, local_path};
+use super::text::Text;
+use super::texture::{self, Budget, Texture, TexturePlacement};
+use crate::color::LinearRgb;
+use glam::Vec3;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// All materials of the MTL files that an OBJ file names.
+#[derive(Default)]
+pub(super) struct Library {
+    materials: Vec<MeshMaterial>,
+    by_name: HashMap<Box<[u8]>, u32>,
+    files: HashSet<PathBuf>,
+    textures: HashMap<PathBuf, Arc<Texture>>,
+    budget: Budget,
+}
+
+impl Library {
+    pub(super) fn into_materials(self) -> Vec<MeshMaterial> {
+        self.materials
+    }
+
+    pub(super) fn index_of(&self, name: &[u8]) -> Option<u32> {
+        self.by_name.get(name).copied()
+    }
+
+    /// Whether that file was read already.
+    pub(super) fn has_file(&self, path: &Path) -> bool {
+        self.files.contains(path)
+    }
+}
+
+/// Reads one MTL file, whose path is relative to the mesh.
+pub(super) fn read(
+    path: &Path,
+    bytes: &[u8],
+    neighbours: &mut Neighbours<'_>,
+    library: &mut Library,
+) -> Result<(), Fault> {
+    library.files.insert(path.to_owned());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let name = neighbours.name_of(path);
+    let mut reader = Reader { text: Text::new(bytes), folder, neighbours, library };
+    // The fault lies in this file, not in the one that names it.
+    reader.statements().map_err(|fault| Fault::from(fault.into_error(&name, bytes)))
+}
+
+struct Reader<'a, 'b> {
+    text: Text<'a>,
+    folder: &'a Path,
+    neighbours: &'a mut Neighbours<'b>,
+    library: &'a mut Library,
+}
+
+/// What a material is that says nothing: all of the light that its texture reflects; without a texture a light grey.
+const UNSAID: LinearRgb = LinearRgb::grey(0.8);
+
+impl Reader<'_, '_> {
+    fn statements(&mut self) -> Result<(), Fault> {
+        let mut has_reflectance = false;
+        while self.text.go_to_statement() {
+            let word = self.text.word();
+            let at = self.text.at() - word.len();
+            match word {
+                b"newmtl" => {
+                    has_reflectance = false;
+                    self.new_material();
+                }
+                b"Kd" => {
+                    has_reflectance = true;
+                    self.material(at)?.reflectance = self.reflectance()?;
+                }
+                b"map_Kd" => {
+                    let texture = self.texture()?;
+                    let material = self.material(at)?;
+                    material.texture = Some(texture);
+                    if !has_reflectance {
+                        material.reflectance = LinearRgb::grey(1.0);
+                    }
+                }
+                _ => {}
+            }
+            self.text.skip_line();
+        }
+        Ok(())
+    }
+
+    /// Of two materials with one name, the later one is meant.
+    fn new_material(&mut self) {
+        let name = self.text.rest_of_line();
+        let index = self.library.materials.len() as u32; // fewer than bytes
+        self.library.by_name.insert(name.into(), index);
+        self.library.materials.push(MeshMaterial { reflectance: UNSAID, texture: None });
+    }
+
+    fn material(&mut self, at: usize) -> Result<&mut MeshMaterial, Fault> {
+        let last = self.library.materials.last_mut();
+        last.ok_or_else(|| Fault::in_text(at, "this line belongs to no material: newmtl must stand above it"))
+    }
+
+    /// `Kd r g b`, or `Kd r` for a grey. Values beyond 0..=1 reflect nothing or everything.
+    fn reflectance(&mut self) -> Result<LinearRgb, Fault> {
+        let r = self.text.number()?.clamp(0.0, 1.0);
+        if self.text.is_at_line_end() {
+            return Ok(LinearRgb::grey(r));
+        }
+        Ok(LinearRgb::new(r, self.text.number()?.clamp(0.0, 1.0), self.text.number()?.clamp(0.0, 1.0)))
+    }
+
+    fn texture(&mut self) -> Result<TexturePlacement, Fault> {
+        let transform = self.options()?;
+        let name = self.text.rest_of_line();
+        let at = self.text.at() - name.len();
+        let name = String::from_utf8_lossy(name);
+        let path = local_path(self.folder, &name).map_err(|message| Fault::in_text(at, message))?;
+        let texture = match self.library.textures.get(&path) {
+            Some(texture) => Arc::clone(texture),
+            None => self.load(path, at)?,
+        };
+        Ok(TexturePlacement { texture, transform })
+    }
+
+    fn load(&mut self, path: PathBuf, at: usize) -> Result<Arc<Texture>, Fault> {
+        let bytes = self.neighbours.read(&path).map_err(|message| {
+            Fault::in_text(at, format!("the texture is missing: {message}; put that file there, or take this line out"))
+        })?;
+        let name = shown(self.neighbours.name_of(&path).as_bytes());
+        let texture = texture::decode(&bytes, &mut self.library.budget)
+            .map_err(|what| Fault::in_text(at, format!("{name} {what}")))?;
+        let texture = Arc::new(texture);
+        self.library.textures.insert(path, Arc::clone(&texture));
+        Ok(texture)
+    }
+
+    /// What stands before the file's name: `-s` (scale) and `-o` (offset) count, others are passed over.
+    fn options(&mut self) -> Result<[Vec3; 2], Fault> {
+        let (mut scale, mut offset) = ([1.0; 2], [0.0; 2]);
+        loop {
+            let start = self.text.at();
+            match self.text.word() {
+                b"-s" => self.two_of_three(&mut scale)?,
+                b"-o" => self.two_of_three(&mut offset)?,
+                b"-t" => self.two_of_three(&mut [0.0; 2])?,
+                b"-mm" => self.skip_words(2),
+                b"-blendu" | b"-blendv" | b"-clamp" | b"-cc" | b"-bm" | b"-boost" | b"-texres" | b"-imfchan"
+                | b"-type" => self.skip_words(1),
+                _ => {
+                    self.text = self.text.back_at(start);
+                    break;
+                }
+            }
+        }
+        // v is measured from the bottom here, and from the top in a mesh.
+        let v = Vec3::new(0.0, scale[1], 1.0 - scale[1] - offset[1]);
+        let u = Vec3::new(scale[0], 0.0, offset[0]);
+        if u.is_finite() && v.is_finite() {
+            return Ok([u, v]);
+        }
+        Err(Fault::in_text(self.text.at(), "the texture's scale or offset is too large"))
+    }
+
+    fn skip_words(&mut self, count: usize) {
+        for _ in 0..count {
+            self.text.word();
+        }
+    }
+
+    /// One to three numbers, of which the first two count.
+    fn two_of_three(&mut self, values: &mut [f32; 2]) -> Result<(), Fault> {
+        values[0] = self.text.number()?;
+        for i in 1..3 {
+            let start = self.text.at();
+            match (self.text.number(), i) {
+                (Ok(value), 1) => values[1] = value,
+                (Ok(_), _) => {}
+                (Err(_), _) => {
+                    self.text = self.text.back_at(start);
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,94 @@
+//! The files that a mesh names.
+
+use super::MAX_BYTES;
+use super::error::{cannot_be_read, shown};
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+/// The one way to other files, with a limit on all that is read.
+pub(super) struct Neighbours<'a> {
+    open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
+    bytes_left: usize,
+    /// Where the mesh is, for messages.
+    folder: PathBuf,
+}
+
+impl<'a> Neighbours<'a> {
+    /// Those of the mesh of that name.
+    pub(super) fn new(name: &str, open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>) -> Self {
+        let folder = Path::new(name).parent().unwrap_or(Path::new("")).to_owned();
+        Self { open, bytes_left: MAX_BYTES, folder }
+    }
+
+    /// The file's name in messages: as the mesh's own, seen from where the person is.
+    pub(super) fn name_of(&self, path: &Path) -> String {
+        self.folder.join(path).to_string_lossy().into_owned()
+    }
+
+    /// The bytes of the file, or what is wrong with it.
+    pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>, String> {
+        let name = self.name_of(path);
+        let say = |what: &str| format!("{}: {what}", shown(name.as_bytes()));
+        let bytes = (self.open)(path).map_err(|error| say(&cannot_be_read(&error)))?;
+        let left = self.bytes_left.checked_sub(bytes.len());
+        self.bytes_left = left.ok_or_else(|| say("with this file more than 2 GiB would be read"))?;
+        Ok(bytes)
+    }
+}
+
+/// No system that termtrace runs on has names of more bytes; and no message grows beyond what can be read.
+const LONGEST: usize = 255;
+
+/// The path that a file in `folder` means, relative to the mesh; `\` separates too, as Windows writes it. `Err` says what is wrong: it
+/// is a URL, absolute, or nothing.
+pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String> {
+    let name = shown(written.as_bytes());
+    let say = |what: &str| Err(format!("{name} {what}"));
+    if written.len() > LONGEST {
+        return say("is longer than a path may be");
+    }
+    if written.contains("://") || written.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("data:")) {
+        return say("is a URL; only files beside this one are read");
+    }
+    let path = PathBuf::from(written.replace('\\', "/"));
+    // `.` and `a/..` are folders.
+    if written.contains('\0') || path.file_name().is_none() {
+        return say("is no file name");
+    }
+    let has_drive = written.as_bytes().get(1) == Some(&b':');
+    if has_drive || path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_))) {
+        return say("is an absolute path; write it relative to this file");
+    }
+    // One name for each file, without `./`.
+    Ok(folder.join(path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_relative_paths_are_local() {
+        let local = |written| local_path(Path::new("a"), written);
+        assert_eq!(local("./b.mtl"), local("b.mtl"));
+        assert_eq!(local("b.mtl"), Ok(PathBuf::from("a/b.mtl")));
+        assert_eq!(local(r"..\textures\b c.png"), Ok(PathBuf::from("a/../textures/b c.png")));
+        for written in [
+            "",
+            ".",
+            "./",
+            "a/..",
+            "/etc/x",
+            r"C:\x",
+            "c:x",
+            "http://x/y",
+            "file:///x",
+            "DATA:,x",
+            "a\0b",
+            &"a/".repeat(128),
+            r"\\host\x",
+        ] {
+            assert!(local(written).is_err(), "{written}");
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! Wavefront OBJ: polygons, normals, texture coordinates, the colours that some programs write after a position, and
+//! materials of MTL files. Lines, points, curves and surfaces are passed over.
+
+use super::builder::{Builder, Triangle, unit};
+use super::error::{Fault, shown};
+use super::mtl::{self, Library};
+use super::neighbours::{Neighbours, local_path};
+use super::text::Text;
+use super::{MeshFile, polygon};
+use crate::color::{LinearRgb, linear_from_srgb};
+use glam::{Vec2, Vec3};
+use std::path::Path;
+
+pub(super) fn read(bytes: &[u8], neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
+    if let Some(place) = bytes.iter().position(|&byte| byte == 0) {
+        return Err(Fault::at_byte(place, "an OBJ file is text, and this byte is a NUL"));
+    }
+    let text = Text::new(bytes);
+    let mut reader = Reader { text, mesh: Builder::default(), library: None, corners: Corners::default(), neighbours };
+    while reader.text.go_to_statement() {
+        reader.statement()?;
+    }
+    let Reader { mut mesh, library, .. } = reader;
+    mesh.materials = library.map(Library::into_materials).unwrap_or_default();
+    mesh.finish("it has no faces (f)")
+}
+
+struct Reader<'a, 'b> {
+    text: Text<'a>,
+    mesh: Builder,
+    /// The materials of the MTL files named so far; `None` before the first one.
+    library: Option<Library>,
+    /// The corners of the face that is read, kept for its memory.
+    corners: Corners,
+    neighbours: &'a mut Neighbours<'b>,
+}
+
+/// The indices of a face's corners. Those of texture coordinates and normals are there for each corner or for none.
+#[derive(Default)]
+struct Corners {
+    positions: Vec<u32>,
+    texture_coordinates: Vec<u32>,
+    normals: Vec<u32>,
+}
+
+impl Reader<'_, '_> {
+    fn statement(&mut self) -> Result<(), Fault> {
+        let word = self.text.word();
+        let at = self.text.at() - word.len();
+        match word {
+            b"v" => self.vertex(),
+            b"vn" => self.normal(),
+            b"vt" => self.texture_coordinate(),
+            b"f" | b"fo" => self.face(at),
+            b"usemtl" => self.use_material(),
+            b"mtllib" => self.library(),
+            _ if is_passed_over(word) => {
+                self.text.skip_line();
+                Ok(())
+            }
+            _ => Err(Fault::in_text(at, format!("{} begins no line of an OBJ file (v, vt, vn, f, ...)", shown(word)))),
+        }
+    }
+
+    /// `v x y z`, `v x y z w` or `v x y z r g b`.
+    fn vertex(&mut self) -> Result<(), Fault> {
+        let position = self.numbers()?;
+        self.mesh.positions.push(Vec3::from(position));
+        if !self.text.is_at_line_end() {
+            let fourth = self.text.number()?;
+            if !self.text.is_at_line_end() {
+                let (fifth, sixth) = (self.text.number()?, self.text.number()?);
+                self.color([fourth, fifth, sixth]);
+            }
+        }
+        self.text.end_line()
+    }
+
+    fn numbers(&mut self) -> Result<[f32; 3], Fault> {
+        Ok([self.text.number()?, self.text.number()?, self.text.number()?])
+    }
+
+    /// The colour of the last vertex. Vertices that have none among others that do are white.
+    fn color(&mut self, encoded: [f32; 3]) {
+        let [r, g, b] = encoded.map(|band| linear_from_srgb(f64::from(band.clamp(0.0, 1.0))) as f32);
+        self.pad_colors(self.mesh.positions.len() - 1);
+        self.mesh.colors.values_mut().push(LinearRgb::new(r, g, b));
+    }
+
+    fn pad_colors(&mut self, count: usize) {
+        self.mesh.colors.values_mut().resize(count, LinearRgb::grey(1.0));
+    }
+
+    fn normal(&mut self) -> Result<(), Fault> {
+        let direction = self.numbers()?;
+        self.mesh.normals.values_mut().push(unit(Vec3::from(direction).as_dvec3()));
+        self.text.end_line()
+    }
+
+    /// `vt u`, `vt u v` or `vt u v w`; v is measured from the bottom.
+    fn texture_coordinate(&mut self) -> Result<(), Fault> {
+        let u = self.text.number()?;
+        let v = if self.text.is_at_line_end() { 0.0 } else { self.text.number()? };
+        self.mesh.texture_coordinates.values_mut().push(Vec2::new(u, 1.0 - v));
+        self.text.skip_line();
+        Ok(())
+    }
+
+    fn face(&mut self, at: usize) -> Result<(), Fault> {
+        self.corners.positions.clear();
+        self.corners.texture_coordinates.clear();
+        self.corners.normals.clear();
+        while !self.text.is_at_line_end() {
+            self.corner()?;
+        }
+        self.text.skip_line();
+        let Corners { positions, texture_coordinates, normals } = &self.corners;
+        let count = positions.len();
+        if count < 3 {
+            let message = format!("a face has at least 3 corners; this one has {count}");
+            return Err(Fault::in_text(at, message));
+        }
+        let (has_uv, has_normals) = (!texture_coordinates.is_empty(), !normals.is_empty());
+        if (has_uv && texture_coordinates.len() != count) || (has_normals && normals.len() != count) {
+            let message = "the corners of this face are not written alike: all v, all v/vt, all v//vn or all v/vt/vn";
+            return Err(Fault::in_text(at, message));
+        }
+        self.triangles()
+    }
+
+    /// The triangles of the face that was read.
+    fn triangles(&mut self) -> Result<(), Fault> {
+        let has_colors = !self.mesh.colors.values().is_empty();
+        if has_colors {
+            self.pad_colors(self.mesh.positions.len());
+        }
+        let Corners { positions, texture_coordinates, normals } = &self.corners;
+        let pick = |indices: &[u32], corners: [usize; 3]| corners.map(|i| indices[i]);
+        let pick_any = |indices: &[u32], corners| (!indices.is_empty()).then(|| pick(indices, corners));
+        for corners in polygon::cut(positions, &self.mesh.positions) {
+            let positions = pick(positions, corners);
+            self.mesh.push(Triangle {
+                positions,
+                normals: pick_any(normals, corners),
+                texture_coordinates: pick_any(texture_coordinates, corners),
+                colors: has_colors.then_some(positions),
+            })?;
+        }
+        Ok(())
+    }
+
+    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    fn corner(&mut self) -> Result<(), Fault> {
+        let start = self.text.at();
+        let vertex = self.index("vertex", self.mesh.positions.len())?;
+        self.corners.positions.push(vertex);
+        if self.text.take(b'/') {
+            if !self.text.take(b'/') {
+                let count = self.mesh.texture_coordinates.values().len();
+                let texture_coordinate = self.index("texture coordinate", count)?;
+                self.corners.texture_coordinates.push(texture_coordinate);
+                if !self.text.take(b'/') {
+                    return self.end_corner(start);
+                }
+            }
+            let normal = self.index("normal", self.mesh.normals.values().len())?;
+            self.corners.normals.push(normal);
+        }
+        self.end_corner(start)
+    }
+
+    fn end_corner(&mut self, start: usize) -> Result<(), Fault> {
+        if self.text.is_at_word_end() { Ok(()) } else { Err(self.bad_corner(start)) }
+    }
+
+    #[cold]
+    fn bad_corner(&mut self, start: usize) -> Fault {
+        self.text = self.text.back_at(start);
+        self.text.expected("a corner (v, v/vt, v//vn or v/vt/vn)")
+    }
+
+    /// An index from 0, of one from 1 or, where it is negative, from the last one back.
+    #[inline]
+    fn index(&mut self, what: &str, count: usize) -> Result<u32, Fault> {
+        let at = self.text.at();
+        let Some(written) = self.text.digits() else { return Err(self.bad_corner(at)) };
+        let size = written.unsigned_abs() as usize; // 64 bits on all that termtrace runs on
+        let index = if written < 0 { count.checked_sub(size) } else { size.checked_sub(1) };
+        match index.filter(|&index| index < count) {
+            // A file of 2 GiB has fewer than 2^31 of anything.
+            Some(index) => Ok(index as u32),
+            None => Err(Fault::in_text(at, no_such_index(what, written, count))),
+        }
+    }
+
+    fn use_material(&mut self) -> Result<(), Fault> {
+        let name = self.text.rest_of_line();
+        let at = self.text.at() - name.len();
+        let material = match &self.library {
+            Some(library) if !is_no_material(name) => Some(library.index_of(name).ok_or_else(|| {
+                Fault::in_text(at, format!("material {} is in no MTL file that was named above", shown(name)))
+            })?),
+            // A model that came without its colours.
+            _ => None,
+        };
+        self.mesh.set_material(material);
+        self.text.skip_line();
+        Ok(())
+    }
+
+    fn library(&mut self) -> Result<(), Fault> {
+        let names = self.text.rest_of_line();
+        let at = self.text.at() - names.len();
+        let text = String::from_utf8_lossy(names);
+        for name in library_names(&text) {
+            let path = local_path(Path::new(""), name).map_err(|message| Fault::in_text(at, message))?;
+            let library = self.library.get_or_insert_default();
+            if library.has_file(&path) {
+                continue;
+            }
+            let bytes = self.neighbours.read(&path).map_err(|message| {
+                Fault::in_text(
+                    at,
+                    format!("the materials are missing: {message}; put that file there, or take this line out"),
+                )
+            })?;
+            mtl::read(&path, &bytes, self.neighbours, library)?;
+        }
+        self.text.skip_line();
+        Ok(())
+    }
+}
+
+fn no_such_index(what: &str, written: i64, count: usize) -> String {
+    let stand = if count == 1 { "stands" } else { "stand" };
+    match (written, count) {
+        (0, _) => format!("there is no {what} 0: the first one is 1, the last one before this line -1"),
+        (_, 0) => format!("{what} {written} does not exist: none stands above this line"),
+        _ => format!("{what} {written} does not exist: {count} {stand} above this line"),
+    }
+}
+
+/// What programs write where a face has no material.
+fn is_no_material(name: &[u8]) -> bool {
+    [&b""[..], b"None", b"(null)", b"null"].contains(&name)
+}
+
+/// Several names stand on one line, and names with blanks in them too: a name ends with `.mtl`.
+fn library_names(text: &str) -> Vec<&str> {
+    let mut names = Vec::new();
+    let mut start = 0;
+    for (at, _) in text.match_indices([' ', '\t']) {
+        let name = &text[start..at];
+        let ends = name.len() >= 4 && name.as_bytes()[name.len() - 4..].eq_ignore_ascii_case(b".mtl");
+        if ends {
+            names.push(name);
+        }
+        if ends || name.is_empty() {
+            start = at + 1;
+        }
+    }
+    names.push(&text[start..]);
+    names
+}
+
+/// Whether a line of an OBJ file may begin with that word.
+pub(super) fn is_statement(word: &[u8]) -> bool {
+    [&b"v"[..], b"vn", b"vt", b"f", b"fo", b"usemtl", b"mtllib"].contains(&word) || is_passed_over(word)
+}
+
+/// Words of OBJ that make no triangles.
+fn is_passed_over(word: &[u8]) -> bool {
+    const WORDS: [&str; 38] = [
+        "g",
+        "o",
+        "s",
+        "l",
+        "p",
+        "vp",
+        "mg",
+        "deg",
+        "bmat",
+        "step",
+        "cstype",
+        "curv",
+        "curv2",
+        "surf",
+        "parm",
+        "trim",
+        "hole",
+        "scrv",
+        "sp",
+        "end",
+        "con",
+        "bevel",
+        "c_interp",
+        "d_interp",
+        "lod",
+        "shadow_obj",
+        "trace_obj",
+        "ctech",
+        "stech",
+        "maplib",
+        "usemap",
+        "call",
+        "csh",
+        "bzp",
+        "bsp",
+        "cdc",
+        "cdp",
+        "res",
+    ];
+    WORDS.iter().any(|known| known.as_bytes() == word)
+}

@@ -1,0 +1,256 @@
+//! PLY, as text and binary of either byte order: faces and triangle strips, normals and colours of vertices. Other
+//! elements and properties are passed over, whatever their type and order.
+
+mod header;
+mod rows;
+
+use super::builder::{Builder, Triangle, unit};
+use super::error::Fault;
+use super::{MeshFile, polygon};
+use crate::color::{LinearRgb, Srgb8, linear_from_srgb};
+use glam::Vec3;
+use header::{Element, Encoding, Header, Property, Shape, Type};
+use rows::{Ascii, Binary, Rows};
+
+pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, Fault> {
+    let header = Header::read(bytes)?;
+    match header.encoding {
+        Encoding::Ascii => read_body(&header, Ascii::new(bytes, header.end)),
+        Encoding::LittleEndian => read_body(&header, Binary::<false>::new(bytes, header.end)),
+        Encoding::BigEndian => read_body(&header, Binary::<true>::new(bytes, header.end)),
+    }
+}
+
+fn read_body(header: &Header<'_>, mut rows: impl Rows) -> Result<MeshFile, Fault> {
+    let vertices = header.elements.iter().find(|element| element.name == "vertex");
+    let vertex_count = vertices.map_or(0, |element| element.count);
+    let mut mesh = Builder::default();
+    for element in &header.elements {
+        let indices = element.properties.iter().position(Property::is_indices);
+        match (element.name, indices) {
+            ("vertex", _) => read_vertices(element, &mut rows, &mut mesh)?,
+            ("face", Some(at)) => read_faces(element, at, vertex_count, &mut rows, &mut mesh)?,
+            ("tristrips", Some(at)) => read_strips(element, at, vertex_count, &mut rows, &mut mesh)?,
+            // However many rows of nothing there are.
+            _ if element.properties.is_empty() => {}
+            _ => each_row(element, &mut rows, |rows| skip(&element.properties, rows))?,
+        }
+    }
+    let is_cloud = !mesh.positions.is_empty();
+    mesh.finish(if is_cloud { "it has vertices but no faces (a cloud of points?)" } else { "it has no faces" })
+}
+
+/// The rows of an element, each with its beginning and its end.
+fn each_row<R: Rows>(
+    element: &Element<'_>,
+    rows: &mut R,
+    mut read: impl FnMut(&mut R) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    for row in 0..element.count {
+        rows.begin(element, row)?;
+        read(rows)?;
+        rows.end(element)?;
+    }
+    Ok(())
+}
+
+fn skip(properties: &[Property<'_>], rows: &mut impl Rows) -> Result<(), Fault> {
+    properties.iter().try_for_each(|property| match property.shape {
+        Shape::Scalar(kind) => rows.skip(kind, 1),
+        Shape::List { length, item } => {
+            let length = rows.length(length)?;
+            rows.skip(item, length)
+        }
+    })
+}
+
+/// What a vertex is read into: three bands each of these, and one for what is passed over.
+const POSITION: usize = 0;
+const NORMAL: usize = 3;
+const COLOR: usize = 6;
+const NOTHING: usize = 9;
+
+/// Which number of a vertex a property is.
+fn slot(property: &Property<'_>) -> usize {
+    match property.name {
+        _ if matches!(property.shape, Shape::List { .. }) => NOTHING,
+        "x" => POSITION,
+        "y" => POSITION + 1,
+        "z" => POSITION + 2,
+        "nx" => NORMAL,
+        "ny" => NORMAL + 1,
+        "nz" => NORMAL + 2,
+        "red" | "r" | "diffuse_red" => COLOR,
+        "green" | "g" | "diffuse_green" => COLOR + 1,
+        "blue" | "b" | "diffuse_blue" => COLOR + 2,
+        _ => NOTHING,
+    }
+}
+
+fn read_vertices(element: &Element<'_>, rows: &mut impl Rows, mesh: &mut Builder) -> Result<(), Fault> {
+    let slots: Vec<usize> = element.properties.iter().map(slot).collect();
+    let has = |group: usize| (group..group + 3).all(|slot| slots.contains(&slot));
+    if !has(POSITION) {
+        return Err(Fault::in_text(element.at, "the element vertex lacks one of the properties x, y and z"));
+    }
+    let color_type = slots.iter().position(|&slot| slot == COLOR).map(|i| element.properties[i].shape);
+    let (has_normals, color_type) = (has(NORMAL), color_type.filter(|_| has(COLOR)));
+    let room = room(element, rows);
+    mesh.positions.reserve_exact(room);
+    mesh.normals.values_mut().reserve_exact(if has_normals { room } else { 0 });
+    mesh.colors.values_mut().reserve_exact(if color_type.is_some() { room } else { 0 });
+    each_row(element, rows, |rows| {
+        let mut values = [0.0; NOTHING + 1];
+        for (property, &slot) in element.properties.iter().zip(&slots) {
+            match property.shape {
+                Shape::Scalar(kind) if slot < NOTHING => values[slot] = rows.number(kind)?,
+                _ => skip(std::slice::from_ref(property), rows)?,
+            }
+        }
+        let [x, y, z, nx, ny, nz, r, g, b, _] = values;
+        mesh.positions.push(Vec3::new(x, y, z));
+        if has_normals {
+            mesh.normals.values_mut().push(unit(Vec3::new(nx, ny, nz).as_dvec3()));
+        }
+        if let Some(shape) = color_type {
+            mesh.colors.values_mut().push(color([r, g, b], shape));
+        }
+        Ok(())
+    })
+}
+
+/// How many rows there can be, at most as many as the element claims.
+fn room(element: &Element<'_>, rows: &impl Rows) -> usize {
+    let least = rows.least_size(&element.properties).max(1);
+    (element.count as usize).min(rows.left() / least)
+}
+
+/// Whole numbers go from 0 to the largest of their type, others from 0 to 1.
+fn color(bands: [f32; 3], shape: Shape) -> LinearRgb {
+    let white = match shape {
+        Shape::Scalar(Type::U8) => {
+            let [r, g, b] = bands.map(|band| band.clamp(0.0, 255.0) as u8);
+            return LinearRgb::from_srgb8(Srgb8::new(r, g, b));
+        }
+        Shape::Scalar(Type::I8) => f64::from(i8::MAX),
+        Shape::Scalar(Type::I16) => f64::from(i16::MAX),
+        Shape::Scalar(Type::U16) => f64::from(u16::MAX),
+        Shape::Scalar(Type::I32) => f64::from(i32::MAX),
+        Shape::Scalar(Type::U32) => f64::from(u32::MAX),
+        Shape::Scalar(Type::F32 | Type::F64) | Shape::List { .. } => 1.0,
+    };
+    let [r, g, b] = bands.map(|band| linear_from_srgb((f64::from(band) / white).clamp(0.0, 1.0)) as f32);
+    LinearRgb::new(r, g, b)
+}
+
+/// The element's `at`th property holds each face's corners.
+fn read_faces(
+    element: &Element<'_>,
+    at: usize,
+    vertex_count: u32,
+    rows: &mut impl Rows,
+    mesh: &mut Builder,
+) -> Result<(), Fault> {
+    let (before, indices, after) = parts(element, at);
+    mesh.triangles.reserve(room(element, rows));
+    let mut corners = Vec::new();
+    each_row(element, rows, |rows| {
+        skip(before, rows)?;
+        let start = rows.place();
+        read_corners(indices, vertex_count, rows, &mut corners)?;
+        if corners.len() < 3 {
+            let message = format!("a face has at least 3 corners; this one has {}", corners.len());
+            return Err(rows.fault(start, message));
+        }
+        for triangle in polygon::cut(&corners, &mesh.positions) {
+            push(mesh, triangle.map(|i| corners[i]))?;
+        }
+        skip(after, rows)
+    })
+}
+
+fn parts<'a, 'b>(element: &'b Element<'a>, at: usize) -> (&'b [Property<'a>], Shape, &'b [Property<'a>]) {
+    let (before, rest) = element.properties.split_at(at);
+    (before, rest[0].shape, &rest[1..])
+}
+
+fn read_corners(indices: Shape, vertex_count: u32, rows: &mut impl Rows, corners: &mut Vec<u32>) -> Result<(), Fault> {
+    let Shape::List { length, item } = indices else { return Ok(()) };
+    corners.clear();
+    for _ in 0..rows.length(length)? {
+        let place = rows.place();
+        let index = rows.integer(item)?;
+        corners.push(vertex(index, vertex_count).map_err(|message| rows.fault(place, message))?);
+    }
+    Ok(())
+}
+
+#[inline]
+fn vertex(index: i64, count: u32) -> Result<u32, String> {
+    u32::try_from(index).ok().filter(|&index| index < count).ok_or_else(|| no_such_vertex(index, count))
+}
+
+#[cold]
+fn no_such_vertex(index: i64, count: u32) -> String {
+    match count.checked_sub(1) {
+        Some(last) => format!("vertex {index} does not exist: they are counted from 0 to {last}"),
+        None => format!("vertex {index} does not exist: the file has no vertices"),
+    }
+}
+
+/// Triangle strips, as the older files of the Stanford repository have them: -1 ends one.
+fn read_strips(
+    element: &Element<'_>,
+    at: usize,
+    vertex_count: u32,
+    rows: &mut impl Rows,
+    mesh: &mut Builder,
+) -> Result<(), Fault> {
+    let (before, indices, after) = parts(element, at);
+    let Shape::List { length, item } = indices else { return Ok(()) };
+    each_row(element, rows, |rows| {
+        skip(before, rows)?;
+        let mut strip = Strip::default();
+        for _ in 0..rows.length(length)? {
+            let place = rows.place();
+            match rows.integer(item)? {
+                -1 => strip = Strip::default(),
+                index => {
+                    let corner = vertex(index, vertex_count).map_err(|message| rows.fault(place, message))?;
+                    if let Some(triangle) = strip.next(corner) {
+                        push(mesh, triangle)?;
+                    }
+                }
+            }
+        }
+        skip(after, rows)
+    })
+}
+
+/// The last two corners of a strip, and how many there have been.
+#[derive(Default)]
+struct Strip {
+    last: [u32; 2],
+    length: usize,
+}
+
+impl Strip {
+    /// Every second triangle goes round the other way.
+    fn next(&mut self, corner: u32) -> Option<[u32; 3]> {
+        let [a, b] = self.last;
+        self.last = [b, corner];
+        self.length += 1;
+        let triangle = if self.length.is_multiple_of(2) { [b, a, corner] } else { [a, b, corner] };
+        (self.length >= 3).then_some(triangle)
+    }
+}
+
+/// What vertices have, their triangles have.
+fn push(mesh: &mut Builder, positions: [u32; 3]) -> Result<(), Fault> {
+    let (normals, colors) = (!mesh.normals.values().is_empty(), !mesh.colors.values().is_empty());
+    mesh.push(Triangle {
+        normals: normals.then_some(positions),
+        colors: colors.then_some(positions),
+        ..Triangle::new(positions)
+    })
+}

@@ -1,0 +1,220 @@
+//! The header: which elements there are, and what each of their rows holds.
+
+use crate::mesh_file::error::{Fault, shown};
+use crate::mesh_file::text::Text;
+
+/// All of it.
+pub(super) struct Header<'a> {
+    pub(super) encoding: Encoding,
+    pub(super) elements: Vec<Element<'a>>,
+    /// Where the body begins.
+    pub(super) end: usize,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+/// So many rows of the same properties.
+pub(super) struct Element<'a> {
+    pub(super) name: &'a str,
+    pub(super) count: u32,
+    pub(super) properties: Vec<Property<'a>>,
+    /// Where it is named.
+    pub(super) at: usize,
+}
+
+pub(super) struct Property<'a> {
+    pub(super) name: &'a str,
+    pub(super) shape: Shape,
+}
+
+impl Property<'_> {
+    /// Whether these are the corners of a face.
+    pub(super) fn is_indices(&self) -> bool {
+        let is_list = matches!(self.shape, Shape::List { item, .. } if !item.is_float());
+        is_list && ["vertex_indices", "vertex_index"].contains(&self.name)
+    }
+}
+
+/// One number, or a list of them that begins with its length.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    Scalar(Type),
+    List { length: Type, item: Type },
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Type {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Type {
+    fn from_name(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    fn is_float(self) -> bool {
+        matches!(self, Self::F32 | Self::F64)
+    }
+
+    /// Bytes in a binary file.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
+impl<'a> Header<'a> {
+    pub(super) fn read(bytes: &'a [u8]) -> Result<Self, Fault> {
+        let mut reader = Reader { text: Text::new(bytes), encoding: None, elements: Vec::new() };
+        if reader.text.rest_of_line() != b"ply" {
+            return Err(Fault::in_text(0, "a PLY file begins with a line that says ply"));
+        }
+        reader.text.skip_line();
+        while reader.statement()? {}
+        // A body may begin with a byte that looks like the second half of a line's end: it is one only where it has
+        // been one before.
+        let line_end = if bytes.get(3..5) == Some(b"\r\n") { 2 } else { 1 };
+        let end = (reader.text.at() + line_end).min(bytes.len());
+        let encoding = reader.encoding.ok_or_else(|| {
+            Fault::in_text(
+                3,
+                "the header lacks its line `format ascii 1.0` (or binary_little_endian, binary_big_endian)",
+            )
+        })?;
+        Ok(Self { encoding, elements: reader.elements, end })
+    }
+}
+
+struct Reader<'a> {
+    text: Text<'a>,
+    encoding: Option<Encoding>,
+    elements: Vec<Element<'a>>,
+}
+
+impl<'a> Reader<'a> {
+    /// One line; false if it was the last one, whose end is not passed over.
+    fn statement(&mut self) -> Result<bool, Fault> {
+        if !self.text.go_to_statement() {
+            return Err(self.text.expected("end_header"));
+        }
+        let word = self.text.word();
+        let at = self.text.at() - word.len();
+        match word {
+            b"format" => self.format()?,
+            b"element" => self.element(at)?,
+            b"property" => self.property(at)?,
+            b"comment" | b"obj_info" => self.text.skip_line(),
+            b"end_header" => {
+                self.text.rest_of_line();
+                return Ok(false);
+            }
+            _ => {
+                let message =
+                    format!("{} begins no line of a header (format, element, property, comment)", shown(word));
+                return Err(Fault::in_text(at, message));
+            }
+        }
+        Ok(true)
+    }
+
+    fn format(&mut self) -> Result<(), Fault> {
+        let word = self.text.word();
+        let at = self.text.at() - word.len();
+        self.encoding = Some(match word {
+            b"ascii" => Encoding::Ascii,
+            b"binary_little_endian" => Encoding::LittleEndian,
+            b"binary_big_endian" => Encoding::BigEndian,
+            _ => {
+                let wanted = "ascii, binary_little_endian or binary_big_endian";
+                return Err(Fault::in_text(at, format!("unknown format {}; it is {wanted}", shown(word))));
+            }
+        });
+        self.text.skip_line();
+        Ok(())
+    }
+
+    fn element(&mut self, at: usize) -> Result<(), Fault> {
+        let name = self.name()?;
+        self.text.skip_blanks();
+        let count_at = self.text.at();
+        let count = self.text.integer()?;
+        let Ok(count) = u32::try_from(count) else {
+            return Err(Fault::in_text(
+                count_at,
+                format!("{count} rows are not possible: there are 0 to {}", u32::MAX),
+            ));
+        };
+        if matches!(name, "vertex" | "face" | "tristrips") && self.elements.iter().any(|element| element.name == name) {
+            return Err(Fault::in_text(at, format!("the element {name} is there twice")));
+        }
+        self.elements.push(Element { name, count, properties: Vec::new(), at });
+        self.text.end_line()
+    }
+
+    fn name(&mut self) -> Result<&'a str, Fault> {
+        self.text.skip_blanks();
+        let at = self.text.at();
+        match std::str::from_utf8(self.text.word()) {
+            Ok("") => Err(self.text.expected("a name")),
+            Ok(name) => Ok(name),
+            Err(_) => Err(Fault::in_text(at, "this name is not UTF-8")),
+        }
+    }
+
+    fn property(&mut self, at: usize) -> Result<(), Fault> {
+        let start = self.text.at();
+        let shape = if self.text.word() == b"list" {
+            self.text.skip_blanks();
+            let length_at = self.text.at();
+            let shape = Shape::List { length: self.kind()?, item: self.kind()? };
+            if matches!(shape, Shape::List { length, .. } if length.is_float()) {
+                return Err(Fault::in_text(length_at, "the length of a list is a whole number (uchar, int, ...)"));
+            }
+            shape
+        } else {
+            self.text = self.text.back_at(start);
+            Shape::Scalar(self.kind()?)
+        };
+        let name = self.name()?;
+        let Some(element) = self.elements.last_mut() else {
+            return Err(Fault::in_text(at, "this property belongs to no element: one must stand above it"));
+        };
+        element.properties.push(Property { name, shape });
+        self.text.end_line()
+    }
+
+    fn kind(&mut self) -> Result<Type, Fault> {
+        let word = self.text.word();
+        let at = self.text.at() - word.len();
+        Type::from_name(word).ok_or_else(|| {
+            let wanted = "char, uchar, short, ushort, int, uint, float or double";
+            Fault::in_text(at, format!("unknown type {}; it is {wanted}", shown(word)))
+        })
+    }
+}

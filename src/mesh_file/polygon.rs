@@ -1,0 +1,136 @@
+//! Polygons -> triangles.
+
+use glam::{DVec2, DVec3, Vec3};
+
+/// Polygons of more corners are cut into a fan, whatever their shape: ears are looked for in cubic time.
+const MAX_EARS: usize = 64;
+
+/// Cuts a polygon into triangles of the same orientation, each three places in `corners`, whose entries are indices
+/// into `positions`. A convex polygon becomes a fan; from any other, ears are cut off one by one. Where the positions
+/// are not known, or no ear is left (the outline crosses itself), the rest becomes a fan.
+pub(super) fn cut(corners: &[u32], positions: &[Vec3]) -> impl Iterator<Item = [usize; 3]> + use<> {
+    let may_be_concave = (4..=MAX_EARS).contains(&corners.len());
+    let outline = if may_be_concave { projected(corners, positions) } else { None };
+    let mut ears = Vec::new();
+    let mut fan: Vec<usize> = Vec::new();
+    if let Some(outline) = outline.filter(|outline| !is_convex(outline)) {
+        (ears, fan) = cut_ears(&outline);
+    }
+    // Of a fan of all corners no list is kept.
+    let corner = move |i: usize| fan.get(i).copied().unwrap_or(i);
+    let fan_length = corners.len() - ears.len();
+    ears.into_iter().chain((2..fan_length).map(move |i| [corner(0), corner(i - 1), corner(i)]))
+}
+
+/// The outline in the plane that the polygon is broadest in, counterclockwise.
+fn projected(corners: &[u32], positions: &[Vec3]) -> Option<Vec<DVec2>> {
+    let points: Vec<DVec3> =
+        corners.iter().map(|&i| positions.get(i as usize).map(|p| p.as_dvec3())).collect::<Option<_>>()?;
+    let next = |i: usize| points[(i + 1) % points.len()];
+    // Newell's normal: twice the polygon's area along each axis.
+    let normal: DVec3 = (0..points.len()).map(|i| (points[i] - points[0]).cross(next(i) - points[0])).sum();
+    let size = normal.abs();
+    let flat = |p: &DVec3| match size.max_element() {
+        m if m == size.x => DVec2::new(p.y, p.z * normal.x.signum()),
+        m if m == size.y => DVec2::new(p.z, p.x * normal.y.signum()),
+        _ => DVec2::new(p.x, p.y * normal.z.signum()),
+    };
+    Some(points.iter().map(flat).collect())
+}
+
+/// Twice the area of a triangle, negative where it is clockwise.
+fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// Whether the fan around the first corner covers the polygon: every triangle of it has the polygon's orientation.
+fn is_convex(outline: &[DVec2]) -> bool {
+    let n = outline.len();
+    let turns_left = (0..n).all(|i| area(outline[i], outline[(i + 1) % n], outline[(i + 2) % n]) >= 0.0);
+    turns_left && (2..n).all(|i| area(outline[0], outline[i - 1], outline[i]) >= 0.0)
+}
+
+/// The ears, and the corners that are left.
+fn cut_ears(outline: &[DVec2]) -> (Vec<[usize; 3]>, Vec<usize>) {
+    let mut ears = Vec::new();
+    let mut left: Vec<usize> = (0..outline.len()).collect();
+    while left.len() > 3 {
+        let Some(ear) = (0..left.len()).find(|&i| is_ear(outline, &left, i)) else { break };
+        ears.push(around(&left, ear));
+        left.remove(ear);
+    }
+    (ears, left)
+}
+
+/// A corner with those before and after it.
+fn around(left: &[usize], i: usize) -> [usize; 3] {
+    let n = left.len();
+    [left[(i + n - 1) % n], left[i], left[(i + 1) % n]]
+}
+
+/// Whether the corner can be cut off: it turns left, and no other corner lies in the triangle.
+fn is_ear(outline: &[DVec2], left: &[usize], i: usize) -> bool {
+    let corners = around(left, i);
+    let [a, b, c] = corners.map(|corner| outline[corner]);
+    let is_inside = |p: DVec2| area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
+    area(a, b, c) > 0.0
+        && !left.iter().any(|&other| {
+            let p = outline[other];
+            !corners.contains(&other) && ![a, b, c].contains(&p) && is_inside(p)
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3Swizzles;
+
+    fn triangles(outline: &[Vec3]) -> Vec<[usize; 3]> {
+        let corners: Vec<u32> = (0..outline.len() as u32).collect();
+        cut(&corners, outline).collect()
+    }
+
+    fn normal([a, b, c]: [usize; 3], outline: &[Vec3]) -> Vec3 {
+        (outline[b] - outline[a]).cross(outline[c] - outline[a])
+    }
+
+    #[test]
+    fn a_convex_polygon_becomes_a_fan() {
+        let square = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+        assert_eq!(triangles(&square), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(triangles(&vec![Vec3::ZERO; 200]).len(), 198);
+    }
+
+    /// Whatever the plane and the first corner, the triangles of an L have its orientation and its area in sum.
+    #[test]
+    fn a_concave_polygon_is_covered_once() {
+        let l = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        for shift in 0..l.len() {
+            for axes in 0..6 {
+                let mut outline: Vec<Vec3> = l.iter().map(|[x, y]| Vec3::new(*x, *y, 0.5 * x)).collect();
+                outline.rotate_left(shift);
+                for p in &mut outline {
+                    *p = [*p, p.zxy(), p.yzx(), p.yxz(), p.xzy(), p.zyx()][axes];
+                }
+                let cut = triangles(&outline);
+                let normals: Vec<Vec3> = cut.iter().map(|&t| normal(t, &outline)).collect();
+                let sum: Vec3 = normals.iter().sum();
+                assert_eq!(cut.len(), 4);
+                assert!(normals.iter().all(|n| n.dot(sum) > 0.0), "{shift} {axes} {cut:?}");
+                let area: f32 = normals.iter().map(|n| n.length()).sum();
+                assert!((area - 8.0 * 1.25_f32.sqrt()).abs() < 1e-5, "{area}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_outline_that_crosses_itself_still_becomes_n_minus_2_triangles() {
+        let bow = [Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::X];
+        assert_eq!(triangles(&bow).len(), 2);
+        let star: Vec<Vec3> = (0..5)
+            .map(|i| f64::from(i) * 2.513_274)
+            .map(|a| Vec3::new(libm::cos(a) as f32, libm::sin(a) as f32, 0.0))
+            .collect();
+        assert_eq!(triangles(&star).len(), 3);
+    }
+}

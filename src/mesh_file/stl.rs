@@ -1,0 +1,123 @@
+//! STL, text and binary: triangles without shared vertices. The facets' normals are not read: the corners say the same
+//! with more digits. Neither are the colours that some programs put into the attribute bytes, each in its own way.
+
+use super::MeshFile;
+use super::builder::{Builder, Triangle, too_many};
+use super::error::{Fault, shown};
+use super::text::Text;
+use super::{MAX_TRIANGLES, polygon};
+use glam::Vec3;
+
+/// 80 bytes of anything and a count of 4 bytes.
+const HEADER: usize = 84;
+/// A normal, three corners, two bytes of attributes.
+const FACET: usize = 50;
+
+/// The bytes that a binary file of so many triangles has, by its own count.
+fn claimed_size(bytes: &[u8]) -> Option<u64> {
+    let count = bytes.get(HEADER - 4..HEADER)?.try_into().map(u32::from_le_bytes).ok()?;
+    Some(HEADER as u64 + u64::from(count) * FACET as u64)
+}
+
+/// Whether the bytes are a binary file of exactly as many triangles as it says. A text, whose count would be made of
+/// letters, is never so large.
+pub(super) fn size_fits(bytes: &[u8]) -> bool {
+    claimed_size(bytes) == Some(bytes.len() as u64)
+}
+
+pub(super) fn read_binary(bytes: &[u8]) -> Result<MeshFile, Fault> {
+    let size = claimed_size(bytes).ok_or_else(|| {
+        let message = "the file ends within the header of 84 bytes that a binary STL file begins with";
+        Fault::at_byte(bytes.len(), message)
+    })?;
+    if size != bytes.len() as u64 {
+        let (triangles, found) = ((size - HEADER as u64) / FACET as u64, bytes.len());
+        let message = format!(
+            "a binary STL file of {triangles} triangles, as it says here, has {size} bytes; this file has {found}"
+        );
+        return Err(Fault::at_byte(HEADER - 4, message));
+    }
+    let facets = bytes[HEADER..].chunks_exact(FACET);
+    if facets.len() > MAX_TRIANGLES {
+        return Err(Fault::at_byte(HEADER - 4, too_many()));
+    }
+    let mut mesh = Builder { positions: Vec::with_capacity(3 * facets.len()), ..Builder::default() };
+    for (i, facet) in facets.enumerate() {
+        for corner in 0..3 {
+            let at = 12 + 12 * corner;
+            mesh.positions.push(vertex_from(&facet[at..at + 12], HEADER + i * FACET + at)?);
+        }
+    }
+    mesh.triangles = (0..mesh.positions.len() as u32).step_by(3).map(|first| [first, first + 1, first + 2]).collect();
+    mesh.finish("its count is 0")
+}
+
+/// Twelve bytes, and where they stand.
+fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, Fault> {
+    let band = |axis: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * axis + i]));
+    let vertex = Vec3::new(band(0), band(1), band(2));
+    if vertex.is_finite() {
+        return Ok(vertex);
+    }
+    let axis = usize::from(vertex.x.is_finite()) * (1 + usize::from(vertex.y.is_finite()));
+    Err(Fault::at_byte(at + 4 * axis, format!("{} is not a finite number", band(axis))))
+}
+
+pub(super) fn read_text(bytes: &[u8]) -> Result<MeshFile, Fault> {
+    let mut reader = TextReader { text: Text::new(bytes), mesh: Builder::default(), open: None };
+    while reader.text.go_to_statement() {
+        reader.statement()?;
+    }
+    if reader.open.is_some() {
+        return Err(reader.text.expected("the rest of this facet (vertex, endloop, endfacet)"));
+    }
+    reader.mesh.finish("it has no facets")
+}
+
+struct TextReader<'a> {
+    text: Text<'a>,
+    mesh: Builder,
+    /// The first vertex of the loop that is open.
+    open: Option<u32>,
+}
+
+impl TextReader<'_> {
+    fn statement(&mut self) -> Result<(), Fault> {
+        let word = self.text.word();
+        let at = self.text.at() - word.len();
+        match word.to_ascii_lowercase().as_slice() {
+            b"vertex" if self.open.is_some() => return self.vertex(),
+            b"outer" if self.open.is_none() => self.open = Some(self.mesh.positions.len() as u32), // below 2^31 bytes
+            b"endloop" if self.open.is_some() => self.end_loop(at)?,
+            b"solid" | b"facet" | b"endfacet" | b"endsolid" | b"color" if self.open.is_none() => {}
+            _ if self.open.is_some() => {
+                return Err(Fault::in_text(at, format!("{} stands where vertex or endloop should be", shown(word))));
+            }
+            _ => {
+                let wanted = "solid, facet, outer loop, endfacet or endsolid";
+                return Err(Fault::in_text(at, format!("{} stands where {wanted} should be", shown(word))));
+            }
+        }
+        self.text.skip_line();
+        Ok(())
+    }
+
+    fn vertex(&mut self) -> Result<(), Fault> {
+        let vertex = Vec3::new(self.text.number()?, self.text.number()?, self.text.number()?);
+        self.mesh.positions.push(vertex);
+        self.text.end_line()
+    }
+
+    /// The corners become triangles; some programs write polygons.
+    fn end_loop(&mut self, at: usize) -> Result<(), Fault> {
+        let corners: Vec<u32> = (self.open.take().unwrap_or_default()..self.mesh.positions.len() as u32).collect();
+        if corners.len() < 3 {
+            let message = format!("this loop has {} vertices; a facet has at least 3", corners.len());
+            return Err(Fault::in_text(at, message));
+        }
+        for triangle in polygon::cut(&corners, &self.mesh.positions) {
+            self.mesh.push(Triangle::new(triangle.map(|i| corners[i])))?;
+        }
+        Ok(())
+    }
+}

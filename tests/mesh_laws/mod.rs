@@ -1,0 +1,68 @@
+//! What holds for any bytes that are read as a mesh: for the tests and for the fuzzer.
+
+use glam::{Vec2, Vec3};
+use std::io;
+use std::path::Path;
+use termtrace::color::LinearRgb;
+use termtrace::mesh_file::{MeshError, MeshFile, Place};
+
+/// A mesh that is as it should be, or an error that can be shown. The file may name others: what stands after the
+/// first NUL is every MTL file, what stands after the second one every other file. (OBJ and MTL have no NUL, other
+/// formats are all of the bytes and every other file too.)
+pub(crate) fn hold_for(name: &str, bytes: &[u8]) {
+    let is_obj = Path::new(name).extension().is_some_and(|ending| ending == "obj");
+    let parts: Vec<&[u8]> = if is_obj { bytes.splitn(3, |&byte| byte == 0).collect() } else { vec![bytes; 3] };
+    let part = |i: usize| parts.get(i).copied().ok_or_else(|| io::Error::from(io::ErrorKind::NotFound));
+    let found = MeshFile::from_bytes(name, parts[0], &mut |path| {
+        assert_local(path);
+        part(if path.extension().is_some_and(|ending| ending == "mtl") { 1 } else { 2 }).map(<[u8]>::to_vec)
+    });
+    match found {
+        Ok(mesh) => assert_sound(&mesh),
+        Err(error) => assert_shown(&error, bytes),
+    }
+}
+
+/// No URL, nothing absolute.
+fn assert_local(path: &Path) {
+    let text = path.to_str().expect("paths are UTF-8");
+    assert!(path.is_relative() && !text.contains("://") && !text.contains('\0') && !text.is_empty(), "{text}");
+}
+
+pub(crate) fn assert_sound(mesh: &MeshFile) {
+    assert!(!mesh.triangles().is_empty());
+    assert!(mesh.positions().iter().all(|position| position.is_finite()));
+    let is_reflectance = |c: LinearRgb| [c.r, c.g, c.b].iter().all(|band| (0.0..=1.0).contains(band));
+    for (i, triangle) in mesh.triangles().iter().enumerate() {
+        assert!(triangle.iter().all(|&index| (index as usize) < mesh.positions().len()));
+        // None of these panics, because their indices are in range.
+        assert!(mesh.normals_of(i).into_iter().flatten().all(|n: Vec3| (n.length() - 1.0).abs() < 1e-5));
+        assert!(mesh.texture_coordinates_of(i).into_iter().flatten().all(Vec2::is_finite));
+        assert!(mesh.colors_of(i).into_iter().flatten().all(is_reflectance));
+        assert!(mesh.material_of(i).is_none_or(|material| material < mesh.materials().len()));
+    }
+    for material in mesh.materials() {
+        assert!(is_reflectance(material.reflectance));
+        if let Some(placement) = &material.texture {
+            let texture = &placement.texture;
+            assert!(texture.width() > 0 && texture.height() > 0);
+            assert_eq!(texture.texels().len(), texture.width() as usize * texture.height() as usize);
+            assert!(placement.transform.iter().all(|row| row.is_finite()));
+        }
+    }
+}
+
+fn assert_shown(error: &MeshError, bytes: &[u8]) {
+    let message = error.to_string();
+    assert!(message.starts_with(error.name()), "{message}");
+    assert!(!message.contains(char::is_control), "{message:?}");
+    assert!(message.chars().count() < 1000, "{message}");
+    match error.place() {
+        Place::File => {}
+        Place::Byte(byte) => assert!(byte <= bytes.len(), "{message}"),
+        Place::Text { line, column } => {
+            let lines = 1 + bytes.iter().filter(|byte| b"\r\n".contains(byte)).count();
+            assert!((1..=lines).contains(&line) && (1..=bytes.len() + 1).contains(&column), "{message}");
+        }
+    }
+}
