@@ -194,6 +194,35 @@ fn jpeg_textures_are_read() {
     assert!(near(texture.texels()[15], [220, 20, 30]), "{:?}", texture.texels()[15]);
 }
 
+#[test]
+fn pictures_that_are_cut_short_are_said_so() {
+    let obj = "mtllib x.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl a\nf 1 2 3\n";
+    for name in ["grey_to_red.jpg", "square.png"] {
+        let bytes = std::fs::read(folder().join(name)).unwrap();
+        for length in [10, bytes.len() / 2, bytes.len() * 9 / 10] {
+            let mtl = b"newmtl a\nmap_Kd a";
+            let error = read_with("x.obj", obj, &[("x.mtl", mtl), ("a", &bytes[..length])]).unwrap_err();
+            assert!(error.starts_with("x.mtl:2:8: \"a\" is a "), "{error}");
+        }
+    }
+    // 65520 x 248 pixels in 200 bytes.
+    let mut jpeg = std::fs::read(folder().join("grey_to_red.jpg")).unwrap();
+    let size = jpeg.windows(4).position(|bytes| bytes == [0, 8, 0, 16]).expect("height and width");
+    jpeg[size..size + 4].copy_from_slice(&[0, 248, 255, 240]);
+    let error = read_with("x.obj", obj, &[("x.mtl", b"newmtl a\nmap_Kd a"), ("a", &jpeg)]).unwrap_err();
+    assert!(error.ends_with("is a JPEG picture that is cut short"), "{error}");
+}
+
+/// A child stands in its parent's coordinates, not the other way about.
+#[test]
+fn nodes_of_gltf_stand_in_their_parents() {
+    let document = std::fs::read_to_string(folder().join("tetrahedron_data.gltf")).unwrap();
+    let nodes = r#"[{"children":[1],"scale":[2,2,2],"rotation":[0,0,1,1]},{"mesh":0,"translation":[1,0,0]}]"#;
+    let mesh = read("x.gltf", &document.replacen(r#"[{"mesh": 0}]"#, nodes, 1));
+    assert!(mesh.positions()[0].abs_diff_eq(Vec3::new(0.0, 2.0, 0.0), 1e-6), "{}", mesh.positions()[0]);
+    assert!(mesh.positions()[1].abs_diff_eq(Vec3::new(0.0, 4.0, 0.0), 1e-6), "{}", mesh.positions()[1]);
+}
+
 /// The primitives of a glTF mesh share their vertices, whatever they have besides.
 #[test]
 fn vertices_that_primitives_share_are_kept_once() {

@@ -109,6 +109,7 @@ fn decode_png(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
     let mut reader = decoder.read_info().map_err(say)?;
     let (width, height) = reader.info().size();
     budget.take(width as usize, height as usize)?;
+    check_plausible(width as usize * height as usize, bytes, 8 * 1032, "PNG")?;
     let size = reader.output_buffer_size().ok_or("is a PNG picture that is too large")?;
     let mut samples = vec![0; size];
     let frame = reader.next_frame(&mut samples).map_err(say)?;
@@ -126,20 +127,33 @@ fn decode_jpeg(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
     let options = DecoderOptions::default()
         .set_max_width(MAX_TEXELS)
         .set_max_height(MAX_TEXELS)
+        // Otherwise what is missing of a picture would be grey.
+        .set_strict_mode(true)
         .jpeg_set_out_colorspace(ColorSpace::RGB);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
     decoder.decode_headers().map_err(|error| say(&error))?;
     let (width, height) = decoder.dimensions().ok_or("is a JPEG picture without a size")?;
     budget.take(width, height)?;
+    check_plausible(width * height, bytes, 8 * 64, "JPEG")?;
     let samples = decoder.decode().map_err(|error| say(&error))?;
     let texels = samples.chunks_exact(3).map(|s| Srgb8::new(s[0], s[1], s[2])).collect();
     complete(width as u32, height as u32, texels, "JPEG") // sizes of JPEG have 16 bits
 }
 
+/// Whether the file can hold as many texels as it claims, before they cost time and memory: a byte of PNG unpacks to at
+/// most 1032 bytes of one bit a texel; in JPEG every block of 64 texels takes at least a bit.
+fn check_plausible(texels: usize, bytes: &[u8], most_per_byte: usize, format: &str) -> Result<(), String> {
+    if texels / most_per_byte > bytes.len() { Err(cut_short(format)) } else { Ok(()) }
+}
+
+fn cut_short(format: &str) -> String {
+    format!("is a {format} picture that is cut short")
+}
+
 /// The decoders promise as many texels as the header; nothing here trusts them.
 fn complete(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
     if texels.len() != width as usize * height as usize {
-        return Err(format!("is a {format} picture that is cut short"));
+        return Err(cut_short(format));
     }
     Ok(Texture { width, height, texels })
 }
