@@ -1,0 +1,11 @@
+//! The corpora of the meshes' fuzzers.
+
+mod corpus;
+mod mesh_laws;
+
+#[test]
+fn the_laws_of_meshes_hold_for_the_corpora() {
+    for ending in ["gltf", "obj", "ply", "stl"] {
+        corpus::replay(&format!("mesh_{ending}"), |bytes| mesh_laws::hold_for(&format!("x.{ending}"), bytes));
+    }
+}
