@@ -11,6 +11,9 @@ use crate::shape::SurfacePoint;
 pub enum Material {
     /// The same reflectance everywhere.
     Diffuse(LinearRgb),
+    /// What the surface brings itself: the colours and textures of a mesh's file; where there are none, as
+    /// [`DEFAULT`](Self::DEFAULT).
+    Own,
     /// Squares of two reflectances in turn, laid out on the surface's own coordinates (of a plane).
     Checker {
         /// Reflectance of the square that begins at the pattern's origin, and of every second one from there.
@@ -22,14 +25,17 @@ pub enum Material {
     },
 }
 
+const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
+
 impl Material {
     /// What an object is made of when nothing is said: a light grey.
-    pub const DEFAULT: Self = Self::Diffuse(LinearRgb::grey(0.8));
+    pub const DEFAULT: Self = Self::Diffuse(DEFAULT_REFLECTANCE);
 
     /// The diffuse reflectance at a point of the surface.
     pub fn reflectance(&self, point: &SurfacePoint) -> LinearRgb {
         match *self {
             Self::Diffuse(reflectance) => reflectance,
+            Self::Own => point.own_reflectance.unwrap_or(DEFAULT_REFLECTANCE),
             Self::Checker { a, b, size } => {
                 let (middle, width) = (point.uv / size, point.footprint / size);
                 let balance = mean_sign(middle.x, width.x) * mean_sign(middle.y, width.y);

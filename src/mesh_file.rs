@@ -40,7 +40,7 @@ pub use texture::{Texture, TexturePlacement};
 
 use crate::color::LinearRgb;
 use error::{Fault, cannot_be_read};
-use glam::{Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 use kind::Kind;
 use neighbours::Neighbours;
 use std::fs::File;
@@ -106,6 +106,30 @@ impl MeshFile {
             material_runs: Vec::new(),
         };
         mesh.is_valid().then_some(mesh)
+    }
+
+    /// With a normal at each position, of any length; `None` unless there are as many, all finite. Where one is zero there
+    /// is none.
+    pub fn with_normals(self, normals: Vec<Vec3>) -> Option<Self> {
+        let normals = normals.into_iter().map(unit_or_zero).collect();
+        let mesh = Self { normals: Attribute::of_positions(normals), ..self };
+        (mesh.normals.values().len() == mesh.positions.len() && mesh.is_valid()).then_some(mesh)
+    }
+
+    /// The mesh scaled along its axes (by nothing that is 0), then turned, then moved. A mesh that becomes its own mirror
+    /// image is still seen from outside; `None` if a position leaves what f32 can hold.
+    pub fn transformed(mut self, scale: Vec3, turn: Mat3, translation: Vec3) -> Option<Self> {
+        for position in &mut self.positions {
+            *position = turn * (*position * scale) + translation;
+        }
+        self.normals = self.normals.map(|normal| unit_or_zero(turn * (normal / scale)));
+        if scale.x * scale.y * scale.z < 0.0 {
+            attribute::turn(&mut self.triangles);
+            self.normals = self.normals.turned();
+            self.texture_coordinates = self.texture_coordinates.turned();
+            self.colors = self.colors.turned();
+        }
+        self.is_valid().then_some(self)
     }
 
     /// The mesh that the bytes describe. The name is used in messages, and its ending where the content does not say
@@ -208,6 +232,17 @@ impl MeshFile {
             && self.materials.iter().all(|material| is_reflectance(material.reflectance))
             && self.material_runs.iter().all(|(_, m)| m.is_none_or(|m| (m as usize) < self.materials.len()))
     }
+}
+
+fn unit_or_zero(normal: Vec3) -> Vec3 {
+    // Scaled first: a square must neither overflow nor vanish.
+    let largest = normal.abs().max_element();
+    if largest > 0.0 { (normal / largest).normalize() } else { Vec3::ZERO }
+}
+
+/// Whether a file of that name, or with that beginning, is meant to be a mesh.
+pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
+    kind::by_ending(name).is_some() || bytes.starts_with(b"ply") || bytes.starts_with(b"glTF")
 }
 
 fn is_reflectance(color: LinearRgb) -> bool {

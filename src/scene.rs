@@ -5,6 +5,7 @@
 
 mod checked;
 mod load;
+mod of_mesh;
 mod parts;
 mod written_camera;
 

@@ -195,7 +195,7 @@ pub struct WrittenObject {
 }
 
 /// A surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum WrittenShape {
     /// `Sphere(center: ..., radius: ...)`
     Sphere {
@@ -203,6 +203,22 @@ pub enum WrittenShape {
         center: Option<WrittenVector>,
         /// The radius.
         radius: Option<WrittenNumber>,
+    },
+    /// `Triangle(corners: [..., ..., ...])`
+    Triangle {
+        /// The three corners.
+        corners: Option<[WrittenVector; 3]>,
+    },
+    /// `Mesh(path: ..., scale: ..., rotate: ..., translate: ...)`
+    Mesh {
+        /// The mesh's file, seen from the scene's.
+        path: Option<Spanned<String>>,
+        /// Along each axis; 1 if none is given.
+        scale: Option<WrittenVector>,
+        /// About x, then y, then z, in degrees.
+        rotate: Option<WrittenVector>,
+        /// By so much, after scale and rotation.
+        translate: Option<WrittenVector>,
     },
     /// `Plane(point: ..., normal: ...)`
     Plane {

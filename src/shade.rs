@@ -138,7 +138,7 @@ pub fn incidence(light: &PointLight, point: &SurfacePoint) -> Option<Incidence> 
     let l = to_light / distance;
     let cosine = point.normal.dot(l);
     // False also for NaN: a light that lies in the surface.
-    if !(cosine > 0.0 && point.facing.dot(l) > 0.0) {
+    if !(cosine > 0.0) {
         return None;
     }
     let weakening = match light.falloff {

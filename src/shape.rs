@@ -8,6 +8,7 @@
 //! This module knows nothing of materials and light.
 
 use crate::bounds::Bounds;
+use crate::color::LinearRgb;
 use crate::ray::{Interval, Probe, Ray};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -63,6 +64,8 @@ pub struct SurfacePoint {
     /// How much of them the picture's samples see at once: a pattern is to be told by its mean over so much. Zero for a
     /// point alone.
     pub footprint: Vec2,
+    /// The diffuse reflectance that the surface brings itself: that of a mesh whose file has colours.
+    pub own_reflectance: Option<LinearRgb>,
 }
 
 impl SurfacePoint {

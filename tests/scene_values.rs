@@ -7,7 +7,7 @@ use termtrace::color::{LinearRgb, Srgb8};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::scene::{Background, Object, Scene, ToneCurve};
-use termtrace::shape::{Plane, Sphere};
+use termtrace::shape::{Part, Plane, Sphere};
 
 const CAMERA: &str = "camera: (eye: (0, 1, 5), target: (0, 1, 0))";
 
@@ -101,6 +101,117 @@ fn objects_and_their_materials() {
 fn how_the_light_is_shown() {
     let scene = scene("shadows: false, exposure: 2, tone_curve: Reinhard");
     assert_eq!((scene.shadows, scene.exposure, scene.tone_curve), (false, 2.0, ToneCurve::Reinhard));
+}
+
+fn corners(scene: &Scene) -> Vec<[Vec3; 3]> {
+    let shape = &scene.objects()[0].shape;
+    let corners = (0..shape.part_count()).map(|part| match shape.part(part) {
+        Part::Triangle(triangle) => triangle.corners(),
+        Part::Facet(facet) => facet.triangle().corners(),
+        other => panic!("{other:?}"),
+    });
+    corners.collect()
+}
+
+#[test]
+fn triangles_have_three_corners() {
+    let scene = scene("objects: [Triangle(corners: [(0, 0, 0), (1, 2, 3), (-1, 1e9, 0)])]");
+    assert_eq!(corners(&scene), [[Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0), Vec3::new(-1.0, 1e9, 0.0)]]);
+    assert_eq!(scene.objects()[0].material, Material::DEFAULT);
+}
+
+/// Scaled, turned about x, y and z, and moved, in this order. (The file has the tetrahedron between the origin and the
+/// points at the distances 1, 2 and 3 on the axes.)
+#[test]
+fn meshes_are_put_where_the_scene_wants_them() {
+    let mesh = |fields: &str| {
+        let mesh = scene(&format!("objects: [Mesh(path: \"tests/meshes/tetrahedron.ply\"{fields})]"));
+        let mut corners = corners(&mesh);
+        let is_outward = |[a, b, c]: &[Vec3; 3], middle: Vec3| (*b - *a).cross(*c - *a).dot(*a - middle) > 0.0;
+        let middle = corners.iter().flatten().sum::<Vec3>() / (3 * corners.len()) as f32;
+        assert!(corners.iter().all(|corners| is_outward(corners, middle)), "{fields}: its front is outside");
+        let mut points: Vec<Vec3> = corners.drain(..).flatten().collect();
+        points.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
+        points.dedup();
+        points
+    };
+    let sorted = |mut points: Vec<Vec3>| {
+        points.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
+        points
+    };
+    let (o, x, y, z) = (Vec3::ZERO, Vec3::X, 2.0 * Vec3::Y, 3.0 * Vec3::Z);
+    assert_eq!(mesh(""), sorted(vec![o, x, y, z]));
+    assert_eq!(
+        mesh(", scale: 2, translate: (1, 2, 3)"),
+        sorted([o, x, y, z].map(|p| 2.0 * p + Vec3::new(1.0, 2.0, 3.0)).into())
+    );
+    assert_eq!(mesh(", scale: (2, 3, 4)"), sorted(vec![o, 2.0 * x, 3.0 * y, 4.0 * z]));
+    assert_eq!(mesh(", scale: (-1, 1, 1)"), sorted(vec![o, -x, y, z]), "mirrored");
+    assert_eq!(mesh(", rotate: (90, 0, 0)"), sorted(vec![o, x, 2.0 * Vec3::Z, -3.0 * Vec3::Y]));
+    assert_eq!(mesh(", rotate: (0, 90, 0)"), sorted(vec![o, -Vec3::Z, y, 3.0 * Vec3::X]));
+    assert_eq!(mesh(", rotate: (0, 0, -270)"), sorted(vec![o, Vec3::Y, -2.0 * Vec3::X, z]));
+    assert_eq!(
+        mesh(", scale: (2, 1, 1), rotate: (90, 90, 0)"),
+        sorted(vec![o, -2.0 * Vec3::Z, 2.0 * Vec3::X, -3.0 * Vec3::Y]),
+        "x, then y"
+    );
+}
+
+/// What a file says of its colours holds, unless the scene says otherwise.
+#[test]
+fn meshes_bring_their_colours() {
+    let light = |fields: &str| {
+        let mut scene = Scene::from_ron(
+            "x.ron",
+            &format!("(camera: (eye: (0.5, 0.5, 3), target: (0.5, 0.5, 0), vertical_fov: 1), ambient: 1, objects: [Mesh({fields})])"),
+        )
+        .unwrap_or_else(|error| panic!("{error}"));
+        scene.shadows = false;
+        let resolution = termtrace::framebuffer::Resolution::square(1, 1);
+        termtrace::render::render(&scene, &scene.camera, resolution, std::num::NonZeroU32::MIN).pixel(0, 0)
+    };
+    let coloured = light("path: \"tests/meshes/square.ply\"");
+    assert!(coloured != LinearRgb::grey(0.8) && coloured != LinearRgb::BLACK, "{coloured:?}");
+    let textured = light("path: \"tests/meshes/square.obj\"");
+    assert!(textured != LinearRgb::grey(0.8) && textured != LinearRgb::BLACK, "{textured:?}");
+    assert_eq!(
+        light("path: \"tests/meshes/square.ply\", material: Diffuse((0.25, 0.5, 1))"),
+        LinearRgb::new(0.25, 0.5, 1.0)
+    );
+    assert_eq!(light("path: \"tests/meshes/square_floats.ply\", material: Diffuse(0.5)"), LinearRgb::grey(0.5));
+}
+
+#[test]
+fn a_mesh_alone_is_a_scene() {
+    let scene = Scene::load(Path::new("scenes/teapot.obj")).unwrap_or_else(|error| panic!("{error}"));
+    let resolution = termtrace::framebuffer::Resolution::square(80, 48);
+    let picture = termtrace::render::render(&scene, &scene.camera, resolution, std::num::NonZeroU32::MIN);
+    let rays = scene.camera.eye_rays(resolution.aspect_ratio());
+    let object = |x: u32, y: u32| {
+        let ray = rays.through((x as f32 + 0.5) / 80.0, 1.0 - (y as f32 + 0.5) / 48.0);
+        termtrace::hit::closest_hit(&scene, &ray).map(|hit| hit.object)
+    };
+    let all = || (0..48).flat_map(|y| (0..80).map(move |x| (x, y)));
+    let seen: Vec<_> = all().filter(|&(x, y)| object(x, y) == Some(0)).collect();
+    assert!(seen.len() > 400, "it fills the picture: {} pixels", seen.len());
+    assert!(seen.iter().all(|&(x, y)| x > 0 && x < 79 && y > 0 && y < 47), "and is seen whole");
+    assert!(all().any(|(x, y)| object(x, y) == Some(1)), "on a floor");
+    assert!(seen.iter().any(|&(x, y)| picture.pixel(x, y).g > 0.3), "in light");
+}
+
+#[test]
+fn a_mesh_that_nobody_could_see_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [
+        ("point.obj", "v 1 2 3\nf 1 1 1\n"),
+        ("far.obj", "v 1e8 0 0\nv 1e8 1 0\nv 1e8 0 1\nf 1 2 3\n"),
+        ("large.obj", "v 1e30 0 0\nv 0 1e30 0\nv 0 0 1e30\nf 1 2 3\n"),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let message = Scene::load(&path).unwrap_err().to_string();
+        assert!(message.contains("this mesh has no size"), "{name}: {message}");
+    }
 }
 
 /// No number that a scene may hold makes the tracer divide by nothing or pass what it asks of its values.

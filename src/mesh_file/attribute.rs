@@ -24,6 +24,13 @@ enum Corners {
 /// The indices of a triangle that has no values.
 const NONE: [u32; 3] = [u32::MAX; 3];
 
+/// Exchanges the last two corners of each.
+pub(super) fn turn(triangles: &mut [[u32; 3]]) {
+    for corners in triangles {
+        corners.swap(1, 2);
+    }
+}
+
 impl<T> Default for Attribute<T> {
     fn default() -> Self {
         Self { values: Vec::new(), corners: Corners::Absent }
@@ -31,6 +38,24 @@ impl<T> Default for Attribute<T> {
 }
 
 impl<T: Copy> Attribute<T> {
+    /// One for each position.
+    pub(super) fn of_positions(values: Vec<T>) -> Self {
+        Self { values, corners: Corners::OfPositions }
+    }
+
+    /// Others in the places of these.
+    pub(super) fn map(self, change: impl FnMut(T) -> T) -> Self {
+        Self { values: self.values.into_iter().map(change).collect(), ..self }
+    }
+
+    /// The same of triangles whose last two corners are exchanged.
+    pub(super) fn turned(mut self) -> Self {
+        if let Corners::Own(corners) = &mut self.corners {
+            turn(corners);
+        }
+        self
+    }
+
     /// All values, in the order of the file.
     pub fn values(&self) -> &[T] {
         &self.values

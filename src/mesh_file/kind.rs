@@ -87,7 +87,7 @@ fn first_word(line: &[u8]) -> &[u8] {
     line.split(u8::is_ascii_whitespace).next().unwrap_or_default()
 }
 
-fn by_ending(name: &str) -> Option<Kind> {
+pub(super) fn by_ending(name: &str) -> Option<Kind> {
     let ending = Path::new(name).extension()?.to_str()?.to_ascii_lowercase();
     Some(match ending.as_str() {
         "obj" => Kind::Obj,

@@ -1,7 +1,7 @@
 //! Pictures on meshes: PNG and JPEG.
 
 use super::MAX_TEXELS;
-use crate::color::Srgb8;
+use crate::color::{LinearRgb, Srgb8};
 use glam::{Vec2, Vec3};
 use std::fmt;
 use std::io::Cursor;
@@ -51,6 +51,24 @@ impl Texture {
     /// Rows of texels; at least 1.
     pub fn height(&self) -> u32 {
         self.height
+    }
+
+    /// The colour at these coordinates, as linear light: between the middles of four texels, each has its share
+    /// (bilinear). Any coordinates; the picture repeats.
+    pub fn color_at(&self, at: Vec2) -> LinearRgb {
+        let place = |coordinate: f32, length: u32| {
+            let place = (coordinate - coordinate.floor()) * length as f32 - 0.5;
+            let first = place.floor();
+            // The one before the first is the last.
+            let index = (first as i64).rem_euclid(length.into()) as u32;
+            ([index, (index + 1) % length], place - first)
+        };
+        let ((columns, right), (rows, down)) = (place(at.x, self.width), place(at.y, self.height));
+        let row = |y: u32| {
+            let [left, next] = columns.map(|x| LinearRgb::from_srgb8(self.texels[(y * self.width + x) as usize]));
+            left.lerp(next, right)
+        };
+        row(rows[0]).lerp(row(rows[1]), down)
     }
 
     /// The texels row by row, from the top left one.

@@ -12,24 +12,25 @@ use super::{Background, Object, Scene, ToneCurve};
 use crate::color::{LinearRgb, Srgb8};
 use crate::light::{Falloff, PointLight};
 use crate::material::Material;
+use crate::mesh_file::MeshFile;
 use crate::scene_file::{
     MaterialUse, SceneFile, Spanned, WrittenBackground, WrittenColor, WrittenFalloff, WrittenLight, WrittenMaterial,
     WrittenNumber, WrittenObject, WrittenShape, WrittenToneCurve, WrittenVector, closest, color_named, listed,
 };
 use crate::scene_text::{Faults, Span, quoted};
-use crate::shape::{Plane, Shape, Sphere};
-use glam::{DVec3, Vec3};
+use crate::shape::{Mesh, Plane, Shape, Sphere, Triangle};
+use glam::{DMat3, DVec3, Mat3, Vec3};
 use std::collections::HashMap;
 
 /// The scene, if nothing is wrong with it; else every fault has been added.
-pub(super) fn check(file: &SceneFile, faults: &mut Faults) -> Option<Scene> {
+pub(super) fn check(file: &SceneFile, meshes: &mut dyn Meshes, faults: &mut Faults) -> Option<Scene> {
     let mut checker = Checker { faults };
     let camera = file.camera.as_ref().and_then(|camera| checker.camera(camera));
     let background = file.background.as_ref().and_then(|written| checker.background(written));
     let ambient = file.ambient.and_then(|color| checker.light_color(color));
     let lights = file.lights.iter().filter_map(|light| checker.light(light)).collect();
     let exposure = file.exposure.and_then(|exposure| checker.exposure(exposure));
-    let objects = checker.objects(file);
+    let objects = checker.objects(file, meshes);
     if !faults.is_empty() {
         return None;
     }
@@ -55,6 +56,12 @@ const FARTHEST: f64 = 1e9;
 const SHORTEST: f64 = 1e-9;
 const BRIGHTEST: f64 = 1e12;
 const LARGEST_EXPOSURE: f64 = 1e6;
+
+/// Where meshes come from.
+pub(super) trait Meshes {
+    /// The mesh of that path, as the scene's file has it, or what is wrong with it.
+    fn mesh(&mut self, path: &str) -> Result<MeshFile, String>;
+}
 
 struct Checker<'f> {
     faults: &'f mut Faults,
@@ -176,7 +183,7 @@ impl Checker<'_> {
 
     // Objects -------------------------------------------------------------------------------------------------------
 
-    fn objects(&mut self, file: &SceneFile) -> Vec<Object> {
+    fn objects(&mut self, file: &SceneFile, meshes: &mut dyn Meshes) -> Vec<Object> {
         let materials: HashMap<&str, Named> = file
             .materials
             .iter()
@@ -190,26 +197,91 @@ impl Checker<'_> {
             })
             .collect();
         let object = |written| {
-            let (shape, material) = (self.shape(written), self.material_of(written, file, &materials));
+            let (shape, material) = (self.shape(written, meshes), self.material_of(written, file, &materials));
             let (shape, material) = (shape?, material?);
             Some(Object { shape, material })
         };
         file.objects.iter().filter_map(object).collect()
     }
 
-    fn shape(&mut self, written: &WrittenObject) -> Option<Shape> {
-        match written.shape {
-            WrittenShape::Sphere { center, radius } => {
+    fn shape(&mut self, written: &WrittenObject, meshes: &mut dyn Meshes) -> Option<Shape> {
+        match &written.shape {
+            &WrittenShape::Sphere { center, radius } => {
                 let center = center.and_then(|center| self.point(center));
                 let radius = radius.and_then(|radius| self.length("radius", radius));
                 Some(Sphere::new(center?, radius?).into())
             }
-            WrittenShape::Plane { point, normal } => {
+            WrittenShape::Triangle { corners } => {
+                let [a, b, c] = (*corners)?.map(|corner| self.point(corner));
+                Some(Triangle::new([a?, b?, c?]).into())
+            }
+            WrittenShape::Mesh { path, scale, rotate, translate } => {
+                let placed = self.placement(*scale, *rotate, *translate);
+                let path = path.as_ref()?;
+                let mesh = match meshes.mesh(&path.value) {
+                    Ok(mesh) => mesh,
+                    Err(message) => return self.fault(path.span, || message),
+                };
+                let (scale, turn, translation) = placed?;
+                match mesh.transformed(scale, turn, translation) {
+                    Some(mesh) if is_near(&mesh) => Some(Mesh::from(mesh).into()),
+                    _ => self.fault(path.span, || {
+                        "this mesh reaches beyond ±1e9; scale it down, or light cannot be followed".to_owned()
+                    }),
+                }
+            }
+            &WrittenShape::Plane { point, normal } => {
                 let point = point.and_then(|point| self.point(point));
                 let normal = normal.and_then(|normal| self.unit_vector("normal", normal));
                 Some(Plane::new(point?, normal?.as_vec3()).into())
             }
         }
+    }
+
+    /// Scale, rotation and translation of a mesh.
+    fn placement(
+        &mut self,
+        scale: Option<WrittenVector>,
+        rotate: Option<WrittenVector>,
+        translate: Option<WrittenVector>,
+    ) -> Option<(Vec3, Mat3, Vec3)> {
+        let scale = match scale {
+            Some(scale) => self.factors(scale),
+            None => Some(Vec3::ONE),
+        };
+        let turn = match rotate {
+            Some(angles) => self.turn(angles),
+            None => Some(Mat3::IDENTITY),
+        };
+        let translation = match translate {
+            Some(translation) => self.point(translation),
+            None => Some(Vec3::ZERO),
+        };
+        Some((scale?, turn?, translation?))
+    }
+
+    /// Along no axis nothing is left of a mesh; it may be mirrored.
+    fn factors(&mut self, written: WrittenVector) -> Option<Vec3> {
+        let factors = written.components.map(|factor| factor.value);
+        match written.components.iter().find(|factor| !(SHORTEST..=FARTHEST).contains(&factor.value.abs())) {
+            Some(factor) => {
+                self.fault(factor.span, || "a factor must lie between 1e-9 and 1e9, or be as far below 0".to_owned())
+            }
+            None => Some(DVec3::from_array(factors).as_vec3()),
+        }
+    }
+
+    /// About x first, then about y, then about z; counterclockwise for who looks against the axis.
+    fn turn(&mut self, written: WrittenVector) -> Option<Mat3> {
+        const MOST_TURNS: f64 = 36_000.0;
+        if let Some(angle) = written.components.iter().find(|angle| angle.value.abs() > MOST_TURNS) {
+            return self.fault(angle.span, || "an angle must lie within ±36000 degrees".to_owned());
+        }
+        let [x, y, z] = written.components.map(|angle| cosine_and_sine(angle.value));
+        let about_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.0, x.1), DVec3::new(0.0, -x.1, x.0));
+        let about_y = DMat3::from_cols(DVec3::new(y.0, 0.0, -y.1), DVec3::Y, DVec3::new(y.1, 0.0, y.0));
+        let about_z = DMat3::from_cols(DVec3::new(z.0, z.1, 0.0), DVec3::new(-z.1, z.0, 0.0), DVec3::Z);
+        Some((about_z * about_y * about_x).as_mat3())
     }
 
     /// The direction, of unit length: of f64's, so that nothing is lost before the one rounding.
@@ -246,7 +318,11 @@ impl Checker<'_> {
         materials: &HashMap<&str, Named>,
     ) -> Option<Material> {
         let Some(Spanned { value, span }) = &object.material else {
-            return Some(Material::DEFAULT);
+            return Some(if matches!(object.shape, WrittenShape::Mesh { .. }) {
+                Material::Own
+            } else {
+                Material::DEFAULT
+            });
         };
         let (is_checker, material) = match value {
             MaterialUse::Inline(written) => {
@@ -260,11 +336,33 @@ impl Checker<'_> {
         };
         if is_checker && !matches!(object.shape, WrittenShape::Plane { .. }) {
             return self.fault(*span, || {
-                "a Checker needs a Plane: its squares are laid out on flat ground, and a Sphere has none".to_owned()
+                let shape = match object.shape {
+                    WrittenShape::Sphere { .. } => "a Sphere",
+                    WrittenShape::Triangle { .. } => "a Triangle",
+                    _ => "a Mesh",
+                };
+                format!("a Checker needs a Plane, on which its squares are laid out; this is {shape}")
             });
         }
         material
     }
+}
+
+/// Of an angle in degrees; exact for quarter turns.
+fn cosine_and_sine(degrees: f64) -> (f64, f64) {
+    let quarters = libm::round(degrees / 90.0);
+    let (sine, cosine) = libm::sincos((degrees - 90.0 * quarters).to_radians());
+    match (quarters as i64).rem_euclid(4) {
+        0 => (cosine, sine),
+        1 => (-sine, cosine),
+        2 => (-cosine, -sine),
+        _ => (sine, -cosine),
+    }
+}
+
+/// Whether light can be followed to all of it.
+fn is_near(mesh: &MeshFile) -> bool {
+    mesh.positions().iter().all(|position| f64::from(position.abs().max_element()) <= FARTHEST)
 }
 
 /// A named material after its check.

@@ -3,15 +3,18 @@
 use super::{Scene, checked};
 use crate::camera::Camera;
 use crate::camera_path::CameraPath;
+use crate::mesh_file::{self, MeshError, MeshFile};
 use crate::scene_file::{PathFile, SceneFile};
 use crate::scene_text::{Fault, Faults, MAX_BYTES, Node, SceneError, Span, parse, visible};
+use std::collections::HashMap;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 impl Scene {
-    /// The scene that the text describes. The name is used in messages only.
+    /// The scene that the text describes. The name is used in messages, and the meshes that the scene names are looked
+    /// for from its folder.
     ///
     /// ```
     /// use termtrace::scene::Scene;
@@ -33,8 +36,9 @@ impl Scene {
     /// The first fault of the syntax; if there is none, all others: unknown and missing fields, wrong types, and values
     /// that make no picture.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
+        let mut meshes = Meshes::beside(Path::new(name));
         read(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", |root, faults| {
-            checked::check(&SceneFile::read(root, faults), faults)
+            checked::check(&SceneFile::read(root, faults), &mut meshes, faults)
         })
     }
 
@@ -53,7 +57,7 @@ impl Scene {
         Self::from_ron(name, text_from(name, bytes)?)
     }
 
-    /// The scene in that file.
+    /// The scene in that file, or the mesh, with light, a floor and a good view.
     ///
     /// ```no_run
     /// use std::path::Path;
@@ -68,7 +72,15 @@ impl Scene {
     /// # Errors
     /// If the file cannot be read, or as [`Scene::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, LoadError> {
-        Ok(Self::from_bytes(&path.to_string_lossy(), &bytes_of(path)?)?)
+        let name = path.to_string_lossy();
+        if mesh_file::is_mesh(&name, &[]) {
+            return around_mesh(path);
+        }
+        let bytes = bytes_of(path)?;
+        if mesh_file::is_mesh(&name, &bytes) {
+            return around_mesh(path);
+        }
+        Ok(Self::from_bytes(&name, &bytes)?)
     }
 }
 
@@ -125,6 +137,13 @@ pub enum LoadError {
     },
     /// What it says is none.
     Scene(SceneError),
+    /// It is none of the meshes that can be read.
+    Mesh(MeshError),
+    /// It is a mesh that nobody could see.
+    Unseen {
+        /// Which file.
+        path: PathBuf,
+    },
 }
 
 impl fmt::Display for LoadError {
@@ -140,6 +159,15 @@ impl fmt::Display for LoadError {
                 }
             }
             Self::Scene(error) => error.fmt(f),
+            Self::Mesh(error) => error.fmt(f),
+            Self::Unseen { path } => {
+                let path = visible(&path.to_string_lossy());
+                write!(
+                    f,
+                    "{path}: this mesh has no size, is too small for how far off it is, or reaches beyond ±1e9; a scene \
+                     with Mesh(path: ..., scale: ..., translate: ...) can bring it nearer"
+                )
+            }
         }
     }
 }
@@ -148,14 +176,52 @@ impl std::error::Error for LoadError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::CannotRead { error, .. } => Some(error),
-            Self::Scene(_) => None,
+            Self::Scene(_) | Self::Mesh(_) | Self::Unseen { .. } => None,
         }
+    }
+}
+
+impl From<MeshError> for LoadError {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
     }
 }
 
 impl From<SceneError> for LoadError {
     fn from(error: SceneError) -> Self {
         Self::Scene(error)
+    }
+}
+
+fn around_mesh(path: &Path) -> Result<Scene, LoadError> {
+    Scene::of_mesh(MeshFile::load(path)?).ok_or_else(|| LoadError::Unseen { path: path.to_owned() })
+}
+
+/// The meshes that a scene names, each read once.
+struct Meshes {
+    folder: PathBuf,
+    read: HashMap<PathBuf, MeshFile>,
+}
+
+impl Meshes {
+    fn beside(scene: &Path) -> Self {
+        Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), read: HashMap::new() }
+    }
+}
+
+impl checked::Meshes for Meshes {
+    fn mesh(&mut self, path: &str) -> Result<MeshFile, String> {
+        let path = self.folder.join(path);
+        if let Some(mesh) = self.read.get(&path) {
+            return Ok(mesh.clone());
+        }
+        // Not from a pipe or a device, which might never end.
+        if std::fs::metadata(&path).is_ok_and(|data| !data.is_file()) {
+            return Err(format!("{}: this is not a file", visible(&path.to_string_lossy())));
+        }
+        let mesh = MeshFile::load(&path).map_err(|error| error.to_string())?;
+        self.read.insert(path, mesh.clone());
+        Ok(mesh)
     }
 }
 

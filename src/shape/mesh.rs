@@ -2,44 +2,34 @@
 
 use super::{Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
+use crate::color::LinearRgb;
+use crate::mesh_file::MeshFile;
 use crate::ray::{Interval, Probe, Ray};
 use glam::Vec3;
+use std::ops::{Add, Mul};
 
-/// Many triangles, and where wanted the normals of the smooth surface that they stand for.
+/// Many triangles, with what their file says of them: the normals of the smooth surface that they stand for, colours and
+/// textures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    positions: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
-    /// One for each position, or none at all.
-    normals: Vec<Vec3>,
+    file: MeshFile,
+}
+
+impl From<MeshFile> for Mesh {
+    fn from(file: MeshFile) -> Self {
+        Self { file }
+    }
 }
 
 impl Mesh {
-    /// The triangles between these points, each of which is named by the places of its corners.
-    ///
-    /// # Panics
-    /// If there is no such point, or there are 2^32 triangles or more; in debug builds, unless all points are finite.
-    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
-        debug_assert!(positions.iter().all(|position| position.is_finite()), "a mesh's points are finite");
-        assert!(u32::try_from(triangles.len()).is_ok(), "a mesh has fewer than 2^32 triangles");
-        let is_there = |&corner: &u32| (corner as usize) < positions.len();
-        assert!(triangles.iter().flatten().all(is_there), "a triangle's corners are points of the mesh");
-        Self { positions, triangles, normals: Vec::new() }
-    }
-
-    /// With the normal of a smooth surface at each point, which is interpolated between them; where one has no length,
-    /// the triangle's own counts.
-    ///
-    /// # Panics
-    /// Unless there are as many as points.
-    pub fn with_normals(self, normals: Vec<Vec3>) -> Self {
-        assert_eq!(normals.len(), self.positions.len(), "a mesh has as many normals as points");
-        Self { normals, ..self }
-    }
-
-    /// How many triangles there are.
+    /// How many triangles there are; at least one.
     pub fn triangle_count(&self) -> u32 {
-        self.triangles.len() as u32
+        self.file.triangles().len() as u32
+    }
+
+    /// What it is made of.
+    pub fn file(&self) -> &MeshFile {
+        &self.file
     }
 
     /// One of the triangles.
@@ -47,8 +37,9 @@ impl Mesh {
     /// # Panics
     /// If there are fewer.
     pub fn facet(&self, index: u32) -> Facet<'_> {
-        let corners = self.triangles[index as usize];
-        Facet { mesh: self, corners, triangle: Triangle::new(corners.map(|corner| self.positions[corner as usize])) }
+        let corners = self.file.triangles()[index as usize];
+        let positions = self.file.positions();
+        Facet { mesh: self, index, triangle: Triangle::new(corners.map(|corner| positions[corner as usize])) }
     }
 }
 
@@ -56,7 +47,7 @@ impl Mesh {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet<'m> {
     mesh: &'m Mesh,
-    corners: [u32; 3],
+    index: u32,
     triangle: Triangle,
 }
 
@@ -71,13 +62,55 @@ impl Surface for Facet<'_> {
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
         let point = self.triangle.at_crossing(ray, t);
-        if self.mesh.normals.is_empty() {
-            return point;
+        let point = SurfacePoint { own_reflectance: self.reflectance(&point), ..point };
+        match self.mesh.file.normals_of(self.index as usize) {
+            Some(normals) => self.smoothed(&point, normals),
+            None => point,
         }
-        let [a, b, c] = self.corners.map(|corner| self.mesh.normals[corner as usize]);
-        let smooth = (a + (b - a) * point.uv.x + (c - a) * point.uv.y).normalize_or(point.facing);
-        // On the side that is seen: the corners may go round either way.
-        let normal = if smooth.dot(point.facing) < 0.0 { -smooth } else { smooth };
-        SurfacePoint { normal, ..point }
     }
+}
+
+impl Facet<'_> {
+    /// The triangle itself.
+    pub fn triangle(&self) -> &Triangle {
+        &self.triangle
+    }
+
+    /// The point on the smooth surface that has these normals at the corners, seen from the same side: the corners may go
+    /// round either way.
+    fn smoothed(&self, point: &SurfacePoint, normals: [Vec3; 3]) -> SurfacePoint {
+        let smooth = between(normals, point).normalize_or(point.facing);
+        let sign = if smooth.dot(point.facing) < 0.0 { -1.0 } else { 1.0 };
+        let normals = normals.map(|normal| normal * sign);
+        SurfacePoint { normal: smooth * sign, position: point.position + self.lift(point, normals), ..*point }
+    }
+
+    /// From the triangle up to where the smooth surface bulges over it: between the planes through the corners,
+    /// perpendicular to their normals (Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4). Rays that
+    /// start there do not meet the triangle's neighbours where the smooth surface is lit.
+    fn lift(&self, point: &SurfacePoint, normals: [Vec3; 3]) -> Vec3 {
+        let [a, b, c] = self.triangle.corners();
+        let above = |corner: Vec3, normal: Vec3| normal * (corner - point.position).dot(normal).max(0.0);
+        between([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], point)
+    }
+
+    /// The product of what the file has for it: its material's, the texture's and the corners' colours.
+    fn reflectance(&self, point: &SurfacePoint) -> Option<LinearRgb> {
+        let (file, index) = (&self.mesh.file, self.index as usize);
+        let material = file.material_of(index).map(|index| &file.materials()[index]);
+        let colors = file.colors_of(index).map(|colors| between(colors, point));
+        let textured = material.and_then(|material| {
+            let texture = material.texture.as_ref()?;
+            let uv = between(file.texture_coordinates_of(index)?, point);
+            Some(texture.texture.color_at(texture.at(uv)))
+        });
+        let own = [material.map(|material| material.reflectance), textured, colors];
+        own.into_iter().flatten().reduce(|a, b| a * b)
+    }
+}
+
+/// What lies between the corners' values at the point.
+fn between<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], point: &SurfacePoint) -> T {
+    let [second, third] = point.uv.to_array();
+    a * (1.0 - second - third) + b * second + c * third
 }

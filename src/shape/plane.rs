@@ -66,7 +66,16 @@ impl Surface for Plane {
         let clearance = CLEARANCE * (largest_coordinate(position) + largest_coordinate(self.point));
         let from_point = position - self.point;
         let uv = Vec2::new(from_point.dot(self.u), from_point.dot(self.v));
-        SurfacePoint { position, normal, facing: normal, side, clearance, uv, footprint: Vec2::ZERO }
+        SurfacePoint {
+            position,
+            normal,
+            facing: normal,
+            side,
+            clearance,
+            uv,
+            footprint: Vec2::ZERO,
+            own_reflectance: None,
+        }
     }
 
     /// A neighbour's ray p + t (d + e) reaches the plane where t changes by -t e.n / d.n, to first order (Igehy, Tracing

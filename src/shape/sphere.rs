@@ -105,6 +105,15 @@ impl Surface for Sphere {
         let seen_from_outside = ray.direction.dot(outward) < 0.0;
         let (normal, side) = if seen_from_outside { (outward, Side::Front) } else { (-outward, Side::Back) };
         let clearance = CLEARANCE * (largest_coordinate(self.center) + self.radius);
-        SurfacePoint { position, normal, facing: normal, side, clearance, uv: Vec2::ZERO, footprint: Vec2::ZERO }
+        SurfacePoint {
+            position,
+            normal,
+            facing: normal,
+            side,
+            clearance,
+            uv: Vec2::ZERO,
+            footprint: Vec2::ZERO,
+            own_reflectance: None,
+        }
     }
 }

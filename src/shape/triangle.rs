@@ -112,6 +112,7 @@ impl Surface for Triangle {
             clearance: CLEARANCE * largest,
             uv: shares,
             footprint: Vec2::ZERO,
+            own_reflectance: None,
         }
     }
 }

@@ -1,0 +1,78 @@
+//! A scene around a mesh that comes without one.
+
+use super::{Background, Object, Scene};
+use crate::bounds::Bounds;
+use crate::camera::{Camera, Pose, ViewRectangle};
+use crate::color::{LinearRgb, Srgb8};
+use crate::light::{Falloff, PointLight};
+use crate::material::Material;
+use crate::mesh_file::MeshFile;
+use crate::shape::{Mesh, Plane};
+use glam::{BVec3, Vec3};
+
+/// Where the eye is, from the middle of the mesh: a little to the right, and above.
+const TOWARDS_EYE: Vec3 = Vec3::new(0.45, 0.4, 1.0);
+
+/// The vertical field of view, in radians: 40 degrees.
+const FIELD_OF_VIEW: f32 = 0.698_131_7;
+
+/// The tangent of half of it, less a margin.
+const WITHIN: f32 = 0.95 * 0.363_970_23;
+
+/// Pictures are at least so much wider than high.
+const ASPECT_RATIO: f32 = 4.0 / 3.0;
+
+impl Scene {
+    /// The mesh on a floor, seen whole from in front and above, lit from the left by a strong light and from the right by a
+    /// weak one. Up is +y. `None` if it has no size, is too small for where it is, or reaches beyond ±1e9: a scene file can
+    /// bring it nearer.
+    pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
+        let bounds = Bounds::of(mesh.positions().iter().copied());
+        let middle = bounds.min + 0.5 * bounds.extent();
+        let radius = 0.5 * bounds.extent().length();
+        let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+        // (The negation turns NaN and infinity away too.)
+        if !(radius > 1e-5 * farthest && radius > 1e-9 && farthest <= 1e9) {
+            return None;
+        }
+        let floor = Plane::new(Vec3::new(middle.x, bounds.min.y, middle.z), Vec3::Y);
+        let objects =
+            vec![Object::new(Mesh::from(mesh), Material::Own), Object::new(floor, Material::Diffuse(grey(0xb0)))];
+        Some(Self {
+            background: Background::Gradient {
+                bottom: grey(0x90),
+                top: LinearRgb::from_srgb8(Srgb8::new(0x87, 0xa6, 0xcc)),
+            },
+            ambient: LinearRgb::grey(0.12),
+            lights: vec![
+                light(middle + radius * Vec3::new(-2.5, 4.0, 3.0), 0.85),
+                light(middle + radius * Vec3::new(4.0, 2.0, 2.0), 0.2),
+            ],
+            ..Self::new(camera(&bounds, middle)?, objects)
+        })
+    }
+}
+
+/// The box's corners just fit into the picture.
+fn camera(bounds: &Bounds, middle: Vec3) -> Option<Camera> {
+    let w = TOWARDS_EYE.normalize();
+    let u = Vec3::Y.cross(w).normalize();
+    let v = w.cross(u);
+    let distance = (0..8).map(|corner| {
+        let is_max = |axis: u32| corner >> axis & 1 == 1;
+        let corner = Vec3::select(BVec3::new(is_max(0), is_max(1), is_max(2)), bounds.max, bounds.min) - middle;
+        corner.dot(w) + (corner.dot(v).abs() / WITHIN).max(corner.dot(u).abs() / (WITHIN * ASPECT_RATIO))
+    });
+    let eye = middle + w * distance.fold(0.0, f32::max);
+    let pose = Pose { eye, target: middle, up: Vec3::Y };
+    ViewRectangle::from_vertical_fov(FIELD_OF_VIEW).and_then(|rectangle| Camera::new(pose, rectangle)).ok()
+}
+
+/// As strong everywhere.
+fn light(position: Vec3, strength: f32) -> PointLight {
+    PointLight { position, intensity: LinearRgb::grey(strength), falloff: Falloff::None }
+}
+
+fn grey(level: u8) -> LinearRgb {
+    LinearRgb::from_srgb8(Srgb8::new(level, level, level))
+}
