@@ -67,40 +67,48 @@ impl Bvh {
         mut within: Interval,
         mut visit: impl FnMut(Range<usize>, Interval) -> ControlFlow<(), f32>,
     ) -> ControlFlow<()> {
-        let mut waiting = [(0, 0.0); MAX_DEPTH];
-        let mut count = 0;
         let Some(root) = self.nodes.first() else { return ControlFlow::Continue(()) };
-        let Some(start) = enters(root, probe, within) else { return ControlFlow::Continue(()) };
-        let mut next = Some((0_usize, start));
+        // A few boxes are one leaf, and need neither a box around them nor the space of a stack.
+        if let Some(leaf) = root.leaf() {
+            return visit(leaf, within).map_continue(|_| ());
+        }
+        let mut waiting = [(0_u32, 0.0); MAX_DEPTH];
+        let mut count = 0;
+        let mut next = enters(root, probe, within).map(|start| (0, start));
         while let Some((at, start)) = next.take().or_else(|| pop(&waiting, &mut count)) {
             // Something nearer may have been found since; what is as near may come first in the scene.
             if start > within.max {
                 continue;
             }
-            let node = &self.nodes[at];
-            if node.count > 0 {
-                let first = node.at as usize;
-                within.max = visit(first..first + node.count as usize, within)?;
+            let node = &self.nodes[at as usize];
+            if let Some(leaf) = node.leaf() {
+                within.max = visit(leaf, within)?;
                 continue;
             }
-            let (first, second) = (at + 1, at + node.at as usize);
-            let starts =
-                [first, second].map(|child| enters(&self.nodes[child], probe, within).map(|start| (child, start)));
-            next = match starts {
-                [Some(first), Some(second)] => {
+            let entered = |child: u32| enters(&self.nodes[child as usize], probe, within).map(|start| (child, start));
+            next = match (entered(at + 1), entered(at + node.at)) {
+                (Some(first), Some(second)) => {
                     let (near, far) = if second.1 < first.1 { (second, first) } else { (first, second) };
                     waiting[count] = far;
                     count += 1;
                     Some(near)
                 }
-                [first, second] => first.or(second),
+                (first, second) => first.or(second),
             };
         }
         ControlFlow::Continue(())
     }
 }
 
-fn pop(waiting: &[(usize, f32)], count: &mut usize) -> Option<(usize, f32)> {
+impl Node {
+    /// The places of a leaf's boxes in the order.
+    fn leaf(&self) -> Option<Range<usize>> {
+        let first = self.at as usize;
+        (self.count > 0).then(|| first..first + self.count as usize)
+    }
+}
+
+fn pop(waiting: &[(u32, f32)], count: &mut usize) -> Option<(u32, f32)> {
     *count = count.checked_sub(1)?;
     Some(waiting[*count])
 }

@@ -1,6 +1,7 @@
 //! A ray: the half line { origin + t * direction | t >= 0 } of the lecture.
 
 use glam::Vec3;
+use std::cell::OnceCell;
 
 /// `origin + t * direction`. The direction need not have unit length: t is counted in lengths of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,20 +20,25 @@ impl Ray {
 }
 
 /// A ray, with what tests against many shapes have in common.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// The ray.
     pub ray: Ray,
     /// One over the direction, coordinate by coordinate; infinite where that is zero.
     pub inverse: Vec3,
-    /// What brings the direction to (0, 0, 1).
-    pub shear: Shear,
+    /// Made when the first triangle asks for it.
+    shear: OnceCell<Shear>,
 }
 
 impl Probe {
     /// Of that ray.
     pub fn new(ray: Ray) -> Self {
-        Self { ray, inverse: 1.0 / ray.direction, shear: Shear::of(ray.direction) }
+        Self { ray, inverse: 1.0 / ray.direction, shear: OnceCell::new() }
+    }
+
+    /// What brings the direction to (0, 0, 1).
+    pub fn shear(&self) -> &Shear {
+        self.shear.get_or_init(|| Shear::of(self.ray.direction))
     }
 }
 

@@ -121,6 +121,7 @@ impl Shape {
     ///
     /// # Panics
     /// If a mesh has fewer.
+    #[inline]
     pub fn part(&self, part: u32) -> Part<'_> {
         match self {
             Self::Sphere(sphere) => Part::Sphere(sphere),
@@ -153,6 +154,7 @@ macro_rules! parts {
                 }
             }
 
+            #[inline]
             fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
                 match self {
                     $(Self::$name(surface) => surface.closest_crossing(probe, within),)*

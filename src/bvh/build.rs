@@ -27,6 +27,9 @@ const FEW: usize = 8192;
 /// A leaf has no more.
 const MAX_LEAF: usize = 8;
 
+/// So few are not worth another node.
+const MIN_LEAF: usize = 4;
+
 /// What it costs to visit a node, where a box's content costs 1.
 const VISIT: f32 = 1.0;
 
@@ -91,7 +94,7 @@ fn around(items: &[Item]) -> Bounds {
 
 /// Puts the items on either side of a cut, and answers how many come before it; nothing where a leaf is as good.
 fn cut(items: &mut [Item], bounds: &Bounds, depth: usize) -> Option<usize> {
-    if items.len() == 1 {
+    if items.len() <= MIN_LEAF {
         return None;
     }
     let middles = Bounds::of(items.iter().map(Item::middle));

@@ -42,7 +42,7 @@ impl Triangle {
     /// come out equal, f64 holds them whole. As the neighbour comes to the same answer with the sign turned, no ray slips
     /// through between them.
     fn crossing(&self, probe: &Probe) -> Option<Crossing> {
-        let [a, b, c] = self.corners.map(|corner| probe.shear.apply(corner - probe.ray.origin));
+        let [a, b, c] = self.corners.map(|corner| probe.shear().apply(corner - probe.ray.origin));
         let weights = Vec3::new(side(c, b), side(a, c), side(b, a));
         if weights.cmplt(Vec3::ZERO).any() && weights.cmpgt(Vec3::ZERO).any() {
             return None;
