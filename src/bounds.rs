@@ -1,6 +1,7 @@
 //! Boxes along the axes, and where a ray is inside one.
 
-use crate::ray::{Interval, Probe};
+use crate::lanes::Number;
+use crate::ray::{Interval, Probe, Rays};
 use glam::Vec3;
 
 /// A box along the axes: all points from `min` to `max`. It may be flat, or a point.
@@ -48,19 +49,32 @@ impl Bounds {
     /// coordinates, in IEEE arithmetic as on paper: the way through a larger box contains the way through a smaller one,
     /// bit for bit. So it does not depend on the boxes around a shape's own whether the shape is tested.
     pub fn crossed(&self, probe: &Probe) -> Interval {
-        let is_backward = probe.inverse.cmplt(Vec3::ZERO);
-        let near = (Vec3::select(is_backward, self.max, self.min) - probe.ray.origin) * probe.inverse;
-        let far = (Vec3::select(is_backward, self.min, self.max) - probe.ray.origin) * probe.inverse;
-        // NaN is zero times infinity: a ray along a face, in its plane. That face ends nothing, and is left out as `max`
-        // and `min` return their other argument then. (Where SIMD does this, NaN has to come first: there it is always
-        // the second that is returned. Of two zeros it does not matter which.)
-        let enters = near.x.max(near.y.max(near.z.max(f32::NEG_INFINITY)));
-        let leaves = far.x.min(far.y.min(far.z.min(f32::INFINITY)));
-        Interval { min: -lengthened(-enters), max: lengthened(leaves) }
+        let [min, max] = self.crossed_by(&probe.rays);
+        Interval { min, max }
+    }
+
+    /// [`crossed`](Self::crossed) by one ray or several: from where to where.
+    #[inline(always)]
+    pub fn crossed_by<N: Number>(&self, rays: &Rays<N>) -> [N; 2] {
+        let way = |min: f32, max: f32, origin: N, inverse: N| {
+            let is_backward = inverse.lt(N::splat(0.0));
+            let near = N::select(is_backward, N::splat(max), N::splat(min));
+            let far = N::select(is_backward, N::splat(min), N::splat(max));
+            [(near - origin) * inverse, (far - origin) * inverse]
+        };
+        let x = way(self.min.x, self.max.x, rays.origin.x, rays.inverse.x);
+        let y = way(self.min.y, self.max.y, rays.origin.y, rays.inverse.y);
+        let z = way(self.min.z, self.max.z, rays.origin.z, rays.inverse.z);
+        // NaN is zero times infinity: a ray along a face, in its plane. That face ends nothing, and is left out: where the
+        // first is NaN, `max` and `min` are the second, which never is.
+        let enters = x[0].max(y[0].max(z[0].max(N::splat(f32::NEG_INFINITY))));
+        let leaves = x[1].min(y[1].min(z[1].min(N::splat(f32::INFINITY))));
+        [-lengthened(-enters), lengthened(leaves)]
     }
 }
 
 /// A little more.
-fn lengthened(t: f32) -> f32 {
-    t * if t > 0.0 { 1.0 + SLACK } else { 1.0 - SLACK }
+#[inline(always)]
+fn lengthened<N: Number>(t: N) -> N {
+    t * N::select(N::splat(0.0).lt(t), N::splat(1.0 + SLACK), N::splat(1.0 - SLACK))
 }

@@ -54,6 +54,11 @@ impl Bvh {
         &self.order
     }
 
+    /// Whether it leaves nothing out: there are next to no boxes.
+    pub fn is_leaf(&self) -> bool {
+        self.nodes.len() <= 1
+    }
+
     /// How much memory it takes, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..]) + size_of_val(&self.order[..])

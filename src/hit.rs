@@ -2,7 +2,8 @@
 //!
 //! Both are asked for many rays at a time, so that the way in which they are traced together is this stage's choice.
 
-use crate::ray::{Interval, Probe, Ray};
+use crate::lanes::{Eight, EightAnswers, LANES, Number};
+use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::scene::{PartId, Scene};
 use crate::shape::{Part, Surface};
 use std::ops::ControlFlow;
@@ -28,13 +29,58 @@ impl Hit {
 /// The closest hit of each ray, on its half line; of two at the same t, what comes first in the scene.
 pub fn closest_hits(scene: &Scene, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
     hits.clear();
-    hits.extend(rays.iter().map(|ray| closest_hit(scene, ray)));
+    match &scene.parts().few {
+        Some(few) => rays.chunks(LANES).for_each(|rays| hits.extend(closest_of_few(scene, few, rays))),
+        None => hits.extend(rays.iter().map(|ray| closest_hit(scene, ray))),
+    }
 }
 
 /// Whether each ray meets anything inside the interval.
 pub fn any_hits(scene: &Scene, rays: &[Ray], within: Interval, found: &mut Vec<bool>) {
     found.clear();
-    found.extend(rays.iter().map(|ray| any_hit(scene, ray, within)));
+    match &scene.parts().few {
+        Some(few) => rays.chunks(LANES).for_each(|rays| found.extend(any_of_few(scene, few, rays, within))),
+        None => found.extend(rays.iter().map(|ray| any_hit(scene, ray, within))),
+    }
+}
+
+/// The closest hits of eight rays or less, among few parts: all are tested, in the scene's order.
+#[inline]
+fn closest_of_few(scene: &Scene, few: &[PartId], rays: &[Ray]) -> impl Iterator<Item = Option<Hit>> {
+    let count = rays.len();
+    let rays = Rays::of(rays);
+    let mut closest = Eight::splat(f32::INFINITY);
+    let mut ids = [None; LANES];
+    for &id in few {
+        let Some((crosses, t)) = surface(scene, id).eight_crossings(&rays, Eight::splat(0.0)) else { continue };
+        let is_closer = crosses & t.lt(closest);
+        closest = Number::select(is_closer, t, closest);
+        for (lane, closest) in ids.iter_mut().enumerate() {
+            if is_closer.of(lane) {
+                *closest = Some(id);
+            }
+        }
+    }
+    let hit = move |lane: usize| ids[lane].map(|PartId { object, part }| Hit { t: closest.0[lane], object, part });
+    (0..count).map(hit)
+}
+
+/// The same for any hits.
+#[inline]
+fn any_of_few(scene: &Scene, few: &[PartId], rays: &[Ray], within: Interval) -> impl Iterator<Item = bool> {
+    let count = rays.len();
+    let rays = Rays::of(rays);
+    let (min, max) = (Eight::splat(within.min), Eight::splat(within.max));
+    let mut found = EightAnswers::NONE;
+    for &id in few {
+        if let Some((crosses, t)) = surface(scene, id).eight_crossings(&rays, min) {
+            found = found | (crosses & t.le(max));
+        }
+        if found.all() {
+            break;
+        }
+    }
+    (0..count).map(move |lane| found.of(lane))
 }
 
 /// The closest hit of one ray.

@@ -25,6 +25,7 @@
 //!
 //! Words that all stages speak:
 //! - [`color`]: linear RGB, 8-bit sRGB, and the transfer function between them
+//! - [`lanes`]: a number, or eight side by side
 //! - [`ray`]: origin + t * direction, and intervals of t
 //! - [`bounds`]: boxes along the axes
 //! - [`capabilities`]: what a terminal's cells can be made of
@@ -95,6 +96,7 @@
 compile_error!("termtrace runs on Linux and macOS: it talks to the terminal through POSIX termios, poll and signals");
 
 pub mod color;
+pub mod lanes;
 pub mod ray;
 pub mod bounds;
 pub mod capabilities;

@@ -1,6 +1,8 @@
 //! A ray: the half line { origin + t * direction | t >= 0 } of the lecture.
 
+use crate::lanes::{Eight, Number, Vector};
 use glam::Vec3;
+use std::array::from_fn;
 use std::cell::OnceCell;
 
 /// `origin + t * direction`. The direction need not have unit length: t is counted in lengths of it.
@@ -19,21 +21,64 @@ impl Ray {
     }
 }
 
-/// A ray, with what tests against many shapes have in common.
+/// A ray or several, with what tests against many shapes have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rays<N> {
+    /// Where each begins.
+    pub origin: Vector<N>,
+    /// Where it goes; not zero.
+    pub direction: Vector<N>,
+    /// One over the direction, coordinate by coordinate; infinite where that is zero.
+    pub inverse: Vector<N>,
+    /// The direction's length, squared.
+    pub squared_length: N,
+}
+
+impl<N: Number> Rays<N> {
+    #[inline(always)]
+    fn new(origin: Vector<N>, direction: Vector<N>) -> Self {
+        let Vector { x, y, z } = direction;
+        let one = N::splat(1.0);
+        let inverse = Vector { x: one / x, y: one / y, z: one / z };
+        Self { origin, direction, inverse, squared_length: direction.dot(direction) }
+    }
+}
+
+impl Rays<Eight> {
+    /// Of eight rays, or of fewer: the last of them then stands for those that are lacking.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[inline(always)]
+    pub fn of(rays: &[Ray]) -> Self {
+        let ray = |lane: usize| &rays[lane.min(rays.len() - 1)];
+        Self::new(Vector::of(from_fn(|lane| ray(lane).origin)), Vector::of(from_fn(|lane| ray(lane).direction)))
+    }
+
+    /// One of the eight.
+    pub fn ray(&self, lane: usize) -> Ray {
+        let at = |Vector { x, y, z }: &Vector<Eight>| Vec3::new(x.0[lane], y.0[lane], z.0[lane]);
+        Ray { origin: at(&self.origin), direction: at(&self.direction) }
+    }
+}
+
+/// A ray by itself, with what tests against many shapes have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// The ray.
     pub ray: Ray,
-    /// One over the direction, coordinate by coordinate; infinite where that is zero.
-    pub inverse: Vec3,
+    /// The same for formulas that may be asked for several.
+    pub rays: Rays<f32>,
     /// Made when the first triangle asks for it.
     shear: OnceCell<Shear>,
 }
 
 impl Probe {
     /// Of that ray.
+    #[inline]
     pub fn new(ray: Ray) -> Self {
-        Self { ray, inverse: 1.0 / ray.direction, shear: OnceCell::new() }
+        let rays = Rays::new(Vector::splat(ray.origin), Vector::splat(ray.direction));
+        Self { ray, rays, shear: OnceCell::new() }
     }
 
     /// What brings the direction to (0, 0, 1).
@@ -106,18 +151,17 @@ impl Interval {
 
     /// The `t` inside that is nearest to this one; none if there is nothing inside. (NaN stays NaN.)
     pub fn nearest(self, t: f32) -> Option<f32> {
-        let inside = if t < self.min {
-            self.min
-        } else if t > self.max {
-            self.max
-        } else {
-            t
-        };
-        (self.min <= self.max).then_some(inside)
+        (self.min <= self.max).then_some(nearest_in(self.min, self.max, t))
     }
 
     /// Whether `t` lies inside. NaN does not, nor does infinity.
     pub fn contains(self, t: f32) -> bool {
         self.min <= t && t <= self.max
     }
+}
+
+/// Of all from `min` to `max`, what is nearest to `t`. (NaN stays NaN.)
+#[inline(always)]
+pub fn nearest_in<N: Number>(min: N, max: N, t: N) -> N {
+    N::select(t.lt(min), min, N::select(max.lt(t), max, t))
 }

@@ -9,8 +9,10 @@
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
-use crate::ray::{Interval, Probe, Ray};
+use crate::lanes::{Eight, EightAnswers, Mask, Number};
+use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
+use std::array::from_fn;
 use std::sync::Arc;
 
 pub mod mesh;
@@ -33,6 +35,18 @@ pub trait Surface {
     /// A surface with bounds is only met [inside them](Bounds::crossed): however rounding has moved a crossing, it is not
     /// before the box or behind it, so that leaving out what a box cannot contain leaves out nothing.
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32>;
+
+    /// The same for eight rays, from `min` on: the t of each, and which of them cross; nothing if none does. The bits are
+    /// those that each gets alone.
+    fn eight_crossings(&self, rays: &Rays<Eight>, min: Eight) -> Option<(EightAnswers, Eight)> {
+        let alone = |lane: usize| {
+            let within = Interval { min: min.0[lane], max: f32::MAX };
+            self.closest_crossing(&Probe::new(rays.ray(lane)), within).unwrap_or(f32::NAN)
+        };
+        let t = Eight(from_fn(alone));
+        let crosses = min.le(t);
+        crosses.any().then_some((crosses, t))
+    }
 
     /// The surface at the crossing `t` that [`closest_crossing`](Self::closest_crossing) found for this ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint;
@@ -158,6 +172,13 @@ macro_rules! parts {
             fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
                 match self {
                     $(Self::$name(surface) => surface.closest_crossing(probe, within),)*
+                }
+            }
+
+            #[inline(always)]
+            fn eight_crossings(&self, rays: &Rays<Eight>, min: Eight) -> Option<(EightAnswers, Eight)> {
+                match self {
+                    $(Self::$name(surface) => surface.eight_crossings(rays, min),)*
                 }
             }
 

@@ -6,7 +6,7 @@ use std::num::NonZeroU32;
 use termtrace::camera::{Camera, CameraError, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::{Framebuffer, Resolution};
-use termtrace::hit::{any_hit, closest_hit};
+use termtrace::hit::{Hit, any_hit, any_hits, closest_hit, closest_hits};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::ray::{Interval, Probe, Ray};
@@ -46,6 +46,16 @@ fn shape() -> impl Strategy<Value = Shape> {
 
 fn ray() -> impl Strategy<Value = Ray> {
     (point(8.0), direction(), 0.1_f32..10.0).prop_map(|(origin, d, length)| Ray { origin, direction: d * length })
+}
+
+/// Half of them along an axis or two, from whole numbers.
+fn any_ray() -> impl Strategy<Value = Ray> {
+    let along = (0..3_usize, -5..=5_i32, -5..=5_i32, any::<bool>()).prop_map(|(axis, x, y, turned)| {
+        let origin = Vec3::new(x as f32, y as f32, (x - y) as f32);
+        let direction = if turned { -Vec3::AXES[axis] } else { Vec3::AXES[axis] + Vec3::AXES[(axis + 1) % 3] };
+        Ray { origin, direction }
+    });
+    prop_oneof![ray(), along]
 }
 
 fn pose() -> impl Strategy<Value = Pose> {
@@ -200,6 +210,26 @@ proptest! {
         prop_assert_eq!(any_hit(&scene, &ray, Interval::IN_FRONT), found.is_some());
         if let Some(hit) = found {
             prop_assert!(!any_hit(&scene, &ray, Interval { min: 0.0, max: hit.t.next_down() }), "nothing before the closest hit");
+        }
+    }
+
+    /// Among others and alone a ray gets the same bits; also along the axes, where some of them divide by zero, and among
+    /// objects that lie in one another.
+    #[test]
+    fn many_rays_are_each_traced_as_if_alone(objects in objects(), twice in 0..3_usize, rays in prop::collection::vec(any_ray(), 0..30)) {
+        let camera = Camera::new(Pose { eye: Vec3::ZERO, target: Vec3::X, up: Vec3::Y }, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
+        let again = objects.iter().take(twice).cloned().collect();
+        let scene = Scene::new(camera, [again, objects].concat());
+        let bits = |hit: Option<Hit>| hit.map(|hit| (hit.t.to_bits(), hit.object, hit.part));
+        let mut hits = Vec::new();
+        closest_hits(&scene, &rays, &mut hits);
+        let alone: Vec<_> = rays.iter().map(|ray| bits(closest_hit(&scene, ray))).collect();
+        prop_assert_eq!(hits.into_iter().map(bits).collect::<Vec<_>>(), alone);
+        let mut found = Vec::new();
+        for within in [Interval::IN_FRONT, TO_THE_LIGHT, Interval { min: 0.3, max: 0.9 }] {
+            any_hits(&scene, &rays, within, &mut found);
+            let alone: Vec<_> = rays.iter().map(|ray| any_hit(&scene, ray, within)).collect();
+            prop_assert_eq!(&found, &alone);
         }
     }
 

@@ -22,6 +22,8 @@ pub(crate) struct Parts {
     pub(crate) bounded: Vec<PartId>,
     /// Those that have no end.
     pub(crate) unbounded: Vec<PartId>,
+    /// All of them, as they stand in the scene, where the tree is but one leaf and leaves nothing out.
+    pub(crate) few: Option<Vec<PartId>>,
 }
 
 impl Parts {
@@ -39,7 +41,12 @@ impl Parts {
             }
         }
         let bvh = Bvh::new(&boxes);
+        let few = bvh.is_leaf().then(|| {
+            let mut all = [&bounded[..], &unbounded].concat();
+            all.sort_unstable();
+            all
+        });
         let bounded = bvh.order().iter().map(|&at| bounded[at as usize]).collect();
-        Self { bvh, bounded, unbounded }
+        Self { bvh, bounded, unbounded, few }
     }
 }

@@ -2,7 +2,8 @@
 
 use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
 use crate::bounds::Bounds;
-use crate::ray::{Interval, Probe, Ray};
+use crate::lanes::{Eight, EightAnswers, Mask, Number, Vector};
+use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 
 /// All points x with (x - a).n = 0. It has no end, and is seen from both sides.
@@ -37,6 +38,13 @@ impl Plane {
     pub fn normal(&self) -> Vec3 {
         self.normal
     }
+
+    /// (p + t d - a).n = 0 gives t = (a - p).n / d.n; a ray along the plane never crosses it.
+    #[inline(always)]
+    fn crossing<N: Number>(&self, rays: &Rays<N>) -> N {
+        let normal = Vector::splat(self.normal);
+        (Vector::splat(self.point) - rays.origin).dot(normal) / rays.direction.dot(normal)
+    }
 }
 
 /// The x axis laid into the plane; where that is (nearly) the normal itself, the z axis.
@@ -50,11 +58,18 @@ impl Surface for Plane {
         None
     }
 
-    /// (p + t d - a).n = 0 gives t = (a - p).n / d.n; a ray along the plane never crosses it.
-    fn closest_crossing(&self, Probe { ray, .. }: &Probe, within: Interval) -> Option<f32> {
-        let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
+    #[inline]
+    fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
+        let t = self.crossing(&probe.rays);
         // A ray along the plane divides by zero: infinite or NaN, and so not inside.
         within.contains(t).then_some(t)
+    }
+
+    #[inline(always)]
+    fn eight_crossings(&self, rays: &Rays<Eight>, min: Eight) -> Option<(EightAnswers, Eight)> {
+        let t = self.crossing(rays);
+        let crosses = min.le(t);
+        crosses.any().then_some((crosses, t))
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {

@@ -2,7 +2,8 @@
 
 use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
 use crate::bounds::Bounds;
-use crate::ray::{Interval, Probe, Ray};
+use crate::lanes::{Eight, EightAnswers, Mask, Number, Vector};
+use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
 use glam::{Vec2, Vec3};
 
 /// From so many radii on, a crossing is improved by a second look.
@@ -39,7 +40,7 @@ impl Sphere {
         self.radius
     }
 
-    /// Both roots of f(p + t d) = 0 in ascending order, or none if the line misses the sphere.
+    /// Both roots of f(p + t d) = 0 in ascending order, and which of the lines have them; nothing if none does.
     ///
     /// The lecture solves (d.d) t^2 + 2 (f.d) t + (f.f - r^2) = 0, with f = p - c, by
     ///
@@ -53,50 +54,72 @@ impl Sphere {
     /// Akenine-Möller (Ray Tracing Gems, chapter 7): the term under the root comes from the distance between the
     /// centre and the line, ||f - ((f.d)/(d.d)) d||, and only the root without cancellation is computed directly;
     /// the other follows from the product of the roots, (f.f - r^2) / (d.d).
-    pub fn crossings(&self, ray: &Ray) -> Option<[f32; 2]> {
-        let d = ray.direction;
-        let f = ray.origin - self.center;
-        let dd = d.dot(d);
+    #[inline(always)]
+    fn crossings<N: Number>(&self, rays: &Rays<N>) -> Option<(N::Mask, [N; 2])> {
+        let (d, dd, zero) = (rays.direction, rays.squared_length, N::splat(0.0));
+        let squared_radius = N::splat(self.radius * self.radius);
+        let f = rays.origin - Vector::splat(self.center);
         let half_b = -f.dot(d);
         let to_line = f + d * (half_b / dd);
-        let under_root = self.radius * self.radius - to_line.dot(to_line);
-        // The negation also turns NaN away.
-        if !(under_root >= 0.0) {
+        let under_root = squared_radius - to_line.dot(to_line);
+        // NaN is no crossing either.
+        let crosses = zero.le(under_root);
+        if !crosses.any() {
             return None;
         }
         let root = (dd * under_root).sqrt();
-        let q = if half_b < 0.0 { half_b - root } else { half_b + root };
-        let c = f.dot(f) - self.radius * self.radius;
-        let (t0, t1) = (c / q, q / dd);
-        let crossings = if t0 <= t1 { [t0, t1] } else { [t1, t0] };
-        let is_far = f.dot(f) > FAR * FAR * self.radius * self.radius;
-        Some(if is_far { crossings.map(|t| self.improved(t, f, d)) } else { crossings })
+        let q = N::select(half_b.lt(zero), half_b - root, half_b + root);
+        let ff = f.dot(f);
+        let (t0, t1) = ((ff - squared_radius) / q, q / dd);
+        let is_sorted = t0.le(t1);
+        let crossings = [N::select(is_sorted, t0, t1), N::select(is_sorted, t1, t0)];
+        let is_far = N::splat(FAR * FAR * self.radius * self.radius).lt(ff);
+        let improved = |t: N| N::select(is_far, self.improved(t, f, rays), t);
+        Some((crosses, if is_far.any() { crossings.map(improved) } else { crossings }))
     }
 
     /// One step of Newton's method towards the root near t. From afar t is a long way, off by units of its own; what is
     /// left to the surface at its end is short, and known better. (Near the edge, where the ray only grazes the sphere,
     /// the step would be one into the blue.)
-    fn improved(&self, t: f32, f: Vec3, d: Vec3) -> f32 {
-        let outward = f + d * t;
-        let along = outward.dot(d);
+    #[inline(always)]
+    fn improved<N: Number>(&self, t: N, f: Vector<N>, rays: &Rays<N>) -> N {
         let squared_radius = self.radius * self.radius;
-        if along * along > GRAZING * squared_radius * d.dot(d) {
-            t - 0.5 * (outward.dot(outward) - squared_radius) / along
-        } else {
-            t
-        }
+        let outward = f + rays.direction * t;
+        let along = outward.dot(rays.direction);
+        let is_steep = (N::splat(GRAZING * squared_radius) * rays.squared_length).lt(along * along);
+        let step = N::splat(0.5) * (outward.dot(outward) - N::splat(squared_radius)) / along;
+        N::select(is_steep, t - step, t)
+    }
+
+    /// The first crossing from `min` on, and which of the rays have one; nothing if none has.
+    #[inline(always)]
+    fn first_crossing<N: Number>(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
+        let (crosses, [t0, t1]) = self.crossings(rays)?;
+        let [start, end] = self.around().crossed_by(rays);
+        let [t0, t1] = [nearest_in(start, end, t0), nearest_in(start, end, t1)];
+        let t = N::select(min.le(t0), t0, t1);
+        Some((crosses & start.le(end) & min.le(t), t))
+    }
+
+    fn around(&self) -> Bounds {
+        Bounds { min: self.center - self.radius, max: self.center + self.radius }
     }
 }
 
 impl Surface for Sphere {
     fn bounds(&self) -> Option<Bounds> {
-        Some(Bounds { min: self.center - self.radius, max: self.center + self.radius })
+        Some(self.around())
     }
 
+    #[inline]
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let crossings = self.crossings(&probe.ray)?;
-        let inside = self.bounds()?.crossed(probe);
-        crossings.into_iter().filter_map(|t| inside.nearest(t)).find(|&t| within.contains(t))
+        let (crosses, t) = self.first_crossing(&probe.rays, within.min)?;
+        (crosses && t <= within.max).then_some(t)
+    }
+
+    #[inline(always)]
+    fn eight_crossings(&self, rays: &Rays<Eight>, min: Eight) -> Option<(EightAnswers, Eight)> {
+        self.first_crossing(rays, min)
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
