@@ -1,0 +1,92 @@
+//! termtrace through its public functions, in the way its own renderer calls them: a tile's rays at a time, shadow rays
+//! from origins that know no epsilon.
+use crate::scene::{Acc, Backend, Frame, Scene};
+use glam::{Vec3, Vec3A};
+use std::cell::RefCell;
+use std::time::Instant;
+use termtrace::camera::{Camera, Pose, ViewRectangle};
+use termtrace::color::LinearRgb;
+use termtrace::hit::{self, Hit};
+use termtrace::light::{Falloff, PointLight};
+use termtrace::material::Material;
+use termtrace::mesh_file::MeshFile;
+use termtrace::ray::Ray;
+use termtrace::scene::{Object, Scene as Traced};
+use termtrace::shade::{TO_THE_LIGHT, shadow_ray};
+use termtrace::shape::{Mesh, Plane, Shape, Sphere, Surface};
+
+pub struct Termtrace {
+    scene: Traced,
+    light: PointLight,
+    pub build_s: f64,
+}
+
+/// The arrays of a tile, kept from tile to tile.
+#[derive(Default)]
+struct Buffers {
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+    shadow_rays: Vec<Ray>,
+    blocked: Vec<bool>,
+}
+
+thread_local! {
+    static BUFFERS: RefCell<Buffers> = RefCell::default();
+}
+
+impl Termtrace {
+    pub fn new(s: &Scene) -> Self {
+        let grey = || Material::Diffuse(LinearRgb::grey(0.5));
+        let spheres = s.spheres.iter().map(|&[x, y, z, r]| Shape::from(Sphere::new(Vec3::new(x, y, z), r)));
+        let planes = s.plane.iter().map(|plane| Shape::from(Plane::new(vec3(plane.n * plane.h), vec3(plane.n))));
+        let positions = s.verts.iter().copied().map(Vec3::from_array).collect();
+        let mesh = MeshFile::new(positions, s.tris.clone()).map(|file| Shape::from(Mesh::from(file)));
+        let shapes = spheres.chain(planes).chain(mesh);
+        let objects: Vec<_> = shapes.map(|shape| Object::new(shape, grey())).collect();
+        let pose = Pose { eye: vec3(s.eye), target: vec3(s.target), up: vec3(s.up) };
+        let rectangle = ViewRectangle::from_vertical_fov(s.vfov.to_radians()).expect("an angle");
+        let camera = Camera::new(pose, rectangle).expect("a view");
+        let start = Instant::now();
+        let scene = Traced::new(camera, objects);
+        let build_s = start.elapsed().as_secs_f64();
+        let light =
+            PointLight { position: vec3(s.light), intensity: LinearRgb::grey(1.0), falloff: Falloff::InverseSquare };
+        Self { scene, light, build_s }
+    }
+
+    fn trace(&self, f: &Frame, rays: impl Iterator<Item = Vec3A>, buffers: &mut Buffers) -> Acc {
+        let Buffers { rays: eye_rays, hits, shadow_rays, blocked } = buffers;
+        eye_rays.clear();
+        eye_rays.extend(rays.map(|d| Ray { origin: vec3(f.o), direction: vec3(d) }));
+        hit::closest_hits(&self.scene, eye_rays, hits);
+        let found = || eye_rays.iter().zip(&*hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));
+        let mut sum = Acc { rays: eye_rays.len() as u64, ..Acc::default() };
+        sum.hits = found().count() as u64;
+        sum.tsum = found().map(|(_, hit)| f64::from(hit.t)).sum();
+        if f.full {
+            let aim =
+                |(ray, hit): (&Ray, Hit)| shadow_ray(&self.light, &hit.surface(&self.scene).at_crossing(ray, hit.t));
+            shadow_rays.clear();
+            shadow_rays.extend(found().map(aim));
+            hit::any_hits(&self.scene, shadow_rays, TO_THE_LIGHT, blocked);
+            sum.rays += shadow_rays.len() as u64;
+            sum.lit = blocked.iter().filter(|&&blocked| !blocked).count() as u64;
+        }
+        sum
+    }
+}
+
+fn vec3(v: Vec3A) -> Vec3 {
+    Vec3::from_array(v.to_array())
+}
+
+impl Backend for Termtrace {
+    fn name(&self) -> String {
+        "termtrace".into()
+    }
+
+    fn tile(&self, f: &Frame, x0: u32, y0: u32, x1: u32, y1: u32) -> Acc {
+        let rays = (y0..y1).flat_map(|y| (x0..x1).map(move |x| f.dir(x, y)));
+        BUFFERS.with_borrow_mut(|buffers| self.trace(f, rays, buffers))
+    }
+}
