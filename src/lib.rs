@@ -29,6 +29,7 @@
 //! - [`ray`]: origin + t * direction, and intervals of t
 //! - [`bounds`]: boxes along the axes
 //! - [`capabilities`]: what a terminal's cells can be made of
+//! - [`progress`]: how far work has come, told to who waits for it
 //!
 //! What was written:
 //! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret
@@ -100,6 +101,7 @@ pub mod lanes;
 pub mod ray;
 pub mod bounds;
 pub mod capabilities;
+pub mod progress;
 pub mod scene_text;
 pub mod scene_file;
 pub mod mesh_file;

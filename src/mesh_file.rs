@@ -22,9 +22,11 @@
 
 mod attribute;
 mod builder;
+mod coarse;
 mod error;
 mod gltf;
 mod kind;
+mod meter;
 mod mtl;
 mod neighbours;
 mod obj;
@@ -39,12 +41,15 @@ pub use error::{MeshError, Place};
 pub use texture::{Texture, TexturePlacement};
 
 use crate::color::LinearRgb;
+use crate::progress::{Progress, Watcher, Work};
 use error::{Fault, cannot_be_read};
 use glam::{Mat3, Vec2, Vec3};
 use kind::Kind;
+use meter::Meter;
 use neighbours::Neighbours;
 use std::fs::File;
 use std::io::{self, Read};
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// The most bytes that are read for one mesh, the files that it names included: 2 GiB.
@@ -142,7 +147,16 @@ impl MeshFile {
         bytes: &[u8],
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     ) -> Result<Self, MeshError> {
-        read(name, bytes, &mut Neighbours::new(name, open)).map_err(|fault| fault.into_error(name, bytes))
+        Self::parse(name, bytes, open, &Watcher::patient())
+    }
+
+    fn parse(
+        name: &str,
+        bytes: &[u8],
+        open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
+        watcher: &Watcher<'_>,
+    ) -> Result<Self, MeshError> {
+        read(name, bytes, &mut Neighbours::new(name, open), watcher).map_err(|fault| fault.into_error(name, bytes))
     }
 
     /// The mesh in that file.
@@ -160,11 +174,26 @@ impl MeshFile {
     /// # Errors
     /// If the file cannot be read, or as [`MeshFile::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, MeshError> {
+        Self::read_whole(path, &Watcher::patient())
+    }
+
+    /// [`load`](Self::load), while somebody waits for it; `None` if he has gone.
+    ///
+    /// # Errors
+    /// As [`MeshFile::load`].
+    pub fn load_watched(path: &Path, watcher: &Watcher<'_>) -> Result<Option<Self>, MeshError> {
+        let mesh = Self::read_whole(path, watcher);
+        // Whatever came of it then.
+        if watcher.is_gone() { Ok(None) } else { mesh.map(Some) }
+    }
+
+    /// A fault too if he has gone: nobody will hear of it.
+    pub(crate) fn read_whole(path: &Path, watcher: &Watcher<'_>) -> Result<Self, MeshError> {
         let name = path.to_string_lossy();
         let folder = path.parent().unwrap_or(Path::new(""));
-        let file = File::open(path).and_then(bytes_of);
+        let file = File::open(path).and_then(|file| bytes_of(file, &name, watcher));
         let bytes = file.map_err(|error| MeshError::of_file(&name, &cannot_be_read(&error)))?;
-        Self::from_bytes(&name, &bytes, &mut |relative| open_regular(&folder.join(relative)))
+        Self::parse(&name, &bytes, &mut |relative| open_regular(&folder.join(relative), watcher), watcher)
     }
 
     /// The positions of the vertices.
@@ -250,22 +279,26 @@ fn is_reflectance(color: LinearRgb) -> bool {
 }
 
 /// The one place where formats part.
-fn read(name: &str, bytes: &[u8], neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
+fn read(name: &str, bytes: &[u8], neighbours: &mut Neighbours<'_>, watcher: &Watcher<'_>) -> Result<MeshFile, Fault> {
     if bytes.len() > MAX_BYTES {
         return Err(Fault::of_file("the file is larger than 2 GiB, too large to be read"));
     }
+    let meter = Meter::new(watcher, name, bytes.len());
     match kind::of(name, bytes)? {
-        Kind::Obj => obj::read(bytes, neighbours),
-        Kind::StlText => stl::read_text(bytes),
-        Kind::StlBinary => stl::read_binary(bytes),
-        Kind::Ply => ply::read(bytes),
-        Kind::Gltf => gltf::read_json(bytes, neighbours),
-        Kind::Glb => gltf::read_binary(bytes, neighbours),
+        Kind::Obj => obj::read(bytes, neighbours, meter),
+        Kind::StlText => stl::read_text(bytes, meter),
+        Kind::StlBinary => stl::read_binary(bytes, meter),
+        Kind::Ply => ply::read(bytes, meter),
+        Kind::Gltf => gltf::read_json(bytes, neighbours, meter),
+        Kind::Glb => gltf::read_binary(bytes, neighbours, meter),
     }
 }
 
-/// As many bytes of a file as are looked at: one more than may be.
-fn bytes_of(file: File) -> io::Result<Vec<u8>> {
+/// So many bytes come from the disk from one report to the next.
+const STRIDE: u64 = 1 << 20;
+
+/// As many bytes of a file as are looked at: one more than may be. The name is for who waits for them.
+fn bytes_of(file: File, name: &str, watcher: &Watcher<'_>) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     // The size is a hint: a pipe has none, and a file may grow.
     let size = file.metadata().map_or(0, |data| data.len());
@@ -273,14 +306,22 @@ fn bytes_of(file: File) -> io::Result<Vec<u8>> {
         return Err(io::ErrorKind::FileTooLarge.into());
     }
     bytes.reserve_exact(size as usize + 1);
-    file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    let mut file = file.take(MAX_BYTES as u64 + 1);
+    loop {
+        let work = Work::Reading(name.to_owned());
+        if watcher.tell(Progress { work, done: bytes.len(), total: size as usize }) == ControlFlow::Break(()) {
+            return Err(io::ErrorKind::Interrupted.into());
+        }
+        if file.by_ref().take(STRIDE).read_to_end(&mut bytes)? == 0 {
+            return Ok(bytes);
+        }
+    }
 }
 
 /// The bytes of a file that a mesh names: not of a pipe or a device, which might never end.
-fn open_regular(path: &Path) -> io::Result<Vec<u8>> {
+fn open_regular(path: &Path, watcher: &Watcher<'_>) -> io::Result<Vec<u8>> {
     if !std::fs::metadata(path)?.is_file() {
         return Err(io::Error::other("this is not a regular file"));
     }
-    bytes_of(File::open(path)?)
+    bytes_of(File::open(path)?, &path.to_string_lossy(), watcher)
 }

@@ -4,11 +4,13 @@
 //! are the only way from what was written to what is drawn.
 
 mod checked;
+mod draft;
 mod load;
 mod of_mesh;
 mod parts;
 mod written_camera;
 
+pub use draft::Draft;
 pub use load::LoadError;
 
 use crate::camera::Camera;
@@ -42,6 +44,11 @@ pub struct Scene {
 impl Scene {
     /// These objects seen by that camera: no light yet, a black background, shadows, exposure 1 and no tone curve.
     pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
+        Draft::new(Self::unbuilt(camera, objects)).finish()
+    }
+
+    /// The same without its parts.
+    fn unbuilt(camera: Camera, objects: Vec<Object>) -> Self {
         Self {
             camera,
             background: Background::Color(LinearRgb::BLACK),
@@ -50,8 +57,8 @@ impl Scene {
             shadows: true,
             exposure: 1.0,
             tone_curve: ToneCurve::None,
-            parts: Parts::of(&objects),
             objects,
+            parts: Parts::default(),
         }
     }
 

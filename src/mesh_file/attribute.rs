@@ -80,6 +80,13 @@ impl<T: Copy> Attribute<T> {
         self.indices_of(triangle, triangles).map(|corners| corners.map(|index| self.values[index as usize]))
     }
 
+    /// Adds the values of a triangle's corners, and answers their indices.
+    pub(super) fn add(&mut self, values: [T; 3]) -> [u32; 3] {
+        let first = self.values.len() as u32; // three for each of `MAX_TRIANGLES` at most
+        self.values.extend(values);
+        [first, first + 1, first + 2]
+    }
+
     /// Says which values the triangle has that is the next after `triangles`, and whose positions are `positions`.
     pub(super) fn push(&mut self, triangles: &[[u32; 3]], positions: [u32; 3], corner: Option<[u32; 3]>) {
         match (&mut self.corners, corner) {

@@ -13,17 +13,18 @@ mod primitives;
 
 use super::MeshFile;
 use super::error::{Fault, shown};
+use super::meter::Meter;
 use super::neighbours::Neighbours;
 use buffers::Buffers;
 use json::Json;
 use serde_json::Value;
 
-pub(super) fn read_json(bytes: &[u8], neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
-    read(bytes, 0, None, neighbours)
+pub(super) fn read_json(bytes: &[u8], neighbours: &mut Neighbours<'_>, meter: Meter<'_>) -> Result<MeshFile, Fault> {
+    read(bytes, 0, None, neighbours, meter)
 }
 
 /// GLB: a header of 12 bytes and chunks, of which the first is JSON and the second may be a buffer.
-pub(super) fn read_binary(bytes: &[u8], neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
+pub(super) fn read_binary(bytes: &[u8], neighbours: &mut Neighbours<'_>, meter: Meter<'_>) -> Result<MeshFile, Fault> {
     const HEADER: usize = 12;
     let word = |at: usize| bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes);
     let (Some(version), Some(length)) = (word(4), word(8)) else {
@@ -61,18 +62,25 @@ pub(super) fn read_binary(bytes: &[u8], neighbours: &mut Neighbours<'_>) -> Resu
     let json = chunk(HEADER, b"JSON", "JSON")?;
     let buffer_at = (HEADER + 8 + json.len()).next_multiple_of(4);
     let buffer = if buffer_at < bytes.len() { Some(chunk(buffer_at, b"BIN\0", "BIN")?) } else { None };
-    read(json, HEADER + 8, buffer, neighbours)
+    read(json, HEADER + 8, buffer, neighbours, meter)
 }
 
 /// The JSON, which in a GLB file begins at byte `at`.
-fn read(json: &[u8], at: usize, glb_buffer: Option<&[u8]>, neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
+fn read(
+    json: &[u8],
+    at: usize,
+    glb_buffer: Option<&[u8]>,
+    neighbours: &mut Neighbours<'_>,
+    mut meter: Meter<'_>,
+) -> Result<MeshFile, Fault> {
+    meter.step()?;
     let text = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
     check_count(text)?;
     let document: Value = serde_json::from_slice(text).map_err(|error| syntax_fault(&error, json, text, at))?;
     let root = Json::root(&document)?;
     check_version(root)?;
     check_extensions(root)?;
-    nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, neighbours))
+    nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, neighbours), &mut meter)
 }
 
 /// The most objects, and the most items of lists and objects, in a document: as values they take 600 and 32 bytes each,

@@ -3,6 +3,7 @@
 
 use super::builder::{Builder, Triangle, unit};
 use super::error::{Fault, shown};
+use super::meter::Meter;
 use super::mtl::{self, Library};
 use super::neighbours::{Neighbours, local_path};
 use super::text::Text;
@@ -11,13 +12,14 @@ use crate::color::{LinearRgb, linear_from_srgb};
 use glam::{Vec2, Vec3};
 use std::path::Path;
 
-pub(super) fn read(bytes: &[u8], neighbours: &mut Neighbours<'_>) -> Result<MeshFile, Fault> {
+pub(super) fn read(bytes: &[u8], neighbours: &mut Neighbours<'_>, mut meter: Meter<'_>) -> Result<MeshFile, Fault> {
     if let Some(place) = bytes.iter().position(|&byte| byte == 0) {
         return Err(Fault::at_byte(place, "an OBJ file is text, and this byte is a NUL"));
     }
     let text = Text::new(bytes);
     let mut reader = Reader { text, mesh: Builder::default(), library: None, corners: Corners::default(), neighbours };
     while reader.text.go_to_statement() {
+        meter.reach(reader.text.at())?;
         reader.statement()?;
     }
     let Reader { mut mesh, library, .. } = reader;

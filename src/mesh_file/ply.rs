@@ -6,18 +6,19 @@ mod rows;
 
 use super::builder::{Builder, Triangle, unit};
 use super::error::Fault;
+use super::meter::Meter;
 use super::{MeshFile, polygon};
 use crate::color::{LinearRgb, Srgb8, linear_from_srgb};
 use glam::Vec3;
 use header::{Element, Encoding, Header, Property, Shape, Type};
 use rows::{Ascii, Binary, Rows};
 
-pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, Fault> {
+pub(super) fn read(bytes: &[u8], meter: Meter<'_>) -> Result<MeshFile, Fault> {
     let header = Header::read(bytes)?;
     match header.encoding {
-        Encoding::Ascii => read_body(&header, Ascii::new(bytes, header.end)),
-        Encoding::LittleEndian => read_body(&header, Binary::<false>::new(bytes, header.end)),
-        Encoding::BigEndian => read_body(&header, Binary::<true>::new(bytes, header.end)),
+        Encoding::Ascii => read_body(&header, Ascii::new(bytes, header.end, meter)),
+        Encoding::LittleEndian => read_body(&header, Binary::<false>::new(bytes, header.end, meter)),
+        Encoding::BigEndian => read_body(&header, Binary::<true>::new(bytes, header.end, meter)),
     }
 }
 

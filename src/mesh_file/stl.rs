@@ -4,6 +4,7 @@
 use super::MeshFile;
 use super::builder::{Builder, Triangle, too_many};
 use super::error::{Fault, shown};
+use super::meter::Meter;
 use super::text::Text;
 use super::{MAX_TRIANGLES, polygon};
 use glam::Vec3;
@@ -25,7 +26,7 @@ pub(super) fn size_fits(bytes: &[u8]) -> bool {
     claimed_size(bytes) == Some(bytes.len() as u64)
 }
 
-pub(super) fn read_binary(bytes: &[u8]) -> Result<MeshFile, Fault> {
+pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, Fault> {
     let size = claimed_size(bytes).ok_or_else(|| {
         let message = "the file ends within the header of 84 bytes that a binary STL file begins with";
         Fault::at_byte(bytes.len(), message)
@@ -43,6 +44,7 @@ pub(super) fn read_binary(bytes: &[u8]) -> Result<MeshFile, Fault> {
     }
     let mut mesh = Builder { positions: Vec::with_capacity(3 * facets.len()), ..Builder::default() };
     for (i, facet) in facets.enumerate() {
+        meter.reach(HEADER + i * FACET)?;
         for corner in 0..3 {
             let at = 12 + 12 * corner;
             mesh.positions.push(vertex_from(&facet[at..at + 12], HEADER + i * FACET + at)?);
@@ -63,9 +65,10 @@ fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, Fault> {
     Err(Fault::at_byte(at + 4 * axis, format!("{} is not a finite number", band(axis))))
 }
 
-pub(super) fn read_text(bytes: &[u8]) -> Result<MeshFile, Fault> {
+pub(super) fn read_text(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, Fault> {
     let mut reader = TextReader { text: Text::new(bytes), mesh: Builder::default(), open: None };
     while reader.text.go_to_statement() {
+        meter.reach(reader.text.at())?;
         reader.statement()?;
     }
     if reader.open.is_some() {

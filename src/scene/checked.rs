@@ -8,7 +8,7 @@ pub(super) mod path;
 
 pub(super) use camera::radians;
 
-use super::{Background, Object, Scene, ToneCurve};
+use super::{Background, Draft, Object, Scene, ToneCurve};
 use crate::color::{LinearRgb, Srgb8};
 use crate::light::{Falloff, PointLight};
 use crate::material::Material;
@@ -23,7 +23,7 @@ use glam::{DMat3, DVec3, Mat3, Vec3};
 use std::collections::HashMap;
 
 /// The scene, if nothing is wrong with it; else every fault has been added.
-pub(super) fn check(file: &SceneFile, meshes: &mut dyn Meshes, faults: &mut Faults) -> Option<Scene> {
+pub(super) fn check(file: &SceneFile, meshes: &mut dyn Meshes, faults: &mut Faults) -> Option<Draft> {
     let mut checker = Checker { faults };
     let camera = file.camera.as_ref().and_then(|camera| checker.camera(camera));
     let background = file.background.as_ref().and_then(|written| checker.background(written));
@@ -39,15 +39,15 @@ pub(super) fn check(file: &SceneFile, meshes: &mut dyn Meshes, faults: &mut Faul
         Some(WrittenToneCurve::Reinhard) => ToneCurve::Reinhard,
         Some(WrittenToneCurve::Filmic) => ToneCurve::Filmic,
     };
-    Some(Scene {
+    Some(Draft::new(Scene {
         background: background.unwrap_or(Background::Color(LinearRgb::BLACK)),
         ambient: ambient.unwrap_or(LinearRgb::BLACK),
         lights,
         shadows: file.shadows.unwrap_or(true),
         exposure: exposure.unwrap_or(1.0),
         tone_curve,
-        ..Scene::new(camera?, objects)
-    })
+        ..Scene::unbuilt(camera?, objects)
+    }))
 }
 
 /// Coordinates beyond this, squared twice on the light's way, would leave f32.

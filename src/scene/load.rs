@@ -1,9 +1,10 @@
 //! File, bytes or text -> scene or camera path.
 
-use super::{Scene, checked};
+use super::{Draft, Scene, checked};
 use crate::camera::Camera;
 use crate::camera_path::CameraPath;
 use crate::mesh_file::{self, MeshError, MeshFile};
+use crate::progress::Watcher;
 use crate::scene_file::{PathFile, SceneFile};
 use crate::scene_text::{Fault, Faults, MAX_BYTES, Node, SceneError, Span, parse, visible};
 use std::collections::HashMap;
@@ -36,10 +37,7 @@ impl Scene {
     /// The first fault of the syntax; if there is none, all others: unknown and missing fields, wrong types, and values
     /// that make no picture.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
-        let mut meshes = Meshes::beside(Path::new(name));
-        read(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", |root, faults| {
-            checked::check(&SceneFile::read(root, faults), &mut meshes, faults)
-        })
+        draft(name, text, &Watcher::patient()).map(Draft::finish)
     }
 
     /// The scene that the bytes describe, which should be UTF-8 text.
@@ -72,16 +70,50 @@ impl Scene {
     /// # Errors
     /// If the file cannot be read, or as [`Scene::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, LoadError> {
-        let name = path.to_string_lossy();
-        if mesh_file::is_mesh(&name, &[]) {
-            return around_mesh(path);
-        }
-        let bytes = bytes_of(path)?;
-        if mesh_file::is_mesh(&name, &bytes) {
-            return around_mesh(path);
-        }
-        Ok(Self::from_bytes(&name, &bytes)?)
+        load(path, &Watcher::patient()).map(Draft::finish)
     }
+}
+
+impl Draft {
+    /// [`Scene::from_bytes`] without building, while somebody waits for it; `None` if he has gone.
+    ///
+    /// # Errors
+    /// As [`Scene::from_bytes`].
+    pub fn from_bytes(name: &str, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Option<Self>, SceneError> {
+        unless_gone(watcher, text_from(name, bytes).and_then(|text| draft(name, text, watcher)))
+    }
+
+    /// [`Scene::load`] without building, while somebody waits for it; `None` if he has gone.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Option<Self>, LoadError> {
+        unless_gone(watcher, load(path, watcher))
+    }
+}
+
+/// Whatever came of it, if nobody waits for it any more.
+fn unless_gone<T, E>(watcher: &Watcher<'_>, done: Result<T, E>) -> Result<Option<T>, E> {
+    if watcher.is_gone() { Ok(None) } else { done.map(Some) }
+}
+
+fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
+    let name = path.to_string_lossy();
+    if mesh_file::is_mesh(&name, &[]) {
+        return around_mesh(path, watcher);
+    }
+    let bytes = bytes_of(path)?;
+    if mesh_file::is_mesh(&name, &bytes) {
+        return around_mesh(path, watcher);
+    }
+    Ok(draft(&name, text_from(&name, &bytes)?, watcher)?)
+}
+
+fn draft(name: &str, text: &str, watcher: &Watcher<'_>) -> Result<Draft, SceneError> {
+    let mut meshes = Meshes::beside(Path::new(name), watcher);
+    read(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", |root, faults| {
+        checked::check(&SceneFile::read(root, faults), &mut meshes, faults)
+    })
 }
 
 impl CameraPath {
@@ -193,23 +225,25 @@ impl From<SceneError> for LoadError {
     }
 }
 
-fn around_mesh(path: &Path) -> Result<Scene, LoadError> {
-    Scene::of_mesh(MeshFile::load(path)?).ok_or_else(|| LoadError::Unseen { path: path.to_owned() })
+fn around_mesh(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
+    let mesh = MeshFile::read_whole(path, watcher)?;
+    Draft::of_mesh(mesh).ok_or_else(|| LoadError::Unseen { path: path.to_owned() })
 }
 
 /// The meshes that a scene names, each read once.
-struct Meshes {
+struct Meshes<'w> {
     folder: PathBuf,
     read: HashMap<PathBuf, MeshFile>,
+    watcher: &'w Watcher<'w>,
 }
 
-impl Meshes {
-    fn beside(scene: &Path) -> Self {
-        Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), read: HashMap::new() }
+impl<'w> Meshes<'w> {
+    fn beside(scene: &Path, watcher: &'w Watcher<'w>) -> Self {
+        Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), read: HashMap::new(), watcher }
     }
 }
 
-impl checked::Meshes for Meshes {
+impl checked::Meshes for Meshes<'_> {
     fn mesh(&mut self, path: &str) -> Result<MeshFile, String> {
         let path = self.folder.join(path);
         if let Some(mesh) = self.read.get(&path) {
@@ -219,7 +253,7 @@ impl checked::Meshes for Meshes {
         if std::fs::metadata(&path).is_ok_and(|data| !data.is_file()) {
             return Err(format!("{}: this is not a file", visible(&path.to_string_lossy())));
         }
-        let mesh = MeshFile::load(&path).map_err(|error| error.to_string())?;
+        let mesh = MeshFile::read_whole(&path, self.watcher).map_err(|error| error.to_string())?;
         self.read.insert(path, mesh.clone());
         Ok(mesh)
     }

@@ -1,6 +1,6 @@
 //! A scene around a mesh that comes without one.
 
-use super::{Background, Object, Scene};
+use super::{Background, Draft, Object, Scene};
 use crate::bounds::Bounds;
 use crate::camera::{Camera, Pose, ViewRectangle};
 use crate::color::{LinearRgb, Srgb8};
@@ -27,6 +27,13 @@ impl Scene {
     /// weak one. Up is +y. `None` if it has no size, is too small for where it is, or reaches beyond ±1e9: a scene file can
     /// bring it nearer.
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
+        Draft::of_mesh(mesh).map(Draft::finish)
+    }
+}
+
+impl Draft {
+    /// [`Scene::of_mesh`], not built.
+    pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
         let bounds = Bounds::of(mesh.positions().iter().copied());
         let middle = bounds.min + 0.5 * bounds.extent();
         let radius = 0.5 * bounds.extent().length();
@@ -38,7 +45,7 @@ impl Scene {
         let floor = Plane::new(Vec3::new(middle.x, bounds.min.y, middle.z), Vec3::Y);
         let objects =
             vec![Object::new(Mesh::from(mesh), Material::Own), Object::new(floor, Material::Diffuse(grey(0xb0)))];
-        Some(Self {
+        Some(Self::new(Scene {
             background: Background::Gradient {
                 bottom: grey(0x90),
                 top: LinearRgb::from_srgb8(Srgb8::new(0x87, 0xa6, 0xcc)),
@@ -48,8 +55,8 @@ impl Scene {
                 light(middle + radius * Vec3::new(-2.5, 4.0, 3.0), 0.85),
                 light(middle + radius * Vec3::new(4.0, 2.0, 2.0), 0.2),
             ],
-            ..Self::new(camera(&bounds, middle)?, objects)
-        })
+            ..Scene::unbuilt(camera(&bounds, middle)?, objects)
+        }))
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::Object;
 use crate::bvh::Bvh;
+use crate::progress::{Progress, Watcher, Work};
 use crate::shape::Surface;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A part of an object. They are ordered as they stand in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -14,7 +16,7 @@ pub(crate) struct PartId {
 }
 
 /// What a ray is tested against.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Parts {
     /// Over the boxes of `bounded`.
     pub(crate) bvh: Bvh,
@@ -28,6 +30,12 @@ pub(crate) struct Parts {
 
 impl Parts {
     pub(super) fn of(objects: &[Object]) -> Self {
+        let built = Self::of_watched(objects, &Watcher::patient());
+        built.unwrap_or_else(|| unreachable!("who is patient does not go"))
+    }
+
+    /// The same while somebody waits for it; `None` if he has gone.
+    pub(super) fn of_watched(objects: &[Object], watcher: &Watcher<'_>) -> Option<Self> {
         let (mut boxes, mut bounded, mut unbounded) = (Vec::new(), Vec::new(), Vec::new());
         for (object, Object { shape, .. }) in (0..).zip(objects) {
             for part in 0..shape.part_count() {
@@ -40,13 +48,17 @@ impl Parts {
                 }
             }
         }
-        let bvh = Bvh::new(&boxes);
+        let (done, total) = (AtomicUsize::new(0), boxes.len());
+        let bvh = Bvh::new_unless(&boxes, &|more| {
+            let done = done.fetch_add(more, Ordering::Relaxed) + more;
+            watcher.tell(Progress { work: Work::Building, done, total })
+        })?;
         let few = bvh.is_leaf().then(|| {
             let mut all = [&bounded[..], &unbounded].concat();
             all.sort_unstable();
             all
         });
         let bounded = bvh.order().iter().map(|&at| bounded[at as usize]).collect();
-        Self { bvh, bounded, unbounded, few }
+        Some(Self { bvh, bounded, unbounded, few })
     }
 }

@@ -1,7 +1,11 @@
 //! A mesh in every format, written as plainly as possible.
 
+// Each test target that says `mod mesh_writers;` uses a part of it.
+#![allow(dead_code)]
+
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 use termtrace::color::{LinearRgb, Srgb8};
 use termtrace::mesh_file::MeshFile;
@@ -43,6 +47,30 @@ impl Writer {
 
     const fn bare(name: &'static str, write: fn(&Written) -> Vec<u8>) -> Self {
         Self { name, write, has_indices: false, has_normals_and_colors: false, has_texture_coordinates: false }
+    }
+}
+
+/// A ball of about so many triangles, with its poles above and below.
+pub(crate) fn ball(triangles: u32) -> Written {
+    let rows = (f64::from(triangles) / 4.0).sqrt() as u32;
+    let columns = 2 * rows;
+    let point = |row: u32, column: u32| {
+        let (up, around) = (f64::from(row) / f64::from(rows) * PI, f64::from(column) / f64::from(columns) * TAU);
+        let (ring, y) = (libm::sin(up), libm::cos(up));
+        Vec3::new((ring * libm::cos(around)) as f32, y as f32, (ring * libm::sin(around)) as f32)
+    };
+    let at = |row: u32, column: u32| row * (columns + 1) + column;
+    let squares = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    let triangles = squares.flat_map(|(row, column)| {
+        let (a, b, c, d) = (at(row, column), at(row, column + 1), at(row + 1, column + 1), at(row + 1, column));
+        [[a, b, c], [a, c, d]]
+    });
+    Written {
+        triangles: triangles.collect(),
+        positions: (0..=rows).flat_map(|row| (0..=columns).map(move |column| point(row, column))).collect(),
+        normals: None,
+        texture_coordinates: None,
+        colors: None,
     }
 }
 
@@ -256,4 +284,10 @@ fn glb(mesh: &Written) -> Vec<u8> {
         bytes.extend(chunk);
     }
     bytes
+}
+
+/// The mesh in that format.
+pub(crate) fn written(mesh: &Written, format: &str) -> Vec<u8> {
+    let writer = WRITERS.iter().find(|writer| writer.name == format).expect("there is such a format");
+    (writer.write)(mesh)
 }

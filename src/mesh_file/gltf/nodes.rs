@@ -5,15 +5,21 @@ use super::json::Json;
 use super::primitives::Primitives;
 use crate::mesh_file::MeshFile;
 use crate::mesh_file::error::Fault;
+use crate::mesh_file::meter::Meter;
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
 /// The triangles of the scene that is to be shown.
-pub(super) fn read<'a>(root: Json<'a>, buffers: &mut Buffers<'a, '_>) -> Result<MeshFile, Fault> {
+pub(super) fn read<'a>(
+    root: Json<'a>,
+    buffers: &mut Buffers<'a, '_>,
+    meter: &mut Meter<'_>,
+) -> Result<MeshFile, Fault> {
     let mut is_visited = vec![false; root.count("nodes")?];
     let mut primitives = Primitives::new(buffers)?;
     // A stack of our own: trees may be deep.
     let mut open: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
     while let Some(((number, node), parent)) = open.pop() {
+        meter.step()?;
         if std::mem::replace(&mut is_visited[number], true) {
             return Err(node.fault("the scene comes to this node twice: nodes must form a tree"));
         }

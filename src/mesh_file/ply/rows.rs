@@ -2,6 +2,7 @@
 
 use super::header::{Element, Property, Shape, Type};
 use crate::mesh_file::error::Fault;
+use crate::mesh_file::meter::Meter;
 use crate::mesh_file::text::Text;
 
 /// A body: rows, and in them numbers, one after the other.
@@ -36,11 +37,12 @@ pub(super) trait Rows {
 /// A row is a line.
 pub(super) struct Ascii<'a> {
     text: Text<'a>,
+    meter: Meter<'a>,
 }
 
 impl<'a> Ascii<'a> {
-    pub(super) fn new(bytes: &'a [u8], at: usize) -> Self {
-        Self { text: Text::from(bytes, at) }
+    pub(super) fn new(bytes: &'a [u8], at: usize, meter: Meter<'a>) -> Self {
+        Self { text: Text::from(bytes, at), meter }
     }
 }
 
@@ -48,7 +50,7 @@ impl Rows for Ascii<'_> {
     #[inline]
     fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), Fault> {
         if self.text.go_to_statement() {
-            return Ok(());
+            return self.meter.reach(self.text.at());
         }
         let Element { name, count, .. } = element;
         Err(Fault::in_text(self.text.at(), format!("the file ends after {row} of {count} rows of the element {name}")))
@@ -106,11 +108,12 @@ impl Rows for Ascii<'_> {
 pub(super) struct Binary<'a, const BIG_ENDIAN: bool> {
     bytes: &'a [u8],
     at: usize,
+    meter: Meter<'a>,
 }
 
 impl<'a, const BIG_ENDIAN: bool> Binary<'a, BIG_ENDIAN> {
-    pub(super) fn new(bytes: &'a [u8], at: usize) -> Self {
-        Self { bytes, at }
+    pub(super) fn new(bytes: &'a [u8], at: usize, meter: Meter<'a>) -> Self {
+        Self { bytes, at, meter }
     }
 
     #[inline]
@@ -145,7 +148,7 @@ impl<const BIG_ENDIAN: bool> Rows for Binary<'_, BIG_ENDIAN> {
     #[inline]
     fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), Fault> {
         if self.at < self.bytes.len() {
-            return Ok(());
+            return self.meter.reach(self.at);
         }
         let Element { name, count, .. } = element;
         Err(Fault::at_byte(self.at, format!("the file ends after {row} of {count} rows of the element {name}")))

@@ -1,0 +1,131 @@
+//! A mesh as it looks from afar.
+
+use super::MeshFile;
+use super::builder::{Builder, Triangle};
+use crate::bounds::Bounds;
+use glam::{DVec3, Vec3};
+use std::collections::HashSet;
+
+/// No more triangles are kept.
+const MOST: usize = 128 << 10;
+
+/// No vertex has come here yet.
+const EMPTY: u32 = u32::MAX;
+
+impl MeshFile {
+    /// What is left of the mesh when it is cut into cubes, of which `cubes` (at most 256) lie along its longest side, and
+    /// the vertices of each become one, in their middle (Rossignac and Borrel, Multi-resolution 3D approximations for
+    /// rendering complex scenes, 1993). Its holes and edges are where they were, give or take a cube. `None` if nothing
+    /// is left.
+    pub fn coarse(&self, cubes: u32) -> Option<Self> {
+        let (corner_of, positions) = self.merged(cubes.clamp(1, 256));
+        let mut mesh = Builder { positions, materials: self.materials.clone(), ..Builder::default() };
+        let mut seen = HashSet::new();
+        for (index, corners) in self.triangles.iter().enumerate() {
+            let corners = corners.map(|corner| corner_of[corner as usize]);
+            let [a, b, c] = corners;
+            if a == b || b == c || c == a || !seen.insert(sorted(corners)) {
+                continue;
+            }
+            self.push_like(index, corners, &mut mesh).ok()?;
+            if mesh.triangles.len() == MOST {
+                break;
+            }
+        }
+        mesh.finish("").ok()
+    }
+
+    /// For each vertex the number of its cube, and the middle of each cube's vertices.
+    fn merged(&self, cubes: u32) -> (Vec<u32>, Vec<Vec3>) {
+        let bounds = Bounds::of(self.positions.iter().copied());
+        let start = bounds.min.as_dvec3();
+        let side = (bounds.max.as_dvec3() - start).max_element();
+        let scale = if side > 0.0 { f64::from(cubes) * 0.999_999 / side } else { 0.0 };
+        let mut numbers = vec![EMPTY; cubes.pow(3) as usize];
+        let mut sums: Vec<(DVec3, u32)> = Vec::new();
+        let corner_of = self.positions.iter().map(|position| {
+            let position = position.as_dvec3();
+            let [x, y, z] = ((position - start) * scale).to_array().map(|place| (place as u32).min(cubes - 1));
+            let number = &mut numbers[((z * cubes + y) * cubes + x) as usize];
+            if *number == EMPTY {
+                *number = sums.len() as u32; // at most 2^24
+                sums.push((DVec3::ZERO, 0));
+            }
+            let (sum, count) = &mut sums[*number as usize];
+            *sum += position;
+            *count += 1;
+            *number
+        });
+        let corner_of = corner_of.collect();
+        (corner_of, sums.into_iter().map(|(sum, count)| (sum / f64::from(count)).as_vec3()).collect())
+    }
+
+    /// A triangle with these corners, otherwise like that one of this mesh.
+    fn push_like(&self, index: usize, positions: [u32; 3], mesh: &mut Builder) -> Result<(), super::error::Fault> {
+        mesh.set_material(self.material_of(index).map(|material| material as u32)); // as many as there were
+        let triangle = Triangle {
+            positions,
+            normals: self.normals_of(index).map(|values| mesh.normals.add(values)),
+            texture_coordinates: self.texture_coordinates_of(index).map(|values| mesh.texture_coordinates.add(values)),
+            colors: self.colors_of(index).map(|values| mesh.colors.add(values)),
+        };
+        mesh.push(triangle)
+    }
+}
+
+fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
+    corners.sort_unstable();
+    corners
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of so many squares a side, with a normal at each vertex.
+    fn square(side: u32) -> MeshFile {
+        let vertices = (0..=side).flat_map(|y| (0..=side).map(move |x| Vec3::new(x as f32, y as f32, 0.0)));
+        let vertices: Vec<Vec3> = vertices.collect();
+        let at = |x: u32, y: u32| y * (side + 1) + x;
+        let squares = (0..side).flat_map(|y| (0..side).map(move |x| (x, y)));
+        let triangles = squares.flat_map(|(x, y)| {
+            [[at(x, y), at(x + 1, y), at(x + 1, y + 1)], [at(x, y), at(x + 1, y + 1), at(x, y + 1)]]
+        });
+        let normals = vec![Vec3::Z; vertices.len()];
+        let mesh = MeshFile::new(vertices, triangles.collect()).and_then(|mesh| mesh.with_normals(normals));
+        mesh.expect("it is a mesh")
+    }
+
+    fn area(mesh: &MeshFile) -> f32 {
+        let area = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
+            0.5 * (b - a).cross(c - a).z
+        };
+        mesh.triangles.iter().map(area).sum()
+    }
+
+    #[test]
+    fn a_coarse_mesh_covers_what_the_mesh_covers() {
+        let mesh = square(100);
+        let coarse = mesh.coarse(10).expect("something is left");
+        assert_eq!(coarse.positions.len(), 100);
+        assert_eq!(coarse.triangles.len(), 2 * 9 * 9);
+        // It ends in the middle of the outermost cubes.
+        assert!((area(&coarse) - 90.0 * 90.0).abs() < 200.0, "{}", area(&coarse));
+        assert!((0..coarse.triangles.len()).all(|i| coarse.normals_of(i) == Some([Vec3::Z; 3])));
+    }
+
+    #[test]
+    fn triangles_larger_than_the_cubes_stay() {
+        let mesh = square(4);
+        let coarse = mesh.coarse(200).expect("something is left");
+        assert_eq!((coarse.positions.len(), coarse.triangles.len()), (25, 32));
+        assert_eq!(area(&coarse), 16.0);
+    }
+
+    #[test]
+    fn of_a_point_nothing_is_left() {
+        let point = MeshFile::new(vec![Vec3::X; 3], vec![[0, 1, 2]]).expect("it is a mesh");
+        assert_eq!(point.coarse(96), None);
+    }
+}

@@ -1,0 +1,70 @@
+//! A scene on its way: read and checked, but not built.
+
+use super::{Object, Parts, Scene};
+use crate::camera::Camera;
+use crate::progress::Watcher;
+use crate::shape::{Mesh, Shape};
+
+/// A scene of which all is known, and which no ray can be sent into yet: for that it is [built](Self::build). In the
+/// meantime a [sketch](Self::sketch) can be looked at.
+#[derive(Clone, Debug)]
+pub struct Draft {
+    /// Without parts.
+    scene: Scene,
+}
+
+/// Of so many triangles and more the scene is sketched: fewer are built as quickly.
+const MANY: u32 = 1 << 17;
+
+/// A sketched mesh has about so many details along its longest side: as many as a screen shows.
+const DETAILS: f32 = 64.0;
+
+impl Draft {
+    /// Of that scene, whose parts are left out.
+    pub(super) fn new(scene: Scene) -> Self {
+        Self { scene }
+    }
+
+    /// Where the scene wants to be looked at from.
+    pub fn camera(&self) -> &Camera {
+        &self.scene.camera
+    }
+
+    /// The same scene, looked at from somewhere else.
+    pub fn with_camera(mut self, camera: Camera) -> Self {
+        self.scene.camera = camera;
+        self
+    }
+
+    /// The scene with coarse meshes, which take a moment to build: something to look at until the scene itself is there.
+    /// `None` if it will be there as soon.
+    pub fn sketch(&self) -> Option<Scene> {
+        let meshes = || self.scene.objects.iter().filter_map(|object| mesh_of(&object.shape));
+        if meshes().map(Mesh::triangle_count).fold(0, u32::saturating_add) < MANY {
+            return None;
+        }
+        let details = DETAILS / (meshes().count() as f32).sqrt();
+        let sketched = |object: &Object| match mesh_of(&object.shape) {
+            Some(mesh) => mesh.file().coarse(details as u32).map(|mesh| Object::new(Mesh::from(mesh), object.material)),
+            None => Some(object.clone()),
+        };
+        let objects: Vec<_> = self.scene.objects.iter().filter_map(sketched).collect();
+        Some(Scene { parts: Parts::of(&objects), objects, ..self.scene.clone() })
+    }
+
+    /// The scene, built on all threads of the current rayon pool, while somebody waits for it; `None` if he has gone.
+    pub fn build(self, watcher: &Watcher<'_>) -> Option<Scene> {
+        let parts = Parts::of_watched(&self.scene.objects, watcher)?;
+        Some(Scene { parts, ..self.scene })
+    }
+
+    /// The scene, however long it takes.
+    pub fn finish(self) -> Scene {
+        let parts = Parts::of(&self.scene.objects);
+        Scene { parts, ..self.scene }
+    }
+}
+
+fn mesh_of(shape: &Shape) -> Option<&Mesh> {
+    if let Shape::Mesh(mesh) = shape { Some(mesh) } else { None }
+}

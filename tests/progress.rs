@@ -1,0 +1,118 @@
+//! How far a mesh is on its way to a scene: what who waits for it is told, and that he may go.
+
+mod mesh_writers;
+
+use mesh_writers::{WRITERS, ball, written};
+use std::fs;
+use std::num::NonZeroU32;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use termtrace::color::Srgb8;
+use termtrace::framebuffer::Resolution;
+use termtrace::mesh_file::MeshFile;
+use termtrace::progress::{Progress, Watcher, Work};
+use termtrace::render::render;
+use termtrace::scene::{Draft, Scene};
+use termtrace::tone::tone;
+
+/// A ball of so many triangles that a test has read.
+fn read(triangles: u32) -> MeshFile {
+    let bytes = written(&ball(triangles), "binary.stl");
+    MeshFile::from_bytes("ball.stl", &bytes, &mut |_| unreachable!("it names no file")).expect("it is a mesh")
+}
+
+/// What somebody hears who waits for some work, and goes after so many reports.
+fn heard<T>(most: usize, work: impl FnOnce(&Watcher<'_>) -> T) -> (Vec<Progress>, T) {
+    let heard = Mutex::new(Vec::new());
+    let hear = |progress| {
+        let mut heard = heard.lock().expect("nobody panics");
+        heard.push(progress);
+        if heard.len() < most { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let done = work(&Watcher::new(&hear));
+    (heard.into_inner().expect("nobody panics"), done)
+}
+
+/// In every format: how far it is is told from beginning to end, and after any report it can be given up.
+#[test]
+fn reading_is_watched_and_can_be_given_up() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let mesh = ball(30_000);
+    for writer in WRITERS {
+        let path = folder.path().join(writer.name);
+        let size = written(&mesh, writer.name).len();
+        fs::write(&path, written(&mesh, writer.name)).expect("a file can be written");
+        let load = |watcher: &Watcher<'_>| MeshFile::load_watched(&path, watcher).expect("it is a mesh");
+        let (reports, read) = heard(usize::MAX, load);
+        assert_eq!(read, Some(MeshFile::load(&path).expect("it is a mesh")), "{}", writer.name);
+        assert_steps(&reports, &Work::Reading(path.to_string_lossy().into()), 1 << 20, size);
+        let parsing = Work::Parsing(path.to_string_lossy().into());
+        // Its parts are read in any order.
+        if writer.name == "x.glb" {
+            assert!(reports.iter().any(|report| report.work == parsing && report.total == 0));
+        } else {
+            assert_steps(&reports, &parsing, 256 << 10, size);
+        }
+        for most in 1..=reports.len() {
+            let (reports, read) = heard(most, load);
+            assert_eq!((reports.len(), read), (most, None), "{}", writer.name);
+        }
+    }
+}
+
+/// That work is told of in steps of about that size, up to its end.
+#[track_caller]
+fn assert_steps(reports: &[Progress], work: &Work, step: usize, total: usize) {
+    let steps: Vec<usize> = reports.iter().filter(|report| report.work == *work).map(|report| report.done).collect();
+    assert!(reports.iter().all(|report| report.work != *work || report.total == total), "{work:?}");
+    assert!(steps.is_sorted() && steps.first().is_some_and(|&first| first < step), "{work:?} {steps:?}");
+    assert!(steps.last().is_some_and(|&last| last + step + 100 >= total && last <= total), "{work:?} {steps:?}");
+    assert!(steps.windows(2).all(|pair| pair[1] - pair[0] <= step + 100), "{work:?} {steps:?}");
+}
+
+/// The meshes that a scene names are watched like one alone.
+#[test]
+fn a_scenes_meshes_are_watched() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    fs::write(folder.path().join("ball.stl"), written(&ball(20_000), "binary.stl")).expect("a file can be written");
+    let scene = folder.path().join("scene.ron");
+    let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Mesh(path: "ball.stl")])"#;
+    fs::write(&scene, text).expect("a file can be written");
+    let load = |watcher: &Watcher<'_>| Draft::load(&scene, watcher).expect("it is a scene");
+    let (reports, draft) = heard(usize::MAX, load);
+    assert!(draft.map(Draft::finish) == Some(Scene::load(&scene).expect("it is a scene")), "the same scene");
+    assert!(reports.iter().any(|report| matches!(&report.work, Work::Parsing(name) if name.ends_with("ball.stl"))));
+    for most in 1..=reports.len() {
+        assert!(heard(most, load).1.is_none(), "given up after {most}");
+    }
+}
+
+#[test]
+fn building_is_watched_and_can_be_given_up() {
+    let draft = Draft::of_mesh(read(100_000)).expect("it has a size");
+    let build = |watcher: &Watcher<'_>| draft.clone().build(watcher);
+    let (reports, scene) = heard(usize::MAX, build);
+    let total = scene.as_ref().map_or(0, |scene| scene.objects()[0].shape.part_count() as usize);
+    assert!(scene == Some(draft.clone().finish()), "the same scene");
+    assert!(reports.iter().all(|report| report.work == Work::Building && report.total == total));
+    assert!(reports.iter().all(|report| report.done <= total) && reports.iter().any(|report| report.done == total));
+    for most in [1, 2, reports.len() / 2] {
+        assert!(heard(most, build).1.is_none(), "given up after {most}");
+    }
+}
+
+/// There is none of what is as soon built.
+#[test]
+fn a_sketch_looks_like_the_scene() {
+    assert!(Draft::of_mesh(read(50_000)).expect("it has a size").sketch().is_none());
+    let draft = Draft::of_mesh(read(150_000)).expect("it has a size");
+    let sketch = draft.sketch().expect("it is big");
+    assert!(sketch.objects()[0].shape.part_count() < 60_000);
+    assert_eq!(sketch.camera, *draft.camera());
+    let pixels =
+        |scene: &Scene| tone(&render(scene, &scene.camera, Resolution::square(80, 48), NonZeroU32::MIN), scene).pixels;
+    let (coarse, fine) = (pixels(&sketch), pixels(&draft.finish()));
+    let is_near = |(a, b): &(&Srgb8, &Srgb8)| a.g.abs_diff(b.g) < 24;
+    let near = coarse.iter().zip(&fine).filter(is_near).count();
+    assert!(near * 100 > coarse.len() * 92, "{near} of {} pixels", coarse.len());
+}
