@@ -3,6 +3,8 @@
 //! It sleeps until a key, a signal or a finished frame wakes it. A frame is rendered only when something changed, by a
 //! thread of its own unless it takes next to no time, so that keys and signals are heard while it is traced; the newest
 //! picture wins: what changes in the meantime is in the next frame, and nothing is queued.
+//!
+//! A scene that takes long to come is waited for here too: its progress is shown, then a sketch of it.
 
 use crate::camera::Camera;
 use crate::capabilities::{Capabilities, Findings, Hints};
@@ -11,18 +13,23 @@ use crate::control::{self, Command, Motion};
 use crate::encode::{Order, Quality};
 use crate::framebuffer::Resolution;
 use crate::input::{Input, Parser, Reply};
-use crate::scene::Scene;
+use crate::progress::Watcher;
+use crate::scene::{Draft, Scene};
 use crate::terminal::{self, Questions, Signals, Stopped, Terminal, Window};
 use crossterm::event::{Event, KeyEvent, KeyEventKind};
-use std::io;
+use std::convert::Infallible;
+use std::panic::resume_unwind;
 use std::time::{Duration, Instant};
+use std::{fmt, io};
 
 mod link;
+mod loading;
 mod panels;
 mod renderer;
 mod screen;
 
 use link::Link;
+use loading::{Loading, News};
 use renderer::{Frame, Job, Renderer};
 use screen::Screen;
 
@@ -80,19 +87,86 @@ pub enum Ending {
 /// # Panics
 /// With the payload of a thread that panicked while tracing.
 pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<Outcome> {
-    let camera = scene.camera;
+    view(Loading::<Infallible>::done(scene), options, signals).map_err(|error| match error {
+        Error::Terminal(error) => error,
+        Error::Scene(never) => match never {},
+    })
+}
+
+/// Shows the scene that `read` gives until the user leaves. What takes longer than a moment shows how far it is, then a
+/// sketch to look around in, and can be left at any time. The terminal is as it was when this returns, and also when it
+/// panics; a scene that is wrong at once never touches it.
+///
+/// `read` gives nothing only when its watcher has gone: when the user has left. It is not waited for then.
+///
+/// # Errors
+/// If there is no terminal, or it goes away; or what is wrong with the scene.
+///
+/// # Panics
+/// With the payload of a thread that panicked while tracing, or while reading or building the scene.
+pub fn open<E: Send + 'static>(
+    read: impl FnOnce(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + 'static,
+    options: Options,
+    signals: &mut Signals,
+) -> Result<Outcome, Error<E>> {
+    let waker = signals.waker()?;
+    let loading = terminal::without_signals(|| Loading::start(read, options.threads, waker))?;
+    view(loading, options, signals)
+}
+
+/// Why there was nothing to see, or nothing more.
+#[derive(Debug)]
+pub enum Error<E> {
+    /// There is no terminal, or it has gone away.
+    Terminal(io::Error),
+    /// What is wrong with the scene.
+    Scene(E),
+}
+
+impl<E> From<io::Error> for Error<E> {
+    fn from(error: io::Error) -> Self {
+        Self::Terminal(error)
+    }
+}
+
+impl<E: fmt::Display> fmt::Display for Error<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Terminal(error) => write!(f, "terminal: {error}"),
+            Self::Scene(error) => error.fmt(f),
+        }
+    }
+}
+
+impl<E: fmt::Debug + fmt::Display> std::error::Error for Error<E> {}
+
+fn view<E: Send + 'static>(
+    mut loading: Loading<E>,
+    options: Options,
+    signals: &mut Signals,
+) -> Result<Outcome, Error<E>> {
     // The terminal is declared last, and so is given back first: nothing that comes after can keep it.
     let waker = signals.waker()?;
-    let mut renderer = terminal::without_signals(|| Renderer::start(scene, options.threads, waker))?;
+    let mut renderer = terminal::without_signals(|| Renderer::start(options.threads, waker))?;
+    loading.wait(MOMENT).map_err(Error::Scene)?;
+    if let Some(signal) = signals.deadly() {
+        return Ok(Outcome { ending: Ending::Signal(signal), moved: None, heard: true });
+    }
     let mut terminal = Terminal::take()?;
-    let mut live = Live::new(camera, options, terminal.window()?);
-    let asked = terminal.send(live.questions.bytes());
-    let ended = asked.and_then(|()| live.run(&mut terminal, &mut renderer, signals));
-    // When the terminal vanishes, the system says so by a signal too.
-    let ending = ended.or_else(|error| signals.deadly().map(Ending::Signal).ok_or(error))?;
+    let mut live = Live::new(options, terminal.window()?);
+    let asked = terminal.send(live.questions.bytes()).map_err(Error::from);
+    let ended = asked.and_then(|()| live.run(&mut terminal, &mut renderer, &mut loading, signals));
+    let ending = ended.or_else(|error| match error {
+        // When the terminal vanishes, the system says so by a signal too.
+        Error::Terminal(error) => signals.deadly().map(Ending::Signal).ok_or(Error::Terminal(error)),
+        fault @ Error::Scene(_) => Err(fault),
+    })?;
     let heard = terminal.give_back();
-    Ok(Outcome { ending, moved: (live.camera != camera).then_some(live.camera), heard })
+    Ok(Outcome { ending, moved: live.view.and_then(|view| view.moved()), heard })
 }
+
+/// A scene that is there so soon is shown without a word about it.
+const MOMENT: Duration = Duration::from_millis(100);
 
 /// The first frame after a key already shows so much movement.
 const FRAME: Duration = Duration::from_micros(16_667);
@@ -108,9 +182,8 @@ const KEYBOARD: u16 = 1 | 2 | 8;
 /// The state of the live view.
 struct Live {
     options: Options,
-    home: Camera,
-    camera: Camera,
-    speed: f32,
+    /// `None` as long as there is nothing to see.
+    view: Option<View>,
     window: Window,
     capabilities: Capabilities,
     questions: Questions,
@@ -129,15 +202,32 @@ struct Live {
     begun: Option<Duration>,
 }
 
+/// How the scene is looked at.
+#[derive(Clone, Copy)]
+struct View {
+    home: Camera,
+    camera: Camera,
+    speed: f32,
+}
+
+impl View {
+    fn new(camera: Camera) -> Self {
+        Self { home: camera, camera, speed: control::speed(&camera) }
+    }
+
+    /// Where the camera is, if it is not where it was.
+    fn moved(&self) -> Option<Camera> {
+        (self.camera != self.home).then_some(self.camera)
+    }
+}
+
 impl Live {
-    fn new(camera: Camera, options: Options, window: Window) -> Self {
+    fn new(options: Options, window: Window) -> Self {
         let questions = Questions::needed(&options.hints);
         let link = Link::new(options.max_rate, options.max_frames, questions.is_open());
         let capabilities = Findings::new(&options.hints, window.cell, questions.answers()).capabilities();
         let mut live = Self {
-            home: camera,
-            camera,
-            speed: control::speed(&camera),
+            view: None,
             window,
             capabilities,
             questions,
@@ -156,8 +246,17 @@ impl Live {
         live
     }
 
-    fn run(&mut self, terminal: &mut Terminal, renderer: &mut Renderer, signals: &mut Signals) -> io::Result<Ending> {
+    fn run<E: Send + 'static>(
+        &mut self,
+        terminal: &mut Terminal,
+        renderer: &mut Renderer,
+        loading: &mut Loading<E>,
+        signals: &mut Signals,
+    ) -> Result<Ending, Error<E>> {
         loop {
+            while let Some(news) = loading.next() {
+                self.take_news(news, renderer).map_err(Error::Scene)?;
+            }
             self.move_camera();
             self.present(terminal, renderer)?;
             // Nothing is rendered that cannot be sent.
@@ -253,13 +352,36 @@ impl Live {
         Next::Stay
     }
 
+    /// What is there of the scene is shown; all of it from where its sketch was looked at.
+    fn take_news<E>(&mut self, news: News<E>, renderer: &mut Renderer) -> Result<(), E> {
+        match news {
+            News::Progress(progress) => self.screen.set_progress(progress),
+            News::Sketch(scene) => self.show(scene, renderer),
+            News::Scene(scene) => {
+                self.screen.end_progress();
+                self.show(scene, renderer);
+            }
+            News::Fault(fault) => return Err(fault),
+            News::Panic(panic) => resume_unwind(panic),
+        }
+        Ok(())
+    }
+
+    fn show(&mut self, scene: Scene, renderer: &mut Renderer) {
+        self.view.get_or_insert(View::new(scene.camera));
+        renderer.show(scene);
+        self.stale = true;
+    }
+
     /// Carries the motion out up to now.
     fn move_camera(&mut self) {
         let Some(since) = self.moved_until else { return };
         let now = self.now();
-        let camera = self.motion.step(&self.camera, self.speed, since, now);
-        self.stale |= camera != self.camera;
-        self.camera = camera;
+        if let Some(view) = &mut self.view {
+            let camera = self.motion.step(&view.camera, view.speed, since, now);
+            self.stale |= camera != view.camera;
+            view.camera = camera;
+        }
         self.moved_until = self.motion.is_moving(now).then_some(now);
     }
 
@@ -278,9 +400,10 @@ impl Live {
     }
 
     fn begin_frame(&mut self, renderer: &mut Renderer) {
+        let Some(view) = self.view else { return };
         self.stale = false;
         self.begun = Some(self.now());
-        let job = Job { camera: self.camera, resolution: self.resolution(), test_panic: false };
+        let job = Job { camera: view.camera, resolution: self.resolution(), test_panic: false };
         if let Some(frame) = renderer.begin(job) {
             self.take_frame(frame);
         }
@@ -412,14 +535,18 @@ impl Live {
     }
 
     fn panic_if_asked(&self, renderer: &mut Renderer) {
-        if terminal::take_worker_panic() {
-            renderer.begin(Job { camera: self.camera, resolution: self.resolution(), test_panic: true });
+        if let Some(view) = self.view
+            && terminal::take_worker_panic()
+        {
+            renderer.begin(Job { camera: view.camera, resolution: self.resolution(), test_panic: true });
         }
     }
 
     fn reset(&mut self) {
-        self.stale |= self.camera != self.home;
-        self.camera = self.home;
+        if let Some(view) = &mut self.view {
+            self.stale |= view.camera != view.home;
+            view.camera = view.home;
+        }
     }
 
     /// Brings the screen up to date: nothing is written if it is, or while the terminal is behind.

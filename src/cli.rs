@@ -17,7 +17,8 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use termtrace::camera::{Camera, CameraError, Pose};
-use termtrace::scene::Scene;
+use termtrace::progress::Watcher;
+use termtrace::scene::{Draft, Scene};
 
 /// Why a command ends without having done what was asked.
 enum Failure {
@@ -34,6 +35,11 @@ impl Failure {
     fn runtime(what: impl Display, why: impl Display) -> Self {
         Self::Runtime(format!("{what}: {why}"))
     }
+}
+
+/// The command line or the scene is wrong.
+fn usage(error: impl Display) -> Failure {
+    Failure::Usage(error.to_string())
 }
 
 type Done = Result<(), Failure>;
@@ -77,7 +83,7 @@ enum Command {
 }
 
 /// The scene, and who looks at it: on every command.
-#[derive(Args)]
+#[derive(Args, Clone)]
 struct SceneArgs {
     /// The scene file; - reads the scene from standard input
     // Always there when it is asked for; optional, because the arguments before a command have none.
@@ -120,13 +126,24 @@ impl SceneArgs {
 
     /// The scene, with the camera that the command line wants.
     fn load(&self) -> Result<Scene, Failure> {
-        let mut scene = if self.path() == Path::new("-") {
-            Scene::from_bytes("standard input", &read_stdin()?).map_err(|error| Failure::Usage(error.to_string()))?
-        } else {
-            Scene::load(self.path()).map_err(|error| Failure::Usage(error.to_string()))?
+        let draft = self.draft(self.stdin()?.as_deref(), &Watcher::patient())?;
+        draft.map(Draft::finish).ok_or_else(|| Failure::runtime(self.path().display(), "nobody waits for it"))
+    }
+
+    /// The scene's text if it comes from standard input, which may be the terminal: to be read before that is taken.
+    fn stdin(&self) -> Result<Option<Vec<u8>>, Failure> {
+        (self.path() == Path::new("-")).then(read_stdin).transpose()
+    }
+
+    /// The scene, not built yet, while somebody waits for it; `None` if he has gone.
+    fn draft(&self, stdin: Option<&[u8]>, watcher: &Watcher<'_>) -> Result<Option<Draft>, Failure> {
+        let draft = match stdin {
+            Some(text) => Draft::from_bytes("standard input", text, watcher).map_err(usage)?,
+            None => Draft::load(self.path(), watcher).map_err(usage)?,
         };
-        scene.camera = self.camera(&scene.camera).map_err(|error| Failure::Usage(error.to_string()))?;
-        Ok(scene)
+        let Some(draft) = draft else { return Ok(None) };
+        let camera = self.camera(draft.camera()).map_err(usage)?;
+        Ok(Some(draft.with_camera(camera)))
     }
 
     fn camera(&self, camera: &Camera) -> Result<Camera, CameraError> {

@@ -32,7 +32,7 @@ pub use panics::{hold_panic_messages, take_panic_messages};
 pub use questions::{FENCE, Questions};
 #[cfg(feature = "test-hooks")]
 pub use rehearsal::rehearse;
-pub(crate) use rehearsal::{reach, take_worker_panic};
+pub(crate) use rehearsal::{reach, reach_beside, take_worker_panic};
 pub use signals::{Signals, Stopped, Waker, die_of, without_signals};
 use unanswered::Unanswered;
 

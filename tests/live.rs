@@ -526,6 +526,19 @@ fn the_scene_may_come_from_standard_input() {
     leave(&mut session);
 }
 
+/// It is all read before keys are.
+#[test]
+fn the_scene_may_be_typed() {
+    let mut session = program().arg("-").spawn();
+    let text = std::fs::read(SCENE).expect("the scene is there");
+    session.send(&text);
+    // Somebody who thinks about the last line.
+    assert!(!session.sees(Duration::from_millis(300), |seen| seen.screen().is_alternate()));
+    session.send(b"\x04");
+    wait_for_picture(&mut session, Size::cells(80, 24));
+    leave(&mut session);
+}
+
 #[test]
 fn a_wrong_scene_is_told_without_touching_the_terminal() {
     let mut file = tempfile::NamedTempFile::new().expect("a file can be made");

@@ -16,6 +16,8 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 
 /// A terminal that has stopped reading is left within this.
 const STOPPED: Duration = Duration::from_secs(2);
+/// What is still loading is left within this.
+const LOADING: Duration = Duration::from_millis(200);
 /// A terminal that has vanished is left within this,
 const VANISHED: Duration = Duration::from_secs(1);
 /// with so many hundredths of a second of CPU.
@@ -152,4 +154,25 @@ fn a_screen_that_vanishes_while_the_keys_stay() {
     let keys = Start::shell("read line").spawn();
     let start = Start::shell(&format!("trap '' HUP; '{PROGRAM}' '{SCENE}'; exit $?"));
     vanish("the screen alone", false, start.stdin(keys.terminal()), |_| {});
+}
+
+/// A mesh of which nothing comes: however long it takes, it is left at once.
+#[test]
+fn a_mesh_that_does_not_come_is_left() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = folder.path().join("x.ply");
+    let made = std::process::Command::new("mkfifo").arg(&path).status();
+    assert!(made.is_ok_and(|status| status.success()), "a pipe with a name can be made");
+    for (key, signal) in [(&b"q"[..], None), (b"\x03", None), (b"", Some(Signal::TERM))] {
+        let mut session = Start::new(PROGRAM).arg(&path).spawn();
+        let pipe = std::fs::OpenOptions::new().write(true).open(&path).expect("it is read");
+        session.wait_for_text("reading x.ply");
+        match signal {
+            Some(signal) => session.signal(signal),
+            None => session.send(key),
+        }
+        let status = exit_within(LOADING, "while it reads", &mut session);
+        assert_eq!(status.signal(), signal.map(Signal::as_raw));
+        drop(pipe);
+    }
 }

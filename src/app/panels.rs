@@ -3,6 +3,8 @@
 use crate::capabilities::{CellMode, Colors, Glyphs};
 use crate::control::BINDINGS;
 use crate::grid::Size;
+use crate::progress::{Progress, Work};
+use crate::scene_text::visible;
 use glam::Vec3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Rect};
@@ -10,13 +12,17 @@ use ratatui::style::{Color, Style};
 use ratatui::symbols::border;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Clear, Paragraph, Widget};
+use std::path::Path;
 use std::time::Duration;
+use unicode_width::UnicodeWidthStr;
 
 /// Colours and border of panels. Where the picture has neither colour nor block characters, nor have they.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     style: Style,
     border: border::Set<'static>,
+    /// What is done of something, and what is not.
+    bar: [char; 2],
 }
 
 impl Look {
@@ -27,11 +33,11 @@ impl Look {
             Colors::Indexed16(_) => Style::new().fg(Color::White).bg(Color::Black),
             Colors::None => Style::new(),
         };
-        let border = match cell_mode.glyphs {
-            Glyphs::Half => border::ROUNDED,
-            Glyphs::Shape | Glyphs::Ramp => ASCII_BORDER,
+        let (border, bar) = match cell_mode.glyphs {
+            Glyphs::Half => (border::ROUNDED, ['█', '░']),
+            Glyphs::Shape | Glyphs::Ramp => (ASCII_BORDER, ['#', '.']),
         };
-        Self { style, border }
+        Self { style, border, bar }
     }
 }
 
@@ -108,6 +114,55 @@ fn short(value: f64) -> String {
     if value >= 10.0 { format!("{value:.0}{unit}") } else { format!("{value:.1}{unit}") }
 }
 
+/// The panel that says how far the scene is takes so much where there is room.
+const PROGRESS_WIDTH: u16 = 46;
+const PROGRESS_HEIGHT: u16 = 4;
+
+/// Above the lowest row, in the middle.
+pub(super) fn progress_area(screen: Rect) -> Rect {
+    let (width, height) = (PROGRESS_WIDTH.min(screen.width), PROGRESS_HEIGHT.min(screen.height));
+    let y = (screen.height - height).saturating_sub(1);
+    Rect::new((screen.width - width) / 2, y, width, height)
+}
+
+pub(super) fn draw_progress(progress: &Progress, look: Look, area: Rect, buffer: &mut Buffer) {
+    Clear.render(area, buffer);
+    Block::bordered().border_set(look.border).style(look.style).render(area, buffer);
+    let inside = area.inner(Margin::new(2, 1));
+    let lines = [what_is_done(&progress.work, look, inside.width.into()), bar(progress, look, inside.width.into())];
+    Paragraph::new(lines.map(Line::from).to_vec()).style(look.style).render(inside, buffer);
+}
+
+/// The work and, where there is room for a part of it, the file's name: its end tells more than its beginning.
+fn what_is_done(work: &Work, look: Look, width: usize) -> String {
+    let (verb, name) = match work {
+        Work::Reading(name) => ("reading", name),
+        Work::Parsing(name) => ("parsing", name),
+        Work::Building => return "building".to_owned(),
+    };
+    let room = width.saturating_sub(verb.len() + 1);
+    let name = Path::new(name).file_name().map_or_else(|| name.into(), |name| name.to_string_lossy());
+    let is_shown = |c: char| c.is_ascii() || !look.bar[0].is_ascii();
+    let mut name: String = visible(&name).chars().map(|c| if is_shown(c) { c } else { '?' }).collect();
+    while name.width() > room {
+        name.remove(0);
+    }
+    format!("{verb} {name}")
+}
+
+/// A bar as wide as there is room, and the share in per cent; nothing where nobody knows it.
+fn bar(progress: &Progress, look: Look, width: usize) -> String {
+    if progress.total == 0 {
+        return String::new();
+    }
+    let share = (progress.done as f64 / progress.total as f64).min(1.0);
+    let per_cent = format!(" {:3.0} %", (100.0 * share).floor());
+    let room = width.saturating_sub(per_cent.len());
+    let filled = (share * room as f64) as usize;
+    let [done, open] = look.bar;
+    (0..room).map(|at| if at < filled { done } else { open }).chain(per_cent.chars()).collect()
+}
+
 const HELP_NOTES: [&str; 1] = ["Shift with a movement: faster"];
 
 /// In the middle, as large as its text, or as the screen.
@@ -130,4 +185,54 @@ fn help_lines() -> Vec<Line<'static>> {
     let labels = BINDINGS.iter().map(|binding| binding.label.len()).max().unwrap_or(0);
     let bindings = BINDINGS.iter().map(|b| format!("{:labels$}  {}", b.label, b.does));
     bindings.chain(HELP_NOTES.map(str::to_owned)).map(Line::from).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capabilities::CellMode;
+
+    /// The panel's rows on a screen of that size.
+    fn panel(progress: &Progress, cell_mode: CellMode, columns: u16, rows: u16) -> Vec<String> {
+        let area = progress_area(Rect::new(0, 0, columns, rows));
+        assert!(area.right() <= columns && area.bottom() <= rows);
+        let mut buffer = Buffer::empty(area);
+        draw_progress(progress, Look::of(cell_mode), area, &mut buffer);
+        let row = |y| (area.left()..area.right()).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+        (area.top()..area.bottom()).map(row).collect()
+    }
+
+    fn parsing(name: &str, done: usize, total: usize) -> Progress {
+        Progress { work: Work::Parsing(name.to_owned()), done, total }
+    }
+
+    #[test]
+    fn the_panel_says_what_is_done_and_how_far() {
+        let half = CellMode::HALF_BLOCK;
+        let rows = panel(&parsing("meshes/dragon.ply", 25, 100), half, 20, 5);
+        assert_eq!(
+            rows,
+            ["╭──────────────────╮", "│ parsing agon.ply │", "│ ██░░░░░░░░  25 % │", "╰──────────────────╯"]
+        );
+        let rows = panel(&parsing("a\u{1b}b.ply", 100, 100), half, 80, 24);
+        assert_eq!(rows[1], format!("│ {:42} │", "parsing a\u{fffd}b.ply"));
+        assert_eq!(rows[2], format!("│ {} 100 % │", "█".repeat(36)));
+        let building = Progress { work: Work::Building, done: 999, total: 1000 };
+        let ascii = CellMode { glyphs: Glyphs::Ramp, ..half };
+        assert_eq!(panel(&parsing("é.ply", 0, 1), ascii, 80, 24)[1], format!("| {:42} |", "parsing ?.ply"));
+        let rows = panel(&building, ascii, 80, 24);
+        assert_eq!([&*rows[0], &*rows[2]], [format!("+{}+", "-".repeat(44)), format!("| {}.  99 % |", "#".repeat(35))]);
+    }
+
+    /// No bar where nobody knows how much there is; and no screen is too small.
+    #[test]
+    fn the_panel_goes_with_any_file_and_screen() {
+        let unknown = parsing("x.glb", 0, 0);
+        assert_eq!(panel(&unknown, CellMode::HALF_BLOCK, 20, 5)[2], format!("│ {:16} │", ""));
+        for (columns, rows) in [(1, 1), (3, 2), (5, 3), (9, 9), (1, 24)] {
+            for progress in [&unknown, &parsing(&"x".repeat(300), 1, 3), &parsing("", 7, 3)] {
+                panel(progress, CellMode::HALF_BLOCK, columns, rows);
+            }
+        }
+    }
 }

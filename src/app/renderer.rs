@@ -52,8 +52,9 @@ const SMALL: Duration = Duration::from_micros(1500);
 
 /// Our side of the thread.
 pub(super) struct Renderer {
-    scene: Arc<Scene>,
-    jobs: Option<Sender<Job>>,
+    /// What frames are of; `None` as long as there is nothing to see.
+    scene: Option<Arc<Scene>>,
+    jobs: Option<Sender<(Arc<Scene>, Job)>>,
     frames: Receiver<Traced>,
     cancelled: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -65,14 +66,12 @@ pub(super) struct Renderer {
 impl Renderer {
     /// Starts the thread, and the pool of those that it shares the tiles with. It is one of them itself: to wake another
     /// and to be woken again takes as long as a small frame.
-    pub(super) fn start(scene: Scene, threads: Option<usize>, mut waker: Waker) -> io::Result<Self> {
-        let (jobs, wanted) = channel::<Job>();
+    pub(super) fn start(threads: Option<usize>, mut waker: Waker) -> io::Result<Self> {
+        let (jobs, wanted) = channel::<(Arc<Scene>, Job)>();
         let (begun, started) = channel();
         let (done, frames) = channel();
         let cancelled = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&cancelled);
-        let scene = Arc::new(scene);
-        let seen = Arc::clone(&scene);
         let thread = thread::Builder::new().name("render".to_owned()).spawn(move || {
             let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).use_current_thread().build();
             let pool = match pool {
@@ -83,8 +82,8 @@ impl Renderer {
                 }
             };
             let _ = begun.send(Ok(()));
-            for job in wanted {
-                let traced = catch_unwind(AssertUnwindSafe(|| trace(&pool, &stop, &seen, &job)));
+            for (scene, job) in wanted {
+                let traced = catch_unwind(AssertUnwindSafe(|| trace(&pool, &stop, &scene, &job)));
                 // Nobody listens any more: the loop has ended.
                 let heard = done.send(traced).is_ok();
                 waker.wake();
@@ -95,7 +94,7 @@ impl Renderer {
         })?;
         started.recv().map_err(io::Error::other)??;
         Ok(Self {
-            scene,
+            scene: None,
             jobs: Some(jobs),
             frames,
             cancelled,
@@ -105,20 +104,27 @@ impl Renderer {
         })
     }
 
-    /// Whether a frame is on its way.
+    /// From now on frames are of that scene.
+    pub(super) fn show(&mut self, scene: Scene) {
+        self.scene = Some(Arc::new(scene));
+        self.seconds_per_pixel = None;
+    }
+
+    /// Whether no frame can be begun: one is on its way, or there is no scene yet.
     pub(super) fn is_busy(&self) -> bool {
-        self.in_work > 0
+        self.in_work > 0 || self.scene.is_none()
     }
 
     /// Begins a frame, or traces it at once where that takes next to no time.
     pub(super) fn begin(&mut self, job: Job) -> Option<Frame> {
+        let scene = Arc::clone(self.scene.as_ref()?);
         if self.is_small(&job) {
             let start = Instant::now();
-            let rendered = render_alone(&self.scene, &job.camera, job.resolution, NonZeroU32::MIN);
-            return Some(self.noted(Frame::new(&self.scene, &job, &rendered, start.elapsed())));
+            let rendered = render_alone(&scene, &job.camera, job.resolution, NonZeroU32::MIN);
+            return Some(self.noted(Frame::new(&scene, &job, &rendered, start.elapsed())));
         }
         if let Some(jobs) = &self.jobs
-            && jobs.send(job).is_ok()
+            && jobs.send((scene, job)).is_ok()
         {
             self.in_work += 1;
         }
@@ -188,7 +194,8 @@ mod tests {
         let scene = Scene::from_ron("three_spheres.ron", text).expect("the scene is fine");
         let camera = scene.camera;
         let waker = Signals::catch().and_then(|signals| signals.waker()).expect("pipes can be made");
-        let mut renderer = Renderer::start(scene, Some(2), waker).expect("threads can be started");
+        let mut renderer = Renderer::start(Some(2), waker).expect("threads can be started");
+        renderer.show(scene);
         let job = |side| Job { camera, resolution: Resolution::square(side, side), test_panic: false };
         assert!(renderer.begin(job(8)).is_none(), "nothing is known of the first");
         let by_the_thread = wait_for(&mut renderer);

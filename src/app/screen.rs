@@ -8,6 +8,7 @@ use crate::cell::{self, Painter};
 use crate::encode::{Allowance, Encoder, Order, Quality};
 use crate::grid::{Grid, Size};
 use crate::overlay;
+use crate::progress::Progress;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::time::{Duration, Instant};
@@ -26,6 +27,8 @@ pub(super) struct Screen {
     order: Option<Order>,
     quality: Option<Quality>,
     frame: Option<Frame>,
+    /// How far the scene is, until it is there.
+    progress: Option<Progress>,
     status: bool,
     help: bool,
     /// Whether anything has changed since the last bytes.
@@ -46,6 +49,7 @@ impl Screen {
             order,
             quality,
             frame: None,
+            progress: None,
             status: false,
             help: false,
             changed: false,
@@ -80,6 +84,17 @@ impl Screen {
         self.changed = true;
     }
 
+    /// The scene is on its way.
+    pub(super) fn set_progress(&mut self, progress: Progress) {
+        self.progress = Some(progress);
+        self.changed = true;
+    }
+
+    /// The scene is there: what was said of its way goes when it is seen.
+    pub(super) fn end_progress(&mut self) {
+        self.progress = None;
+    }
+
     pub(super) fn toggle_status(&mut self) {
         self.status = !self.status;
         self.changed = true;
@@ -105,13 +120,18 @@ impl Screen {
     /// When there are bytes to send: never, if all is shown as it should be, or before the first frame of the wanted size
     /// is there. What is shown already is made better only if it is to last.
     pub(super) fn due(&self, size: Size, lasts: bool) -> Option<Duration> {
-        if !self.is_frame_of(size) {
+        if !self.can_show(size) {
             return None;
         }
         if self.changed {
             return Some(Duration::ZERO);
         }
         self.encoder.due().filter(|_| lasts).map(|due| due.max(self.written + BREATH))
+    }
+
+    /// Whether there is a frame of that size, or none at all yet: there is black then, for panels to lie on.
+    fn can_show(&self, size: Size) -> bool {
+        self.is_frame_of(size) || self.frame.is_none() && self.progress.is_some()
     }
 
     fn is_frame_of(&self, size: Size) -> bool {
@@ -123,12 +143,13 @@ impl Screen {
     /// The bytes that are to be sent now.
     pub(super) fn bytes(&mut self, size: Size, now: Duration, slow: Option<Slow>) -> &mut Vec<u8> {
         self.bytes.clear();
-        if self.is_frame_of(size)
-            && let Some(frame) = &self.frame
-        {
+        if self.can_show(size) {
             let start = Instant::now();
-            let mut grid = self.painter.grid(&frame.picture);
-            self.lay_panels_over(&mut grid, frame, slow);
+            let mut grid = match &self.frame {
+                Some(frame) => self.painter.grid(&frame.picture),
+                None => Grid::new(size),
+            };
+            self.lay_panels_over(&mut grid, slow);
             let (usual, order) =
                 if slow.is_some() { (Quality::Equal, Order::Color) } else { (Quality::Exact, Order::Raster) };
             self.encoder.set_order(self.order.unwrap_or(order));
@@ -142,7 +163,7 @@ impl Screen {
         &mut self.bytes
     }
 
-    fn lay_panels_over(&self, grid: &mut Grid, frame: &Frame, slow: Option<Slow>) {
+    fn lay_panels_over(&self, grid: &mut Grid, slow: Option<Slow>) {
         let Size { columns, rows } = grid.size();
         let area = Rect::new(0, 0, columns, rows);
         let look = panels::Look::of(self.painter.mode());
@@ -151,7 +172,14 @@ impl Screen {
             draw(area, &mut buffer);
             overlay::lay_over(grid, &buffer);
         };
-        if self.status {
+        if let Some(progress) = &self.progress {
+            lay(panels::progress_area(area), &|area, buffer| {
+                panels::draw_progress(progress, look, area, buffer);
+            });
+        }
+        if self.status
+            && let Some(frame) = &self.frame
+        {
             let status = panels::Status {
                 cells: Size { columns, rows },
                 trace: frame.trace,

@@ -11,7 +11,6 @@ use termtrace::app::{self, Ending, Options, Outcome};
 use termtrace::capabilities::{Colors, USUAL_CELL_ASPECT};
 use termtrace::export;
 use termtrace::grid::Size;
-use termtrace::scene::Scene;
 use termtrace::terminal::{Signals, die_of};
 
 /// The names of the commands, for who misspells one.
@@ -61,8 +60,7 @@ pub(super) fn run(args: &LiveArgs) -> Done {
     if !args.more.is_empty() {
         return Err(too_much(&args.scene.path().display().to_string(), &args.more));
     }
-    let scene = args.scene.load()?;
-    if io::stdout().is_terminal() { look(args, scene) } else { print(args, &scene) }
+    if io::stdout().is_terminal() { look(args) } else { print(args) }
 }
 
 /// More than a scene: its name was likely meant for a command.
@@ -75,10 +73,11 @@ fn too_much(first: &str, more: &[String]) -> Failure {
 }
 
 /// One frame, as `termtrace frame` prints it.
-fn print(args: &LiveArgs, scene: &Scene) -> Done {
+fn print(args: &LiveArgs) -> Done {
+    let scene = args.scene.load()?;
     let cell_aspect = args.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = args.cells.in_file(Colors::None);
-    let grid = args.scene.on_threads(|| export::frame_grid(scene, cell_mode, Size::new(80, 24), cell_aspect))?;
+    let grid = args.scene.on_threads(|| export::frame_grid(&scene, cell_mode, Size::new(80, 24), cell_aspect))?;
     write_stdout(&match cell_mode.colors {
         Colors::None => export::text(&grid).into_bytes(),
         _ => export::ansi(&grid),
@@ -86,14 +85,19 @@ fn print(args: &LiveArgs, scene: &Scene) -> Done {
 }
 
 /// The live view. Whatever happens in it, the terminal is given back before a word is said.
-fn look(args: &LiveArgs, scene: Scene) -> Done {
+fn look(args: &LiveArgs) -> Done {
     #[cfg(feature = "test-hooks")]
     rehearse();
-    let options = args.options();
+    let (scene, stdin, options) = (args.scene.clone(), args.scene.stdin()?, args.options());
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
-    let ended = catch_unwind(AssertUnwindSafe(|| app::run(scene, options, &mut signals)));
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        app::open(move |watcher| scene.draft(stdin.as_deref(), watcher), options, &mut signals)
+    }));
     let Outcome { ending, moved, heard } = match ended {
-        Ok(outcome) => outcome.map_err(|error| Failure::runtime("terminal", reason(&error)))?,
+        Ok(outcome) => outcome.map_err(|error| match error {
+            app::Error::Terminal(error) => Failure::runtime("terminal", reason(&error)),
+            app::Error::Scene(failure) => failure,
+        })?,
         Err(_) => complain_of_panic(),
     };
     if let Ending::Signal(signal) = ending {

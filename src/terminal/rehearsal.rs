@@ -4,7 +4,7 @@
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, OnceLock};
+use std::sync::{Mutex, MutexGuard, OnceLock};
 
 /// The test, if one listens.
 static TEST: OnceLock<Mutex<UnixStream>> = OnceLock::new();
@@ -19,9 +19,18 @@ pub fn rehearse(test: UnixStream) {
 }
 
 /// Tells the test of the phase and does what it answers: an error or a panic here or in a worker. Any other answer, or
-/// none, and it goes on.
+/// none, and it goes on. So it does while another thread is held at its own phase.
 pub(crate) fn reach(phase: &str) -> io::Result<()> {
-    match answer(phase) {
+    go_by(test().and_then(|test| test.try_lock().ok()), phase)
+}
+
+/// The same for a thread beside the loop's, which waits its turn.
+pub(crate) fn reach_beside(phase: &str) -> io::Result<()> {
+    go_by(test().and_then(|test| test.lock().ok()), phase)
+}
+
+fn go_by(test: Option<MutexGuard<'_, UnixStream>>, phase: &str) -> io::Result<()> {
+    match test.and_then(|test| answer(test, phase)) {
         Some(b'e') => Err(io::Error::other("a test asked for an error")),
         Some(b'p') => panic!("a test asked for a panic in the loop"),
         Some(b'w') => {
@@ -37,11 +46,11 @@ pub(crate) fn take_worker_panic() -> bool {
     cfg!(feature = "test-hooks") && WORKER.swap(false, Ordering::SeqCst)
 }
 
-fn answer(phase: &str) -> Option<u8> {
-    if !cfg!(feature = "test-hooks") {
-        return None;
-    }
-    let mut test = TEST.get()?.lock().ok()?;
+fn test() -> Option<&'static Mutex<UnixStream>> {
+    if cfg!(feature = "test-hooks") { TEST.get() } else { None }
+}
+
+fn answer(mut test: MutexGuard<'_, UnixStream>, phase: &str) -> Option<u8> {
     writeln!(test, "{phase}").ok()?;
     let mut answer = [0];
     test.read_exact(&mut answer).ok()?;

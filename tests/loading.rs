@@ -1,0 +1,285 @@
+//! A big mesh on its way: what is told of it, what can be seen and done meanwhile, and every way out.
+
+#![cfg(feature = "test-hooks")]
+
+mod mesh_writers;
+mod pty;
+
+use mesh_writers::{ball, written};
+use pty::{Answer, Phases, SOON, Session, Size, Start, shows};
+use rustix::process::Signal;
+use std::fs;
+use std::io::Write;
+use std::os::unix::process::ExitStatusExt;
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::mpsc::{Sender, channel};
+use std::time::Duration;
+use tempfile::TempDir;
+use termtrace::capabilities::CellMode;
+use termtrace::mesh_file::MeshFile;
+use termtrace::scene::Scene;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
+
+/// A ball that is large enough to be sketched.
+fn big_ball() -> Vec<u8> {
+    written(&ball(150_000), "binary.stl")
+}
+
+/// A mesh that comes piece by piece, when the test wants.
+struct Source {
+    folder: TempDir,
+    pieces: Sender<Vec<u8>>,
+}
+
+impl Source {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let path = folder.path().join("ball.stl");
+        let made = Command::new("mkfifo").arg(&path).status();
+        assert!(made.is_ok_and(|status| status.success()), "a pipe with a name can be made");
+        let (pieces, wanted) = channel::<Vec<u8>>();
+        std::thread::spawn(move || {
+            // This waits for the child; it may leave in the middle.
+            let pipe = fs::OpenOptions::new().write(true).open(path);
+            pipe.and_then(|mut pipe| wanted.iter().try_for_each(|piece| pipe.write_all(&piece)))
+        });
+        Self { folder, pieces }
+    }
+
+    fn path(&self) -> PathBuf {
+        self.folder.path().join("ball.stl")
+    }
+
+    /// The rest of it.
+    fn end(&mut self, bytes: Vec<u8>) {
+        self.pieces.send(bytes).expect("the child reads");
+        self.pieces = channel().0;
+    }
+}
+
+/// Looks at a mesh of which nothing comes yet.
+fn waiting(start: Start, source: &Source) -> Session {
+    let mut session = start.arg(source.path()).spawn();
+    session.wait_for_text("reading ball.stl");
+    session
+}
+
+fn program() -> Start {
+    Start::new(PROGRAM)
+}
+
+/// Looks at a ball that is read and not built: the child stays there.
+fn sketched(start: Start, source: &mut Source, phases: &mut Phases) -> Session {
+    let mut session = start.arg(source.path()).env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
+    phases.wait_for_on("all modes", &mut session);
+    phases.send(Answer::GoOn);
+    source.end(big_ball());
+    phases.wait_for_on("build", &mut session);
+    session.wait_for("a sketch", SOON, |seen| has_picture(seen.screen()));
+    session
+}
+
+/// Whether there is a picture from the first row to the last, with or without a panel on it.
+fn has_picture(screen: &pty::Screen) -> bool {
+    [0, 23].into_iter().all(|row| (0..80).all(|column| screen.cell(column, row).background != pty::Colour::Default))
+}
+
+/// All phases from here on are passed through.
+fn pass(mut phases: Phases) {
+    phases.send(Answer::GoOn);
+}
+
+const WAYS: [(&[u8], Option<Signal>); 6] = [
+    (b"q", None),
+    (b"\x03", None),
+    (b"", Some(Signal::TERM)),
+    (b"", Some(Signal::HUP)),
+    (b"", Some(Signal::INT)),
+    (b"", Some(Signal::QUIT)),
+];
+
+#[track_caller]
+fn leave(session: &mut Session, (keys, signal): (&[u8], Option<Signal>)) {
+    match signal {
+        Some(signal) => session.signal(signal),
+        None => session.send(keys),
+    }
+    let status = session.wait_exit(SOON);
+    let code = if signal.is_some() { None } else { Some(0) };
+    assert_eq!((status.code(), status.signal()), (code, signal.map(Signal::as_raw)));
+    session.assert_clean();
+    assert!(!session.seen().screen().is_alternate());
+}
+
+#[test]
+fn it_can_be_left_while_it_reads() {
+    for way in WAYS {
+        let source = Source::new();
+        leave(&mut waiting(program(), &source), way);
+    }
+}
+
+#[test]
+fn it_can_be_left_while_it_builds() {
+    for way in WAYS {
+        let (mut source, mut phases) = (Source::new(), Phases::new());
+        leave(&mut sketched(program(), &mut source, &mut phases), way);
+    }
+}
+
+/// What a scene looks like when it is whole.
+fn picture(scene: &Scene, size: Size) -> termtrace::grid::Grid {
+    pty::picture(scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(size.columns, size.rows), 2.0)
+}
+
+fn ball_scene() -> Scene {
+    let mesh = MeshFile::from_bytes("ball.stl", &big_ball(), &mut |_| unreachable!("it names no file"));
+    Scene::of_mesh(mesh.expect("it is a mesh")).expect("it has a size")
+}
+
+#[test]
+fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
+    let (mut source, mut phases) = (Source::new(), Phases::new());
+    let mut session = sketched(program(), &mut source, &mut phases);
+    let wanted = picture(&ball_scene(), Size::cells(80, 24));
+    assert!(!shows(session.seen().screen(), &wanted), "the sketch is coarse");
+    // In flight, still in the sketch.
+    session.send(b"i");
+    session.wait_for_text("rays/s");
+    let eye = |seen: &pty::Seen| seen.screen().text().concat().rsplit("eye").next().map(str::to_owned);
+    let before = eye(session.seen());
+    session.send(b"w");
+    session.wait_for("another view", SOON, |seen| eye(seen) != before);
+    session.send(b"ri");
+    pass(phases);
+    session.wait_for("the scene", SOON, |seen| shows(seen.screen(), &wanted));
+    let bytes = session.seen().bytes().len();
+    assert!(!session.sees(Duration::from_millis(500), |seen| seen.bytes().len() != bytes), "then it rests");
+    leave(&mut session, (b"q", None));
+}
+
+/// The whole scene is seen from where its sketch was left.
+#[test]
+fn the_scene_is_seen_from_where_the_sketch_was() {
+    let (mut source, mut phases) = (Source::new(), Phases::new());
+    let mut session = sketched(program(), &mut source, &mut phases);
+    session.send(b"d");
+    session.sees(Duration::from_secs(1), |_| false);
+    pass(phases);
+    let home = picture(&ball_scene(), Size::cells(80, 24));
+    session.wait_for("the scene", SOON, |seen| !seen.screen().text().concat().contains("building"));
+    assert!(!shows(session.seen().screen(), &home));
+    session.send(b"r");
+    session.wait_for("the first view", SOON, |seen| shows(seen.screen(), &home));
+    leave(&mut session, (b"q", None));
+}
+
+/// A scene file and its mesh, with the same words about it.
+#[test]
+fn a_scene_with_a_big_mesh_is_sketched_too() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    fs::write(folder.path().join("ball.stl"), big_ball()).expect("a file can be written");
+    let scene = folder.path().join("scene.ron");
+    let text = r#"(
+        camera: (eye: (0, 1, 4), target: (0, 0, 0)), background: "skyblue",
+        lights: [Point(position: (3, 4, 5), intensity: 40)],
+        objects: [Mesh(path: "ball.stl", material: Diffuse("tomato")), Sphere(center: (2, 0, 0), radius: 0.5)],
+    )"#;
+    fs::write(&scene, text).expect("a file can be written");
+    let mut phases = Phases::new();
+    let mut session = program().arg(&scene).env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
+    phases.wait_for_on("build", &mut session);
+    session.wait_for("a sketch", SOON, |seen| has_picture(seen.screen()));
+    pass(phases);
+    let wanted = picture(&Scene::load(&scene).expect("it is a scene"), Size::cells(80, 24));
+    session.wait_for("the scene", SOON, |seen| shows(seen.screen(), &wanted));
+    leave(&mut session, (b"q", None));
+}
+
+/// The panel has room, and is drawn anew at another size and after a stop.
+#[test]
+fn the_panel_fits_any_screen() {
+    let source = Source::new();
+    let mut session = waiting(program().size(Size::cells(20, 5)), &source);
+    for size in [Size::cells(80, 24), Size::cells(20, 5), Size::cells(200, 60)] {
+        let before = session.seen().bytes().len();
+        session.resize(size);
+        session.wait_for("the panel", SOON, |seen| {
+            let mut screen = pty::Screen::new(size.columns, size.rows);
+            screen.feed(&seen.bytes()[before..]);
+            let text = screen.text();
+            let line = text.iter().position(|line| line.contains("│ reading ball.stl"));
+            line.is_some_and(|line| text[line - 1].contains('╭') && text[line + 2].contains('╯'))
+        });
+    }
+    session.resize(Size::cells(1, 1));
+    leave(&mut session, (b"q", None));
+}
+
+#[test]
+fn it_can_be_stopped_while_it_reads() {
+    let source = Source::new();
+    let path = source.path();
+    let script =
+        format!("set -m; '{PROGRAM}' '{}'; echo \"status <$?>\"; read line; fg >/dev/null; echo ended", path.display());
+    let mut session = Start::shell(&script).spawn();
+    session.wait_for_text("reading ball.stl");
+    session.send(b"\x1a");
+    session.wait_for_text("status <148>");
+    session.assert_clean();
+    session.send(b"\n");
+    session.wait_for_text("reading ball.stl");
+    session.send(b"q");
+    session.wait_for_text("ended");
+    session.assert_clean();
+}
+
+/// The terminal is given back; then there is the one line that is told without a terminal, and exit code 2.
+#[test]
+fn what_is_wrong_with_a_mesh_is_told_when_the_terminal_is_back() {
+    let mut wrong = big_ball();
+    let last = wrong.len() - 10;
+    wrong[last..last + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let mut source = Source::new();
+    let mut session = waiting(program(), &source);
+    source.end(wrong.clone());
+    assert_eq!(session.wait_exit(SOON).code(), Some(2));
+    session.assert_clean();
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    fs::write(folder.path().join("ball.stl"), wrong).expect("a file can be written");
+    let plain = Command::new(PROGRAM).arg(folder.path().join("ball.stl")).output().expect("it starts");
+    assert_eq!(plain.status.code(), Some(2));
+    let message = String::from_utf8(plain.stderr).expect("it is text");
+    let message = message.trim_end().split("ball.stl: ").nth(1).expect("it names the file");
+    let told = String::from_utf8_lossy(session.seen().bytes()).into_owned();
+    assert_eq!(told.matches(message).count(), 1, "{told}");
+    assert!(told.rfind("\x1b[?") < told.find(message), "told before the terminal is given back");
+}
+
+#[test]
+fn a_panic_while_it_builds_is_told_when_the_terminal_is_back() {
+    let (mut source, mut phases) = (Source::new(), Phases::new());
+    let mut session = sketched(program(), &mut source, &mut phases);
+    phases.answer(Answer::Panic);
+    assert_eq!(session.wait_exit(SOON).code(), Some(101));
+    session.assert_clean();
+    let told = String::from_utf8_lossy(session.seen().bytes()).into_owned();
+    assert!(told.rfind("\x1b[?") < told.find("a test asked for a panic"), "{told}");
+}
+
+/// What is there in a moment is shown without a word about it. (On a busy machine a moment may be too short.)
+#[test]
+fn a_small_mesh_comes_without_a_panel() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = folder.path().join("ball.stl");
+    fs::write(&path, written(&ball(20_000), "binary.stl")).expect("a file can be written");
+    let wanted = picture(&Scene::load(&path).expect("it is a mesh"), Size::cells(80, 24));
+    let comes_alone = || {
+        let mut session = program().arg(&path).spawn();
+        session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+        !["ing ball.stl", "building"].iter().any(|text| session.seen().has(text.as_bytes()))
+    };
+    assert!((0..3).any(|_| comes_alone()));
+}
