@@ -121,12 +121,39 @@ fn it_can_be_left_while_it_reads() {
     }
 }
 
+/// The clock ticks of CPU that a process has used.
+#[cfg(target_os = "linux")]
+fn ticks(session: &Session) -> u64 {
+    let stat = fs::read_to_string(format!("/proc/{}/stat", session.pid().as_raw_nonzero())).expect("it runs");
+    let fields: Vec<&str> = stat.rsplit(") ").next().expect("after the name").split(' ').collect();
+    fields[11].parse::<u64>().expect("user time") + fields[12].parse::<u64>().expect("system time")
+}
+
+/// Where nothing comes, nothing is said or computed; a key that moves has nothing to move.
+#[cfg(target_os = "linux")]
+#[test]
+fn while_nothing_comes_nothing_happens() {
+    let source = Source::new();
+    let mut session = waiting(program(), &source);
+    session.send(b"w");
+    session.sees(Duration::from_secs(1), |_| false);
+    let (before, bytes) = (ticks(&session), session.seen().bytes().len());
+    session.sees(Duration::from_secs(1), |_| false);
+    assert_eq!((ticks(&session), session.seen().bytes().len()), (before, bytes), "ticks and bytes");
+    leave(&mut session, WAYS[0]);
+}
+
 #[test]
 fn it_can_be_left_while_it_builds() {
     for way in WAYS {
         let (mut source, mut phases) = (Source::new(), Phases::new());
         leave(&mut sketched(program(), &mut source, &mut phases), way);
     }
+}
+
+/// What the status line says of the eye.
+fn eye(seen: &pty::Seen) -> Option<String> {
+    seen.screen().text().concat().rsplit("eye").next().map(str::to_owned)
 }
 
 /// What a scene looks like when it is whole.
@@ -148,7 +175,6 @@ fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
     // In flight, still in the sketch.
     session.send(b"i");
     session.wait_for_text("rays/s");
-    let eye = |seen: &pty::Seen| seen.screen().text().concat().rsplit("eye").next().map(str::to_owned);
     let before = eye(session.seen());
     session.send(b"w");
     session.wait_for("another view", SOON, |seen| eye(seen) != before);
@@ -165,13 +191,17 @@ fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
 fn the_scene_is_seen_from_where_the_sketch_was() {
     let (mut source, mut phases) = (Source::new(), Phases::new());
     let mut session = sketched(program(), &mut source, &mut phases);
-    session.send(b"d");
+    session.send(b"id");
+    // The glide ends.
     session.sees(Duration::from_secs(1), |_| false);
+    let there = eye(session.seen());
     pass(phases);
-    let home = picture(&ball_scene(), Size::cells(80, 24));
-    session.wait_for("the scene", SOON, |seen| !seen.screen().text().concat().contains("building"));
-    assert!(!shows(session.seen().screen(), &home));
+    session.wait_for("the scene", SOON, |seen| !seen.screen().text().concat().contains('╯'));
+    assert_eq!(eye(session.seen()), there);
     session.send(b"r");
+    session.wait_for("the first view", SOON, |seen| eye(seen) != there);
+    session.send(b"i");
+    let home = picture(&ball_scene(), Size::cells(80, 24));
     session.wait_for("the first view", SOON, |seen| shows(seen.screen(), &home));
     leave(&mut session, (b"q", None));
 }
