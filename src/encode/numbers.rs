@@ -21,11 +21,17 @@ pub(super) fn write_number(number: u16, bytes: &mut Vec<u8>) {
     }
 }
 
-/// A semicolon and a colour's band in decimal.
-pub(super) fn write_band(band: u8, bytes: &mut Vec<u8>) {
-    // All four bytes at once, then back over those that are too many: one by one takes longer.
-    bytes.extend_from_slice(&BANDS[usize::from(band)]);
-    bytes.truncate(bytes.len() + band_digits(band) - 3);
+/// For each of a colour's bands a semicolon and its number in decimal.
+pub(super) fn write_bands(bands: [u8; 3], bytes: &mut Vec<u8>) {
+    // As many bytes as it can be, then back over those that are too many: one by one takes longer.
+    let mut text = [0; 12];
+    let mut len = 0;
+    for band in bands {
+        text[len..len + 4].copy_from_slice(&BANDS[usize::from(band)]);
+        len += 1 + band_digits(band);
+    }
+    bytes.extend_from_slice(&text);
+    bytes.truncate(bytes.len() + len - text.len());
 }
 
 /// How many digits a colour's band has. (Without a branch: nothing foretells which of the three it is.)
@@ -63,8 +69,8 @@ mod tests {
         }
         for band in 0..=u8::MAX {
             let mut bytes = Vec::new();
-            write_band(band, &mut bytes);
-            assert_eq!(bytes, format!(";{band}").into_bytes());
+            write_bands([band, 7, band], &mut bytes);
+            assert_eq!(bytes, format!(";{band};7;{band}").into_bytes());
         }
     }
 }

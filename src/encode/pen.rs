@@ -1,6 +1,6 @@
 //! The pen: the colours and modifiers that the terminal would write with now, and what it costs to change them.
 
-use super::numbers::{band_digits, digits, write_band, write_number};
+use super::numbers::{band_digits, digits, write_bands, write_number};
 use crate::grid::{Cell, Glyph, Ink};
 use ratatui::style::Modifier;
 use std::mem;
@@ -33,7 +33,17 @@ impl Pen {
     /// The pen with which the cell is to be written. A plain space of the colour that the pen has for glyphs is cheapest
     /// with the pen's two colours exchanged: to say so takes four bytes, to say the colour again, as the one behind, about
     /// nineteen.
+    #[inline]
     pub(super) fn wanted_by(&self, cell: &Cell) -> Self {
+        // Nearly every cell of a picture.
+        if cell.glyph != ' ' && cell.modifier.is_empty() && self.modifier.is_empty() {
+            return Self { fg: cell.fg, bg: cell.bg, ..*self };
+        }
+        self.wanted_by_any(cell)
+    }
+
+    /// The same for any cell.
+    fn wanted_by_any(&self, cell: &Cell) -> Self {
         if self.can_be_exchanged_for(cell) { self.wanted_by_space(cell) } else { self.as_it_stands(cell) }
     }
 
@@ -90,23 +100,39 @@ impl Pen {
 
     /// How many bytes [`become_pen`](Self::become_pen) takes.
     pub(super) fn cost_of(&self, wanted: &Self) -> usize {
-        if self.modifier == wanted.modifier { self.cost_of_colors(0, wanted) } else { self.cost_of_all(wanted) }
+        self.cost_of_inks(wanted, wanted.ink_lens())
+    }
+
+    /// The same where [`ink_lens`](Self::ink_lens) of the wanted pen are known.
+    #[inline]
+    pub(super) fn cost_of_inks(&self, wanted: &Self, lens: [usize; 2]) -> usize {
+        if self.modifier == wanted.modifier {
+            self.cost_of_colors(0, wanted, lens)
+        } else {
+            self.cost_of_all(wanted, lens)
+        }
+    }
+
+    /// How many bytes it takes to say each of its two colours.
+    pub(super) fn ink_lens(&self) -> [usize; 2] {
+        [1 + ink_len(self.fg), 1 + ink_len(self.bg)]
     }
 
     /// The same where modifiers change.
-    fn cost_of_all(&self, wanted: &Self) -> usize {
+    fn cost_of_all(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         if self.starts_anew(wanted.modifier) {
             let codes = modifier_codes(wanted.modifier).count();
-            return 4 + 2 * codes + self.before_colors(wanted.modifier).cost_of_colors(0, wanted);
+            return 4 + 2 * codes + self.before_colors(wanted.modifier).cost_of_colors(0, wanted, lens);
         }
         let exchange = self.exchange(wanted.modifier).map_or(0, |code| 1 + code.len());
-        self.cost_of_colors(exchange, wanted)
+        self.cost_of_colors(exchange, wanted, lens)
     }
 
     /// The same for the colours, and for a code that took so many bytes in their sequence.
-    fn cost_of_colors(&self, code: usize, wanted: &Self) -> usize {
-        let fg = if self.fg == wanted.fg { 0 } else { 1 + ink_len(wanted.fg) };
-        let bg = if self.bg == wanted.bg { 0 } else { 1 + ink_len(wanted.bg) };
+    #[inline(always)]
+    fn cost_of_colors(&self, code: usize, wanted: &Self, [fg, bg]: [usize; 2]) -> usize {
+        let fg = if self.fg == wanted.fg { 0 } else { fg };
+        let bg = if self.bg == wanted.bg { 0 } else { bg };
         let underline = if self.underline == wanted.underline { 0 } else { underline_len(wanted.underline) };
         let codes = code + fg + bg;
         underline + if codes == 0 { 0 } else { 2 + codes }
@@ -128,10 +154,10 @@ impl Pen {
             bytes.extend_from_slice(mem::replace(&mut lead, b";"));
             bytes.extend_from_slice(code);
         }
-        for (from, to, base) in [(from.fg, wanted.fg, 30), (from.bg, wanted.bg, 40)] {
+        for (from, to, tens) in [(from.fg, wanted.fg, b'3'), (from.bg, wanted.bg, b'4')] {
             if from != to {
                 bytes.extend_from_slice(mem::replace(&mut lead, b";"));
-                write_ink(to, base, bytes);
+                write_ink(to, tens, bytes);
             }
         }
         if lead == b";" {
@@ -178,21 +204,17 @@ pub(super) fn write_char(character: char, bytes: &mut Vec<u8>) {
     bytes.extend_from_slice(character.encode_utf8(&mut utf8).as_bytes());
 }
 
-/// The numbers of one colour; `base` is 30 for the character's, 40 for the one behind it.
-fn write_ink(ink: Ink, base: u16, bytes: &mut Vec<u8>) {
+/// The numbers of one colour; the first begins with a 3 for the character's, a 4 for the one behind it.
+fn write_ink(ink: Ink, tens: u8, bytes: &mut Vec<u8>) {
     match ink {
-        Ink::Default => write_number(base + 9, bytes),
+        Ink::Default => bytes.extend_from_slice(&[tens, b'9']),
         Ink::Indexed(index) => {
-            write_number(base + 8, bytes);
-            bytes.extend_from_slice(b";5;");
+            bytes.extend_from_slice(&[tens, b'8', b';', b'5', b';']);
             write_number(index.into(), bytes);
         }
         Ink::Rgb(color) => {
-            write_number(base + 8, bytes);
-            bytes.extend_from_slice(b";2");
-            for band in [color.r, color.g, color.b] {
-                write_band(band, bytes);
-            }
+            bytes.extend_from_slice(&[tens, b'8', b';', b'2']);
+            write_bands([color.r, color.g, color.b], bytes);
         }
     }
 }

@@ -119,17 +119,20 @@ struct Path {
     cost: Cost,
 }
 
-/// Bytes; of as many, how often the lower half is written. Which half it is hardly matters, but it has to be the same
-/// wherever both cost the same, or a compressor does not know the frame before again. With the upper one, the colours are
-/// said in the order in which the pixels lie.
-type Cost = (usize, usize);
+/// Bytes ([`BYTE`] each); of as many, how often the lower half is written. Which half it is hardly matters, but it has to
+/// be the same wherever both cost the same, or a compressor does not know the frame before again. With the upper one, the
+/// colours are said in the order in which the pixels lie.
+type Cost = u64;
+
+/// More than there are cells.
+const BYTE: Cost = 1 << 32;
 
 /// The form of each cell, such that the changes of the pen between them take the fewest bytes.
 fn choose_forms(wanted: &Grid, order: &[Place], upper_half: bool, pen: Pen) -> Vec<Form> {
     if !upper_half {
         return vec![Form::Plain; order.len()];
     }
-    let mut paths = [Path { pen, cost: (0, 0) }; 2];
+    let mut paths = [Path { pen, cost: 0 }; 2];
     // For each cell and each form of it, the form of the cell before.
     let mut before = Vec::with_capacity(order.len());
     for place in order {
@@ -140,14 +143,17 @@ fn choose_forms(wanted: &Grid, order: &[Place], upper_half: bool, pen: Pen) -> V
         if is_plain_space(cell) {
             // The character's colour is carried on: both paths stay open.
             before.push([0, 1]);
-            paths = [paths[0].step(pens[0], false), paths[1].step(pens[1], false)];
+            paths =
+                [paths[0].step(pens[0], pens[0].ink_lens(), false), paths[1].step(pens[1], pens[1].ink_lens(), false)];
         } else if can_be_turned(cell) {
-            let (plain, from_plain) = cheaper(&paths, pens, is_lower);
-            let (turned, from_turned) = cheaper(&paths, [turned(pens[0]), turned(pens[1])], !is_lower);
+            let lens = pens[0].ink_lens();
+            let (plain, from_plain) = cheaper(&paths, pens, lens, is_lower);
+            let turned_pens = [turned(pens[0]), turned(pens[1])];
+            let (turned, from_turned) = cheaper(&paths, turned_pens, [lens[1], lens[0]], !is_lower);
             before.push([from_plain, from_turned]);
             paths = [plain, turned];
         } else {
-            let (plain, from_plain) = cheaper(&paths, pens, is_lower);
+            let (plain, from_plain) = cheaper(&paths, pens, pens[0].ink_lens(), is_lower);
             before.push([from_plain; 2]);
             paths = [plain; 2];
         }
@@ -163,22 +169,25 @@ fn choose_forms(wanted: &Grid, order: &[Place], upper_half: bool, pen: Pen) -> V
     forms
 }
 
-/// The cheaper of two paths, with a cell written by these pens, and which of them it was.
-fn cheaper(paths: &[Path; 2], pens: [Pen; 2], is_lower: bool) -> (Path, u8) {
-    let [first, second] = [paths[0].step(pens[0], is_lower), paths[1].step(pens[1], is_lower)];
+/// The cheaper of two paths, with a cell written by these pens of the same colours, and which of them it was.
+fn cheaper(paths: &[Path; 2], pens: [Pen; 2], lens: [usize; 2], is_lower: bool) -> (Path, u8) {
+    let [first, second] = [paths[0].step(pens[0], lens, is_lower), paths[1].step(pens[1], lens, is_lower)];
     if second.cost < first.cost { (second, 1) } else { (first, 0) }
 }
 
 impl Path {
-    fn step(&self, pen: Pen, is_lower: bool) -> Self {
-        let (bytes, lower) = self.cost;
-        Self { pen, cost: (bytes + self.pen.cost_of(&pen), lower + usize::from(is_lower)) }
+    #[inline(always)]
+    fn step(&self, pen: Pen, lens: [usize; 2], is_lower: bool) -> Self {
+        Self { pen, cost: self.cost + self.pen.cost_of_inks(&pen, lens) as Cost * BYTE + Cost::from(is_lower) }
     }
 }
 
 /// Brings the cursor there: by the cheapest move, or by writing again what lies on the way, where the pen happens to be
 /// right for all of it and that takes no more bytes. (As many are fewer to a compressor: a run of one glyph goes on.)
 fn move_to(wanted: &Grid, cursor: Option<Place>, place: Place, upper_half: bool, pen: &Pen, bytes: &mut Vec<u8>) {
+    if cursor == Some(place) {
+        return;
+    }
     let by_move = cheapest(cursor, place);
     let start = bytes.len();
     let is_there = same_row(cursor, place).is_some_and(|mut between| {
