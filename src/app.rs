@@ -2,7 +2,8 @@
 //!
 //! It sleeps until a key, a signal or a finished frame wakes it. A frame is rendered only when something changed, by a
 //! thread of its own unless it takes next to no time, so that keys and signals are heard while it is traced; the newest
-//! picture wins: what changes in the meantime is in the next frame, and nothing is queued.
+//! picture wins: what changes in the meantime is in the next frame, and nothing is queued. When nothing changes any more,
+//! the picture is refined to its end, which the next change of the view cuts short.
 //!
 //! A scene that takes long to come is waited for here too: its progress is shown, then a sketch of it.
 
@@ -14,6 +15,7 @@ use crate::encode::{Order, Quality};
 use crate::framebuffer::Resolution;
 use crate::input::{Input, Parser, Reply};
 use crate::progress::Watcher;
+use crate::render::Sampling;
 use crate::scene::{Draft, Scene};
 use crate::terminal::{self, Questions, Signals, Stopped, Terminal, Window};
 use crossterm::event::{Event, KeyEvent, KeyEventKind};
@@ -22,12 +24,14 @@ use std::panic::resume_unwind;
 use std::time::{Duration, Instant};
 use std::{fmt, io};
 
+mod effort;
 mod link;
 mod loading;
 mod panels;
 mod renderer;
 mod screen;
 
+use effort::Effort;
 use link::Link;
 use loading::{Loading, News};
 use renderer::{Frame, Job, Renderer};
@@ -48,6 +52,9 @@ pub struct Options {
     pub max_rate: Option<u32>,
     /// The most frames a second; `None`: 60. A number above zero.
     pub max_frames: Option<f32>,
+    /// How finely pictures are traced; `None`: in motion as finely as the time allows, and at rest to the end
+    /// ([`Sampling::BEST`]).
+    pub sampling: Option<Sampling>,
     /// How many threads trace; `None`: as many as there are cores.
     pub threads: Option<usize>,
 }
@@ -55,7 +62,7 @@ pub struct Options {
 impl Options {
     /// For a terminal of which that is known, on a link that does not compress; the rest as terminal and machine say.
     pub fn new(hints: Hints) -> Self {
-        Self { hints, order: None, quality: None, max_rate: None, max_frames: None, threads: None }
+        Self { hints, order: None, quality: None, max_rate: None, max_frames: None, sampling: None, threads: None }
     }
 }
 
@@ -193,13 +200,16 @@ struct Live {
     motion: Motion,
     screen: Screen,
     link: Link,
+    effort: Effort,
     start: Instant,
     /// Up to when the motion has been carried out; `None` at rest.
     moved_until: Option<Duration>,
     /// Whether the picture on the screen is of another camera or size than the wanted one.
     stale: bool,
-    /// The last time a frame was begun.
+    /// The last time a frame of a new view was begun,
     begun: Option<Duration>,
+    /// and whether more was moving then.
+    begun_in_motion: bool,
 }
 
 /// How the scene is looked at.
@@ -236,11 +246,13 @@ impl Live {
             motion: Motion::default(),
             screen: Screen::new(&capabilities, options.order, options.quality),
             link,
+            effort: Effort::new(options.sampling),
             options,
             start: Instant::now(),
             moved_until: None,
             stale: true,
             begun: None,
+            begun_in_motion: false,
         };
         live.resize(window);
         live
@@ -258,12 +270,14 @@ impl Live {
                 self.take_news(news, renderer).map_err(Error::Scene)?;
             }
             self.move_camera();
+            if self.stale {
+                renderer.give_up_refining();
+            }
             self.present(terminal, renderer)?;
             // Nothing is rendered that cannot be sent.
             let idle = !renderer.is_busy() && !terminal.is_sending();
-            if self.stale && idle && self.now() >= self.next_frame() {
-                terminal.send(self.link.probe(self.now()))?;
-                self.begin_frame(renderer);
+            if idle && self.now() >= self.next_frame() {
+                self.begin(terminal, renderer)?;
             }
             self.panic_if_asked(renderer);
             let timeout = self.timeout(terminal, renderer);
@@ -308,6 +322,7 @@ impl Live {
         self.learn();
         // The terminal has moved what it shows to wherever it thought right.
         self.screen.redraw(self.capabilities.halves_meet);
+        self.effort.forget_last();
         self.stale = true;
     }
 
@@ -370,6 +385,7 @@ impl Live {
     fn show(&mut self, scene: Scene, renderer: &mut Renderer) {
         self.view.get_or_insert(View::new(scene.camera));
         renderer.show(scene);
+        self.effort.forget_last();
         self.stale = true;
     }
 
@@ -393,30 +409,57 @@ impl Live {
     }
 
     /// The earliest time at which the screen has bytes to send, if nothing else happens. What would make a picture better
-    /// waits while a newer one is on its way.
+    /// waits while one of a newer view is on its way.
     fn next_bytes(&self, renderer: &Renderer) -> Option<Duration> {
-        let lasts = !self.stale && !renderer.is_busy();
+        let lasts = !self.stale && !renderer.is_busy_with_new_view();
         self.screen.due(self.window.size, lasts).map(|due| due.max(self.link.free_at(self.now())))
     }
 
-    fn begin_frame(&mut self, renderer: &mut Renderer) {
-        let Some(view) = self.view else { return };
-        self.stale = false;
-        self.begun = Some(self.now());
-        let job = Job { camera: view.camera, resolution: self.resolution(), test_panic: false };
+    /// Begins a frame of the new view if there is one, else the next step of the last one, if there is one.
+    fn begin(&mut self, terminal: &mut Terminal, renderer: &mut Renderer) -> io::Result<()> {
+        let Some(view) = self.view else { return Ok(()) };
+        let job = if self.stale {
+            terminal.send(self.link.probe(self.now()))?;
+            self.stale = false;
+            self.begun = Some(self.now());
+            let sampling = self.effort.of_new_view(self.begun_in_motion);
+            self.begun_in_motion = self.moved_until.is_some();
+            self.job(view, sampling)
+        } else if let Some(sampling) = self.next_step() {
+            terminal::reach("refinement")?;
+            Job { refines: true, ..self.job(view, sampling) }
+        } else {
+            return Ok(());
+        };
         if let Some(frame) = renderer.begin(job) {
             self.take_frame(frame);
         }
+        Ok(())
     }
 
     fn take_frame(&mut self, frame: Frame) {
+        if !frame.refines {
+            self.effort.took(frame.sampling, frame.trace, self.link.frame_time());
+        }
         self.screen.take_frame(frame, self.moved_until.is_some().then(|| self.now()));
     }
 
-    /// How long there is nothing to do if nobody wakes us: for ever when nothing moves.
+    fn job(&self, view: View, sampling: Sampling) -> Job {
+        Job { camera: view.camera, resolution: self.resolution(), sampling, refines: false, test_panic: false }
+    }
+
+    /// The next step of the frame that is on the screen.
+    fn next_step(&self) -> Option<Sampling> {
+        // Refining a sketch would take the time that the scene needs.
+        let frame = self.screen.frame().filter(|_| !self.screen.awaits_scene())?;
+        self.effort.of_next_step(frame.sampling)
+    }
+
+    /// How long there is nothing to do if nobody wakes us: for ever when nothing moves and the picture is done.
     fn timeout(&self, terminal: &Terminal, renderer: &Renderer) -> Option<Duration> {
         let moves = self.stale || self.moved_until.is_some();
-        let frame = (moves && !renderer.is_busy()).then(|| self.next_frame());
+        let lacks = moves && !renderer.is_busy_with_new_view() || !renderer.is_busy() && self.next_step().is_some();
+        let frame = lacks.then(|| self.next_frame());
         let sent = [frame, self.next_bytes(renderer)].into_iter().filter(|_| !terminal.is_sending());
         let next = sent.chain([self.escape_due(terminal)]).flatten().min()?;
         Some(next.saturating_sub(self.now()))
@@ -538,7 +581,7 @@ impl Live {
         if let Some(view) = self.view
             && terminal::take_worker_panic()
         {
-            renderer.begin(Job { camera: view.camera, resolution: self.resolution(), test_panic: true });
+            renderer.begin(Job { test_panic: true, ..self.job(view, Sampling::Coarse) });
         }
     }
 

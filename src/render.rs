@@ -86,6 +86,12 @@ enum Crew<'a> {
     Pool(&'a AtomicBool),
 }
 
+impl Crew<'_> {
+    fn is_cancelled(self) -> bool {
+        matches!(self, Self::Pool(cancelled) if cancelled.load(Ordering::Relaxed))
+    }
+}
+
 /// What a crew has done that nobody else can cancel.
 fn finished<T>(done: Option<T>) -> T {
     done.unwrap_or_else(|| unreachable!("nobody else can set the flag"))
@@ -209,21 +215,17 @@ impl<P: Pixel> Raster<P> {
     ) -> Option<Cost> {
         let trace = |buffers: &mut Buffers, tile: &Tile| {
             let places: Vec<_> = tile.places().filter(|&(x, y)| is_wanted(x, y)).collect();
-            self.trace_tile(scene, samples.clone(), places, buffers)
+            self.trace_tile(crew, scene, samples.clone(), places, buffers)
         };
-        let traced: Vec<_> = match crew {
+        let traced: Option<Vec<_>> = match crew {
             Crew::Alone => {
                 let mut buffers = Buffers::default();
                 self.tiles().iter().map(|tile| trace(&mut buffers, tile)).collect()
             }
-            Crew::Pool(cancelled) => {
-                let wanted = || !cancelled.load(Ordering::Relaxed);
-                let trace = |buffers: &mut Buffers, tile| wanted().then(|| trace(buffers, tile));
-                self.tiles().par_iter().map_init(Buffers::default, trace).collect::<Option<_>>()?
-            }
+            Crew::Pool(_) => self.tiles().par_iter().map_init(Buffers::default, trace).collect(),
         };
         let mut sum = Cost::default();
-        for TracedTile { places, pixels, cost } in traced {
+        for TracedTile { places, pixels, cost } in traced? {
             for ((x, y), pixel) in places.into_iter().zip(pixels) {
                 *self.pixel_mut(x, y) = pixel;
             }
@@ -232,18 +234,22 @@ impl<P: Pixel> Raster<P> {
         Some(sum)
     }
 
-    /// These pixels with more samples.
+    /// These pixels with more samples. `None`: given up, between one sample of them and the next.
     fn trace_tile(
         &self,
+        crew: Crew<'_>,
         scene: &Scene,
         samples: Range<u32>,
         places: Vec<(u32, u32)>,
         buffers: &mut Buffers,
-    ) -> TracedTile<P> {
+    ) -> Option<TracedTile<P>> {
         let start = Instant::now();
         let mut pixels: Vec<P> = places.iter().map(|&(x, y)| *self.pixel(x, y)).collect();
         let mut rays = 0;
         for sample in samples {
+            if crew.is_cancelled() {
+                return None;
+            }
             let Buffers { rays: eye_rays, hits, points, arriving, light, shadows } = buffers;
             self.make_eye_rays(&places, sample, eye_rays);
             hit::closest_hits(scene, eye_rays, hits);
@@ -255,7 +261,7 @@ impl<P: Pixel> Raster<P> {
             }
             rays += (eye_rays.len() + shadow_rays) as u64;
         }
-        TracedTile { places, pixels, cost: Cost { rays, work: start.elapsed() } }
+        Some(TracedTile { places, pixels, cost: Cost { rays, work: start.elapsed() } })
     }
 
     /// One eye ray for each pixel.

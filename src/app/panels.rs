@@ -4,6 +4,7 @@ use crate::capabilities::{CellMode, Colors, Glyphs};
 use crate::control::BINDINGS;
 use crate::grid::Size;
 use crate::progress::{Progress, Work};
+use crate::render::Sampling;
 use crate::scene_text::visible;
 use glam::Vec3;
 use ratatui::buffer::Buffer;
@@ -55,6 +56,7 @@ const ASCII_BORDER: border::Set<'static> = border::Set {
 /// What the status line says.
 pub(super) struct Status {
     pub(super) cells: Size,
+    pub(super) sampling: Sampling,
     /// How long tracing took.
     pub(super) trace: Duration,
     /// How long cells and bytes took.
@@ -88,14 +90,23 @@ impl Status {
             }
         };
         format!(
-            " {}x{}  {} rays/s  {stages} shown {shown} fps  eye {:.2} {:.2} {:.2}",
+            " {}x{}x{}  {} rays/s  {stages} shown {shown} fps  eye {:.2} {:.2} {:.2}",
             cells.columns,
             cells.rows,
+            samples(self.sampling),
             short(per_second(self.rays as f64, self.trace)),
             eye.x,
             eye.y,
             eye.z,
         )
+    }
+}
+
+/// How many samples a pixel has, at most.
+fn samples(sampling: Sampling) -> String {
+    match sampling {
+        Sampling::Coarse => "1/4".to_owned(),
+        Sampling::Each(samples) | Sampling::UpTo(samples) => samples.to_string(),
     }
 }
 

@@ -3,12 +3,13 @@
 
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::render::{Cost, Rendered, render_alone, render_unless};
+use crate::render::{Cost, Refining, Rendered, Sampling, render_alone, render_unless};
 use crate::scene::Scene;
 use crate::terminal::Waker;
 use crate::tone::{Picture, tone};
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPoolBuilder;
 use std::any::Any;
+use std::collections::VecDeque;
 use std::io;
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -22,6 +23,9 @@ use std::time::{Duration, Instant};
 pub(super) struct Job {
     pub(super) camera: Camera,
     pub(super) resolution: Resolution,
+    pub(super) sampling: Sampling,
+    /// The view is that of the last frame, which is gone on with if it can be. It may be given up.
+    pub(super) refines: bool,
     /// Panic instead of tracing, because a test asks for it.
     pub(super) test_panic: bool,
 }
@@ -31,16 +35,20 @@ pub(super) struct Frame {
     /// From where it is seen.
     pub(super) camera: Camera,
     pub(super) picture: Picture,
-    /// What it took.
+    pub(super) sampling: Sampling,
+    /// Whether it shows the same as the one before, only better.
+    pub(super) refines: bool,
+    /// What it took, beside the frame that it refines.
     pub(super) cost: Cost,
-    /// How long it took on the clock.
+    /// How long that took on the clock.
     pub(super) trace: Duration,
 }
 
 impl Frame {
     fn new(scene: &Scene, job: &Job, rendered: &Rendered, trace: Duration) -> Self {
         let picture = tone(&rendered.framebuffer, scene);
-        Self { camera: job.camera, picture, cost: rendered.cost, trace }
+        let &Job { camera, sampling, refines, .. } = job;
+        Self { camera, picture, sampling, refines, cost: rendered.cost, trace }
     }
 }
 
@@ -54,24 +62,36 @@ const SMALL: Duration = Duration::from_micros(1500);
 pub(super) struct Renderer {
     /// What frames are of; `None` as long as there is nothing to see.
     scene: Option<Arc<Scene>>,
-    jobs: Option<Sender<(Arc<Scene>, Job)>>,
+    jobs: Option<Sender<Order>>,
     frames: Receiver<Traced>,
-    cancelled: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
-    in_work: usize,
-    /// How many seconds a pixel of the last frame took, all threads together.
+    /// In the order in which they will be done.
+    in_work: VecDeque<InWork>,
+    /// How many seconds a pixel of the last frame of one sample took, all threads together.
     seconds_per_pixel: Option<f64>,
+}
+
+/// What is known here of a job.
+struct InWork {
+    refines: bool,
+    /// Whether nobody wants it any more.
+    cancelled: Arc<AtomicBool>,
+}
+
+impl InWork {
+    fn is_wanted(&self) -> bool {
+        !self.cancelled.load(Ordering::Relaxed)
+    }
 }
 
 impl Renderer {
     /// Starts the thread, and the pool of those that it shares the tiles with. It is one of them itself: to wake another
     /// and to be woken again takes as long as a small frame.
     pub(super) fn start(threads: Option<usize>, mut waker: Waker) -> io::Result<Self> {
-        let (jobs, wanted) = channel::<(Arc<Scene>, Job)>();
+        let (jobs, wanted) = channel::<Order>();
         let (begun, started) = channel();
         let (done, frames) = channel();
-        let cancelled = Arc::new(AtomicBool::new(false));
-        let stop = Arc::clone(&cancelled);
+        let mut tracer = Tracer::default();
         let thread = thread::Builder::new().name("render".to_owned()).spawn(move || {
             let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).use_current_thread().build();
             let pool = match pool {
@@ -82,8 +102,8 @@ impl Renderer {
                 }
             };
             let _ = begun.send(Ok(()));
-            for (scene, job) in wanted {
-                let traced = catch_unwind(AssertUnwindSafe(|| trace(&pool, &stop, &scene, &job)));
+            for order in wanted {
+                let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| tracer.trace(&order))));
                 // Nobody listens any more: the loop has ended.
                 let heard = done.send(traced).is_ok();
                 waker.wake();
@@ -93,15 +113,8 @@ impl Renderer {
             }
         })?;
         started.recv().map_err(io::Error::other)??;
-        Ok(Self {
-            scene: None,
-            jobs: Some(jobs),
-            frames,
-            cancelled,
-            thread: Some(thread),
-            in_work: 0,
-            seconds_per_pixel: None,
-        })
+        let in_work = VecDeque::new();
+        Ok(Self { scene: None, jobs: Some(jobs), frames, thread: Some(thread), in_work, seconds_per_pixel: None })
     }
 
     /// From now on frames are of that scene.
@@ -112,7 +125,12 @@ impl Renderer {
 
     /// Whether no frame can be begun: one is on its way, or there is no scene yet.
     pub(super) fn is_busy(&self) -> bool {
-        self.in_work > 0 || self.scene.is_none()
+        self.scene.is_none() || self.in_work.iter().any(InWork::is_wanted)
+    }
+
+    /// Whether no frame of a new view can be begun: one is on its way, or there is no scene yet.
+    pub(super) fn is_busy_with_new_view(&self) -> bool {
+        self.scene.is_none() || self.in_work.iter().any(|work| work.is_wanted() && !work.refines)
     }
 
     /// Begins a frame, or traces it at once where that takes next to no time.
@@ -120,38 +138,55 @@ impl Renderer {
         let scene = Arc::clone(self.scene.as_ref()?);
         if self.is_small(&job) {
             let start = Instant::now();
+            // The same light as of one sample at most, without what is kept to go on: that is little to trace again.
             let rendered = render_alone(&scene, &job.camera, job.resolution, NonZeroU32::MIN);
             return Some(self.noted(Frame::new(&scene, &job, &rendered, start.elapsed())));
         }
+        let work = InWork { refines: job.refines, cancelled: Arc::default() };
         if let Some(jobs) = &self.jobs
-            && jobs.send((scene, job)).is_ok()
+            && jobs.send(Order { scene, job, cancelled: Arc::clone(&work.cancelled) }).is_ok()
         {
-            self.in_work += 1;
+            self.in_work.push_back(work);
         }
         None
     }
 
-    /// The frame that has been finished since the last call, if one has.
+    /// The view has changed: what refines the last one is given up at once.
+    pub(super) fn give_up_refining(&self) {
+        for work in self.in_work.iter().filter(|work| work.refines) {
+            work.cancelled.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// A frame that has been finished since the last call, if one has.
     ///
     /// # Panics
     /// With what the thread panicked with.
     pub(super) fn finished(&mut self) -> Option<Frame> {
-        let traced = self.frames.try_recv().ok()?;
-        self.in_work -= 1;
-        // The message is out already, or kept; the panic goes on here, where the terminal is given back.
-        let frame = traced.unwrap_or_else(|panic| resume_unwind(panic))?;
-        Some(self.noted(frame))
+        loop {
+            let traced = self.frames.try_recv().ok()?;
+            let is_wanted = self.in_work.pop_front().is_some_and(|work| work.is_wanted());
+            // The message is out already, or kept; the panic goes on here, where the terminal is given back.
+            let frame = traced.unwrap_or_else(|panic| resume_unwind(panic));
+            // One may have been given up too late to be stopped.
+            if let Some(frame) = frame.filter(|_| is_wanted) {
+                return Some(self.noted(frame));
+            }
+        }
     }
 
-    /// Whether a frame will take next to no time, going by the last.
+    /// Whether a frame will take next to no time, going by the last of one sample.
     fn is_small(&self, job: &Job) -> bool {
         let Resolution { width, height, .. } = job.resolution;
         let pixels = f64::from(width) * f64::from(height);
-        !job.test_panic && self.seconds_per_pixel.is_some_and(|seconds| seconds * pixels < SMALL.as_secs_f64())
+        let is_known = has_one_sample(job.sampling) && !job.refines && !job.test_panic;
+        is_known && self.seconds_per_pixel.is_some_and(|seconds| seconds * pixels < SMALL.as_secs_f64())
     }
 
     fn noted(&mut self, frame: Frame) -> Frame {
-        self.seconds_per_pixel = Some(frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64);
+        if has_one_sample(frame.sampling) && !frame.refines {
+            self.seconds_per_pixel = Some(frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64);
+        }
         frame
     }
 }
@@ -159,7 +194,9 @@ impl Renderer {
 impl Drop for Renderer {
     /// The frame in work is given up at its next tile, so that leaving is quick.
     fn drop(&mut self) {
-        self.cancelled.store(true, Ordering::Relaxed);
+        for work in &self.in_work {
+            work.cancelled.store(true, Ordering::Relaxed);
+        }
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
@@ -167,15 +204,65 @@ impl Drop for Renderer {
     }
 }
 
-fn trace(pool: &ThreadPool, cancelled: &AtomicBool, scene: &Scene, job: &Job) -> Option<Frame> {
-    pool.install(|| {
-        if cfg!(feature = "test-hooks") && job.test_panic {
+/// What the thread is sent.
+struct Order {
+    scene: Arc<Scene>,
+    job: Job,
+    cancelled: Arc<AtomicBool>,
+}
+
+/// The thread's side.
+#[derive(Default)]
+struct Tracer {
+    /// The last picture, if it can be refined.
+    kept: Option<Kept>,
+}
+
+/// A picture that is gone on with where it is of the wanted scene and view.
+struct Kept {
+    scene: Arc<Scene>,
+    view: (Camera, Resolution),
+    picture: Refining,
+}
+
+impl Kept {
+    fn new(Order { scene, job, .. }: &Order) -> Self {
+        let picture = Refining::new(&job.camera, job.resolution);
+        Self { scene: Arc::clone(scene), view: (job.camera, job.resolution), picture }
+    }
+
+    fn is_of(&self, Order { scene, job, .. }: &Order) -> bool {
+        Arc::ptr_eq(&self.scene, scene) && self.view == (job.camera, job.resolution)
+    }
+}
+
+impl Tracer {
+    /// `None`: it was cancelled.
+    fn trace(&mut self, order: &Order) -> Option<Frame> {
+        if cfg!(feature = "test-hooks") && order.job.test_panic {
             panic_in_a_worker();
         }
         let start = Instant::now();
-        let rendered = render_unless(cancelled, scene, &job.camera, job.resolution, NonZeroU32::MIN)?;
-        Some(Frame::new(scene, job, &rendered, start.elapsed()))
-    })
+        let rendered = self.rendered(order)?;
+        Some(Frame::new(&order.scene, &order.job, &rendered, start.elapsed()))
+    }
+
+    fn rendered(&mut self, order: &Order) -> Option<Rendered> {
+        let Order { scene, job, cancelled } = order;
+        // The last frame may have been traced by the loop.
+        let kept = self.kept.take().filter(|kept| job.refines && kept.is_of(order));
+        let Sampling::UpTo(samples) = job.sampling else {
+            return render_unless(cancelled, scene, &job.camera, job.resolution, job.sampling);
+        };
+        let mut kept = kept.unwrap_or_else(|| Kept::new(order));
+        let cost = kept.picture.refine_unless(cancelled, scene, samples)?;
+        Some(Rendered { framebuffer: self.kept.insert(kept).picture.framebuffer(), cost })
+    }
+}
+
+/// Whether each pixel has just one.
+fn has_one_sample(sampling: Sampling) -> bool {
+    matches!(sampling, Sampling::Each(NonZeroU32::MIN) | Sampling::UpTo(NonZeroU32::MIN))
 }
 
 fn panic_in_a_worker() {
@@ -185,24 +272,103 @@ fn panic_in_a_worker() {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::{Pose, ViewRectangle};
     use crate::terminal::Signals;
+    use glam::Vec3;
+
+    fn three_spheres() -> Scene {
+        let text = include_str!("../../scenes/three_spheres.ron");
+        Scene::from_ron("three_spheres.ron", text).expect("the scene is fine")
+    }
+
+    fn frame(refines: bool) -> Frame {
+        let pose = Pose { eye: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y };
+        let rectangle = ViewRectangle::from_vertical_fov(1.0).expect("an angle");
+        Frame {
+            camera: Camera::new(pose, rectangle).expect("a pose"),
+            picture: Picture { width: 0, height: 0, pixels: Vec::new() },
+            sampling: Sampling::BEST,
+            refines,
+            cost: Cost::default(),
+            trace: Duration::ZERO,
+        }
+    }
+
+    /// What refines a view that has changed since is not shown, even if it was finished before it heard of it.
+    #[test]
+    fn a_refinement_given_up_too_late_is_thrown_away() {
+        let (done, frames) = channel();
+        let work = |refines| InWork { refines, cancelled: Arc::default() };
+        let mut renderer = Renderer {
+            scene: Some(Arc::new(three_spheres())),
+            jobs: None,
+            frames,
+            thread: None,
+            in_work: [work(true), work(false)].into(),
+            seconds_per_pixel: None,
+        };
+        assert!(renderer.is_busy_with_new_view());
+        let _ = done.send(Ok(Some(frame(true))));
+        renderer.give_up_refining();
+        assert!(renderer.finished().is_none());
+        assert!(renderer.is_busy());
+        let _ = done.send(Ok(Some(frame(false))));
+        assert!(renderer.finished().is_some_and(|frame| !frame.refines));
+        assert!(!renderer.is_busy());
+    }
 
     /// The loop traces what its last frames were small for, and the same picture as the thread does.
     #[test]
     fn small_frames_are_done_at_once() {
-        let text = include_str!("../../scenes/three_spheres.ron");
-        let scene = Scene::from_ron("three_spheres.ron", text).expect("the scene is fine");
+        let scene = three_spheres();
         let camera = scene.camera;
         let waker = Signals::catch().and_then(|signals| signals.waker()).expect("pipes can be made");
         let mut renderer = Renderer::start(Some(2), waker).expect("threads can be started");
         renderer.show(scene);
-        let job = |side| Job { camera, resolution: Resolution::square(side, side), test_panic: false };
+        let job = |side| Job {
+            camera,
+            resolution: Resolution::square(side, side),
+            sampling: Sampling::UpTo(NonZeroU32::MIN),
+            refines: false,
+            test_panic: false,
+        };
         assert!(renderer.begin(job(8)).is_none(), "nothing is known of the first");
         let by_the_thread = wait_for(&mut renderer);
         let by_the_loop = renderer.begin(job(8)).expect("64 pixels are a small frame");
         assert!(by_the_loop.picture == by_the_thread.picture);
         assert!(renderer.begin(job(1000)).is_none(), "a million pixels are not");
         wait_for(&mut renderer);
+    }
+
+    /// What was traced already is not traced again; what is of another view is.
+    #[test]
+    fn a_picture_is_gone_on_with_where_it_was_left() {
+        let scene = Arc::new(three_spheres());
+        let (camera, resolution) = (scene.camera, Resolution::square(40, 24));
+        let never = AtomicBool::new(false);
+        let best = render_unless(&never, &scene, &camera, resolution, Sampling::BEST).expect("nobody cancels it");
+        let shown = tone(&best.framebuffer, &scene);
+        let mut tracer = Tracer::default();
+        let mut trace_of = |scene: &Arc<Scene>, camera, sampling, refines| {
+            let job = Job { camera, resolution, sampling, refines, test_panic: false };
+            tracer.trace(&Order { scene: Arc::clone(scene), job, cancelled: Arc::default() }).expect("a frame")
+        };
+        let mut trace = |camera, sampling, refines| trace_of(&scene, camera, sampling, refines);
+        let one = Sampling::UpTo(NonZeroU32::MIN);
+        let first = trace(camera, one, false);
+        let rest = trace(camera, Sampling::BEST, true);
+        assert_eq!(first.cost.rays + rest.cost.rays, best.cost.rays);
+        assert!(first.picture != shown && rest.picture == shown);
+        // A new view begins anew, even one as before; so does one whose first frame another has traced.
+        assert!(trace(camera, one, false).picture == first.picture);
+        let other = camera.with_pose(Pose { eye: camera.pose().eye + Vec3::X, ..camera.pose() }).expect("a pose");
+        trace(other, one, false);
+        let anew = trace(camera, Sampling::BEST, true);
+        assert!(anew.picture == shown && anew.cost.rays == best.cost.rays);
+        // And of another scene: that of a sketch is not gone on with.
+        trace(camera, one, false);
+        let anew = trace_of(&Arc::new(three_spheres()), camera, Sampling::BEST, true);
+        assert!(anew.picture == shown && anew.cost.rays == best.cost.rays);
     }
 
     fn wait_for(renderer: &mut Renderer) -> Frame {

@@ -90,9 +90,19 @@ impl Screen {
         self.changed = true;
     }
 
+    /// Whether the scene is still on its way: what is seen is a sketch of it at best.
+    pub(super) fn awaits_scene(&self) -> bool {
+        self.progress.is_some()
+    }
+
     /// The scene is there: what was said of its way goes when it is seen.
     pub(super) fn end_progress(&mut self) {
         self.progress = None;
+    }
+
+    /// The last frame.
+    pub(super) fn frame(&self) -> Option<&Frame> {
+        self.frame.as_ref()
     }
 
     pub(super) fn toggle_status(&mut self) {
@@ -182,6 +192,7 @@ impl Screen {
         {
             let status = panels::Status {
                 cells: Size { columns, rows },
+                sampling: frame.sampling,
                 trace: frame.trace,
                 encode: self.encode,
                 shown: self.pace.frames_per_second,
@@ -240,7 +251,7 @@ mod tests {
     use super::*;
     use crate::capabilities::CellMode;
     use crate::export;
-    use crate::render::Cost;
+    use crate::render::{Cost, Sampling};
     use crate::scene::Scene;
     use crate::tone::tone;
     use std::num::NonZeroU32;
@@ -264,7 +275,8 @@ mod tests {
             camera: scene.camera,
             picture: tone(&light, &scene),
             cost: Cost::default(),
-
+            sampling: Sampling::Each(NonZeroU32::MIN),
+            refines: false,
             trace: Duration::ZERO,
         };
         let grid = export::frame_grid(&scene, capabilities.cell_mode, size, 2.0);

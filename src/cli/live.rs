@@ -2,16 +2,20 @@
 
 use super::cells::CellArgs;
 use super::encoding::EncodingArgs;
-use super::picture::parse_cell_aspect;
+use super::picture::{parse_cell_aspect, parse_samples};
 use super::{Done, Failure, SceneArgs, complain_of_panic, reason, write_stdout};
 use clap::Args;
 use std::io::{self, IsTerminal};
+use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use termtrace::app::{self, Ending, Options, Outcome};
 use termtrace::capabilities::{Colors, USUAL_CELL_ASPECT};
+use termtrace::cell;
 use termtrace::export;
 use termtrace::grid::Size;
+use termtrace::render::{Sampling, render};
 use termtrace::terminal::{Signals, die_of};
+use termtrace::tone::tone;
 
 /// The names of the commands, for who misspells one.
 const COMMANDS: [&str; 4] = ["frame", "record", "check", "doctor"];
@@ -30,6 +34,10 @@ pub(super) struct LiveArgs {
     cell_aspect: Option<f32>,
     #[command(flatten)]
     encoding: EncodingArgs,
+    /// Rays per pixel, also in motion, or `best`: 1, and up to 64 where there are edges [default: in motion as many as the
+    /// time allows, at rest best]
+    #[arg(long, value_name = "N|best", value_parser = parse_samples)]
+    samples: Option<Sampling>,
     /// The most frames per second [default: 60]
     #[arg(long, value_name = "N", value_parser = parse_fps)]
     fps: Option<f32>,
@@ -45,6 +53,7 @@ impl LiveArgs {
         options.quality = self.encoding.quality();
         options.max_rate = self.encoding.max_rate();
         options.max_frames = self.fps;
+        options.sampling = self.samples;
         options.threads = self.scene.threads.map(usize::from);
         options
     }
@@ -77,7 +86,10 @@ fn print(args: &LiveArgs) -> Done {
     let scene = args.scene.load()?;
     let cell_aspect = args.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = args.cells.in_file(Colors::None);
-    let grid = args.scene.on_threads(|| export::frame_grid(&scene, cell_mode, Size::new(80, 24), cell_aspect))?;
+    let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect);
+    let sampling = args.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
+    let picture = args.scene.on_threads(|| tone(&render(&scene, &scene.camera, resolution, sampling), &scene))?;
+    let grid = cell::grid_from_picture(cell_mode, &picture);
     write_stdout(&match cell_mode.colors {
         Colors::None => export::text(&grid).into_bytes(),
         _ => export::ansi(&grid),

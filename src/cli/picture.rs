@@ -84,7 +84,7 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
 }
 
 /// `best`, or so many.
-fn parse_samples(text: &str) -> Result<Sampling, String> {
+pub(super) fn parse_samples(text: &str) -> Result<Sampling, String> {
     if text == "best" {
         return Ok(Sampling::BEST);
     }

@@ -146,7 +146,7 @@ fn a_wrong_command_line_is_told_and_helped() {
     folder.run("frame ball.ron --pixel 8x8").is_misused("'--pixels'");
     folder.run("frame ball.ron --sample 2").is_misused("'--samples'");
     folder.run("ball.ron --colour=always").is_misused("'--color");
-    folder.run("ball.ron --samples 2").is_misused("--samples");
+    folder.run("ball.ron --samples good").is_misused("--samples");
     folder.run("ball.ron --order rows").is_misused("color, raster");
     folder.run("ball.ron --order color --compressed-link").is_misused("cannot be used with");
     folder.run("ball.ron --quality good").is_misused("exact, equal, fast");

@@ -44,7 +44,7 @@ use rustix::{
 pub(crate) use modes::Modes;
 use output::Output;
 pub(crate) use phases::{Answer, Phases};
-pub(crate) use picture::{halves_of, picture, shows};
+pub(crate) use picture::{halves_of, picture, picture_with, shows};
 pub(crate) use screen::{Colour, Screen};
 pub(crate) use storm::Storm;
 

@@ -4,13 +4,13 @@ use std::{
     io::{BufRead, BufReader, Write},
     os::unix::net::{UnixListener, UnixStream},
     path::PathBuf,
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 use rustix::event::{PollFd, PollFlags, poll};
 use tempfile::TempDir;
 
-use super::{SOON, Session};
+use super::{SOON, Seen, Session};
 
 /// What is to happen where the child is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +73,25 @@ impl Phases {
             }
             self.send(Answer::GoOn);
         }
+    }
+
+    /// Lets the child go on until its terminal fulfils a condition, or for so long; how often it reaches this phase.
+    pub(crate) fn count_on(
+        &mut self,
+        phase: &str,
+        session: &mut Session,
+        limit: Duration,
+        mut done: impl FnMut(&Seen) -> bool,
+    ) -> usize {
+        let deadline = Instant::now() + limit;
+        let mut count = 0;
+        while !done(session.seen()) && Instant::now() < deadline {
+            if self.is_told() {
+                count += usize::from(self.next() == phase);
+                self.send(Answer::GoOn);
+            }
+        }
+        count
     }
 
     /// Whether the child says something now, or in a moment.

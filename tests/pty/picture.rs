@@ -4,14 +4,19 @@ use super::screen::{Colour, Screen};
 use termtrace::capabilities::CellMode;
 use termtrace::cell;
 use termtrace::grid::{Grid, Ink, Size};
-use termtrace::render::render;
+use termtrace::render::{Sampling, render};
 use termtrace::scene::Scene;
 use termtrace::tone::tone;
 
-/// What a scene looks like on a screen, whose cells' height is `aspect` times their width.
+/// What a scene looks like in the end on a screen, whose cells' height is `aspect` times their width.
 pub(crate) fn picture(scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {
+    picture_with(Sampling::BEST, scene, mode, size, aspect)
+}
+
+/// The same with other samples.
+pub(crate) fn picture_with(sampling: Sampling, scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {
     let resolution = cell::resolution(mode, size, aspect);
-    let framebuffer = render(scene, &scene.camera, resolution, std::num::NonZeroU32::MIN);
+    let framebuffer = render(scene, &scene.camera, resolution, sampling);
     cell::grid_from_picture(mode, &tone(&framebuffer, scene))
 }
 

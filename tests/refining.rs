@@ -1,0 +1,180 @@
+//! Samples by the clock: while the view stands still the picture gets better, in few steps, and comes to an end; whoever
+//! moves on does not wait for it.
+
+#![cfg(feature = "test-hooks")]
+
+mod pty;
+
+use pty::{Answer, Phases, SOON, Seen, Session, Size, Start, shows};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::num::NonZeroU32;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use tempfile::NamedTempFile;
+use termtrace::capabilities::CellMode;
+use termtrace::encode::{Encoder, Order};
+use termtrace::grid::Grid;
+use termtrace::render::Sampling;
+use termtrace::scene::Scene;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+
+/// What ends each frame.
+const FENCE: &[u8] = b"\x1b[c";
+
+fn picture(sampling: Sampling, scene: &Path, size: Size) -> Grid {
+    let scene = Scene::load(scene).unwrap_or_else(|error| panic!("{error}"));
+    pty::picture_with(sampling, &scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(size.columns, size.rows), 2.0)
+}
+
+/// The bytes of a whole frame that shows just this.
+fn whole_frame(grid: &Grid) -> usize {
+    let mut bytes = Vec::new();
+    Encoder::new().with_order(Order::Raster).with_upper_half(true).encode(grid, &mut bytes);
+    bytes.len()
+}
+
+/// Shows a scene, and then again after a jump of the camera: each time it comes to its end in few steps.
+fn assert_comes_to_its_end(scene: &Path, size: Size) {
+    let wanted = picture(Sampling::BEST, scene, size);
+    let mut phases = Phases::new();
+    let start = Start::new(PROGRAM).arg(scene).size(size);
+    let mut session = start.env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
+    let what = format!("{} on {size:?}", scene.display());
+    assert_refined(&mut session, &mut phases, &wanted, &format!("{what} at first"));
+    session.send(b"d");
+    phases.count_on("refinement", &mut session, SOON, |seen| !shows(seen.screen(), &wanted));
+    // The space bar stops it.
+    session.send(b" ");
+    let mut before = 0;
+    // All of the picture there has come when nothing has for a while.
+    while session.seen().bytes().len() > before {
+        before = session.seen().bytes().len();
+        phases.count_on("refinement", &mut session, Duration::from_secs(1), |seen| seen.bytes().len() > before);
+    }
+    session.send(b"r");
+    assert_refined(&mut session, &mut phases, &wanted, &format!("{what} after a key"));
+}
+
+/// Waits for the picture, which three frames make up; then nothing more comes.
+#[track_caller]
+fn assert_refined(session: &mut Session, phases: &mut Phases, wanted: &Grid, what: &str) {
+    let before = session.seen().bytes().len();
+    let steps = phases.count_on("refinement", session, SOON, |seen| shows(seen.screen(), wanted));
+    assert!(shows(session.seen().screen(), wanted), "{what}: not the end");
+    let end = session.seen().bytes().len();
+    let more = |seen: &Seen| seen.bytes().len() > end + FENCE.len();
+    let late = phases.count_on("refinement", session, Duration::from_millis(500), more);
+    assert!(!more(session.seen()) && late == 0, "{what}: more");
+    let share = (end - before) as f64 / whole_frame(wanted) as f64;
+    println!("{what}: {steps} steps more, {share:.2} whole frames");
+    assert!((1..=2).contains(&steps), "{what}: {steps} steps more");
+    assert!(share <= 2.5, "{what}: {share} whole frames");
+}
+
+#[test]
+fn a_picture_that_stands_still_comes_to_its_end_in_few_steps() {
+    for name in ["three_spheres", "many_spheres", "corridor", "teapots"] {
+        let scene = Path::new(SCENES).join(name).with_extension("ron");
+        for size in [Size::cells(80, 24), Size::cells(150, 45)] {
+            assert_comes_to_its_end(&scene, size);
+        }
+    }
+}
+
+/// Where every cell has edges.
+#[test]
+fn also_a_picture_of_edges_comes_to_its_end_in_few_steps() {
+    assert_comes_to_its_end(gravel().path(), LARGE);
+}
+
+/// The status line says how many samples a pixel has.
+#[test]
+fn samples_may_be_forced() {
+    let scene = Path::new(SCENES).join("three_spheres.ron");
+    let one = Sampling::Each(NonZeroU32::MIN);
+    for (flag, sampling, told) in [("1", one, "80x24x1 "), ("best", Sampling::BEST, "80x24x64 ")] {
+        let mut session = Start::new(PROGRAM).arg(&scene).arg("--samples").arg(flag).spawn();
+        let wanted = picture(sampling, &scene, Size::cells(80, 24));
+        session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+        let end = session.seen().bytes().len();
+        let more = session.sees(Duration::from_millis(500), |seen| seen.bytes().len() > end + FENCE.len());
+        assert!(!more, "{flag}: more is sent");
+        // Also in motion.
+        session.send(b"id");
+        session.wait_for("a moving eye", SOON, |seen| {
+            let status = seen.screen().text().pop().unwrap_or_default();
+            assert!(!status.contains("rays/s") || status.contains(told), "{flag}: {status}");
+            status.contains("rays/s") && !status.contains("eye 0.00")
+        });
+    }
+    let mut session = Start::new(PROGRAM).arg(&scene).spawn();
+    session.send(b"i");
+    session.wait_for_text("80x24x64 ");
+}
+
+/// A scene with edges everywhere: refined, it takes nearly 64 times as long as at first.
+fn gravel() -> NamedTempFile {
+    let mut scene = String::from("(camera: (eye: (0, 0, 30), target: (0, 0, 0)), ambient: 0.2, lights: [");
+    for x in [-20, 0, 20] {
+        let _ = write!(scene, "Point(position: ({x}, 20, 30), intensity: 900),");
+    }
+    scene.push_str("], objects: [");
+    for n in 0..30_000 {
+        let _ = write!(
+            scene,
+            "Sphere(center: ({}, {}, {}), radius: 0.07),",
+            f64::from(n % 200) * 0.2 - 20.0,
+            f64::from(n / 200) * 0.2 - 15.0,
+            f64::from(n * 7 % 31) * 0.1,
+        );
+    }
+    scene.push_str("])");
+    let mut file = tempfile::Builder::new().suffix(".ron").tempfile().expect("a file can be made");
+    file.write_all(scene.as_bytes()).expect("a file can be written");
+    file
+}
+
+const LARGE: Size = Size { columns: 120, rows: 40, cell: (10, 20) };
+
+/// A session in which a refinement has just been begun.
+fn refining(scene: &NamedTempFile) -> (Session, Phases) {
+    let mut phases = Phases::new();
+    let start = Start::new(PROGRAM).arg(scene.path()).size(LARGE);
+    let mut session = start.env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
+    phases.wait_for_on("refinement", &mut session);
+    (session, phases)
+}
+
+/// What takes long is given up where somebody presses a key.
+#[test]
+fn a_key_does_not_wait_for_a_refinement() {
+    let scene = gravel();
+    let wanted = picture(Sampling::BEST, scene.path(), LARGE);
+    let (mut session, phases) = refining(&scene);
+    let start = Instant::now();
+    phases.answer(Answer::GoOn);
+    session.wait_for("the end", 6 * SOON, |seen| shows(seen.screen(), &wanted));
+    let refined = start.elapsed();
+
+    let (mut session, phases) = refining(&scene);
+    let before = session.seen().bytes().len();
+    session.send(b"w");
+    let start = Instant::now();
+    phases.answer(Answer::GoOn);
+    // More than a question.
+    session.wait_for("another picture", 6 * SOON, |seen| seen.bytes().len() > before + 1_000);
+    let seen = start.elapsed();
+
+    let (mut session, phases) = refining(&scene);
+    session.send(b"q");
+    let start = Instant::now();
+    phases.answer(Answer::GoOn);
+    assert_eq!(session.wait_exit(6 * SOON).code(), Some(0));
+    let left = start.elapsed();
+    println!("refined in {refined:?}, a key seen in {seen:?}, left in {left:?}");
+    assert!(seen * 4 < refined, "a key was seen after {seen:?} of {refined:?}");
+    assert!(left * 4 < refined, "left after {left:?} of {refined:?}");
+}
