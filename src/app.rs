@@ -604,6 +604,8 @@ impl Live {
         if bytes.is_empty() {
             return Ok(());
         }
+        // Also at rest: a frame's own round trip is longer than the link's, which its rate is judged by.
+        terminal.send(self.link.probe(now))?;
         self.link.send(bytes, now);
         terminal.send(bytes)
     }
