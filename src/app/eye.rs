@@ -1,0 +1,105 @@
+//! Where the scene is looked at from, and how keys move that.
+
+use crate::camera::Camera;
+use crate::control::{self, Motion};
+use crossterm::event::KeyEvent;
+use std::time::Duration;
+
+/// The first frame after a key already shows so much movement.
+pub(super) const FRAME: Duration = Duration::from_micros(16_667);
+
+/// The eye, and what moves it. Methods that may move it tell whether they did.
+#[derive(Default)]
+pub(super) struct Eye {
+    /// `None` as long as there is nothing to see.
+    view: Option<View>,
+    motion: Motion,
+    /// Up to when the motion has been carried out; `None` at rest.
+    moved_until: Option<Duration>,
+}
+
+/// How the scene is looked at.
+struct View {
+    home: Camera,
+    camera: Camera,
+    speed: f32,
+}
+
+impl Eye {
+    /// There is something to see, and from there it is looked at first.
+    pub(super) fn open(&mut self, camera: Camera) {
+        self.view.get_or_insert(View { home: camera, camera, speed: control::speed(&camera) });
+    }
+
+    /// `None` as long as there is nothing to see.
+    pub(super) fn camera(&self) -> Option<Camera> {
+        self.view.as_ref().map(|view| view.camera)
+    }
+
+    /// Where the camera is, if it is not where it was.
+    pub(super) fn moved(&self) -> Option<Camera> {
+        self.view.as_ref().filter(|view| view.camera != view.home).map(|view| view.camera)
+    }
+
+    /// Up to when the motion has been carried out; `None` at rest.
+    pub(super) fn moved_until(&self) -> Option<Duration> {
+        self.moved_until
+    }
+
+    /// Whether anything moves, as far as the motion has been carried out.
+    pub(super) fn is_moving(&self) -> bool {
+        self.moved_until.is_some()
+    }
+
+    /// Carries the motion out up to now.
+    #[must_use]
+    pub(super) fn go_on(&mut self, now: Duration) -> bool {
+        let Some(since) = self.moved_until else { return false };
+        self.moved_until = self.motion.is_moving(now).then_some(now);
+        let Some(view) = &mut self.view else { return false };
+        let before = view.camera;
+        view.camera = self.motion.step(&before, view.speed, since, now);
+        view.camera != before
+    }
+
+    /// What was going on is carried out before the key changes it.
+    #[must_use]
+    pub(super) fn take_key(&mut self, key: &KeyEvent, now: Duration) -> bool {
+        let moved = self.go_on(now);
+        self.motion.key(key, now);
+        // From rest, the first frame already shows a frame's worth of movement.
+        self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
+        moved
+    }
+
+    /// Nothing is held any more.
+    #[must_use]
+    pub(super) fn stand_still(&mut self, now: Duration) -> bool {
+        let moved = self.go_on(now);
+        self.motion.stop();
+        self.moved_until = None;
+        moved
+    }
+
+    /// Whether the terminal tells of releases from now on. What is held is let go of when it no longer does.
+    #[must_use]
+    pub(super) fn set_hears_releases(&mut self, hears_releases: bool, now: Duration) -> bool {
+        let moved = self.hears_releases() && !hears_releases && self.stand_still(now);
+        self.motion.set_hears_releases(hears_releases);
+        moved
+    }
+
+    pub(super) fn hears_releases(&self) -> bool {
+        self.motion.hears_releases()
+    }
+
+    /// Back to where it was first.
+    #[must_use]
+    pub(super) fn reset(&mut self) -> bool {
+        let moved = self.moved().is_some();
+        if let Some(view) = &mut self.view {
+            view.camera = view.home;
+        }
+        moved
+    }
+}

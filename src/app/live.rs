@@ -1,0 +1,302 @@
+//! The loop: input, render, present, rest.
+//!
+//! It sleeps until a key, a signal or a finished frame wakes it. A frame is rendered only when something changed, by a
+//! thread of its own unless it takes next to no time, so that keys and signals are heard while it is traced; the newest
+//! picture wins: what changes in the meantime is in the next frame, and nothing is queued. When nothing changes any more,
+//! the picture is refined to its end, which the next change of the view cuts short.
+//!
+//! A scene that takes long to come is waited for here too: its progress is shown, then a sketch of it.
+
+use super::effort::Effort;
+use super::eye::{Eye, FRAME};
+use super::link::Link;
+use super::loading::{Loading, News};
+use super::renderer::{Frame, Job, Renderer};
+use super::screen::Screen;
+use super::{Ending, Error, Options};
+use crate::camera::Camera;
+use crate::capabilities::{Capabilities, Findings};
+use crate::cell;
+use crate::framebuffer::Resolution;
+use crate::input::Parser;
+use crate::render::Sampling;
+use crate::scene::Scene;
+use crate::terminal::{self, Questions, Signals, Stopped, Terminal, Window};
+use std::io;
+use std::panic::resume_unwind;
+use std::time::{Duration, Instant};
+
+mod events;
+
+use events::Next;
+
+/// The state of the live view.
+pub(super) struct Live {
+    options: Options,
+    eye: Eye,
+    window: Window,
+    capabilities: Capabilities,
+    questions: Questions,
+    parser: Parser,
+    /// When the last bytes came from the terminal, or were waited for in vain.
+    read: Duration,
+    screen: Screen,
+    link: Link,
+    effort: Effort,
+    start: Instant,
+    /// Whether the picture on the screen is of another camera or size than the wanted one.
+    stale: bool,
+    /// The last time a frame of a new view was begun,
+    begun: Option<Duration>,
+    /// and whether more was moving then.
+    begun_in_motion: bool,
+}
+
+impl Live {
+    /// Shows nothing yet.
+    pub(super) fn new(options: Options, window: Window) -> Self {
+        let questions = Questions::needed(&options.hints);
+        let link = Link::new(options.max_rate, options.max_frames, questions.is_open());
+        let capabilities = Findings::new(&options.hints, window.cell, questions.answers()).capabilities();
+        let mut live = Self {
+            eye: Eye::default(),
+            window,
+            capabilities,
+            questions,
+            parser: Parser::new(),
+            read: Duration::ZERO,
+            screen: Screen::new(&capabilities, options.order, options.quality),
+            link,
+            effort: Effort::new(options.sampling),
+            options,
+            start: Instant::now(),
+            stale: true,
+            begun: None,
+            begun_in_motion: false,
+        };
+        live.resize(window);
+        live
+    }
+
+    /// Where the user has moved the camera, if he has.
+    pub(super) fn moved(&self) -> Option<Camera> {
+        self.eye.moved()
+    }
+
+    /// Asks the terminal what it is, and goes on until the user leaves.
+    pub(super) fn run<E: Send + 'static>(
+        &mut self,
+        terminal: &mut Terminal,
+        renderer: &mut Renderer,
+        loading: &mut Loading<E>,
+        signals: &mut Signals,
+    ) -> Result<Ending, Error<E>> {
+        terminal.send(self.questions.bytes())?;
+        loop {
+            while let Some(news) = loading.next() {
+                self.take_news(news, renderer).map_err(Error::Scene)?;
+            }
+            self.stale |= self.eye.go_on(self.now());
+            if self.stale {
+                renderer.give_up_refining();
+            }
+            self.present(terminal, renderer)?;
+            // Nothing is rendered that cannot be sent.
+            let idle = !renderer.is_busy() && !terminal.is_sending();
+            if idle && self.now() >= self.next_frame() {
+                self.begin(terminal, renderer)?;
+            }
+            self.panic_if_asked(renderer);
+            let timeout = self.timeout(terminal, renderer);
+            let woken = terminal.wait(signals.wake_pipe(), timeout)?;
+            if woken.wake {
+                signals.drain();
+            }
+            let next = self.next(woken.keys, terminal, signals)?;
+            if let Next::Suspend(stop) = next {
+                self.suspend(terminal, signals, stop)?;
+            }
+            if let Some(signal) = signals.deadly() {
+                return Ok(Ending::Signal(signal));
+            }
+            if next == Next::Leave {
+                return Ok(Ending::Left);
+            }
+            if signals.take_resized() {
+                terminal::reach("resize")?;
+                self.resize(terminal.window()?);
+            }
+            if self.knows_keyboard() {
+                terminal.push_keyboard()?;
+            }
+            while let Some(frame) = renderer.finished() {
+                self.take_frame(frame);
+            }
+        }
+    }
+
+    /// The time: a frame's worth at the start, so that whatever is pressed then may have begun a frame ago.
+    fn now(&self) -> Duration {
+        FRAME + self.start.elapsed()
+    }
+
+    fn resolution(&self) -> Resolution {
+        cell::resolution(self.capabilities.cell_mode, self.window.size, self.capabilities.cell_aspect)
+    }
+
+    fn resize(&mut self, window: Window) {
+        self.window = window;
+        self.learn();
+        // The terminal has moved what it shows to wherever it thought right.
+        self.screen.redraw(self.capabilities.halves_meet);
+        self.effort.forget_last();
+        self.stale = true;
+    }
+
+    /// Goes by what is known of the terminal now.
+    fn learn(&mut self) {
+        let before = self.resolution();
+        let findings = Findings::new(&self.options.hints, self.window.cell, self.questions.answers());
+        let capabilities = findings.capabilities();
+        if capabilities != self.capabilities {
+            self.capabilities = capabilities;
+            self.screen.set_capabilities(&capabilities);
+            self.stale |= self.resolution() != before;
+        }
+    }
+
+    /// What is there of the scene is shown; all of it from where its sketch was looked at.
+    fn take_news<E>(&mut self, news: News<E>, renderer: &mut Renderer) -> Result<(), E> {
+        match news {
+            News::Progress(progress) => self.screen.set_progress(progress),
+            News::Sketch(scene) => self.show(scene, renderer),
+            News::Scene(scene) => {
+                self.screen.end_progress();
+                self.show(scene, renderer);
+            }
+            News::Fault(fault) => return Err(fault),
+            News::Panic(panic) => resume_unwind(panic),
+        }
+        Ok(())
+    }
+
+    fn show(&mut self, scene: Scene, renderer: &mut Renderer) {
+        self.eye.open(scene.camera);
+        renderer.show(scene);
+        self.effort.forget_last();
+        self.stale = true;
+    }
+
+    /// The earliest time for the next frame, and for the next look at what moves.
+    fn next_frame(&self) -> Duration {
+        let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.link.frame_time());
+        let next = if self.stale { next(self.begun) } else { next(self.eye.moved_until()).max(next(self.begun)) };
+        next.max(self.link.free_at(self.now()))
+    }
+
+    /// The earliest time at which the screen has bytes to send, if nothing else happens. What would make a picture better
+    /// waits while one of a newer view is on its way.
+    fn next_bytes(&self, renderer: &Renderer) -> Option<Duration> {
+        let lasts = !self.stale && !renderer.is_busy_with_new_view();
+        self.screen.due(self.window.size, lasts).map(|due| due.max(self.link.free_at(self.now())))
+    }
+
+    /// Begins a frame of the new view if there is one, else the next step of the last one, if there is one.
+    fn begin(&mut self, terminal: &mut Terminal, renderer: &mut Renderer) -> io::Result<()> {
+        let Some(camera) = self.eye.camera() else { return Ok(()) };
+        let job = if self.stale {
+            terminal.send(self.link.probe(self.now()))?;
+            self.stale = false;
+            self.begun = Some(self.now());
+            let sampling = self.effort.of_new_view(self.begun_in_motion);
+            self.begun_in_motion = self.eye.is_moving();
+            self.job(camera, sampling)
+        } else if let Some(sampling) = self.next_step() {
+            terminal::reach("refinement")?;
+            Job { refines: true, ..self.job(camera, sampling) }
+        } else {
+            return Ok(());
+        };
+        if let Some(frame) = renderer.begin(job) {
+            self.take_frame(frame);
+        }
+        Ok(())
+    }
+
+    fn take_frame(&mut self, frame: Frame) {
+        if !frame.refines {
+            self.effort.took(frame.sampling, frame.trace, self.link.frame_time());
+        }
+        self.screen.take_frame(frame, self.eye.is_moving().then(|| self.now()));
+    }
+
+    fn job(&self, camera: Camera, sampling: Sampling) -> Job {
+        Job { camera, resolution: self.resolution(), sampling, refines: false, test_panic: false }
+    }
+
+    /// The next step of the frame that is on the screen.
+    fn next_step(&self) -> Option<Sampling> {
+        // Refining a sketch would take the time that the scene needs.
+        let frame = self.screen.frame().filter(|_| !self.screen.awaits_scene())?;
+        self.effort.of_next_step(frame.sampling)
+    }
+
+    /// How long there is nothing to do if nobody wakes us: for ever when nothing moves and the picture is done.
+    fn timeout(&self, terminal: &Terminal, renderer: &Renderer) -> Option<Duration> {
+        let moves = self.stale || self.eye.is_moving();
+        let lacks = moves && !renderer.is_busy_with_new_view() || !renderer.is_busy() && self.next_step().is_some();
+        let frame = lacks.then(|| self.next_frame());
+        let sent = [frame, self.next_bytes(renderer)].into_iter().filter(|_| !terminal.is_sending());
+        let next = sent.chain([self.escape_due(terminal)]).flatten().min()?;
+        Some(next.saturating_sub(self.now()))
+    }
+
+    /// Gives the terminal back, stops if that is wanted, and takes the terminal again: at its size of then, and with all
+    /// drawn anew. With a signal to end, it stays given back.
+    fn suspend(&mut self, terminal: &mut Terminal, signals: &mut Signals, stop: Option<Stopped>) -> io::Result<()> {
+        let now = self.now();
+        self.stale |= self.eye.stand_still(now) | self.eye.set_hears_releases(false, now);
+        self.parser = Parser::new();
+        self.link.forget();
+        terminal.give_back();
+        if let Some(who) = stop {
+            signals.stop(who);
+        }
+        if signals.deadly().is_some() {
+            return Ok(());
+        }
+        terminal.take_again()?;
+        // What was on its way then is lost.
+        if self.questions.is_open() {
+            terminal.send(self.questions.bytes())?;
+        }
+        self.resize(terminal.window()?);
+        Ok(())
+    }
+
+    fn panic_if_asked(&self, renderer: &mut Renderer) {
+        if let Some(camera) = self.eye.camera()
+            && terminal::take_worker_panic()
+        {
+            renderer.begin(Job { test_panic: true, ..self.job(camera, Sampling::Coarse) });
+        }
+    }
+
+    /// Brings the screen up to date: nothing is written if it is, or while the terminal is behind.
+    fn present(&mut self, terminal: &mut Terminal, renderer: &Renderer) -> io::Result<()> {
+        let now = self.now();
+        if terminal.is_sending() || self.next_bytes(renderer).is_none_or(|due| now < due) {
+            return Ok(());
+        }
+        let size = self.window.size;
+        let slow = self.link.slow(Screen::usual_bytes(size));
+        let bytes = self.screen.bytes(size, now, slow);
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        // Also at rest: a frame's own round trip is longer than the link's, which its rate is judged by.
+        terminal.send(self.link.probe(now))?;
+        self.link.send(bytes, now);
+        terminal.send(bytes)
+    }
+}

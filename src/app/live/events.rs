@@ -1,0 +1,131 @@
+//! What the loop hears: keys, answers, and signals to stop.
+
+use super::Live;
+use crate::control::{self, Command};
+use crate::input::{Input, Reply};
+use crate::terminal::{Signals, Stopped, Terminal};
+use crossterm::event::{Event, KeyEvent, KeyEventKind};
+use std::io;
+use std::time::Duration;
+
+/// How long the rest of a key's escape sequence may take before a lone Escape is taken for the key.
+const ESCAPE_WAIT: Duration = Duration::from_millis(50);
+/// The same while answers are on their way: the first byte of one may come alone.
+const ANSWER_WAIT: Duration = Duration::from_secs(1);
+
+/// The flags of the kitty keyboard protocol without which keys are taken as a plain terminal tells of them: no ambiguity
+/// (1), releases (2), every key as a sequence (8).
+const KEYBOARD: u16 = 1 | 2 | 8;
+
+impl Live {
+    /// Whether the terminal knows the kitty keyboard protocol.
+    pub(super) fn knows_keyboard(&self) -> bool {
+        !self.questions.is_open() && self.questions.answers().kitty_keyboard == Some(true)
+    }
+
+    /// The terminal says which flags of the kitty keyboard protocol are on.
+    fn take_keyboard(&mut self, flags: u16) {
+        let hears_releases = self.knows_keyboard() && flags & KEYBOARD == KEYBOARD;
+        self.stale |= self.eye.set_hears_releases(hears_releases, self.now());
+        self.parser.set_keys_are_sequences(hears_releases);
+    }
+
+    /// Answers to the questions change things all at once, when the last is there.
+    fn take_reply(&mut self, reply: &Reply) -> Next {
+        if let &Reply::KeyboardFlags(flags) = reply {
+            self.take_keyboard(flags);
+        }
+        match reply {
+            // Terminals answer in order: first the questions of the start, then what ends each frame.
+            Reply::DeviceAttributes(_) if !self.questions.is_open() => self.link.answer(self.now()),
+            reply if self.questions.take(reply) => self.learn(),
+            _ => {}
+        }
+        Next::Stay
+    }
+
+    /// When half a sequence is taken for all that there is of it, if there is one.
+    pub(super) fn escape_due(&self, terminal: &Terminal) -> Option<Duration> {
+        let is_no_key = terminal.awaits_answers() || self.eye.hears_releases();
+        let wait = if is_no_key { ANSWER_WAIT } else { ESCAPE_WAIT };
+        self.parser.is_waiting().then_some(self.read + wait)
+    }
+
+    /// What signals want, or keys if there are any. At a stop these are left to be read with the terminal's last answers.
+    pub(super) fn next(&mut self, keys: bool, terminal: &mut Terminal, signals: &Signals) -> io::Result<Next> {
+        if signals.take_stop() {
+            return Ok(Next::Suspend(Some(Stopped::Process)));
+        }
+        if signals.take_continued() {
+            // Stopped unasked, and whoever had the terminal since then left it as he liked.
+            return Ok(Next::Suspend(None));
+        }
+        if keys {
+            return self.read_keys(terminal);
+        }
+        let mut inputs = Vec::new();
+        if self.escape_due(terminal).is_some_and(|due| due <= self.now()) {
+            self.read = self.now();
+            self.parser.give_up_waiting(&mut inputs);
+        }
+        Ok(self.take_inputs(&inputs))
+    }
+
+    fn read_keys(&mut self, terminal: &mut Terminal) -> io::Result<Next> {
+        let mut buffer = [0; 4096];
+        let bytes = terminal.read(&mut buffer)?;
+        if bytes.is_empty() {
+            return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
+        }
+        let mut inputs = Vec::new();
+        self.parser.feed(bytes, &mut inputs);
+        self.read = self.now();
+        Ok(self.take_inputs(&inputs))
+    }
+
+    fn take_inputs(&mut self, inputs: &[Input]) -> Next {
+        for input in inputs {
+            let next = match input {
+                Input::Event(Event::Key(key)) => self.take_key(key),
+                // Nobody says when the keys held now are let go.
+                Input::Event(Event::FocusLost) => {
+                    self.stale |= self.eye.stand_still(self.now());
+                    Next::Stay
+                }
+                Input::Reply(reply) => self.take_reply(reply),
+                Input::Event(_) => Next::Stay,
+            };
+            if next != Next::Stay {
+                return next;
+            }
+        }
+        Next::Stay
+    }
+
+    fn take_key(&mut self, key: &KeyEvent) -> Next {
+        self.stale |= self.eye.take_key(key, self.now());
+        if key.kind != KeyEventKind::Press {
+            return Next::Stay;
+        }
+        match control::command(key).map(|(command, _)| command) {
+            Some(Command::Quit) => return Next::Leave,
+            Some(Command::Suspend) => return Next::Suspend(Some(Stopped::Group)),
+            Some(Command::Reset) => self.stale |= self.eye.reset(),
+            Some(Command::Status) => self.screen.toggle_status(),
+            Some(Command::Help) => self.screen.toggle_help(),
+            Some(Command::Close) => self.screen.close_help(),
+            Some(Command::Redraw) => self.screen.redraw(self.capabilities.halves_meet),
+            Some(Command::Move(_) | Command::Look(_)) | None => {}
+        }
+        Next::Stay
+    }
+}
+
+/// What the loop does next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Next {
+    Stay,
+    /// With the terminal given back; by a stop, or after one that was not ours.
+    Suspend(Option<Stopped>),
+    Leave,
+}
