@@ -1,7 +1,8 @@
 //! One number, or eight side by side: a formula that is written for any [`Number`] can be asked for one ray or for eight.
 //!
 //! All that they can do are operations that IEEE 754 defines to the last bit, so that a ray among eight gets the bits that
-//! it gets alone. The eight are plain arrays: the compiler makes vector instructions of them.
+//! it gets alone. The eight are plain arrays: the compiler makes vector instructions of them. One number may be an f64:
+//! where f32 cannot tell, the same formula can.
 
 use glam::Vec3;
 use std::array::from_fn;
@@ -19,6 +20,9 @@ pub trait Number:
 
     /// The square root.
     fn sqrt(self) -> Self;
+
+    /// Without its sign.
+    fn abs(self) -> Self;
 
     /// Whether this is less. NaN is not.
     fn lt(self, other: Self) -> Self::Mask;
@@ -48,34 +52,45 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output
     fn any(self) -> bool;
 }
 
-impl Number for f32 {
-    type Mask = bool;
+macro_rules! one_number {
+    ($($float:ident)*) => {
+        $(impl Number for $float {
+            type Mask = bool;
 
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        value
-    }
+            #[inline(always)]
+            fn splat(value: f32) -> Self {
+                value.into()
+            }
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
 
-    #[inline(always)]
-    fn lt(self, other: Self) -> bool {
-        self < other
-    }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.abs()
+            }
 
-    #[inline(always)]
-    fn le(self, other: Self) -> bool {
-        self <= other
-    }
+            #[inline(always)]
+            fn lt(self, other: Self) -> bool {
+                self < other
+            }
 
-    #[inline(always)]
-    fn select(answer: bool, yes: Self, no: Self) -> Self {
-        if answer { yes } else { no }
-    }
+            #[inline(always)]
+            fn le(self, other: Self) -> bool {
+                self <= other
+            }
+
+            #[inline(always)]
+            fn select(answer: bool, yes: Self, no: Self) -> Self {
+                if answer { yes } else { no }
+            }
+        })*
+    };
 }
+
+one_number! { f32 f64 }
 
 impl Mask for bool {
     #[inline(always)]
@@ -139,6 +154,11 @@ impl Number for Eight {
     #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.map(f32::sqrt))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f32::abs))
     }
 
     #[inline(always)]

@@ -81,18 +81,33 @@ impl Probe {
         Self { ray, rays, shear: OnceCell::new() }
     }
 
-    /// What brings the direction to (0, 0, 1).
+    /// What brings the direction onto the z axis.
+    #[inline]
     pub fn shear(&self) -> &Shear {
         self.shear.get_or_init(|| Shear::of(self.ray.direction))
     }
+
+    /// A point in the ray's own [coordinates](Shear).
+    #[inline]
+    pub fn sheared(&self, point: Vec3) -> Vector<f32> {
+        self.shear().apply(Vector::splat(point) - self.rays.origin)
+    }
+
+    /// The same in f64, but for a factor: [`Shear::apply_exactly`].
+    pub fn sheared_exactly(&self, point: Vec3) -> Vector<f64> {
+        self.shear().apply_exactly(Vector::splat(point) - Vector::splat(self.ray.origin))
+    }
 }
 
-/// The change of coordinates in which a ray runs along the z axis, one unit for each t: first the axes are exchanged, so
+/// The change of coordinates in which a ray runs along the z axis, one unit for each t: first the axes are turned about, so
 /// that z is the one along which the direction is longest, then x and y are sheared (Woop, Benthin and Wald, Watertight
 /// Ray/Triangle Intersection, JCGT 2013).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
     longest: Axis,
+    /// The direction, with the axes turned about.
+    direction: Vec3,
+    /// How far it goes along x and y, and how much t grows, while it goes one unit along its longest axis.
     factor: Vec3,
 }
 
@@ -113,25 +128,41 @@ impl Shear {
         } else {
             Axis::Z
         };
-        let Vec3 { x, y, z } = longest.last(direction);
-        Self { longest, factor: Vec3::new(x / z, y / z, 1.0 / z) }
+        let Vector { x, y, z } = longest.last(Vector { x: direction.x, y: direction.y, z: direction.z });
+        Self { longest, direction: Vec3::new(x, y, z), factor: Vec3::new(x / z, y / z, 1.0 / z) }
     }
 
-    /// A vector from the ray's origin in those coordinates. Equal points become equal points, to the bit, which is why
-    /// triangles that share an edge leave no gap.
-    pub fn apply(&self, from_origin: Vec3) -> Vec3 {
-        let Vec3 { x, y, z } = self.longest.last(from_origin);
-        Vec3::new(x - self.factor.x * z, y - self.factor.y * z, self.factor.z * z)
+    /// How far the direction goes along its longest axis.
+    pub fn length(&self) -> f32 {
+        self.direction.z.abs()
+    }
+
+    /// A vector from the ray's origin in those coordinates. Its x and y are off by 2 |x| + 4 |z| [`length`](Self::length)
+    /// units of 2^-24, at most and to first order: no factor of theirs is more than 1.
+    #[inline]
+    pub fn apply(&self, from_origin: Vector<f32>) -> Vector<f32> {
+        let Vector { x, y, z } = self.longest.last(from_origin);
+        Vector { x: x - self.factor.x * z, y: y - self.factor.y * z, z: self.factor.z * z }
+    }
+
+    /// The same in f64, with x and y multiplied by the direction along its longest axis. So they need no division, and as
+    /// f64 holds the product of two f32 whole, they are exact, or where f64 does not reach so far down, off by 2^-53 of
+    /// themselves.
+    pub fn apply_exactly(&self, from_origin: Vector<f64>) -> Vector<f64> {
+        let Vector { x, y, z } = self.longest.last(from_origin);
+        let d = self.direction.as_dvec3();
+        Vector { x: x * d.z - d.x * z, y: y * d.z - d.y * z, z: z / d.z }
     }
 }
 
 impl Axis {
     /// The coordinates turned about so that this one is z. A right-handed basis stays one.
-    fn last(self, Vec3 { x, y, z }: Vec3) -> Vec3 {
+    #[inline]
+    fn last<N>(self, Vector { x, y, z }: Vector<N>) -> Vector<N> {
         match self {
-            Self::X => Vec3::new(y, z, x),
-            Self::Y => Vec3::new(z, x, y),
-            Self::Z => Vec3::new(x, y, z),
+            Self::X => Vector { x: y, y: z, z: x },
+            Self::Y => Vector { x: z, y: x, z: y },
+            Self::Z => Vector { x, y, z },
         }
     }
 }

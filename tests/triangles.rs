@@ -161,6 +161,47 @@ fn meshes_do_not_shadow_themselves() {
     }
 }
 
+/// Whole numbers, which f32 holds and whose products i128 holds.
+fn whole(limit: i128) -> impl Strategy<Value = [i128; 3]> {
+    [-limit..=limit, -limit..=limit, -limit..=limit]
+}
+
+fn determinant([a, b, c]: [[i128; 3]; 3]) -> i128 {
+    (0..3).map(|x| (x, (x + 1) % 3, (x + 2) % 3)).map(|(x, y, z)| a[x] * (b[y] * c[z] - b[z] * c[y])).sum()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+    /// Rays through points of an edge, rounded to whole numbers, and by one beside them: each triangle, however small for
+    /// its distance, is met if the ray goes by all three edges on the same side.
+    #[test]
+    fn on_which_side_of_an_edge_a_ray_goes_by_is_told_exactly(
+        origin in whole(1 << 22),
+        place in whole(1 << 21),
+        corners in (2..21_u32).prop_flat_map(|size| [whole(1 << size), whole(1 << size), whole(1 << size)]),
+        share in 0..=64_i128,
+        beside in whole(1),
+        exponent in -100..=60_i32,
+    ) {
+        let plus = |a: [i128; 3], b: [i128; 3], factor: i128| [0, 1, 2].map(|axis| a[axis] + b[axis] * factor);
+        let corners = corners.map(|corner| plus(corner, place, 1));
+        let [a, b, _] = corners;
+        let on_edge = [0, 1, 2].map(|axis| a[axis] + (b[axis] - a[axis]) * share / 64);
+        let direction = plus(plus(on_edge, beside, 1), origin, -1);
+        prop_assume!(direction != [0; 3]);
+        let [a, b, c] = corners.map(|corner| plus(corner, origin, -1));
+        let sides = [[direction, c, b], [direction, a, c], [direction, b, a]].map(determinant);
+        let expected = sides.iter().all(|&side| side >= 0) != sides.iter().all(|&side| side <= 0);
+        let scale = f32::from_bits(((127 + exponent) as u32) << 23);
+        let vector = |v: [i128; 3]| Vec3::from(v.map(|x| x as f32 * scale));
+        let probe = Probe::new(Ray { origin: vector(origin), direction: vector(direction) });
+        let line = Interval { min: f32::MIN, max: f32::MAX };
+        let found = Triangle::new(corners.map(vector)).closest_crossing(&probe, line);
+        prop_assert_eq!(found.is_some(), expected, "{:?}, {:?}", sides, found);
+    }
+}
+
 /// One triangle seen from both sides, on its edges, and beside it.
 #[test]
 fn a_triangle_is_between_its_corners() {

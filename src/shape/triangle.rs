@@ -2,6 +2,7 @@
 
 use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
 use crate::bounds::Bounds;
+use crate::lanes::{Number, Vector};
 use crate::ray::{Interval, Probe, Ray};
 use glam::{Vec2, Vec3};
 
@@ -12,13 +13,13 @@ pub struct Triangle {
     corners: [Vec3; 3],
 }
 
-/// Where a line crosses a triangle's plane: how much of each corner is in that point, all of them or none with a sign.
-/// Not divided by their sum.
-struct Crossing {
-    weights: Vec3,
-    sum: f32,
+/// Where a line crosses a triangle's plane. Nothing here is divided by the sum of the weights.
+struct Crossing<N> {
+    /// How much of each corner is in that point, all of them or none with a sign.
+    weights: Vector<N>,
+    sum: N,
     /// t times the sum.
-    t: f32,
+    t: N,
 }
 
 impl Triangle {
@@ -38,28 +39,43 @@ impl Triangle {
 
     /// The test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013). In the ray's own coordinates
     /// it runs along z, and it is inside if the origin of the xy plane lies on the same side of all three edges, or on
-    /// them. On which side is decided exactly: rounding may turn neither of two products past the other, and where they
-    /// come out equal, f64 holds them whole. As the neighbour comes to the same answer with the sign turned, no ray slips
-    /// through between them.
-    fn crossing(&self, probe: &Probe) -> Option<Crossing> {
-        let [a, b, c] = self.corners.map(|corner| probe.shear().apply(corner - probe.ray.origin));
-        let weights = Vec3::new(side(c, b), side(a, c), side(b, a));
-        if weights.cmplt(Vec3::ZERO).any() && weights.cmpgt(Vec3::ZERO).any() {
-            return None;
+    /// them. Where f32 cannot tell on which, f64 does.
+    #[inline]
+    fn crossing(&self, probe: &Probe) -> Option<Crossing<f32>> {
+        let corners = self.corners.map(|corner| probe.sheared(corner));
+        let weights = weights(corners);
+        let [agree, differ] = signs(weights, doubt(corners, probe.shear().length()));
+        match (agree, differ) {
+            (true, _) => Some(Crossing::of(weights, corners)),
+            (_, true) => None,
+            _ => self.close_crossing(probe),
         }
-        let sum = weights.x + weights.y + weights.z;
+    }
+
+    /// The same of a line that passes close to an edge. Each corner is one point for all triangles that have it; and on
+    /// which side of an edge the origin lies is decided as it is for these points on paper, but that it may come out as on
+    /// the edge: rounding may turn neither of two products past the other. As that is on both sides, no ray slips through
+    /// between neighbours.
+    #[cold]
+    fn close_crossing(&self, probe: &Probe) -> Option<Crossing<f32>> {
+        let corners = self.corners.map(|corner| probe.sheared_exactly(corner));
+        let weights = weights(corners);
+        let [_, differ] = signs(weights, 0.0);
+        let Crossing { sum, t, .. } = Crossing::of(weights, corners);
         // Seen edge on, or without an area.
-        if sum == 0.0 {
+        if differ || sum == 0.0 {
             return None;
         }
-        Some(Crossing { weights, sum, t: weights.dot(Vec3::new(a.z, b.z, c.z)) })
+        // Divided, they are what f32 can hold.
+        let [x, y, z, t] = [weights.x, weights.y, weights.z, t].map(|value| (value / sum) as f32);
+        Some(Crossing { weights: Vector { x, y, z }, sum: 1.0, t })
     }
 
     /// Where on the triangle the line meets it: the shares of the second and the third corner.
     pub(super) fn shares(&self, ray: &Ray) -> Vec2 {
         self.crossing(&Probe::new(*ray)).map_or(Vec2::ZERO, |crossing| {
-            let Vec3 { y, z, .. } = crossing.weights / crossing.sum;
-            Vec2::new(y, z)
+            let Vector { y, z, .. } = crossing.weights;
+            Vec2::new(y, z) / crossing.sum
         })
     }
 
@@ -73,17 +89,42 @@ impl Triangle {
     }
 }
 
-/// Twice the area of the triangle between the origin and two points of the xy plane, by whose sign one sees on which side
-/// of the edge the origin is.
-fn side(from: Vec3, to: Vec3) -> f32 {
-    let side = from.x * to.y - from.y * to.x;
-    if side == 0.0 { exact_side(from, to) } else { side }
+impl<N: Number> Crossing<N> {
+    #[inline(always)]
+    fn of(weights: Vector<N>, [a, b, c]: [Vector<N>; 3]) -> Self {
+        let Vector { x, y, z } = weights;
+        Self { weights, sum: x + y + z, t: weights.dot(Vector { x: a.z, y: b.z, z: c.z }) }
+    }
 }
 
-/// The same where f32 cannot tell.
-#[cold]
-fn exact_side(from: Vec3, to: Vec3) -> f32 {
-    (f64::from(from.x) * f64::from(to.y) - f64::from(from.y) * f64::from(to.x)) as f32
+/// For each corner twice the area of the triangle between the other two and the origin of the xy plane, with the sign that
+/// tells on which side of this edge the origin is. The other triangle of the edge comes to the same with the sign turned.
+#[inline(always)]
+fn weights<N: Number>([a, b, c]: [Vector<N>; 3]) -> Vector<N> {
+    let area = |from: Vector<N>, to: Vector<N>| from.x * to.y - from.y * to.x;
+    Vector { x: area(c, b), y: area(a, c), z: area(b, a) }
+}
+
+/// By how much the weights may be off in f32, at most.
+///
+/// With s for the largest x or y and r for the largest z, in lengths of the direction, each x and y is off by 2 s + 4 r
+/// units of 2^-24 ([`Shear::apply`](crate::ray::Shear::apply)). Of a difference of two products that makes 4 s times as
+/// much, and their own rounding 4 s s: 12 s s + 16 s r. The products of two such errors add a sixth at most: where they are
+/// more, s is less than 12 units of r, and no weight, all of them less than 2 s s, is beyond doubt. The last term is for
+/// numbers that are too small for f32 to round so.
+#[inline(always)]
+fn doubt<N: Number>(corners: [Vector<N>; 3], length: N) -> N {
+    let [a, b, c] = corners.map(|Vector { x, y, z }| [x.abs().max(y.abs()), z.abs()]);
+    let [across, along] = [0, 1].map(|axis| a[axis].max(b[axis].max(c[axis])));
+    across * (across + along * length) * N::splat(24.0 / 16_777_216.0) + N::splat(f32::MIN_POSITIVE)
+}
+
+/// Whether all of them have one sign, and whether two have different ones: those that are more than `doubt` off zero.
+#[inline(always)]
+fn signs<N: Number>(Vector { x, y, z }: Vector<N>, doubt: N) -> [N::Mask; 2] {
+    let (least, greatest) = (x.min(y.min(z)), x.max(y.max(z)));
+    let agree = doubt.lt(least) | greatest.lt(-doubt);
+    [agree, least.lt(-doubt) & doubt.lt(greatest)]
 }
 
 impl Surface for Triangle {
