@@ -1,5 +1,6 @@
 //! The command line: what it says, and what is then done.
 
+mod bench;
 mod cells;
 mod check;
 mod doctor;
@@ -55,6 +56,7 @@ Examples:
   termtrace frame my.ron --check my.txt                  compare with a golden frame (--bless writes it)
   termtrace record scenes/three_spheres.ron --seconds 4 -o orbit.cast
   termtrace check my.ron                                 say what is wrong with a scene file
+  termtrace bench my.ron --pixels 200x120                say how fast its rays are traced
   termtrace doctor                                       say what this terminal can do, with a test card
   generate_scene | termtrace -                           read the scene from standard input
 
@@ -78,6 +80,8 @@ enum Command {
     Record(record::RecordArgs),
     /// Say what is wrong with a scene file, or that it is fine
     Check(check::CheckArgs),
+    /// Time the tracing of a scene
+    Bench(bench::BenchArgs),
     /// Say what this terminal can do and who says so, and draw a test card
     Doctor(doctor::DoctorArgs),
 }
@@ -107,6 +111,11 @@ struct SceneArgs {
 }
 
 impl SceneArgs {
+    /// The scene as the file has it.
+    fn of(path: &Path) -> Self {
+        Self { scene: Some(path.to_owned()), eye: None, target: None, up: None, fov: None, threads: None }
+    }
+
     /// The scene's file name.
     fn path(&self) -> &Path {
         self.scene.as_deref().unwrap_or(Path::new("-"))
@@ -159,10 +168,15 @@ impl SceneArgs {
 
     /// Does something on the threads that the command line wants.
     fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-        let Some(threads) = self.threads else { return Ok(work()) };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build();
-        pool.map(|pool| pool.install(work)).map_err(|error| Failure::runtime("--threads", error))
+        on_threads(self.threads, work)
     }
+}
+
+/// Does something on so many threads; by default on as many as there are cores.
+fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+    let Some(threads) = threads else { return Ok(work()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build();
+    pool.map(|pool| pool.install(work)).map_err(|error| Failure::runtime("--threads", error))
 }
 
 /// All of it, up to one byte more than a scene may have.
@@ -193,6 +207,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Frame(args)) => frame::run(&args),
         Some(Command::Record(args)) => record::run(&args),
         Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Doctor(args)) => doctor::run(&args),
         None => live::run(&cli.live),
     };

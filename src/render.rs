@@ -24,9 +24,11 @@ use std::ops::{AddAssign, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+mod count;
 mod pixel;
 mod sampling;
 
+pub use count::{Counts, count};
 pub use sampling::Sampling;
 
 /// The picture of `scene` that `camera` sees. The first ray of a pixel goes through its centre.

@@ -67,6 +67,11 @@ impl Scene {
         &self.objects
     }
 
+    /// How much memory the tree over the parts of all objects takes, in bytes.
+    pub fn tree_bytes(&self) -> usize {
+        self.parts.bytes()
+    }
+
     /// The parts of all objects, in a tree.
     pub(crate) fn parts(&self) -> &Parts {
         &self.parts

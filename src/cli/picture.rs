@@ -76,7 +76,7 @@ fn too_large(width: u64, height: u64) -> Failure {
 }
 
 /// `80x24`, both at least 1.
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
+pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X']).and_then(|(across, down)| Some((across.parse().ok()?, down.parse().ok()?)));
     sides
         .filter(|&(across, down)| across > 0 && down > 0)

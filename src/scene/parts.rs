@@ -61,4 +61,10 @@ impl Parts {
         let bounded = bvh.order().iter().map(|&at| bounded[at as usize]).collect();
         Some(Self { bvh, bounded, unbounded, few })
     }
+
+    /// How much memory it takes, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let ids = [self.few.as_deref().unwrap_or_default(), &self.bounded, &self.unbounded];
+        self.bvh.bytes() + ids.map(size_of_val).iter().sum::<usize>()
+    }
 }

@@ -1,0 +1,123 @@
+//! `termtrace bench`: how fast a scene is traced.
+
+mod generated;
+
+use super::picture::{fits, parse_size};
+use super::{Done, Failure, SceneArgs, on_threads, usage, visible, write_stdout};
+use clap::Args;
+use generated::Generated;
+use std::fmt::Write;
+use std::num::NonZeroU32;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use termtrace::framebuffer::Resolution;
+use termtrace::render::{Counts, count, render};
+use termtrace::scene::Scene;
+use termtrace::tone::tone;
+
+const FIGURES: &str = "\
+A round traces the rays of a picture, and one from each hit to each light, and says what they met, how long that took and
+how many rays a second that is; then how long a whole frame took, to its bytes, and a hash of its light.";
+
+const EXAMPLES: &str = "\
+Examples:
+  termtrace bench                                       three spheres on a plane
+  termtrace bench --scene s100k --threads 1             100,000 spheres, on one thread
+  termtrace bench my.ron --pixels 200x120 --samples 16  as a screen of 200x60 cells shows it";
+
+#[derive(Args)]
+#[command(after_help = format!("{FIGURES}\n\n{EXAMPLES}"))]
+pub(super) struct BenchArgs {
+    /// The scene file [default: --scene three]
+    #[arg(value_name = "SCENE", conflicts_with = "generated")]
+    scene: Option<PathBuf>,
+    /// A scene that is made rather than read
+    #[arg(long = "scene", value_name = "NAME")]
+    generated: Option<Generated>,
+    /// The picture's size in pixels
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = parse_size)]
+    pixels: (u32, u32),
+    /// Rays per pixel
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    samples: u32,
+    /// How many threads trace [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// How many times
+    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    rounds: u32,
+    /// Trace no rays to the lights
+    #[arg(long)]
+    no_shadow: bool,
+}
+
+impl BenchArgs {
+    /// The scene, and its name.
+    fn scene(&self) -> Result<(String, Scene), Failure> {
+        let (name, mut scene) = if let Some(path) = &self.scene {
+            (visible(&path.display().to_string()), SceneArgs::of(path).load()?)
+        } else {
+            let generated = self.generated.unwrap_or(Generated::Three);
+            (format!("{generated:?}").to_lowercase(), generated.scene().map_err(usage)?)
+        };
+        scene.shadows &= !self.no_shadow;
+        Ok((name, scene))
+    }
+
+    fn resolution(&self) -> Result<Resolution, Failure> {
+        let (width, height) = self.pixels;
+        fits(width.into(), height.into())?;
+        Ok(Resolution::square(width, height))
+    }
+}
+
+pub(super) fn run(args: &BenchArgs) -> Done {
+    let resolution = args.resolution()?;
+    on_threads(args.threads, || {
+        let (name, scene) = args.scene()?;
+        write_stdout(tree(&name, &scene).as_bytes())?;
+        for number in 1..=args.rounds {
+            let round = Round::of(&scene, resolution, NonZeroU32::new(args.samples).unwrap_or(NonZeroU32::MIN));
+            write_stdout(round.line(number).as_bytes())?;
+        }
+        Ok(())
+    })?
+}
+
+/// What the scene's tree is, and what it takes to build it again.
+fn tree(name: &str, scene: &Scene) -> String {
+    let objects = scene.objects().to_vec();
+    let start = Instant::now();
+    let again = Scene::new(scene.camera, objects);
+    let built = start.elapsed();
+    format!("{name}: built in {:.3} s, {} bytes\n", built.as_secs_f64(), again.tree_bytes())
+}
+
+/// What was counted and timed.
+struct Round {
+    counts: Counts,
+    trace: Duration,
+    frame: Duration,
+    hash: u64,
+}
+
+impl Round {
+    fn of(scene: &Scene, resolution: Resolution, samples: NonZeroU32) -> Self {
+        let start = Instant::now();
+        let counts = count(scene, &scene.camera, resolution, samples);
+        let trace = start.elapsed();
+        let start = Instant::now();
+        let light = render(scene, &scene.camera, resolution, samples);
+        std::hint::black_box(tone(&light, scene));
+        Self { counts, trace, frame: start.elapsed(), hash: light.hash() }
+    }
+
+    fn line(&self, number: u32) -> String {
+        let Counts { rays, hits, lit, depths } = self.counts;
+        let [trace, frame] = [self.trace, self.frame].map(|time| time.as_secs_f64());
+        let rate = rays as f64 / trace.max(1e-9) / 1e6;
+        let mut line = format!("round {number}: {rays} rays, {hits} hits, {lit} lit, depths {depths:.3}, ");
+        let _ = writeln!(line, "{trace:.6} s, {rate:.1} Mrays/s; frame {frame:.6} s, hash {:016x}", self.hash);
+        line
+    }
+}

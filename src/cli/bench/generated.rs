@@ -1,0 +1,76 @@
+//! Scenes of any number of shapes, the same in every program that is compared with this one.
+
+use clap::ValueEnum;
+use glam::Vec3;
+use termtrace::camera::{Camera, CameraError, Pose, ViewRectangle};
+use termtrace::color::LinearRgb;
+use termtrace::light::{Falloff, PointLight};
+use termtrace::material::Material;
+use termtrace::scene::{Object, Scene};
+use termtrace::shape::{Plane, Shape, Sphere};
+
+/// Which of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Generated {
+    /// Three spheres on a plane
+    Three,
+    /// 1,000 spheres in a cube
+    S1k,
+    /// 100,000 of them, smaller
+    S100k,
+}
+
+impl Generated {
+    /// The scene, under one light.
+    pub(super) fn scene(self) -> Result<Scene, CameraError> {
+        let grey = |shape: Shape| Object::new(shape, Material::Diffuse(LinearRgb::grey(0.5)));
+        let light = PointLight {
+            position: Vec3::new(4.0, 6.0, 5.0),
+            intensity: LinearRgb::grey(50.0),
+            falloff: Falloff::InverseSquare,
+        };
+        let mut scene = Scene::new(camera()?, self.shapes().into_iter().map(grey).collect());
+        scene.lights.push(light);
+        Ok(scene)
+    }
+
+    fn shapes(self) -> Vec<Shape> {
+        match self {
+            Self::Three => {
+                let spheres = [([0.0, 0.7, 0.0], 0.7), ([-1.4, 0.5, 0.4], 0.5), ([1.3, 0.4, 0.7], 0.4)];
+                let spheres = spheres.map(|(center, radius)| Sphere::new(Vec3::from_array(center), radius).into());
+                [&spheres[..], &[Plane::new(Vec3::ZERO, Vec3::Y).into()]].concat()
+            }
+            Self::S1k => spheres(1_000, 0.06),
+            Self::S100k => spheres(100_000, 0.013),
+        }
+    }
+}
+
+fn camera() -> Result<Camera, CameraError> {
+    let pose = Pose { eye: Vec3::new(0.0, 1.2, 5.0), target: Vec3::new(0.0, 0.4, 0.0), up: Vec3::Y };
+    Camera::new(pose, ViewRectangle::from_vertical_fov(40_f32.to_radians())?)
+}
+
+/// So many at random places, half to one and a half times as large.
+fn spheres(count: usize, radius: f32) -> Vec<Shape> {
+    let mut random = Xorshift(0x9E37_79B9_7F4A_7C15);
+    let sphere = |_| {
+        let [x, y, z] = [(); 3].map(|()| random.next() * 2.4 - 1.2);
+        Sphere::new(Vec3::new(x, y + 0.4, z), radius * (0.5 + random.next())).into()
+    };
+    (0..count).map(sphere).collect()
+}
+
+/// Marsaglia's generator (2003), 64 bits, shifts 13, 7 and 17.
+struct Xorshift(u64);
+
+impl Xorshift {
+    /// From 0 to 1, 1 excluded.
+    fn next(&mut self) -> f32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 40) as f32 / 16_777_216.0
+    }
+}

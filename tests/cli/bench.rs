@@ -1,0 +1,78 @@
+//! `termtrace bench`: what it says of a scene is true.
+
+use super::{Folder, shipped_scenes};
+use std::collections::HashMap;
+use std::num::NonZeroU32;
+use termtrace::export;
+use termtrace::framebuffer::Resolution;
+use termtrace::hit::closest_hit;
+use termtrace::render::render;
+use termtrace::scene::Scene;
+use termtrace::tone::tone;
+
+/// Each round's figures, by what stands before and behind them: `7 hits` is 7 of hits, `hash 7` is 7 of hash.
+fn rounds(text: &str) -> Vec<HashMap<&str, &str>> {
+    let pairs = |(_, line)| str::split(line, [',', ';']).filter_map(|figure| figure.trim().split_once(' '));
+    let rounds = text.lines().filter_map(|line| line.strip_prefix("round ")?.split_once(": "));
+    rounds.map(|round| pairs(round).flat_map(|(a, b)| [(a, b), (b, a)]).collect()).collect()
+}
+
+/// The light that is timed is the light that a frame shows, and what is traced is what a frame's rays meet.
+#[test]
+fn it_times_what_frame_shows() {
+    let folder = Folder::new();
+    for scene in shipped_scenes() {
+        let path = scene.display();
+        let resolution = Resolution::square(60, 40);
+        let one = NonZeroU32::MIN;
+        let scene = Scene::load(&scene).expect("a shipped scene is fine");
+        let light = render(&scene, &scene.camera, resolution, one);
+        let png = export::png(&tone(&light, &scene), 1.0, 1).expect("a PNG");
+        assert!(
+            folder.run(&format!("frame {path} --pixels 60x40 --cell-aspect 2 --format png")).done() == png,
+            "{path}"
+        );
+        let eye_rays = scene.camera.eye_rays(resolution.aspect_ratio());
+        let places = (0..40).flat_map(|y| (0..60).map(move |x| ((x as f32 + 0.5) / 60.0, (y as f32 + 0.5) / 40.0)));
+        let hits: Vec<_> = places.filter_map(|(x, y)| closest_hit(&scene, &eye_rays.through(x, y))).collect();
+        let depths: f64 = hits.iter().map(|hit| f64::from(hit.t)).sum();
+        let text = folder.run(&format!("bench {path} --pixels 60x40 --rounds 2 --threads 2")).text();
+        let rounds = rounds(&text);
+        assert_eq!(rounds.len(), 2, "{text}");
+        for round in rounds {
+            assert_eq!(round["hash"], format!("{:016x}", light.hash()), "{path}: {text}");
+            assert_eq!(round["hits"], hits.len().to_string(), "{path}: {text}");
+            let said: f64 = round["depths"].parse().expect("a number");
+            assert!((said - depths).abs() <= 1e-3 + 1e-9 * depths, "{path}: {depths} are {said}");
+            let rays: usize = round["rays"].parse().expect("a number");
+            let shadow_rays = if scene.shadows { hits.len() * scene.lights.len() } else { 0 };
+            assert_eq!(rays, 60 * 40 + shadow_rays, "{path}: {text}");
+        }
+    }
+}
+
+/// Others trace the same: the hits and depths of the last two are those that Embree finds.
+#[test]
+fn generated_scenes_are_those_of_everybody() {
+    let folder = Folder::new();
+    for (name, hits, depths) in
+        [("three", 47_828, 501_301.8), ("s1k", 30_202, 134_031.7), ("s100k", 42_175, 171_679.05)]
+    {
+        let text = folder.run(&format!("bench --scene {name} --pixels 256x256 --rounds 1")).text();
+        let round = &rounds(&text)[0];
+        assert_eq!(round["hits"], format!("{hits}"), "{text}");
+        let said: f64 = round["depths"].parse().expect("a number");
+        assert!((said - depths).abs() < 0.1, "{text}");
+    }
+    let text = folder.run("bench --pixels 64x64 --rounds 1 --no-shadow").text();
+    assert_eq!((rounds(&text)[0]["rays"], rounds(&text)[0]["lit"]), ("4096", "0"), "{text}");
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let folder = Folder::new();
+    folder.run("bench none.ron").fails(2, "none.ron");
+    folder.run("bench --scene four").is_misused("three");
+    folder.run("bench --pixels 65536x65536").fails(2, "too large");
+    folder.run("bench --rounds 0").is_misused("--rounds");
+}
