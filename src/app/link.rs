@@ -148,6 +148,11 @@ impl Link {
         self.slow.then(|| Slow { rate, most_bytes: LEAST_BYTES.max((rate / FRAMES_PER_SECOND) as usize) })
     }
 
+    /// Whether it was slow when that was last asked.
+    pub(super) fn is_slow(&self) -> bool {
+        self.slow
+    }
+
     /// Puts a question behind the bytes of a frame that is sent now.
     pub(super) fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
         self.look_at_clock(now);

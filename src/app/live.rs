@@ -208,7 +208,8 @@ impl Live {
             terminal.send(self.link.probe(self.now()))?;
             self.stale = false;
             self.begun = Some(self.now());
-            let sampling = self.effort.of_new_view(self.begun_in_motion);
+            // On a slow link the next frame begins when an answer comes: all the time that it takes is the link's.
+            let sampling = self.effort.of_new_view(self.begun_in_motion && !self.link.is_slow());
             self.begun_in_motion = self.eye.is_moving();
             self.job(camera, sampling)
         } else if let Some(sampling) = self.next_step() {
