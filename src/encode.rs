@@ -203,7 +203,7 @@ impl Encoder {
             }
             bytes.truncate(start);
             // A little less than the share that fits, so that few tries are needed.
-            writes = (writes * limit / taken * 15 / 16).clamp(fewest, writes - 1);
+            writes = (writes * limit / taken * 31 / 32).clamp(fewest, writes - 1);
         };
         let is_cut = writes < plan.writes();
         // All at once, when the last of them is due: one after another they take more bytes.
