@@ -1,6 +1,6 @@
 //! Boxes along the axes, and where a ray is inside one.
 
-use crate::lanes::Number;
+use crate::lanes::{Number, Vector};
 use crate::ray::{Interval, Probe, Rays};
 use glam::Vec3;
 
@@ -49,28 +49,34 @@ impl Bounds {
     /// coordinates, in IEEE arithmetic as on paper: the way through a larger box contains the way through a smaller one,
     /// bit for bit. So it does not depend on the boxes around a shape's own whether the shape is tested.
     pub fn crossed(&self, probe: &Probe) -> Interval {
-        let [min, max] = self.crossed_by(&probe.rays);
+        let [min, max] = crossed([Vector::splat(self.min), Vector::splat(self.max)], &probe.rays);
         Interval { min, max }
     }
+}
 
-    /// [`crossed`](Self::crossed) by one ray or several: from where to where.
-    #[inline(always)]
-    pub fn crossed_by<N: Number>(&self, rays: &Rays<N>) -> [N; 2] {
-        let way = |min: f32, max: f32, origin: N, inverse: N| {
-            let is_backward = inverse.lt(N::splat(0.0));
-            let near = N::select(is_backward, N::splat(max), N::splat(min));
-            let far = N::select(is_backward, N::splat(min), N::splat(max));
-            [(near - origin) * inverse, (far - origin) * inverse]
-        };
-        let x = way(self.min.x, self.max.x, rays.origin.x, rays.inverse.x);
-        let y = way(self.min.y, self.max.y, rays.origin.y, rays.inverse.y);
-        let z = way(self.min.z, self.max.z, rays.origin.z, rays.inverse.z);
-        // NaN is zero times infinity: a ray along a face, in its plane. That face ends nothing, and is left out: where the
-        // first is NaN, `max` and `min` are the second, which never is.
-        let enters = x[0].max(y[0].max(z[0].max(N::splat(f32::NEG_INFINITY))));
-        let leaves = x[1].min(y[1].min(z[1].min(N::splat(f32::INFINITY))));
-        [-lengthened(-enters), lengthened(leaves)]
-    }
+/// [`Bounds::crossed`] by one ray or several, and of one box or several: from where to where.
+#[inline(always)]
+pub fn crossed<N: Number>([min, max]: [Vector<N>; 2], rays: &Rays<N>) -> [N; 2] {
+    let way = |min: N, max: N, origin: N, inverse: N| {
+        let is_backward = inverse.lt(N::splat(0.0));
+        let near = N::select(is_backward, max, min);
+        let far = N::select(is_backward, min, max);
+        [(near - origin) * inverse, (far - origin) * inverse]
+    };
+    let x = way(min.x, max.x, rays.origin.x, rays.inverse.x);
+    let y = way(min.y, max.y, rays.origin.y, rays.inverse.y);
+    let z = way(min.z, max.z, rays.origin.z, rays.inverse.z);
+    common([x, y, z])
+}
+
+/// What three ways have in common, lengthened.
+#[inline(always)]
+pub fn common<N: Number>([x, y, z]: [[N; 2]; 3]) -> [N; 2] {
+    // NaN is zero times infinity: a ray along a face, in its plane. That face ends nothing, and is left out: where the
+    // first is NaN, `max` and `min` are the second, which never is.
+    let enters = x[0].max(y[0].max(z[0].max(N::splat(f32::NEG_INFINITY))));
+    let leaves = x[1].min(y[1].min(z[1].min(N::splat(f32::INFINITY))));
+    [-lengthened(-enters), lengthened(leaves)]
 }
 
 /// A little more.

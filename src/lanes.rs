@@ -1,16 +1,17 @@
 //! One number, or eight side by side: a formula that is written for any [`Number`] can be asked for one ray or for eight.
 //!
 //! All that they can do are operations that IEEE 754 defines to the last bit, so that a ray among eight gets the bits that
-//! it gets alone. The eight are plain arrays: the compiler makes vector instructions of them. One number may be an f64:
-//! where f32 cannot tell, the same formula can.
+//! it gets alone. [`Eight`] are a plain array, which any CPU can work with; [`simd`](crate::simd) has those that fit one
+//! register.
 
 use glam::Vec3;
 use std::array::from_fn;
+use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// A number, or several of which each goes its own way.
 pub trait Number:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The answer to a comparison.
     type Mask: Mask;
@@ -33,6 +34,18 @@ pub trait Number:
     /// `yes` where the answer was yes, else `no`.
     fn select(answer: Self::Mask, yes: Self, no: Self) -> Self;
 
+    /// What the formula gives for the numbers in each place: for what is rare and only known of one at a time.
+    fn each<const IN: usize, const OUT: usize>(
+        numbers: [Self; IN],
+        formula: impl Fn([f32; IN]) -> [f32; OUT],
+    ) -> [Self; OUT];
+
+    /// Whether they are the same. NaN is not.
+    #[inline(always)]
+    fn same(self, other: Self) -> Self::Mask {
+        self.le(other) & other.le(self)
+    }
+
     /// The greater one; where this is NaN, the other. (Of two zeros, the other.)
     #[inline(always)]
     fn max(self, other: Self) -> Self {
@@ -47,54 +60,79 @@ pub trait Number:
 }
 
 /// Yes or no, for each of the numbers that were compared.
-pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Whether there is a yes among them.
     fn any(self) -> bool;
+
+    /// Whether there is no other answer.
+    fn all(self) -> bool;
 }
 
-macro_rules! one_number {
-    ($($float:ident)*) => {
-        $(impl Number for $float {
-            type Mask = bool;
+/// Eight numbers, in whatever the CPU has for them.
+pub trait Lanes: Number<Mask: Answers> {
+    /// From memory.
+    fn load(numbers: &Eight) -> Self;
 
-            #[inline(always)]
-            fn splat(value: f32) -> Self {
-                value.into()
-            }
-
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                self.sqrt()
-            }
-
-            #[inline(always)]
-            fn abs(self) -> Self {
-                self.abs()
-            }
-
-            #[inline(always)]
-            fn lt(self, other: Self) -> bool {
-                self < other
-            }
-
-            #[inline(always)]
-            fn le(self, other: Self) -> bool {
-                self <= other
-            }
-
-            #[inline(always)]
-            fn select(answer: bool, yes: Self, no: Self) -> Self {
-                if answer { yes } else { no }
-            }
-        })*
-    };
+    /// To memory.
+    fn store(self) -> Eight;
 }
 
-one_number! { f32 f64 }
+/// Eight answers.
+pub trait Answers: Mask {
+    /// A bit for each, 1 for yes; the first is the lowest.
+    fn bits(self) -> u32;
+}
+
+impl Number for f32 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+
+    #[inline(always)]
+    fn select(answer: bool, yes: Self, no: Self) -> Self {
+        if answer { yes } else { no }
+    }
+
+    #[inline(always)]
+    fn each<const IN: usize, const OUT: usize>(
+        numbers: [Self; IN],
+        formula: impl Fn([f32; IN]) -> [f32; OUT],
+    ) -> [Self; OUT] {
+        formula(numbers)
+    }
+}
 
 impl Mask for bool {
     #[inline(always)]
     fn any(self) -> bool {
+        self
+    }
+
+    #[inline(always)]
+    fn all(self) -> bool {
         self
     }
 }
@@ -137,6 +175,22 @@ impl Neg for Eight {
 }
 
 impl Eight {
+    /// The least of them; none is NaN.
+    #[inline(always)]
+    pub fn least(self) -> f32 {
+        let Self([a, b, c, d, e, f, g, h]) = self;
+        let min = <f32 as Number>::min;
+        min(min(min(a, b), min(c, d)), min(min(e, f), min(g, h)))
+    }
+
+    /// The greatest of them; none is NaN.
+    #[inline(always)]
+    pub fn greatest(self) -> f32 {
+        let Self([a, b, c, d, e, f, g, h]) = self;
+        let max = <f32 as Number>::max;
+        max(max(max(a, b), max(c, d)), max(max(e, f), max(g, h)))
+    }
+
     #[inline(always)]
     fn answers(self, other: Self, ask: impl Fn(f32, f32) -> bool) -> EightAnswers {
         EightAnswers(from_fn(|lane| if ask(self.0[lane], other.0[lane]) { u32::MAX } else { 0 }))
@@ -176,22 +230,38 @@ impl Number for Eight {
         let bits = |lane: usize| (yes[lane].to_bits() & answers[lane]) | (no[lane].to_bits() & !answers[lane]);
         Self(from_fn(|lane| f32::from_bits(bits(lane))))
     }
+
+    fn each<const IN: usize, const OUT: usize>(
+        numbers: [Self; IN],
+        formula: impl Fn([f32; IN]) -> [f32; OUT],
+    ) -> [Self; OUT] {
+        let mut results = [Self([0.0; LANES]); OUT];
+        for lane in 0..LANES {
+            let formula = formula(numbers.map(|numbers| numbers.0[lane]));
+            for (results, result) in results.iter_mut().zip(formula) {
+                results.0[lane] = result;
+            }
+        }
+        results
+    }
 }
 
-impl EightAnswers {
-    /// No for all of them.
-    pub const NONE: Self = Self([0; LANES]);
-
-    /// The answer for one of them.
+impl Lanes for Eight {
     #[inline(always)]
-    pub fn of(self, lane: usize) -> bool {
-        self.0[lane] != 0
+    fn load(numbers: &Eight) -> Self {
+        *numbers
     }
 
-    /// Whether all are yes.
     #[inline(always)]
-    pub fn all(self) -> bool {
-        self.0.into_iter().fold(u32::MAX, |all, answer| all & answer) != 0
+    fn store(self) -> Eight {
+        self
+    }
+}
+
+impl Answers for EightAnswers {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.0.into_iter().rev().fold(0, |bits, answer| bits << 1 | answer & 1)
     }
 }
 
@@ -227,6 +297,11 @@ impl Mask for EightAnswers {
     fn any(self) -> bool {
         self.0.into_iter().fold(0, |any, answer| any | answer) != 0
     }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        self.0.into_iter().fold(u32::MAX, |all, answer| all & answer) != 0
+    }
 }
 
 /// Three coordinates, each a [`Number`].
@@ -247,6 +322,40 @@ impl<N: Number> Vector<N> {
         Self { x: N::splat(v.x), y: N::splat(v.y), z: N::splat(v.z) }
     }
 
+    /// The least coordinates of both.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
+    }
+
+    /// The greatest coordinates of both.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Self { x: self.x.max(other.x), y: self.y.max(other.y), z: self.z.max(other.z) }
+    }
+
+    /// The greatest absolute coordinate.
+    #[inline(always)]
+    pub fn largest(self) -> N {
+        self.x.abs().max(self.y.abs()).max(self.z.abs())
+    }
+
+    /// `yes` where the answer was yes, else `no`.
+    #[inline(always)]
+    pub fn select(answer: N::Mask, yes: Self, no: Self) -> Self {
+        Self { x: N::select(answer, yes.x, no.x), y: N::select(answer, yes.y, no.y), z: N::select(answer, yes.z, no.z) }
+    }
+
+    /// The cross product.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - other.y * self.z,
+            y: self.z * other.x - other.z * self.x,
+            z: self.x * other.y - other.x * self.y,
+        }
+    }
+
     /// The dot product, summed in the order of the coordinates.
     #[inline(always)]
     pub fn dot(self, other: Self) -> N {
@@ -259,6 +368,32 @@ impl Vector<Eight> {
     #[inline(always)]
     pub fn of(vectors: [Vec3; LANES]) -> Self {
         Self { x: Eight(vectors.map(|v| v.x)), y: Eight(vectors.map(|v| v.y)), z: Eight(vectors.map(|v| v.z)) }
+    }
+
+    /// The same in what the CPU has.
+    #[inline(always)]
+    pub fn load<N: Lanes>(&self) -> Vector<N> {
+        Vector { x: N::load(&self.x), y: N::load(&self.y), z: N::load(&self.z) }
+    }
+
+    /// One of the eight.
+    #[inline(always)]
+    pub fn of_lane(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.x.0[lane], self.y.0[lane], self.z.0[lane])
+    }
+}
+
+impl<N: Lanes> Vector<N> {
+    /// To memory.
+    #[inline(always)]
+    pub fn store(self) -> Vector<Eight> {
+        Vector { x: self.x.store(), y: self.y.store(), z: self.z.store() }
+    }
+}
+
+impl From<Vector<f32>> for Vec3 {
+    fn from(Vector { x, y, z }: Vector<f32>) -> Self {
+        Self::new(x, y, z)
     }
 }
 

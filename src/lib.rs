@@ -26,6 +26,7 @@
 //! Words that all stages speak:
 //! - [`color`]: linear RGB, 8-bit sRGB, and the transfer function between them
 //! - [`lanes`]: a number, or eight side by side
+//! - [`simd`]: eight numbers in one register, where the CPU has such
 //! - [`ray`]: origin + t * direction, and intervals of t
 //! - [`bounds`]: boxes along the axes
 //! - [`capabilities`]: what a terminal's cells can be made of
@@ -98,6 +99,7 @@ compile_error!("termtrace runs on Linux and macOS: it talks to the terminal thro
 
 pub mod color;
 pub mod lanes;
+pub mod simd;
 pub mod ray;
 pub mod bounds;
 pub mod capabilities;

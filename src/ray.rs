@@ -1,9 +1,8 @@
 //! A ray: the half line { origin + t * direction | t >= 0 } of the lecture.
 
-use crate::lanes::{Eight, Number, Vector};
-use glam::Vec3;
+use crate::lanes::{Lanes, Mask, Number, Vector};
+use glam::{DVec3, Vec3};
 use std::array::from_fn;
-use std::cell::OnceCell;
 
 /// `origin + t * direction`. The direction need not have unit length: t is counted in lengths of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +21,8 @@ impl Ray {
 }
 
 /// A ray or several, with what tests against many shapes have in common.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rays<N> {
+#[derive(Clone, Copy, Debug)]
+pub struct Rays<N: Number> {
     /// Where each begins.
     pub origin: Vector<N>,
     /// Where it goes; not zero.
@@ -32,6 +31,8 @@ pub struct Rays<N> {
     pub inverse: Vector<N>,
     /// The direction's length, squared.
     pub squared_length: N,
+    /// What brings the direction to (0, 0, 1).
+    pub shear: Shear<N>,
 }
 
 impl<N: Number> Rays<N> {
@@ -40,11 +41,32 @@ impl<N: Number> Rays<N> {
         let Vector { x, y, z } = direction;
         let one = N::splat(1.0);
         let inverse = Vector { x: one / x, y: one / y, z: one / z };
-        Self { origin, direction, inverse, squared_length: direction.dot(direction) }
+        Self { origin, direction, inverse, squared_length: direction.dot(direction), shear: Shear::of(direction) }
     }
 }
 
-impl Rays<Eight> {
+impl Rays<f32> {
+    /// The same ray in every place.
+    #[inline(always)]
+    pub fn splat<N: Number>(&self) -> Rays<N> {
+        let vector = |v: Vector<f32>| Vector { x: N::splat(v.x), y: N::splat(v.y), z: N::splat(v.z) };
+        let longest = match self.shear.longest {
+            Longest::X => Longest::X,
+            Longest::Y => Longest::Y,
+            // One by itself is not Each.
+            Longest::Z | Longest::Each { .. } => Longest::Z,
+        };
+        Rays {
+            origin: vector(self.origin),
+            direction: vector(self.direction),
+            inverse: vector(self.inverse),
+            squared_length: N::splat(self.squared_length),
+            shear: Shear { longest, factor: vector(self.shear.factor), length: N::splat(self.shear.length) },
+        }
+    }
+}
+
+impl<N: Lanes> Rays<N> {
     /// Of eight rays, or of fewer: the last of them then stands for those that are lacking.
     ///
     /// # Panics
@@ -52,117 +74,107 @@ impl Rays<Eight> {
     #[inline(always)]
     pub fn of(rays: &[Ray]) -> Self {
         let ray = |lane: usize| &rays[lane.min(rays.len() - 1)];
-        Self::new(Vector::of(from_fn(|lane| ray(lane).origin)), Vector::of(from_fn(|lane| ray(lane).direction)))
-    }
-
-    /// One of the eight.
-    pub fn ray(&self, lane: usize) -> Ray {
-        let at = |Vector { x, y, z }: &Vector<Eight>| Vec3::new(x.0[lane], y.0[lane], z.0[lane]);
-        Ray { origin: at(&self.origin), direction: at(&self.direction) }
+        let origin = Vector::of(from_fn(|lane| ray(lane).origin));
+        let direction = Vector::of(from_fn(|lane| ray(lane).direction));
+        Self::new(origin.load(), direction.load())
     }
 }
 
 /// A ray by itself, with what tests against many shapes have in common.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Probe {
     /// The ray.
     pub ray: Ray,
     /// The same for formulas that may be asked for several.
     pub rays: Rays<f32>,
-    /// Made when the first triangle asks for it.
-    shear: OnceCell<Shear>,
 }
 
 impl Probe {
     /// Of that ray.
     #[inline]
     pub fn new(ray: Ray) -> Self {
-        let rays = Rays::new(Vector::splat(ray.origin), Vector::splat(ray.direction));
-        Self { ray, rays, shear: OnceCell::new() }
-    }
-
-    /// What brings the direction onto the z axis.
-    #[inline]
-    pub fn shear(&self) -> &Shear {
-        self.shear.get_or_init(|| Shear::of(self.ray.direction))
-    }
-
-    /// A point in the ray's own [coordinates](Shear).
-    #[inline]
-    pub fn sheared(&self, point: Vec3) -> Vector<f32> {
-        self.shear().apply(Vector::splat(point) - self.rays.origin)
-    }
-
-    /// The same in f64, but for a factor: [`Shear::apply_exactly`].
-    pub fn sheared_exactly(&self, point: Vec3) -> Vector<f64> {
-        self.shear().apply_exactly(Vector::splat(point) - Vector::splat(self.ray.origin))
+        Self { ray, rays: Rays::new(Vector::splat(ray.origin), Vector::splat(ray.direction)) }
     }
 }
 
-/// The change of coordinates in which a ray runs along the z axis, one unit for each t: first the axes are turned about, so
+/// The change of coordinates in which a ray runs along the z axis, one unit for each t: first the axes are exchanged, so
 /// that z is the one along which the direction is longest, then x and y are sheared (Woop, Benthin and Wald, Watertight
 /// Ray/Triangle Intersection, JCGT 2013).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shear {
-    longest: Axis,
-    /// The direction, with the axes turned about.
-    direction: Vec3,
+#[derive(Clone, Copy, Debug)]
+pub struct Shear<N: Number> {
+    longest: Longest<N::Mask>,
     /// How far it goes along x and y, and how much t grows, while it goes one unit along its longest axis.
-    factor: Vec3,
+    factor: Vector<N>,
+    /// How far the direction goes along its longest axis.
+    pub length: N,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Axis {
+/// Along which axis a direction is longest.
+#[derive(Clone, Copy, Debug)]
+enum Longest<M> {
     X,
     Y,
     Z,
+    /// Not the same for all: where it is x, and where y.
+    Each {
+        x: M,
+        y: M,
+    },
 }
 
-impl Shear {
-    fn of(direction: Vec3) -> Self {
-        let length = direction.abs();
-        let longest = if length.x > length.y && length.x > length.z {
-            Axis::X
-        } else if length.y > length.z {
-            Axis::Y
+impl<N: Number> Shear<N> {
+    #[inline(always)]
+    fn of(direction: Vector<N>) -> Self {
+        let length = Vector { x: direction.x.abs(), y: direction.y.abs(), z: direction.z.abs() };
+        let is_x = length.y.lt(length.x) & length.z.lt(length.x);
+        let is_y = length.z.lt(length.y) & !is_x;
+        let longest = if is_x.all() {
+            Longest::X
+        } else if is_y.all() {
+            Longest::Y
+        } else if (is_x | is_y).any() {
+            Longest::Each { x: is_x, y: is_y }
         } else {
-            Axis::Z
+            Longest::Z
         };
-        let Vector { x, y, z } = longest.last(Vector { x: direction.x, y: direction.y, z: direction.z });
-        Self { longest, direction: Vec3::new(x, y, z), factor: Vec3::new(x / z, y / z, 1.0 / z) }
-    }
-
-    /// How far the direction goes along its longest axis.
-    pub fn length(&self) -> f32 {
-        self.direction.z.abs()
+        let Vector { x, y, z } = longest.last(direction);
+        Self { longest, factor: Vector { x: x / z, y: y / z, z: N::splat(1.0) / z }, length: z.abs() }
     }
 
     /// A vector from the ray's origin in those coordinates. Its x and y are off by 2 |x| + 4 |z| [`length`](Self::length)
     /// units of 2^-24, at most and to first order: no factor of theirs is more than 1.
-    #[inline]
-    pub fn apply(&self, from_origin: Vector<f32>) -> Vector<f32> {
+    #[inline(always)]
+    pub fn apply(&self, from_origin: Vector<N>) -> Vector<N> {
         let Vector { x, y, z } = self.longest.last(from_origin);
         Vector { x: x - self.factor.x * z, y: y - self.factor.y * z, z: self.factor.z * z }
     }
-
-    /// The same in f64, with x and y multiplied by the direction along its longest axis. So they need no division, and as
-    /// f64 holds the product of two f32 whole, they are exact, or where f64 does not reach so far down, off by 2^-53 of
-    /// themselves.
-    pub fn apply_exactly(&self, from_origin: Vector<f64>) -> Vector<f64> {
-        let Vector { x, y, z } = self.longest.last(from_origin);
-        let d = self.direction.as_dvec3();
-        Vector { x: x * d.z - d.x * z, y: y * d.z - d.y * z, z: z / d.z }
-    }
 }
 
-impl Axis {
-    /// The coordinates turned about so that this one is z. A right-handed basis stays one.
-    #[inline]
-    fn last<N>(self, Vector { x, y, z }: Vector<N>) -> Vector<N> {
+/// A vector from the ray's origin in the coordinates of [`Shear`], in f64, with x and y multiplied by the direction along
+/// its longest axis. So they need no division, and as f64 holds the product of two f32 whole, they are exact, or where f64
+/// does not reach so far down, off by 2^-53 of themselves.
+pub fn sheared_exactly(from_origin: DVec3, direction: Vec3) -> DVec3 {
+    let [x, y, z] = match Shear::of(Vector::<f32>::splat(direction)).longest {
+        Longest::X => [1, 2, 0],
+        Longest::Y => [2, 0, 1],
+        Longest::Z | Longest::Each { .. } => [0, 1, 2],
+    };
+    let (d, v) = (direction.as_dvec3(), from_origin);
+    DVec3::new(v[x] * d[z] - d[x] * v[z], v[y] * d[z] - d[y] * v[z], v[z] / d[z])
+}
+
+impl<M: Mask> Longest<M> {
+    /// The coordinates turned about so that the longest is z. A right-handed basis stays one.
+    #[inline(always)]
+    fn last<N: Number<Mask = M>>(self, Vector { x, y, z }: Vector<N>) -> Vector<N> {
         match self {
             Self::X => Vector { x: y, y: z, z: x },
             Self::Y => Vector { x: z, y: x, z: y },
             Self::Z => Vector { x, y, z },
+            Self::Each { x: is_x, y: is_y } => {
+                let choose = |of_x: N, of_y: N, of_z: N| N::select(is_x, of_x, N::select(is_y, of_y, of_z));
+                Vector { x: choose(y, z, x), y: choose(z, x, y), z: choose(x, y, z) }
+            }
         }
     }
 }

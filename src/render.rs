@@ -343,7 +343,14 @@ struct TracedTile<P> {
 }
 
 impl Tile {
+    /// Its pixels, square by square of 8 by 8 and in these by groups of 4 by 2: rays that stand side by side go side by
+    /// side.
     fn places(&self) -> impl Iterator<Item = (u32, u32)> {
-        self.rows.clone().flat_map(|y| self.columns.clone().map(move |x| (x, y)))
+        let corners = |span: &Range<u32>| span.clone().step_by(8);
+        let squares = corners(&self.rows).flat_map(move |y| corners(&self.columns).map(move |x| (x, y)));
+        let in_square = |at: u32| (at % 4 + at / 8 % 2 * 4, at / 4 % 2 + at / 16 * 2);
+        let places =
+            squares.flat_map(move |(x, y)| (0..64).map(in_square).map(move |(right, down)| (x + right, y + down)));
+        places.filter(|(x, y)| self.columns.contains(x) && self.rows.contains(y))
     }
 }

@@ -18,7 +18,7 @@ use crate::color::LinearRgb;
 use crate::light::PointLight;
 use crate::material::Material;
 use crate::shape::Shape;
-pub(crate) use parts::{PartId, Parts};
+pub(crate) use parts::{Grove, PartId, Parts};
 
 /// Everything that a picture depends on, besides its size.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,10 +12,12 @@
 
 use crate::color::LinearRgb;
 use crate::hit::{self, Hit};
+use crate::lanes::{Eight, LANES, Lanes};
 use crate::light::{Falloff, PointLight};
 use crate::ray::{Interval, Ray};
 use crate::scene::{Background, Scene};
-use crate::shape::{Surface, SurfacePoint};
+use crate::shape::{Balls, Corners, Part, SideBySide, Surface, SurfacePoint, eight_points};
+use crate::simd::{self, Work};
 use glam::Vec3;
 
 /// The surface at each hit. The rays' neighbours in the picture differ from them by these steps.
@@ -26,12 +28,94 @@ pub fn surface_points(
     hits: &[Option<Hit>],
     points: &mut Vec<Option<SurfacePoint>>,
 ) {
-    let point = |ray: &Ray, hit: Hit| {
-        let surface = hit.surface(scene);
-        SurfacePoint { footprint: surface.footprint(ray, hit.t, steps), ..surface.at_crossing(ray, hit.t) }
-    };
     points.clear();
-    points.extend(rays.iter().zip(hits).map(|(ray, hit)| hit.map(|hit| point(ray, hit))));
+    points.resize(hits.len(), None);
+    simd::run(SurfacePoints { scene, rays, steps, hits, points });
+}
+
+struct SurfacePoints<'w> {
+    scene: &'w Scene,
+    rays: &'w [Ray],
+    steps: [Vec3; 2],
+    hits: &'w [Option<Hit>],
+    points: &'w mut [Option<SurfacePoint>],
+}
+
+impl Work for SurfacePoints<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let Self { scene, rays, steps, hits, points } = self;
+        let (mut spheres, mut triangles) = (Queue::<Balls<Eight>>::default(), Queue::<Corners<Eight>>::default());
+        for (at, (ray, hit)) in rays.iter().zip(hits).enumerate() {
+            let Some(hit) = *hit else { continue };
+            match hit.surface(scene) {
+                Part::Sphere(sphere) => spheres.push(at, ray, hit, *sphere),
+                Part::Triangle(triangle) => triangles.push(at, ray, hit, *triangle),
+                Part::Facet(facet) => triangles.push(at, ray, hit, *facet.triangle()),
+                Part::Plane(plane) => {
+                    let footprint = plane.footprint(ray, hit.t, steps);
+                    points[at] = Some(SurfacePoint { footprint, ..plane.at_crossing(ray, hit.t) });
+                }
+            }
+            if spheres.is_full() {
+                spheres.answer::<N>(scene, points);
+            }
+            if triangles.is_full() {
+                triangles.answer::<N>(scene, points);
+            }
+        }
+        spheres.answer::<N>(scene, points);
+        triangles.answer::<N>(scene, points);
+    }
+}
+
+/// Up to eight hits of one kind of surface.
+struct Queue<S: SideBySide> {
+    places: Vec<usize>,
+    rays: Vec<Ray>,
+    hits: Vec<Hit>,
+    shapes: Vec<S::Shape>,
+}
+
+impl<S: SideBySide> Default for Queue<S> {
+    fn default() -> Self {
+        Self { places: Vec::new(), rays: Vec::new(), hits: Vec::new(), shapes: Vec::new() }
+    }
+}
+
+impl<S: SideBySide> Queue<S> {
+    #[inline(always)]
+    fn push(&mut self, place: usize, ray: &Ray, hit: Hit, shape: S::Shape) {
+        self.places.push(place);
+        self.rays.push(*ray);
+        self.hits.push(hit);
+        self.shapes.push(shape);
+    }
+
+    #[inline(always)]
+    fn is_full(&self) -> bool {
+        self.places.len() == LANES
+    }
+
+    #[inline(always)]
+    fn answer<N: Lanes>(&mut self, scene: &Scene, points: &mut [Option<SurfacePoint>]) {
+        if self.places.is_empty() {
+            return;
+        }
+        let mut t = Eight([0.0; LANES]);
+        for (t, hit) in t.0.iter_mut().zip(&self.hits) {
+            *t = hit.t;
+        }
+        eight_points::<N, S>(&self.shapes, &self.rays, &t, |lane, point| {
+            points[self.places[lane]] = Some(self.hits[lane].surface(scene).finished(point));
+        });
+        self.places.clear();
+        self.rays.clear();
+        self.hits.clear();
+        self.shapes.clear();
+    }
 }
 
 /// The arrays of one light's shadow rays.

@@ -9,10 +9,9 @@
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
-use crate::lanes::{Eight, EightAnswers, Mask, Number};
+use crate::lanes::{Answers, Eight, Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
-use std::array::from_fn;
 use std::sync::Arc;
 
 pub mod mesh;
@@ -22,8 +21,8 @@ pub mod triangle;
 
 pub use mesh::{Facet, Mesh};
 pub use plane::Plane;
-pub use sphere::Sphere;
-pub use triangle::Triangle;
+pub use sphere::{Balls, Sphere};
+pub use triangle::{Corners, Triangle};
 
 /// What every surface can answer.
 pub trait Surface {
@@ -36,18 +35,6 @@ pub trait Surface {
     /// before the box or behind it, so that leaving out what a box cannot contain leaves out nothing.
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32>;
 
-    /// The same for eight rays, from `min` on: the t of each, and which of them cross; nothing if none does. The bits are
-    /// those that each gets alone.
-    fn eight_crossings(&self, rays: &Rays<Eight>, min: Eight) -> Option<(EightAnswers, Eight)> {
-        let alone = |lane: usize| {
-            let within = Interval { min: min.0[lane], max: f32::MAX };
-            self.closest_crossing(&Probe::new(rays.ray(lane)), within).unwrap_or(f32::NAN)
-        };
-        let t = Eight(from_fn(alone));
-        let crosses = min.le(t);
-        crosses.any().then_some((crosses, t))
-    }
-
     /// The surface at the crossing `t` that [`closest_crossing`](Self::closest_crossing) found for this ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint;
 
@@ -56,6 +43,109 @@ pub trait Surface {
     fn footprint(&self, _ray: &Ray, _t: f32, _steps: [Vec3; 2]) -> Vec2 {
         Vec2::ZERO
     }
+}
+
+/// A surface's formula for one ray and one of its kind, for several rays, or for several of its kind: a number stands for
+/// each pair.
+pub trait Crossable<N: Number> {
+    /// Of each pair, the first crossing from `min` on and whether there is one, as
+    /// [`closest_crossing`](Surface::closest_crossing) has it; nothing where there is none at all.
+    fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)>;
+
+    /// The smallest boxes around them: from where to where.
+    fn boxes(&self) -> [Vector<N>; 2];
+}
+
+/// A surface's [`at_crossing`](Surface::at_crossing) for one ray or several.
+pub trait AtCrossing<N: Number> {
+    /// The surfaces at crossings that were found.
+    fn at_crossing(&self, rays: &Rays<N>, t: N) -> Points<N>;
+}
+
+/// The surfaces at crossings, a number for each: what [`SurfacePoint`] has of all surfaces.
+#[derive(Clone, Copy, Debug)]
+pub struct Points<N: Number> {
+    position: Vector<N>,
+    facing: Vector<N>,
+    /// Whether the front is seen.
+    is_front: N::Mask,
+    clearance: N,
+    uv: [N; 2],
+}
+
+impl<N: Number> Points<N> {
+    /// At `position`, where the front has this normal.
+    #[inline(always)]
+    fn seen_by(rays: &Rays<N>, position: Vector<N>, front: Vector<N>, size: N, uv: [N; 2]) -> Self {
+        let is_front = rays.direction.dot(front).lt(N::splat(0.0));
+        let back = Vector { x: -front.x, y: -front.y, z: -front.z };
+        let facing = Vector::select(is_front, front, back);
+        Self { position, facing, is_front, clearance: N::splat(CLEARANCE) * size, uv }
+    }
+}
+
+impl Points<f32> {
+    fn point(self) -> SurfacePoint {
+        let facing = self.facing.into();
+        SurfacePoint {
+            position: self.position.into(),
+            normal: facing,
+            facing,
+            side: if self.is_front { Side::Front } else { Side::Back },
+            clearance: self.clearance,
+            uv: self.uv.into(),
+            footprint: Vec2::ZERO,
+            own_reflectance: None,
+        }
+    }
+}
+
+/// The points at the crossings of eight rays, each with a surface of its own.
+#[inline(always)]
+pub fn eight_points<N: Lanes, S: SideBySide>(
+    shapes: &[S::Shape],
+    rays: &[Ray],
+    t: &Eight,
+    mut give: impl FnMut(usize, SurfacePoint),
+) {
+    let points = S::of(shapes).load::<N>().at_crossing(&Rays::of(rays), N::load(t));
+    let (position, facing) = (points.position.store(), points.facing.store());
+    let (is_front, clearance) = (points.is_front.bits(), points.clearance.store());
+    let uv = [points.uv[0].store(), points.uv[1].store()];
+    for lane in 0..shapes.len() {
+        let normal = facing.of_lane(lane);
+        give(
+            lane,
+            SurfacePoint {
+                position: position.of_lane(lane),
+                normal,
+                facing: normal,
+                side: if is_front >> lane & 1 == 1 { Side::Front } else { Side::Back },
+                clearance: clearance.0[lane],
+                uv: Vec2::new(uv[0].0[lane], uv[1].0[lane]),
+                footprint: Vec2::ZERO,
+                own_reflectance: None,
+            },
+        );
+    }
+}
+
+/// Eight surfaces of one kind, side by side in memory.
+pub trait SideBySide: Copy {
+    /// One of them.
+    type Shape: Copy;
+
+    /// What has their formula.
+    type Of<N: Number>: Crossable<N> + AtCrossing<N>;
+
+    /// Of eight or fewer.
+    fn of(shapes: &[Self::Shape]) -> Self;
+
+    /// All of them, for one ray that is the same in every place.
+    fn load<N: Lanes>(&self) -> Self::Of<N>;
+
+    /// One of them, the same in every place, for several rays.
+    fn splat<N: Number>(&self, lane: usize) -> Self::Of<N>;
 }
 
 /// A point on a surface, as seen from where the ray came.
@@ -152,6 +242,17 @@ impl From<Mesh> for Shape {
     }
 }
 
+impl Part<'_> {
+    /// The point with what a mesh's file says of it.
+    #[inline]
+    pub fn finished(&self, point: SurfacePoint) -> SurfacePoint {
+        match self {
+            Self::Facet(facet) => facet.finished(point),
+            _ => point,
+        }
+    }
+}
+
 /// A part of a shape, which is a surface; a variant for each, which hands every question on to it.
 macro_rules! parts {
     ($($(#[$doc:meta])* $name:ident($surface:ty),)*) => {
@@ -172,13 +273,6 @@ macro_rules! parts {
             fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
                 match self {
                     $(Self::$name(surface) => surface.closest_crossing(probe, within),)*
-                }
-            }
-
-            #[inline(always)]
-            fn eight_crossings(&self, rays: &Rays<Eight>, min: Eight) -> Option<(EightAnswers, Eight)> {
-                match self {
-                    $(Self::$name(surface) => surface.eight_crossings(rays, min),)*
                 }
             }
 

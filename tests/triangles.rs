@@ -7,11 +7,12 @@ use std::num::NonZeroU32;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use termtrace::bounds::Bounds;
-use termtrace::bvh::Bvh;
+use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Stack};
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::Resolution;
-use termtrace::hit::{Hit, any_hit, closest_hit};
+use termtrace::hit::{Hit, Kernel, any_hit, any_hits_by, closest_hit, closest_hits_by};
+use termtrace::lanes::Eight;
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
@@ -353,9 +354,56 @@ proptest! {
     #[test]
     fn every_box_is_in_one_leaf(boxes in prop::collection::vec([place(), place()], 0..300)) {
         let boxes: Vec<Bounds> = boxes.into_iter().map(Bounds::of).collect();
-        let mut order = Bvh::new(&boxes).order().to_vec();
+        let leaves = Bvh::new(&boxes).1;
+        let mut order: Vec<u32> = (0..leaves.count()).flat_map(|leaf| leaves.boxes(leaf).to_vec()).collect();
         order.sort_unstable();
         prop_assert_eq!(order, (0..boxes.len() as u32).collect::<Vec<_>>());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    /// Together, alone, with the CPU's own instructions or without: the same. Some of the rays are a bundle, as a packet
+    /// likes them, from one origin or to one light; the others go anywhere.
+    #[test]
+    fn all_kernels_find_the_same(
+        shapes in prop::collection::vec(shape(), 1..40),
+        corners in [place(), place(), place(), place()],
+        spread in [0.001_f32..2.0, 0.001_f32..2.0],
+        strays in prop::collection::vec(ray(), 0..40),
+        count in 1..150_usize,
+    ) {
+        let scene = scene(shapes.iter().chain(&shapes[..shapes.len() / 2]).cloned());
+        let [eye, target, across, down] = corners;
+        let bundle = (0..count).map(|at| {
+            let step = across * ((at % 4 + at / 8 % 2 * 4) as f32 * spread[0]) + down * ((at / 4 % 2 + at / 16 * 2) as f32 * spread[1]);
+            Ray { origin: eye, direction: target + step - eye }
+        });
+        let back = bundle.clone().map(|ray| Ray { origin: ray.origin + ray.direction, direction: -ray.direction });
+        let rays: Vec<Ray> = bundle.chain(back).chain(strays).filter(|ray| ray.direction != Vec3::ZERO).collect();
+        let expected: Vec<_> = rays.iter().map(|ray| brute_force(&scene, ray, Interval::IN_FRONT)).collect();
+        for kernel in [Kernel::Auto, Kernel::Packet, Kernel::Single, Kernel::Scalar] {
+            let mut hits = Vec::new();
+            closest_hits_by(kernel, &scene, &rays, &mut hits);
+            prop_assert_eq!(&hits, &expected, "{:?}", kernel);
+            for within in [TO_THE_LIGHT, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }, Interval { min: -0.5, max: 0.5 }] {
+                let expected: Vec<_> = rays.iter().map(|ray| brute_force(&scene, ray, within).is_some()).collect();
+                let mut found = Vec::new();
+                any_hits_by(kernel, &scene, &rays, within, &mut found);
+                prop_assert_eq!(&found, &expected, "{:?} {:?}", kernel, within);
+            }
+        }
+    }
+}
+
+/// How many boxes were visited.
+struct Count<'l>(&'l Leaves, usize);
+
+impl LeafVisitor for Count<'_> {
+    fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
+        self.1 += self.0.boxes(leaf).len();
+        ControlFlow::Continue(f32::MAX)
     }
 }
 
@@ -368,14 +416,12 @@ fn a_tree_is_never_too_deep_for_its_stack() {
             Bounds::of([Vec3::new(x, x, x), Vec3::new(x, x, -x)])
         })
         .collect();
-    let bvh = Bvh::new(&boxes);
+    let (bvh, leaves) = Bvh::new(&boxes);
     let probe = Probe::new(Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 1.0, 0.0) });
-    let mut found = 0;
-    let _ = bvh.visit(&probe, Interval::IN_FRONT, |leaf, within| {
-        found += leaf.len();
-        ControlFlow::Continue(within.max)
-    });
-    assert_eq!(found, boxes.len(), "the ray meets them all");
+    let mut count = Count(&leaves, 0);
+    let rays = probe.rays.splat::<Eight>();
+    bvh.visit(bvh.root().unwrap(), &rays, Interval::IN_FRONT, &mut Stack::default(), &mut count);
+    assert_eq!(count.1, boxes.len(), "the ray meets them all");
 }
 
 #[test]

@@ -2,10 +2,21 @@
 //! cheapest (Goldsmith and Salmon 1987), among the cuts between a few bins along each axis (Wald, On fast Construction of
 //! SAH-based Bounding Volume Hierarchies, 2007).
 
-use super::{Bvh, MAX_DEPTH, Node};
+use super::{Bvh, Child, Leaves, Node};
 use crate::bounds::Bounds;
+use crate::lanes::LANES;
 use glam::Vec3;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
+
+/// A box around all that is below it, of a tree with two in each node. A node's first child follows it.
+#[derive(Clone, Copy)]
+struct Pair {
+    bounds: Bounds,
+    /// How many boxes a leaf has; 0 for an inner node.
+    count: u32,
+    /// Of a leaf, its first place in the order; of an inner node, how far behind it the second child stands.
+    at: u32,
+}
 
 /// A box, and where it came.
 #[derive(Clone, Copy)]
@@ -25,10 +36,13 @@ impl Item {
 const FEW: usize = 8192;
 
 /// A leaf has no more.
-const MAX_LEAF: usize = 8;
+const MAX_LEAF: usize = LANES;
 
 /// So few are not worth another node.
 const MIN_LEAF: usize = 4;
+
+/// No path in a tree is longer.
+const MAX_DEPTH: usize = 96;
 
 /// What it costs to visit a node, where a box's content costs 1.
 const VISIT: f32 = 1.0;
@@ -39,19 +53,69 @@ const FREE_DEPTH: usize = MAX_DEPTH - 34;
 
 type Report<'r> = &'r (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-pub(super) fn build(boxes: &[Bounds], report: Report<'_>) -> Option<Bvh> {
-    assert!(u32::try_from(boxes.len()).is_ok(), "there are fewer than 2^32 boxes");
+pub(super) fn build(boxes: &[Bounds], report: Report<'_>) -> Option<(Bvh, Leaves)> {
+    assert!(boxes.len() < 1 << 31, "there are fewer than 2^31 boxes");
     if boxes.is_empty() {
-        return Some(Bvh::default());
+        return Some((Bvh::default(), Leaves::default()));
     }
     let mut items: Vec<Item> = (0..).zip(boxes).map(|(number, &bounds)| Item { bounds, number }).collect();
-    let nodes = subtree(&mut items, 0, 0, report)?;
-    Some(Bvh { nodes, order: items.into_iter().map(|item| item.number).collect() })
+    let pairs = subtree(&mut items, 0, 0, report)?;
+    let mut wide = Wide { pairs: &pairs, nodes: Vec::new(), leaves: Vec::new() };
+    let root = Some(wide.append(0));
+    let order = items.iter().map(|item| item.number).collect();
+    Some((Bvh { nodes: wide.nodes, root }, Leaves { order, places: wide.leaves }))
+}
+
+/// The same tree with eight boxes in each node.
+struct Wide<'p> {
+    pairs: &'p [Pair],
+    nodes: Vec<Node>,
+    leaves: Vec<Range<u32>>,
+}
+
+impl Wide<'_> {
+    fn append(&mut self, at: usize) -> Child {
+        let Pair { count, at: first, .. } = self.pairs[at];
+        if count > 0 {
+            self.leaves.push(first..first + count);
+            return Child::leaf(self.leaves.len() as u32 - 1);
+        }
+        let number = self.nodes.len();
+        self.nodes.push(Node::EMPTY);
+        let (below, count) = self.eight_below(at);
+        for (lane, &pair) in below[..count].iter().enumerate() {
+            let child = self.append(pair);
+            let bounds = &self.pairs[pair].bounds;
+            let node = &mut self.nodes[number];
+            node.children[lane] = child;
+            for axis in 0..3 {
+                node.bounds[axis][0].0[lane] = bounds.min[axis];
+                node.bounds[axis][1].0[lane] = bounds.max[axis];
+            }
+        }
+        Child::node(number as u32)
+    }
+
+    /// Up to eight nodes that are together what is below this one: the largest is opened until there are so many.
+    fn eight_below(&self, at: usize) -> ([usize; LANES], usize) {
+        let children = |at: usize| [at + 1, at + self.pairs[at].at as usize];
+        let mut below = [0; LANES];
+        [below[0], below[1]] = children(at);
+        let mut count = 2;
+        while count < LANES {
+            let area = |at: usize| self.pairs[at].bounds.half_area();
+            let inner = (0..count).filter(|&lane| self.pairs[below[lane]].count == 0);
+            let Some(largest) = inner.max_by(|&a, &b| area(below[a]).total_cmp(&area(below[b]))) else { break };
+            [below[largest], below[count]] = children(below[largest]);
+            count += 1;
+        }
+        (below, count)
+    }
 }
 
 /// The nodes over these items, of which the first stands at that place in the order. Large halves are built at the same
 /// time; as nodes find their children by distance, those of a subtree are the same wherever it comes to stand.
-fn subtree(items: &mut [Item], first: usize, depth: usize, report: Report<'_>) -> Option<Vec<Node>> {
+fn subtree(items: &mut [Item], first: usize, depth: usize, report: Report<'_>) -> Option<Vec<Pair>> {
     if items.len() < FEW {
         let mut nodes = Vec::with_capacity(items.len());
         append(items, first, depth, &mut nodes);
@@ -67,21 +131,21 @@ fn subtree(items: &mut [Item], first: usize, depth: usize, report: Report<'_>) -
         rayon::join(|| subtree(left, first, depth + 1, report), || subtree(right, first + cut, depth + 1, report));
     let (left, right) = (left?, right?);
     let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
-    nodes.push(Node { bounds, count: 0, at: 1 + left.len() as u32 });
+    nodes.push(Pair { bounds, count: 0, at: 1 + left.len() as u32 });
     nodes.extend(left);
     nodes.extend(right);
     Some(nodes)
 }
 
 /// The same on one thread, at the end of other nodes.
-fn append(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<Node>) {
+fn append(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<Pair>) {
     let bounds = around(items);
     let Some(cut) = cut(items, &bounds, depth) else {
-        nodes.push(Node { bounds, count: items.len() as u32, at: first as u32 });
+        nodes.push(Pair { bounds, count: items.len() as u32, at: first as u32 });
         return;
     };
     let at = nodes.len();
-    nodes.push(Node { bounds, count: 0, at: 0 });
+    nodes.push(Pair { bounds, count: 0, at: 0 });
     let (left, right) = items.split_at_mut(cut);
     append(left, first, depth + 1, nodes);
     nodes[at].at = (nodes.len() - at) as u32;

@@ -1,9 +1,12 @@
-//! The parts of all objects: those with bounds in a tree, the others apart.
+//! The parts of all objects, by their kinds: those with bounds in trees, the others apart.
 
 use super::Object;
+use crate::bounds::Bounds;
 use crate::bvh::Bvh;
+use crate::lanes::{Eight, LANES};
 use crate::progress::{Progress, Watcher, Work};
-use crate::shape::Surface;
+use crate::shape::{Balls, Corners, Part, Plane, SideBySide, Surface};
+use std::array::from_fn;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A part of an object. They are ordered as they stand in the scene.
@@ -15,17 +18,38 @@ pub(crate) struct PartId {
     pub(crate) part: u32,
 }
 
-/// What a ray is tested against.
+/// What a ray is tested against. Each part has a place: first the planes', then those of the trees.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Parts {
-    /// Over the boxes of `bounded`.
-    pub(crate) bvh: Bvh,
-    /// In the order of the tree's leaves.
-    pub(crate) bounded: Vec<PartId>,
     /// Those that have no end.
-    pub(crate) unbounded: Vec<PartId>,
-    /// All of them, as they stand in the scene, where the tree is but one leaf and leaves nothing out.
-    pub(crate) few: Option<Vec<PartId>>,
+    pub(crate) planes: Vec<(PartId, Plane)>,
+    pub(crate) balls: Grove<Balls<Eight>>,
+    pub(crate) triangles: Grove<Corners<Eight>>,
+}
+
+/// Parts of one kind, and a tree over them.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Grove<S> {
+    pub(crate) bvh: Bvh,
+    /// What is in each leaf.
+    pub(crate) leaves: Vec<Leaf<S>>,
+    /// The place of the first of them.
+    pub(crate) first: u32,
+    /// How many there are, where the tree is but one leaf and leaves nothing out.
+    pub(crate) few: Option<usize>,
+}
+
+impl<S> Default for Grove<S> {
+    fn default() -> Self {
+        Self { bvh: Bvh::default(), leaves: Vec::new(), first: 0, few: None }
+    }
+}
+
+/// Up to eight parts of one kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Leaf<S> {
+    pub(crate) shapes: S,
+    pub(crate) ids: [PartId; LANES],
 }
 
 impl Parts {
@@ -36,35 +60,100 @@ impl Parts {
 
     /// The same while somebody waits for it; `None` if he has gone.
     pub(super) fn of_watched(objects: &[Object], watcher: &Watcher<'_>) -> Option<Self> {
-        let (mut boxes, mut bounded, mut unbounded) = (Vec::new(), Vec::new(), Vec::new());
+        let mut planes = Vec::new();
+        let (mut balls, mut triangles) = (Listed::default(), Listed::default());
         for (object, Object { shape, .. }) in (0..).zip(objects) {
             for part in 0..shape.part_count() {
                 let id = PartId { object, part };
-                if let Some(bounds) = shape.part(part).bounds() {
-                    boxes.push(bounds);
-                    bounded.push(id);
-                } else {
-                    unbounded.push(id);
+                match shape.part(part) {
+                    Part::Plane(plane) => planes.push((id, *plane)),
+                    Part::Sphere(sphere) => balls.push(id, *sphere),
+                    Part::Triangle(triangle) => triangles.push(id, *triangle),
+                    Part::Facet(facet) => triangles.push(id, *facet.triangle()),
                 }
             }
         }
-        let (done, total) = (AtomicUsize::new(0), boxes.len());
-        let bvh = Bvh::new_unless(&boxes, &|more| {
+        let (done, total) = (AtomicUsize::new(0), balls.boxes.len() + triangles.boxes.len());
+        let report = |more| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             watcher.tell(Progress { work: Work::Building, done, total })
-        })?;
-        let few = bvh.is_leaf().then(|| {
-            let mut all = [&bounded[..], &unbounded].concat();
-            all.sort_unstable();
-            all
-        });
-        let bounded = bvh.order().iter().map(|&at| bounded[at as usize]).collect();
-        Some(Self { bvh, bounded, unbounded, few })
+        };
+        let balls = balls.planted(planes.len() as u32, &report)?;
+        let triangles = triangles.planted(balls.first + (balls.leaves.len() * LANES) as u32, &report)?;
+        Some(Self { planes, balls, triangles })
     }
 
     /// How much memory it takes, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let ids = [self.few.as_deref().unwrap_or_default(), &self.bounded, &self.unbounded];
-        self.bvh.bytes() + ids.map(size_of_val).iter().sum::<usize>()
+        size_of_val(&self.planes[..]) + self.balls.bytes() + self.triangles.bytes()
+    }
+
+    /// Which part has that place.
+    #[inline(always)]
+    pub(crate) fn id(&self, place: u32) -> PartId {
+        if place >= self.triangles.first {
+            self.triangles.id(place)
+        } else if place >= self.balls.first {
+            self.balls.id(place)
+        } else {
+            self.planes[place as usize].0
+        }
+    }
+}
+
+impl<S> Grove<S> {
+    fn bytes(&self) -> usize {
+        self.bvh.bytes() + size_of_val(&self.leaves[..])
+    }
+
+    /// The place of what stands in that leaf.
+    #[inline(always)]
+    pub(crate) fn place(&self, leaf: usize, lane: usize) -> u32 {
+        self.first + (leaf * LANES + lane) as u32
+    }
+
+    #[inline(always)]
+    fn id(&self, place: u32) -> PartId {
+        let at = (place - self.first) as usize;
+        self.leaves[at / LANES].ids[at % LANES]
+    }
+}
+
+/// Parts of one kind in the order of the scene.
+struct Listed<T> {
+    ids: Vec<PartId>,
+    shapes: Vec<T>,
+    boxes: Vec<Bounds>,
+}
+
+impl<T> Default for Listed<T> {
+    fn default() -> Self {
+        Self { ids: Vec::new(), shapes: Vec::new(), boxes: Vec::new() }
+    }
+}
+
+impl<T: Surface + Copy> Listed<T> {
+    fn push(&mut self, id: PartId, shape: T) {
+        if let Some(bounds) = shape.bounds() {
+            self.ids.push(id);
+            self.boxes.push(bounds);
+            self.shapes.push(shape);
+        }
+    }
+
+    fn planted<S: SideBySide<Shape = T>>(
+        self,
+        first: u32,
+        report: &(dyn Fn(usize) -> std::ops::ControlFlow<()> + Sync),
+    ) -> Option<Grove<S>> {
+        let (bvh, places) = Bvh::new_unless(&self.boxes, report)?;
+        let leaf = |leaf: usize| {
+            let numbers = places.boxes(leaf);
+            let number = |lane: usize| numbers[lane.min(numbers.len() - 1)] as usize;
+            let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)]);
+            Leaf { shapes: S::of(&shapes[..numbers.len()]), ids: from_fn(|lane| self.ids[number(lane)]) }
+        };
+        let few = bvh.is_leaf().then_some(self.ids.len());
+        Some(Grove { bvh, leaves: (0..places.count()).map(leaf).collect(), first, few })
     }
 }

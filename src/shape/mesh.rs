@@ -61,16 +61,20 @@ impl Surface for Facet<'_> {
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        let point = self.triangle.at_crossing(ray, t);
+        self.finished(self.triangle.at_crossing(ray, t))
+    }
+}
+
+impl Facet<'_> {
+    /// The point on the triangle with what the file says of it.
+    pub(super) fn finished(&self, point: SurfacePoint) -> SurfacePoint {
         let point = SurfacePoint { own_reflectance: self.reflectance(&point), ..point };
         match self.mesh.file.normals_of(self.index as usize) {
             Some(normals) => self.smoothed(&point, normals),
             None => point,
         }
     }
-}
 
-impl Facet<'_> {
     /// The triangle itself.
     pub fn triangle(&self) -> &Triangle {
         &self.triangle

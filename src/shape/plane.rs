@@ -1,8 +1,8 @@
 //! Ray-plane intersection (lecture, "Ray intersection").
 
-use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
+use super::{CLEARANCE, Crossable, Side, Surface, SurfacePoint, largest_coordinate};
 use crate::bounds::Bounds;
-use crate::lanes::{Eight, EightAnswers, Mask, Number, Vector};
+use crate::lanes::{Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 
@@ -53,6 +53,20 @@ fn pattern_axis(normal: Vec3) -> Vec3 {
     (axis - normal * axis.dot(normal)).normalize()
 }
 
+impl<N: Number> Crossable<N> for Plane {
+    #[inline(always)]
+    fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
+        let t = self.crossing(rays);
+        // A ray along the plane divides by zero: infinite or NaN, and so not inside.
+        Some((min.le(t) & t.le(N::splat(f32::MAX)), t))
+    }
+
+    #[inline(always)]
+    fn boxes(&self) -> [Vector<N>; 2] {
+        [Vector::splat(Vec3::NEG_INFINITY), Vector::splat(Vec3::INFINITY)]
+    }
+}
+
 impl Surface for Plane {
     fn bounds(&self) -> Option<Bounds> {
         None
@@ -61,15 +75,7 @@ impl Surface for Plane {
     #[inline]
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
         let t = self.crossing(&probe.rays);
-        // A ray along the plane divides by zero: infinite or NaN, and so not inside.
         within.contains(t).then_some(t)
-    }
-
-    #[inline(always)]
-    fn eight_crossings(&self, rays: &Rays<Eight>, min: Eight) -> Option<(EightAnswers, Eight)> {
-        let t = self.crossing(rays);
-        let crosses = min.le(t);
-        crosses.any().then_some((crosses, t))
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {

@@ -1,10 +1,11 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
-use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
-use crate::bounds::Bounds;
-use crate::lanes::{Eight, EightAnswers, Mask, Number, Vector};
+use super::{AtCrossing, Crossable, Points, SideBySide, Surface, SurfacePoint};
+use crate::bounds::{Bounds, crossed};
+use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
+use std::array::from_fn;
 
 /// From so many radii on, a crossing is improved by a second look.
 const FAR: f32 = 8.0;
@@ -40,6 +41,19 @@ impl Sphere {
         self.radius
     }
 
+    fn ball(&self) -> Balls<f32> {
+        Balls { center: Vector::splat(self.center), radius: self.radius }
+    }
+}
+
+/// A sphere, or several side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balls<N> {
+    center: Vector<N>,
+    radius: N,
+}
+
+impl<N: Number> Balls<N> {
     /// Both roots of f(p + t d) = 0 in ascending order, and which of the lines have them; nothing if none does.
     ///
     /// The lecture solves (d.d) t^2 + 2 (f.d) t + (f.f - r^2) = 0, with f = p - c, by
@@ -55,10 +69,10 @@ impl Sphere {
     /// centre and the line, ||f - ((f.d)/(d.d)) d||, and only the root without cancellation is computed directly;
     /// the other follows from the product of the roots, (f.f - r^2) / (d.d).
     #[inline(always)]
-    fn crossings<N: Number>(&self, rays: &Rays<N>) -> Option<(N::Mask, [N; 2])> {
+    fn crossings(&self, rays: &Rays<N>) -> Option<(N::Mask, [N; 2])> {
         let (d, dd, zero) = (rays.direction, rays.squared_length, N::splat(0.0));
-        let squared_radius = N::splat(self.radius * self.radius);
-        let f = rays.origin - Vector::splat(self.center);
+        let squared_radius = self.radius * self.radius;
+        let f = rays.origin - self.center;
         let half_b = -f.dot(d);
         let to_line = f + d * (half_b / dd);
         let under_root = squared_radius - to_line.dot(to_line);
@@ -73,70 +87,94 @@ impl Sphere {
         let (t0, t1) = ((ff - squared_radius) / q, q / dd);
         let is_sorted = t0.le(t1);
         let crossings = [N::select(is_sorted, t0, t1), N::select(is_sorted, t1, t0)];
-        let is_far = N::splat(FAR * FAR * self.radius * self.radius).lt(ff);
-        let improved = |t: N| N::select(is_far, self.improved(t, f, rays), t);
-        Some((crosses, if is_far.any() { crossings.map(improved) } else { crossings }))
+        let is_far = (N::splat(FAR * FAR) * self.radius * self.radius).lt(ff);
+        if !is_far.any() {
+            return Some((crosses, crossings));
+        }
+        let [t0, t1] = crossings;
+        let improved = [self.improved(t0, f, rays), self.improved(t1, f, rays)];
+        Some((crosses, [N::select(is_far, improved[0], t0), N::select(is_far, improved[1], t1)]))
     }
 
     /// One step of Newton's method towards the root near t. From afar t is a long way, off by units of its own; what is
     /// left to the surface at its end is short, and known better. (Near the edge, where the ray only grazes the sphere,
     /// the step would be one into the blue.)
     #[inline(always)]
-    fn improved<N: Number>(&self, t: N, f: Vector<N>, rays: &Rays<N>) -> N {
+    fn improved(&self, t: N, f: Vector<N>, rays: &Rays<N>) -> N {
         let squared_radius = self.radius * self.radius;
         let outward = f + rays.direction * t;
         let along = outward.dot(rays.direction);
-        let is_steep = (N::splat(GRAZING * squared_radius) * rays.squared_length).lt(along * along);
-        let step = N::splat(0.5) * (outward.dot(outward) - N::splat(squared_radius)) / along;
+        let is_steep = (N::splat(GRAZING) * squared_radius * rays.squared_length).lt(along * along);
+        let step = N::splat(0.5) * (outward.dot(outward) - squared_radius) / along;
         N::select(is_steep, t - step, t)
     }
+}
 
-    /// The first crossing from `min` on, and which of the rays have one; nothing if none has.
+impl<N: Number> Crossable<N> for Balls<N> {
     #[inline(always)]
-    fn first_crossing<N: Number>(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
+    fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
         let (crosses, [t0, t1]) = self.crossings(rays)?;
-        let [start, end] = self.around().crossed_by(rays);
+        let [start, end] = crossed(self.boxes(), rays);
         let [t0, t1] = [nearest_in(start, end, t0), nearest_in(start, end, t1)];
         let t = N::select(min.le(t0), t0, t1);
         Some((crosses & start.le(end) & min.le(t), t))
     }
 
-    fn around(&self) -> Bounds {
-        Bounds { min: self.center - self.radius, max: self.center + self.radius }
+    #[inline(always)]
+    fn boxes(&self) -> [Vector<N>; 2] {
+        let radius = Vector { x: self.radius, y: self.radius, z: self.radius };
+        [self.center - radius, self.center + radius]
     }
 }
 
+impl<N: Number> AtCrossing<N> for Balls<N> {
+    #[inline(always)]
+    fn at_crossing(&self, rays: &Rays<N>, t: N) -> Points<N> {
+        let outward = rays.origin + rays.direction * t - self.center;
+        let outward = outward * (N::splat(1.0) / outward.dot(outward).sqrt());
+        let position = self.center + outward * self.radius;
+        Points::seen_by(rays, position, outward, self.center.largest() + self.radius, [N::splat(0.0); 2])
+    }
+}
+
+impl SideBySide for Balls<Eight> {
+    type Shape = Sphere;
+    type Of<N: Number> = Balls<N>;
+
+    fn of(shapes: &[Sphere]) -> Self {
+        let sphere = |lane: usize| shapes.get(lane).copied().unwrap_or(NOWHERE);
+        Self {
+            center: Vector::of(from_fn(|lane| sphere(lane).center)),
+            radius: Eight(from_fn(|lane| sphere(lane).radius)),
+        }
+    }
+
+    #[inline(always)]
+    fn load<N: Lanes>(&self) -> Balls<N> {
+        Balls { center: self.center.load(), radius: N::load(&self.radius) }
+    }
+
+    #[inline(always)]
+    fn splat<N: Number>(&self, lane: usize) -> Balls<N> {
+        Balls { center: Vector::splat(self.center.of_lane(lane)), radius: N::splat(self.radius.0[lane]) }
+    }
+}
+
+/// What no ray meets.
+const NOWHERE: Sphere = Sphere { center: Vec3::INFINITY, radius: 1.0 };
+
 impl Surface for Sphere {
     fn bounds(&self) -> Option<Bounds> {
-        Some(self.around())
+        Some(Bounds { min: self.center - self.radius, max: self.center + self.radius })
     }
 
     #[inline]
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let (crosses, t) = self.first_crossing(&probe.rays, within.min)?;
+        let (crosses, t) = self.ball().first_crossing(&probe.rays, within.min)?;
         (crosses && t <= within.max).then_some(t)
     }
 
-    #[inline(always)]
-    fn eight_crossings(&self, rays: &Rays<Eight>, min: Eight) -> Option<(EightAnswers, Eight)> {
-        self.first_crossing(rays, min)
-    }
-
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        let outward = (ray.at(t) - self.center).normalize();
-        let position = self.center + outward * self.radius;
-        let seen_from_outside = ray.direction.dot(outward) < 0.0;
-        let (normal, side) = if seen_from_outside { (outward, Side::Front) } else { (-outward, Side::Back) };
-        let clearance = CLEARANCE * (largest_coordinate(self.center) + self.radius);
-        SurfacePoint {
-            position,
-            normal,
-            facing: normal,
-            side,
-            clearance,
-            uv: Vec2::ZERO,
-            footprint: Vec2::ZERO,
-            own_reflectance: None,
-        }
+        self.ball().at_crossing(&Probe::new(*ray).rays, t).point()
     }
 }

@@ -1,10 +1,11 @@
 //! Ray-triangle intersection, without gaps between triangles that share an edge.
 
-use super::{CLEARANCE, Side, Surface, SurfacePoint, largest_coordinate};
-use crate::bounds::Bounds;
-use crate::lanes::{Number, Vector};
-use crate::ray::{Interval, Probe, Ray};
-use glam::{Vec2, Vec3};
+use super::{AtCrossing, Crossable, Points, SideBySide, Surface, SurfacePoint};
+use crate::bounds::{Bounds, crossed};
+use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
+use crate::ray::{Interval, Probe, Ray, Rays, nearest_in, sheared_exactly};
+use glam::{DVec3, Vec3};
+use std::array::from_fn;
 
 /// All points of the plane through three corners that lie between them. It is seen from both sides; the front is the
 /// one from which the corners go round counterclockwise.
@@ -13,13 +14,159 @@ pub struct Triangle {
     corners: [Vec3; 3],
 }
 
+/// A triangle's corners, or those of several side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corners<N>([Vector<N>; 3]);
+
 /// Where a line crosses a triangle's plane. Nothing here is divided by the sum of the weights.
+#[derive(Clone, Copy)]
 struct Crossing<N> {
     /// How much of each corner is in that point, all of them or none with a sign.
     weights: Vector<N>,
     sum: N,
     /// t times the sum.
     t: N,
+}
+
+impl<N: Number> Corners<N> {
+    /// The test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013). In the ray's own coordinates
+    /// it runs along z, and it is inside if the origin of the xy plane lies on the same side of all three edges, or on
+    /// them. Where f32 cannot tell on which, f64 does.
+    #[inline(always)]
+    fn crossing(&self, rays: &Rays<N>) -> Option<(N::Mask, Crossing<N>)> {
+        let [a, b, c] = self.0;
+        let (o, shear) = (rays.origin, &rays.shear);
+        let corners = [shear.apply(a - o), shear.apply(b - o), shear.apply(c - o)];
+        let weights = weights(corners);
+        let [agree, differ] = signs(weights, doubt(corners, shear.length));
+        // Where there is a triangle at all.
+        let is_close = !(agree | differ) & a.x.le(N::splat(f32::MAX));
+        if !(agree | is_close).any() {
+            return None;
+        }
+        let [a, b, c] = corners;
+        let sum = weights.x + weights.y + weights.z;
+        let crossing = Crossing { weights, sum, t: weights.dot(Vector { x: a.z, y: b.z, z: c.z }) };
+        if is_close.any() { Some(self.with_close(agree, is_close, crossing, rays)) } else { Some((agree, crossing)) }
+    }
+
+    /// The same with those that pass close to an edge.
+    #[inline(always)]
+    fn with_close(
+        &self,
+        agree: N::Mask,
+        is_close: N::Mask,
+        Crossing { weights, sum, t }: Crossing<N>,
+        rays: &Rays<N>,
+    ) -> (N::Mask, Crossing<N>) {
+        let (zero, one) = (N::splat(0.0), N::splat(1.0));
+        let ([a, b, c], o, d) = (self.0, rays.origin, rays.direction);
+        let asked = N::select(is_close, one, zero);
+        let numbers = [asked, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, o.x, o.y, o.z, d.x, d.y, d.z];
+        let [crosses, x, y, z, exact_t] = N::each(numbers, close_crossing);
+        let weights = Vector::select(is_close, Vector { x, y, z }, weights);
+        let crossing = Crossing { weights, sum: N::select(is_close, one, sum), t: N::select(is_close, exact_t, t) };
+        (agree | (is_close & zero.lt(crosses)), crossing)
+    }
+}
+
+/// Whether a line crosses the triangle, the weights, and t, if that is asked. All are divided by the sum: so they are what
+/// f32 can hold.
+///
+/// Each corner is one point for all triangles that have it; and on which side of an edge the origin lies is decided as it
+/// is for these points on paper, but that it may come out as on the edge: rounding may turn neither of two products past
+/// the other. As that is on both sides, no ray slips through between neighbours.
+#[cold]
+fn close_crossing([is_asked, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, dx, dy, dz]: [f32; 16]) -> [f32; 5] {
+    if is_asked == 0.0 {
+        return [0.0; 5];
+    }
+    let point = |x, y, z| {
+        let from_origin = Vec3::new(x, y, z).as_dvec3() - Vec3::new(ox, oy, oz).as_dvec3();
+        sheared_exactly(from_origin, Vec3::new(dx, dy, dz))
+    };
+    let [a, b, c] = [point(ax, ay, az), point(bx, by, bz), point(cx, cy, cz)];
+    let area = |from: DVec3, to: DVec3| from.x * to.y - from.y * to.x;
+    let weights = DVec3::new(area(c, b), area(a, c), area(b, a));
+    let differ = weights.min_element() < 0.0 && weights.max_element() > 0.0;
+    let sum = weights.x + weights.y + weights.z;
+    // Seen edge on, or without an area.
+    if differ || sum == 0.0 {
+        return [0.0; 5];
+    }
+    let Vec3 { x, y, z } = (weights / sum).as_vec3();
+    [1.0, x, y, z, (weights.dot(DVec3::new(a.z, b.z, c.z)) / sum) as f32]
+}
+
+/// For each corner twice the area of the triangle between the other two and the origin of the xy plane, with the sign that
+/// tells on which side of this edge the origin is. The other triangle of the edge comes to the same with the sign turned.
+#[inline(always)]
+fn weights<N: Number>([a, b, c]: [Vector<N>; 3]) -> Vector<N> {
+    Vector { x: area(c, b), y: area(a, c), z: area(b, a) }
+}
+
+#[inline(always)]
+fn area<N: Number>(from: Vector<N>, to: Vector<N>) -> N {
+    from.x * to.y - from.y * to.x
+}
+
+/// By how much the weights may be off in f32, at most.
+///
+/// With s for the largest x or y and r for the largest z, in lengths of the direction, each x and y is off by 2 s + 4 r
+/// units of 2^-24 ([`Shear::apply`](crate::ray::Shear::apply)). Of a difference of two products that makes 4 s times as
+/// much, and their own rounding 4 s s: 12 s s + 16 s r. The products of two such errors add a sixth at most: where they are
+/// more, s is less than 12 units of r, and no weight, all of them less than 2 s s, is beyond doubt. The last term is for
+/// numbers that are too small for f32 to round so.
+#[inline(always)]
+fn doubt<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
+    let across = a.x.abs().max(a.y.abs()).max(b.x.abs().max(b.y.abs())).max(c.x.abs().max(c.y.abs()));
+    let along = a.z.abs().max(b.z.abs()).max(c.z.abs());
+    across * (across + along * length) * N::splat(24.0 / 16_777_216.0) + N::splat(f32::MIN_POSITIVE)
+}
+
+/// Whether all of them have one sign, and whether two have different ones: those that are more than `doubt` off zero.
+#[inline(always)]
+fn signs<N: Number>(Vector { x, y, z }: Vector<N>, doubt: N) -> [N::Mask; 2] {
+    let (least, greatest) = (x.min(y.min(z)), x.max(y.max(z)));
+    let agree = doubt.lt(least) | greatest.lt(-doubt);
+    [agree, least.lt(-doubt) & doubt.lt(greatest)]
+}
+
+impl<N: Number> Crossable<N> for Corners<N> {
+    #[inline(always)]
+    fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
+        let (crosses, Crossing { sum, t, .. }) = self.crossing(rays)?;
+        let [start, end] = crossed(self.boxes(), rays);
+        let t = nearest_in(start, end, t / sum);
+        Some((crosses & start.le(end) & min.le(t), t))
+    }
+
+    #[inline(always)]
+    fn boxes(&self) -> [Vector<N>; 2] {
+        let [a, b, c] = self.0;
+        [a.min(b).min(c), a.max(b).max(c)]
+    }
+}
+
+impl SideBySide for Corners<Eight> {
+    type Shape = Triangle;
+    type Of<N: Number> = Corners<N>;
+
+    fn of(shapes: &[Triangle]) -> Self {
+        let corners = |lane: usize| shapes.get(lane).map_or([Vec3::INFINITY; 3], Triangle::corners);
+        Self(from_fn(|corner| Vector::of(from_fn(|lane| corners(lane)[corner]))))
+    }
+
+    #[inline(always)]
+    fn load<N: Lanes>(&self) -> Corners<N> {
+        Corners([self.0[0].load(), self.0[1].load(), self.0[2].load()])
+    }
+
+    #[inline(always)]
+    fn splat<N: Number>(&self, lane: usize) -> Corners<N> {
+        let [a, b, c] = &self.0;
+        Corners([Vector::splat(a.of_lane(lane)), Vector::splat(b.of_lane(lane)), Vector::splat(c.of_lane(lane))])
+    }
 }
 
 impl Triangle {
@@ -37,94 +184,39 @@ impl Triangle {
         self.corners
     }
 
-    /// The test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013). In the ray's own coordinates
-    /// it runs along z, and it is inside if the origin of the xy plane lies on the same side of all three edges, or on
-    /// them. Where f32 cannot tell on which, f64 does.
-    #[inline]
-    fn crossing(&self, probe: &Probe) -> Option<Crossing<f32>> {
-        let corners = self.corners.map(|corner| probe.sheared(corner));
-        let weights = weights(corners);
-        let [agree, differ] = signs(weights, doubt(corners, probe.shear().length()));
-        match (agree, differ) {
-            (true, _) => Some(Crossing::of(weights, corners)),
-            (_, true) => None,
-            _ => self.close_crossing(probe),
-        }
-    }
-
-    /// The same of a line that passes close to an edge. Each corner is one point for all triangles that have it; and on
-    /// which side of an edge the origin lies is decided as it is for these points on paper, but that it may come out as on
-    /// the edge: rounding may turn neither of two products past the other. As that is on both sides, no ray slips through
-    /// between neighbours.
-    #[cold]
-    fn close_crossing(&self, probe: &Probe) -> Option<Crossing<f32>> {
-        let corners = self.corners.map(|corner| probe.sheared_exactly(corner));
-        let weights = weights(corners);
-        let [_, differ] = signs(weights, 0.0);
-        let Crossing { sum, t, .. } = Crossing::of(weights, corners);
-        // Seen edge on, or without an area.
-        if differ || sum == 0.0 {
-            return None;
-        }
-        // Divided, they are what f32 can hold.
-        let [x, y, z, t] = [weights.x, weights.y, weights.z, t].map(|value| (value / sum) as f32);
-        Some(Crossing { weights: Vector { x, y, z }, sum: 1.0, t })
-    }
-
-    /// Where on the triangle the line meets it: the shares of the second and the third corner.
-    pub(super) fn shares(&self, ray: &Ray) -> Vec2 {
-        self.crossing(&Probe::new(*ray)).map_or(Vec2::ZERO, |crossing| {
-            let Vector { y, z, .. } = crossing.weights;
-            Vec2::new(y, z) / crossing.sum
-        })
-    }
-
-    /// The unit normal of the front; of a triangle without an area, any.
-    pub(super) fn front_normal(&self) -> Vec3 {
-        let [a, b, c] = self.corners;
-        let (to_b, to_c) = (b - a, c - a);
-        // Not too small to be squared.
-        let scale = 1.0 / largest_coordinate(to_b).max(largest_coordinate(to_c));
-        (to_b * scale).cross(to_c * scale).normalize_or(Vec3::Y)
+    fn single(&self) -> Corners<f32> {
+        Corners(self.corners.map(Vector::splat))
     }
 }
 
-impl<N: Number> Crossing<N> {
+/// The unit normal of the front; of a triangle without an area, any.
+#[inline(always)]
+fn front_normal<N: Number>(to_b: Vector<N>, to_c: Vector<N>) -> Vector<N> {
+    // Not too small to be squared.
+    let scale = N::splat(1.0) / to_b.largest().max(to_c.largest());
+    let normal = (to_b * scale).cross(to_c * scale);
+    let factor = N::splat(1.0) / normal.dot(normal).sqrt();
+    let is_direction = N::splat(0.0).lt(factor) & factor.le(N::splat(f32::MAX));
+    Vector::select(is_direction, normal * factor, Vector::splat(Vec3::Y))
+}
+
+impl<N: Number> AtCrossing<N> for Corners<N> {
     #[inline(always)]
-    fn of(weights: Vector<N>, [a, b, c]: [Vector<N>; 3]) -> Self {
-        let Vector { x, y, z } = weights;
-        Self { weights, sum: x + y + z, t: weights.dot(Vector { x: a.z, y: b.z, z: c.z }) }
+    fn at_crossing(&self, rays: &Rays<N>, _: N) -> Points<N> {
+        let [a, b, c] = self.0;
+        let (to_b, to_c) = (b - a, c - a);
+        let zero = N::splat(0.0);
+        // Of what the line meets, the shares of the second and the third corner.
+        let uv = match self.crossing(rays) {
+            Some((crosses, Crossing { weights, sum, .. })) => {
+                [N::select(crosses, weights.y / sum, zero), N::select(crosses, weights.z / sum, zero)]
+            }
+            None => [zero; 2],
+        };
+        let position = a + to_b * uv[0] + to_c * uv[1];
+        let largest = zero.max(a.largest()).max(b.largest()).max(c.largest());
+        Points::seen_by(rays, position, front_normal(to_b, to_c), largest, uv)
     }
-}
-
-/// For each corner twice the area of the triangle between the other two and the origin of the xy plane, with the sign that
-/// tells on which side of this edge the origin is. The other triangle of the edge comes to the same with the sign turned.
-#[inline(always)]
-fn weights<N: Number>([a, b, c]: [Vector<N>; 3]) -> Vector<N> {
-    let area = |from: Vector<N>, to: Vector<N>| from.x * to.y - from.y * to.x;
-    Vector { x: area(c, b), y: area(a, c), z: area(b, a) }
-}
-
-/// By how much the weights may be off in f32, at most.
-///
-/// With s for the largest x or y and r for the largest z, in lengths of the direction, each x and y is off by 2 s + 4 r
-/// units of 2^-24 ([`Shear::apply`](crate::ray::Shear::apply)). Of a difference of two products that makes 4 s times as
-/// much, and their own rounding 4 s s: 12 s s + 16 s r. The products of two such errors add a sixth at most: where they are
-/// more, s is less than 12 units of r, and no weight, all of them less than 2 s s, is beyond doubt. The last term is for
-/// numbers that are too small for f32 to round so.
-#[inline(always)]
-fn doubt<N: Number>(corners: [Vector<N>; 3], length: N) -> N {
-    let [a, b, c] = corners.map(|Vector { x, y, z }| [x.abs().max(y.abs()), z.abs()]);
-    let [across, along] = [0, 1].map(|axis| a[axis].max(b[axis].max(c[axis])));
-    across * (across + along * length) * N::splat(24.0 / 16_777_216.0) + N::splat(f32::MIN_POSITIVE)
-}
-
-/// Whether all of them have one sign, and whether two have different ones: those that are more than `doubt` off zero.
-#[inline(always)]
-fn signs<N: Number>(Vector { x, y, z }: Vector<N>, doubt: N) -> [N::Mask; 2] {
-    let (least, greatest) = (x.min(y.min(z)), x.max(y.max(z)));
-    let agree = doubt.lt(least) | greatest.lt(-doubt);
-    [agree, least.lt(-doubt) & doubt.lt(greatest)]
 }
 
 impl Surface for Triangle {
@@ -133,27 +225,11 @@ impl Surface for Triangle {
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let Crossing { sum, t, .. } = self.crossing(probe)?;
-        Bounds::of(self.corners).crossed(probe).nearest(t / sum).filter(|&t| within.contains(t))
+        let (crosses, t) = self.single().first_crossing(&probe.rays, within.min)?;
+        (crosses && t <= within.max).then_some(t)
     }
 
-    fn at_crossing(&self, ray: &Ray, _: f32) -> SurfacePoint {
-        let [a, b, c] = self.corners;
-        let shares = self.shares(ray);
-        let position = a + (b - a) * shares.x + (c - a) * shares.y;
-        let front = self.front_normal();
-        let seen_from_front = ray.direction.dot(front) < 0.0;
-        let (normal, side) = if seen_from_front { (front, Side::Front) } else { (-front, Side::Back) };
-        let largest = self.corners.into_iter().map(largest_coordinate).fold(0.0, f32::max);
-        SurfacePoint {
-            position,
-            normal,
-            facing: normal,
-            side,
-            clearance: CLEARANCE * largest,
-            uv: shares,
-            footprint: Vec2::ZERO,
-            own_reflectance: None,
-        }
+    fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
+        AtCrossing::at_crossing(&self.single(), &Probe::new(*ray).rays, t).point()
     }
 }

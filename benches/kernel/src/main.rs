@@ -6,6 +6,7 @@ mod termtrace_backend;
 use rayon::prelude::*;
 use scene::*;
 use std::time::Instant;
+use termtrace::hit::Kernel;
 
 fn render(b: &dyn Backend, f: &Frame, tile: u32, pool: Option<&rayon::ThreadPool>) -> Acc {
     let (tx, ty) = (f.width.div_ceil(tile), f.height.div_ceil(tile));
@@ -77,7 +78,7 @@ fn main() {
                 }
             }
         }
-        if want("termtrace") {
+        if only.is_empty() || only.iter().any(|o| o.starts_with("termtrace")) {
             let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
             let alone = one.install(|| termtrace_backend::Termtrace::new(&s)).build_s;
             let both = termtrace_backend::Termtrace::new(&s);
@@ -87,6 +88,11 @@ fn main() {
                 alone * 1e3,
                 both.build_s * 1e3
             );
+            for kernel in [Kernel::Single, Kernel::Packet, Kernel::Scalar] {
+                if want(&format!("termtrace/{kernel:?}").to_lowercase()) {
+                    bs.push(Box::new(both.by(kernel)));
+                }
+            }
             bs.push(Box::new(both));
         }
         // rounds interleave the backends, so that drift of the machine falls on all alike

@@ -3,20 +3,22 @@
 use crate::scene::{Acc, Backend, Frame, Scene};
 use glam::{Vec3, Vec3A};
 use std::cell::RefCell;
+use std::sync::Arc;
 use std::time::Instant;
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
-use termtrace::hit::{self, Hit};
+use termtrace::hit::{self, Hit, Kernel};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
 use termtrace::ray::Ray;
 use termtrace::scene::{Object, Scene as Traced};
-use termtrace::shade::{TO_THE_LIGHT, shadow_ray};
-use termtrace::shape::{Mesh, Plane, Shape, Sphere, Surface};
+use termtrace::shade::{self, TO_THE_LIGHT, shadow_ray};
+use termtrace::shape::{Mesh, Plane, Shape, Sphere, SurfacePoint};
 
 pub struct Termtrace {
-    scene: Traced,
+    kernel: Kernel,
+    scene: Arc<Traced>,
     light: PointLight,
     pub build_s: f64,
 }
@@ -26,6 +28,7 @@ pub struct Termtrace {
 struct Buffers {
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
+    points: Vec<Option<SurfacePoint>>,
     shadow_rays: Vec<Ray>,
     blocked: Vec<bool>,
 }
@@ -51,24 +54,28 @@ impl Termtrace {
         let build_s = start.elapsed().as_secs_f64();
         let light =
             PointLight { position: vec3(s.light), intensity: LinearRgb::grey(1.0), falloff: Falloff::InverseSquare };
-        Self { scene, light, build_s }
+        Self { kernel: Kernel::Auto, scene: Arc::new(scene), light, build_s }
+    }
+
+    /// The same scene, traced in that way.
+    pub fn by(&self, kernel: Kernel) -> Self {
+        Self { kernel, scene: self.scene.clone(), ..*self }
     }
 
     fn trace(&self, f: &Frame, rays: impl Iterator<Item = Vec3A>, buffers: &mut Buffers) -> Acc {
-        let Buffers { rays: eye_rays, hits, shadow_rays, blocked } = buffers;
+        let Buffers { rays: eye_rays, hits, points, shadow_rays, blocked } = buffers;
         eye_rays.clear();
         eye_rays.extend(rays.map(|d| Ray { origin: vec3(f.o), direction: vec3(d) }));
-        hit::closest_hits(&self.scene, eye_rays, hits);
+        hit::closest_hits_by(self.kernel, &self.scene, eye_rays, hits);
         let found = || eye_rays.iter().zip(&*hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));
         let mut sum = Acc { rays: eye_rays.len() as u64, ..Acc::default() };
         sum.hits = found().count() as u64;
         sum.tsum = found().map(|(_, hit)| f64::from(hit.t)).sum();
         if f.full {
-            let aim =
-                |(ray, hit): (&Ray, Hit)| shadow_ray(&self.light, &hit.surface(&self.scene).at_crossing(ray, hit.t));
+            shade::surface_points(&self.scene, eye_rays, [Vec3::ZERO; 2], hits, points);
             shadow_rays.clear();
-            shadow_rays.extend(found().map(aim));
-            hit::any_hits(&self.scene, shadow_rays, TO_THE_LIGHT, blocked);
+            shadow_rays.extend(points.iter().flatten().map(|point| shadow_ray(&self.light, point)));
+            hit::any_hits_by(self.kernel, &self.scene, shadow_rays, TO_THE_LIGHT, blocked);
             sum.rays += shadow_rays.len() as u64;
             sum.lit = blocked.iter().filter(|&&blocked| !blocked).count() as u64;
         }
@@ -82,11 +89,15 @@ fn vec3(v: Vec3A) -> Vec3 {
 
 impl Backend for Termtrace {
     fn name(&self) -> String {
-        "termtrace".into()
+        format!("termtrace/{:?}", self.kernel).to_lowercase()
     }
 
     fn tile(&self, f: &Frame, x0: u32, y0: u32, x1: u32, y1: u32) -> Acc {
-        let rays = (y0..y1).flat_map(|y| (x0..x1).map(move |x| f.dir(x, y)));
+        // As the renderer goes through a tile: squares of 8 by 8, in groups of 4 by 2.
+        let squares = (y0..y1).step_by(8).flat_map(|y| (x0..x1).step_by(8).map(move |x| (x, y)));
+        let places = squares
+            .flat_map(|(x, y)| (0..64).map(move |at| (x + at % 4 + at / 8 % 2 * 4, y + at / 4 % 2 + at / 16 * 2)));
+        let rays = places.filter(|&(x, y)| x < x1 && y < y1).map(|(x, y)| f.dir(x, y));
         BUFFERS.with_borrow_mut(|buffers| self.trace(f, rays, buffers))
     }
 }

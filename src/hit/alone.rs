@@ -1,0 +1,116 @@
+//! A ray by itself, against eight boxes or parts at a time.
+
+use crate::bvh::{Child, LeafVisitor, Stack};
+use crate::lanes::{Answers, LANES, Lanes};
+use crate::ray::{Interval, Probe, Ray, Rays};
+use crate::scene::{Grove, Parts};
+use crate::shape::{Crossable, SideBySide};
+use std::ops::ControlFlow;
+
+/// A ray, and what it has met.
+pub(super) struct Alone<'p, N: Lanes, const ANY: bool> {
+    parts: &'p Parts,
+    probe: Probe,
+    /// The same ray in every place.
+    rays: Rays<N>,
+    /// `max` is where the closest was met, or where the interval ends.
+    within: Interval,
+    /// What was met.
+    place: Option<u32>,
+}
+
+impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
+    #[inline(always)]
+    pub(super) fn new(parts: &'p Parts, ray: &Ray, within: Interval) -> Self {
+        let probe = Probe::new(*ray);
+        Self { parts, rays: probe.rays.splat(), probe, within, place: None }
+    }
+
+    /// A ray that has met this already.
+    #[inline(always)]
+    pub(super) fn going_on(self, place: Option<u32>) -> Self {
+        Self { place, ..self }
+    }
+
+    /// Where it met what.
+    #[inline(always)]
+    pub(super) fn found(&self) -> (f32, Option<u32>) {
+        (self.within.max, self.place)
+    }
+
+    /// Searches through everything.
+    #[inline(always)]
+    pub(super) fn trace(&mut self, stack: &mut Stack) {
+        let parts = self.parts;
+        for (place, (_, plane)) in (0..).zip(&parts.planes) {
+            if let Some((true, t)) = plane.first_crossing(&self.probe.rays, self.within.min) {
+                self.meet(t, place);
+            }
+        }
+        self.trace_grove(&parts.balls, stack);
+        self.trace_grove(&parts.triangles, stack);
+    }
+
+    #[inline(always)]
+    fn trace_grove<S: SideBySide>(&mut self, grove: &Grove<S>, stack: &mut Stack) {
+        if let Some(root) = grove.bvh.root() {
+            self.trace_from(root, grove, stack);
+        }
+    }
+
+    /// Searches through a part of a tree.
+    #[inline(always)]
+    pub(super) fn trace_from<S: SideBySide>(&mut self, from: Child, grove: &Grove<S>, stack: &mut Stack) {
+        if ANY && self.place.is_some() {
+            return;
+        }
+        let (rays, within) = (self.rays, self.within);
+        grove.bvh.visit(from, &rays, within, stack, &mut InGrove { ray: self, grove });
+    }
+
+    #[inline(always)]
+    fn test<S: SideBySide>(&mut self, leaf: usize, grove: &Grove<S>) {
+        let shapes = grove.leaves[leaf].shapes.load::<N>();
+        let Some((crosses, t)) = shapes.first_crossing(&self.rays, N::splat(self.within.min)) else { return };
+        let mut met = (crosses & t.le(N::splat(self.within.max))).bits();
+        if met == 0 {
+            return;
+        }
+        let t = t.store();
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize % LANES;
+            met &= met - 1;
+            self.meet(t.0[lane], grove.place(leaf, lane));
+        }
+    }
+
+    /// Something at t.
+    #[inline(always)]
+    fn meet(&mut self, t: f32, place: u32) {
+        let is_first = |other: u32| self.parts.id(place) < self.parts.id(other);
+        if t < self.within.max || t == self.within.max && self.place.is_none_or(is_first) {
+            self.place = Some(place);
+            if !ANY {
+                self.within.max = t;
+            }
+        }
+    }
+}
+
+/// A ray in a tree.
+struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
+    ray: &'a mut Alone<'p, N, ANY>,
+    grove: &'a Grove<S>,
+}
+
+impl<N: Lanes, S: SideBySide, const ANY: bool> LeafVisitor for InGrove<'_, '_, N, S, ANY> {
+    #[inline(always)]
+    fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
+        self.ray.test(leaf, self.grove);
+        if ANY && self.ray.place.is_some() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(self.ray.within.max)
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Eight numbers in a register of AVX.
+
+#![allow(unsafe_code)]
+
+use super::Work;
+use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Number};
+use std::arch::x86_64::{
+    __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps,
+    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_load_ps, _mm256_max_ps, _mm256_min_ps,
+    _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_sqrt_ps,
+    _mm256_store_ps, _mm256_sub_ps, _mm256_xor_ps,
+};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// Does the work with the registers of AVX, which this CPU has to have.
+pub(super) fn run<W: Work>(work: W) -> W::Output {
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn compiled_for_avx2<W: Work>(work: W) -> W::Output {
+        work.run::<Register>()
+    }
+    // SAFETY: `run_with`, the only caller, has asked the CPU.
+    unsafe { compiled_for_avx2(work) }
+}
+
+/// Only `run` has work done with it: where there is one, the CPU has AVX.
+#[derive(Clone, Copy, Debug)]
+struct Register(__m256);
+
+/// All bits of a number are set for yes, none for no.
+#[derive(Clone, Copy, Debug)]
+struct Mask256(__m256);
+
+/// An instruction of AVX.
+macro_rules! avx {
+    ($instruction:expr) => {
+        // SAFETY: the CPU has AVX, as `Register` says; what is loaded and stored is a whole and aligned `Eight`.
+        unsafe { $instruction }
+    };
+}
+
+macro_rules! operators {
+    ($($type:ident $operation:ident $function:ident $instruction:ident)*) => {
+        $(impl $operation for $type {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                Self(avx!($instruction(self.0, other.0)))
+            }
+        })*
+    };
+}
+
+operators! {
+    Register Add add _mm256_add_ps
+    Register Sub sub _mm256_sub_ps
+    Register Mul mul _mm256_mul_ps
+    Register Div div _mm256_div_ps
+    Mask256 BitAnd bitand _mm256_and_ps
+    Mask256 BitOr bitor _mm256_or_ps
+}
+
+impl Neg for Register {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(avx!(_mm256_xor_ps(self.0, _mm256_set1_ps(-0.0))))
+    }
+}
+
+impl Not for Mask256 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(avx!(_mm256_xor_ps(self.0, _mm256_castsi256_ps(_mm256_set1_epi32(-1)))))
+    }
+}
+
+impl Number for Register {
+    type Mask = Mask256;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self(avx!(_mm256_set1_ps(value)))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(avx!(_mm256_sqrt_ps(self.0)))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(avx!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0)))
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> Mask256 {
+        Mask256(avx!(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> Mask256 {
+        Mask256(avx!(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn select(answer: Mask256, yes: Self, no: Self) -> Self {
+        Self(avx!(_mm256_blendv_ps(no.0, yes.0, answer.0)))
+    }
+
+    /// Of the instruction, too: where one is NaN and where both are zero, the second.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(avx!(_mm256_max_ps(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(avx!(_mm256_min_ps(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn each<const IN: usize, const OUT: usize>(
+        numbers: [Self; IN],
+        formula: impl Fn([f32; IN]) -> [f32; OUT],
+    ) -> [Self; OUT] {
+        let mut stored = [Eight([0.0; LANES]); IN];
+        for (stored, numbers) in stored.iter_mut().zip(numbers) {
+            *stored = numbers.store();
+        }
+        let mut results = [Self::splat(0.0); OUT];
+        for (results, stored) in results.iter_mut().zip(Eight::each(stored, formula)) {
+            *results = Self::load(&stored);
+        }
+        results
+    }
+}
+
+impl Lanes for Register {
+    #[inline(always)]
+    fn load(numbers: &Eight) -> Self {
+        Self(avx!(_mm256_load_ps(numbers.0.as_ptr())))
+    }
+
+    #[inline(always)]
+    fn store(self) -> Eight {
+        let mut numbers = Eight([0.0; LANES]);
+        avx!(_mm256_store_ps(numbers.0.as_mut_ptr(), self.0));
+        numbers
+    }
+}
+
+impl Mask for Mask256 {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        self.bits() == (1 << LANES) - 1
+    }
+}
+
+impl Answers for Mask256 {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        avx!(_mm256_movemask_ps(self.0)).cast_unsigned()
+    }
+}
