@@ -6,6 +6,7 @@ use crate::bvh::Bvh;
 use crate::lanes::{Eight, LANES};
 use crate::progress::{Progress, Watcher, Work};
 use crate::shape::{Balls, Corners, Part, Plane, SideBySide, Surface};
+use rayon::prelude::*;
 use std::array::from_fn;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -132,7 +133,7 @@ impl<T> Default for Listed<T> {
     }
 }
 
-impl<T: Surface + Copy> Listed<T> {
+impl<T: Surface + Copy + Sync> Listed<T> {
     fn push(&mut self, id: PartId, shape: T) {
         if let Some(bounds) = shape.bounds() {
             self.ids.push(id);
@@ -141,7 +142,7 @@ impl<T: Surface + Copy> Listed<T> {
         }
     }
 
-    fn planted<S: SideBySide<Shape = T>>(
+    fn planted<S: SideBySide<Shape = T> + Send>(
         self,
         first: u32,
         report: &(dyn Fn(usize) -> std::ops::ControlFlow<()> + Sync),
@@ -154,6 +155,6 @@ impl<T: Surface + Copy> Listed<T> {
             Leaf { shapes: S::of(&shapes[..numbers.len()]), ids: from_fn(|lane| self.ids[number(lane)]) }
         };
         let few = bvh.is_leaf().then_some(self.ids.len());
-        Some(Grove { bvh, leaves: (0..places.count()).map(leaf).collect(), first, few })
+        Some(Grove { bvh, leaves: (0..places.count()).into_par_iter().map(leaf).collect(), first, few })
     }
 }
