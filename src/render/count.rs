@@ -7,8 +7,9 @@ use crate::framebuffer::Resolution;
 use crate::hit::{self, Hit};
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::shade::{TO_THE_LIGHT, shadow_ray};
-use crate::shape::Surface;
+use crate::shade::{self, TO_THE_LIGHT, shadow_ray};
+use crate::shape::SurfacePoint;
+use glam::Vec3;
 use rayon::prelude::*;
 use std::num::NonZeroU32;
 use std::ops::{Add, Range};
@@ -61,6 +62,7 @@ pub fn count(scene: &Scene, camera: &Camera, resolution: Resolution, samples: No
 struct Buffers {
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
+    points: Vec<Option<SurfacePoint>>,
     shadow_rays: Vec<Ray>,
     blocked: Vec<bool>,
 }
@@ -81,18 +83,19 @@ impl Raster<Sum> {
 impl Buffers {
     /// The rays and their hits, and the shadow rays that begin there.
     fn count(&mut self, scene: &Scene) -> Counts {
-        let Self { rays, hits, shadow_rays, blocked } = self;
-        let found = || rays.iter().zip(&*hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));
+        let Self { rays, hits, points, shadow_rays, blocked } = self;
         let mut counts = Counts {
             rays: rays.len() as u64,
-            hits: found().count() as u64,
+            hits: hits.iter().flatten().count() as u64,
             lit: 0,
-            depths: found().map(|(_, hit)| f64::from(hit.t)).sum(),
+            depths: hits.iter().flatten().map(|hit| f64::from(hit.t)).sum(),
         };
+        if scene.shadows {
+            shade::surface_points(scene, rays, [Vec3::ZERO; 2], hits, points);
+        }
         for light in scene.lights.iter().filter(|_| scene.shadows) {
             shadow_rays.clear();
-            shadow_rays
-                .extend(found().map(|(ray, hit)| shadow_ray(light, &hit.surface(scene).at_crossing(ray, hit.t))));
+            shadow_rays.extend(points.iter().flatten().map(|point| shadow_ray(light, point)));
             hit::any_hits(scene, shadow_rays, TO_THE_LIGHT, blocked);
             counts.rays += shadow_rays.len() as u64;
             counts.lit += blocked.iter().filter(|&&blocked| !blocked).count() as u64;

@@ -67,10 +67,9 @@ impl Termtrace {
         eye_rays.clear();
         eye_rays.extend(rays.map(|d| Ray { origin: vec3(f.o), direction: vec3(d) }));
         hit::closest_hits_by(self.kernel, &self.scene, eye_rays, hits);
-        let found = || eye_rays.iter().zip(&*hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));
         let mut sum = Acc { rays: eye_rays.len() as u64, ..Acc::default() };
-        sum.hits = found().count() as u64;
-        sum.tsum = found().map(|(_, hit)| f64::from(hit.t)).sum();
+        sum.hits = hits.iter().flatten().count() as u64;
+        sum.tsum = hits.iter().flatten().map(|hit| f64::from(hit.t)).sum();
         if f.full {
             shade::surface_points(&self.scene, eye_rays, [Vec3::ZERO; 2], hits, points);
             shadow_rays.clear();
@@ -95,8 +94,8 @@ impl Backend for Termtrace {
     fn tile(&self, f: &Frame, x0: u32, y0: u32, x1: u32, y1: u32) -> Acc {
         // As the renderer goes through a tile: squares of 8 by 8, in groups of 4 by 2.
         let squares = (y0..y1).step_by(8).flat_map(|y| (x0..x1).step_by(8).map(move |x| (x, y)));
-        let places = squares
-            .flat_map(|(x, y)| (0..64).map(move |at| (x + at % 4 + at / 8 % 2 * 4, y + at / 4 % 2 + at / 16 * 2)));
+        let groups = squares.flat_map(|(x, y)| (0..8).map(move |at| (x + at % 2 * 4, y + at / 2 * 2)));
+        let places = groups.flat_map(|(x, y)| (0..8).map(move |at| (x + at % 4, y + at / 4)));
         let rays = places.filter(|&(x, y)| x < x1 && y < y1).map(|(x, y)| f.dir(x, y));
         BUFFERS.with_borrow_mut(|buffers| self.trace(f, rays, buffers))
     }
