@@ -4,13 +4,14 @@ mod generated;
 
 use super::picture::{fits, parse_size};
 use super::{Done, Failure, SceneArgs, on_threads, usage, visible, write_stdout};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use generated::Generated;
 use std::fmt::Write;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use termtrace::framebuffer::Resolution;
+use termtrace::hit::Kernel;
 use termtrace::render::{Counts, count, render};
 use termtrace::scene::Scene;
 use termtrace::tone::tone;
@@ -43,12 +44,39 @@ pub(super) struct BenchArgs {
     /// How many threads trace [default: as many as there are cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// How the rays go through the scene: it changes how long that takes, and nothing else
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    kernel: Way,
     /// How many times
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: u32,
     /// Trace no rays to the lights
     #[arg(long)]
     no_shadow: bool,
+}
+
+/// A [`Kernel`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Way {
+    /// Together as long as that is cheaper
+    Auto,
+    /// One by one, against eight boxes or parts at once
+    Single,
+    /// Always together
+    Packet,
+    /// One by one, without the CPU's own instructions
+    Scalar,
+}
+
+impl Way {
+    fn kernel(self) -> Kernel {
+        match self {
+            Self::Auto => Kernel::Auto,
+            Self::Single => Kernel::Single,
+            Self::Packet => Kernel::Packet,
+            Self::Scalar => Kernel::Scalar,
+        }
+    }
 }
 
 impl BenchArgs {
@@ -77,7 +105,8 @@ pub(super) fn run(args: &BenchArgs) -> Done {
         let (name, scene) = args.scene()?;
         write_stdout(tree(&name, &scene).as_bytes())?;
         for number in 1..=args.rounds {
-            let round = Round::of(&scene, resolution, NonZeroU32::new(args.samples).unwrap_or(NonZeroU32::MIN));
+            let samples = NonZeroU32::new(args.samples).unwrap_or(NonZeroU32::MIN);
+            let round = Round::of(args.kernel.kernel(), &scene, resolution, samples);
             write_stdout(round.line(number).as_bytes())?;
         }
         Ok(())
@@ -102,9 +131,9 @@ struct Round {
 }
 
 impl Round {
-    fn of(scene: &Scene, resolution: Resolution, samples: NonZeroU32) -> Self {
+    fn of(kernel: Kernel, scene: &Scene, resolution: Resolution, samples: NonZeroU32) -> Self {
         let start = Instant::now();
-        let counts = count(scene, &scene.camera, resolution, samples);
+        let counts = count(kernel, scene, &scene.camera, resolution, samples);
         let trace = start.elapsed();
         let start = Instant::now();
         let light = render(scene, &scene.camera, resolution, samples);

@@ -4,7 +4,7 @@ use super::pixel::Sum;
 use super::{Raster, Tile};
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::hit::{self, Hit};
+use crate::hit::{self, Hit, Kernel};
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::{self, TO_THE_LIGHT, shadow_ray};
@@ -40,12 +40,13 @@ impl Add for Counts {
     }
 }
 
-/// Traces the eye rays of [`render`](super::render) with so many samples of each pixel, and, if the scene has shadows, one
-/// ray from each hit to each light, also where the surface faces away from it; on the threads of the current rayon pool.
-pub fn count(scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
+/// Traces the eye rays of [`render`](super::render) in that way with so many samples of each pixel, and, if the scene has
+/// shadows, one ray from each hit to each light, also where the surface faces away from it; on the threads of the current
+/// rayon pool.
+pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
     let raster = Raster::<Sum>::new(camera, resolution, 1);
     let tiles = raster.tiles();
-    let tile = |buffers: &mut Buffers, tile: &Tile| raster.count_tile(scene, 0..samples.get(), tile, buffers);
+    let tile = |buffers: &mut Buffers, tile: &Tile| raster.count_tile(kernel, scene, 0..samples.get(), tile, buffers);
     let counts: Vec<_> = match rayon::current_num_threads() {
         1 => {
             let mut buffers = Buffers::default();
@@ -68,13 +69,20 @@ struct Buffers {
 }
 
 impl Raster<Sum> {
-    fn count_tile(&self, scene: &Scene, samples: Range<u32>, tile: &Tile, buffers: &mut Buffers) -> Counts {
+    fn count_tile(
+        &self,
+        kernel: Kernel,
+        scene: &Scene,
+        samples: Range<u32>,
+        tile: &Tile,
+        buffers: &mut Buffers,
+    ) -> Counts {
         let places: Vec<_> = tile.places().collect();
         let mut counts = Counts::default();
         for sample in samples {
             self.make_eye_rays(&places, sample, &mut buffers.rays);
-            hit::closest_hits(scene, &buffers.rays, &mut buffers.hits);
-            counts = counts + buffers.count(scene);
+            hit::closest_hits_by(kernel, scene, &buffers.rays, &mut buffers.hits);
+            counts = counts + buffers.count(kernel, scene);
         }
         counts
     }
@@ -82,7 +90,7 @@ impl Raster<Sum> {
 
 impl Buffers {
     /// The rays and their hits, and the shadow rays that begin there.
-    fn count(&mut self, scene: &Scene) -> Counts {
+    fn count(&mut self, kernel: Kernel, scene: &Scene) -> Counts {
         let Self { rays, hits, points, shadow_rays, blocked } = self;
         let mut counts = Counts {
             rays: rays.len() as u64,
@@ -96,7 +104,7 @@ impl Buffers {
         for light in scene.lights.iter().filter(|_| scene.shadows) {
             shadow_rays.clear();
             shadow_rays.extend(points.iter().flatten().map(|point| shadow_ray(light, point)));
-            hit::any_hits(scene, shadow_rays, TO_THE_LIGHT, blocked);
+            hit::any_hits_by(kernel, scene, shadow_rays, TO_THE_LIGHT, blocked);
             counts.rays += shadow_rays.len() as u64;
             counts.lit += blocked.iter().filter(|&&blocked| !blocked).count() as u64;
         }

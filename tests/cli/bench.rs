@@ -36,10 +36,12 @@ fn it_times_what_frame_shows() {
         let places = (0..40).flat_map(|y| (0..60).map(move |x| ((x as f32 + 0.5) / 60.0, (y as f32 + 0.5) / 40.0)));
         let hits: Vec<_> = places.filter_map(|(x, y)| closest_hit(&scene, &eye_rays.through(x, y))).collect();
         let depths: f64 = hits.iter().map(|hit| f64::from(hit.t)).sum();
-        let text = folder.run(&format!("bench {path} --pixels 60x40 --rounds 2 --threads 2")).text();
-        let rounds = rounds(&text);
-        assert_eq!(rounds.len(), 2, "{text}");
-        for round in rounds {
+        let flags = ["--threads 2", "--threads 1", "--kernel single", "--kernel packet", "--kernel scalar"];
+        let texts = flags.map(|flags| folder.run(&format!("bench {path} --pixels 60x40 --rounds 2 {flags}")).text());
+        for text in texts {
+            let rounds = rounds(&text);
+            assert_eq!(rounds.len(), 2, "{text}");
+            let round = &rounds[1];
             assert_eq!(round["hash"], format!("{:016x}", light.hash()), "{path}: {text}");
             assert_eq!(round["hits"], hits.len().to_string(), "{path}: {text}");
             let said: f64 = round["depths"].parse().expect("a number");
@@ -74,5 +76,6 @@ fn what_is_wrong_is_said() {
     folder.run("bench none.ron").fails(2, "none.ron");
     folder.run("bench --scene four").is_misused("three");
     folder.run("bench --pixels 65536x65536").fails(2, "too large");
+    folder.run("bench --kernel best").is_misused("scalar");
     folder.run("bench --rounds 0").is_misused("--rounds");
 }
