@@ -2,6 +2,7 @@
 //!
 //! World space is right-handed. Angles are radians here, degrees where a person writes them.
 
+use crate::lanes::{Number, Vector};
 use crate::ray::Ray;
 use glam::{DVec3, Vec2, Vec3};
 use std::fmt;
@@ -282,7 +283,18 @@ impl EyeRays {
     /// The ray through the point (qu, qv) of the unit square, (0, 0) being the picture's lower left corner:
     /// q = q0 + w qu u + h qv v. Its direction is q - eye, whose part along -w is 1: t is the depth.
     pub fn through(&self, qu: f32, qv: f32) -> Ray {
-        Ray { origin: self.eye, direction: self.q0 + self.across * qu + self.upward * qv }
+        Ray { origin: self.eye, direction: self.direction(qu, qv).into() }
+    }
+
+    /// The direction of the ray [`through`](Self::through) a point, or of several.
+    #[inline(always)]
+    pub fn direction<N: Number>(&self, qu: N, qv: N) -> Vector<N> {
+        Vector::splat(self.q0) + Vector::splat(self.across) * qu + Vector::splat(self.upward) * qv
+    }
+
+    /// Where all of them begin.
+    pub fn eye(&self) -> Vec3 {
+        self.eye
     }
 
     /// By how much the direction changes from a pixel to the next one across and the next one upward, in a picture of so

@@ -4,8 +4,8 @@
 //! of the ways shows in what is found.
 
 use crate::bvh::{GROUPS, Stack};
-use crate::lanes::{LANES, Lanes};
-use crate::ray::{Interval, Ray};
+use crate::lanes::{Eight, LANES, Lanes, set_bits};
+use crate::ray::{EightRays, Interval, Ray};
 use crate::scene::{PartId, Parts, Scene};
 use crate::shape::Part;
 use crate::simd::{self, Instructions, Work};
@@ -47,40 +47,62 @@ pub enum Kernel {
     Scalar,
 }
 
-/// The closest hit of each ray, on its half line; of two at the same t, what comes first in the scene.
-pub fn closest_hits(scene: &Scene, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
-    closest_hits_by(Kernel::Auto, scene, rays, hits);
+/// What eight rays have met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EightHits {
+    /// Where on the ray, of those that have met anything.
+    pub t: Eight,
+    /// The place of the part that was met, or [`NOTHING`](Self::NOTHING).
+    pub(crate) places: [u32; LANES],
 }
 
-/// [`closest_hits`] in that way.
-pub fn closest_hits_by(kernel: Kernel, scene: &Scene, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
+impl EightHits {
+    /// No part's place.
+    pub(crate) const NOTHING: u32 = u32::MAX;
+
+    /// Which of them have met anything, a bit for each.
+    #[inline(always)]
+    pub fn met(&self) -> u32 {
+        (0..LANES).fold(0, |met, lane| met | u32::from(self.places[lane] != Self::NOTHING) << lane)
+    }
+
+    /// What one of them has met.
+    ///
+    /// # Panics
+    /// In another scene than that it was found in; or if there are not so many.
+    pub fn hit(&self, scene: &Scene, lane: usize) -> Option<Hit> {
+        let place = self.places[lane];
+        (place != Self::NOTHING).then(|| {
+            let PartId { object, part } = scene.parts().id(place);
+            Hit { t: self.t.0[lane], object, part }
+        })
+    }
+}
+
+/// The closest hit of each ray that is asked about, on its half line; of two at the same t, what comes first in the scene.
+pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mut Vec<EightHits>) {
     hits.clear();
     kernel.run(ClosestHits { kernel, parts: scene.parts(), rays, hits });
 }
 
-/// Whether each ray meets anything inside the interval.
-pub fn any_hits(scene: &Scene, rays: &[Ray], within: Interval, found: &mut Vec<bool>) {
-    any_hits_by(Kernel::Auto, scene, rays, within, found);
-}
-
-/// [`any_hits`] in that way.
-pub fn any_hits_by(kernel: Kernel, scene: &Scene, rays: &[Ray], within: Interval, found: &mut Vec<bool>) {
-    found.clear();
-    kernel.run(AnyHits { kernel, parts: scene.parts(), rays, within, found });
+/// Which of the rays that are asked about meet anything inside the interval: a bit for each.
+pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Interval, met: &mut Vec<u32>) {
+    met.clear();
+    kernel.run(AnyHits { kernel, parts: scene.parts(), rays, within, met });
 }
 
 /// The closest hit of one ray.
 pub fn closest_hit(scene: &Scene, ray: &Ray) -> Option<Hit> {
     let mut hits = Vec::with_capacity(1);
-    closest_hits_by(Kernel::Single, scene, std::slice::from_ref(ray), &mut hits);
-    hits.pop().flatten()
+    closest_hits(Kernel::Single, scene, &[EightRays::of(std::slice::from_ref(ray))], &mut hits);
+    hits.first()?.hit(scene, 0)
 }
 
 /// Whether one ray meets anything inside the interval.
 pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
-    let mut found = Vec::with_capacity(1);
-    any_hits_by(Kernel::Single, scene, std::slice::from_ref(ray), within, &mut found);
-    found == [true]
+    let mut met = Vec::with_capacity(1);
+    any_hits(Kernel::Single, scene, &[EightRays::of(std::slice::from_ref(ray))], within, &mut met);
+    met == [1]
 }
 
 impl Kernel {
@@ -89,10 +111,10 @@ impl Kernel {
         simd::run_with(instructions, work)
     }
 
-    /// Whether so many rays go together.
-    fn is_together(self, rays: usize) -> bool {
+    /// Whether so many groups of rays go together.
+    fn is_together(self, groups: usize) -> bool {
         match self {
-            Self::Auto => rays > LANES,
+            Self::Auto => groups > 1,
             Self::Packet => true,
             Self::Single | Self::Scalar => false,
         }
@@ -102,14 +124,11 @@ impl Kernel {
 const CLOSEST: bool = false;
 const ANY: bool = true;
 
-/// How many rays are a packet.
-const PACKET: usize = GROUPS * LANES;
-
 struct ClosestHits<'w> {
     kernel: Kernel,
     parts: &'w Parts,
-    rays: &'w [Ray],
-    hits: &'w mut Vec<Option<Hit>>,
+    rays: &'w [EightRays],
+    hits: &'w mut Vec<EightHits>,
 }
 
 impl Work for ClosestHits<'_> {
@@ -119,21 +138,23 @@ impl Work for ClosestHits<'_> {
     fn run<N: Lanes>(self) {
         let Self { kernel, parts, rays, hits } = self;
         let mut stacks = Stacks::default();
-        let hit = |(t, place): (f32, Option<u32>)| {
-            let PartId { object, part } = parts.id(place?);
-            Some(Hit { t, object, part })
-        };
-        for rays in rays.chunks(PACKET) {
+        for rays in rays.chunks(GROUPS) {
             if kernel.is_together(rays.len()) {
                 let mut packet = Together::<N, CLOSEST>::new(kernel, parts, rays, Interval::IN_FRONT);
                 packet.trace(&mut stacks);
-                hits.extend(packet.found().map(hit));
-            } else {
-                for ray in rays {
-                    let mut ray = Alone::<N, CLOSEST>::new(parts, ray, Interval::IN_FRONT);
+                packet.tell_hits(hits);
+                continue;
+            }
+            for rays in rays {
+                let mut hit = EightHits { t: Eight([f32::MAX; LANES]), places: [EightHits::NOTHING; LANES] };
+                for lane in set_bits(rays.asked) {
+                    let mut ray = Alone::<N, CLOSEST>::new(parts, &rays.ray(lane), Interval::IN_FRONT);
                     ray.trace(&mut stacks.alone);
-                    hits.push(hit(ray.found()));
+                    if let (t, Some(place)) = ray.found() {
+                        (hit.t.0[lane], hit.places[lane]) = (t, place);
+                    }
                 }
+                hits.push(hit);
             }
         }
     }
@@ -142,9 +163,9 @@ impl Work for ClosestHits<'_> {
 struct AnyHits<'w> {
     kernel: Kernel,
     parts: &'w Parts,
-    rays: &'w [Ray],
+    rays: &'w [EightRays],
     within: Interval,
-    found: &'w mut Vec<bool>,
+    met: &'w mut Vec<u32>,
 }
 
 impl Work for AnyHits<'_> {
@@ -152,20 +173,24 @@ impl Work for AnyHits<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) {
-        let Self { kernel, parts, rays, within, found } = self;
+        let Self { kernel, parts, rays, within, met } = self;
         let mut stacks = Stacks::default();
-        for rays in rays.chunks(PACKET) {
+        for rays in rays.chunks(GROUPS) {
             // A packet knows of nothing behind the origins.
             if kernel.is_together(rays.len()) && within.min >= 0.0 {
                 let mut packet = Together::<N, ANY>::new(kernel, parts, rays, within);
                 packet.trace(&mut stacks);
-                found.extend(packet.found().map(|(_, place)| place.is_some()));
-            } else {
-                for ray in rays {
-                    let mut ray = Alone::<N, ANY>::new(parts, ray, within);
+                packet.tell_met(met);
+                continue;
+            }
+            for rays in rays {
+                let mut of_group = 0;
+                for lane in set_bits(rays.asked) {
+                    let mut ray = Alone::<N, ANY>::new(parts, &rays.ray(lane), within);
                     ray.trace(&mut stacks.alone);
-                    found.push(ray.found().1.is_some());
+                    of_group |= u32::from(ray.found().1.is_some()) << lane;
                 }
+                met.push(of_group);
             }
         }
     }

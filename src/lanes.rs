@@ -25,6 +25,9 @@ pub trait Number:
     /// Without its sign.
     fn abs(self) -> Self;
 
+    /// The greatest whole number that is not greater.
+    fn floor(self) -> Self;
+
     /// Whether this is less. NaN is not.
     fn lt(self, other: Self) -> Self::Mask;
 
@@ -75,6 +78,9 @@ pub trait Lanes: Number<Mask: Answers> {
 
     /// To memory.
     fn store(self) -> Eight;
+
+    /// The answers that these [bits](Answers::bits) stand for.
+    fn answers(bits: u32) -> Self::Mask;
 }
 
 /// Eight answers.
@@ -99,6 +105,11 @@ impl Number for f32 {
     #[inline(always)]
     fn abs(self) -> Self {
         self.abs()
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        self.floor()
     }
 
     #[inline(always)]
@@ -140,6 +151,20 @@ impl Mask for bool {
 /// How many numbers go side by side.
 pub const LANES: usize = 8;
 
+/// A bit for each of them.
+pub const ALL: u32 = (1 << LANES) - 1;
+
+/// Which bits are set, the lowest first.
+#[inline(always)]
+pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lowest = bits.trailing_zeros() as usize % LANES;
+        let is_any = bits != 0;
+        bits &= bits.wrapping_sub(1);
+        is_any.then_some(lowest)
+    })
+}
+
 /// Eight numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
@@ -175,6 +200,9 @@ impl Neg for Eight {
 }
 
 impl Eight {
+    /// Eight times nothing.
+    pub const ZERO: Self = Self([0.0; LANES]);
+
     /// The least of them; none is NaN.
     #[inline(always)]
     pub fn least(self) -> f32 {
@@ -213,6 +241,11 @@ impl Number for Eight {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(f32::abs))
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        Self(self.0.map(f32::floor))
     }
 
     #[inline(always)]
@@ -255,6 +288,11 @@ impl Lanes for Eight {
     #[inline(always)]
     fn store(self) -> Eight {
         self
+    }
+
+    #[inline(always)]
+    fn answers(bits: u32) -> EightAnswers {
+        EightAnswers(from_fn(|lane| if bits >> lane & 1 == 1 { u32::MAX } else { 0 }))
     }
 }
 
@@ -364,6 +402,9 @@ impl<N: Number> Vector<N> {
 }
 
 impl Vector<Eight> {
+    /// Eight times nothing.
+    pub const ZERO: Self = Self { x: Eight::ZERO, y: Eight::ZERO, z: Eight::ZERO };
+
     /// Eight vectors side by side.
     #[inline(always)]
     pub fn of(vectors: [Vec3; LANES]) -> Self {
@@ -374,6 +415,12 @@ impl Vector<Eight> {
     #[inline(always)]
     pub fn load<N: Lanes>(&self) -> Vector<N> {
         Vector { x: N::load(&self.x), y: N::load(&self.y), z: N::load(&self.z) }
+    }
+
+    /// Puts it in that place.
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, v: Vec3) {
+        (self.x.0[lane], self.y.0[lane], self.z.0[lane]) = (v.x, v.y, v.z);
     }
 
     /// One of the eight.

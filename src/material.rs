@@ -4,7 +4,7 @@
 //! the same colour from every viewpoint.
 
 use crate::color::LinearRgb;
-use crate::shape::SurfacePoint;
+use crate::lanes::Number;
 
 /// A diffuse surface, plain or patterned. Reflectances are linear, each band in 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,21 +25,29 @@ pub enum Material {
     },
 }
 
-const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
-
 impl Material {
     /// What an object is made of when nothing is said: a light grey.
-    pub const DEFAULT: Self = Self::Diffuse(DEFAULT_REFLECTANCE);
+    pub const DEFAULT: Self = Self::Diffuse(Self::DEFAULT_REFLECTANCE);
 
-    /// The diffuse reflectance at a point of the surface.
-    pub fn reflectance(&self, point: &SurfacePoint) -> LinearRgb {
+    /// That of [`DEFAULT`](Self::DEFAULT).
+    pub const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
+
+    /// The diffuse reflectances of red, green and blue where a pattern has the coordinates `uv`, and what is seen at once
+    /// reaches over so much of them: zero for a point alone. Of what is [`Own`](Self::Own) those of who has none.
+    #[inline(always)]
+    pub fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
+        let bands = |LinearRgb { r, g, b }: LinearRgb| [N::splat(r), N::splat(g), N::splat(b)];
         match *self {
-            Self::Diffuse(reflectance) => reflectance,
-            Self::Own => point.own_reflectance.unwrap_or(DEFAULT_REFLECTANCE),
+            Self::Diffuse(reflectance) => bands(reflectance),
+            Self::Own => bands(Self::DEFAULT_REFLECTANCE),
             Self::Checker { a, b, size } => {
-                let (middle, width) = (point.uv / size, point.footprint / size);
-                let balance = mean_sign(middle.x, width.x) * mean_sign(middle.y, width.y);
-                a * (0.5 + 0.5 * balance) + b * (0.5 - 0.5 * balance)
+                let size = N::splat(size);
+                let balance =
+                    mean_sign(uv[0] / size, footprint[0] / size) * mean_sign(uv[1] / size, footprint[1] / size);
+                let half = N::splat(0.5);
+                let [of_a, of_b] = [half + half * balance, half - half * balance];
+                let ([r0, g0, b0], [r1, g1, b1]) = (bands(a), bands(b));
+                [r0 * of_a + r1 * of_b, g0 * of_a + g1 * of_b, b0 * of_a + b1 * of_b]
             }
         }
     }
@@ -48,32 +56,32 @@ impl Material {
 /// The mean over an interval of what is 1 from each even whole number to the next, and -1 in between. So a pattern too
 /// fine for its pixels turns grey, instead of into another one (a box filter; in a plane that is the product of the two
 /// axes' means).
-fn mean_sign(middle: f32, width: f32) -> f32 {
-    // Beyond, the mean is as good as zero, and intervals may be infinite. (The negation turns NaN away too.)
-    if !(width < 1e6) {
-        return 0.0;
-    }
-    let (start, end) = (middle - 0.5 * width, middle + 0.5 * width);
+#[inline(always)]
+fn mean_sign<N: Number>(middle: N, width: N) -> N {
+    let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5) * width);
+    let (start, end) = (middle - half, middle + half);
     let (first, last) = (start.floor(), end.floor());
-    let sign = if is_even(first) { 1.0 } else { -1.0 };
-    if first == last {
-        sign
-    } else if last - first == 1.0 {
-        // Over one edge: what lies before it less what lies behind it.
-        sign * ((last - start) - (end - last)) / (end - start)
-    } else {
-        (integrated_sign(end) - integrated_sign(start)) / (end - start)
-    }
+    let sign = N::select(is_even(first), one, -one);
+    // Over one edge: what lies before it less what lies behind it.
+    let over_one = sign * ((last - start) - (end - last)) / (end - start);
+    let over_more = (integrated_sign(end) - integrated_sign(start)) / (end - start);
+    let over_edges = N::select((last - first).same(one), over_one, over_more);
+    let mean = N::select(first.same(last), sign, over_edges);
+    // Beyond, the mean is as good as zero, and intervals may be infinite, or not a number.
+    N::select(width.lt(N::splat(1e6)), mean, zero)
 }
 
 /// The integral of that sign from 0: up and down again.
-fn integrated_sign(x: f32) -> f32 {
-    let in_period = x - 2.0 * (0.5 * x).floor();
-    1.0 - (in_period - 1.0).abs()
+#[inline(always)]
+fn integrated_sign<N: Number>(x: N) -> N {
+    let (one, two) = (N::splat(1.0), N::splat(2.0));
+    let in_period = x - two * (N::splat(0.5) * x).floor();
+    one - (in_period - one).abs()
 }
 
 /// For whole numbers of any size; those above 2^24 are all even in f32.
-fn is_even(whole: f32) -> bool {
-    let half = whole * 0.5;
-    half.floor() == half
+#[inline(always)]
+fn is_even<N: Number>(whole: N) -> N::Mask {
+    let half = whole * N::splat(0.5);
+    half.floor().same(half)
 }

@@ -206,6 +206,11 @@ impl MeshFile {
         &self.triangles
     }
 
+    /// Whether the file gives normals.
+    pub fn has_normals(&self) -> bool {
+        !self.normals.values().is_empty()
+    }
+
     /// The normals at a triangle's corners, of length 1; `None` if the file does not give all three: it is flat.
     pub fn normals_of(&self, triangle: usize) -> Option<[Vec3; 3]> {
         self.normals.of(triangle, &self.triangles).filter(|normals| normals.iter().all(|&n| n != Vec3::ZERO))

@@ -1,6 +1,6 @@
 //! A ray: the half line { origin + t * direction | t >= 0 } of the lecture.
 
-use crate::lanes::{Lanes, Mask, Number, Vector};
+use crate::lanes::{ALL, Eight, LANES, Lanes, Mask, Number, Vector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
@@ -67,16 +67,46 @@ impl Rays<f32> {
 }
 
 impl<N: Lanes> Rays<N> {
-    /// Of eight rays, or of fewer: the last of them then stands for those that are lacking.
+    /// Of eight.
+    #[inline(always)]
+    pub fn load(rays: &EightRays) -> Self {
+        Self::new(rays.origin.load(), rays.direction.load())
+    }
+}
+
+/// Eight rays side by side, or fewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EightRays {
+    /// Where each begins.
+    pub origin: Vector<Eight>,
+    /// Where it goes; not zero.
+    pub direction: Vector<Eight>,
+    /// Which of them are asked about, a bit for each, the first the lowest. In the place of the others stands one of
+    /// these; if there are none, anything.
+    pub asked: u32,
+}
+
+impl EightRays {
+    /// Of eight rays, or of fewer.
     ///
     /// # Panics
     /// If there is none.
-    #[inline(always)]
     pub fn of(rays: &[Ray]) -> Self {
         let ray = |lane: usize| &rays[lane.min(rays.len() - 1)];
-        let origin = Vector::of(from_fn(|lane| ray(lane).origin));
-        let direction = Vector::of(from_fn(|lane| ray(lane).direction));
-        Self::new(origin.load(), direction.load())
+        Self {
+            origin: Vector::of(from_fn(|lane| ray(lane).origin)),
+            direction: Vector::of(from_fn(|lane| ray(lane).direction)),
+            asked: ALL >> LANES.saturating_sub(rays.len()),
+        }
+    }
+
+    /// One of them.
+    ///
+    /// # Panics
+    /// If there is none in that place.
+    #[inline(always)]
+    pub fn ray(&self, lane: usize) -> Ray {
+        Ray { origin: self.origin.of_lane(lane), direction: self.direction.of_lane(lane) }
     }
 }
 

@@ -8,13 +8,13 @@
 //! more samples does depend on others: that is decided between two passes over the whole picture.
 
 use crate::camera::{Camera, EyeRays};
-use crate::color::LinearRgb;
 use crate::framebuffer::{Framebuffer, Resolution};
-use crate::hit::{self, Hit};
-use crate::ray::Ray;
+use crate::hit::{self, EightHits, Kernel};
+use crate::lanes::{ALL, Eight, LANES, Lanes, Vector};
+use crate::ray::EightRays;
 use crate::scene::Scene;
-use crate::shade::{self, Arriving, ShadowRays};
-use crate::shape::SurfacePoint;
+use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
+use crate::simd::{self, Work};
 use glam::Vec3;
 use pixel::{Pixel, Seen, Sum, Watched};
 use rayon::prelude::*;
@@ -185,12 +185,12 @@ struct Raster<P> {
 /// The arrays between the steps, kept from tile to tile.
 #[derive(Default)]
 struct Buffers {
-    rays: Vec<Ray>,
-    hits: Vec<Option<Hit>>,
-    points: Vec<Option<SurfacePoint>>,
-    arriving: Vec<Arriving>,
-    light: Vec<LinearRgb>,
+    rays: Vec<EightRays>,
+    hits: Vec<EightHits>,
+    points: Vec<EightPoints>,
     shadows: ShadowRays,
+    arriving: Vec<EightArriving>,
+    lights: Vec<EightLights>,
 }
 
 impl<P: Pixel> Raster<P> {
@@ -252,31 +252,26 @@ impl<P: Pixel> Raster<P> {
             if crew.is_cancelled() {
                 return None;
             }
-            let Buffers { rays: eye_rays, hits, points, arriving, light, shadows } = buffers;
+            let Buffers { rays: eye_rays, hits, points, shadows, arriving, lights } = buffers;
             self.make_eye_rays(&places, sample, eye_rays);
-            hit::closest_hits(scene, eye_rays, hits);
-            shade::surface_points(scene, eye_rays, self.steps(sample), hits, points);
+            hit::closest_hits(Kernel::Auto, scene, eye_rays, hits);
+            shade::surface_points(scene, eye_rays, hits, points);
             let shadow_rays = shade::arriving_light(scene, points, shadows, arriving);
-            shade::reflect(scene, eye_rays, hits, points, arriving, light);
+            shade::reflect(scene, eye_rays, self.steps(sample), hits, points, arriving, lights);
             for (at, pixel) in pixels.iter_mut().enumerate() {
-                pixel.add(light[at], || Seen::of(hits[at], points[at].as_ref(), arriving[at]));
+                let (group, lane) = (at / LANES, at % LANES);
+                let seen = || Seen::of(points[group].seen(lane), arriving[group].lit_by[lane]);
+                pixel.add(shade::light_of(&lights[group], lane), seen);
             }
-            rays += (eye_rays.len() + shadow_rays) as u64;
+            rays += pixels.len() as u64 + shadow_rays;
         }
         Some(TracedTile { places, pixels, cost: Cost { rays, work: start.elapsed() } })
     }
 
     /// One eye ray for each pixel.
-    fn make_eye_rays(&self, places: &[(u32, u32)], sample: u32, rays: &mut Vec<Ray>) {
-        let (sx, sy) = sample_position(sample);
-        let (width, height) = (self.resolution.width as f32, self.resolution.height as f32);
-        let scale = self.scale as f32;
+    fn make_eye_rays(&self, places: &[(u32, u32)], sample: u32, rays: &mut Vec<EightRays>) {
         rays.clear();
-        rays.extend(places.iter().map(|&(x, y)| {
-            // Rows are counted from the top, the lecture's q_v from the bottom.
-            let (x, y) = ((x as f32 + sx) * scale, (y as f32 + sy) * scale);
-            self.eye_rays.through(x / width, (height - y) / height)
-        }));
+        simd::run(MakeEyeRays { raster: self, places, sample, rays });
     }
 
     /// By how much the direction changes from an eye ray to those beside it.
@@ -306,6 +301,37 @@ impl<P: Pixel> Raster<P> {
         let rows = (0..height).map(|y| y / self.scale);
         let pixels = rows.flat_map(|y| (0..width).map(move |x| self.pixel(x / self.scale, y).mean()));
         Framebuffer { resolution: self.resolution, pixels: pixels.collect() }
+    }
+}
+
+struct MakeEyeRays<'w, P> {
+    raster: &'w Raster<P>,
+    places: &'w [(u32, u32)],
+    sample: u32,
+    rays: &'w mut Vec<EightRays>,
+}
+
+impl<P> Work for MakeEyeRays<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let Self { raster: Raster { resolution, scale, eye_rays, .. }, places, sample, rays } = self;
+        let (sx, sy) = sample_position(sample);
+        let (width, height) = (N::splat(resolution.width as f32), N::splat(resolution.height as f32));
+        let scale = N::splat(*scale as f32);
+        for places in places.chunks(LANES) {
+            let [mut xs, mut ys] = [Eight::ZERO; 2];
+            for lane in 0..LANES {
+                let (x, y) = places[lane.min(places.len() - 1)];
+                (xs.0[lane], ys.0[lane]) = (x as f32, y as f32);
+            }
+            // Rows are counted from the top, the lecture's q_v from the bottom.
+            let (x, y) = ((N::load(&xs) + N::splat(sx)) * scale, (N::load(&ys) + N::splat(sy)) * scale);
+            let direction = eye_rays.direction(x / width, (height - y) / height).store();
+            let asked = ALL >> (LANES - places.len());
+            rays.push(EightRays { origin: Vector::splat(eye_rays.eye()), direction, asked });
+        }
     }
 }
 

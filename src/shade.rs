@@ -11,194 +11,256 @@
 //! Nothing in it depends on where the eye is, but for the side of the surface that it sees.
 
 use crate::color::LinearRgb;
-use crate::hit::{self, Hit};
-use crate::lanes::{Eight, LANES, Lanes};
+use crate::hit::{self, EightHits, Kernel};
+use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Number, Vector, set_bits};
 use crate::light::{Falloff, PointLight};
-use crate::ray::{Interval, Ray};
-use crate::scene::{Background, Scene};
-use crate::shape::{Balls, Corners, Part, SideBySide, Surface, SurfacePoint, eight_points};
+use crate::material::Material;
+use crate::ray::{EightRays, Interval, Ray};
+use crate::scene::{Background, Object, Scene};
+use crate::shape::{Shape, SurfacePoint};
 use crate::simd::{self, Work};
 use glam::Vec3;
 
-/// The surface at each hit. The rays' neighbours in the picture differ from them by these steps.
-pub fn surface_points(
-    scene: &Scene,
-    rays: &[Ray],
-    steps: [Vec3; 2],
-    hits: &[Option<Hit>],
-    points: &mut Vec<Option<SurfacePoint>>,
-) {
-    points.clear();
-    points.resize(hits.len(), None);
-    simd::run(SurfacePoints { scene, rays, steps, hits, points });
+mod points;
+
+pub use points::{EightPoints, surface_points};
+
+/// The light that eight rays bring, band by band.
+pub type EightLights = [Eight; 3];
+
+/// One of the eight.
+#[inline(always)]
+pub fn light_of([r, g, b]: &EightLights, lane: usize) -> LinearRgb {
+    LinearRgb::new(r.0[lane], g.0[lane], b.0[lane])
 }
 
-struct SurfacePoints<'w> {
-    scene: &'w Scene,
-    rays: &'w [Ray],
-    steps: [Vec3; 2],
-    hits: &'w [Option<Hit>],
-    points: &'w mut [Option<SurfacePoint>],
-}
-
-impl Work for SurfacePoints<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<N: Lanes>(self) {
-        let Self { scene, rays, steps, hits, points } = self;
-        let (mut spheres, mut triangles) = (Queue::<Balls<Eight>>::default(), Queue::<Corners<Eight>>::default());
-        for (at, (ray, hit)) in rays.iter().zip(hits).enumerate() {
-            let Some(hit) = *hit else { continue };
-            match hit.surface(scene) {
-                Part::Sphere(sphere) => spheres.push(at, ray, hit, *sphere),
-                Part::Triangle(triangle) => triangles.push(at, ray, hit, *triangle),
-                Part::Facet(facet) => triangles.push(at, ray, hit, *facet.triangle()),
-                Part::Plane(plane) => {
-                    let footprint = plane.footprint(ray, hit.t, steps);
-                    points[at] = Some(SurfacePoint { footprint, ..plane.at_crossing(ray, hit.t) });
-                }
-            }
-            if spheres.is_full() {
-                spheres.answer::<N>(scene, points);
-            }
-            if triangles.is_full() {
-                triangles.answer::<N>(scene, points);
-            }
-        }
-        spheres.answer::<N>(scene, points);
-        triangles.answer::<N>(scene, points);
-    }
-}
-
-/// Up to eight hits of one kind of surface.
-struct Queue<S: SideBySide> {
-    places: Vec<usize>,
-    rays: Vec<Ray>,
-    hits: Vec<Hit>,
-    shapes: Vec<S::Shape>,
-}
-
-impl<S: SideBySide> Default for Queue<S> {
-    fn default() -> Self {
-        Self { places: Vec::new(), rays: Vec::new(), hits: Vec::new(), shapes: Vec::new() }
-    }
-}
-
-impl<S: SideBySide> Queue<S> {
-    #[inline(always)]
-    fn push(&mut self, place: usize, ray: &Ray, hit: Hit, shape: S::Shape) {
-        self.places.push(place);
-        self.rays.push(*ray);
-        self.hits.push(hit);
-        self.shapes.push(shape);
-    }
-
-    #[inline(always)]
-    fn is_full(&self) -> bool {
-        self.places.len() == LANES
-    }
-
-    #[inline(always)]
-    fn answer<N: Lanes>(&mut self, scene: &Scene, points: &mut [Option<SurfacePoint>]) {
-        if self.places.is_empty() {
-            return;
-        }
-        let mut t = Eight([0.0; LANES]);
-        for (t, hit) in t.0.iter_mut().zip(&self.hits) {
-            *t = hit.t;
-        }
-        eight_points::<N, S>(&self.shapes, &self.rays, &t, |lane, point| {
-            points[self.places[lane]] = Some(self.hits[lane].surface(scene).finished(point));
-        });
-        self.places.clear();
-        self.rays.clear();
-        self.hits.clear();
-        self.shapes.clear();
-    }
+/// The light that arrives at eight points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EightArriving {
+    /// ambient + sum over lights of V * I * max(0, n.l) / d^2.
+    pub light: EightLights,
+    /// Which lights it comes from, a bit for each; the thirty-third shares its bit with the first, and so on.
+    pub lit_by: [u32; LANES],
 }
 
 /// The arrays of one light's shadow rays.
 #[derive(Default)]
 pub struct ShadowRays {
-    /// Which point each ray belongs to, and the light that it brings if nothing is in its way.
-    arriving: Vec<(usize, LinearRgb)>,
-    rays: Vec<Ray>,
-    blocked: Vec<bool>,
-}
-
-/// The light that arrives at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arriving {
-    /// ambient + sum over lights of V * I * max(0, n.l) / d^2.
-    pub light: LinearRgb,
-    /// Which lights it comes from, a bit for each; the thirty-third shares its bit with the first, and so on.
-    pub lit_by: u32,
+    rays: Vec<EightRays>,
+    /// The light that each brings if nothing is in its way.
+    lights: Vec<EightLights>,
+    /// V = 0, a bit for each.
+    blocked: Vec<u32>,
 }
 
 /// What arrives at each point. Returns the number of shadow rays that this took.
 pub fn arriving_light(
     scene: &Scene,
-    points: &[Option<SurfacePoint>],
+    points: &[EightPoints],
     shadows: &mut ShadowRays,
-    arriving: &mut Vec<Arriving>,
-) -> usize {
+    arriving: &mut Vec<EightArriving>,
+) -> u64 {
+    let LinearRgb { r, g, b } = scene.ambient;
+    let ambient = [r, g, b].map(|band| Eight([band; LANES]));
     let mut shadow_rays = 0;
     arriving.clear();
-    arriving.resize(points.len(), Arriving { light: scene.ambient, lit_by: 0 });
+    arriving.resize(points.len(), EightArriving { light: ambient, lit_by: [0; LANES] });
     for (number, light) in scene.lights.iter().enumerate() {
-        shadows.aim(light, points);
+        simd::run(Aim { light, points, shadows });
         shadow_rays += shadows.trace(scene);
-        for (&(point, light), &blocked) in shadows.arriving.iter().zip(&shadows.blocked) {
-            if !blocked {
-                arriving[point].light += light;
-                arriving[point].lit_by |= 1 << (number % 32);
-            }
-        }
+        simd::run(Arrive { number, shadows, arriving });
     }
     shadow_rays
 }
 
-impl ShadowRays {
-    /// A ray from each point that faces the light.
-    fn aim(&mut self, light: &PointLight, points: &[Option<SurfacePoint>]) {
-        self.arriving.clear();
-        self.rays.clear();
-        for (at, point) in points.iter().enumerate() {
-            let Some(point) = point else { continue };
-            let Some(incidence) = incidence(light, point) else { continue };
-            self.arriving.push((at, incidence.light));
-            self.rays.push(shadow_ray(light, point));
+/// The shadow rays of points that face a light.
+struct Aim<'w> {
+    light: &'w PointLight,
+    points: &'w [EightPoints],
+    shadows: &'w mut ShadowRays,
+}
+
+impl Work for Aim<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let Self { light, points, shadows: ShadowRays { rays, lights, .. } } = self;
+        rays.clear();
+        lights.clear();
+        for points in points {
+            let (faces, Falling { light: [r, g, b], .. }) =
+                falling::<N>(light, points.position.load(), points.normal.load());
+            rays.push(eight_shadow_rays::<N>(light, points, faces.bits() & points.met));
+            lights.push([r.store(), g.store(), b.store()]);
         }
     }
+}
 
-    /// V = 0 for each ray that meets an object before the light. Returns how many of them were traced.
-    fn trace(&mut self, scene: &Scene) -> usize {
+impl ShadowRays {
+    /// Finds out which rays meet an object before the light. Returns how many of them were traced.
+    fn trace(&mut self, scene: &Scene) -> u64 {
         if scene.shadows {
-            hit::any_hits(scene, &self.rays, TO_THE_LIGHT, &mut self.blocked);
-            self.rays.len()
+            hit::any_hits(Kernel::Auto, scene, &self.rays, TO_THE_LIGHT, &mut self.blocked);
+            count(&self.rays)
         } else {
             self.blocked.clear();
-            self.blocked.resize(self.rays.len(), false);
+            self.blocked.resize(self.rays.len(), 0);
             0
         }
     }
 }
 
-/// What goes to the eye: the reflected part of the light that arrives, or the background where nothing was hit.
+/// How many rays are asked about.
+pub fn count(rays: &[EightRays]) -> u64 {
+    rays.iter().map(|rays| u64::from(rays.asked.count_ones())).sum()
+}
+
+/// What the light of that number adds to what arrives.
+struct Arrive<'w> {
+    number: usize,
+    shadows: &'w ShadowRays,
+    arriving: &'w mut [EightArriving],
+}
+
+impl Work for Arrive<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let Self { number, shadows: ShadowRays { rays, lights, blocked }, arriving } = self;
+        for (at, arriving) in arriving.iter_mut().enumerate() {
+            let lit = rays[at].asked & !blocked[at];
+            for (sum, more) in arriving.light.iter_mut().zip(&lights[at]) {
+                let dark = N::load(sum);
+                *sum = N::select(N::answers(lit), dark + N::load(more), dark).store();
+            }
+            for (lane, lit_by) in arriving.lit_by.iter_mut().enumerate() {
+                *lit_by |= (lit >> lane & 1) << (number % 32);
+            }
+        }
+    }
+}
+
+/// A ray to the light from each point.
+pub fn shadow_rays(light: &PointLight, points: &[EightPoints], rays: &mut Vec<EightRays>) {
+    rays.clear();
+    simd::run(Shadows { light, points, rays });
+}
+
+struct Shadows<'w> {
+    light: &'w PointLight,
+    points: &'w [EightPoints],
+    rays: &'w mut Vec<EightRays>,
+}
+
+impl Work for Shadows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        for points in self.points {
+            self.rays.push(eight_shadow_rays::<N>(self.light, points, points.met));
+        }
+    }
+}
+
+/// [`shadow_ray`] from those of the points that are asked about.
+#[inline(always)]
+fn eight_shadow_rays<N: Lanes>(light: &PointLight, points: &EightPoints, asked: u32) -> EightRays {
+    let origin = points.position.load() + points.facing.load() * N::load(&points.clearance);
+    let direction = Vector::splat(light.position) - origin;
+    let rays = EightRays { origin: origin.store(), direction: direction.store(), asked };
+    if asked == ALL || asked == 0 {
+        return rays;
+    }
+    let (one, asked_about) = (rays.ray(asked.trailing_zeros() as usize % LANES), N::answers(asked));
+    EightRays {
+        origin: Vector::select(asked_about, origin, Vector::splat(one.origin)).store(),
+        direction: Vector::select(asked_about, direction, Vector::splat(one.direction)).store(),
+        asked,
+    }
+}
+
+/// What goes to the eye: the reflected part of the light that arrives, or the background where nothing was hit. The rays'
+/// neighbours in the picture differ from them by these steps.
 pub fn reflect(
     scene: &Scene,
-    rays: &[Ray],
-    hits: &[Option<Hit>],
-    points: &[Option<SurfacePoint>],
-    arriving: &[Arriving],
-    light: &mut Vec<LinearRgb>,
+    rays: &[EightRays],
+    steps: [Vec3; 2],
+    hits: &[EightHits],
+    points: &[EightPoints],
+    arriving: &[EightArriving],
+    lights: &mut Vec<EightLights>,
 ) {
-    light.clear();
-    light.extend(arriving.iter().enumerate().map(|(at, arriving)| match (hits[at], &points[at]) {
-        (Some(hit), Some(point)) => scene.objects()[hit.object as usize].material.reflectance(point) * arriving.light,
-        _ => background(scene, &rays[at]),
-    }));
+    lights.clear();
+    simd::run(Reflect { scene, rays, steps, hits, points, arriving, lights });
+}
+
+struct Reflect<'w> {
+    scene: &'w Scene,
+    rays: &'w [EightRays],
+    steps: [Vec3; 2],
+    hits: &'w [EightHits],
+    points: &'w [EightPoints],
+    arriving: &'w [EightArriving],
+    lights: &'w mut Vec<EightLights>,
+}
+
+impl Work for Reflect<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        for (at, points) in self.points.iter().enumerate() {
+            let mut light = [N::splat(0.0); 3];
+            if points.met != ALL {
+                light = backgrounds(self.scene, self.rays[at].direction.load());
+            }
+            let mut left = points.met;
+            while left != 0 {
+                let object = points.ids[left.trailing_zeros() as usize % LANES].object;
+                let same =
+                    set_bits(left).fold(0, |same, lane| same | u32::from(points.ids[lane].object == object) << lane);
+                let reflectance = self.reflectances::<N>(&self.scene.objects()[object as usize], at, same);
+                for (band, light) in light.iter_mut().enumerate() {
+                    let reflected = reflectance[band] * N::load(&self.arriving[at].light[band]);
+                    *light = N::select(N::answers(same), reflected, *light);
+                }
+                left &= !same;
+            }
+            let [r, g, b] = light;
+            self.lights.push([r.store(), g.store(), b.store()]);
+        }
+    }
+}
+
+impl Reflect<'_> {
+    /// The reflectances of an object at those of eight points that are its own.
+    #[inline(always)]
+    fn reflectances<N: Lanes>(&self, object: &Object, at: usize, own: u32) -> [N; 3] {
+        let points = &self.points[at];
+        match (&object.material, &object.shape) {
+            (Material::Own, shape) => {
+                let mut bands = [Eight::ZERO; 3];
+                for lane in set_bits(own) {
+                    let reflectance = shape.part(points.ids[lane].part).own_reflectance(points.uv(lane));
+                    let LinearRgb { r, g, b } = reflectance.unwrap_or(Material::DEFAULT_REFLECTANCE);
+                    [bands[0].0[lane], bands[1].0[lane], bands[2].0[lane]] = [r, g, b];
+                }
+                [N::load(&bands[0]), N::load(&bands[1]), N::load(&bands[2])]
+            }
+            (material, shape) => {
+                let uv = [N::load(&points.uv[0]), N::load(&points.uv[1])];
+                let mut footprint = [N::splat(0.0); 2];
+                if let Shape::Plane(plane) = shape {
+                    let direction = self.rays[at].direction.load();
+                    footprint = plane.footprint(direction, N::load(&self.hits[at].t), self.steps);
+                }
+                material.reflectance(uv, footprint)
+            }
+        }
+    }
 }
 
 /// What one light does at a point that it faces, if nothing is in its way.
@@ -216,28 +278,41 @@ pub struct Incidence {
 
 /// What the light does at the point, or nothing where the surface faces away from it.
 pub fn incidence(light: &PointLight, point: &SurfacePoint) -> Option<Incidence> {
-    let to_light = light.position - point.position;
+    let (position, normal) = (Vector::<f32>::splat(point.position), Vector::splat(point.normal));
+    let (faces, Falling { l, distance, cosine, light: [r, g, b] }) = falling(light, position, normal);
+    faces.then(|| Incidence { l: l.into(), distance, cosine, light: LinearRgb::new(r, g, b) })
+}
+
+/// [`Incidence`] at one point or several.
+struct Falling<N> {
+    l: Vector<N>,
+    distance: N,
+    cosine: N,
+    light: [N; 3],
+}
+
+/// What the light does at points, and whether the surface there faces it.
+#[inline(always)]
+fn falling<N: Number>(light: &PointLight, position: Vector<N>, normal: Vector<N>) -> (N::Mask, Falling<N>) {
+    let to_light = Vector::splat(light.position) - position;
     let distance_squared = to_light.dot(to_light);
     let distance = distance_squared.sqrt();
-    let l = to_light / distance;
-    let cosine = point.normal.dot(l);
-    // False also for NaN: a light that lies in the surface.
-    if !(cosine > 0.0) {
-        return None;
-    }
+    let l = Vector { x: to_light.x / distance, y: to_light.y / distance, z: to_light.z / distance };
+    let cosine = normal.dot(l);
     let weakening = match light.falloff {
         Falloff::InverseSquare => cosine / distance_squared,
         Falloff::None => cosine,
     };
-    Some(Incidence { l, distance, cosine, light: bounded(light.intensity * weakening) })
+    let LinearRgb { r, g, b } = light.intensity;
+    let bounded = |intensity: f32| (N::splat(intensity) * weakening).min(N::splat(BRIGHTEST));
+    let light = [bounded(r), bounded(g), bounded(b)];
+    // No also for NaN: a light that lies in the surface.
+    (N::splat(0.0).lt(cosine), Falling { l, distance, cosine, light })
 }
 
-/// A light nearly in its surface may be brighter than f32 can say. Bounded here, all sums and products that follow are
+/// A light nearly in its surface may be brighter than f32 can say. Bounded by this, all sums and products that follow are
 /// numbers: NaN has other bits on other CPUs. (`min` of NaN and a number is the number.)
-fn bounded(light: LinearRgb) -> LinearRgb {
-    const BRIGHTEST: f32 = 1e30;
-    LinearRgb::new(light.r.min(BRIGHTEST), light.g.min(BRIGHTEST), light.b.min(BRIGHTEST))
-}
+const BRIGHTEST: f32 = 1e30;
 
 /// The ray from a point to a light. The light is at t = 1.
 pub fn shadow_ray(light: &PointLight, point: &SurfacePoint) -> Ray {
@@ -249,13 +324,18 @@ pub fn shadow_ray(light: &PointLight, point: &SurfacePoint) -> Ray {
 /// in proportion to them is nothing, and the point lies in its surface exactly.
 pub const TO_THE_LIGHT: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 };
 
-/// The light that comes along a ray that meets nothing.
-pub fn background(scene: &Scene, ray: &Ray) -> LinearRgb {
+/// The light that comes along rays that meet nothing.
+#[inline(always)]
+fn backgrounds<N: Number>(scene: &Scene, direction: Vector<N>) -> [N; 3] {
+    let bands = |LinearRgb { r, g, b }: LinearRgb| [N::splat(r), N::splat(g), N::splat(b)];
     match scene.background {
-        Background::Color(color) => color,
+        Background::Color(color) => bands(color),
         Background::Gradient { bottom, top } => {
-            let up = ray.direction.normalize().y;
-            bottom.lerp(top, 0.5 * (up + 1.0))
+            let up = direction.y * (N::splat(1.0) / direction.dot(direction).sqrt());
+            let share = N::splat(0.5) * (up + N::splat(1.0));
+            let ([r0, g0, b0], [r1, g1, b1]) = (bands(bottom), bands(top));
+            let rest = N::splat(1.0) - share;
+            [r0 * rest + r1 * share, g0 * rest + g1 * share, b0 * rest + b1 * share]
         }
     }
 }

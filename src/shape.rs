@@ -9,7 +9,7 @@
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
-use crate::lanes::{Answers, Eight, Lanes, Number, Vector};
+use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -37,12 +37,6 @@ pub trait Surface {
 
     /// The surface at the crossing `t` that [`closest_crossing`](Self::closest_crossing) found for this ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint;
-
-    /// How far [`uv`](SurfacePoint::uv) reaches in a pixel: from the crossing of this ray to those of its neighbours,
-    /// whose directions differ by these steps. Zero where the surface has no pattern.
-    fn footprint(&self, _ray: &Ray, _t: f32, _steps: [Vec3; 2]) -> Vec2 {
-        Vec2::ZERO
-    }
 }
 
 /// A surface's formula for one ray and one of its kind, for several rays, or for several of its kind: a number stands for
@@ -59,18 +53,22 @@ pub trait Crossable<N: Number> {
 /// A surface's [`at_crossing`](Surface::at_crossing) for one ray or several.
 pub trait AtCrossing<N: Number> {
     /// The surfaces at crossings that were found.
-    fn at_crossing(&self, rays: &Rays<N>, t: N) -> Points<N>;
+    fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N>;
 }
 
 /// The surfaces at crossings, a number for each: what [`SurfacePoint`] has of all surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct Points<N: Number> {
-    position: Vector<N>,
-    facing: Vector<N>,
-    /// Whether the front is seen.
+    /// [`SurfacePoint::position`].
+    pub position: Vector<N>,
+    /// [`SurfacePoint::facing`].
+    pub facing: Vector<N>,
+    /// [`SurfacePoint::side`]: whether the front is seen.
     is_front: N::Mask,
-    clearance: N,
-    uv: [N; 2],
+    /// [`SurfacePoint::clearance`].
+    pub clearance: N,
+    /// [`SurfacePoint::uv`].
+    pub uv: [N; 2],
 }
 
 impl<N: Number> Points<N> {
@@ -81,6 +79,26 @@ impl<N: Number> Points<N> {
         let back = Vector { x: -front.x, y: -front.y, z: -front.z };
         let facing = Vector::select(is_front, front, back);
         Self { position, facing, is_front, clearance: N::splat(CLEARANCE) * size, uv }
+    }
+
+    /// Where nothing is.
+    #[inline(always)]
+    pub fn nowhere() -> Self {
+        let (zero, zeros) = (N::splat(0.0), Vector::splat(Vec3::ZERO));
+        Self { position: zeros, facing: zeros, is_front: zero.lt(zero), clearance: zero, uv: [zero; 2] }
+    }
+
+    /// `yes` where the answer was yes, else `no`.
+    #[inline(always)]
+    pub fn select(answer: N::Mask, yes: Self, no: Self) -> Self {
+        let of_two = |yes: N, no: N| N::select(answer, yes, no);
+        Self {
+            position: Vector::select(answer, yes.position, no.position),
+            facing: Vector::select(answer, yes.facing, no.facing),
+            is_front: answer & yes.is_front | !answer & no.is_front,
+            clearance: of_two(yes.clearance, no.clearance),
+            uv: [of_two(yes.uv[0], no.uv[0]), of_two(yes.uv[1], no.uv[1])],
+        }
     }
 }
 
@@ -94,39 +112,7 @@ impl Points<f32> {
             side: if self.is_front { Side::Front } else { Side::Back },
             clearance: self.clearance,
             uv: self.uv.into(),
-            footprint: Vec2::ZERO,
-            own_reflectance: None,
         }
-    }
-}
-
-/// The points at the crossings of eight rays, each with a surface of its own.
-#[inline(always)]
-pub fn eight_points<N: Lanes, S: SideBySide>(
-    shapes: &[S::Shape],
-    rays: &[Ray],
-    t: &Eight,
-    mut give: impl FnMut(usize, SurfacePoint),
-) {
-    let points = S::of(shapes).load::<N>().at_crossing(&Rays::of(rays), N::load(t));
-    let (position, facing) = (points.position.store(), points.facing.store());
-    let (is_front, clearance) = (points.is_front.bits(), points.clearance.store());
-    let uv = [points.uv[0].store(), points.uv[1].store()];
-    for lane in 0..shapes.len() {
-        let normal = facing.of_lane(lane);
-        give(
-            lane,
-            SurfacePoint {
-                position: position.of_lane(lane),
-                normal,
-                facing: normal,
-                side: if is_front >> lane & 1 == 1 { Side::Front } else { Side::Back },
-                clearance: clearance.0[lane],
-                uv: Vec2::new(uv[0].0[lane], uv[1].0[lane]),
-                footprint: Vec2::ZERO,
-                own_reflectance: None,
-            },
-        );
     }
 }
 
@@ -146,6 +132,9 @@ pub trait SideBySide: Copy {
 
     /// One of them, the same in every place, for several rays.
     fn splat<N: Number>(&self, lane: usize) -> Self::Of<N>;
+
+    /// Puts one of others in that place.
+    fn put(&mut self, lane: usize, others: &Self, from: usize);
 }
 
 /// A point on a surface, as seen from where the ray came.
@@ -165,11 +154,6 @@ pub struct SurfacePoint {
     /// Coordinates on the surface for a pattern: on a plane in world units, in a triangle the shares of its second and
     /// third corner; zero where the surface has none.
     pub uv: Vec2,
-    /// How much of them the picture's samples see at once: a pattern is to be told by its mean over so much. Zero for a
-    /// point alone.
-    pub footprint: Vec2,
-    /// The diffuse reflectance that the surface brings itself: that of a mesh whose file has colours.
-    pub own_reflectance: Option<LinearRgb>,
 }
 
 impl SurfacePoint {
@@ -193,11 +177,6 @@ pub enum Side {
 /// The relative clearance. The coordinates of a point are off by a few units of 2^-24, and so is what a second ray
 /// computes from them; 32 of these units are clear of both (the property tests count false shadows at all scales).
 const CLEARANCE: f32 = 32.0 / 16_777_216.0;
-
-/// The largest absolute coordinate.
-fn largest_coordinate(v: Vec3) -> f32 {
-    v.abs().max_element()
-}
 
 /// Any of the surfaces.
 #[derive(Clone, Debug, PartialEq)]
@@ -243,12 +222,12 @@ impl From<Mesh> for Shape {
 }
 
 impl Part<'_> {
-    /// The point with what a mesh's file says of it.
-    #[inline]
-    pub fn finished(&self, point: SurfacePoint) -> SurfacePoint {
+    /// The diffuse reflectance that the surface brings itself where it has these [coordinates](SurfacePoint::uv): that of
+    /// a mesh whose file has colours.
+    pub fn own_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         match self {
-            Self::Facet(facet) => facet.finished(point),
-            _ => point,
+            Self::Facet(facet) => facet.reflectance(uv),
+            Self::Sphere(_) | Self::Plane(_) | Self::Triangle(_) => None,
         }
     }
 }
@@ -279,12 +258,6 @@ macro_rules! parts {
             fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
                 match self {
                     $(Self::$name(surface) => surface.at_crossing(ray, t),)*
-                }
-            }
-
-            fn footprint(&self, ray: &Ray, t: f32, steps: [Vec3; 2]) -> Vec2 {
-                match self {
-                    $(Self::$name(surface) => surface.footprint(ray, t, steps),)*
                 }
             }
         }

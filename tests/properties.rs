@@ -6,10 +6,11 @@ use std::num::NonZeroU32;
 use termtrace::camera::{Camera, CameraError, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::{Framebuffer, Resolution};
-use termtrace::hit::{Hit, any_hit, any_hits, closest_hit, closest_hits};
+use termtrace::hit::{Hit, Kernel, any_hit, any_hits, closest_hit, closest_hits};
+use termtrace::lanes::LANES;
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
-use termtrace::ray::{Interval, Probe, Ray};
+use termtrace::ray::{EightRays, Interval, Probe, Ray};
 use termtrace::render::render;
 use termtrace::scene::{Background, Object, Scene};
 use termtrace::shade::{TO_THE_LIGHT, shadow_ray};
@@ -221,15 +222,18 @@ proptest! {
         let again = objects.iter().take(twice).cloned().collect();
         let scene = Scene::new(camera, [again, objects].concat());
         let bits = |hit: Option<Hit>| hit.map(|hit| (hit.t.to_bits(), hit.object, hit.part));
+        let eights: Vec<_> = rays.chunks(LANES).map(EightRays::of).collect();
         let mut hits = Vec::new();
-        closest_hits(&scene, &rays, &mut hits);
-        let alone: Vec<_> = rays.iter().map(|ray| bits(closest_hit(&scene, ray))).collect();
-        prop_assert_eq!(hits.into_iter().map(bits).collect::<Vec<_>>(), alone);
-        let mut found = Vec::new();
+        closest_hits(Kernel::Auto, &scene, &eights, &mut hits);
+        for (at, ray) in rays.iter().enumerate() {
+            prop_assert_eq!(bits(hits[at / LANES].hit(&scene, at % LANES)), bits(closest_hit(&scene, ray)));
+        }
+        let mut met = Vec::new();
         for within in [Interval::IN_FRONT, TO_THE_LIGHT, Interval { min: 0.3, max: 0.9 }] {
-            any_hits(&scene, &rays, within, &mut found);
-            let alone: Vec<_> = rays.iter().map(|ray| any_hit(&scene, ray, within)).collect();
-            prop_assert_eq!(&found, &alone);
+            any_hits(Kernel::Auto, &scene, &eights, within, &mut met);
+            for (at, ray) in rays.iter().enumerate() {
+                prop_assert_eq!(met[at / LANES] >> (at % LANES) & 1 == 1, any_hit(&scene, ray, within));
+            }
         }
     }
 

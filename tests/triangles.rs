@@ -11,12 +11,13 @@ use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Stack};
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::Resolution;
-use termtrace::hit::{Hit, Kernel, any_hit, any_hits_by, closest_hit, closest_hits_by};
+use termtrace::hit::{Hit, Kernel, any_hit, any_hits, closest_hit, closest_hits};
 use termtrace::lanes::Eight;
+use termtrace::lanes::{ALL, LANES, set_bits};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
-use termtrace::ray::{Interval, Probe, Ray};
+use termtrace::ray::{EightRays, Interval, Probe, Ray};
 use termtrace::render::render;
 use termtrace::scene::{Object, Scene};
 use termtrace::shade::{TO_THE_LIGHT, shadow_ray};
@@ -373,6 +374,7 @@ proptest! {
         spread in [0.001_f32..2.0, 0.001_f32..2.0],
         strays in prop::collection::vec(ray(), 0..40),
         count in 1..150_usize,
+        asked in prop::collection::vec(prop_oneof![Just(ALL), 0..=ALL], 30),
     ) {
         let scene = scene(shapes.iter().chain(&shapes[..shapes.len() / 2]).cloned());
         let [eye, target, across, down] = corners;
@@ -382,19 +384,36 @@ proptest! {
         });
         let back = bundle.clone().map(|ray| Ray { origin: ray.origin + ray.direction, direction: -ray.direction });
         let rays: Vec<Ray> = bundle.chain(back).chain(strays).filter(|ray| ray.direction != Vec3::ZERO).collect();
-        let expected: Vec<_> = rays.iter().map(|ray| brute_force(&scene, ray, Interval::IN_FRONT)).collect();
+        let eights: Vec<_> = rays.chunks(LANES).map(EightRays::of).zip(asked).map(|(rays, asked)| some_of(&rays, asked)).collect();
+        let closest = |ray: &Ray| brute_force(&scene, ray, Interval::IN_FRONT);
         for kernel in [Kernel::Auto, Kernel::Packet, Kernel::Single, Kernel::Scalar] {
             let mut hits = Vec::new();
-            closest_hits_by(kernel, &scene, &rays, &mut hits);
-            prop_assert_eq!(&hits, &expected, "{:?}", kernel);
+            closest_hits(kernel, &scene, &eights, &mut hits);
+            prop_assert_eq!(hits.len(), eights.len());
+            for (rays, hits) in eights.iter().zip(&hits) {
+                for lane in 0..LANES {
+                    let is_asked = rays.asked >> lane & 1 == 1;
+                    prop_assert_eq!(hits.hit(&scene, lane), is_asked.then(|| closest(&rays.ray(lane))).flatten(), "{:?}", kernel);
+                }
+            }
             for within in [TO_THE_LIGHT, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }, Interval { min: -0.5, max: 0.5 }] {
-                let expected: Vec<_> = rays.iter().map(|ray| brute_force(&scene, ray, within).is_some()).collect();
+                let is_met = |rays: &EightRays, lane: usize| brute_force(&scene, &rays.ray(lane), within).is_some();
+                let met = |rays: &EightRays| set_bits(rays.asked).filter(|&lane| is_met(rays, lane)).fold(0, |met, lane| met | 1 << lane);
+                let expected: Vec<u32> = eights.iter().map(met).collect();
                 let mut found = Vec::new();
-                any_hits_by(kernel, &scene, &rays, within, &mut found);
+                any_hits(kernel, &scene, &eights, within, &mut found);
                 prop_assert_eq!(&found, &expected, "{:?} {:?}", kernel, within);
             }
         }
     }
+}
+
+/// Of these rays those, as [`EightRays`] wants it.
+fn some_of(rays: &EightRays, asked: u32) -> EightRays {
+    let asked = asked & rays.asked;
+    let one = set_bits(asked).next().unwrap_or(0);
+    let each: Vec<_> = (0..LANES).map(|lane| rays.ray(if asked >> lane & 1 == 1 { lane } else { one })).collect();
+    EightRays { asked, ..EightRays::of(&each) }
 }
 
 /// How many boxes were visited.

@@ -3,9 +3,9 @@
 use super::{Stacks, alone::Alone};
 use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Stack, Visitor};
-use crate::hit::Kernel;
+use crate::hit::{EightHits, Kernel};
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector};
-use crate::ray::{Interval, Ray, Rays};
+use crate::ray::{EightRays, Interval, Rays};
 use crate::scene::{Grove, Parts};
 use crate::shape::{Crossable, SideBySide};
 
@@ -13,7 +13,7 @@ use crate::shape::{Crossable, SideBySide};
 pub(super) struct Together<'p, N: Lanes, const ANY: bool> {
     kernel: Kernel,
     parts: &'p Parts,
-    rays: &'p [Ray],
+    rays: &'p [EightRays],
     groups: [Rays<N>; GROUPS],
     min: f32,
     /// Where the closest was met, or where the interval ends; of who has enough, before all.
@@ -25,7 +25,7 @@ pub(super) struct Together<'p, N: Lanes, const ANY: bool> {
 }
 
 /// No part's place.
-const NOTHING: u32 = u32::MAX;
+const NOTHING: u32 = EightHits::NOTHING;
 
 /// If no more rays than these meet a node, they go on by themselves;
 const SOME: u32 = 8;
@@ -42,45 +42,44 @@ fn place_as_number(place: u32) -> f32 {
 }
 
 impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
-    /// These are at most as many as a packet has.
+    /// These are at most as many as a packet has, and at least one.
     #[inline(always)]
-    pub(super) fn new(kernel: Kernel, parts: &'p Parts, rays: &'p [Ray], within: Interval) -> Self {
-        let mut groups = [Rays::of(&rays[..LANES.min(rays.len())]); GROUPS];
-        for (group, rays) in groups.iter_mut().zip(rays.chunks(LANES)).skip(1) {
-            *group = Rays::of(rays);
-        }
-        let mut t = Eight([within.max; LANES]);
+    pub(super) fn new(kernel: Kernel, parts: &'p Parts, rays: &'p [EightRays], within: Interval) -> Self {
+        // Who is not asked about does not widen the packet.
+        let one = rays.iter().find(|rays| rays.asked != 0).unwrap_or(&rays[0]);
         let mut packet = Self {
             kernel,
             parts,
             rays,
-            groups,
+            groups: [Rays::load(one); GROUPS],
             min: within.min,
-            t: [N::load(&t); GROUPS],
+            t: [N::splat(DONE); GROUPS],
             place: [N::splat(place_as_number(NOTHING)); GROUPS],
-            reach: t,
+            reach: Eight([DONE; LANES]),
         };
-        let full = rays.len() / LANES;
-        if full < GROUPS {
-            t.0[rays.len() % LANES..].fill(DONE);
-            packet.t[full] = N::load(&t);
-            packet.t[full + 1..].fill(N::splat(DONE));
-            packet.reach.0[rays.len().div_ceil(LANES)..].fill(DONE);
+        for (group, rays) in rays.iter().enumerate().filter(|(_, rays)| rays.asked != 0) {
+            packet.groups[group] = Rays::load(rays);
+            packet.t[group] = N::select(N::answers(rays.asked), N::splat(within.max), N::splat(DONE));
+            packet.reach.0[group] = within.max;
         }
         packet
     }
 
-    /// Where each ray met what.
+    /// Tells where each ray met what.
     #[inline(always)]
-    pub(super) fn found(&self) -> impl Iterator<Item = (f32, Option<u32>)> {
-        (0..self.rays.len().div_ceil(LANES)).flat_map(move |group| {
+    pub(super) fn tell_hits(&self, hits: &mut Vec<EightHits>) {
+        for group in 0..self.rays.len() {
             let (t, place) = (self.t[group].store(), self.place[group].store());
-            let count = LANES.min(self.rays.len() - group * LANES);
-            (0..count).map(move |lane| {
-                let place = place.0[lane].to_bits();
-                (t.0[lane], (place != NOTHING).then_some(place))
-            })
-        })
+            hits.push(EightHits { t, places: place.0.map(f32::to_bits) });
+        }
+    }
+
+    /// Tells which rays met anything, a bit for each.
+    #[inline(always)]
+    pub(super) fn tell_met(&self, met: &mut Vec<u32>) {
+        for (group, rays) in self.rays.iter().enumerate() {
+            met.push(self.t[group].le(N::splat(DONE)).bits() & rays.asked);
+        }
     }
 
     /// Searches through everything.
@@ -113,7 +112,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
 
     #[inline(always)]
     fn test_all<C: Crossable<N>>(&mut self, shape: &C, place: u32) {
-        for group in 0..self.rays.len().div_ceil(LANES) {
+        for group in 0..self.rays.len() {
             if self.reach.0[group] > DONE {
                 self.test(group, shape, place);
             }
@@ -246,7 +245,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
             rays &= rays - 1;
             let within = Interval { min: self.rays.min, max: t.0[lane] };
             let known = place.0[lane].to_bits();
-            let ray = Alone::<N, ANY>::new(self.rays.parts, &self.rays.rays[group * LANES + lane], within);
+            let ray = Alone::<N, ANY>::new(self.rays.parts, &self.rays.rays[group].ray(lane), within);
             let mut ray = ray.going_on((known != NOTHING).then_some(known));
             ray.trace_from(from, self.grove, self.stack);
             if let (met, Some(found)) = ray.found() {

@@ -4,12 +4,11 @@ use super::pixel::Sum;
 use super::{Raster, Tile};
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::hit::{self, Hit, Kernel};
-use crate::ray::Ray;
+use crate::hit::{self, EightHits, Kernel};
+use crate::lanes::set_bits;
+use crate::ray::EightRays;
 use crate::scene::Scene;
-use crate::shade::{self, TO_THE_LIGHT, shadow_ray};
-use crate::shape::SurfacePoint;
-use glam::Vec3;
+use crate::shade::{self, EightPoints, TO_THE_LIGHT};
 use rayon::prelude::*;
 use std::num::NonZeroU32;
 use std::ops::{Add, Range};
@@ -61,11 +60,11 @@ pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolut
 /// The arrays between the steps, kept from tile to tile.
 #[derive(Default)]
 struct Buffers {
-    rays: Vec<Ray>,
-    hits: Vec<Option<Hit>>,
-    points: Vec<Option<SurfacePoint>>,
-    shadow_rays: Vec<Ray>,
-    blocked: Vec<bool>,
+    rays: Vec<EightRays>,
+    hits: Vec<EightHits>,
+    points: Vec<EightPoints>,
+    shadow_rays: Vec<EightRays>,
+    blocked: Vec<u32>,
 }
 
 impl Raster<Sum> {
@@ -81,7 +80,7 @@ impl Raster<Sum> {
         let mut counts = Counts::default();
         for sample in samples {
             self.make_eye_rays(&places, sample, &mut buffers.rays);
-            hit::closest_hits_by(kernel, scene, &buffers.rays, &mut buffers.hits);
+            hit::closest_hits(kernel, scene, &buffers.rays, &mut buffers.hits);
             counts = counts + buffers.count(kernel, scene);
         }
         counts
@@ -92,21 +91,21 @@ impl Buffers {
     /// The rays and their hits, and the shadow rays that begin there.
     fn count(&mut self, kernel: Kernel, scene: &Scene) -> Counts {
         let Self { rays, hits, points, shadow_rays, blocked } = self;
-        let mut counts = Counts {
-            rays: rays.len() as u64,
-            hits: hits.iter().flatten().count() as u64,
-            lit: 0,
-            depths: hits.iter().flatten().map(|hit| f64::from(hit.t)).sum(),
-        };
+        let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
+        for hits in hits.iter() {
+            let met = hits.met();
+            counts.hits += u64::from(met.count_ones());
+            counts.depths += set_bits(met).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
+        }
         if scene.shadows {
-            shade::surface_points(scene, rays, [Vec3::ZERO; 2], hits, points);
+            shade::surface_points(scene, rays, hits, points);
         }
         for light in scene.lights.iter().filter(|_| scene.shadows) {
-            shadow_rays.clear();
-            shadow_rays.extend(points.iter().flatten().map(|point| shadow_ray(light, point)));
-            hit::any_hits_by(kernel, scene, shadow_rays, TO_THE_LIGHT, blocked);
-            counts.rays += shadow_rays.len() as u64;
-            counts.lit += blocked.iter().filter(|&&blocked| !blocked).count() as u64;
+            shade::shadow_rays(light, points, shadow_rays);
+            hit::any_hits(kernel, scene, shadow_rays, TO_THE_LIGHT, blocked);
+            let (traced, blocked) = (shade::count(shadow_rays), blocked.iter().map(|met| u64::from(met.count_ones())));
+            counts.rays += traced;
+            counts.lit += traced - blocked.sum::<u64>();
         }
         counts
     }

@@ -1,9 +1,6 @@
 //! What is known of a pixel: its light so far, and whether more samples would change it.
 
 use crate::color::LinearRgb;
-use crate::hit::Hit;
-use crate::shade::Arriving;
-use crate::shape::SurfacePoint;
 use glam::Vec3;
 
 /// What keeps a pixel's samples.
@@ -42,9 +39,10 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    pub(super) fn of(hit: Option<Hit>, point: Option<&SurfacePoint>, arriving: Arriving) -> Self {
-        let facing = point.map_or(Vec3::ZERO, |point| point.normal);
-        Self { object: hit.map_or(0, |hit| hit.object + 1), facing, lit_by: arriving.lit_by }
+    /// An object and its normal, or nothing, and what it is lit by.
+    pub(super) fn of(surface: Option<(u32, Vec3)>, lit_by: u32) -> Self {
+        let (object, facing) = surface.map_or((0, Vec3::ZERO), |(object, normal)| (object + 1, normal));
+        Self { object, facing, lit_by }
     }
 
     /// Whether there is an edge between the two: of an object, of a shadow, or where a surface bends by more than a

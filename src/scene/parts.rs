@@ -5,7 +5,7 @@ use crate::bounds::Bounds;
 use crate::bvh::Bvh;
 use crate::lanes::{Eight, LANES};
 use crate::progress::{Progress, Watcher, Work};
-use crate::shape::{Balls, Corners, Part, Plane, SideBySide, Surface};
+use crate::shape::{Balls, Corners, Part, Plane, Shape, SideBySide, Surface};
 use rayon::prelude::*;
 use std::array::from_fn;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -26,6 +26,8 @@ pub(crate) struct Parts {
     pub(crate) planes: Vec<(PartId, Plane)>,
     pub(crate) balls: Grove<Balls<Eight>>,
     pub(crate) triangles: Grove<Corners<Eight>>,
+    /// Whether any triangles stand for a smooth surface.
+    pub(crate) has_smooth: bool,
 }
 
 /// Parts of one kind, and a tree over them.
@@ -81,7 +83,8 @@ impl Parts {
         };
         let balls = balls.planted(planes.len() as u32, &report)?;
         let triangles = triangles.planted(balls.first + (balls.leaves.len() * LANES) as u32, &report)?;
-        Some(Self { planes, balls, triangles })
+        let has_smooth = objects.iter().any(|object| matches!(&object.shape, Shape::Mesh(mesh) if mesh.is_smooth()));
+        Some(Self { planes, balls, triangles, has_smooth })
     }
 
     /// How much memory it takes, in bytes.
@@ -113,10 +116,17 @@ impl<S> Grove<S> {
         self.first + (leaf * LANES + lane) as u32
     }
 
+    /// The leaf in which that place is, and which of its parts stands there.
+    #[inline(always)]
+    pub(crate) fn leaf(&self, place: u32) -> (&Leaf<S>, usize) {
+        let at = (place - self.first) as usize;
+        (&self.leaves[at / LANES], at % LANES)
+    }
+
     #[inline(always)]
     fn id(&self, place: u32) -> PartId {
-        let at = (place - self.first) as usize;
-        self.leaves[at / LANES].ids[at % LANES]
+        let (leaf, at) = self.leaf(place);
+        leaf.ids[at]
     }
 }
 

@@ -5,7 +5,7 @@ use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::mesh_file::MeshFile;
 use crate::ray::{Interval, Probe, Ray};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::ops::{Add, Mul};
 
 /// Many triangles, with what their file says of them: the normals of the smooth surface that they stand for, colours and
@@ -25,6 +25,11 @@ impl Mesh {
     /// How many triangles there are; at least one.
     pub fn triangle_count(&self) -> u32 {
         self.file.triangles().len() as u32
+    }
+
+    /// Whether any of them stand for a smooth surface.
+    pub fn is_smooth(&self) -> bool {
+        self.file.has_normals()
     }
 
     /// What it is made of.
@@ -61,60 +66,54 @@ impl Surface for Facet<'_> {
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        self.finished(self.triangle.at_crossing(ray, t))
+        let point = self.triangle.at_crossing(ray, t);
+        match self.smooth(point.position, point.facing, point.uv) {
+            Some((position, normal)) => SurfacePoint { position, normal, ..point },
+            None => point,
+        }
     }
 }
 
 impl Facet<'_> {
-    /// The point on the triangle with what the file says of it.
-    pub(super) fn finished(&self, point: SurfacePoint) -> SurfacePoint {
-        let point = SurfacePoint { own_reflectance: self.reflectance(&point), ..point };
-        match self.mesh.file.normals_of(self.index as usize) {
-            Some(normals) => self.smoothed(&point, normals),
-            None => point,
-        }
-    }
-
     /// The triangle itself.
     pub fn triangle(&self) -> &Triangle {
         &self.triangle
     }
 
-    /// The point on the smooth surface that has these normals at the corners, seen from the same side: the corners may go
-    /// round either way.
-    fn smoothed(&self, point: &SurfacePoint, normals: [Vec3; 3]) -> SurfacePoint {
-        let smooth = between(normals, point).normalize_or(point.facing);
-        let sign = if smooth.dot(point.facing) < 0.0 { -1.0 } else { 1.0 };
-        let normals = normals.map(|normal| normal * sign);
-        SurfacePoint { normal: smooth * sign, position: point.position + self.lift(point, normals), ..*point }
+    /// Position and normal of the smooth surface that the triangle stands for, if it does, at the point that is seen from
+    /// that side: the corners may go round either way.
+    pub fn smooth(&self, position: Vec3, facing: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
+        let normals = self.mesh.file.normals_of(self.index as usize)?;
+        let smooth = between(normals, uv).normalize_or(facing);
+        let sign = if smooth.dot(facing) < 0.0 { -1.0 } else { 1.0 };
+        Some((position + self.lift(position, uv, normals.map(|normal| normal * sign)), smooth * sign))
     }
 
     /// From the triangle up to where the smooth surface bulges over it: between the planes through the corners,
     /// perpendicular to their normals (Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4). Rays that
     /// start there do not meet the triangle's neighbours where the smooth surface is lit.
-    fn lift(&self, point: &SurfacePoint, normals: [Vec3; 3]) -> Vec3 {
+    fn lift(&self, position: Vec3, uv: Vec2, normals: [Vec3; 3]) -> Vec3 {
         let [a, b, c] = self.triangle.corners();
-        let above = |corner: Vec3, normal: Vec3| normal * (corner - point.position).dot(normal).max(0.0);
-        between([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], point)
+        let above = |corner: Vec3, normal: Vec3| normal * (corner - position).dot(normal).max(0.0);
+        between([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], uv)
     }
 
     /// The product of what the file has for it: its material's, the texture's and the corners' colours.
-    fn reflectance(&self, point: &SurfacePoint) -> Option<LinearRgb> {
+    pub(super) fn reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         let (file, index) = (&self.mesh.file, self.index as usize);
         let material = file.material_of(index).map(|index| &file.materials()[index]);
-        let colors = file.colors_of(index).map(|colors| between(colors, point));
+        let colors = file.colors_of(index).map(|colors| between(colors, uv));
         let textured = material.and_then(|material| {
             let texture = material.texture.as_ref()?;
-            let uv = between(file.texture_coordinates_of(index)?, point);
-            Some(texture.texture.color_at(texture.at(uv)))
+            let at = between(file.texture_coordinates_of(index)?, uv);
+            Some(texture.texture.color_at(texture.at(at)))
         });
         let own = [material.map(|material| material.reflectance), textured, colors];
         own.into_iter().flatten().reduce(|a, b| a * b)
     }
 }
 
-/// What lies between the corners' values at the point.
-fn between<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], point: &SurfacePoint) -> T {
-    let [second, third] = point.uv.to_array();
-    a * (1.0 - second - third) + b * second + c * third
+/// What lies between the corners' values at the shares of the second and the third.
+fn between<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], shares: Vec2) -> T {
+    a * (1.0 - shares.x - shares.y) + b * shares.x + c * shares.y
 }

@@ -1,10 +1,10 @@
 //! Ray-plane intersection (lecture, "Ray intersection").
 
-use super::{CLEARANCE, Crossable, Side, Surface, SurfacePoint, largest_coordinate};
+use super::{AtCrossing, Crossable, Points, Surface, SurfacePoint};
 use crate::bounds::Bounds;
 use crate::lanes::{Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 /// All points x with (x - a).n = 0. It has no end, and is seen from both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +47,24 @@ impl Plane {
     }
 }
 
+impl Plane {
+    /// How far [`uv`](SurfacePoint::uv) reaches in a pixel: from the crossing of this ray to those of its neighbours, whose
+    /// directions differ by these steps. A neighbour's ray p + t (d + e) reaches the plane where t changes by
+    /// -t e.n / d.n, to first order (Igehy, Tracing Ray Differentials, 1999).
+    #[inline(always)]
+    pub fn footprint<N: Number>(&self, d: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
+        let (normal, u, v) = (Vector::splat(self.normal), Vector::splat(self.u), Vector::splat(self.v));
+        let [mut along_u, mut along_v] = [N::splat(0.0); 2];
+        for step in steps {
+            let e = Vector::splat(step);
+            let moved = (e - d * (e.dot(normal) / d.dot(normal))) * t;
+            along_u = along_u + moved.dot(u).abs();
+            along_v = along_v + moved.dot(v).abs();
+        }
+        [along_u, along_v]
+    }
+}
+
 /// The x axis laid into the plane; where that is (nearly) the normal itself, the z axis.
 fn pattern_axis(normal: Vec3) -> Vec3 {
     let axis = if normal.x.abs() < 0.9 { Vec3::X } else { Vec3::Z };
@@ -79,34 +97,18 @@ impl Surface for Plane {
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        let hit = ray.at(t);
-        let off = (hit - self.point).dot(self.normal);
-        let position = hit - self.normal * off;
-        let seen_from_front = ray.direction.dot(self.normal) < 0.0;
-        let (normal, side) = if seen_from_front { (self.normal, Side::Front) } else { (-self.normal, Side::Back) };
-        let clearance = CLEARANCE * (largest_coordinate(position) + largest_coordinate(self.point));
-        let from_point = position - self.point;
-        let uv = Vec2::new(from_point.dot(self.u), from_point.dot(self.v));
-        SurfacePoint {
-            position,
-            normal,
-            facing: normal,
-            side,
-            clearance,
-            uv,
-            footprint: Vec2::ZERO,
-            own_reflectance: None,
-        }
+        AtCrossing::points_at(self, &Probe::new(*ray).rays, t).point()
     }
+}
 
-    /// A neighbour's ray p + t (d + e) reaches the plane where t changes by -t e.n / d.n, to first order (Igehy, Tracing
-    /// Ray Differentials, 1999).
-    fn footprint(&self, ray: &Ray, t: f32, steps: [Vec3; 2]) -> Vec2 {
-        let d = ray.direction;
-        let reach = |e: Vec3| {
-            let moved = (e - d * (e.dot(self.normal) / d.dot(self.normal))) * t;
-            Vec2::new(moved.dot(self.u), moved.dot(self.v)).abs()
-        };
-        reach(steps[0]) + reach(steps[1])
+impl<N: Number> AtCrossing<N> for Plane {
+    #[inline(always)]
+    fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
+        let (point, normal) = (Vector::splat(self.point), Vector::splat(self.normal));
+        let hit = rays.origin + rays.direction * t;
+        let position = hit - normal * (hit - point).dot(normal);
+        let from_point = position - point;
+        let uv = [from_point.dot(Vector::splat(self.u)), from_point.dot(Vector::splat(self.v))];
+        Points::seen_by(rays, position, normal, position.largest() + point.largest(), uv)
     }
 }

@@ -129,7 +129,7 @@ impl<N: Number> Crossable<N> for Balls<N> {
 
 impl<N: Number> AtCrossing<N> for Balls<N> {
     #[inline(always)]
-    fn at_crossing(&self, rays: &Rays<N>, t: N) -> Points<N> {
+    fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
         let outward = rays.origin + rays.direction * t - self.center;
         let outward = outward * (N::splat(1.0) / outward.dot(outward).sqrt());
         let position = self.center + outward * self.radius;
@@ -158,6 +158,12 @@ impl SideBySide for Balls<Eight> {
     fn splat<N: Number>(&self, lane: usize) -> Balls<N> {
         Balls { center: Vector::splat(self.center.of_lane(lane)), radius: N::splat(self.radius.0[lane]) }
     }
+
+    #[inline(always)]
+    fn put(&mut self, lane: usize, others: &Self, from: usize) {
+        self.center.put(lane, others.center.of_lane(from));
+        self.radius.0[lane] = others.radius.0[from];
+    }
 }
 
 /// What no ray meets.
@@ -175,6 +181,6 @@ impl Surface for Sphere {
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        self.ball().at_crossing(&Probe::new(*ray).rays, t).point()
+        self.ball().points_at(&Probe::new(*ray).rays, t).point()
     }
 }

@@ -167,6 +167,13 @@ impl SideBySide for Corners<Eight> {
         let [a, b, c] = &self.0;
         Corners([Vector::splat(a.of_lane(lane)), Vector::splat(b.of_lane(lane)), Vector::splat(c.of_lane(lane))])
     }
+
+    #[inline(always)]
+    fn put(&mut self, lane: usize, others: &Self, from: usize) {
+        for (corner, other) in self.0.iter_mut().zip(&others.0) {
+            corner.put(lane, other.of_lane(from));
+        }
+    }
 }
 
 impl Triangle {
@@ -202,7 +209,7 @@ fn front_normal<N: Number>(to_b: Vector<N>, to_c: Vector<N>) -> Vector<N> {
 
 impl<N: Number> AtCrossing<N> for Corners<N> {
     #[inline(always)]
-    fn at_crossing(&self, rays: &Rays<N>, _: N) -> Points<N> {
+    fn points_at(&self, rays: &Rays<N>, _: N) -> Points<N> {
         let [a, b, c] = self.0;
         let (to_b, to_c) = (b - a, c - a);
         let zero = N::splat(0.0);
@@ -230,6 +237,6 @@ impl Surface for Triangle {
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        AtCrossing::at_crossing(&self.single(), &Probe::new(*ray).rays, t).point()
+        AtCrossing::points_at(&self.single(), &Probe::new(*ray).rays, t).point()
     }
 }

@@ -5,10 +5,10 @@
 use super::Work;
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Number};
 use std::arch::x86_64::{
-    __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps,
-    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_load_ps, _mm256_max_ps, _mm256_min_ps,
-    _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_sqrt_ps,
-    _mm256_store_ps, _mm256_sub_ps, _mm256_xor_ps,
+    __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_blendv_ps,
+    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps, _mm256_floor_ps, _mm256_load_ps,
+    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32, _mm256_set1_ps,
+    _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_store_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -97,6 +97,11 @@ impl Number for Register {
     }
 
     #[inline(always)]
+    fn floor(self) -> Self {
+        Self(avx!(_mm256_floor_ps(self.0)))
+    }
+
+    #[inline(always)]
     fn lt(self, other: Self) -> Mask256 {
         Mask256(avx!(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)))
     }
@@ -150,6 +155,13 @@ impl Lanes for Register {
         let mut numbers = Eight([0.0; LANES]);
         avx!(_mm256_store_ps(numbers.0.as_mut_ptr(), self.0));
         numbers
+    }
+
+    #[inline(always)]
+    fn answers(bits: u32) -> Mask256 {
+        let each = avx!(_mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
+        let own = avx!(_mm256_and_si256(_mm256_set1_epi32(bits.cast_signed()), each));
+        Mask256(avx!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(own, each))))
     }
 }
 

@@ -7,14 +7,15 @@ use std::sync::Arc;
 use std::time::Instant;
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
-use termtrace::hit::{self, Hit, Kernel};
+use termtrace::hit::{self, EightHits, Kernel};
+use termtrace::lanes::{Eight, Vector, set_bits};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
-use termtrace::ray::Ray;
+use termtrace::ray::EightRays;
 use termtrace::scene::{Object, Scene as Traced};
-use termtrace::shade::{self, TO_THE_LIGHT, shadow_ray};
-use termtrace::shape::{Mesh, Plane, Shape, Sphere, SurfacePoint};
+use termtrace::shade::{self, EightPoints, TO_THE_LIGHT};
+use termtrace::shape::{Mesh, Plane, Shape, Sphere};
 
 pub struct Termtrace {
     kernel: Kernel,
@@ -26,11 +27,11 @@ pub struct Termtrace {
 /// The arrays of a tile, kept from tile to tile.
 #[derive(Default)]
 struct Buffers {
-    rays: Vec<Ray>,
-    hits: Vec<Option<Hit>>,
-    points: Vec<Option<SurfacePoint>>,
-    shadow_rays: Vec<Ray>,
-    blocked: Vec<bool>,
+    rays: Vec<EightRays>,
+    hits: Vec<EightHits>,
+    points: Vec<EightPoints>,
+    shadow_rays: Vec<EightRays>,
+    blocked: Vec<u32>,
 }
 
 thread_local! {
@@ -62,24 +63,33 @@ impl Termtrace {
         Self { kernel, scene: self.scene.clone(), ..*self }
     }
 
-    fn trace(&self, f: &Frame, rays: impl Iterator<Item = Vec3A>, buffers: &mut Buffers) -> Acc {
-        let Buffers { rays: eye_rays, hits, points, shadow_rays, blocked } = buffers;
-        eye_rays.clear();
-        eye_rays.extend(rays.map(|d| Ray { origin: vec3(f.o), direction: vec3(d) }));
-        hit::closest_hits_by(self.kernel, &self.scene, eye_rays, hits);
-        let mut sum = Acc { rays: eye_rays.len() as u64, ..Acc::default() };
-        sum.hits = hits.iter().flatten().count() as u64;
-        sum.tsum = hits.iter().flatten().map(|hit| f64::from(hit.t)).sum();
-        if f.full {
-            shade::surface_points(&self.scene, eye_rays, [Vec3::ZERO; 2], hits, points);
-            shadow_rays.clear();
-            shadow_rays.extend(points.iter().flatten().map(|point| shadow_ray(&self.light, point)));
-            hit::any_hits_by(self.kernel, &self.scene, shadow_rays, TO_THE_LIGHT, blocked);
-            sum.rays += shadow_rays.len() as u64;
-            sum.lit = blocked.iter().filter(|&&blocked| !blocked).count() as u64;
+    fn trace(&self, full: bool, buffers: &mut Buffers) -> Acc {
+        let Buffers { rays, hits, points, shadow_rays, blocked } = buffers;
+        hit::closest_hits(self.kernel, &self.scene, rays, hits);
+        let mut sum = Acc { rays: shade::count(rays), ..Acc::default() };
+        for hits in hits.iter() {
+            sum.hits += u64::from(hits.met().count_ones());
+            sum.tsum += set_bits(hits.met()).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
+        }
+        if full {
+            shade::surface_points(&self.scene, rays, hits, points);
+            shade::shadow_rays(&self.light, points, shadow_rays);
+            hit::any_hits(self.kernel, &self.scene, shadow_rays, TO_THE_LIGHT, blocked);
+            let traced = shade::count(shadow_rays);
+            sum.rays += traced;
+            sum.lit = traced - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
         }
         sum
     }
+}
+
+/// Rays through four by two pixels, those inside the tile.
+fn eye_rays(f: &Frame, [x, y]: [u32; 2], [x1, y1]: [u32; 2]) -> EightRays {
+    let (across, down) = (Eight([0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]), Eight([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]));
+    let (at_x, at_y) = (Eight([x as f32; 8]) + across, Eight([y as f32; 8]) + down);
+    let [d00, du, dv] = [f.d00, f.du, f.dv].map(|v| Vector::splat(vec3(v)));
+    let asked = (0..8).filter(|lane| x + lane % 4 < x1 && y + lane / 4 < y1).fold(0, |asked, lane| asked | 1 << lane);
+    EightRays { origin: Vector::splat(vec3(f.o)), direction: d00 + du * at_x + dv * at_y, asked }
 }
 
 fn vec3(v: Vec3A) -> Vec3 {
@@ -93,10 +103,12 @@ impl Backend for Termtrace {
 
     fn tile(&self, f: &Frame, x0: u32, y0: u32, x1: u32, y1: u32) -> Acc {
         // As the renderer goes through a tile: squares of 8 by 8, in groups of 4 by 2.
-        let squares = (y0..y1).step_by(8).flat_map(|y| (x0..x1).step_by(8).map(move |x| (x, y)));
-        let groups = squares.flat_map(|(x, y)| (0..8).map(move |at| (x + at % 2 * 4, y + at / 2 * 2)));
-        let places = groups.flat_map(|(x, y)| (0..8).map(move |at| (x + at % 4, y + at / 4)));
-        let rays = places.filter(|&(x, y)| x < x1 && y < y1).map(|(x, y)| f.dir(x, y));
-        BUFFERS.with_borrow_mut(|buffers| self.trace(f, rays, buffers))
+        BUFFERS.with_borrow_mut(|buffers| {
+            let squares = (y0..y1).step_by(8).flat_map(|y| (x0..x1).step_by(8).map(move |x| (x, y)));
+            let groups = squares.flat_map(|(x, y)| (0..8).map(move |at| [x + at % 2 * 4, y + at / 2 * 2]));
+            buffers.rays.clear();
+            buffers.rays.extend(groups.map(|at| eye_rays(f, at, [x1, y1])));
+            self.trace(f.full, buffers)
+        })
     }
 }
