@@ -105,8 +105,10 @@ impl Srgb8 {
 
     /// The nearest 8-bit colour: each band clamped to 0..=1, put through the transfer function and rounded.
     /// NaN counts as no light.
+    #[inline]
     pub fn from_linear(light: LinearRgb) -> Self {
-        Self::new(srgb8_from_linear(light.r), srgb8_from_linear(light.g), srgb8_from_linear(light.b))
+        let transfer = &*TRANSFER;
+        Self::new(transfer.srgb8(light.r), transfer.srgb8(light.g), transfer.srgb8(light.b))
     }
 }
 
@@ -153,19 +155,6 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// One band: clamp, encode, round.
-///
-/// Calling `pow` for each band of each pixel would cost more than tracing it. Rounding has only 255 steps, so the
-/// light at which each step is taken is kept instead; a band lies in the step that its exponent and first mantissa
-/// bits lead to, or in the one above it.
-fn srgb8_from_linear(linear: f32) -> u8 {
-    let transfer = &*TRANSFER;
-    // NaN is black, as what is below the first bucket is.
-    let linear = if linear > LEAST_LIGHT { linear.min(1.0) } else { LEAST_LIGHT };
-    let code = transfer.first_code[((linear.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT) as usize];
-    code + u8::from(linear >= transfer.linear_at_step[usize::from(code)])
-}
-
 /// A power of two so little that everything up to the next one is black.
 const LEAST_LIGHT: f32 = 1.0 / 16_384.0;
 /// A bucket is a run of floats that share sign, exponent and the first 7 bits of the mantissa: short enough that it
@@ -182,6 +171,21 @@ struct Transfer {
     linear_at_step: [f32; 256],
     /// The code of the least light in each bucket.
     first_code: [u8; BUCKETS],
+}
+
+impl Transfer {
+    /// One band: clamp, encode, round.
+    ///
+    /// Calling `pow` for each band of each pixel would cost more than tracing it. Rounding has only 255 steps, so the
+    /// light at which each step is taken is kept instead; a band lies in the step that its exponent and first mantissa
+    /// bits lead to, or in the one above it.
+    #[inline]
+    fn srgb8(&self, linear: f32) -> u8 {
+        // NaN is black, as what is below the first bucket is.
+        let linear = if linear > LEAST_LIGHT { linear.min(1.0) } else { LEAST_LIGHT };
+        let code = self.first_code[((linear.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT) as usize];
+        code + u8::from(linear >= self.linear_at_step[usize::from(code)])
+    }
 }
 
 static TRANSFER: LazyLock<Transfer> = LazyLock::new(|| {
@@ -236,7 +240,7 @@ mod tests {
         let steps = TRANSFER.linear_at_step.iter().flat_map(|&s| [s.next_down(), s, s.next_up()]);
         let spread = (0..0x3f80_0000_u32).step_by(997).map(f32::from_bits);
         for x in steps.chain(spread) {
-            assert_eq!(srgb8_from_linear(x), by_formula(x), "{x:e}");
+            assert_eq!(TRANSFER.srgb8(x), by_formula(x), "{x:e}");
         }
     }
 
@@ -245,7 +249,7 @@ mod tests {
         for (x, code) in
             [(-1.0, 0), (-0.0, 0), (f32::NAN, 0), (f32::NEG_INFINITY, 0), (1.0, 255), (7.0, 255), (f32::INFINITY, 255)]
         {
-            assert_eq!(srgb8_from_linear(x), code, "{x}");
+            assert_eq!(TRANSFER.srgb8(x), code, "{x}");
         }
     }
 

@@ -4,7 +4,7 @@
 //! of the ways shows in what is found.
 
 use crate::bvh::{GROUPS, Stack};
-use crate::lanes::{Eight, LANES, Lanes, set_bits};
+use crate::lanes::{Answers, Eight, LANES, Lanes, set_bits};
 use crate::ray::{EightRays, Interval, Ray};
 use crate::scene::{PartId, Parts, Scene};
 use crate::shape::Part;
@@ -50,20 +50,34 @@ pub enum Kernel {
 /// What eight rays have met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EightHits {
-    /// Where on the ray, of those that have met anything.
+    /// Which of them have met anything, a bit for each.
+    pub met: u32,
+    /// Where on the ray, of those that have.
     pub t: Eight,
-    /// The place of the part that was met, or [`NOTHING`](Self::NOTHING).
-    pub(crate) places: [u32; LANES],
+    /// The place of the part that was met, or [`NOTHING`](Self::NOTHING): its bits.
+    places: Eight,
 }
 
 impl EightHits {
     /// No part's place.
     pub(crate) const NOTHING: u32 = u32::MAX;
 
-    /// Which of them have met anything, a bit for each.
+    /// The place of the part that one of them has met.
     #[inline(always)]
-    pub fn met(&self) -> u32 {
-        (0..LANES).fold(0, |met, lane| met | u32::from(self.places[lane] != Self::NOTHING) << lane)
+    pub(crate) fn place(&self, lane: usize) -> u32 {
+        self.places.0[lane].to_bits()
+    }
+
+    /// Who has met what has that place: a bit for each.
+    #[inline(always)]
+    pub(crate) fn at<N: Lanes>(&self, place: u32) -> u32 {
+        N::load(&self.places).has_bits(place).bits()
+    }
+
+    /// Who has met what has one of the places from the first up to the second.
+    #[inline(always)]
+    pub(crate) fn between(&self, start: u32, end: u32) -> u32 {
+        (0..LANES).fold(0, |lanes, lane| lanes | u32::from((start..end).contains(&self.place(lane))) << lane)
     }
 
     /// What one of them has met.
@@ -71,9 +85,8 @@ impl EightHits {
     /// # Panics
     /// In another scene than that it was found in; or if there are not so many.
     pub fn hit(&self, scene: &Scene, lane: usize) -> Option<Hit> {
-        let place = self.places[lane];
-        (place != Self::NOTHING).then(|| {
-            let PartId { object, part } = scene.parts().id(place);
+        (self.met >> lane & 1 == 1).then(|| {
+            let PartId { object, part } = scene.parts().id(self.place(lane));
             Hit { t: self.t.0[lane], object, part }
         })
     }
@@ -138,20 +151,22 @@ impl Work for ClosestHits<'_> {
     fn run<N: Lanes>(self) {
         let Self { kernel, parts, rays, hits } = self;
         let mut stacks = Stacks::default();
+        let mut packet = Together::<N, CLOSEST>::new(kernel, parts, Interval::IN_FRONT);
         for rays in rays.chunks(GROUPS) {
             if kernel.is_together(rays.len()) {
-                let mut packet = Together::<N, CLOSEST>::new(kernel, parts, rays, Interval::IN_FRONT);
-                packet.trace(&mut stacks);
+                packet.trace(rays, &mut stacks);
                 packet.tell_hits(hits);
                 continue;
             }
             for rays in rays {
-                let mut hit = EightHits { t: Eight([f32::MAX; LANES]), places: [EightHits::NOTHING; LANES] };
+                let mut hit =
+                    EightHits { met: 0, t: Eight::ZERO, places: Eight([f32::from_bits(EightHits::NOTHING); LANES]) };
                 for lane in set_bits(rays.asked) {
                     let mut ray = Alone::<N, CLOSEST>::new(parts, &rays.ray(lane), Interval::IN_FRONT);
                     ray.trace(&mut stacks.alone);
                     if let (t, Some(place)) = ray.found() {
-                        (hit.t.0[lane], hit.places[lane]) = (t, place);
+                        hit.met |= 1 << lane;
+                        (hit.t.0[lane], hit.places.0[lane]) = (t, f32::from_bits(place));
                     }
                 }
                 hits.push(hit);
@@ -175,11 +190,11 @@ impl Work for AnyHits<'_> {
     fn run<N: Lanes>(self) {
         let Self { kernel, parts, rays, within, met } = self;
         let mut stacks = Stacks::default();
+        let mut packet = Together::<N, ANY>::new(kernel, parts, within);
         for rays in rays.chunks(GROUPS) {
             // A packet knows of nothing behind the origins.
             if kernel.is_together(rays.len()) && within.min >= 0.0 {
-                let mut packet = Together::<N, ANY>::new(kernel, parts, rays, within);
-                packet.trace(&mut stacks);
+                packet.trace(rays, &mut stacks);
                 packet.tell_met(met);
                 continue;
             }

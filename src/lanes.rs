@@ -81,6 +81,9 @@ pub trait Lanes: Number<Mask: Answers> {
 
     /// The answers that these [bits](Answers::bits) stand for.
     fn answers(bits: u32) -> Self::Mask;
+
+    /// Whether the number has these bits.
+    fn has_bits(self, bits: u32) -> Self::Mask;
 }
 
 /// Eight answers.
@@ -293,6 +296,11 @@ impl Lanes for Eight {
     #[inline(always)]
     fn answers(bits: u32) -> EightAnswers {
         EightAnswers(from_fn(|lane| if bits >> lane & 1 == 1 { u32::MAX } else { 0 }))
+    }
+
+    #[inline(always)]
+    fn has_bits(self, bits: u32) -> EightAnswers {
+        EightAnswers(self.0.map(|number| if number.to_bits() == bits { u32::MAX } else { 0 }))
     }
 }
 

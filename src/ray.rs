@@ -31,6 +31,8 @@ pub struct Rays<N: Number> {
     pub inverse: Vector<N>,
     /// The direction's length, squared.
     pub squared_length: N,
+    /// One over that.
+    pub inverse_squared_length: N,
     /// What brings the direction to (0, 0, 1).
     pub shear: Shear<N>,
 }
@@ -38,10 +40,22 @@ pub struct Rays<N: Number> {
 impl<N: Number> Rays<N> {
     #[inline(always)]
     fn new(origin: Vector<N>, direction: Vector<N>) -> Self {
+        Self { shear: Shear::of(direction), ..Self::unsheared(origin, direction) }
+    }
+
+    #[inline(always)]
+    fn unsheared(origin: Vector<N>, direction: Vector<N>) -> Self {
         let Vector { x, y, z } = direction;
         let one = N::splat(1.0);
-        let inverse = Vector { x: one / x, y: one / y, z: one / z };
-        Self { origin, direction, inverse, squared_length: direction.dot(direction), shear: Shear::of(direction) }
+        let squared_length = direction.dot(direction);
+        Self {
+            origin,
+            direction,
+            inverse: Vector { x: one / x, y: one / y, z: one / z },
+            squared_length,
+            inverse_squared_length: one / squared_length,
+            shear: Shear::none(),
+        }
     }
 }
 
@@ -61,6 +75,7 @@ impl Rays<f32> {
             direction: vector(self.direction),
             inverse: vector(self.inverse),
             squared_length: N::splat(self.squared_length),
+            inverse_squared_length: N::splat(self.inverse_squared_length),
             shear: Shear { longest, factor: vector(self.shear.factor), length: N::splat(self.shear.length) },
         }
     }
@@ -71,6 +86,12 @@ impl<N: Lanes> Rays<N> {
     #[inline(always)]
     pub fn load(rays: &EightRays) -> Self {
         Self::new(rays.origin.load(), rays.direction.load())
+    }
+
+    /// The same without what only triangles ask for.
+    #[inline(always)]
+    pub fn load_unsheared(rays: &EightRays) -> Self {
+        Self::unsheared(rays.origin.load(), rays.direction.load())
     }
 }
 
@@ -153,6 +174,13 @@ enum Longest<M> {
 }
 
 impl<N: Number> Shear<N> {
+    /// Of rays that no triangle asks for it.
+    #[inline(always)]
+    fn none() -> Self {
+        let zero = N::splat(0.0);
+        Self { longest: Longest::Z, factor: Vector { x: zero, y: zero, z: zero }, length: zero }
+    }
+
     #[inline(always)]
     fn of(direction: Vector<N>) -> Self {
         let length = Vector { x: direction.x.abs(), y: direction.y.abs(), z: direction.z.abs() };

@@ -7,26 +7,26 @@
 //! rayon pool; as no pixel's light depends on another's, neither their number nor their order shows. Which pixels get
 //! more samples does depend on others: that is decided between two passes over the whole picture.
 
-use crate::camera::{Camera, EyeRays};
+use crate::camera::Camera;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::hit::{self, EightHits, Kernel};
-use crate::lanes::{ALL, Eight, LANES, Lanes, Vector};
+use crate::lanes::LANES;
 use crate::ray::EightRays;
 use crate::scene::Scene;
 use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
-use crate::simd::{self, Work};
-use glam::Vec3;
 use pixel::{Pixel, Seen, Sum, Watched};
 use rayon::prelude::*;
-use sampling::{PASSES, footprint_share, sample_position};
+use sampling::PASSES;
 use std::num::NonZeroU32;
 use std::ops::{AddAssign, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use tiles::{PIXELS, RUN, Tiles};
 
 mod count;
 mod pixel;
 mod sampling;
+mod tiles;
 
 pub use count::{Counts, count};
 pub use sampling::Sampling;
@@ -142,8 +142,7 @@ impl Refining {
         let mut cost = Cost::default();
         while let Some(pass) = PASSES.get(self.passes).filter(|pass| pass.end <= samples.get()) {
             let needs_more = self.raster.unsettled(crew, scene, self.passes);
-            let columns = self.raster.columns;
-            cost += self.raster.trace(crew, scene, pass.clone(), |x, y| needs_more[(y * columns + x) as usize])?;
+            cost += self.raster.trace(crew, scene, pass.clone(), |pixel| needs_more[pixel])?;
             self.passes += 1;
         }
         Some(cost)
@@ -160,31 +159,18 @@ impl Refining {
     }
 }
 
-/// A tile's side in pixels.
-const TILE: u32 = 16;
-
-/// A rectangle of pixels.
-struct Tile {
-    columns: Range<u32>,
-    rows: Range<u32>,
-}
-
 /// The pixels of a picture, or of one of larger ones.
 #[derive(Clone, Debug)]
 struct Raster<P> {
-    /// Of the picture.
-    resolution: Resolution,
-    /// How many pixels of the picture each of these covers in either direction.
-    scale: u32,
-    columns: u32,
-    rows: u32,
-    eye_rays: EyeRays,
+    tiles: Tiles,
+    /// Tile by tile.
     pixels: Vec<P>,
 }
 
 /// The arrays between the steps, kept from tile to tile.
 #[derive(Default)]
 struct Buffers {
+    wanted: Vec<u8>,
     rays: Vec<EightRays>,
     hits: Vec<EightHits>,
     points: Vec<EightPoints>,
@@ -195,157 +181,113 @@ struct Buffers {
 
 impl<P: Pixel> Raster<P> {
     fn new(camera: &Camera, resolution: Resolution, scale: u32) -> Self {
-        let (columns, rows) = (resolution.width.div_ceil(scale), resolution.height.div_ceil(scale));
-        let eye_rays = camera.eye_rays(resolution.aspect_ratio());
-        let pixels = vec![P::default(); columns as usize * rows as usize];
-        Self { resolution, scale, columns, rows, eye_rays, pixels }
+        let tiles = Tiles::new(camera, resolution, scale);
+        Self { tiles, pixels: vec![P::default(); tiles.count() * PIXELS] }
     }
 
     /// The picture with so many samples of each pixel.
     fn rendered(mut self, crew: Crew<'_>, scene: &Scene, samples: u32) -> Option<Rendered> {
-        let cost = self.trace(crew, scene, 0..samples, |_, _| true)?;
+        let cost = self.trace(crew, scene, 0..samples, |_| true)?;
         Some(Rendered { framebuffer: self.framebuffer(), cost })
     }
 
-    /// Adds these samples to the pixels that are wanted, tile by tile.
+    /// Adds these samples to the pixels that are wanted, by their number, tile by tile.
     fn trace(
         &mut self,
         crew: Crew<'_>,
         scene: &Scene,
         samples: Range<u32>,
-        is_wanted: impl Fn(u32, u32) -> bool + Sync,
+        is_wanted: impl Fn(usize) -> bool + Sync,
     ) -> Option<Cost> {
-        let trace = |buffers: &mut Buffers, tile: &Tile| {
-            let places: Vec<_> = tile.places().filter(|&(x, y)| is_wanted(x, y)).collect();
-            self.trace_tile(crew, scene, samples.clone(), places, buffers)
+        let tiles = self.tiles;
+        let trace = |buffers: &mut Buffers, (tile, pixels): (usize, &mut [P])| {
+            buffers.wanted.clear();
+            let is_wanted = |&pixel: &u8| is_wanted(tile * PIXELS + usize::from(pixel));
+            buffers.wanted.extend(tiles.inside(tile).filter(is_wanted));
+            trace_tile(&tiles, tile, pixels, crew, scene, samples.clone(), buffers)
         };
-        let traced: Option<Vec<_>> = match crew {
+        let costs: Option<Vec<_>> = match crew {
             Crew::Alone => {
                 let mut buffers = Buffers::default();
-                self.tiles().iter().map(|tile| trace(&mut buffers, tile)).collect()
+                self.pixels.chunks_mut(PIXELS).enumerate().map(|tile| trace(&mut buffers, tile)).collect()
             }
-            Crew::Pool(_) => self.tiles().par_iter().map_init(Buffers::default, trace).collect(),
+            Crew::Pool(_) => self.pixels.par_chunks_mut(PIXELS).enumerate().map_init(Buffers::default, trace).collect(),
         };
         let mut sum = Cost::default();
-        for TracedTile { places, pixels, cost } in traced? {
-            for ((x, y), pixel) in places.into_iter().zip(pixels) {
-                *self.pixel_mut(x, y) = pixel;
-            }
+        for cost in costs? {
             sum += cost;
         }
         Some(sum)
     }
 
-    /// These pixels with more samples. `None`: given up, between one sample of them and the next.
-    fn trace_tile(
-        &self,
-        crew: Crew<'_>,
-        scene: &Scene,
-        samples: Range<u32>,
-        places: Vec<(u32, u32)>,
-        buffers: &mut Buffers,
-    ) -> Option<TracedTile<P>> {
-        let start = Instant::now();
-        let mut pixels: Vec<P> = places.iter().map(|&(x, y)| *self.pixel(x, y)).collect();
-        let mut rays = 0;
-        for sample in samples {
-            if crew.is_cancelled() {
-                return None;
-            }
-            let Buffers { rays: eye_rays, hits, points, shadows, arriving, lights } = buffers;
-            self.make_eye_rays(&places, sample, eye_rays);
-            hit::closest_hits(Kernel::Auto, scene, eye_rays, hits);
-            shade::surface_points(scene, eye_rays, hits, points);
-            let shadow_rays = shade::arriving_light(scene, points, shadows, arriving);
-            shade::reflect(scene, eye_rays, self.steps(sample), hits, points, arriving, lights);
-            for (at, pixel) in pixels.iter_mut().enumerate() {
-                let (group, lane) = (at / LANES, at % LANES);
-                let seen = || Seen::of(points[group].seen(lane), arriving[group].lit_by[lane]);
-                pixel.add(shade::light_of(&lights[group], lane), seen);
-            }
-            rays += pixels.len() as u64 + shadow_rays;
-        }
-        Some(TracedTile { places, pixels, cost: Cost { rays, work: start.elapsed() } })
-    }
-
-    /// One eye ray for each pixel.
-    fn make_eye_rays(&self, places: &[(u32, u32)], sample: u32, rays: &mut Vec<EightRays>) {
-        rays.clear();
-        simd::run(MakeEyeRays { raster: self, places, sample, rays });
-    }
-
-    /// By how much the direction changes from an eye ray to those beside it.
-    fn steps(&self, sample: u32) -> [Vec3; 2] {
-        let share = self.scale as f32 * footprint_share(sample);
-        self.eye_rays.steps(self.resolution.width, self.resolution.height).map(|step| step * share)
-    }
-
-    /// All tiles; those at the right and lower edge may be smaller.
-    fn tiles(&self) -> Vec<Tile> {
-        let spans = |length: u32| (0..length).step_by(TILE as usize).map(move |at| at..length.min(at + TILE));
-        spans(self.rows)
-            .flat_map(|rows| spans(self.columns).map(move |columns| Tile { columns, rows: rows.clone() }))
-            .collect()
-    }
-
     fn pixel(&self, x: u32, y: u32) -> &P {
-        &self.pixels[(y * self.columns + x) as usize]
-    }
-
-    fn pixel_mut(&mut self, x: u32, y: u32) -> &mut P {
-        &mut self.pixels[(y * self.columns + x) as usize]
+        &self.pixels[self.tiles.number(x, y)]
     }
 
     fn framebuffer(&self) -> Framebuffer {
-        let Resolution { width, height, .. } = self.resolution;
-        let rows = (0..height).map(|y| y / self.scale);
-        let pixels = rows.flat_map(|y| (0..width).map(move |x| self.pixel(x / self.scale, y).mean()));
-        Framebuffer { resolution: self.resolution, pixels: pixels.collect() }
-    }
-}
-
-struct MakeEyeRays<'w, P> {
-    raster: &'w Raster<P>,
-    places: &'w [(u32, u32)],
-    sample: u32,
-    rays: &'w mut Vec<EightRays>,
-}
-
-impl<P> Work for MakeEyeRays<'_, P> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<N: Lanes>(self) {
-        let Self { raster: Raster { resolution, scale, eye_rays, .. }, places, sample, rays } = self;
-        let (sx, sy) = sample_position(sample);
-        let (width, height) = (N::splat(resolution.width as f32), N::splat(resolution.height as f32));
-        let scale = N::splat(*scale as f32);
-        for places in places.chunks(LANES) {
-            let [mut xs, mut ys] = [Eight::ZERO; 2];
-            for lane in 0..LANES {
-                let (x, y) = places[lane.min(places.len() - 1)];
-                (xs.0[lane], ys.0[lane]) = (x as f32, y as f32);
+        let Tiles { resolution, scale, columns, .. } = self.tiles;
+        let mut means = Framebuffer::new(Resolution { width: columns, height: self.tiles.rows, ..resolution });
+        for (y, row) in (0..).zip(means.pixels.chunks_mut(columns.max(1) as usize)) {
+            for (means, first) in row.chunks_mut(RUN).zip(self.tiles.runs(y)) {
+                for (mean, pixel) in means.iter_mut().zip(&self.pixels[first..first + RUN]) {
+                    *mean = pixel.mean();
+                }
             }
-            // Rows are counted from the top, the lecture's q_v from the bottom.
-            let (x, y) = ((N::load(&xs) + N::splat(sx)) * scale, (N::load(&ys) + N::splat(sy)) * scale);
-            let direction = eye_rays.direction(x / width, (height - y) / height).store();
-            let asked = ALL >> (LANES - places.len());
-            rays.push(EightRays { origin: Vector::splat(eye_rays.eye()), direction, asked });
         }
+        if scale == 1 {
+            return means;
+        }
+        let rows = (0..resolution.height).map(|y| y / scale);
+        let pixels = rows.flat_map(|y| (0..resolution.width).map(move |x| (x / scale, y)));
+        Framebuffer { resolution, pixels: pixels.map(|(x, y)| means.pixel(x, y)).collect() }
     }
+}
+
+/// A tile's wanted pixels with more samples. `None`: given up, between one sample of them and the next.
+fn trace_tile<P: Pixel>(
+    tiles: &Tiles,
+    tile: usize,
+    pixels: &mut [P],
+    crew: Crew<'_>,
+    scene: &Scene,
+    samples: Range<u32>,
+    buffers: &mut Buffers,
+) -> Option<Cost> {
+    let start = Instant::now();
+    let mut traced = 0;
+    for sample in samples {
+        if crew.is_cancelled() {
+            return None;
+        }
+        let Buffers { wanted, rays, hits, points, shadows, arriving, lights } = buffers;
+        tiles.make_eye_rays(tile, wanted, sample, rays);
+        hit::closest_hits(Kernel::Auto, scene, rays, hits);
+        shade::surface_points(scene, rays, hits, points);
+        let shadow_rays = shade::arriving_light(scene, points, shadows, arriving);
+        shade::reflect(scene, rays, tiles.steps(sample), hits, points, arriving, lights);
+        let groups = wanted.chunks(LANES).zip(points.iter()).zip(arriving.iter()).zip(lights.iter());
+        for (((wanted, points), arriving), light) in groups {
+            for (lane, &pixel) in wanted.iter().enumerate() {
+                let seen = || Seen::of(points.seen(lane), arriving.lit_by[lane]);
+                pixels[usize::from(pixel)].add(shade::light_of(light, lane), seen);
+            }
+        }
+        traced += wanted.len() as u64 + shadow_rays;
+    }
+    Some(Cost { rays: traced, work: start.elapsed() })
 }
 
 impl Raster<Watched> {
-    /// Which pixels the pass after so many is for.
+    /// Which pixels the pass after so many is for, by their number.
     fn unsettled(&self, crew: Crew<'_>, scene: &Scene, passes: usize) -> Vec<bool> {
         let white = 1.0 / scene.exposure;
-        let is_unsettled = |at: usize| {
-            let (x, y) = (at as u32 % self.columns, at as u32 / self.columns);
+        let is_unsettled = |number: usize| {
+            let pixel = &self.pixels[number];
             match passes {
                 0 => true,
-                1 => self.neighbours(x, y).any(|neighbour| self.pixel(x, y).is_edge_to(neighbour, white)),
-                2 => self.pixel(x, y).count() > 1,
-                _ => self.pixel(x, y).is_rough(white),
+                1 => self.neighbours(number).any(|neighbour| pixel.is_edge_to(neighbour, white)),
+                2 => pixel.count() > 1,
+                _ => pixel.is_rough(white),
             }
         };
         match crew {
@@ -354,29 +296,12 @@ impl Raster<Watched> {
         }
     }
 
-    /// The pixel and those around it.
-    fn neighbours(&self, x: u32, y: u32) -> impl Iterator<Item = &Watched> {
+    /// The pixel and those around it; none outside the picture.
+    fn neighbours(&self, number: usize) -> impl Iterator<Item = &Watched> {
         let around = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
-        around(y, self.rows).flat_map(move |y| around(x, self.columns).map(move |x| self.pixel(x, y)))
-    }
-}
-
-/// Pixels of a tile, where they are, and what they took.
-struct TracedTile<P> {
-    places: Vec<(u32, u32)>,
-    pixels: Vec<P>,
-    cost: Cost,
-}
-
-impl Tile {
-    /// Its pixels, square by square of 8 by 8 and in these by groups of 4 by 2: rays that stand side by side go side by
-    /// side.
-    fn places(&self) -> impl Iterator<Item = (u32, u32)> {
-        let corners = |span: &Range<u32>| span.clone().step_by(8);
-        let squares = corners(&self.rows).flat_map(move |y| corners(&self.columns).map(move |x| (x, y)));
-        let in_square = |at: u32| (at % 4 + at / 8 % 2 * 4, at / 4 % 2 + at / 16 * 2);
-        let places =
-            squares.flat_map(move |(x, y)| (0..64).map(in_square).map(move |(right, down)| (x + right, y + down)));
-        places.filter(|(x, y)| self.columns.contains(x) && self.rows.contains(y))
+        let Tiles { columns, rows, .. } = self.tiles;
+        self.tiles.place(number).into_iter().flat_map(move |[x, y]| {
+            around(y, rows).flat_map(move |y| around(x, columns).map(move |x| self.pixel(x, y)))
+        })
     }
 }

@@ -8,6 +8,7 @@ use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector};
 use crate::ray::{EightRays, Interval, Rays};
 use crate::scene::{Grove, Parts};
 use crate::shape::{Crossable, SideBySide};
+use std::ops::Range;
 
 /// Rays in groups of eight, and what they have met.
 pub(super) struct Together<'p, N: Lanes, const ANY: bool> {
@@ -15,7 +16,7 @@ pub(super) struct Together<'p, N: Lanes, const ANY: bool> {
     parts: &'p Parts,
     rays: &'p [EightRays],
     groups: [Rays<N>; GROUPS],
-    min: f32,
+    within: Interval,
     /// Where the closest was met, or where the interval ends; of who has enough, before all.
     t: [N; GROUPS],
     /// The bits of its place.
@@ -42,35 +43,66 @@ fn place_as_number(place: u32) -> f32 {
 }
 
 impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
-    /// These are at most as many as a packet has, and at least one.
+    /// No rays yet. A packet is some kilobytes: it stays where it is, and takes one lot of rays after the other.
     #[inline(always)]
-    pub(super) fn new(kernel: Kernel, parts: &'p Parts, rays: &'p [EightRays], within: Interval) -> Self {
-        // Who is not asked about does not widen the packet.
-        let one = rays.iter().find(|rays| rays.asked != 0).unwrap_or(&rays[0]);
-        let mut packet = Self {
+    pub(super) fn new(kernel: Kernel, parts: &'p Parts, within: Interval) -> Self {
+        let zeros = EightRays { origin: Vector::ZERO, direction: Vector::ZERO, asked: 0 };
+        Self {
             kernel,
             parts,
-            rays,
-            groups: [Rays::load(one); GROUPS],
-            min: within.min,
+            rays: &[],
+            groups: [Rays::load(&zeros); GROUPS],
+            within,
             t: [N::splat(DONE); GROUPS],
             place: [N::splat(place_as_number(NOTHING)); GROUPS],
             reach: Eight([DONE; LANES]),
-        };
-        for (group, rays) in rays.iter().enumerate().filter(|(_, rays)| rays.asked != 0) {
-            packet.groups[group] = Rays::load(rays);
-            packet.t[group] = N::select(N::answers(rays.asked), N::splat(within.max), N::splat(DONE));
-            packet.reach.0[group] = within.max;
         }
-        packet
+    }
+
+    /// Takes these rays, at most as many as a packet has, and finds what they meet.
+    #[inline(always)]
+    pub(super) fn trace(&mut self, rays: &'p [EightRays], stacks: &mut Stacks) {
+        self.rays = rays;
+        // Who is not asked about does not widen the packet.
+        let Some(one) = rays.iter().find(|rays| rays.asked != 0) else { return self.reset(0..GROUPS) };
+        let (max, done) = (self.within.max, N::splat(DONE));
+        let has_triangles = !self.parts.triangles.leaves.is_empty();
+        for (group, of_group) in rays.iter().enumerate() {
+            let asked = of_group.asked;
+            let of_group = if asked == 0 { one } else { of_group };
+            if has_triangles {
+                self.groups[group] = Rays::load(of_group);
+            } else {
+                self.groups[group] = Rays::load_unsheared(of_group);
+            }
+            self.t[group] = N::select(N::answers(asked), N::splat(max), done);
+            self.place[group] = N::splat(place_as_number(NOTHING));
+            self.reach.0[group] = if asked == 0 { DONE } else { max };
+        }
+        self.reset(rays.len()..GROUPS);
+        for group in rays.len()..GROUPS {
+            self.groups[group] = self.groups[0];
+        }
+        self.trace_parts(stacks);
+    }
+
+    /// Has no rays in these groups.
+    #[inline(always)]
+    fn reset(&mut self, groups: Range<usize>) {
+        for group in groups {
+            self.t[group] = N::splat(DONE);
+            self.place[group] = N::splat(place_as_number(NOTHING));
+            self.reach.0[group] = DONE;
+        }
     }
 
     /// Tells where each ray met what.
     #[inline(always)]
     pub(super) fn tell_hits(&self, hits: &mut Vec<EightHits>) {
         for group in 0..self.rays.len() {
-            let (t, place) = (self.t[group].store(), self.place[group].store());
-            hits.push(EightHits { t, places: place.0.map(f32::to_bits) });
+            let place = self.place[group];
+            let met = (!place.has_bits(NOTHING)).bits();
+            hits.push(EightHits { met, t: self.t[group].store(), places: place.store() });
         }
     }
 
@@ -84,11 +116,9 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
 
     /// Searches through everything.
     #[inline(always)]
-    pub(super) fn trace(&mut self, stacks: &mut Stacks) {
+    fn trace_parts(&mut self, stacks: &mut Stacks) {
         let parts = self.parts;
-        for (place, (_, plane)) in (0..).zip(&parts.planes) {
-            self.test_all(plane, place);
-        }
+        self.test_few();
         let mut packet = None;
         self.trace_grove(&parts.balls, &mut packet, stacks);
         self.trace_grove(&parts.triangles, &mut packet, stacks);
@@ -96,11 +126,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
 
     #[inline(always)]
     fn trace_grove<S: SideBySide>(&mut self, grove: &'p Grove<S>, packet: &mut Option<Packet<N>>, stacks: &mut Stacks) {
-        if let Some(few) = grove.few {
-            for lane in 0..few {
-                self.test_all(&grove.leaves[0].shapes.splat(lane), grove.place(0, lane));
-            }
-        } else if self.reach.greatest() >= self.min {
+        if grove.few.is_none() && self.reach.greatest() >= self.within.min {
             let packet = match packet {
                 Some(packet) => packet,
                 None => packet.insert(Packet::of(&self.groups)),
@@ -110,54 +136,88 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
         }
     }
 
+    /// Tests all that no tree leaves out: planes, and kinds of which there are but a few.
     #[inline(always)]
-    fn test_all<C: Crossable<N>>(&mut self, shape: &C, place: u32) {
+    fn test_few(&mut self) {
+        let (parts, min) = (self.parts, N::splat(self.within.min));
+        let [balls, triangles] = [parts.balls.few, parts.triangles.few].map(|few| few.unwrap_or(0));
+        if parts.planes.len() + balls + triangles == 0 {
+            return;
+        }
         for group in 0..self.rays.len() {
-            if self.reach.0[group] > DONE {
-                self.test(group, shape, place);
+            if self.reach.0[group] == DONE {
+                continue;
             }
+            let (rays, mut met) = (&self.groups[group], Met::<N, ANY> { t: self.t[group], place: self.place[group] });
+            for (place, (_, plane)) in (0..).zip(&parts.planes) {
+                met.test(plane, place, rays, min, parts);
+            }
+            for lane in 0..balls {
+                met.test(&parts.balls.leaves[0].shapes.splat(lane), parts.balls.place(0, lane), rays, min, parts);
+            }
+            for lane in 0..triangles {
+                let triangle = parts.triangles.leaves[0].shapes.splat(lane);
+                met.test(&triangle, parts.triangles.place(0, lane), rays, min, parts);
+            }
+            self.set(group, met);
         }
     }
 
     #[inline(always)]
     fn test<C: Crossable<N>>(&mut self, group: usize, shape: &C, place: u32) {
-        let Some((crosses, t)) = shape.first_crossing(&self.groups[group], N::splat(self.min)) else { return };
-        let until = self.t[group];
-        if ANY {
-            let is_met = crosses & t.le(until);
-            if is_met.any() {
-                self.meet(group, is_met, N::splat(DONE), place);
-            }
-            return;
-        }
-        let mut is_closest = crosses & t.lt(until);
-        let is_as_close = crosses & t.same(until);
-        if is_as_close.any() {
-            let mut first = Eight([0.0; LANES]);
-            self.comes_before(place, &self.place[group].store(), &mut first);
-            is_closest = is_closest | (is_as_close & N::splat(0.0).lt(N::load(&first)));
-        }
-        if is_closest.any() {
-            self.meet(group, is_closest, t, place);
+        let mut met = Met::<N, ANY> { t: self.t[group], place: self.place[group] };
+        if met.test(shape, place, &self.groups[group], N::splat(self.within.min), self.parts) {
+            self.set(group, met);
         }
     }
 
     #[inline(always)]
-    fn meet(&mut self, group: usize, is_met: N::Mask, t: N, place: u32) {
-        self.t[group] = N::select(is_met, t, self.t[group]);
-        self.place[group] = N::select(is_met, N::splat(place_as_number(place)), self.place[group]);
-        self.reach.0[group] = self.t[group].store().greatest();
+    fn set(&mut self, group: usize, Met { t, place }: Met<N, ANY>) {
+        self.t[group] = t;
+        self.place[group] = place;
+        self.reach.0[group] = t.store().greatest();
+    }
+}
+
+/// What a group's rays have met.
+struct Met<N, const ANY: bool> {
+    t: N,
+    place: N,
+}
+
+impl<N: Lanes, const ANY: bool> Met<N, ANY> {
+    /// Tests one part; answers whether it is met.
+    #[inline(always)]
+    fn test<C: Crossable<N>>(&mut self, shape: &C, place: u32, rays: &Rays<N>, min: N, parts: &Parts) -> bool {
+        let Some((crosses, t)) = shape.first_crossing(rays, min) else { return false };
+        if ANY {
+            return self.meet(crosses & t.le(self.t), N::splat(DONE), place);
+        }
+        let is_as_close = crosses & t.same(self.t);
+        let mut is_closest = crosses & t.lt(self.t);
+        if is_as_close.any() {
+            let first = comes_before(parts, place, &self.place.store());
+            is_closest = is_closest | (is_as_close & N::answers(first));
+        }
+        self.meet(is_closest, t, place)
     }
 
-    /// 1 where that stands before the others in the scene.
-    #[cold]
-    fn comes_before(&self, place: u32, others: &Eight, first: &mut Eight) {
-        for (first, other) in first.0.iter_mut().zip(others.0) {
-            let other = other.to_bits();
-            let is_first = other == NOTHING || self.parts.id(place) < self.parts.id(other);
-            *first = f32::from(u8::from(is_first));
+    #[inline(always)]
+    fn meet(&mut self, is_met: N::Mask, t: N, place: u32) -> bool {
+        let is_any = is_met.any();
+        if is_any {
+            self.t = N::select(is_met, t, self.t);
+            self.place = N::select(is_met, N::splat(place_as_number(place)), self.place);
         }
+        is_any
     }
+}
+
+/// Which of the others it stands before in the scene: a bit for each.
+#[cold]
+fn comes_before(parts: &Parts, place: u32, others: &Eight) -> u32 {
+    let is_first = |other: u32| other == NOTHING || parts.id(place) < parts.id(other);
+    others.0.iter().rev().fold(0, |first, other| first << 1 | u32::from(is_first(other.to_bits())))
 }
 
 /// A packet in a tree.
@@ -171,7 +231,7 @@ struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
 impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N, S, ANY> {
     #[inline(always)]
     fn min(&self) -> f32 {
-        self.rays.min
+        self.rays.within.min
     }
 
     #[inline(always)]
@@ -187,7 +247,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
     #[inline(always)]
     fn leaf(&mut self, leaf: usize) {
         let shapes = &self.grove.leaves[leaf].shapes;
-        let min = N::splat(self.rays.min);
+        let min = N::splat(self.rays.within.min);
         let [enters, leaves] = self.packet.crossed(shapes.load::<N>().boxes());
         let mut is_met = enters.max(min).le(leaves.min(N::splat(self.farthest()))).bits();
         while is_met != 0 {
@@ -209,7 +269,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
         if self.rays.kernel == Kernel::Packet {
             return groups == 0;
         }
-        let min = N::splat(self.rays.min);
+        let min = N::splat(self.rays.within.min);
         let mut of_group = [0; GROUPS];
         let (mut left, mut count) = (groups, 0);
         while left != 0 {
@@ -243,7 +303,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
         while rays != 0 {
             let lane = rays.trailing_zeros() as usize % LANES;
             rays &= rays - 1;
-            let within = Interval { min: self.rays.min, max: t.0[lane] };
+            let within = Interval { min: self.rays.within.min, max: t.0[lane] };
             let known = place.0[lane].to_bits();
             let ray = Alone::<N, ANY>::new(self.rays.parts, &self.rays.rays[group].ray(lane), within);
             let mut ray = ray.going_on((known != NOTHING).then_some(known));

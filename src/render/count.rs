@@ -1,7 +1,6 @@
 //! The trace stage alone, for those who time it: eye rays -> closest hits -> a shadow ray from each.
 
-use super::pixel::Sum;
-use super::{Raster, Tile};
+use super::tiles::Tiles;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::hit::{self, EightHits, Kernel};
@@ -43,15 +42,14 @@ impl Add for Counts {
 /// shadows, one ray from each hit to each light, also where the surface faces away from it; on the threads of the current
 /// rayon pool.
 pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
-    let raster = Raster::<Sum>::new(camera, resolution, 1);
-    let tiles = raster.tiles();
-    let tile = |buffers: &mut Buffers, tile: &Tile| raster.count_tile(kernel, scene, 0..samples.get(), tile, buffers);
+    let tiles = Tiles::new(camera, resolution, 1);
+    let tile = |buffers: &mut Buffers, tile: usize| buffers.count_tile(kernel, scene, &tiles, tile, 0..samples.get());
     let counts: Vec<_> = match rayon::current_num_threads() {
         1 => {
             let mut buffers = Buffers::default();
-            tiles.iter().map(|at| tile(&mut buffers, at)).collect()
+            (0..tiles.count()).map(|at| tile(&mut buffers, at)).collect()
         }
-        _ => tiles.par_iter().map_init(Buffers::default, tile).collect(),
+        _ => (0..tiles.count()).into_par_iter().map_init(Buffers::default, tile).collect(),
     };
     // In the tiles' order: a sum of floats depends on it.
     counts.into_iter().fold(Counts::default(), Add::add)
@@ -60,6 +58,7 @@ pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolut
 /// The arrays between the steps, kept from tile to tile.
 #[derive(Default)]
 struct Buffers {
+    wanted: Vec<u8>,
     rays: Vec<EightRays>,
     hits: Vec<EightHits>,
     points: Vec<EightPoints>,
@@ -67,35 +66,26 @@ struct Buffers {
     blocked: Vec<u32>,
 }
 
-impl Raster<Sum> {
-    fn count_tile(
-        &self,
-        kernel: Kernel,
-        scene: &Scene,
-        samples: Range<u32>,
-        tile: &Tile,
-        buffers: &mut Buffers,
-    ) -> Counts {
-        let places: Vec<_> = tile.places().collect();
+impl Buffers {
+    fn count_tile(&mut self, kernel: Kernel, scene: &Scene, tiles: &Tiles, tile: usize, samples: Range<u32>) -> Counts {
+        self.wanted.clear();
+        self.wanted.extend(tiles.inside(tile));
         let mut counts = Counts::default();
         for sample in samples {
-            self.make_eye_rays(&places, sample, &mut buffers.rays);
-            hit::closest_hits(kernel, scene, &buffers.rays, &mut buffers.hits);
-            counts = counts + buffers.count(kernel, scene);
+            tiles.make_eye_rays(tile, &self.wanted, sample, &mut self.rays);
+            hit::closest_hits(kernel, scene, &self.rays, &mut self.hits);
+            counts = counts + self.count(kernel, scene);
         }
         counts
     }
-}
 
-impl Buffers {
     /// The rays and their hits, and the shadow rays that begin there.
     fn count(&mut self, kernel: Kernel, scene: &Scene) -> Counts {
-        let Self { rays, hits, points, shadow_rays, blocked } = self;
+        let Self { rays, hits, points, shadow_rays, blocked, .. } = self;
         let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
         for hits in hits.iter() {
-            let met = hits.met();
-            counts.hits += u64::from(met.count_ones());
-            counts.depths += set_bits(met).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
+            counts.hits += u64::from(hits.met.count_ones());
+            counts.depths += set_bits(hits.met).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
         }
         if scene.shadows {
             shade::surface_points(scene, rays, hits, points);

@@ -35,6 +35,16 @@ impl EightPoints {
         uv: [Eight::ZERO; 2],
     };
 
+    /// These have met that.
+    #[inline(always)]
+    fn set_ids(&mut self, lanes: u32, id: PartId) {
+        if lanes == ALL {
+            self.ids = [id; LANES];
+        } else {
+            set_bits(lanes).for_each(|lane| self.ids[lane] = id);
+        }
+    }
+
     #[inline(always)]
     pub(super) fn uv(&self, lane: usize) -> Vec2 {
         Vec2::new(self.uv[0].0[lane], self.uv[1].0[lane])
@@ -49,7 +59,7 @@ impl EightPoints {
 
 /// The surface at each hit.
 pub fn surface_points(scene: &Scene, rays: &[EightRays], hits: &[EightHits], points: &mut Vec<EightPoints>) {
-    points.clear();
+    points.resize(hits.len(), EightPoints::NONE);
     simd::run(SurfacePoints { scene, rays, hits, points });
 }
 
@@ -57,7 +67,7 @@ struct SurfacePoints<'w> {
     scene: &'w Scene,
     rays: &'w [EightRays],
     hits: &'w [EightHits],
-    points: &'w mut Vec<EightPoints>,
+    points: &'w mut [EightPoints],
 }
 
 impl Work for SurfacePoints<'_> {
@@ -66,16 +76,14 @@ impl Work for SurfacePoints<'_> {
     #[inline(always)]
     fn run<N: Lanes>(self) {
         let Self { scene, rays, hits, points } = self;
-        for (rays, hits) in rays.iter().zip(hits) {
-            let mut at = EightPoints::NONE;
-            at.met = hits.met();
+        for ((rays, hits), at) in rays.iter().zip(hits).zip(points) {
+            at.met = hits.met;
             if at.met != 0 {
-                of_hits::<N>(scene.parts(), rays, hits, &mut at);
+                of_hits::<N>(scene.parts(), rays, hits, at);
                 if scene.parts().has_smooth {
-                    smooth(scene, &mut at);
+                    smooth(scene, at);
                 }
             }
-            points.push(at);
         }
     }
 }
@@ -86,17 +94,19 @@ fn of_hits<N: Lanes>(parts: &Parts, rays: &EightRays, hits: &EightHits, at: &mut
     let mut points = Points::<N>::nowhere();
     let mut left = at.met;
     while left != 0 {
-        let place = hits.places[left.trailing_zeros() as usize % LANES];
+        let place = hits.place(left.trailing_zeros() as usize % LANES);
         // A plane is by itself; those that stand in trees are looked at together.
         let (lanes, found) = if place < parts.balls.first {
-            let lanes = lanes_between(hits, [place, place + 1]);
-            (lanes, parts.planes[place as usize].1.points_at(&Rays::<N>::load(rays), t))
+            let lanes = hits.at::<N>(place);
+            let (id, plane) = &parts.planes[place as usize];
+            at.set_ids(lanes, *id);
+            (lanes, plane.points_at(&Rays::<N>::load(rays), t))
         } else if place < parts.triangles.first {
-            let lanes = lanes_between(hits, [parts.balls.first, parts.triangles.first]);
-            (lanes, at_crossings(&parts.balls, hits, lanes, rays, t))
+            let lanes = hits.between(parts.balls.first, parts.triangles.first);
+            (lanes, in_grove(&parts.balls, rays, hits, lanes, at))
         } else {
-            let lanes = lanes_between(hits, [parts.triangles.first, EightHits::NOTHING]);
-            (lanes, at_crossings(&parts.triangles, hits, lanes, rays, t))
+            let lanes = hits.between(parts.triangles.first, EightHits::NOTHING);
+            (lanes, in_grove(&parts.triangles, rays, hits, lanes, at))
         };
         points = if lanes == ALL { found } else { Points::select(N::answers(lanes), found, points) };
         left &= !lanes;
@@ -106,38 +116,30 @@ fn of_hits<N: Lanes>(parts: &Parts, rays: &EightRays, hits: &EightHits, at: &mut
     at.normal = at.facing;
     at.clearance = points.clearance.store();
     at.uv = [points.uv[0].store(), points.uv[1].store()];
-    for lane in set_bits(at.met) {
-        at.ids[lane] = parts.id(hits.places[lane]);
-    }
 }
 
-/// Who has met what has a place from the first of them up to the second.
+/// What these of the rays have met in a tree.
 #[inline(always)]
-fn lanes_between(hits: &EightHits, [start, end]: [u32; 2]) -> u32 {
-    let is_between = |place: u32| start <= place && place < end;
-    (0..LANES).fold(0, |lanes, lane| lanes | u32::from(is_between(hits.places[lane])) << lane)
-}
-
-/// What some of the rays have met in a tree.
-#[inline(always)]
-fn at_crossings<N: Lanes, S: SideBySide>(
+fn in_grove<N: Lanes, S: SideBySide>(
     grove: &Grove<S>,
+    rays: &EightRays,
     hits: &EightHits,
     lanes: u32,
-    rays: &EightRays,
-    t: N,
+    at: &mut EightPoints,
 ) -> Points<N> {
-    let rays = Rays::load(rays);
-    let first = hits.places[lanes.trailing_zeros() as usize % LANES];
+    let (rays, t) = (Rays::load(rays), N::load(&hits.t));
+    let first = hits.place(lanes.trailing_zeros() as usize % LANES);
     let (leaf, place) = grove.leaf(first);
-    if lanes_between(hits, [first, first + 1]) == lanes {
+    if hits.at::<N>(first) == lanes {
+        at.set_ids(lanes, leaf.ids[place]);
         return leaf.shapes.splat::<N>(place).points_at(&rays, t);
     }
     // Who has met something else has it cross what stands there, and that is not looked at.
     let mut shapes = leaf.shapes;
     for lane in set_bits(lanes) {
-        let (leaf, place) = grove.leaf(hits.places[lane]);
+        let (leaf, place) = grove.leaf(hits.place(lane));
         shapes.put(lane, &leaf.shapes, place);
+        at.ids[lane] = leaf.ids[place];
     }
     shapes.load::<N>().points_at(&rays, t)
 }

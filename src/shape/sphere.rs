@@ -54,48 +54,6 @@ pub struct Balls<N> {
 }
 
 impl<N: Number> Balls<N> {
-    /// Both roots of f(p + t d) = 0 in ascending order, and which of the lines have them; nothing if none does.
-    ///
-    /// The lecture solves (d.d) t^2 + 2 (f.d) t + (f.f - r^2) = 0, with f = p - c, by
-    ///
-    /// ```text
-    /// t = (-f.d ± sqrt((f.d)^2 - (d.d)(f.f - r^2))) / d.d
-    /// ```
-    ///
-    /// which is right on paper and loses its digits in f32 twice: in the difference under the root when the sphere
-    /// is small or far (at 2,000 radii one ray in forty is wrong about hitting at all), and in the sum before the
-    /// division when the two terms nearly cancel (a ground made of a large sphere). So, after Haines, Günther and
-    /// Akenine-Möller (Ray Tracing Gems, chapter 7): the term under the root comes from the distance between the
-    /// centre and the line, ||f - ((f.d)/(d.d)) d||, and only the root without cancellation is computed directly;
-    /// the other follows from the product of the roots, (f.f - r^2) / (d.d).
-    #[inline(always)]
-    fn crossings(&self, rays: &Rays<N>) -> Option<(N::Mask, [N; 2])> {
-        let (d, dd, zero) = (rays.direction, rays.squared_length, N::splat(0.0));
-        let squared_radius = self.radius * self.radius;
-        let f = rays.origin - self.center;
-        let half_b = -f.dot(d);
-        let to_line = f + d * (half_b / dd);
-        let under_root = squared_radius - to_line.dot(to_line);
-        // NaN is no crossing either.
-        let crosses = zero.le(under_root);
-        if !crosses.any() {
-            return None;
-        }
-        let root = (dd * under_root).sqrt();
-        let q = N::select(half_b.lt(zero), half_b - root, half_b + root);
-        let ff = f.dot(f);
-        let (t0, t1) = ((ff - squared_radius) / q, q / dd);
-        let is_sorted = t0.le(t1);
-        let crossings = [N::select(is_sorted, t0, t1), N::select(is_sorted, t1, t0)];
-        let is_far = (N::splat(FAR * FAR) * self.radius * self.radius).lt(ff);
-        if !is_far.any() {
-            return Some((crosses, crossings));
-        }
-        let [t0, t1] = crossings;
-        let improved = [self.improved(t0, f, rays), self.improved(t1, f, rays)];
-        Some((crosses, [N::select(is_far, improved[0], t0), N::select(is_far, improved[1], t1)]))
-    }
-
     /// One step of Newton's method towards the root near t. From afar t is a long way, off by units of its own; what is
     /// left to the surface at its end is short, and known better. (Near the edge, where the ray only grazes the sphere,
     /// the step would be one into the blue.)
@@ -111,12 +69,44 @@ impl<N: Number> Balls<N> {
 }
 
 impl<N: Number> Crossable<N> for Balls<N> {
+    /// A root of f(p + t d) = 0, the lesser if it is not before `min`.
+    ///
+    /// The lecture solves (d.d) t^2 + 2 (f.d) t + (f.f - r^2) = 0, with f = p - c, by
+    ///
+    /// ```text
+    /// t = (-f.d ± sqrt((f.d)^2 - (d.d)(f.f - r^2))) / d.d
+    /// ```
+    ///
+    /// which is right on paper and loses its digits in f32 twice: in the difference under the root when the sphere
+    /// is small or far (at 2,000 radii one ray in forty is wrong about hitting at all), and in the sum before the
+    /// division when the two terms nearly cancel (a ground made of a large sphere). So, after Haines, Günther and
+    /// Akenine-Möller (Ray Tracing Gems, chapter 7): the term under the root comes from the distance between the
+    /// centre and the line, ||f - ((f.d)/(d.d)) d||, and only the root without cancellation is computed directly;
+    /// the other follows from the product of the roots, (f.f - r^2) / (d.d).
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
-        let (crosses, [t0, t1]) = self.crossings(rays)?;
+        let (d, zero) = (rays.direction, N::splat(0.0));
+        let squared_radius = self.radius * self.radius;
+        let f = rays.origin - self.center;
+        let half_b = -f.dot(d);
+        let to_line = f + d * (half_b * rays.inverse_squared_length);
+        let under_root = squared_radius - to_line.dot(to_line);
+        // NaN is no crossing either.
+        let crosses = zero.le(under_root);
+        if !crosses.any() {
+            return None;
+        }
+        let root = (rays.squared_length * under_root).sqrt();
+        let q = N::select(half_b.lt(zero), half_b - root, half_b + root);
+        let ff = f.dot(f);
+        let (t0, t1) = ((ff - squared_radius) / q, q * rays.inverse_squared_length);
+        let is_sorted = t0.le(t1);
+        let (first, second) = (N::select(is_sorted, t0, t1), N::select(is_sorted, t1, t0));
+        let t = N::select(min.le(first), first, second);
+        let is_far = (N::splat(FAR * FAR) * squared_radius).lt(ff);
+        let t = if is_far.any() { N::select(is_far, self.improved(t, f, rays), t) } else { t };
         let [start, end] = crossed(self.boxes(), rays);
-        let [t0, t1] = [nearest_in(start, end, t0), nearest_in(start, end, t1)];
-        let t = N::select(min.le(t0), t0, t1);
+        let t = nearest_in(start, end, t);
         Some((crosses & start.le(end) & min.le(t), t))
     }
 

@@ -6,9 +6,9 @@ use super::Work;
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Number};
 use std::arch::x86_64::{
     __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_blendv_ps,
-    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps, _mm256_floor_ps, _mm256_load_ps,
-    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32, _mm256_set1_ps,
-    _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_store_ps, _mm256_sub_ps, _mm256_xor_ps,
+    _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps, _mm256_floor_ps,
+    _mm256_load_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32,
+    _mm256_set1_ps, _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_store_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -162,6 +162,12 @@ impl Lanes for Register {
         let each = avx!(_mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
         let own = avx!(_mm256_and_si256(_mm256_set1_epi32(bits.cast_signed()), each));
         Mask256(avx!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(own, each))))
+    }
+
+    #[inline(always)]
+    fn has_bits(self, bits: u32) -> Mask256 {
+        let bits = avx!(_mm256_set1_epi32(bits.cast_signed()));
+        Mask256(avx!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_castps_si256(self.0), bits))))
     }
 }
 

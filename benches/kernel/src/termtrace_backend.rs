@@ -68,8 +68,8 @@ impl Termtrace {
         hit::closest_hits(self.kernel, &self.scene, rays, hits);
         let mut sum = Acc { rays: shade::count(rays), ..Acc::default() };
         for hits in hits.iter() {
-            sum.hits += u64::from(hits.met().count_ones());
-            sum.tsum += set_bits(hits.met()).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
+            sum.hits += u64::from(hits.met.count_ones());
+            sum.tsum += set_bits(hits.met).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
         }
         if full {
             shade::surface_points(&self.scene, rays, hits, points);

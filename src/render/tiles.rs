@@ -1,0 +1,151 @@
+//! A picture in tiles: where each pixel is, and the eye rays through it.
+//!
+//! Tile by tile, and in a tile square by square of 8 by 8 and group by group of 4 by 2, pixels that lie side by side are
+//! neighbours in memory: a group's eye rays are eight that go together, a square's are a packet.
+
+use super::sampling::{footprint_share, sample_position};
+use crate::camera::{Camera, EyeRays};
+use crate::framebuffer::Resolution;
+use crate::lanes::{ALL, Eight, LANES, Lanes, Vector};
+use crate::ray::EightRays;
+use crate::simd::{self, Work};
+use glam::Vec3;
+
+/// A tile's side in pixels.
+const SIDE: u32 = 16;
+
+/// How many pixels a tile has; those of the last ones lie outside the picture.
+pub(super) const PIXELS: usize = (SIDE * SIDE) as usize;
+
+/// So many pixels of a row are neighbours in memory.
+pub(super) const RUN: usize = 4;
+
+/// The tiles of a picture, or of one of larger pixels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tiles {
+    /// Of the picture.
+    pub(super) resolution: Resolution,
+    /// How many pixels of the picture each of these covers in either direction.
+    pub(super) scale: u32,
+    pub(super) columns: u32,
+    pub(super) rows: u32,
+    eye_rays: EyeRays,
+}
+
+impl Tiles {
+    pub(super) fn new(camera: &Camera, resolution: Resolution, scale: u32) -> Self {
+        let (columns, rows) = (resolution.width.div_ceil(scale), resolution.height.div_ceil(scale));
+        Self { resolution, scale, columns, rows, eye_rays: camera.eye_rays(resolution.aspect_ratio()) }
+    }
+
+    fn across(&self) -> u32 {
+        self.columns.div_ceil(SIDE)
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.across() as usize * self.rows.div_ceil(SIDE) as usize
+    }
+
+    /// The upper left pixel of a tile.
+    fn corner(&self, tile: usize) -> [u32; 2] {
+        let tile = tile as u32;
+        [tile % self.across() * SIDE, tile / self.across() * SIDE]
+    }
+
+    /// The numbers of those of a row's pixels after which three more are neighbours in memory, too.
+    pub(super) fn runs(&self, y: u32) -> impl Iterator<Item = usize> {
+        let first = self.number(0, y);
+        (0..self.across() as usize).flat_map(move |tile| [0, 8, 64, 72].map(|run| first + tile * PIXELS + run))
+    }
+
+    /// The number of a pixel among all tiles'.
+    pub(super) fn number(&self, x: u32, y: u32) -> usize {
+        let tile = (y / SIDE * self.across() + x / SIDE) as usize;
+        let (x, y) = (x % SIDE, y % SIDE);
+        let in_tile = x & 3 | (y & 1) << 2 | (x >> 2 & 1) << 3 | (y >> 1 & 3) << 4 | (x >> 3) << 6 | (y >> 3) << 7;
+        tile * PIXELS + in_tile as usize
+    }
+
+    /// Where the pixel of that number is, if it is in the picture.
+    pub(super) fn place(&self, number: usize) -> Option<[u32; 2]> {
+        let ([left, top], [x, y]) = (self.corner(number / PIXELS), in_tile(number % PIXELS));
+        (left + x < self.columns && top + y < self.rows).then_some([left + x, top + y])
+    }
+
+    /// Which pixels of a tile are in the picture, by their number in it.
+    pub(super) fn inside(&self, tile: usize) -> impl Iterator<Item = u8> {
+        let [left, top] = self.corner(tile);
+        let [right, bottom] = [self.columns - left, self.rows - top];
+        let is_whole = right >= SIDE && bottom >= SIDE;
+        (0..=u8::MAX).filter(move |&pixel| {
+            let [x, y] = in_tile(pixel.into());
+            is_whole || x < right && y < bottom
+        })
+    }
+
+    /// One eye ray for each of these pixels of a tile.
+    pub(super) fn make_eye_rays(&self, tile: usize, pixels: &[u8], sample: u32, rays: &mut Vec<EightRays>) {
+        rays.clear();
+        simd::run(MakeEyeRays { tiles: self, tile, pixels, sample, rays });
+    }
+
+    /// By how much the direction changes from an eye ray to those beside it.
+    pub(super) fn steps(&self, sample: u32) -> [Vec3; 2] {
+        let share = self.scale as f32 * footprint_share(sample);
+        self.eye_rays.steps(self.resolution.width, self.resolution.height).map(|step| step * share)
+    }
+}
+
+/// How far to the right and down a pixel is in its tile.
+const fn in_tile(pixel: usize) -> [u32; 2] {
+    let at = pixel as u32;
+    [at & 3 | (at >> 3 & 1) << 2 | (at >> 6 & 1) << 3, at >> 2 & 1 | (at >> 4 & 3) << 1 | (at >> 7 & 1) << 3]
+}
+
+/// The same of all, as numbers to reckon with.
+static IN_TILE: [[f32; PIXELS]; 2] = {
+    let mut all = [[0.0; PIXELS]; 2];
+    let mut pixel = 0;
+    while pixel < PIXELS {
+        let [x, y] = in_tile(pixel);
+        (all[0][pixel], all[1][pixel]) = (x as f32, y as f32);
+        pixel += 1;
+    }
+    all
+};
+
+struct MakeEyeRays<'w> {
+    tiles: &'w Tiles,
+    tile: usize,
+    pixels: &'w [u8],
+    sample: u32,
+    rays: &'w mut Vec<EightRays>,
+}
+
+impl Work for MakeEyeRays<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let Self { tiles, tile, pixels, sample, rays } = self;
+        let Tiles { resolution, scale, eye_rays, .. } = tiles;
+        let (sx, sy) = sample_position(sample);
+        let [left, top] = tiles.corner(tile).map(|at| N::splat(at as f32));
+        let (width, height) = (N::splat(resolution.width as f32), N::splat(resolution.height as f32));
+        let scale = N::splat(*scale as f32);
+        let origin = Vector::splat(eye_rays.eye());
+        for pixels in pixels.chunks(LANES) {
+            let [mut x, mut y] = [Eight::ZERO; 2];
+            for lane in 0..LANES {
+                let pixel = usize::from(pixels[lane.min(pixels.len() - 1)]);
+                (x.0[lane], y.0[lane]) = (IN_TILE[0][pixel], IN_TILE[1][pixel]);
+            }
+            let x = (left + N::load(&x) + N::splat(sx)) * scale;
+            // Rows are counted from the top, the lecture's q_v from the bottom.
+            let y = height - (top + N::load(&y) + N::splat(sy)) * scale;
+            let direction = eye_rays.direction(x / width, y / height).store();
+            rays.push(EightRays { origin, direction, asked: ALL >> (LANES - pixels.len()) });
+        }
+    }
+}
