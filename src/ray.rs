@@ -82,16 +82,12 @@ impl Rays<f32> {
 }
 
 impl<N: Lanes> Rays<N> {
-    /// Of eight.
+    /// Of eight. What only triangles ask for is left out where there are none.
     #[inline(always)]
-    pub fn load(rays: &EightRays) -> Self {
-        Self::new(rays.origin.load(), rays.direction.load())
-    }
-
-    /// The same without what only triangles ask for.
-    #[inline(always)]
-    pub fn load_unsheared(rays: &EightRays) -> Self {
-        Self::unsheared(rays.origin.load(), rays.direction.load())
+    pub fn load(rays: &EightRays, has_triangles: bool) -> Self {
+        let direction = rays.direction.load();
+        let shear = if has_triangles { Shear::of(direction) } else { Shear::none() };
+        Self { shear, ..Self::unsheared(rays.origin.load(), direction) }
     }
 }
 

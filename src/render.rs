@@ -21,7 +21,7 @@ use std::num::NonZeroU32;
 use std::ops::{AddAssign, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use tiles::{PIXELS, RUN, Tiles};
+use tiles::{PIXELS, Tiles};
 
 mod count;
 mod pixel;
@@ -107,8 +107,8 @@ fn rendered(
     sampling: Sampling,
 ) -> Option<Rendered> {
     match sampling {
-        Sampling::Coarse => Raster::<Sum>::new(camera, resolution, 2).rendered(crew, scene, 1),
-        Sampling::Each(samples) => Raster::<Sum>::new(camera, resolution, 1).rendered(crew, scene, samples.get()),
+        Sampling::Coarse => alike(crew, scene, &Tiles::new(camera, resolution, 2), 1),
+        Sampling::Each(samples) => alike(crew, scene, &Tiles::new(camera, resolution, 1), samples.get()),
         Sampling::UpTo(samples) => {
             let mut picture = Refining::new(camera, resolution);
             let cost = picture.refine(crew, scene, samples)?;
@@ -117,11 +117,49 @@ fn rendered(
     }
 }
 
+/// The picture with so many samples of each pixel.
+fn alike(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Option<Rendered> {
+    let mut framebuffer = Framebuffer::new(tiles.resolution);
+    let parts = tiles.split(&mut framebuffer.pixels);
+    let cost = crew.trace(parts, |buffers, (tile, mut part)| {
+        let mut pixels = [Sum::default(); PIXELS];
+        buffers.want(tiles.inside(tile));
+        let cost = buffers.trace_tile(crew, scene, tiles, tile, 0..samples, &mut pixels)?;
+        tiles.show(&pixels, &mut part);
+        Some(cost)
+    })?;
+    Some(Rendered { framebuffer, cost })
+}
+
+impl Crew<'_> {
+    /// Has each tile traced by somebody. Returns what all took; `None` if one was given up.
+    fn trace<T: Send>(
+        self,
+        tiles: Vec<T>,
+        trace: impl Fn(&mut Buffers, (usize, T)) -> Option<Cost> + Send + Sync,
+    ) -> Option<Cost> {
+        let costs: Option<Vec<_>> = match self {
+            Self::Alone => {
+                let mut buffers = Buffers::default();
+                tiles.into_iter().enumerate().map(|tile| trace(&mut buffers, tile)).collect()
+            }
+            Self::Pool(_) => tiles.into_par_iter().enumerate().map_init(Buffers::default, trace).collect(),
+        };
+        let mut sum = Cost::default();
+        for cost in costs? {
+            sum += cost;
+        }
+        Some(sum)
+    }
+}
+
 /// A picture in work, which gets more samples where it has edges, as long as that is wanted. Whatever the steps in which
 /// it is made, its light is the same to the bit as if it had been made in one.
 #[derive(Clone, Debug)]
 pub struct Refining {
-    raster: Raster<Watched>,
+    tiles: Tiles,
+    /// Tile by tile.
+    pixels: Vec<Watched>,
     /// How many of the passes are done.
     passes: usize,
 }
@@ -129,7 +167,8 @@ pub struct Refining {
 impl Refining {
     /// Nothing of it is traced yet.
     pub fn new(camera: &Camera, resolution: Resolution) -> Self {
-        Self { raster: Raster::new(camera, resolution, 1), passes: 0 }
+        let tiles = Tiles::new(camera, resolution, 1);
+        Self { tiles, pixels: vec![Watched::default(); tiles.count() * PIXELS], passes: 0 }
     }
 
     /// Traces what is lacking to [`Sampling::UpTo`] so many samples of that scene, which has to be the same each time.
@@ -141,8 +180,13 @@ impl Refining {
     fn refine(&mut self, crew: Crew<'_>, scene: &Scene, samples: NonZeroU32) -> Option<Cost> {
         let mut cost = Cost::default();
         while let Some(pass) = PASSES.get(self.passes).filter(|pass| pass.end <= samples.get()) {
-            let needs_more = self.raster.unsettled(crew, scene, self.passes);
-            cost += self.raster.trace(crew, scene, pass.clone(), |pixel| needs_more[pixel])?;
+            let needs_more = self.unsettled(crew, scene);
+            let tiles = self.tiles;
+            let parts = self.pixels.chunks_mut(PIXELS).zip(needs_more.chunks(PIXELS)).collect();
+            cost += crew.trace(parts, |buffers, (tile, (pixels, needs_more))| {
+                buffers.want(tiles.inside(tile).filter(|&pixel| needs_more[usize::from(pixel)]));
+                buffers.trace_tile(crew, scene, &tiles, tile, pass.clone(), pixels)
+            })?;
             self.passes += 1;
         }
         Some(cost)
@@ -155,135 +199,19 @@ impl Refining {
 
     /// The mean light of each pixel's samples.
     pub fn framebuffer(&self) -> Framebuffer {
-        self.raster.framebuffer()
-    }
-}
-
-/// The pixels of a picture, or of one of larger ones.
-#[derive(Clone, Debug)]
-struct Raster<P> {
-    tiles: Tiles,
-    /// Tile by tile.
-    pixels: Vec<P>,
-}
-
-/// The arrays between the steps, kept from tile to tile.
-#[derive(Default)]
-struct Buffers {
-    wanted: Vec<u8>,
-    rays: Vec<EightRays>,
-    hits: Vec<EightHits>,
-    points: Vec<EightPoints>,
-    shadows: ShadowRays,
-    arriving: Vec<EightArriving>,
-    lights: Vec<EightLights>,
-}
-
-impl<P: Pixel> Raster<P> {
-    fn new(camera: &Camera, resolution: Resolution, scale: u32) -> Self {
-        let tiles = Tiles::new(camera, resolution, scale);
-        Self { tiles, pixels: vec![P::default(); tiles.count() * PIXELS] }
-    }
-
-    /// The picture with so many samples of each pixel.
-    fn rendered(mut self, crew: Crew<'_>, scene: &Scene, samples: u32) -> Option<Rendered> {
-        let cost = self.trace(crew, scene, 0..samples, |_| true)?;
-        Some(Rendered { framebuffer: self.framebuffer(), cost })
-    }
-
-    /// Adds these samples to the pixels that are wanted, by their number, tile by tile.
-    fn trace(
-        &mut self,
-        crew: Crew<'_>,
-        scene: &Scene,
-        samples: Range<u32>,
-        is_wanted: impl Fn(usize) -> bool + Sync,
-    ) -> Option<Cost> {
-        let tiles = self.tiles;
-        let trace = |buffers: &mut Buffers, (tile, pixels): (usize, &mut [P])| {
-            buffers.wanted.clear();
-            let is_wanted = |&pixel: &u8| is_wanted(tile * PIXELS + usize::from(pixel));
-            buffers.wanted.extend(tiles.inside(tile).filter(is_wanted));
-            trace_tile(&tiles, tile, pixels, crew, scene, samples.clone(), buffers)
-        };
-        let costs: Option<Vec<_>> = match crew {
-            Crew::Alone => {
-                let mut buffers = Buffers::default();
-                self.pixels.chunks_mut(PIXELS).enumerate().map(|tile| trace(&mut buffers, tile)).collect()
-            }
-            Crew::Pool(_) => self.pixels.par_chunks_mut(PIXELS).enumerate().map_init(Buffers::default, trace).collect(),
-        };
-        let mut sum = Cost::default();
-        for cost in costs? {
-            sum += cost;
+        let mut framebuffer = Framebuffer::new(self.tiles.resolution);
+        for (pixels, mut part) in self.pixels.chunks(PIXELS).zip(self.tiles.split(&mut framebuffer.pixels)) {
+            self.tiles.show(pixels, &mut part);
         }
-        Some(sum)
+        framebuffer
     }
 
-    fn pixel(&self, x: u32, y: u32) -> &P {
-        &self.pixels[self.tiles.number(x, y)]
-    }
-
-    fn framebuffer(&self) -> Framebuffer {
-        let Tiles { resolution, scale, columns, .. } = self.tiles;
-        let mut means = Framebuffer::new(Resolution { width: columns, height: self.tiles.rows, ..resolution });
-        for (y, row) in (0..).zip(means.pixels.chunks_mut(columns.max(1) as usize)) {
-            for (means, first) in row.chunks_mut(RUN).zip(self.tiles.runs(y)) {
-                for (mean, pixel) in means.iter_mut().zip(&self.pixels[first..first + RUN]) {
-                    *mean = pixel.mean();
-                }
-            }
-        }
-        if scale == 1 {
-            return means;
-        }
-        let rows = (0..resolution.height).map(|y| y / scale);
-        let pixels = rows.flat_map(|y| (0..resolution.width).map(move |x| (x / scale, y)));
-        Framebuffer { resolution, pixels: pixels.map(|(x, y)| means.pixel(x, y)).collect() }
-    }
-}
-
-/// A tile's wanted pixels with more samples. `None`: given up, between one sample of them and the next.
-fn trace_tile<P: Pixel>(
-    tiles: &Tiles,
-    tile: usize,
-    pixels: &mut [P],
-    crew: Crew<'_>,
-    scene: &Scene,
-    samples: Range<u32>,
-    buffers: &mut Buffers,
-) -> Option<Cost> {
-    let start = Instant::now();
-    let mut traced = 0;
-    for sample in samples {
-        if crew.is_cancelled() {
-            return None;
-        }
-        let Buffers { wanted, rays, hits, points, shadows, arriving, lights } = buffers;
-        tiles.make_eye_rays(tile, wanted, sample, rays);
-        hit::closest_hits(Kernel::Auto, scene, rays, hits);
-        shade::surface_points(scene, rays, hits, points);
-        let shadow_rays = shade::arriving_light(scene, points, shadows, arriving);
-        shade::reflect(scene, rays, tiles.steps(sample), hits, points, arriving, lights);
-        let groups = wanted.chunks(LANES).zip(points.iter()).zip(arriving.iter()).zip(lights.iter());
-        for (((wanted, points), arriving), light) in groups {
-            for (lane, &pixel) in wanted.iter().enumerate() {
-                let seen = || Seen::of(points.seen(lane), arriving.lit_by[lane]);
-                pixels[usize::from(pixel)].add(shade::light_of(light, lane), seen);
-            }
-        }
-        traced += wanted.len() as u64 + shadow_rays;
-    }
-    Some(Cost { rays: traced, work: start.elapsed() })
-}
-
-impl Raster<Watched> {
-    /// Which pixels the pass after so many is for, by their number.
-    fn unsettled(&self, crew: Crew<'_>, scene: &Scene, passes: usize) -> Vec<bool> {
+    /// Which pixels the next pass is for.
+    fn unsettled(&self, crew: Crew<'_>, scene: &Scene) -> Vec<bool> {
         let white = 1.0 / scene.exposure;
         let is_unsettled = |number: usize| {
             let pixel = &self.pixels[number];
-            match passes {
+            match self.passes {
                 0 => true,
                 1 => self.neighbours(number).any(|neighbour| pixel.is_edge_to(neighbour, white)),
                 2 => pixel.count() > 1,
@@ -301,7 +229,61 @@ impl Raster<Watched> {
         let around = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
         let Tiles { columns, rows, .. } = self.tiles;
         self.tiles.place(number).into_iter().flat_map(move |[x, y]| {
-            around(y, rows).flat_map(move |y| around(x, columns).map(move |x| self.pixel(x, y)))
+            around(y, rows).flat_map(move |y| around(x, columns).map(move |x| &self.pixels[self.tiles.number(x, y)]))
         })
+    }
+}
+
+/// The arrays between the steps, kept from tile to tile.
+#[derive(Default)]
+struct Buffers {
+    wanted: Vec<u8>,
+    rays: Vec<EightRays>,
+    hits: Vec<EightHits>,
+    points: Vec<EightPoints>,
+    shadows: ShadowRays,
+    arriving: Vec<EightArriving>,
+    lights: Vec<EightLights>,
+}
+
+impl Buffers {
+    /// Which pixels of the tile are to be traced.
+    fn want(&mut self, pixels: impl Iterator<Item = u8>) {
+        self.wanted.clear();
+        self.wanted.extend(pixels);
+    }
+
+    /// Those pixels with more samples. `None`: given up, between one sample of them and the next.
+    fn trace_tile<P: Pixel>(
+        &mut self,
+        crew: Crew<'_>,
+        scene: &Scene,
+        tiles: &Tiles,
+        tile: usize,
+        samples: Range<u32>,
+        pixels: &mut [P],
+    ) -> Option<Cost> {
+        let Self { wanted, rays, hits, points, shadows, arriving, lights } = self;
+        let start = Instant::now();
+        let mut traced = 0;
+        for sample in samples {
+            if crew.is_cancelled() {
+                return None;
+            }
+            tiles.make_eye_rays(tile, wanted, sample, rays);
+            hit::closest_hits(Kernel::Auto, scene, rays, hits);
+            shade::surface_points(scene, rays, hits, points);
+            let shadow_rays = shade::arriving_light(scene, points, shadows, arriving);
+            shade::reflect(scene, rays, tiles.steps(sample), hits, points, arriving, lights);
+            let groups = wanted.chunks(LANES).zip(points.iter()).zip(arriving.iter()).zip(lights.iter());
+            for (((wanted, points), arriving), light) in groups {
+                for (lane, &pixel) in wanted.iter().enumerate() {
+                    let seen = || Seen::of(points.seen(lane), arriving.lit_by[lane]);
+                    pixels[usize::from(pixel)].add(shade::light_of(light, lane), seen);
+                }
+            }
+            traced += wanted.len() as u64 + shadow_rays;
+        }
+        Some(Cost { rays: traced, work: start.elapsed() })
     }
 }

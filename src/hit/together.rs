@@ -51,7 +51,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
             kernel,
             parts,
             rays: &[],
-            groups: [Rays::load(&zeros); GROUPS],
+            groups: [Rays::load(&zeros, false); GROUPS],
             within,
             t: [N::splat(DONE); GROUPS],
             place: [N::splat(place_as_number(NOTHING)); GROUPS],
@@ -65,25 +65,27 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
         self.rays = rays;
         // Who is not asked about does not widen the packet.
         let Some(one) = rays.iter().find(|rays| rays.asked != 0) else { return self.reset(0..GROUPS) };
-        let (max, done) = (self.within.max, N::splat(DONE));
-        let has_triangles = !self.parts.triangles.leaves.is_empty();
+        let parts = self.parts;
+        let (has_trees, has_triangles) = (parts.has_trees(), !parts.triangles.leaves.is_empty());
         for (group, of_group) in rays.iter().enumerate() {
             let asked = of_group.asked;
-            let of_group = if asked == 0 { one } else { of_group };
-            if has_triangles {
-                self.groups[group] = Rays::load(of_group);
-            } else {
-                self.groups[group] = Rays::load_unsheared(of_group);
+            let rays = Rays::load(if asked == 0 { one } else { of_group }, has_triangles);
+            let met = self.test_few(&rays, asked);
+            (self.t[group], self.place[group]) = (met.t, met.place);
+            if has_trees {
+                self.groups[group] = rays;
+                self.reach.0[group] = met.t.store().greatest();
             }
-            self.t[group] = N::select(N::answers(asked), N::splat(max), done);
-            self.place[group] = N::splat(place_as_number(NOTHING));
-            self.reach.0[group] = if asked == 0 { DONE } else { max };
         }
-        self.reset(rays.len()..GROUPS);
-        for group in rays.len()..GROUPS {
-            self.groups[group] = self.groups[0];
+        if has_trees {
+            self.reset(rays.len()..GROUPS);
+            for group in rays.len()..GROUPS {
+                self.groups[group] = self.groups[0];
+            }
+            let mut packet = None;
+            self.trace_grove(&parts.balls, &mut packet, stacks);
+            self.trace_grove(&parts.triangles, &mut packet, stacks);
         }
-        self.trace_parts(stacks);
     }
 
     /// Has no rays in these groups.
@@ -114,19 +116,9 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
         }
     }
 
-    /// Searches through everything.
-    #[inline(always)]
-    fn trace_parts(&mut self, stacks: &mut Stacks) {
-        let parts = self.parts;
-        self.test_few();
-        let mut packet = None;
-        self.trace_grove(&parts.balls, &mut packet, stacks);
-        self.trace_grove(&parts.triangles, &mut packet, stacks);
-    }
-
     #[inline(always)]
     fn trace_grove<S: SideBySide>(&mut self, grove: &'p Grove<S>, packet: &mut Option<Packet<N>>, stacks: &mut Stacks) {
-        if grove.few.is_none() && self.reach.greatest() >= self.within.min {
+        if grove.has_tree() && self.reach.greatest() >= self.within.min {
             let packet = match packet {
                 Some(packet) => packet,
                 None => packet.insert(Packet::of(&self.groups)),
@@ -136,31 +128,18 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
         }
     }
 
-    /// Tests all that no tree leaves out: planes, and kinds of which there are but a few.
+    /// Has a group meet all that no tree leaves out: planes, and kinds of which there are but a few.
     #[inline(always)]
-    fn test_few(&mut self) {
+    fn test_few(&self, rays: &Rays<N>, asked: u32) -> Met<N, ANY> {
         let (parts, min) = (self.parts, N::splat(self.within.min));
-        let [balls, triangles] = [parts.balls.few, parts.triangles.few].map(|few| few.unwrap_or(0));
-        if parts.planes.len() + balls + triangles == 0 {
-            return;
+        let t = N::select(N::answers(asked), N::splat(self.within.max), N::splat(DONE));
+        let mut met = Met { t, place: N::splat(place_as_number(NOTHING)) };
+        for (place, (_, plane)) in (0..).zip(&parts.planes) {
+            met.test(plane, place, rays, min, parts);
         }
-        for group in 0..self.rays.len() {
-            if self.reach.0[group] == DONE {
-                continue;
-            }
-            let (rays, mut met) = (&self.groups[group], Met::<N, ANY> { t: self.t[group], place: self.place[group] });
-            for (place, (_, plane)) in (0..).zip(&parts.planes) {
-                met.test(plane, place, rays, min, parts);
-            }
-            for lane in 0..balls {
-                met.test(&parts.balls.leaves[0].shapes.splat(lane), parts.balls.place(0, lane), rays, min, parts);
-            }
-            for lane in 0..triangles {
-                let triangle = parts.triangles.leaves[0].shapes.splat(lane);
-                met.test(&triangle, parts.triangles.place(0, lane), rays, min, parts);
-            }
-            self.set(group, met);
-        }
+        met.test_few(&parts.balls, rays, min, parts);
+        met.test_few(&parts.triangles, rays, min, parts);
+        met
     }
 
     #[inline(always)]
@@ -186,6 +165,15 @@ struct Met<N, const ANY: bool> {
 }
 
 impl<N: Lanes, const ANY: bool> Met<N, ANY> {
+    /// Tests all of which there are but a few.
+    #[inline(always)]
+    fn test_few<S: SideBySide>(&mut self, grove: &Grove<S>, rays: &Rays<N>, min: N, parts: &Parts) {
+        let Some(leaf) = grove.leaves.first() else { return };
+        for lane in 0..grove.few {
+            self.test(&leaf.shapes.splat(lane), grove.place(0, lane), rays, min, parts);
+        }
+    }
+
     /// Tests one part; answers whether it is met.
     #[inline(always)]
     fn test<C: Crossable<N>>(&mut self, shape: &C, place: u32, rays: &Rays<N>, min: N, parts: &Parts) -> bool {

@@ -3,8 +3,10 @@
 //! Tile by tile, and in a tile square by square of 8 by 8 and group by group of 4 by 2, pixels that lie side by side are
 //! neighbours in memory: a group's eye rays are eight that go together, a square's are a packet.
 
+use super::pixel::Pixel;
 use super::sampling::{footprint_share, sample_position};
 use crate::camera::{Camera, EyeRays};
+use crate::color::LinearRgb;
 use crate::framebuffer::Resolution;
 use crate::lanes::{ALL, Eight, LANES, Lanes, Vector};
 use crate::ray::EightRays;
@@ -16,9 +18,6 @@ const SIDE: u32 = 16;
 
 /// How many pixels a tile has; those of the last ones lie outside the picture.
 pub(super) const PIXELS: usize = (SIDE * SIDE) as usize;
-
-/// So many pixels of a row are neighbours in memory.
-pub(super) const RUN: usize = 4;
 
 /// The tiles of a picture, or of one of larger pixels.
 #[derive(Clone, Copy, Debug)]
@@ -53,18 +52,36 @@ impl Tiles {
         [tile % self.across() * SIDE, tile / self.across() * SIDE]
     }
 
-    /// The numbers of those of a row's pixels after which three more are neighbours in memory, too.
-    pub(super) fn runs(&self, y: u32) -> impl Iterator<Item = usize> {
-        let first = self.number(0, y);
-        (0..self.across() as usize).flat_map(move |tile| [0, 8, 64, 72].map(|run| first + tile * PIXELS + run))
+    /// A picture's pixels by tiles: each gets its part of every row that it covers.
+    pub(super) fn split<'p>(&self, pixels: &'p mut [LinearRgb]) -> Vec<Vec<&'p mut [LinearRgb]>> {
+        let side = (SIDE * self.scale) as usize;
+        let mut tiles: Vec<_> = (0..self.count()).map(|_| Vec::with_capacity(side)).collect();
+        for (y, row) in pixels.chunks_mut(self.resolution.width.max(1) as usize).enumerate() {
+            let first = y / side * self.across() as usize;
+            for (tile, part) in tiles[first..].iter_mut().zip(row.chunks_mut(side)) {
+                tile.push(part);
+            }
+        }
+        tiles
+    }
+
+    /// Puts the light of a tile's pixels into its part of a picture.
+    pub(super) fn show<P: Pixel>(&self, pixels: &[P], part: &mut [&mut [LinearRgb]]) {
+        let scale = self.scale as usize;
+        for (y, row) in part.iter_mut().enumerate() {
+            for (shown, &pixel) in row.chunks_mut(scale).zip(&IN_ROW[y / scale]) {
+                let mean = pixels[usize::from(pixel)].mean();
+                for shown in shown {
+                    *shown = mean;
+                }
+            }
+        }
     }
 
     /// The number of a pixel among all tiles'.
     pub(super) fn number(&self, x: u32, y: u32) -> usize {
         let tile = (y / SIDE * self.across() + x / SIDE) as usize;
-        let (x, y) = (x % SIDE, y % SIDE);
-        let in_tile = x & 3 | (y & 1) << 2 | (x >> 2 & 1) << 3 | (y >> 1 & 3) << 4 | (x >> 3) << 6 | (y >> 3) << 7;
-        tile * PIXELS + in_tile as usize
+        tile * PIXELS + usize::from(IN_ROW[(y % SIDE) as usize][(x % SIDE) as usize])
     }
 
     /// Where the pixel of that number is, if it is in the picture.
@@ -113,6 +130,18 @@ static IN_TILE: [[f32; PIXELS]; 2] = {
         pixel += 1;
     }
     all
+};
+
+/// The pixels of a tile, row by row.
+static IN_ROW: [[u8; SIDE as usize]; SIDE as usize] = {
+    let mut rows = [[0; SIDE as usize]; SIDE as usize];
+    let mut pixel = 0;
+    while pixel < PIXELS {
+        let [x, y] = in_tile(pixel);
+        rows[y as usize][x as usize] = pixel as u8;
+        pixel += 1;
+    }
+    rows
 };
 
 struct MakeEyeRays<'w> {

@@ -38,13 +38,13 @@ pub(crate) struct Grove<S> {
     pub(crate) leaves: Vec<Leaf<S>>,
     /// The place of the first of them.
     pub(crate) first: u32,
-    /// How many there are, where the tree is but one leaf and leaves nothing out.
-    pub(crate) few: Option<usize>,
+    /// How many there are, where the tree is but one leaf and leaves nothing out; else 0.
+    pub(crate) few: usize,
 }
 
 impl<S> Default for Grove<S> {
     fn default() -> Self {
-        Self { bvh: Bvh::default(), leaves: Vec::new(), first: 0, few: None }
+        Self { bvh: Bvh::default(), leaves: Vec::new(), first: 0, few: 0 }
     }
 }
 
@@ -92,6 +92,12 @@ impl Parts {
         size_of_val(&self.planes[..]) + self.balls.bytes() + self.triangles.bytes()
     }
 
+    /// Whether anything stands in a tree.
+    #[inline(always)]
+    pub(crate) fn has_trees(&self) -> bool {
+        self.balls.has_tree() || self.triangles.has_tree()
+    }
+
     /// Which part has that place.
     #[inline(always)]
     pub(crate) fn id(&self, place: u32) -> PartId {
@@ -114,6 +120,12 @@ impl<S> Grove<S> {
     #[inline(always)]
     pub(crate) fn place(&self, leaf: usize, lane: usize) -> u32 {
         self.first + (leaf * LANES + lane) as u32
+    }
+
+    /// Whether its tree leaves anything out.
+    #[inline(always)]
+    pub(crate) fn has_tree(&self) -> bool {
+        !self.bvh.is_leaf()
     }
 
     /// The leaf in which that place is, and which of its parts stands there.
@@ -164,7 +176,7 @@ impl<T: Surface + Copy + Sync> Listed<T> {
             let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)]);
             Leaf { shapes: S::of(&shapes[..numbers.len()]), ids: from_fn(|lane| self.ids[number(lane)]) }
         };
-        let few = bvh.is_leaf().then_some(self.ids.len());
+        let few = if bvh.is_leaf() { self.ids.len() } else { 0 };
         Some(Grove { bvh, leaves: (0..places.count()).into_par_iter().map(leaf).collect(), first, few })
     }
 }

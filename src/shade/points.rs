@@ -100,7 +100,7 @@ fn of_hits<N: Lanes>(parts: &Parts, rays: &EightRays, hits: &EightHits, at: &mut
             let lanes = hits.at::<N>(place);
             let (id, plane) = &parts.planes[place as usize];
             at.set_ids(lanes, *id);
-            (lanes, plane.points_at(&Rays::<N>::load(rays), t))
+            (lanes, plane.points_at(&Rays::<N>::load(rays, false), t))
         } else if place < parts.triangles.first {
             let lanes = hits.between(parts.balls.first, parts.triangles.first);
             (lanes, in_grove(&parts.balls, rays, hits, lanes, at))
@@ -127,7 +127,7 @@ fn in_grove<N: Lanes, S: SideBySide>(
     lanes: u32,
     at: &mut EightPoints,
 ) -> Points<N> {
-    let (rays, t) = (Rays::load(rays), N::load(&hits.t));
+    let (rays, t) = (Rays::load(rays, true), N::load(&hits.t));
     let first = hits.place(lanes.trailing_zeros() as usize % LANES);
     let (leaf, place) = grove.leaf(first);
     if hits.at::<N>(first) == lanes {
