@@ -377,4 +377,7 @@ impl Backend for Embree {
     fn tile(&self, f: &Frame, x0: u32, y0: u32, x1: u32, y1: u32) -> Acc {
         unsafe { e_tile(self, f, x0, y0, x1, y1) }
     }
+    fn rays(&self, rays: &Rays) -> Option<(f64, Acc)> {
+        (self.mode == Mode::One).then(|| single_rays(self, rays))
+    }
 }

@@ -1,5 +1,7 @@
-//! cargo run --release -- SCENE[,SCENE...] [--size 1024x1024] [--spp 1] [--threads 1,2] [--rounds 5] [--only substr,substr] [--frames]
+//! cargo run --release -- SCENE[,SCENE...] [--size 1024x1024] [--spp 1] [--threads 1,2] [--rounds 5] [--only prefix,prefix]
+//!     [--frames | --incoherent | --same-origins] [--brief]
 mod embree;
+mod obvhs_backend;
 mod scene;
 mod termtrace_backend;
 
@@ -20,6 +22,29 @@ fn render(b: &dyn Backend, f: &Frame, tile: u32, pool: Option<&rayon::ThreadPool
     }
 }
 
+/// The same arrays of rays through all who trace any ray, on one thread: medians of the rounds, in Mrays/s.
+fn arrays(name: &str, bs: &[Box<dyn Backend + '_>], rays: &Rays, rounds: usize) {
+    let mut rates = vec![vec![]; bs.len()];
+    let mut sums = vec![Acc::default(); bs.len()];
+    for round in 0..=rounds {
+        for (i, b) in bs.iter().enumerate() {
+            let Some((seconds, sum)) = b.rays(rays) else { continue };
+            sums[i] = sum;
+            if round > 0 {
+                rates[i].push(sum.rays as f64 / seconds / 1e6);
+            }
+        }
+    }
+    println!("{:<30} {name:>14}   [Mrays/s, of {} rays]   hits lit tsum", "backend", rays.rays.len());
+    for ((b, rates), sum) in bs.iter().zip(&mut rates).zip(sums).filter(|((_, rates), _)| !rates.is_empty()) {
+        rates.sort_by(f64::total_cmp);
+        println!("{:<30} {:>14.3}   {} {} {:.3}", b.name(), rates[rates.len() / 2], sum.hits, sum.lit, sum.tsum);
+    }
+}
+
+/// How many rays go where they like.
+const INCOHERENT: usize = 1 << 20;
+
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let opt = |n: &str, d: &str| args.iter().position(|a| a == n).map_or(d.to_string(), |i| args[i + 1].clone());
@@ -31,9 +56,14 @@ fn main() {
     let spp: u32 = opt("--spp", "1").parse().unwrap();
     let tile: u32 = opt("--tile", "32").parse().unwrap();
     let rounds: usize = opt("--rounds", "5").parse().unwrap();
+    if rounds == 0 {
+        eprintln!("error: --rounds 0 measures nothing; the least is 1");
+        std::process::exit(2);
+    }
+    let is_given = |n: &str| args.iter().any(|a| a == n);
     let threads: Vec<usize> = opt("--threads", "1,2").split(',').map(|x| x.parse().unwrap()).collect();
     let only: Vec<String> = opt("--only", "").split(',').filter(|s| !s.is_empty()).map(String::from).collect();
-    let frames = args.iter().any(|a| a == "--frames");
+    let (frames, brief) = (is_given("--frames"), is_given("--brief"));
     let pools: Vec<(usize, Option<rayon::ThreadPool>)> = threads
         .iter()
         .map(|&n| (n, (n > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap())))
@@ -62,7 +92,7 @@ fn main() {
             );
             drop(e1);
             for (robust, q) in [(false, 1), (true, 1), (false, 2)] {
-                if (robust || q == 2) && args.iter().any(|a| a == "--brief") {
+                if (robust || q == 2) && brief {
                     continue;
                 }
                 let e = embree::Embree::new(v, &s, 2, robust, q).unwrap();
@@ -94,6 +124,31 @@ fn main() {
                 }
             }
             bs.push(Box::new(both));
+        }
+        let is_obvhs_wanted = want("obvhs/bvh2") && (s.tris.is_empty() || s.spheres.is_empty());
+        if is_obvhs_wanted {
+            let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+            let alone = one.install(|| obvhs_backend::Obvhs::new(&s)).build_s;
+            let both = obvhs_backend::Obvhs::new(&s);
+            println!(
+                "build {:<22} 1 thread {:8.1} ms; 2 threads {:.1} ms",
+                "obvhs/bvh2",
+                alone * 1e3,
+                both.build_s * 1e3
+            );
+            bs.push(Box::new(both));
+        }
+        if is_given("--incoherent") || is_given("--same-origins") {
+            // From whose hits they start is no matter, as long as all get the same.
+            let by = obvhs_backend::Obvhs::new(&s);
+            let f = Frame::new(&s, w, h, spp, true);
+            if is_given("--incoherent") {
+                arrays("incoherent", &bs, &incoherent_rays(&by, &s, &f, INCOHERENT), rounds);
+            }
+            if is_given("--same-origins") {
+                arrays("shadow", &bs, &shadow_rays(&by, &s, &f), rounds);
+            }
+            continue;
         }
         // rounds interleave the backends, so that drift of the machine falls on all alike
         let mut res = vec![vec![vec![0f64; 0]; pools.len() * 2]; bs.len()];

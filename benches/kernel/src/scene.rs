@@ -180,9 +180,20 @@ impl Acc {
     }
 }
 
+/// Rays in no order that helps, made once and handed to all alike.
+pub struct Rays {
+    pub rays: Vec<[Vec3A; 2]>,
+    /// Whether it is asked what lies between t = 0 and 1, not what is closest.
+    pub any: bool,
+}
+
 pub trait Backend: Sync {
     fn name(&self) -> String;
     fn tile(&self, f: &Frame, x0: u32, y0: u32, x1: u32, y1: u32) -> Acc;
+    /// Seconds, and what was found; who does not trace one ray at a time, or not any ray, is not asked.
+    fn rays(&self, _: &Rays) -> Option<(f64, Acc)> {
+        None
+    }
 }
 
 pub trait Tracer: Sync {
@@ -190,6 +201,64 @@ pub trait Tracer: Sync {
     fn closest(&self, o: Vec3A, d: Vec3A) -> Option<(f32, Vec3A)>;
     /// anything in 0 < t < 1
     fn occluded(&self, o: Vec3A, d: Vec3A) -> bool;
+}
+
+/// One ray after the other.
+#[inline(always)]
+pub fn single_rays<T: Tracer + ?Sized>(t: &T, rays: &Rays) -> (f64, Acc) {
+    let start = std::time::Instant::now();
+    let mut a = Acc { rays: rays.rays.len() as u64, ..Acc::default() };
+    for &[o, d] in &rays.rays {
+        if rays.any {
+            a.lit += !t.occluded(o, d) as u64;
+        } else if let Some((z, _)) = t.closest(o, d) {
+            a.hits += 1;
+            a.tsum += z as f64;
+        }
+    }
+    (start.elapsed().as_secs_f64(), a)
+}
+
+/// A frame's hits, row by row: the points off the surface and the normals.
+fn hit_points(t: &dyn Tracer, eps: f32, f: &Frame) -> Vec<[Vec3A; 2]> {
+    let pixels = (0..f.height).flat_map(|y| (0..f.width).map(move |x| (x, y)));
+    let hit = |(x, y)| {
+        let d = f.dir(x, y);
+        let (z, n) = t.closest(f.o, d)?;
+        let n = n.normalize();
+        let n = if n.dot(d) > 0.0 { -n } else { n };
+        Some([f.o + d * z + n * eps, n])
+    };
+    pixels.filter_map(hit).collect()
+}
+
+/// From each hit point to the light: origins that know of an epsilon, the same for all.
+pub fn shadow_rays(t: &dyn Tracer, s: &Scene, f: &Frame) -> Rays {
+    let rays = hit_points(t, s.eps, f).into_iter().map(|[p, _]| [p, s.light - p]).collect();
+    Rays { rays, any: true }
+}
+
+/// So many from the hit points, one after the other and again from the first, with directions by the cosine.
+pub fn incoherent_rays(t: &dyn Tracer, s: &Scene, f: &Frame, count: usize) -> Rays {
+    let points = hit_points(t, s.eps, f);
+    let ray = |(i, &[p, n]): (u32, &[Vec3A; 2])| {
+        let number = |k: u32| (hash(2 * i + k) >> 8) as f32 * (1.0 / 16777216.0);
+        // A point on the unit sphere about the normal's end.
+        let (z, phi) = (1.0 - 2.0 * number(0), std::f32::consts::TAU * number(1));
+        let r = (1.0 - z * z).max(0.0).sqrt();
+        let d = n + Vec3A::new(r * phi.cos(), r * phi.sin(), z);
+        [p, if d.length_squared() > 1e-8 { d.normalize() } else { n }]
+    };
+    Rays { rays: (0..count as u32).zip(points.iter().cycle()).map(ray).collect(), any: false }
+}
+
+/// Wang's hash.
+fn hash(i: u32) -> u32 {
+    let mut h = (i ^ 61) ^ (i >> 16);
+    h = h.wrapping_mul(9);
+    h ^= h >> 4;
+    h = h.wrapping_mul(0x27d4_eb2d);
+    h ^ (h >> 15)
 }
 
 #[inline(always)]

@@ -1,6 +1,6 @@
 //! termtrace through its public functions, in the way its own renderer calls them: a tile's rays at a time, shadow rays
 //! from origins that know no epsilon.
-use crate::scene::{Acc, Backend, Frame, Scene};
+use crate::scene::{Acc, Backend, Frame, Rays, Scene};
 use glam::{Vec3, Vec3A};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use termtrace::lanes::{Eight, Vector, set_bits};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
-use termtrace::ray::EightRays;
+use termtrace::ray::{EightRays, Ray};
 use termtrace::scene::{Object, Scene as Traced};
 use termtrace::shade::{self, EightPoints, TO_THE_LIGHT};
 use termtrace::shape::{Mesh, Plane, Shape, Sphere};
@@ -110,5 +110,31 @@ impl Backend for Termtrace {
             buffers.rays.extend(groups.map(|at| eye_rays(f, at, [x1, y1])));
             self.trace(f.full, buffers)
         })
+    }
+
+    fn rays(&self, rays: &Rays) -> Option<(f64, Acc)> {
+        if self.kernel == Kernel::Packet {
+            // By force together where nothing is: that is not to be waited for.
+            return None;
+        }
+        let ray = |&[o, d]: &[Vec3A; 2]| Ray { origin: vec3(o), direction: vec3(d) };
+        let eight = |rays: &[[Vec3A; 2]]| EightRays::of(&rays.iter().map(ray).collect::<Vec<_>>());
+        let given: Vec<_> = rays.rays.chunks(8).map(eight).collect();
+        let (mut hits, mut blocked) = (Vec::new(), Vec::new());
+        let mut sum = Acc { rays: rays.rays.len() as u64, ..Acc::default() };
+        let start = Instant::now();
+        for rays_of_a_tile in given.chunks(128) {
+            if rays.any {
+                hit::any_hits(self.kernel, &self.scene, rays_of_a_tile, TO_THE_LIGHT, &mut blocked);
+                sum.lit += shade::count(rays_of_a_tile) - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
+            } else {
+                hit::closest_hits(self.kernel, &self.scene, rays_of_a_tile, &mut hits);
+                for hits in &hits {
+                    sum.hits += u64::from(hits.met.count_ones());
+                    sum.tsum += set_bits(hits.met).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
+                }
+            }
+        }
+        Some((start.elapsed().as_secs_f64(), sum))
     }
 }
