@@ -76,11 +76,7 @@ pub fn common<N: Number>([x, y, z]: [[N; 2]; 3]) -> [N; 2] {
     // first is NaN, `max` and `min` are the second, which never is.
     let enters = x[0].max(y[0].max(z[0].max(N::splat(f32::NEG_INFINITY))));
     let leaves = x[1].min(y[1].min(z[1].min(N::splat(f32::INFINITY))));
-    [-lengthened(-enters), lengthened(leaves)]
-}
-
-/// A little more.
-#[inline(always)]
-fn lengthened<N: Number>(t: N) -> N {
-    t * N::select(N::splat(0.0).lt(t), N::splat(1.0 + SLACK), N::splat(1.0 - SLACK))
+    // Whatever the sign, of a little less and a little more the one that lies outside.
+    let (less, more) = (N::splat(1.0 - SLACK), N::splat(1.0 + SLACK));
+    [(enters * less).min(enters * more), (leaves * less).max(leaves * more)]
 }

@@ -3,7 +3,7 @@
 //! It only leaves out what cannot be met: a box contains those below it, and [`Bounds::crossed`] keeps to that bit for
 //! bit. So what is found does not depend on how the tree was built, nor on the way in which it is gone through.
 
-use crate::bounds::{Bounds, common};
+use crate::bounds::Bounds;
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Rays};
 use glam::Vec3;
@@ -77,17 +77,47 @@ impl Node {
         [Vector::splat(min), Vector::splat(max)]
     }
 
-    /// [`Bounds::crossed`] by one ray, which goes backward along these axes.
+    /// From where on one ray meets the boxes, and whether it does, a bit for each.
     #[inline(always)]
-    fn crossed<N: Lanes>(&self, rays: &Rays<N>, is_backward: [bool; 3]) -> [N; 2] {
-        let (origin, inverse) = (rays.origin, rays.inverse);
-        let (mut near, mut far) = ([inverse.x, inverse.y, inverse.z], [inverse.x, inverse.y, inverse.z]);
-        for (axis, origin) in [origin.x, origin.y, origin.z].into_iter().enumerate() {
-            let is_backward = usize::from(is_backward[axis]);
-            near[axis] = (N::load(&self.bounds[axis][is_backward]) - origin) * near[axis];
-            far[axis] = (N::load(&self.bounds[axis][1 - is_backward]) - origin) * far[axis];
+    fn met<N: Lanes>(&self, slabs: &Slabs<N>, within: Interval) -> (N, u32) {
+        let (mut start, mut end) = (N::splat(within.min), N::splat(within.max));
+        for axis in [2, 1, 0] {
+            let (bounds, near) = (&self.bounds[axis], usize::from(slabs.is_backward[axis]));
+            let origin = slabs.origin[axis];
+            // NaN is left out, as there.
+            start = ((N::load(&bounds[near]) - origin) * slabs.near[axis]).max(start);
+            end = ((N::load(&bounds[1 - near]) - origin) * slabs.far[axis]).min(end);
         }
-        common([[near[0], far[0]], [near[1], far[1]], [near[2], far[2]]])
+        (start, start.le(end).bits())
+    }
+}
+
+/// A ray, the same in every place, before boxes. In front of its origin it is in each for longer than
+/// [`Bounds::crossed`] says.
+struct Slabs<N> {
+    origin: [N; 3],
+    near: [N; 3],
+    far: [N; 3],
+    is_backward: [bool; 3],
+}
+
+/// How much longer, relatively, at both ends: 128 units of 2^-24. That `crossed` lengthens by 16 units takes 18 with the
+/// rounding there; that it is done to the inverse beforehand, two more; and as many as are left make up for numbers so
+/// small that f32 rounds them by more than a unit.
+const MORE: f32 = 128.0 / 16_777_216.0;
+
+impl<N: Lanes> Slabs<N> {
+    #[inline(always)]
+    fn of(rays: &Rays<N>) -> Self {
+        let (origin, inverse) = (rays.origin, rays.inverse);
+        let (less, more, zero) = (N::splat(1.0 - MORE), N::splat(1.0 + MORE), N::splat(0.0));
+        // Written out: the compiler does not look into closures for the registers that they may use.
+        Self {
+            origin: [origin.x, origin.y, origin.z],
+            near: [inverse.x * less, inverse.y * less, inverse.z * less],
+            far: [inverse.x * more, inverse.y * more, inverse.z * more],
+            is_backward: [inverse.x.lt(zero).any(), inverse.y.lt(zero).any(), inverse.z.lt(zero).any()],
+        }
     }
 }
 
@@ -106,6 +136,7 @@ impl Child {
         Self(number | Self::LEAF)
     }
 
+    #[inline(always)]
     fn as_leaf(self) -> Option<usize> {
         (self.0 & Self::LEAF != 0).then_some((self.0 & !Self::LEAF) as usize)
     }
@@ -160,38 +191,122 @@ impl Bvh {
     }
 
     /// Visits the leaves below that the ray, which is the same in every place, meets in the interval, the nearer of two
-    /// first.
+    /// first. The interval begins at 0 or later.
     #[inline(always)]
     pub fn visit<N: Lanes>(
         &self,
         from: Child,
         rays: &Rays<N>,
         mut within: Interval,
-        Stack(waiting): &mut Stack,
+        queue: &mut Queue,
         visitor: &mut impl LeafVisitor,
     ) {
-        let Vector { x, y, z } = rays.inverse;
-        let zero = N::splat(0.0);
-        let is_backward = [x.lt(zero).any(), y.lt(zero).any(), z.lt(zero).any()];
-        waiting.clear();
-        let mut next = Some(Waiting { child: from, place: 0, start: within.min });
-        while let Some(Waiting { child, start, .. }) = next.take().or_else(|| waiting.pop()) {
+        let slabs = Slabs::of(rays);
+        queue.waiting = 0;
+        let mut next = Turn::new(from, within.min);
+        loop {
             // Something nearer may have been found since; what is as near may come first in the scene.
-            if start > within.max {
-                continue;
-            }
-            if let Some(leaf) = child.as_leaf() {
-                match visitor.visit(leaf) {
-                    ControlFlow::Continue(max) => within.max = max,
-                    ControlFlow::Break(()) => return,
+            if next.start() <= within.max {
+                let child = next.child();
+                if let Some(leaf) = child.as_leaf() {
+                    match visitor.visit(leaf) {
+                        ControlFlow::Continue(max) => within.max = max,
+                        ControlFlow::Break(()) => return,
+                    }
+                } else {
+                    let node = &self.nodes[child.0 as usize];
+                    let (starts, is_met) = node.met(&slabs, within);
+                    if is_met != 0 {
+                        next = queue.nearest(node, is_met, &starts.store());
+                        continue;
+                    }
                 }
-                continue;
             }
-            let node = &self.nodes[child.0 as usize];
-            let [enters, leaves] = node.crossed(rays, is_backward);
-            let starts = enters.max(N::splat(within.min));
-            let is_met = starts.le(leaves.min(N::splat(within.max))).bits();
-            next = nearest_first(node, child, is_met, &starts.store(), waiting);
+            let Some(waiting) = queue.pop() else { return };
+            next = waiting;
+        }
+    }
+}
+
+/// What is to be visited, and from where on it may be met: the bits of that stand above those of the child, so that the
+/// order of these numbers is that of the starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Turn(u64);
+
+impl Turn {
+    #[inline(always)]
+    fn new(Child(child): Child, start: f32) -> Self {
+        Self(u64::from(start.to_bits()) << 32 | u64::from(child))
+    }
+
+    #[inline(always)]
+    fn child(self) -> Child {
+        Child(self.0 as u32)
+    }
+
+    #[inline(always)]
+    fn start(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+}
+
+/// Space for what a ray by itself still has to visit, kept from ray to ray.
+#[derive(Clone, Debug, Default)]
+pub struct Queue {
+    turns: Vec<Turn>,
+    /// How many of them wait; the rest is room.
+    waiting: usize,
+}
+
+impl Queue {
+    /// Of the children that are met, one at least, the nearest; the others wait, the nearer above the farther.
+    #[inline(always)]
+    fn nearest(&mut self, node: &Node, mut is_met: u32, starts: &Eight) -> Turn {
+        let mut take = || {
+            let lane = is_met.trailing_zeros() as usize % LANES;
+            is_met &= is_met.wrapping_sub(1);
+            (Turn::new(node.children[lane], starts.0[lane]), is_met != 0)
+        };
+        let (first, is_more) = take();
+        if !is_more {
+            return first;
+        }
+        let (second, mut is_more) = take();
+        self.make_room();
+        let (mut nearest, bottom) = (first.min(second), self.waiting);
+        self.turns[bottom] = first.max(second);
+        self.waiting += 1;
+        while is_more {
+            let turn;
+            (turn, is_more) = take();
+            let mut at = self.waiting;
+            self.waiting += 1;
+            let other = turn.max(nearest);
+            nearest = turn.min(nearest);
+            while at > bottom && self.turns[at - 1] < other {
+                self.turns[at] = self.turns[at - 1];
+                at -= 1;
+            }
+            self.turns[at] = other;
+        }
+        nearest
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<Turn> {
+        self.waiting = self.waiting.checked_sub(1)?;
+        Some(self.turns[self.waiting])
+    }
+
+    /// For all that a node can add.
+    #[inline(always)]
+    fn make_room(&mut self) {
+        #[cold]
+        fn grow(turns: &mut Vec<Turn>) {
+            turns.resize(2 * turns.len() + 8 * LANES, Turn(0));
+        }
+        if self.turns.len() < self.waiting + LANES {
+            grow(&mut self.turns);
         }
     }
 }

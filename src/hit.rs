@@ -3,7 +3,7 @@
 //! Both are asked for many rays at a time, so that the way in which they are traced together is this stage's choice. None
 //! of the ways shows in what is found.
 
-use crate::bvh::{GROUPS, Stack};
+use crate::bvh::{GROUPS, Queue, Stack};
 use crate::lanes::{Answers, Eight, LANES, Lanes, set_bits};
 use crate::ray::{EightRays, Interval, Ray};
 use crate::scene::{PartId, Parts, Scene};
@@ -215,5 +215,5 @@ impl Work for AnyHits<'_> {
 #[derive(Default)]
 struct Stacks {
     together: Stack,
-    alone: Stack,
+    alone: Queue,
 }

@@ -71,8 +71,20 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
     fn all(self) -> bool;
 }
 
+/// What can be done with any eight numbers.
+pub trait Work {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn run<N: Lanes>(self) -> Self::Output;
+}
+
 /// Eight numbers, in whatever the CPU has for them.
 pub trait Lanes: Number<Mask: Answers> {
+    /// Does the work in a function of its own, which has all registers to itself.
+    fn apart<W: Work>(work: W) -> W::Output;
+
     /// From memory.
     fn load(numbers: &Eight) -> Self;
 
@@ -283,6 +295,11 @@ impl Number for Eight {
 }
 
 impl Lanes for Eight {
+    #[inline(never)]
+    fn apart<W: Work>(work: W) -> W::Output {
+        work.run::<Self>()
+    }
+
     #[inline(always)]
     fn load(numbers: &Eight) -> Self {
         *numbers

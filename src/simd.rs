@@ -6,16 +6,9 @@
 //!
 //! This module alone has unsafe code.
 
-use crate::lanes::{Eight, Lanes};
+use crate::lanes::Eight;
 
-/// What can be done with any eight numbers.
-pub trait Work {
-    /// What comes of it.
-    type Output;
-
-    /// Does it.
-    fn run<N: Lanes>(self) -> Self::Output;
-}
+pub use crate::lanes::Work;
 
 /// Which numbers work is done with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use std::num::NonZeroU32;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use termtrace::bounds::Bounds;
-use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Stack};
+use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Queue};
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::Resolution;
@@ -439,7 +439,7 @@ fn a_tree_is_never_too_deep_for_its_stack() {
     let probe = Probe::new(Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 1.0, 0.0) });
     let mut count = Count(&leaves, 0);
     let rays = probe.rays.splat::<Eight>();
-    bvh.visit(bvh.root().unwrap(), &rays, Interval::IN_FRONT, &mut Stack::default(), &mut count);
+    bvh.visit(bvh.root().unwrap(), &rays, Interval::IN_FRONT, &mut Queue::default(), &mut count);
     assert_eq!(count.1, boxes.len(), "the ray meets them all");
 }
 

@@ -1,29 +1,28 @@
 //! A ray by itself, against eight boxes or parts at a time.
 
-use crate::bvh::{Child, LeafVisitor, Stack};
-use crate::lanes::{Answers, LANES, Lanes};
+use crate::bvh::{Child, LeafVisitor, Queue};
+use crate::lanes::{Answers, LANES, Lanes, Work};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::scene::{Grove, Parts};
 use crate::shape::{Crossable, SideBySide};
+use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
 /// A ray, and what it has met.
-pub(super) struct Alone<'p, N: Lanes, const ANY: bool> {
+pub(super) struct Alone<'p, N, const ANY: bool> {
     parts: &'p Parts,
     probe: Probe,
-    /// The same ray in every place.
-    rays: Rays<N>,
     /// `max` is where the closest was met, or where the interval ends.
     within: Interval,
     /// What was met.
     place: Option<u32>,
+    numbers: PhantomData<N>,
 }
 
 impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
     #[inline(always)]
     pub(super) fn new(parts: &'p Parts, ray: &Ray, within: Interval) -> Self {
-        let probe = Probe::new(*ray);
-        Self { parts, rays: probe.rays.splat(), probe, within, place: None }
+        Self { parts, probe: Probe::new(*ray), within, place: None, numbers: PhantomData }
     }
 
     /// A ray that has met this already.
@@ -40,38 +39,37 @@ impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
 
     /// Searches through everything.
     #[inline(always)]
-    pub(super) fn trace(&mut self, stack: &mut Stack) {
+    pub(super) fn trace(&mut self, queue: &mut Queue) {
         let parts = self.parts;
         for (place, (_, plane)) in (0..).zip(&parts.planes) {
             if let Some((true, t)) = plane.first_crossing(&self.probe.rays, self.within.min) {
                 self.meet(t, place);
             }
         }
-        self.trace_grove(&parts.balls, stack);
-        self.trace_grove(&parts.triangles, stack);
+        self.trace_grove(&parts.balls, queue);
+        self.trace_grove(&parts.triangles, queue);
     }
 
     #[inline(always)]
-    fn trace_grove<S: SideBySide>(&mut self, grove: &Grove<S>, stack: &mut Stack) {
+    fn trace_grove<S: SideBySide>(&mut self, grove: &Grove<S>, queue: &mut Queue) {
         if let Some(root) = grove.bvh.root() {
-            self.trace_from(root, grove, stack);
+            self.trace_from(root, grove, queue);
         }
     }
 
     /// Searches through a part of a tree.
     #[inline(always)]
-    pub(super) fn trace_from<S: SideBySide>(&mut self, from: Child, grove: &Grove<S>, stack: &mut Stack) {
+    pub(super) fn trace_from<S: SideBySide>(&mut self, from: Child, grove: &Grove<S>, queue: &mut Queue) {
         if ANY && self.place.is_some() {
             return;
         }
-        let (rays, within) = (self.rays, self.within);
-        grove.bvh.visit(from, &rays, within, stack, &mut InGrove { ray: self, grove });
+        N::apart(Search { ray: self, from, grove, queue });
     }
 
     #[inline(always)]
-    fn test<S: SideBySide>(&mut self, leaf: usize, grove: &Grove<S>) {
+    fn test<S: SideBySide>(&mut self, rays: &Rays<N>, leaf: usize, grove: &Grove<S>) {
         let shapes = grove.leaves[leaf].shapes.load::<N>();
-        let Some((crosses, t)) = shapes.first_crossing(&self.rays, N::splat(self.within.min)) else { return };
+        let Some((crosses, t)) = shapes.first_crossing(rays, N::splat(self.within.min)) else { return };
         let mut met = (crosses & t.le(N::splat(self.within.max))).bits();
         if met == 0 {
             return;
@@ -97,16 +95,44 @@ impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
     }
 }
 
+/// A ray's way through a part of a tree.
+struct Search<'a, 'p, N, S, const ANY: bool> {
+    ray: &'a mut Alone<'p, N, ANY>,
+    from: Child,
+    grove: &'a Grove<S>,
+    queue: &'a mut Queue,
+}
+
+impl<N: Lanes, S: SideBySide, const ANY: bool> Work for Search<'_, '_, N, S, ANY> {
+    type Output = ();
+
+    /// The numbers are those that the ray has.
+    #[inline(always)]
+    fn run<Same: Lanes>(self) {
+        let Self { ray, from, grove, queue } = self;
+        let (rays, within) = (ray.probe.rays.splat::<N>(), ray.within);
+        let mut there = InGrove { ray, rays: &rays, grove };
+        if within.min >= 0.0 {
+            grove.bvh.visit(from, &rays, within, queue, &mut there);
+        } else {
+            // The tree knows of nothing behind an origin; that is asked for too rarely for one that does.
+            let _ = (0..grove.leaves.len()).try_for_each(|leaf| there.visit(leaf).map_continue(|_| ()));
+        }
+    }
+}
+
 /// A ray in a tree.
 struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
     ray: &'a mut Alone<'p, N, ANY>,
+    /// The same in every place.
+    rays: &'a Rays<N>,
     grove: &'a Grove<S>,
 }
 
 impl<N: Lanes, S: SideBySide, const ANY: bool> LeafVisitor for InGrove<'_, '_, N, S, ANY> {
     #[inline(always)]
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
-        self.ray.test(leaf, self.grove);
+        self.ray.test(self.rays, leaf, self.grove);
         if ANY && self.ray.place.is_some() {
             ControlFlow::Break(())
         } else {

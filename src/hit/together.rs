@@ -2,7 +2,7 @@
 
 use super::{Stacks, alone::Alone};
 use crate::bounds::crossed;
-use crate::bvh::{Child, GROUPS, Packet, Stack, Visitor};
+use crate::bvh::{Child, GROUPS, Packet, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector};
 use crate::ray::{EightRays, Interval, Rays};
@@ -213,7 +213,7 @@ struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
     rays: &'a mut Together<'p, N, ANY>,
     grove: &'p Grove<S>,
     packet: &'a Packet<N>,
-    stack: &'a mut Stack,
+    stack: &'a mut Queue,
 }
 
 impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N, S, ANY> {

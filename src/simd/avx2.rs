@@ -14,11 +14,12 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Does the work with the registers of AVX, which this CPU has to have.
 pub(super) fn run<W: Work>(work: W) -> W::Output {
+    #[inline(never)]
     #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
     fn compiled_for_avx2<W: Work>(work: W) -> W::Output {
         work.run::<Register>()
     }
-    // SAFETY: `run_with`, the only caller, has asked the CPU.
+    // SAFETY: `run_with` has asked the CPU, and `Register::apart` is reached by what runs on it.
     unsafe { compiled_for_avx2(work) }
 }
 
@@ -145,6 +146,11 @@ impl Number for Register {
 }
 
 impl Lanes for Register {
+    #[inline(always)]
+    fn apart<W: Work>(work: W) -> W::Output {
+        run(work)
+    }
+
     #[inline(always)]
     fn load(numbers: &Eight) -> Self {
         Self(avx!(_mm256_load_ps(numbers.0.as_ptr())))
