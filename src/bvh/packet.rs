@@ -125,6 +125,12 @@ impl<N: Lanes> Packet<N> {
         Self { senses: [x, y, z], groups: [groups_x, groups_y, groups_z], all: [all_x, all_y, all_z] }
     }
 
+    /// Whether its rays go this way and that along most axes: then it keeps hardly any box from them.
+    #[inline(always)]
+    pub fn is_scattered(&self) -> bool {
+        self.senses.iter().filter(|&&sense| sense == Sense::Mixed).count() > 1
+    }
+
     /// Between what its rays cross each of eight boxes.
     #[inline(always)]
     pub fn crossed(&self, boxes: [Vector<N>; 2]) -> [N; 2] {

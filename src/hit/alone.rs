@@ -1,7 +1,7 @@
 //! A ray by itself, against eight boxes or parts at a time.
 
 use crate::bvh::{Child, LeafVisitor, Queue};
-use crate::lanes::{Answers, LANES, Lanes, Work};
+use crate::lanes::{Answers, Lanes, Work, set_bits};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::scene::{Grove, Parts};
 use crate::shape::{Crossable, SideBySide};
@@ -70,14 +70,12 @@ impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
     fn test<S: SideBySide>(&mut self, rays: &Rays<N>, leaf: usize, grove: &Grove<S>) {
         let shapes = grove.leaves[leaf].shapes.load::<N>();
         let Some((crosses, t)) = shapes.first_crossing(rays, N::splat(self.within.min)) else { return };
-        let mut met = (crosses & t.le(N::splat(self.within.max))).bits();
+        let met = (crosses & t.le(N::splat(self.within.max))).bits();
         if met == 0 {
             return;
         }
         let t = t.store();
-        while met != 0 {
-            let lane = met.trailing_zeros() as usize % LANES;
-            met &= met - 1;
+        for lane in set_bits(met) {
             self.meet(t.0[lane], grove.place(leaf, lane));
         }
     }

@@ -4,7 +4,7 @@ use super::{Stacks, alone::Alone};
 use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
-use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector};
+use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector, set_bits};
 use crate::ray::{EightRays, Interval, Rays};
 use crate::scene::{Grove, Parts};
 use crate::shape::{Crossable, SideBySide};
@@ -124,7 +124,17 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
                 None => packet.insert(Packet::of(&self.groups)),
             };
             let Stacks { together, alone } = stacks;
-            grove.bvh.visit_together(packet, together, &mut InGrove { rays: self, grove, packet, stack: alone });
+            let groups = self.rays.len();
+            let mut in_grove = InGrove { rays: self, grove, packet, stack: alone };
+            match grove.bvh.root() {
+                Some(root) if in_grove.rays.kernel == Kernel::Auto && packet.is_scattered() => {
+                    for group in 0..groups {
+                        let waiting = !in_grove.rays.t[group].le(N::splat(DONE));
+                        in_grove.rays_alone(root, group, waiting.bits());
+                    }
+                }
+                _ => grove.bvh.visit_together(packet, together, &mut in_grove),
+            }
         }
     }
 
@@ -237,16 +247,12 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
         let shapes = &self.grove.leaves[leaf].shapes;
         let min = N::splat(self.rays.within.min);
         let [enters, leaves] = self.packet.crossed(shapes.load::<N>().boxes());
-        let mut is_met = enters.max(min).le(leaves.min(N::splat(self.farthest()))).bits();
-        while is_met != 0 {
-            let lane = is_met.trailing_zeros() as usize % LANES;
-            is_met &= is_met - 1;
+        let is_met = enters.max(min).le(leaves.min(N::splat(self.farthest()))).bits();
+        for lane in set_bits(is_met) {
             let shape = shapes.splat::<N>(lane);
             let [enters, leaves] = self.packet.crossed_by_groups(shape.boxes());
-            let mut groups = enters.max(min).le(leaves.min(self.reach())).bits();
-            while groups != 0 {
-                let group = groups.trailing_zeros() as usize % GROUPS;
-                groups &= groups - 1;
+            let groups = enters.max(min).le(leaves.min(self.reach())).bits();
+            for group in set_bits(groups) {
                 self.rays.test(group, &shape, self.grove.place(leaf, lane));
             }
         }
@@ -259,10 +265,8 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
         }
         let min = N::splat(self.rays.within.min);
         let mut of_group = [0; GROUPS];
-        let (mut left, mut count) = (groups, 0);
-        while left != 0 {
-            let group = left.trailing_zeros() as usize % GROUPS;
-            left &= left - 1;
+        let mut count = 0;
+        for group in set_bits(groups) {
             let [enters, leaves] = crossed(one, &self.rays.groups[group]);
             of_group[group] = enters.max(min).le(leaves.min(self.rays.t[group])).bits();
             count += of_group[group].count_ones();
@@ -270,10 +274,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
         if count > SOME.max(groups.count_ones() * A_FEW) {
             return false;
         }
-        left = groups;
-        while left != 0 {
-            let group = left.trailing_zeros() as usize % GROUPS;
-            left &= left - 1;
+        for group in set_bits(groups) {
             self.rays_alone(from, group, of_group[group]);
         }
         true
@@ -283,14 +284,12 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
 impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
     /// Goes on with these rays of a group, a bit for each.
     #[inline(always)]
-    fn rays_alone(&mut self, from: Child, group: usize, mut rays: u32) {
+    fn rays_alone(&mut self, from: Child, group: usize, rays: u32) {
         if rays == 0 {
             return;
         }
         let (mut t, mut place) = (self.rays.t[group].store(), self.rays.place[group].store());
-        while rays != 0 {
-            let lane = rays.trailing_zeros() as usize % LANES;
-            rays &= rays - 1;
+        for lane in set_bits(rays) {
             let within = Interval { min: self.rays.within.min, max: t.0[lane] };
             let known = place.0[lane].to_bits();
             let ray = Alone::<N, ANY>::new(self.rays.parts, &self.rays.rays[group].ray(lane), within);
