@@ -25,7 +25,9 @@ pub(crate) struct Link {
 
 /// A frame that has come to the far end.
 pub(crate) struct Frame {
-    /// When its last byte came.
+    /// When its last byte was sent.
+    pub(crate) sent: Duration,
+    /// When that came.
     pub(crate) at: Duration,
     pub(crate) bytes: usize,
     /// The lowest line of the screen.
@@ -43,7 +45,8 @@ pub(crate) struct Relay {
     answered: usize,
     /// When the link has passed on all that it took.
     free_at: Duration,
-    there: VecDeque<(Duration, Vec<u8>)>,
+    /// What is on its way: when it comes, when it was sent, and it.
+    there: VecDeque<(Duration, Duration, Vec<u8>)>,
     /// Keys and answers on their way back, and how many bytes each answers.
     back: VecDeque<(Duration, Vec<u8>, usize)>,
     arrived: Vec<u8>,
@@ -127,7 +130,7 @@ impl Relay {
         for piece in bytes.chunks(PIECE) {
             let takes = Duration::from_secs_f64(piece.len() as f64 / self.link.rate);
             self.free_at = self.free_at.max(now) + takes;
-            self.there.push_back((self.free_at + self.link.round_trip / 2, piece.to_vec()));
+            self.there.push_back((self.free_at + self.link.round_trip / 2, now, piece.to_vec()));
         }
         self.taken += bytes.len();
         // One frame: a terminal's bytes may come in pieces.
@@ -137,18 +140,18 @@ impl Relay {
 
     fn arrive(&mut self) {
         while self.there.front().is_some_and(|piece| piece.0 <= self.start.elapsed()) {
-            let Some((at, piece)) = self.there.pop_front() else { break };
+            let Some((at, sent, piece)) = self.there.pop_front() else { break };
             for byte in piece {
                 self.arrived.push(byte);
                 if self.arrived.ends_with(QUESTION) {
                     let frame = std::mem::take(&mut self.arrived);
-                    self.show(&frame, at);
+                    self.show(&frame, sent, at);
                 }
             }
         }
     }
 
-    fn show(&mut self, frame: &[u8], at: Duration) {
+    fn show(&mut self, frame: &[u8], sent: Duration, at: Duration) {
         self.screen.feed(frame);
         if self.link.answers {
             let back = at + self.link.round_trip / 2;
@@ -158,7 +161,7 @@ impl Relay {
         }
         if frame.len() > QUESTION.len() {
             let status = self.screen.text().pop().unwrap_or_default();
-            self.frames.push(Frame { at, bytes: frame.len(), status });
+            self.frames.push(Frame { sent, at, bytes: frame.len(), status });
         }
     }
 
