@@ -18,7 +18,7 @@ use std::time::Duration;
 
 mod estimates;
 
-use estimates::{Rates, RoundTrip};
+use estimates::{Busy, Rate, Rates, RoundTrip};
 
 /// How many frames a second there are at least on a slow link: what a frame may take is its share of the rate. (A little
 /// less than a fifteenth.)
@@ -41,6 +41,8 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const LONG_PATIENCE: Duration = Duration::from_secs(10);
 /// So many late answers may be waited for.
 const MOST_LOST: usize = 16;
+/// How much later than expected an answer of a slow link is when the link must have become slower.
+const LATE: Duration = Duration::from_millis(100);
 /// How far apart questions alone are, while frames are sent.
 const PROBE: Duration = Duration::from_secs(1);
 
@@ -61,9 +63,10 @@ pub(super) struct Link {
     probed: Option<Duration>,
     round_trip: RoundTrip,
     rates: Rates,
+    busy: Busy,
     slow: bool,
-    /// The bytes of the last frame.
-    last_frame: f64,
+    /// How much of its share of the rate the last frame took.
+    fill: f64,
     /// When all that was sent is through, at the rate that is kept.
     free_at: Duration,
     /// The same without credit.
@@ -112,8 +115,9 @@ impl Link {
             probed: None,
             round_trip: RoundTrip::default(),
             rates: Rates::default(),
+            busy: Busy::default(),
             slow: false,
-            last_frame: 0.0,
+            fill: 0.0,
             free_at: Duration::ZERO,
             drained_at: Duration::ZERO,
         }
@@ -130,10 +134,49 @@ impl Link {
 
     /// When the next bytes may be sent, if nothing is heard until then.
     pub(super) fn free_at(&self, now: Duration) -> Duration {
-        let is_full = self.answers() && self.in_flight() > self.window();
         // A question alone is to wait behind nothing.
         let free_at = if self.is_probe_due(now) { self.drained_at } else { self.free_at };
-        free_at.max(if is_full { self.patience_ends() } else { Duration::ZERO })
+        free_at.max(if self.answers() { self.has_room_at(now) } else { Duration::ZERO })
+    }
+
+    /// When there is room for another frame, if nothing is heard until then.
+    fn has_room_at(&self, now: Duration) -> Duration {
+        if self.is_late(now) {
+            self.patience_ends()
+        } else if self.in_flight() <= self.window() {
+            Duration::ZERO
+        } else if self.has_room_beside_largest() {
+            self.passed_at()
+        } else {
+            self.patience_ends()
+        }
+    }
+
+    /// Whether an answer of a slow link is late: the link is slower than it seemed, and what is sent before it is known
+    /// how much would only wait.
+    fn is_late(&self, now: Duration) -> bool {
+        let due = |oldest: &Question| self.passes(self.busy.until(), oldest) + self.round_trip.shortest();
+        self.slow && self.asked.front().is_some_and(|oldest| now > due(oldest) + LATE)
+    }
+
+    /// Whether no more than the rate times the round trip is in flight beside one large frame: one that was sent at a higher
+    /// rate. The next one need not wait until its answer has come all the way back.
+    fn has_room_beside_largest(&self) -> bool {
+        let Some(rate) = self.rates.best().filter(|_| self.slow) else { return false };
+        let largest = self.asked.iter().map(|question| question.bytes as f64).fold(0.0, f64::max);
+        self.in_flight() - largest + self.fill * share(rate) <= self.on_the_way(rate)
+    }
+
+    /// When the link has passed on all that was asked, as far as the answers tell.
+    fn passed_at(&self) -> Duration {
+        self.asked.iter().fold(self.busy.until(), |free_at, question| self.passes(free_at, question))
+    }
+
+    /// When the link, if it is free then, has passed on what ends with a question.
+    fn passes(&self, free_at: Duration, question: &Question) -> Duration {
+        let rate = self.rates.best().map_or(f64::INFINITY, |rate| rate.bytes_per_second);
+        let takes = Duration::try_from_secs_f64(question.bytes as f64 / rate).unwrap_or(PATIENCE);
+        free_at.max(question.sent) + takes
     }
 
     /// Whether the link is slow for screens of so many bytes, and what a frame may take then.
@@ -166,7 +209,7 @@ impl Link {
             frame.extend_from_slice(FENCE);
             self.asked.push_back(Question { sent: now, bytes: frame.len() });
         }
-        self.last_frame = frame.len() as f64;
+        self.fill = self.rates.best().map_or(0.0, |rate| frame.len() as f64 / share(rate));
         self.count(frame.len(), now);
     }
 
@@ -210,12 +253,14 @@ impl Link {
         if is_early || self.lost > 0 && !is_known {
             return self.settle(now);
         }
+        let is_late = self.is_late(now);
         self.asked.pop_front();
         self.round_trip.take(round_trip, now);
         // The first round trip of a link whose rate is known says nothing more of the rate.
         if is_known || self.rates.best().is_none() {
-            let service = round_trip.saturating_sub(self.round_trip.shortest());
-            self.rates.take(question.bytes, service, now);
+            let passed = now.saturating_sub(self.round_trip.shortest());
+            let (bytes, service) = self.busy.take(question.sent, question.bytes, passed);
+            self.rates.take(bytes, service, is_late, now);
         }
     }
 
@@ -256,10 +301,14 @@ impl Link {
     /// How much may be in flight before another frame.
     fn window(&self) -> f64 {
         let Some(rate) = self.rates.best() else { return 0.0 };
-        let share = rate.bytes_per_second / FRAMES_PER_SECOND;
         // What a frame leaves of its share others may use.
-        let spare = if self.slow { (share - self.last_frame).max(0.0) } else { 0.0 };
-        rate.bytes_per_second * self.round_trip.shortest().as_secs_f64() + spare
+        let spare = if self.slow { ((1.0 - self.fill) * share(rate)).max(0.0) } else { 0.0 };
+        self.on_the_way(rate) + spare
+    }
+
+    /// How much is on the way there and back, of what waits nowhere.
+    fn on_the_way(&self, rate: Rate) -> f64 {
+        rate.bytes_per_second * self.round_trip.shortest().as_secs_f64()
     }
 
     /// When the oldest question is taken for lost.
@@ -298,6 +347,11 @@ impl Link {
         self.free_at = self.free_at.max(now.saturating_sub(CREDIT)) + takes;
         self.drained_at = self.drained_at.max(now) + takes;
     }
+}
+
+/// The bytes of a rate for each frame.
+fn share(rate: Rate) -> f64 {
+    rate.bytes_per_second / FRAMES_PER_SECOND
 }
 
 #[cfg(test)]

@@ -48,6 +48,33 @@ impl RoundTrip {
     }
 }
 
+/// The time for which the link has passed on without a pause what waited for it. When bytes were passed on is told as if
+/// all of the round trip lay behind that.
+#[derive(Default)]
+pub(super) struct Busy {
+    since: Duration,
+    until: Duration,
+    bytes: usize,
+}
+
+impl Busy {
+    /// Bytes that were sent then have been passed on; how many tell of the rate, and how long those took. Bytes that have
+    /// waited behind others tell of it only with them: alone they would seem slower than they were.
+    pub(super) fn take(&mut self, sent: Duration, bytes: usize, passed: Duration) -> (usize, Duration) {
+        if sent + SHORT >= self.until {
+            (self.since, self.bytes) = (sent, 0);
+        }
+        self.until = passed;
+        self.bytes += bytes;
+        (self.bytes, passed.saturating_sub(self.since))
+    }
+
+    /// When the last byte was passed on that is known of.
+    pub(super) fn until(&self) -> Duration {
+        self.until
+    }
+}
+
 /// A rate, and what it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rate {
@@ -64,8 +91,8 @@ pub(super) struct Rates {
 }
 
 impl Rates {
-    /// So many bytes took so long, beside the round trip.
-    pub(super) fn take(&mut self, bytes: usize, service: Duration, now: Duration) {
+    /// So many bytes took so long, beside the round trip; if that is late, the rate has fallen, and no higher one holds.
+    pub(super) fn take(&mut self, bytes: usize, service: Duration, is_late: bool, now: Duration) {
         let bytes = bytes as f64;
         // Of those before, also after a pause.
         let (best, limit) = (self.best(), self.limit());
@@ -74,7 +101,9 @@ impl Rates {
         }
         self.rates.retain(|&(at, _)| now.saturating_sub(at) < RATE_AGE);
         let rate = if service >= SHORT {
-            Rate { bytes_per_second: bytes / service.as_secs_f64(), is_limit: true }
+            let bytes_per_second = bytes / service.as_secs_f64();
+            self.rates.retain(|(_, rate)| !is_late || rate.bytes_per_second <= bytes_per_second);
+            Rate { bytes_per_second, is_limit: true }
         } else {
             let shown = (bytes / (service + CHANCE).as_secs_f64()).min(2.0 * limit);
             let shown = Rate { bytes_per_second: shown, is_limit: false };

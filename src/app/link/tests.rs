@@ -214,16 +214,22 @@ fn any_link_is_used_and_never_overfilled() {
     }
 }
 
+/// At any moment between two frames.
 #[test]
 fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
-    let mut world = World::new(50_000.0, ms(200));
-    world.run(ms(10_000));
-    world.rate /= 10.0;
-    let dropped = world.now;
-    world.run(ms(20_000));
-    let late = (0..15_000).rev().find(|&at| world.key(dropped + ms(at)) > ms(400)).unwrap_or(0);
-    // What was in flight when it became known takes 2.2 s to run off.
-    assert!(late <= 3_000, "{late} ms");
+    let late = |phase: u64| {
+        let mut world = World { fill: 0.93, ..World::new(50_000.0, ms(200)) };
+        world.run(ms(10_000 + phase));
+        world.rate /= 10.0;
+        let dropped = world.now;
+        world.run(ms(20_000));
+        (0..15_000).rev().find(|&at| world.key(dropped + ms(at)) > ms(400)).unwrap_or(0)
+    };
+    let mut late: Vec<_> = (0..70).step_by(5).map(late).collect();
+    late.sort_unstable();
+    // Up to four frames of 2.9 kB go out before anything is heard of the drop: they run off in 2.3 s, and the next one is
+    // seen 0.2 s later.
+    assert!(late[late.len() / 2] <= 2_050 && late[late.len() - 1] <= 2_450, "{late:?} ms");
 }
 
 #[test]
