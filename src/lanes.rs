@@ -96,6 +96,26 @@ pub trait Lanes: Number<Mask: Answers> {
 
     /// Whether the number has these bits.
     fn has_bits(self, bits: u32) -> Self::Mask;
+
+    /// The least of each eight; none is NaN.
+    #[inline(always)]
+    fn least_of_each(eights: &[Self; LANES]) -> Self {
+        let mut least = Eight([0.0; LANES]);
+        for (least, eight) in least.0.iter_mut().zip(eights) {
+            *least = eight.store().least();
+        }
+        Self::load(&least)
+    }
+
+    /// The greatest of each eight; none is NaN.
+    #[inline(always)]
+    fn greatest_of_each(eights: &[Self; LANES]) -> Self {
+        let mut greatest = Eight([0.0; LANES]);
+        for (greatest, eight) in greatest.0.iter_mut().zip(eights) {
+            *greatest = eight.store().greatest();
+        }
+        Self::load(&greatest)
+    }
 }
 
 /// Eight answers.

@@ -7,7 +7,7 @@
 
 use super::{Bvh, Child, Stack, Waiting, nearest_first};
 use crate::bounds::common;
-use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector};
+use crate::lanes::{Answers, LANES, Lanes, Mask, Vector};
 use crate::ray::Rays;
 
 /// So many groups of eight rays are a packet.
@@ -43,12 +43,7 @@ struct Hull<N> {
 /// Between what the numbers of each group lie.
 #[inline(always)]
 fn extremes<N: Lanes>(groups: [N; GROUPS]) -> [N; 2] {
-    let [mut least, mut greatest] = [Eight([0.0; LANES]); 2];
-    for (at, group) in groups.into_iter().enumerate() {
-        let group = group.store();
-        [least.0[at], greatest.0[at]] = [group.least(), group.greatest()];
-    }
-    [N::load(&least), N::load(&greatest)]
+    [N::least_of_each(&groups), N::greatest_of_each(&groups)]
 }
 
 /// The least of the first and the greatest of the second.

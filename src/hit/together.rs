@@ -74,11 +74,11 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
             (self.t[group], self.place[group]) = (met.t, met.place);
             if has_trees {
                 self.groups[group] = rays;
-                self.reach.0[group] = met.t.store().greatest();
             }
         }
         if has_trees {
             self.reset(rays.len()..GROUPS);
+            self.reach = N::greatest_of_each(&self.t).store();
             for group in rays.len()..GROUPS {
                 self.groups[group] = self.groups[0];
             }

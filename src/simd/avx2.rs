@@ -7,8 +7,9 @@ use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Number};
 use std::arch::x86_64::{
     __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_blendv_ps,
     _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps, _mm256_floor_ps,
-    _mm256_load_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32,
-    _mm256_set1_ps, _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_store_ps, _mm256_sub_ps, _mm256_xor_ps,
+    _mm256_load_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps,
+    _mm256_permute2f128_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_shuffle_ps, _mm256_sqrt_ps,
+    _mm256_store_ps, _mm256_sub_ps, _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -37,6 +38,19 @@ macro_rules! avx {
         // SAFETY: the CPU has AVX, as `Register` says; what is loaded and stored is a whole and aligned `Eight`.
         unsafe { $instruction }
     };
+}
+
+/// What is chosen of each eight, where the order does not count: of neighbours, then of pairs, then of halves.
+macro_rules! of_each {
+    ($choose:ident, $eights:expr) => {{
+        let [a, b, c, d, e, f, g, h] = *$eights;
+        let (ab, cd) = (neighbours(a, b), neighbours(c, d));
+        let (ef, gh) = (neighbours(e, f), neighbours(g, h));
+        let left = pairs(ab[0].$choose(ab[1]), cd[0].$choose(cd[1]));
+        let right = pairs(ef[0].$choose(ef[1]), gh[0].$choose(gh[1]));
+        let [first, last] = halves(left[0].$choose(left[1]), right[0].$choose(right[1]));
+        first.$choose(last)
+    }};
 }
 
 macro_rules! operators {
@@ -175,6 +189,37 @@ impl Lanes for Register {
         let bits = avx!(_mm256_set1_epi32(bits.cast_signed()));
         Mask256(avx!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_castps_si256(self.0), bits))))
     }
+
+    #[inline(always)]
+    fn least_of_each(eights: &[Self; LANES]) -> Self {
+        of_each!(min, eights)
+    }
+
+    #[inline(always)]
+    fn greatest_of_each(eights: &[Self; LANES]) -> Self {
+        of_each!(max, eights)
+    }
+}
+
+/// The first and the last numbers of both, neighbours beside each other.
+#[inline(always)]
+fn neighbours(a: Register, b: Register) -> [Register; 2] {
+    avx!([Register(_mm256_unpacklo_ps(a.0, b.0)), Register(_mm256_unpackhi_ps(a.0, b.0))])
+}
+
+/// The first and the last pairs of both.
+#[inline(always)]
+fn pairs(a: Register, b: Register) -> [Register; 2] {
+    avx!([
+        Register(_mm256_shuffle_ps::<0b01_00_01_00>(a.0, b.0)),
+        Register(_mm256_shuffle_ps::<0b11_10_11_10>(a.0, b.0)),
+    ])
+}
+
+/// The first and the last halves of both.
+#[inline(always)]
+fn halves(a: Register, b: Register) -> [Register; 2] {
+    avx!([Register(_mm256_permute2f128_ps::<0x20>(a.0, b.0)), Register(_mm256_permute2f128_ps::<0x31>(a.0, b.0)),])
 }
 
 impl Mask for Mask256 {
