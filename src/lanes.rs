@@ -4,10 +4,13 @@
 //! it gets alone. [`Eight`] are a plain array, which any CPU can work with; [`simd`](crate::simd) has those that fit one
 //! register.
 
-use glam::Vec3;
 use std::array::from_fn;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+mod vector;
+
+pub use vector::Vector;
 
 /// A number, or several of which each goes its own way.
 pub trait Number:
@@ -384,143 +387,5 @@ impl Mask for EightAnswers {
     #[inline(always)]
     fn all(self) -> bool {
         self.0.into_iter().fold(u32::MAX, |all, answer| all & answer) != 0
-    }
-}
-
-/// Three coordinates, each a [`Number`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vector<N> {
-    /// Along x.
-    pub x: N,
-    /// Along y.
-    pub y: N,
-    /// Along z.
-    pub z: N,
-}
-
-impl<N: Number> Vector<N> {
-    /// The same vector everywhere.
-    #[inline(always)]
-    pub fn splat(v: Vec3) -> Self {
-        Self { x: N::splat(v.x), y: N::splat(v.y), z: N::splat(v.z) }
-    }
-
-    /// The least coordinates of both.
-    #[inline(always)]
-    pub fn min(self, other: Self) -> Self {
-        Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
-    }
-
-    /// The greatest coordinates of both.
-    #[inline(always)]
-    pub fn max(self, other: Self) -> Self {
-        Self { x: self.x.max(other.x), y: self.y.max(other.y), z: self.z.max(other.z) }
-    }
-
-    /// The greatest absolute coordinate.
-    #[inline(always)]
-    pub fn largest(self) -> N {
-        self.x.abs().max(self.y.abs()).max(self.z.abs())
-    }
-
-    /// `yes` where the answer was yes, else `no`.
-    #[inline(always)]
-    pub fn select(answer: N::Mask, yes: Self, no: Self) -> Self {
-        Self { x: N::select(answer, yes.x, no.x), y: N::select(answer, yes.y, no.y), z: N::select(answer, yes.z, no.z) }
-    }
-
-    /// The cross product.
-    #[inline(always)]
-    pub fn cross(self, other: Self) -> Self {
-        Self {
-            x: self.y * other.z - other.y * self.z,
-            y: self.z * other.x - other.z * self.x,
-            z: self.x * other.y - other.x * self.y,
-        }
-    }
-
-    /// The dot product, summed in the order of the coordinates.
-    #[inline(always)]
-    pub fn dot(self, other: Self) -> N {
-        self.x * other.x + self.y * other.y + self.z * other.z
-    }
-}
-
-impl Vector<Eight> {
-    /// Eight times nothing.
-    pub const ZERO: Self = Self { x: Eight::ZERO, y: Eight::ZERO, z: Eight::ZERO };
-
-    /// Eight vectors side by side.
-    #[inline(always)]
-    pub fn of(vectors: [Vec3; LANES]) -> Self {
-        Self { x: Eight(vectors.map(|v| v.x)), y: Eight(vectors.map(|v| v.y)), z: Eight(vectors.map(|v| v.z)) }
-    }
-
-    /// The same in what the CPU has.
-    #[inline(always)]
-    pub fn load<N: Lanes>(&self) -> Vector<N> {
-        Vector { x: N::load(&self.x), y: N::load(&self.y), z: N::load(&self.z) }
-    }
-
-    /// Puts it in that place.
-    #[inline(always)]
-    pub fn put(&mut self, lane: usize, v: Vec3) {
-        (self.x.0[lane], self.y.0[lane], self.z.0[lane]) = (v.x, v.y, v.z);
-    }
-
-    /// One of the eight.
-    #[inline(always)]
-    pub fn of_lane(&self, lane: usize) -> Vec3 {
-        Vec3::new(self.x.0[lane], self.y.0[lane], self.z.0[lane])
-    }
-}
-
-impl<N: Lanes> Vector<N> {
-    /// To memory.
-    #[inline(always)]
-    pub fn store(self) -> Vector<Eight> {
-        Vector { x: self.x.store(), y: self.y.store(), z: self.z.store() }
-    }
-}
-
-impl From<Vector<f32>> for Vec3 {
-    fn from(Vector { x, y, z }: Vector<f32>) -> Self {
-        Self::new(x, y, z)
-    }
-}
-
-impl<N: Number> Add for Vector<N> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
-    }
-}
-
-impl<N: Number> Sub for Vector<N> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
-    }
-}
-
-impl<N: Number> Mul<N> for Vector<N> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, factor: N) -> Self {
-        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
-    }
-}
-
-impl<N: Number> Mul for Vector<N> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
     }
 }
