@@ -7,7 +7,7 @@
 //! BBR. The terminal's status, DSR 5, would be a shorter answer, but st 0.9 does not tell it.)
 //!
 //! A frame's bytes are written at once, so the link's rate shows in a single one: its bytes over what its round trip
-//! takes longer than the shortest. Frames keep a twentieth below that rate, so that what has piled up somewhere runs off,
+//! takes longer than the shortest. Frames keep a seventh below that rate, so that what has piled up somewhere runs off,
 //! and the shortest round trip stays to be seen.
 //!
 //! Pure: it is told the time, and reads and writes nothing.
@@ -20,13 +20,15 @@ mod estimates;
 
 use estimates::{Busy, Rate, Rates, RoundTrip};
 
-/// How many frames a second there are at least on a slow link: what a frame may take is its share of the rate. (A little
-/// less than a fifteenth.)
-const FRAMES_PER_SECOND: f64 = 16.0;
+/// A link is slow that cannot bring so many screens a second.
+const SMOOTH: f64 = 16.0;
+/// How many frames a second there are at least on a slow link: what a frame may take is its share of the rate. The smaller
+/// a frame is, the sooner its answer tells that the link has become slower, and the less is in flight until then.
+const FRAMES_PER_SECOND: f64 = 36.0;
 /// A frame may always take so many bytes: less tells too little of a rate that was thought too low.
 const LEAST_BYTES: usize = 200;
-/// So much of the rate is used.
-const SHARE: f64 = 0.95;
+/// So much of the rate is used: the rest is what an estimate may be too high by.
+const SHARE: f64 = 0.86;
 /// So late may bytes be sent without losing their share.
 const CREDIT: Duration = Duration::from_millis(20);
 /// Frames are at least this far apart.
@@ -128,6 +130,16 @@ impl Link {
         if self.answers() { self.frame } else { self.frame.max(SILENT_FRAME) }
     }
 
+    /// How many frames a second there are on a slow link.
+    fn frames_per_second(&self) -> f64 {
+        FRAMES_PER_SECOND.min(1.0 / self.frame_time().as_secs_f64())
+    }
+
+    /// The bytes of a rate for each of them.
+    fn share(&self, rate: Rate) -> f64 {
+        rate.bytes_per_second / self.frames_per_second()
+    }
+
     fn answers(&self) -> bool {
         self.far_end == FarEnd::Answers
     }
@@ -164,7 +176,7 @@ impl Link {
     fn has_room_beside_largest(&self) -> bool {
         let Some(rate) = self.rates.best().filter(|_| self.slow) else { return false };
         let largest = self.asked.iter().map(|question| question.bytes as f64).fold(0.0, f64::max);
-        self.in_flight() - largest + self.fill * share(rate) <= self.on_the_way(rate)
+        self.in_flight() - largest + self.fill * self.share(rate) <= self.on_the_way(rate)
     }
 
     /// When the link has passed on all that was asked, as far as the answers tell.
@@ -183,12 +195,12 @@ impl Link {
     pub(super) fn slow(&mut self, screen: usize) -> Option<Slow> {
         let limit = self.max_rate.unwrap_or(f64::INFINITY);
         let measured = self.rates.best();
-        let smooth = screen as f64 * FRAMES_PER_SECOND;
+        let smooth = screen as f64 * SMOOTH;
         let rate = measured.map_or(f64::INFINITY, |rate| rate.bytes_per_second).min(limit);
         // Slow as soon as a screen does not fit, and fast when two do: in between it stays what it was.
         let is_sure = limit < smooth || measured.is_some_and(|rate| rate.is_limit);
         self.slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.slow;
-        self.slow.then(|| Slow { rate, most_bytes: LEAST_BYTES.max((rate / FRAMES_PER_SECOND) as usize) })
+        self.slow.then(|| Slow { rate, most_bytes: LEAST_BYTES.max((rate / self.frames_per_second()) as usize) })
     }
 
     /// Whether it was slow when that was last asked.
@@ -209,7 +221,7 @@ impl Link {
             frame.extend_from_slice(FENCE);
             self.asked.push_back(Question { sent: now, bytes: frame.len() });
         }
-        self.fill = self.rates.best().map_or(0.0, |rate| frame.len() as f64 / share(rate));
+        self.fill = self.rates.best().map_or(0.0, |rate| frame.len() as f64 / self.share(rate));
         self.count(frame.len(), now);
     }
 
@@ -302,7 +314,7 @@ impl Link {
     fn window(&self) -> f64 {
         let Some(rate) = self.rates.best() else { return 0.0 };
         // What a frame leaves of its share others may use.
-        let spare = if self.slow { ((1.0 - self.fill) * share(rate)).max(0.0) } else { 0.0 };
+        let spare = if self.slow { ((1.0 - self.fill) * self.share(rate)).max(0.0) } else { 0.0 };
         self.on_the_way(rate) + spare
     }
 
@@ -347,11 +359,6 @@ impl Link {
         self.free_at = self.free_at.max(now.saturating_sub(CREDIT)) + takes;
         self.drained_at = self.drained_at.max(now) + takes;
     }
-}
-
-/// The bytes of a rate for each frame.
-fn share(rate: Rate) -> f64 {
-    rate.bytes_per_second / FRAMES_PER_SECOND
 }
 
 #[cfg(test)]

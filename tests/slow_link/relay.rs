@@ -43,7 +43,9 @@ pub(crate) struct Relay {
     taken: usize,
     /// How many of them are answered.
     answered: usize,
-    /// When the link has passed on all that it took.
+    /// What waits for the link, piece by piece, and when it was sent: it will be passed on at the rate that holds then.
+    waiting: VecDeque<(Duration, Vec<u8>)>,
+    /// When the link has passed on what it has begun with.
     free_at: Duration,
     /// What is on its way: when it comes, when it was sent, and it.
     there: VecDeque<(Duration, Duration, Vec<u8>)>,
@@ -65,6 +67,7 @@ impl Relay {
             start: Instant::now(),
             taken: 0,
             answered: 0,
+            waiting: VecDeque::new(),
             free_at: Duration::ZERO,
             there: VecDeque::new(),
             back: VecDeque::new(),
@@ -104,6 +107,7 @@ impl Relay {
         let deadline = self.now() + limit;
         loop {
             self.take();
+            self.pass_on();
             self.arrive();
             self.go_back();
             if done(self) {
@@ -113,7 +117,9 @@ impl Relay {
             if now >= deadline {
                 return false;
             }
-            let next = [self.there.front().map(|piece| piece.0), self.back.front().map(|bytes| bytes.0)];
+            // What waits comes no sooner than that; when it has begun is known afterwards too.
+            let waiting = self.waiting.front().map(|_| self.free_at + self.link.round_trip / 2);
+            let next = [self.there.front().map(|piece| piece.0), waiting, self.back.front().map(|bytes| bytes.0)];
             let next = next.into_iter().flatten().min().unwrap_or(deadline).min(deadline);
             let taken = self.taken;
             self.session.sees(next.saturating_sub(now), |seen| seen.bytes().len() != taken);
@@ -127,15 +133,22 @@ impl Relay {
         if bytes.is_empty() {
             return;
         }
-        for piece in bytes.chunks(PIECE) {
-            let takes = Duration::from_secs_f64(piece.len() as f64 / self.link.rate);
-            self.free_at = self.free_at.max(now) + takes;
-            self.there.push_back((self.free_at + self.link.round_trip / 2, now, piece.to_vec()));
-        }
+        self.waiting.extend(bytes.chunks(PIECE).map(|piece| (now, piece.to_vec())));
         self.taken += bytes.len();
         // One frame: a terminal's bytes may come in pieces.
         let may_be = self.link.rate * (self.link.round_trip.as_secs_f64() + 1.0 / 15.0);
         self.excess = self.excess.max((self.taken - self.answered) as f64 - may_be);
+    }
+
+    /// Begins with all pieces whose turn has come.
+    fn pass_on(&mut self) {
+        let now = self.now();
+        while self.waiting.front().is_some_and(|piece| self.free_at.max(piece.0) <= now) {
+            let Some((sent, piece)) = self.waiting.pop_front() else { break };
+            let takes = Duration::from_secs_f64(piece.len() as f64 / self.link.rate);
+            self.free_at = self.free_at.max(sent) + takes;
+            self.there.push_back((self.free_at + self.link.round_trip / 2, sent, piece));
+        }
     }
 
     fn arrive(&mut self) {

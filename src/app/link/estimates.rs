@@ -8,9 +8,11 @@ const ROUND_TRIP_AGE: Duration = Duration::from_secs(5);
 /// For so long the highest rate is, if there are others.
 const RATE_AGE: Duration = Duration::from_millis(500);
 /// A frame that takes less than this has not been held up by the link's rate: all that is sure is that it is no less.
-const SHORT: Duration = Duration::from_millis(33);
+const SHORT: Duration = Duration::from_millis(20);
 /// So much of a short time may be chance.
 const CHANCE: Duration = Duration::from_millis(5);
+/// So much of what was told before counts with what is told now: what is chance in one frame is little in several.
+const MEMORY: f64 = 0.75;
 /// A frame of fewer bytes says nothing of the rate, unless the rate is so low that it takes long.
 const TELLING: f64 = 512.0;
 
@@ -88,6 +90,8 @@ pub(super) struct Rate {
 pub(super) struct Rates {
     /// With the time of each.
     rates: VecDeque<(Duration, Rate)>,
+    /// The bytes that told the last of them, and how long they took, fading; none if that was not the link's limit.
+    last: (f64, Duration),
 }
 
 impl Rates {
@@ -100,7 +104,11 @@ impl Rates {
             return;
         }
         self.rates.retain(|&(at, _)| now.saturating_sub(at) < RATE_AGE);
+        let before = std::mem::take(&mut self.last);
         let rate = if service >= SHORT {
+            let (more, longer) = if is_late { Default::default() } else { before };
+            let (bytes, service) = (bytes + more, service + longer);
+            self.last = (MEMORY * bytes, service.mul_f64(MEMORY));
             let bytes_per_second = bytes / service.as_secs_f64();
             self.rates.retain(|(_, rate)| !is_late || rate.bytes_per_second <= bytes_per_second);
             Rate { bytes_per_second, is_limit: true }

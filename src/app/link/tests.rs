@@ -188,7 +188,7 @@ fn frames_below_their_share_fill_the_link_too() {
         let from = world.now;
         world.run(ms(20_000));
         let [_, share] = world.throughput(from, world.now);
-        assert!(share >= 0.88, "{share} of the link with {fill} of each frame");
+        assert!(share >= 0.86, "{share} of the link with {fill} of each frame");
         assert!(world.excess <= 0.0, "{} bytes too many in flight", world.excess);
     }
 }
@@ -227,9 +227,9 @@ fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
     };
     let mut late: Vec<_> = (0..70).step_by(5).map(late).collect();
     late.sort_unstable();
-    // Up to four frames of 2.9 kB go out before anything is heard of the drop: they run off in 2.3 s, and the next one is
-    // seen 0.2 s later.
-    assert!(late[late.len() / 2] <= 2_050 && late[late.len() - 1] <= 2_450, "{late:?} ms");
+    // What goes out before anything is heard of the drop runs off at the new rate: 86 % of the old one for the round trip
+    // and a frame, in 2 s.
+    assert!(late[late.len() / 2] <= 1_850 && late[late.len() - 1] <= 2_000, "{late:?} ms");
 }
 
 #[test]
