@@ -3,26 +3,37 @@
 use crate::camera::Camera;
 use crate::capabilities::Hints;
 use crate::encode::{Order, Quality};
-use crate::progress::Watcher;
 use crate::render::Sampling;
-use crate::scene::{Draft, Scene};
+use crate::scene::Scene;
 use crate::terminal::{self, Signals, Terminal};
+use crate::view::View;
 use std::convert::Infallible;
-use std::time::Duration;
+use std::path::PathBuf;
 use std::{fmt, io};
 
 mod effort;
+mod dialog;
+mod exporting;
+mod explain;
 mod eye;
+mod keeping;
+mod legend;
 mod link;
 mod live;
 mod loading;
 mod panels;
 mod renderer;
+mod scenes;
 mod screen;
+mod shown;
+mod source;
+mod strip;
+mod watching;
 
 use live::Live;
-use loading::Loading;
 use renderer::Renderer;
+use scenes::Scenes;
+pub use source::Source;
 
 /// How the user wants the live view: made by [`Options::new`], then changed.
 #[derive(Clone, Debug)]
@@ -44,12 +55,32 @@ pub struct Options {
     pub sampling: Option<Sampling>,
     /// How many threads trace; `None`: as many as there are cores.
     pub threads: Option<usize>,
+    /// Whether each press of a key moves one step at once, and nothing glides or moves by itself.
+    pub reduced_motion: bool,
+    /// The folder that the user may have the picture written into; `None`: he may not.
+    pub exports: Option<PathBuf>,
+    /// What is said in the lowest row until the first key.
+    pub welcome: Option<String>,
+    /// What of the scene is shown at first.
+    pub view: View,
 }
 
 impl Options {
     /// For a terminal of which that is known, on a link that does not compress; the rest as terminal and machine say.
     pub fn new(hints: Hints) -> Self {
-        Self { hints, order: None, quality: None, max_rate: None, max_frames: None, sampling: None, threads: None }
+        Self {
+            hints,
+            order: None,
+            quality: None,
+            max_rate: None,
+            max_frames: None,
+            sampling: None,
+            threads: None,
+            reduced_motion: false,
+            exports: None,
+            welcome: None,
+            view: View::Shaded,
+        }
     }
 }
 
@@ -81,31 +112,32 @@ pub enum Ending {
 /// # Panics
 /// With the payload of a thread that panicked while tracing.
 pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<Outcome> {
-    view(Loading::<Infallible>::done(scene), options, signals).map_err(|error| match error {
+    let scenes = Scenes::<Infallible>::done(scene, signals)?;
+    view(scenes, options, signals).map_err(|error| match error {
         Error::Terminal(error) => error,
         Error::Scene(never) => match never {},
     })
 }
 
-/// Shows the scene that `read` gives until the user leaves. What takes longer than a moment shows how far it is, then a
-/// sketch to look around in, and can be left at any time. The terminal is as it was when this returns, and also when it
-/// panics; a scene that is wrong at once never touches it.
+/// Shows the scene of the first source until the user leaves, or goes to the next one. What takes longer than a moment
+/// shows how far it is, then a sketch to look around in, and can be left at any time. The terminal is as it was when this
+/// returns, and also when it panics; a first scene that is wrong at once never touches it.
 ///
-/// `read` gives nothing only when its watcher has gone: when the user has left. It is not waited for then.
+/// A scene is read again when one of its files changes. What is wrong with it then is told, and with any but the first;
+/// the picture stays as it was.
 ///
 /// # Errors
-/// If there is no terminal, or it goes away; or what is wrong with the scene.
+/// If there is no source or no terminal, or that goes away; or what is wrong with the first scene.
 ///
 /// # Panics
-/// With the payload of a thread that panicked while tracing, or while reading or building the scene.
-pub fn open<E: Send + 'static>(
-    read: impl FnOnce(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + 'static,
+/// With the payload of a thread that panicked while tracing, or while reading or building a scene.
+pub fn open<E: fmt::Display + Send + 'static>(
+    sources: Vec<Source<E>>,
     options: Options,
     signals: &mut Signals,
 ) -> Result<Outcome, Error<E>> {
-    let waker = signals.waker()?;
-    let loading = terminal::without_signals(|| Loading::start(read, options.threads, waker))?;
-    view(loading, options, signals)
+    let scenes = Scenes::start(sources, options.threads, signals)?;
+    view(scenes, options, signals)
 }
 
 /// Why there was nothing to see, or nothing more.
@@ -134,24 +166,21 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
 
 impl<E: fmt::Debug + fmt::Display> std::error::Error for Error<E> {}
 
-/// A scene that is there so soon is shown without a word about it.
-const MOMENT: Duration = Duration::from_millis(100);
-
-fn view<E: Send + 'static>(
-    mut loading: Loading<E>,
+fn view<E: fmt::Display + Send + 'static>(
+    mut scenes: Scenes<E>,
     options: Options,
     signals: &mut Signals,
 ) -> Result<Outcome, Error<E>> {
     // The terminal is declared last, and so is given back first: nothing that comes after can keep it.
     let waker = signals.waker()?;
     let mut renderer = terminal::without_signals(|| Renderer::start(options.threads, waker))?;
-    loading.wait(MOMENT).map_err(Error::Scene)?;
+    scenes.wait().map_err(Error::Scene)?;
     if let Some(signal) = signals.deadly() {
         return Ok(Outcome { ending: Ending::Signal(signal), moved: None, heard: true });
     }
     let mut terminal = Terminal::take()?;
-    let mut live = Live::new(options, terminal.window()?);
-    let ended = live.run(&mut terminal, &mut renderer, &mut loading, signals);
+    let mut live = Live::new(options, terminal.window()?, scenes.named());
+    let ended = live.run(&mut terminal, &mut renderer, &mut scenes, signals);
     let ending = ended.or_else(|error| match error {
         // When the terminal vanishes, the system says so by a signal too.
         Error::Terminal(error) => signals.deadly().map(Ending::Signal).ok_or(Error::Terminal(error)),

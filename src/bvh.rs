@@ -215,6 +215,7 @@ impl Bvh {
                     }
                 } else {
                     let node = &self.nodes[child.0 as usize];
+                    visitor.boxes();
                     let (starts, is_met) = node.met(&slabs, within);
                     if is_met != 0 {
                         next = queue.nearest(node, is_met, &starts.store());
@@ -313,6 +314,10 @@ impl Queue {
 
 /// Who is shown leaves.
 pub trait LeafVisitor {
+    /// A node's boxes are tested.
+    #[inline(always)]
+    fn boxes(&mut self) {}
+
     /// Tests what is in a leaf; answers how far the ray is of interest from then on, or `Break`.
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32>;
 }

@@ -85,6 +85,22 @@ const XTERM_16: [Srgb8; 16] = [
     Srgb8::new(255, 255, 255),
 ];
 
+/// The colour of that number, of 256, in xterm: sixteen that users change, a cube of six levels to a band, and greys.
+pub(crate) fn xterm_color(index: u8) -> Srgb8 {
+    const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
+    match index {
+        0..16 => XTERM_16[usize::from(index)],
+        16..232 => {
+            let [r, g, b] = [36, 6, 1].map(|step| LEVELS[usize::from((index - 16) / step % 6)]);
+            Srgb8::new(r, g, b)
+        }
+        232.. => {
+            let grey = 8 + 10 * (index - 232);
+            Srgb8::new(grey, grey, grey)
+        }
+    }
+}
+
 impl CellMode {
     /// Half blocks in truecolor.
     pub const HALF_BLOCK: Self = Self { glyphs: Glyphs::Half, colors: Colors::Truecolor };

@@ -3,17 +3,24 @@
 mod bench;
 mod cells;
 mod check;
+mod completions;
+mod describe;
 mod doctor;
 mod encoding;
+mod explain;
 mod frame;
 mod live;
+mod near;
+mod origin;
 mod picture;
 mod record;
+mod view;
 
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
+use origin::Origin;
 use std::ffi::OsString;
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -27,8 +34,8 @@ enum Failure {
     Runtime(String),
     /// The command line or the scene is wrong: exit code 2.
     Usage(String),
-    /// All is said already, with exit code 1.
-    Difference,
+    /// All is said already, but for the exit code.
+    Said(u8),
 }
 
 impl Failure {
@@ -43,11 +50,22 @@ fn usage(error: impl Display) -> Failure {
     Failure::Usage(error.to_string())
 }
 
+impl Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Runtime(message) | Self::Usage(message) => f.write_str(message),
+            Self::Said(_) => Ok(()),
+        }
+    }
+}
+
 type Done = Result<(), Failure>;
 
 const ABOUT: &str = "A live ray tracer whose screen is the terminal";
 
 const EXAMPLES: &str = "\
+Without a scene there is one to look into that is built in. Of several, n shows the next, and p the one before.
+
 Examples:
   termtrace scenes/three_spheres.ron                     look into a scene; ? shows the keys, q leaves
   termtrace scenes/three_spheres.ron --eye 0,4,9         from another eye point
@@ -55,16 +73,19 @@ Examples:
   termtrace frame scenes/three_spheres.ron -o ball.png --pixels 800x600 --samples 16
   termtrace frame my.ron --check my.txt                  compare with a golden frame (--bless writes it)
   termtrace record scenes/three_spheres.ron --seconds 4 -o orbit.cast
+  termtrace describe my.ron                              say in words what there is to see
+  termtrace explain my.ron --pixel 40,24                 say what a pixel comes from, in the lecture's symbols
   termtrace check my.ron                                 say what is wrong with a scene file
   termtrace bench my.ron --pixels 200x120                say how fast its rays are traced
   termtrace doctor                                       say what this terminal can do, with a test card
+  termtrace completions bash                             what a shell completes; termtrace man is the manual
   generate_scene | termtrace -                           read the scene from standard input
 
 Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wrong arguments or a wrong scene";
 
 #[derive(Parser)]
-#[command(name = "termtrace", version, about = ABOUT, after_help = format!("{}\n{}\n\n{EXAMPLES}", cells::EXPLAINED, encoding::EXPLAINED))]
-#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true, disable_help_subcommand = true)]
+#[command(name = "termtrace", version, about = ABOUT, after_help = format!("{}\n{}\n{}\n\n{EXAMPLES}", cells::EXPLAINED, view::EXPLAINED, encoding::EXPLAINED))]
+#[command(args_conflicts_with_subcommands = true, disable_help_subcommand = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -78,21 +99,66 @@ enum Command {
     Frame(frame::FrameArgs),
     /// Record a film along a camera path: asciicast, GIF or numbered PNGs
     Record(record::RecordArgs),
+    /// Say what a pixel comes from: its ray, what that met, the lights
+    Explain(explain::ExplainArgs),
     /// Say what is wrong with a scene file, or that it is fine
     Check(check::CheckArgs),
+    /// Say in words what a picture shows
+    Describe(describe::DescribeArgs),
     /// Time the tracing of a scene
     Bench(bench::BenchArgs),
     /// Say what this terminal can do and who says so, and draw a test card
     Doctor(doctor::DoctorArgs),
+    /// Print what a shell is to know to complete arguments
+    Completions(completions::CompletionsArgs),
+    /// Print the manual, for man
+    Man(completions::ManArgs),
 }
 
 /// The scene, and who looks at it: on every command.
-#[derive(Args, Clone)]
+#[derive(Args)]
 struct SceneArgs {
     /// The scene file; - reads the scene from standard input
-    // Always there when it is asked for; optional, because the arguments before a command have none.
-    #[arg(value_name = "SCENE", required = true)]
-    scene: Option<PathBuf>,
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    #[command(flatten)]
+    look: LookArgs,
+}
+
+impl SceneArgs {
+    /// The scene's file name.
+    fn path(&self) -> &Path {
+        &self.scene
+    }
+
+    /// Refuses to write over the scene, or another file that it is shown with.
+    fn keeps(&self, others: &[&Path], output: &Path) -> Done {
+        let is_output = |input: &&Path| match (input.canonicalize(), output.canonicalize()) {
+            (Ok(input), Ok(output)) => input == output,
+            _ => false,
+        };
+        if [&[self.path()], others].concat().iter().any(is_output) {
+            return Err(Failure::Usage(format!("{} would be written over what it is made from", output.display())));
+        }
+        Ok(())
+    }
+
+    /// The scene, with the camera that the command line wants.
+    fn load(&self) -> Result<Scene, Failure> {
+        let mut scene = Origin::of(&self.scene)?.load()?;
+        scene.camera = self.look.camera(&scene.camera).map_err(usage)?;
+        Ok(scene)
+    }
+
+    /// Does something on the threads that the command line wants.
+    fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+        on_threads(self.look.threads, work)
+    }
+}
+
+/// Who looks at the scene.
+#[derive(Args, Clone)]
+struct LookArgs {
     /// Where to look from, instead of the scene's eye point
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
     eye: Option<Vec3>,
@@ -110,47 +176,10 @@ struct SceneArgs {
     threads: Option<u16>,
 }
 
-impl SceneArgs {
-    /// The scene as the file has it.
-    fn of(path: &Path) -> Self {
-        Self { scene: Some(path.to_owned()), eye: None, target: None, up: None, fov: None, threads: None }
-    }
-
-    /// The scene's file name.
-    fn path(&self) -> &Path {
-        self.scene.as_deref().unwrap_or(Path::new("-"))
-    }
-
-    /// Refuses to write over the scene, or another file that it is shown with.
-    fn keeps(&self, others: &[&Path], output: &Path) -> Done {
-        let is_output = |input: &&Path| match (input.canonicalize(), output.canonicalize()) {
-            (Ok(input), Ok(output)) => input == output,
-            _ => false,
-        };
-        if [&[self.path()], others].concat().iter().any(is_output) {
-            return Err(Failure::Usage(format!("{} would be written over what it is made from", output.display())));
-        }
-        Ok(())
-    }
-
-    /// The scene, with the camera that the command line wants.
-    fn load(&self) -> Result<Scene, Failure> {
-        let draft = self.draft(self.stdin()?.as_deref(), &Watcher::patient())?;
-        draft.map(Draft::finish).ok_or_else(|| Failure::runtime(self.path().display(), "nobody waits for it"))
-    }
-
-    /// The scene's text if it comes from standard input, which may be the terminal: to be read before that is taken.
-    fn stdin(&self) -> Result<Option<Vec<u8>>, Failure> {
-        (self.path() == Path::new("-")).then(read_stdin).transpose()
-    }
-
-    /// The scene, not built yet, while somebody waits for it; `None` if he has gone.
-    fn draft(&self, stdin: Option<&[u8]>, watcher: &Watcher<'_>) -> Result<Option<Draft>, Failure> {
-        let draft = match stdin {
-            Some(text) => Draft::from_bytes("standard input", text, watcher).map_err(usage)?,
-            None => Draft::load(self.path(), watcher).map_err(usage)?,
-        };
-        let Some(draft) = draft else { return Ok(None) };
+impl LookArgs {
+    /// The scene as it is to be looked at, not built yet, while somebody waits for it; `None` if he has gone.
+    fn draft(&self, origin: &Origin, watcher: &Watcher<'_>) -> Result<Option<Draft>, Failure> {
+        let Some(draft) = origin.draft(watcher)? else { return Ok(None) };
         let camera = self.camera(draft.camera()).map_err(usage)?;
         Ok(Some(draft.with_camera(camera)))
     }
@@ -164,11 +193,6 @@ impl SceneArgs {
             Some(degrees) => Ok(camera.with_rectangle(camera.rectangle().with_vertical_fov(degrees.to_radians())?)),
             None => Ok(camera),
         }
-    }
-
-    /// Does something on the threads that the command line wants.
-    fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-        on_threads(self.threads, work)
     }
 }
 
@@ -206,14 +230,18 @@ pub(crate) fn main() -> ExitCode {
     let done = match cli.command {
         Some(Command::Frame(args)) => frame::run(&args),
         Some(Command::Record(args)) => record::run(&args),
+        Some(Command::Explain(args)) => explain::run(&args),
         Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Describe(args)) => describe::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Doctor(args)) => doctor::run(&args),
+        Some(Command::Completions(args)) => completions::complete(&args),
+        Some(Command::Man(args)) => completions::man(&args),
         None => live::run(&cli.live),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Difference) => ExitCode::from(1),
+        Err(Failure::Said(code)) => ExitCode::from(code),
         Err(Failure::Runtime(message)) => complain(&message, 1),
         Err(Failure::Usage(message)) => complain(&message, 2),
     }

@@ -5,5 +5,5 @@
 mod bindings;
 mod motion;
 
-pub use bindings::{BINDINGS, Binding, Command, Direction, Key, Turn, command};
+pub use bindings::{BINDINGS, Binding, Command, Direction, Key, Side, Turn, command};
 pub use motion::{COAST, GLIDE, Motion, speed};

@@ -1,4 +1,11 @@
-//! Grid or picture -> a file's contents: plain text, ANSI, PNG.
+//! Grid or picture -> a file's contents: plain text, ANSI, SVG, HTML, PNG.
+
+mod html;
+mod paint;
+mod svg;
+
+pub use html::html;
+pub use svg::svg;
 
 use crate::capabilities::{CellMode, USUAL_CELL_ASPECT};
 use crate::cell;
@@ -8,6 +15,34 @@ use crate::render::render;
 use crate::scene::Scene;
 use crate::tone::{Picture, tone};
 use std::num::NonZeroU32;
+
+/// What a file with a picture can be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Its pixels: [`png()`].
+    Png,
+    /// Cells in colour, for terminals: [`ansi`].
+    Ansi,
+    /// Characters without colour: [`text`].
+    Text,
+    /// Cells as a drawing: [`svg()`].
+    Svg,
+    /// Cells as a web page: [`html()`].
+    Html,
+}
+
+impl Format {
+    /// How the names of such files end, without the dot.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Ansi => "ansi",
+            Self::Text => "txt",
+            Self::Svg => "svg",
+            Self::Html => "html",
+        }
+    }
+}
 
 /// The scene at that size as plain text, for snapshot tests: one ray through each pixel's centre, cells of the usual
 /// aspect of 2, one line for each row, each with all its characters and a line feed.

@@ -5,15 +5,18 @@
 
 use crate::bvh::{GROUPS, Queue, Stack};
 use crate::lanes::{Answers, Eight, LANES, Lanes, set_bits};
-use crate::ray::{EightRays, Interval, Ray};
+use crate::ray::{EightRays, Interval, Probe, Ray};
 use crate::scene::{PartId, Parts, Scene};
-use crate::shape::Part;
+use crate::shape::{Part, Surface};
 use crate::simd::{self, Instructions, Work};
 use alone::Alone;
 use together::Together;
 
 mod alone;
 mod together;
+mod witness;
+
+pub use witness::{Test, Witness};
 
 /// The closest crossing in front of a ray's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +119,41 @@ pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
     let mut met = Vec::with_capacity(1);
     any_hits(Kernel::Single, scene, &[EightRays::of(std::slice::from_ref(ray))], within, &mut met);
     met == [1]
+}
+
+/// [`closest_hit`] with somebody who is told what the ray is tested against.
+pub fn closest_hit_watched(scene: &Scene, ray: &Ray, witness: &mut impl Witness) -> Option<Hit> {
+    let (t, place) = simd::run(Watched::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, witness });
+    let PartId { object, part } = scene.parts().id(place?);
+    Some(Hit { t, object, part })
+}
+
+/// [`any_hit`] with somebody who is told what the ray is tested against; what it met, which need not be the closest.
+pub fn any_hit_watched(scene: &Scene, ray: &Ray, within: Interval, witness: &mut impl Witness) -> Option<Hit> {
+    let (_, place) = simd::run(Watched::<_, ANY> { scene, ray, within, witness });
+    let PartId { object, part } = scene.parts().id(place?);
+    let t = scene.objects()[object as usize].shape.part(part).closest_crossing(&Probe::new(*ray), within)?;
+    Some(Hit { t, object, part })
+}
+
+/// A ray by itself that somebody watches.
+struct Watched<'w, W, const ANY: bool> {
+    scene: &'w Scene,
+    ray: &'w Ray,
+    within: Interval,
+    witness: &'w mut W,
+}
+
+impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
+    type Output = (f32, Option<u32>);
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) -> Self::Output {
+        let Self { scene, ray, within, witness } = self;
+        let mut ray = Alone::<N, ANY, _>::watched(scene.parts(), ray, within, witness);
+        ray.trace(&mut Queue::default());
+        ray.found()
+    }
 }
 
 impl Kernel {

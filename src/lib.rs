@@ -54,11 +54,14 @@
 //!
 //! From light to the screen:
 //! - [`tone`]: exposure, tone curve, transfer function, 8 bits
+//! - [`view`]: the picture, or what it is made of: depths, normals, objects, shadows
+//! - [`describe`]: the picture in words
+//! - [`explain`]: one pixel, and all that its light came from
 //! - [`grid`]: the cell grid
 //! - [`cell`]: picture -> grid, by half blocks or characters, in the colours that there are
 //! - [`overlay`]: any ratatui buffer laid over the grid
 //! - [`encode`]: wanted grid, shown grid, pen -> bytes
-//! - [`export`]: grid or picture -> text, ANSI, PNG
+//! - [`export`]: grid or picture -> text, ANSI, SVG, HTML, PNG
 //! - [`record`]: frames over time -> asciicast, GIF
 //!
 //! With a person:
@@ -121,6 +124,9 @@ pub mod shade;
 pub mod framebuffer;
 pub mod render;
 pub mod tone;
+pub mod view;
+pub mod describe;
+pub mod explain;
 pub mod grid;
 pub mod cell;
 pub mod overlay;

@@ -325,6 +325,7 @@ fn bytes_of(file: File, name: &str, watcher: &Watcher<'_>) -> io::Result<Vec<u8>
 
 /// The bytes of a file that a mesh names: not of a pipe or a device, which might never end.
 fn open_regular(path: &Path, watcher: &Watcher<'_>) -> io::Result<Vec<u8>> {
+    watcher.needs(path);
     if !std::fs::metadata(path)?.is_file() {
         return Err(io::Error::other("this is not a regular file"));
     }

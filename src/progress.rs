@@ -1,6 +1,7 @@
 //! How far work has come, told to who waits for it, and who may have enough of it.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is being done, and how much of it is done.
@@ -28,13 +29,19 @@ pub enum Work {
 /// Who waits for work: he is told how far it has come, now and then and from any thread, and may go.
 pub struct Watcher<'w> {
     hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
+    hear_need: Option<&'w (dyn Fn(&Path) + Sync)>,
     is_gone: AtomicBool,
 }
 
 impl<'w> Watcher<'w> {
     /// One that hears of progress by this function, and has gone when it answers `Break`.
     pub fn new(hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
-        Self { hear, is_gone: AtomicBool::new(false) }
+        Self { hear, hear_need: None, is_gone: AtomicBool::new(false) }
+    }
+
+    /// And that hears of each file by that function, before it is opened.
+    pub fn with_needs(self, hear_need: &'w (dyn Fn(&Path) + Sync)) -> Self {
+        Self { hear_need: Some(hear_need), ..self }
     }
 
     /// One that waits however long it takes.
@@ -48,6 +55,13 @@ impl<'w> Watcher<'w> {
             self.is_gone.store(true, Ordering::Relaxed);
         }
         if self.is_gone() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Tells him that the work needs that file, which may not be there.
+    pub fn needs(&self, file: &Path) {
+        if let Some(hear) = self.hear_need {
+            hear(file);
+        }
     }
 
     /// Whether he has gone.

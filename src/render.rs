@@ -24,12 +24,16 @@ use std::time::{Duration, Instant};
 use tiles::{PIXELS, Tiles};
 
 mod count;
+mod one;
 mod pixel;
 mod sampling;
+mod sights;
 mod tiles;
 
 pub use count::{Counts, count};
+pub use one::{Steps, trace_pixel};
 pub use sampling::Sampling;
+pub use sights::{Reach, Sight, Sighted, sights};
 
 /// The picture of `scene` that `camera` sees. The first ray of a pixel goes through its centre.
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Framebuffer {
@@ -80,8 +84,8 @@ pub fn render_unless(
 }
 
 /// Who traces.
-#[derive(Clone, Copy)]
-enum Crew<'a> {
+#[derive(Clone, Copy, Debug)]
+pub enum Crew<'a> {
     /// The calling thread alone.
     Alone,
     /// The threads of the current rayon pool, until this becomes true.
@@ -263,18 +267,14 @@ impl Buffers {
         samples: Range<u32>,
         pixels: &mut [P],
     ) -> Option<Cost> {
-        let Self { wanted, rays, hits, points, shadows, arriving, lights } = self;
         let start = Instant::now();
         let mut traced = 0;
         for sample in samples {
             if crew.is_cancelled() {
                 return None;
             }
-            tiles.make_eye_rays(tile, wanted, sample, rays);
-            hit::closest_hits(Kernel::Auto, scene, rays, hits);
-            shade::surface_points(scene, rays, hits, points);
-            let shadow_rays = shade::arriving_light(scene, points, shadows, arriving);
-            shade::reflect(scene, rays, tiles.steps(sample), hits, points, arriving, lights);
+            let shadow_rays = self.trace_sample(scene, tiles, tile, sample);
+            let Self { wanted, points, arriving, lights, .. } = &*self;
             let groups = wanted.chunks(LANES).zip(points.iter()).zip(arriving.iter()).zip(lights.iter());
             for (((wanted, points), arriving), light) in groups {
                 for (lane, &pixel) in wanted.iter().enumerate() {
@@ -285,5 +285,16 @@ impl Buffers {
             traced += wanted.len() as u64 + shadow_rays;
         }
         Some(Cost { rays: traced, work: start.elapsed() })
+    }
+
+    /// All steps for one sample of those pixels. Returns the number of shadow rays that this took.
+    fn trace_sample(&mut self, scene: &Scene, tiles: &Tiles, tile: usize, sample: u32) -> u64 {
+        let Self { wanted, rays, hits, points, shadows, arriving, lights } = self;
+        tiles.make_eye_rays(tile, wanted, sample, rays);
+        hit::closest_hits(Kernel::Auto, scene, rays, hits);
+        shade::surface_points(scene, rays, hits, points);
+        let shadow_rays = shade::arriving_light(scene, points, shadows, arriving);
+        shade::reflect(scene, rays, tiles.steps(sample), hits, points, arriving, lights);
+        shadow_rays
     }
 }

@@ -9,22 +9,26 @@ mod load;
 mod of_mesh;
 mod parts;
 mod written_camera;
+mod written_view;
 
 pub use draft::Draft;
 pub use load::LoadError;
+pub use written_view::with_view;
 
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::light::PointLight;
 use crate::material::Material;
 use crate::shape::Shape;
-pub(crate) use parts::{Grove, PartId, Parts};
+pub(crate) use parts::{Grove, Leaf, PartId, Parts};
 
 /// Everything that a picture depends on, besides its size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Where the scene wants to be looked at from.
     pub camera: Camera,
+    /// Other views of it that are worth a look, in the order of the scene file.
+    pub views: Vec<Camera>,
     /// The light that comes from where nothing is.
     pub background: Background,
     /// Light that arrives at every point from everywhere alike, besides that of the lights.
@@ -42,7 +46,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// These objects seen by that camera: no light yet, a black background, shadows, exposure 1 and no tone curve.
+    /// These objects seen by that camera: no light and no other views yet, a black background, shadows, exposure 1 and no tone curve.
     pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Draft::new(Self::unbuilt(camera, objects)).finish()
     }
@@ -51,6 +55,7 @@ impl Scene {
     fn unbuilt(camera: Camera, objects: Vec<Object>) -> Self {
         Self {
             camera,
+            views: Vec::new(),
             background: Background::Color(LinearRgb::BLACK),
             ambient: LinearRgb::BLACK,
             lights: Vec::new(),

@@ -6,18 +6,20 @@
 //!
 //! What is missing or faulty is `None`, and its fault has been noted; nobody need complain a second time.
 
+mod camera;
 mod colors;
 mod objects;
 mod path;
 mod reader;
 mod words;
 
+pub use camera::{WrittenCamera, WrittenLens};
 pub use colors::WrittenColor;
 pub(crate) use colors::color_named;
 pub use path::{PathFile, WrittenKeyframe};
 pub(crate) use words::{closest, listed};
 
-use crate::scene_text::{Faults, Node, Span, Value, quoted};
+use crate::scene_text::{Faults, Node, Span, Value};
 use reader::{Fields, Reader};
 
 /// A value and where it was written.
@@ -46,6 +48,8 @@ pub struct WrittenVector {
 pub struct SceneFile {
     /// From where it is seen.
     pub camera: Option<WrittenCamera>,
+    /// Other views of it, in the order of the file.
+    pub views: Vec<WrittenCamera>,
     /// What is seen where nothing is.
     pub background: Option<WrittenBackground>,
     /// Light from everywhere.
@@ -64,44 +68,6 @@ pub struct SceneFile {
     pub exposure: Option<WrittenNumber>,
     /// How bright light is brought into the screen's range.
     pub tone_curve: Option<WrittenToneCurve>,
-}
-
-/// The camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WrittenCamera {
-    /// Where to point when it is wrong as a whole.
-    pub span: Span,
-    /// The eye point.
-    pub eye: Option<WrittenVector>,
-    /// The target point.
-    pub target: Option<WrittenVector>,
-    /// The up vector; +y if none is given.
-    pub up: Option<WrittenVector>,
-    /// The intrinsic parameters.
-    pub lens: WrittenLens,
-    /// The view rectangle off centre: to the right and up, in its heights.
-    pub shift: Option<[WrittenNumber; 2]>,
-}
-
-/// The intrinsic parameters, in either of the lecture's forms.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum WrittenLens {
-    /// By angle.
-    FieldOfView {
-        /// In degrees; 45 if none is given.
-        vertical_fov: Option<WrittenNumber>,
-        /// Width over height; the picture's own if none is given.
-        aspect_ratio: Option<WrittenNumber>,
-    },
-    /// By the lecture's f, w and h.
-    FocalLength {
-        /// f.
-        focal_length: Option<WrittenNumber>,
-        /// w.
-        width: Option<WrittenNumber>,
-        /// h.
-        height: Option<WrittenNumber>,
-    },
 }
 
 /// The background.
@@ -238,6 +204,7 @@ impl SceneFile {
         };
         let mut scene = Self {
             camera: reader.required(&fields, "camera", Reader::camera),
+            views: reader.optional(&fields, "views", Reader::views).unwrap_or_default(),
             background: reader.optional(&fields, "background", Reader::background),
             ambient: reader.optional(&fields, "ambient", Reader::color),
             lights: reader.optional(&fields, "lights", Reader::lights).unwrap_or_default(),
@@ -257,55 +224,19 @@ impl SceneFile {
 
 impl Reader<'_> {
     fn root<'n>(&mut self, root: &'n Node<'n>) -> Option<Fields<'n>> {
-        const FIELDS: &[&str] =
-            &["camera", "background", "ambient", "lights", "materials", "objects", "shadows", "exposure", "tone_curve"];
+        const FIELDS: &[&str] = &[
+            "camera",
+            "views",
+            "background",
+            "ambient",
+            "lights",
+            "materials",
+            "objects",
+            "shadows",
+            "exposure",
+            "tone_curve",
+        ];
         self.fields(root, "a scene", "a scene (camera: ..., lights: [...], objects: [...])", FIELDS)
-    }
-
-    fn camera(&mut self, node: &Node<'_>) -> Option<WrittenCamera> {
-        const FIELDS: &[&str] =
-            &["eye", "target", "up", "vertical_fov", "aspect_ratio", "focal_length", "width", "height", "shift"];
-        let fields = self.fields(node, "a camera", "a camera (eye: ..., target: ...)", FIELDS)?;
-        Some(WrittenCamera {
-            span: node.head(),
-            eye: self.required(&fields, "eye", Reader::point),
-            target: self.required(&fields, "target", Reader::point),
-            up: self.optional(&fields, "up", Reader::direction),
-            lens: self.lens(&fields),
-            shift: self.optional(&fields, "shift", Reader::shift),
-        })
-    }
-
-    fn lens(&mut self, fields: &Fields<'_>) -> WrittenLens {
-        const FOCAL: [&str; 3] = ["focal_length", "width", "height"];
-        if FOCAL.iter().all(|&name| fields.get(name).is_none()) {
-            return WrittenLens::FieldOfView {
-                vertical_fov: self.optional(fields, "vertical_fov", Reader::number),
-                aspect_ratio: self.optional(fields, "aspect_ratio", Reader::number),
-            };
-        }
-        for name in ["vertical_fov", "aspect_ratio"] {
-            if let Some(field) = fields.field(name) {
-                self.fault(field.name.span, || {
-                    format!("\"{name}\" cannot stand beside focal_length, width and height; use either form")
-                });
-            }
-        }
-        self.missing_of_focal_form(fields, &FOCAL);
-        let [focal_length, width, height] = FOCAL.map(|name| self.optional(fields, name, Reader::number));
-        WrittenLens::FocalLength { focal_length, width, height }
-    }
-
-    fn missing_of_focal_form(&mut self, fields: &Fields<'_>, names: &[&str]) {
-        let missing = names.iter().filter(|name| !fields.is_given(name));
-        let missing: Vec<_> = missing.map(|name| quoted(name)).collect();
-        let given = names.iter().find_map(|name| fields.field(name));
-        if let (false, Some(given)) = (missing.is_empty(), given) {
-            let s = if missing.len() > 1 { "s" } else { "" };
-            self.fault(given.name.span, || {
-                format!("missing field{s} {}; focal_length, width and height go together", listed(&missing))
-            });
-        }
     }
 
     fn background(&mut self, node: &Node<'_>) -> Option<WrittenBackground> {
@@ -349,9 +280,5 @@ impl Reader<'_> {
             ("Filmic", WrittenToneCurve::Filmic),
         ];
         self.choice(node, "a tone curve", &all)
-    }
-
-    fn shift(&mut self, node: &Node<'_>) -> Option<[WrittenNumber; 2]> {
-        self.numbers(node, "a shift (right, up)")
     }
 }

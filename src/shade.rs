@@ -263,14 +263,14 @@ impl Reflect<'_> {
     }
 }
 
-/// What one light does at a point that it faces, if nothing is in its way.
+/// What one light does at a point, if nothing is in its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Incidence {
     /// The lecture's **l**: the direction to the light. Unit length.
     pub l: Vec3,
     /// The distance to the light.
     pub distance: f32,
-    /// n.l, greater than 0.
+    /// n.l; not greater than 0 where the surface faces away from the light, which then does nothing.
     pub cosine: f32,
     /// I * n.l / d^2, or without the division where the light has no falloff.
     pub light: LinearRgb,
@@ -278,9 +278,14 @@ pub struct Incidence {
 
 /// What the light does at the point, or nothing where the surface faces away from it.
 pub fn incidence(light: &PointLight, point: &SurfacePoint) -> Option<Incidence> {
+    Some(incidence_on_either_side(light, point)).filter(|incidence| 0.0 < incidence.cosine)
+}
+
+/// The same also where the surface faces away from the light.
+pub fn incidence_on_either_side(light: &PointLight, point: &SurfacePoint) -> Incidence {
     let (position, normal) = (Vector::<f32>::splat(point.position), Vector::splat(point.normal));
-    let (faces, Falling { l, distance, cosine, light: [r, g, b] }) = falling(light, position, normal);
-    faces.then(|| Incidence { l: l.into(), distance, cosine, light: LinearRgb::new(r, g, b) })
+    let (_, Falling { l, distance, cosine, light: [r, g, b] }) = falling(light, position, normal);
+    Incidence { l: l.into(), distance, cosine, light: LinearRgb::new(r, g, b) }
 }
 
 /// [`Incidence`] at one point or several.

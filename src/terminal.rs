@@ -10,6 +10,7 @@
 
 use crate::capabilities::{self, CellShape};
 use crate::grid::Size;
+use base64::Engine;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fd::{AsFd, BorrowedFd};
 use rustix::termios;
@@ -118,6 +119,15 @@ impl Terminal {
     /// If the terminal is gone.
     pub fn push_keyboard(&mut self) -> io::Result<()> {
         self.modes.push_keyboard(&mut self.output)
+    }
+
+    /// Gives the user's clipboard a text, where the terminal lets programs do that (OSC 52).
+    ///
+    /// # Errors
+    /// If the terminal is gone.
+    pub fn copy(&mut self, text: &str) -> io::Result<()> {
+        let encoded = base64::engine::general_purpose::STANDARD.encode(text);
+        self.output.send(format!("\x1b]52;c;{encoded}\x1b\\").as_bytes())
     }
 
     /// Whether answers may be on their way.

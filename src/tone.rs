@@ -18,8 +18,13 @@ pub struct Picture {
 /// The framebuffer as `scene` wants its light shown.
 pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     let Resolution { width, height, .. } = framebuffer.resolution;
-    let show = |&light: &LinearRgb| Srgb8::from_linear(bend(scene.tone_curve, light * scene.exposure));
+    let show = |&light: &LinearRgb| Srgb8::from_linear(shown(light, scene));
     Picture { width, height, pixels: framebuffer.pixels.iter().map(show).collect() }
+}
+
+/// The light as `scene` wants it shown: exposed, then after the tone curve. 1 is white, and so is more.
+pub fn shown(light: LinearRgb, scene: &Scene) -> LinearRgb {
+    bend(scene.tone_curve, light * scene.exposure)
 }
 
 /// The light after the tone curve.

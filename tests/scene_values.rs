@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use std::path::Path;
-use termtrace::camera::{Pose, ViewRectangle};
+use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::{LinearRgb, Srgb8};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
@@ -60,6 +60,35 @@ fn a_color_has_many_forms() {
     let gradient = scene("background: Gradient(bottom: 0, top: \"white\")").background;
     let (bottom, top) = (LinearRgb::BLACK, LinearRgb::grey(1.0));
     assert_eq!(gradient, Background::Gradient { bottom, top });
+}
+
+/// What a view does not say is the camera's; of the lens, all or nothing.
+#[test]
+fn views_go_by_the_camera() {
+    let text = "(
+        camera: (eye: (0, 0, 5), target: (0, 0, 0), up: (1, 2, 0), vertical_fov: 30, shift: (0, 1)),
+        views: [
+            (eye: (1, 0, 5), target: (0, 1, 0)),
+            (eye: (1, 0, 5), target: (0, 1, 0), up: (0, 0, 1), vertical_fov: 90),
+        ],
+    )";
+    let scene = Scene::from_ron("views.ron", text).unwrap();
+    let [eye, target] = [Vec3::new(1.0, 0.0, 5.0), Vec3::Y];
+    let up = Vec3::new(1.0, 2.0, 0.0);
+    let like_it = scene.camera.with_pose(Pose { eye, target, up }).unwrap();
+    let quarter = ViewRectangle::from_vertical_fov(std::f32::consts::FRAC_PI_2).unwrap();
+    let other = Camera::new(Pose { eye, target, up: Vec3::Z }, quarter).unwrap();
+    assert_eq!(scene.views, [like_it, other]);
+}
+
+/// As the live view writes them.
+#[test]
+fn a_camera_can_be_written_as_a_view() {
+    let line = "camera: (eye: (0, 1.5, 6), target: (0, 0.7, 0), up: (0, 1, 0), vertical_fov: 40)";
+    let view =
+        "(eye: (1, 0, 5), target: (0, 1, 0), up: (0, 1, 0), focal_length: 1, width: 1.5, height: 1, shift: (0, 0.5))";
+    let scene = Scene::from_ron("views.ron", &format!("({line}, views: [{view}])")).unwrap();
+    assert_eq!(scene.views[0].to_ron(), format!("camera: {view}"));
 }
 
 #[test]

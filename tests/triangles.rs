@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use proptest::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::num::NonZeroU32;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -11,7 +11,9 @@ use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Queue};
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::Resolution;
-use termtrace::hit::{Hit, Kernel, any_hit, any_hits, closest_hit, closest_hits};
+use termtrace::hit::{
+    Hit, Kernel, Test, Witness, any_hit, any_hit_watched, any_hits, closest_hit, closest_hit_watched, closest_hits,
+};
 use termtrace::lanes::Eight;
 use termtrace::lanes::{ALL, LANES, set_bits};
 use termtrace::light::{Falloff, PointLight};
@@ -307,8 +309,63 @@ fn brute_force(scene: &Scene, ray: &Ray, within: Interval) -> Option<Hit> {
         .min_by(|a, b| a.t.partial_cmp(&b.t).expect("no t is NaN"))
 }
 
+/// Keeps all that it is told.
+#[derive(Default)]
+struct Listener {
+    boxes: usize,
+    tests: Vec<Test>,
+}
+
+impl Witness for Listener {
+    fn boxes(&mut self) {
+        self.boxes += 1;
+    }
+
+    fn part(&mut self, test: Test) {
+        self.tests.push(test);
+    }
+}
+
+impl Listener {
+    /// What it was told is true: of no part twice, of each where it is crossed, and of what was met.
+    fn is_right(&self, scene: &Scene, ray: &Ray, min: f32, met: Option<Hit>) -> bool {
+        let from_min = Interval { min, max: f32::MAX };
+        let crossing = |test: &Test| {
+            let part = scene.objects()[test.object as usize].shape.part(test.part);
+            part.closest_crossing(&Probe::new(*ray), from_min)
+        };
+        let names: HashSet<_> = self.tests.iter().map(|test| (test.object, test.part)).collect();
+        let tells_of = |Hit { t, object, part }| self.tests.contains(&Test { object, part, t: Some(t) });
+        names.len() == self.tests.len()
+            && self.tests.iter().all(|test| test.t == crossing(test))
+            && met.is_none_or(tells_of)
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1_000))]
+
+    /// Who is watched meets the same, and the witness is told how that was found.
+    #[test]
+    fn a_witness_changes_nothing_and_knows_all(shapes in prop::collection::vec(shape(), 1..40), ray in ray()) {
+        let scene = scene(shapes);
+        let mut witness = Listener::default();
+        let hit = closest_hit_watched(&scene, &ray, &mut witness);
+        prop_assert_eq!(hit, closest_hit(&scene, &ray));
+        prop_assert!(witness.is_right(&scene, &ray, 0.0, hit), "{:?} {:?}", witness.tests, hit);
+        let closest = witness.tests.iter().filter_map(|test| test.t).fold(f32::INFINITY, f32::min);
+        prop_assert_eq!(hit.map_or(f32::INFINITY, |hit| hit.t), closest);
+        let parts: u32 = scene.objects().iter().map(|object| object.shape.part_count()).sum();
+        // More than a leaf of each kind: there is a tree, and its root is looked at.
+        prop_assert!(parts <= 16 || witness.boxes > 0 || witness.tests.len() == parts as usize);
+        for within in [TO_THE_LIGHT, Interval { min: 0.3, max: 0.7 }, Interval { min: -1.0, max: 0.5 }] {
+            let mut witness = Listener::default();
+            let met = any_hit_watched(&scene, &ray, within, &mut witness);
+            prop_assert_eq!(met.is_some(), any_hit(&scene, &ray, within));
+            prop_assert!(met.is_none_or(|hit| within.contains(hit.t)));
+            prop_assert!(witness.is_right(&scene, &ray, within.min, met), "{:?} {:?}", witness.tests, met);
+        }
+    }
 
     #[test]
     fn nothing_is_left_out(shapes in prop::collection::vec(shape(), 1..40), rays in prop::collection::vec(ray(), 1..20)) {

@@ -65,6 +65,11 @@ impl Effort {
         (self.forced.is_none() && shown != next).then_some(next)
     }
 
+    /// Whether the next steps of the last picture are expected to take no longer than that, all together.
+    pub(super) fn ends_within(&self, time: Duration) -> bool {
+        self.last.is_some_and(|last| self.expected(last, MOST) <= time.as_secs_f64())
+    }
+
     /// A picture of a new view took so long, of a frame's time.
     pub(super) fn took(&mut self, sampling: Sampling, time: Duration, frame: Duration) {
         let Some(level) = LEVELS.iter().position(|&level| level == sampling).filter(|&level| level <= MOST) else {

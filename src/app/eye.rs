@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::control::{self, Motion};
-use crossterm::event::KeyEvent;
+use crossterm::event::{KeyEvent, KeyEventKind};
 use std::time::Duration;
 
 /// The first frame after a key already shows so much movement.
@@ -16,6 +16,8 @@ pub(super) struct Eye {
     motion: Motion,
     /// Up to when the motion has been carried out; `None` at rest.
     moved_until: Option<Duration>,
+    /// Whether each press is one step at once, and nothing moves by itself.
+    steps: bool,
 }
 
 /// How the scene is looked at.
@@ -25,10 +27,23 @@ struct View {
     speed: f32,
 }
 
+/// A step is as far as a key moves that is held for so long: a tenth of the way to the target, or nine degrees.
+const STEP: Duration = Duration::from_millis(200);
+
 impl Eye {
+    /// Whether each press of a key is to be one step at once, and nothing glides: for those whom movement makes unwell.
+    pub(super) fn in_steps(steps: bool) -> Self {
+        Self { steps, ..Self::default() }
+    }
+
     /// There is something to see, and from there it is looked at first.
     pub(super) fn open(&mut self, camera: Camera) {
         self.view.get_or_insert(View { home: camera, camera, speed: control::speed(&camera) });
+    }
+
+    /// There is something else to see: from where it wants to be looked at, and from where it is.
+    pub(super) fn open_anew(&mut self, home: Camera, camera: Camera) {
+        self.view = Some(View { home, camera, speed: control::speed(&home) });
     }
 
     /// `None` as long as there is nothing to see.
@@ -65,11 +80,24 @@ impl Eye {
     /// What was going on is carried out before the key changes it.
     #[must_use]
     pub(super) fn take_key(&mut self, key: &KeyEvent, now: Duration) -> bool {
+        if self.steps {
+            return self.take_step(key);
+        }
         let moved = self.go_on(now);
         self.motion.key(key, now);
         // From rest, the first frame already shows a frame's worth of movement.
         self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
         moved
+    }
+
+    /// A press or a repeat is one step.
+    fn take_step(&mut self, key: &KeyEvent) -> bool {
+        let Some(view) = self.view.as_mut().filter(|_| key.kind != KeyEventKind::Release) else { return false };
+        let mut motion = Motion::default();
+        motion.key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, Duration::ZERO);
+        let before = view.camera;
+        view.camera = motion.step(&before, view.speed, Duration::ZERO, STEP);
+        view.camera != before
     }
 
     /// Nothing is held any more.

@@ -10,9 +10,11 @@
 use super::effort::Effort;
 use super::eye::{Eye, FRAME};
 use super::link::Link;
-use super::loading::{Loading, News};
 use super::renderer::{Frame, Job, Renderer};
+use super::scenes::Scenes;
 use super::screen::Screen;
+use super::shown::Shown;
+use super::source::Named;
 use super::{Ending, Error, Options};
 use crate::camera::Camera;
 use crate::capabilities::{Capabilities, Findings};
@@ -20,20 +22,35 @@ use crate::cell;
 use crate::framebuffer::Resolution;
 use crate::input::Parser;
 use crate::render::Sampling;
-use crate::scene::Scene;
 use crate::terminal::{self, Questions, Signals, Stopped, Terminal, Window};
-use std::io;
-use std::panic::resume_unwind;
 use std::time::{Duration, Instant};
+use std::{fmt, io};
 
 mod events;
+mod files;
+mod explaining;
+mod views;
+mod looked_at;
 
 use events::Next;
+use looked_at::LookedAt;
+
+/// The loop's time: a frame's worth at the start, so that whatever is pressed then may have begun a frame ago.
+struct Clock {
+    start: Instant,
+}
+
+impl Clock {
+    fn now(&self) -> Duration {
+        FRAME + self.start.elapsed()
+    }
+}
 
 /// The state of the live view.
 pub(super) struct Live {
     options: Options,
     eye: Eye,
+    shown: Shown,
     window: Window,
     capabilities: Capabilities,
     questions: Questions,
@@ -43,7 +60,13 @@ pub(super) struct Live {
     screen: Screen,
     link: Link,
     effort: Effort,
-    start: Instant,
+    clock: Clock,
+    /// What the picture is of.
+    looked_at: LookedAt,
+    /// What is to be given to the user's clipboard.
+    to_copy: Option<String>,
+    /// How many scenes further on the user wants to be.
+    scenes_on: isize,
     /// Whether the picture on the screen is of another camera or size than the wanted one.
     stale: bool,
     /// The last time a frame of a new view was begun,
@@ -54,12 +77,13 @@ pub(super) struct Live {
 
 impl Live {
     /// Shows nothing yet.
-    pub(super) fn new(options: Options, window: Window) -> Self {
+    pub(super) fn new(options: Options, window: Window, scenes: Vec<Named>) -> Self {
         let questions = Questions::needed(&options.hints);
         let link = Link::new(options.max_rate, options.max_frames, questions.is_open());
         let capabilities = Findings::new(&options.hints, window.cell, questions.answers()).capabilities();
         let mut live = Self {
-            eye: Eye::default(),
+            eye: Eye::in_steps(options.reduced_motion),
+            shown: Shown::one(options.view),
             window,
             capabilities,
             questions,
@@ -69,12 +93,18 @@ impl Live {
             link,
             effort: Effort::new(options.sampling),
             options,
-            start: Instant::now(),
+            clock: Clock { start: Instant::now() },
+            looked_at: LookedAt::new(scenes),
+            to_copy: None,
+            scenes_on: 0,
             stale: true,
             begun: None,
             begun_in_motion: false,
         };
         live.resize(window);
+        if let Some(welcome) = live.options.welcome.take() {
+            live.screen.say(welcome);
+        }
         live
     }
 
@@ -84,17 +114,17 @@ impl Live {
     }
 
     /// Asks the terminal what it is, and goes on until the user leaves.
-    pub(super) fn run<E: Send + 'static>(
+    pub(super) fn run<E: fmt::Display + Send + 'static>(
         &mut self,
         terminal: &mut Terminal,
         renderer: &mut Renderer,
-        loading: &mut Loading<E>,
+        scenes: &mut Scenes<E>,
         signals: &mut Signals,
     ) -> Result<Ending, Error<E>> {
         terminal.send(self.questions.bytes())?;
         loop {
-            while let Some(news) = loading.next() {
-                self.take_news(news, renderer).map_err(Error::Scene)?;
+            while let Some(heard) = scenes.next()? {
+                self.take_news(heard, renderer).map_err(Error::Scene)?;
             }
             self.stale |= self.eye.go_on(self.now());
             if self.stale {
@@ -122,6 +152,13 @@ impl Live {
             if next == Next::Leave {
                 return Ok(Ending::Left);
             }
+            if let Some(text) = self.to_copy.take() {
+                terminal.copy(&text)?;
+            }
+            match std::mem::take(&mut self.scenes_on) {
+                0 => {}
+                steps => scenes.go(steps)?,
+            }
             if signals.take_resized() {
                 terminal::reach("resize")?;
                 self.resize(terminal.window()?);
@@ -135,9 +172,8 @@ impl Live {
         }
     }
 
-    /// The time: a frame's worth at the start, so that whatever is pressed then may have begun a frame ago.
     fn now(&self) -> Duration {
-        FRAME + self.start.elapsed()
+        self.clock.now()
     }
 
     fn resolution(&self) -> Resolution {
@@ -165,30 +201,11 @@ impl Live {
         }
     }
 
-    /// What is there of the scene is shown; all of it from where its sketch was looked at.
-    fn take_news<E>(&mut self, news: News<E>, renderer: &mut Renderer) -> Result<(), E> {
-        match news {
-            News::Progress(progress) => self.screen.set_progress(progress),
-            News::Sketch(scene) => self.show(scene, renderer),
-            News::Scene(scene) => {
-                self.screen.end_progress();
-                self.show(scene, renderer);
-            }
-            News::Fault(fault) => return Err(fault),
-            News::Panic(panic) => resume_unwind(panic),
-        }
-        Ok(())
-    }
-
-    fn show(&mut self, scene: Scene, renderer: &mut Renderer) {
-        self.eye.open(scene.camera);
-        renderer.show(scene);
-        self.effort.forget_last();
-        self.stale = true;
-    }
-
     /// The earliest time for the next frame, and for the next look at what moves.
     fn next_frame(&self) -> Duration {
+        if self.perfects_first() {
+            return Duration::ZERO;
+        }
         let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.link.frame_time());
         let next = if self.stale { next(self.begun) } else { next(self.eye.moved_until()).max(next(self.begun)) };
         next.max(self.link.free_at(self.now()))
@@ -197,8 +214,17 @@ impl Live {
     /// The earliest time at which the screen has bytes to send, if nothing else happens. What would make a picture better
     /// waits while one of a newer view is on its way.
     fn next_bytes(&self, renderer: &Renderer) -> Option<Duration> {
+        if self.perfects_first() {
+            return None;
+        }
         let lasts = !self.stale && !renderer.is_busy_with_new_view();
         self.screen.due(self.window.size, lasts).map(|due| due.max(self.link.free_at(self.now())))
+    }
+
+    /// Whether the first picture is not shown yet because its end is near: to show it twice would take longer.
+    fn perfects_first(&self) -> bool {
+        let is_near = !self.screen.has_shown() && !self.stale && self.effort.ends_within(FRAME);
+        is_near && self.next_step().is_some()
     }
 
     /// Begins a frame of the new view if there is one, else the next step of the last one, if there is one.
@@ -232,14 +258,16 @@ impl Live {
     }
 
     fn job(&self, camera: Camera, sampling: Sampling) -> Job {
-        Job { camera, resolution: self.resolution(), sampling, refines: false, test_panic: false }
+        let (shown, sampling) = (self.shown, self.shown.sampling(sampling));
+        Job { camera, resolution: self.resolution(), sampling, shown, refines: false, test_panic: false }
     }
 
     /// The next step of the frame that is on the screen.
     fn next_step(&self) -> Option<Sampling> {
         // Refining a sketch would take the time that the scene needs.
         let frame = self.screen.frame().filter(|_| !self.screen.awaits_scene())?;
-        self.effort.of_next_step(frame.sampling)
+        let next = self.shown.sampling(self.effort.of_next_step(frame.sampling)?);
+        (next != frame.sampling).then_some(next)
     }
 
     /// How long there is nothing to do if nobody wakes us: for ever when nothing moves and the picture is done.
@@ -295,6 +323,8 @@ impl Live {
         if bytes.is_empty() {
             return Ok(());
         }
+        // Cells and bytes took their time: it is not the link's.
+        let now = self.clock.now();
         // Also at rest: a frame's own round trip is longer than the link's, which its rate is judged by.
         terminal.send(self.link.probe(now))?;
         self.link.send(bytes, now);

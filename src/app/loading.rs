@@ -1,5 +1,7 @@
 //! The scene on its way: read, sketched and built by a thread of its own, so that keys and signals are heard meanwhile.
 
+use super::source::Source;
+use super::watching::Needed;
 use crate::progress::{Progress, Watcher};
 use crate::scene::{Draft, Scene};
 use crate::terminal::{self, Waker};
@@ -9,6 +11,7 @@ use std::collections::VecDeque;
 use std::io;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
@@ -18,6 +21,8 @@ use std::time::{Duration, Instant};
 pub(super) enum News<E> {
     /// How far it is.
     Progress(Progress),
+    /// What it was read from, or should have been.
+    Needs(Vec<Needed>),
     /// Something to look at until it is there.
     Sketch(Scene),
     /// It is there.
@@ -28,6 +33,9 @@ pub(super) enum News<E> {
     Panic(Box<dyn Any + Send>),
 }
 
+/// What is there so soon is shown without a word about it.
+pub(super) const MOMENT: Duration = Duration::from_millis(100);
+
 /// Progress is told so often at most: a person sees it move.
 const STEP: Duration = Duration::from_millis(50);
 
@@ -36,30 +44,27 @@ pub(super) struct Loading<E> {
     news: Receiver<News<E>>,
     /// What was heard while we waited.
     heard: VecDeque<News<E>>,
+    begun: Instant,
 }
 
 impl<E: Send + 'static> Loading<E> {
     /// A scene that is there.
     pub(super) fn done(scene: Scene) -> Self {
         let (_, news) = channel();
-        Self { news, heard: VecDeque::from([News::Scene(scene)]) }
+        Self { news, heard: VecDeque::from([News::Scene(scene)]), begun: Instant::now() }
     }
 
     /// Starts the thread, which reads a draft, sketches and builds it.
-    pub(super) fn start(
-        read: impl FnOnce(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + 'static,
-        threads: Option<usize>,
-        waker: Waker,
-    ) -> io::Result<Self> {
+    pub(super) fn start(source: Source<E>, threads: Option<usize>, waker: Waker) -> io::Result<Self> {
         let (sender, news) = channel();
         let teller = Teller { news: sender, told: Mutex::new((waker, None)) };
         let work = move || {
-            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| load(read, threads, &teller))) {
+            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| load(&source, threads, &teller))) {
                 let _ = teller.tell(News::Panic(panic));
             }
         };
         thread::Builder::new().name("load".to_owned()).spawn(work)?;
-        Ok(Self { news, heard: VecDeque::new() })
+        Ok(Self { news, heard: VecDeque::new(), begun: Instant::now() })
     }
 
     /// Waits so long for the scene, or for what is wrong with it, which is then the error.
@@ -69,13 +74,19 @@ impl<E: Send + 'static> Loading<E> {
             match news {
                 News::Fault(fault) => return Err(fault),
                 News::Scene(_) => {
-                    self.heard = VecDeque::from([news]);
+                    self.heard.retain(|news| matches!(news, News::Needs(_)));
+                    self.heard.push_back(news);
                     return Ok(());
                 }
                 _ => self.heard.push_back(news),
             }
         }
         Ok(())
+    }
+
+    /// Whether it has taken longer than a moment: worth a word.
+    pub(super) fn is_slow(&self) -> bool {
+        self.begun.elapsed() >= MOMENT
     }
 
     /// What is new since the last call, one by one.
@@ -116,14 +127,19 @@ impl<E> Teller<E> {
     }
 }
 
-fn load<E: Send>(
-    read: impl FnOnce(&Watcher<'_>) -> Result<Option<Draft>, E> + Send,
-    threads: Option<usize>,
-    teller: &Teller<E>,
-) {
+fn load<E: Send>(source: &Source<E>, threads: Option<usize>, teller: &Teller<E>) {
     let hear = |progress| teller.tell_progress(progress);
-    let watcher = Watcher::new(&hear);
-    let draft = match read(&watcher) {
+    let needed = Mutex::new(Vec::new());
+    let hear_need = |file: &Path| {
+        if let Ok(mut needed) = needed.lock() {
+            needed.extend(Needed::now(file));
+        }
+    };
+    let watcher = Watcher::new(&hear).with_needs(&hear_need);
+    let read = source.read(&watcher);
+    let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
+    let _ = teller.tell(News::Needs(needed));
+    let draft = match read {
         Ok(Some(draft)) => draft,
         // Nobody listens any more.
         Ok(None) => return,

@@ -1,7 +1,7 @@
 //! What is written over the picture: the status line and the help.
 
 use crate::capabilities::{CellMode, Colors, Glyphs};
-use crate::control::BINDINGS;
+use crate::control::{BINDINGS, Binding};
 use crate::grid::Size;
 use crate::progress::{Progress, Work};
 use crate::render::Sampling;
@@ -39,6 +39,15 @@ impl Look {
             Glyphs::Shape | Glyphs::Ramp => (ASCII_BORDER, ['#', '.']),
         };
         Self { style, border, bar }
+    }
+
+    pub(super) fn border(self) -> border::Set<'static> {
+        self.border
+    }
+
+    /// How text is written.
+    pub(super) fn style(self) -> Style {
+        self.style
     }
 }
 
@@ -191,11 +200,22 @@ pub(super) fn draw_help(look: Look, area: Rect, buffer: &mut Buffer) {
     Paragraph::new(help_lines()).style(look.style).render(area.inner(Margin::new(2, 1)), buffer);
 }
 
-/// A line for each binding.
+/// All bindings, in two columns.
 fn help_lines() -> Vec<Line<'static>> {
-    let labels = BINDINGS.iter().map(|binding| binding.label.len()).max().unwrap_or(0);
-    let bindings = BINDINGS.iter().map(|b| format!("{:labels$}  {}", b.label, b.does));
+    let [left, right] = {
+        let (left, right) = BINDINGS.split_at(BINDINGS.len().div_ceil(2));
+        [left, right].map(help_column)
+    };
+    let width = left.iter().map(|line| line.width()).max().unwrap_or(0);
+    let right = right.iter().map(String::as_str).chain(std::iter::repeat(""));
+    let bindings = left.iter().zip(right).map(|(left, right)| format!("{left:width$}  {right}"));
     bindings.chain(HELP_NOTES.map(str::to_owned)).map(Line::from).collect()
+}
+
+/// A line for each binding.
+fn help_column(bindings: &[Binding]) -> Vec<String> {
+    let labels = bindings.iter().map(|binding| binding.label.len()).max().unwrap_or(0);
+    bindings.iter().map(|b| format!("{:labels$}  {}", b.label, b.does)).collect()
 }
 
 #[cfg(test)]

@@ -1,12 +1,14 @@
 //! The thread that traces, so that the loop never waits for a frame. One that takes less time than to wake the thread
 //! and to be woken by it is no wait: the loop traces it by itself.
 
+use super::shown::Shown;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::render::{Cost, Refining, Rendered, Sampling, render_alone, render_unless};
+use crate::render::{Cost, Crew, Refining, Sampling};
 use crate::scene::Scene;
 use crate::terminal::Waker;
 use crate::tone::{Picture, tone};
+use crate::view::{self, Seen, View};
 use rayon::ThreadPoolBuilder;
 use std::any::Any;
 use std::collections::VecDeque;
@@ -24,6 +26,7 @@ pub(super) struct Job {
     pub(super) camera: Camera,
     pub(super) resolution: Resolution,
     pub(super) sampling: Sampling,
+    pub(super) shown: Shown,
     /// The view is that of the last frame, which is gone on with if it can be. It may be given up.
     pub(super) refines: bool,
     /// Panic instead of tracing, because a test asks for it.
@@ -32,10 +35,18 @@ pub(super) struct Job {
 
 /// A frame that is done.
 pub(super) struct Frame {
-    /// From where it is seen.
+    /// What is seen,
+    pub(super) scene: Arc<Scene>,
+    /// and from where.
     pub(super) camera: Camera,
+    pub(super) resolution: Resolution,
     pub(super) picture: Picture,
+    /// The pictures that it is made of, as far as they can be put together in another way.
+    pub(super) parts: Vec<Picture>,
     pub(super) sampling: Sampling,
+    pub(super) shown: Shown,
+    /// What the colours mean, from left to right; nothing where they are light.
+    pub(super) legends: Vec<String>,
     /// Whether it shows the same as the one before, only better.
     pub(super) refines: bool,
     /// What it took, beside the frame that it refines.
@@ -45,12 +56,48 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    fn new(scene: &Scene, job: &Job, rendered: &Rendered, trace: Duration) -> Self {
-        let picture = tone(&rendered.framebuffer, scene);
-        let &Job { camera, sampling, refines, .. } = job;
-        Self { camera, picture, sampling, refines, cost: rendered.cost, trace }
+    /// What `see` sees of each part. `None`: it was given up.
+    fn of(scene: &Arc<Scene>, job: &Job, mut see: impl FnMut(View, Resolution) -> Option<Seen>) -> Option<Self> {
+        let start = Instant::now();
+        let &Job { camera, resolution, sampling, shown, refines, .. } = job;
+        let mut cost = Cost::default();
+        let mut parts = Vec::new();
+        for (view, resolution) in shown.parts(resolution) {
+            let seen = see(view, resolution)?;
+            cost += seen.cost;
+            parts.push(seen.picture);
+        }
+        let picture = shown.joined(&parts, MIDDLE);
+        if !shown.is_wipe() {
+            parts.clear();
+        }
+        let legends = shown.legends(scene, &camera);
+        let (scene, trace) = (Arc::clone(scene), start.elapsed());
+        Some(Self { scene, camera, resolution, picture, parts, sampling, shown, legends, refines, cost, trace })
+    }
+
+    /// Of two views side by side, each is a picture of its own: how large the one is that has this pixel, and which of its
+    /// pixels it is. (That of the line between them is the last of the left one.)
+    pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
+        match *self.shown.parts(self.resolution) {
+            [(_, left), (_, right)] if left.width < self.resolution.width => match x.checked_sub(left.width + 1) {
+                Some(x) if x < right.width => (right, [x, y]),
+                _ => (left, [x.min(left.width - 1), y]),
+            },
+            _ => (self.resolution, [x, y]),
+        }
+    }
+
+    /// Moves the line between two views, if there is one, to that share of the width.
+    pub(super) fn wipe(&mut self, share: f32) {
+        if !self.parts.is_empty() {
+            self.picture = self.shown.joined(&self.parts, share);
+        }
     }
 }
+
+/// Where the line between two views is at first.
+pub(super) const MIDDLE: f32 = 0.5;
 
 /// The thread's result: a frame, none if it was cancelled, or what it panicked with.
 type Traced = Result<Option<Frame>, Box<dyn Any + Send>>;
@@ -67,8 +114,8 @@ pub(super) struct Renderer {
     thread: Option<JoinHandle<()>>,
     /// In the order in which they will be done.
     in_work: VecDeque<InWork>,
-    /// How many seconds a pixel of the last frame of one sample took, all threads together.
-    seconds_per_pixel: Option<f64>,
+    /// How many seconds a pixel of the last frame of one sample took, all threads together, and what it showed.
+    seconds_per_pixel: Option<(Shown, f64)>,
 }
 
 /// What is known here of a job.
@@ -137,10 +184,10 @@ impl Renderer {
     pub(super) fn begin(&mut self, job: Job) -> Option<Frame> {
         let scene = Arc::clone(self.scene.as_ref()?);
         if self.is_small(&job) {
-            let start = Instant::now();
             // The same light as of one sample at most, without what is kept to go on: that is little to trace again.
-            let rendered = render_alone(&scene, &job.camera, job.resolution, NonZeroU32::MIN);
-            return Some(self.noted(Frame::new(&scene, &job, &rendered, start.elapsed())));
+            let one = Sampling::Each(NonZeroU32::MIN);
+            let see = |view, part| view::seen(view, Crew::Alone, &scene, &job.camera, part, one);
+            return Frame::of(&scene, &job, see).map(|frame| self.noted(frame));
         }
         let work = InWork { refines: job.refines, cancelled: Arc::default() };
         if let Some(jobs) = &self.jobs
@@ -180,12 +227,14 @@ impl Renderer {
         let Resolution { width, height, .. } = job.resolution;
         let pixels = f64::from(width) * f64::from(height);
         let is_known = has_one_sample(job.sampling) && !job.refines && !job.test_panic;
-        is_known && self.seconds_per_pixel.is_some_and(|seconds| seconds * pixels < SMALL.as_secs_f64())
+        let is_short = |(shown, seconds)| shown == job.shown && seconds * pixels < SMALL.as_secs_f64();
+        is_known && self.seconds_per_pixel.is_some_and(is_short)
     }
 
     fn noted(&mut self, frame: Frame) -> Frame {
         if has_one_sample(frame.sampling) && !frame.refines {
-            self.seconds_per_pixel = Some(frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64);
+            let seconds = frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64;
+            self.seconds_per_pixel = Some((frame.shown, seconds));
         }
         frame
     }
@@ -226,13 +275,13 @@ struct Kept {
 }
 
 impl Kept {
-    fn new(Order { scene, job, .. }: &Order) -> Self {
-        let picture = Refining::new(&job.camera, job.resolution);
-        Self { scene: Arc::clone(scene), view: (job.camera, job.resolution), picture }
+    fn new(Order { scene, job, .. }: &Order, resolution: Resolution) -> Self {
+        let picture = Refining::new(&job.camera, resolution);
+        Self { scene: Arc::clone(scene), view: (job.camera, resolution), picture }
     }
 
-    fn is_of(&self, Order { scene, job, .. }: &Order) -> bool {
-        Arc::ptr_eq(&self.scene, scene) && self.view == (job.camera, job.resolution)
+    fn is_of(&self, Order { scene, job, .. }: &Order, resolution: Resolution) -> bool {
+        Arc::ptr_eq(&self.scene, scene) && self.view == (job.camera, resolution)
     }
 }
 
@@ -242,21 +291,26 @@ impl Tracer {
         if cfg!(feature = "test-hooks") && order.job.test_panic {
             panic_in_a_worker();
         }
-        let start = Instant::now();
-        let rendered = self.rendered(order)?;
-        Some(Frame::new(&order.scene, &order.job, &rendered, start.elapsed()))
+        // The last frame may have been traced by the loop, or be of other pictures.
+        let mut kept = self.kept.take();
+        Frame::of(&order.scene, &order.job, |view, resolution| {
+            let last = if view.refines() { kept.take() } else { None };
+            let last = last.filter(|kept| order.job.refines && kept.is_of(order, resolution));
+            self.seen(order, view, resolution, last)
+        })
     }
 
-    fn rendered(&mut self, order: &Order) -> Option<Rendered> {
+    /// One of a frame's pictures; the light of the scene is gone on with where that can be.
+    fn seen(&mut self, order: &Order, view: View, resolution: Resolution, kept: Option<Kept>) -> Option<Seen> {
         let Order { scene, job, cancelled } = order;
-        // The last frame may have been traced by the loop.
-        let kept = self.kept.take().filter(|kept| job.refines && kept.is_of(order));
-        let Sampling::UpTo(samples) = job.sampling else {
-            return render_unless(cancelled, scene, &job.camera, job.resolution, job.sampling);
+        let samples = match job.sampling {
+            Sampling::UpTo(samples) if view.refines() => samples,
+            sampling => return view::seen(view, Crew::Pool(cancelled), scene, &job.camera, resolution, sampling),
         };
-        let mut kept = kept.unwrap_or_else(|| Kept::new(order));
+        let mut kept = kept.unwrap_or_else(|| Kept::new(order, resolution));
         let cost = kept.picture.refine_unless(cancelled, scene, samples)?;
-        Some(Rendered { framebuffer: self.kept.insert(kept).picture.framebuffer(), cost })
+        let light = self.kept.insert(kept).picture.framebuffer();
+        Some(Seen { picture: tone(&light, scene), cost })
     }
 }
 
@@ -273,6 +327,7 @@ fn panic_in_a_worker() {
 mod tests {
     use super::*;
     use crate::camera::{Pose, ViewRectangle};
+    use crate::render::render_unless;
     use crate::terminal::Signals;
     use glam::Vec3;
 
@@ -285,9 +340,14 @@ mod tests {
         let pose = Pose { eye: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y };
         let rectangle = ViewRectangle::from_vertical_fov(1.0).expect("an angle");
         Frame {
+            scene: Arc::new(three_spheres()),
             camera: Camera::new(pose, rectangle).expect("a pose"),
+            resolution: Resolution::square(0, 0),
             picture: Picture { width: 0, height: 0, pixels: Vec::new() },
+            parts: Vec::new(),
             sampling: Sampling::BEST,
+            shown: Shown::default(),
+            legends: Vec::new(),
             refines,
             cost: Cost::default(),
             trace: Duration::ZERO,
@@ -329,6 +389,7 @@ mod tests {
             camera,
             resolution: Resolution::square(side, side),
             sampling: Sampling::UpTo(NonZeroU32::MIN),
+            shown: Shown::default(),
             refines: false,
             test_panic: false,
         };
@@ -350,7 +411,7 @@ mod tests {
         let shown = tone(&best.framebuffer, &scene);
         let mut tracer = Tracer::default();
         let mut trace_of = |scene: &Arc<Scene>, camera, sampling, refines| {
-            let job = Job { camera, resolution, sampling, refines, test_panic: false };
+            let job = Job { camera, resolution, sampling, shown: Shown::default(), refines, test_panic: false };
             tracer.trace(&Order { scene: Arc::clone(scene), job, cancelled: Arc::default() }).expect("a frame")
         };
         let mut trace = |camera, sampling, refines| trace_of(&scene, camera, sampling, refines);

@@ -1,8 +1,12 @@
 //! The last frame with what lies over it, and the bytes that bring the terminal there.
 
+use super::dialog::Dialog;
+use super::explain::{self, Explaining};
+use super::legend;
 use super::link::Slow;
 use super::panels;
-use super::renderer::Frame;
+use super::renderer::{Frame, MIDDLE};
+use super::strip::Fault;
 use crate::capabilities::{Capabilities, Colors};
 use crate::cell::{self, Painter};
 use crate::encode::{Allowance, Encoder, Order, Quality};
@@ -27,10 +31,20 @@ pub(super) struct Screen {
     order: Option<Order>,
     quality: Option<Quality>,
     frame: Option<Frame>,
+    /// Where the line between two views is, as a share of the width.
+    wipe: f32,
     /// How far the scene is, until it is there.
     progress: Option<Progress>,
+    /// What is wrong with the scene that was to be shown.
+    fault: Option<Fault>,
+    /// What the user is asked.
+    question: Option<Dialog>,
+    /// What there is to say until the next key.
+    note: Option<String>,
     status: bool,
     help: bool,
+    /// The pixel that is explained, if one is.
+    explaining: Option<Explaining>,
     /// Whether anything has changed since the last bytes.
     changed: bool,
     /// When the last bytes were written.
@@ -49,9 +63,14 @@ impl Screen {
             order,
             quality,
             frame: None,
+            wipe: MIDDLE,
             progress: None,
+            fault: None,
+            question: None,
+            note: None,
             status: false,
             help: false,
+            explaining: None,
             changed: false,
             written: Duration::ZERO,
             pace: Pace::default(),
@@ -78,10 +97,28 @@ impl Screen {
     }
 
     /// A frame, and the time while something moves.
-    pub(super) fn take_frame(&mut self, frame: Frame, moving: Option<Duration>) {
+    pub(super) fn take_frame(&mut self, mut frame: Frame, moving: Option<Duration>) {
+        frame.wipe(self.wipe);
+        if let Some(explaining) = &mut self.explaining {
+            explaining.take_frame(&frame);
+        }
         self.frame = Some(frame);
         self.pace.count(moving);
         self.changed = true;
+    }
+
+    /// Moves the line between two views to that share of the width.
+    pub(super) fn wipe_to(&mut self, share: f32) {
+        self.wipe = share.clamp(0.0, 1.0);
+        if let Some(frame) = self.frame.as_mut() {
+            frame.wipe(self.wipe);
+        }
+        self.changed = true;
+    }
+
+    /// Where that line is.
+    pub(super) fn wipe(&self) -> f32 {
+        self.wipe
     }
 
     /// The scene is on its way.
@@ -100,9 +137,48 @@ impl Screen {
         self.progress = None;
     }
 
+    /// Something is wrong with the scene that was to be shown.
+    pub(super) fn set_fault(&mut self, fault: Fault) {
+        self.fault = Some(fault);
+        self.changed = true;
+    }
+
+    /// Nothing is wrong any more.
+    pub(super) fn end_fault(&mut self) {
+        self.changed |= self.fault.take().is_some();
+    }
+
+    /// Asks the user something.
+    pub(super) fn ask(&mut self, question: Dialog) {
+        self.question = Some(question);
+        self.changed = true;
+    }
+
+    /// What he was asked, no more to be seen.
+    pub(super) fn end_question(&mut self) -> Option<Dialog> {
+        self.changed |= self.question.is_some();
+        self.question.take()
+    }
+
+    /// Says something in the lowest row, until it is unsaid.
+    pub(super) fn say(&mut self, note: impl Into<String>) {
+        self.note = Some(note.into());
+        self.changed = true;
+    }
+
+    /// Nothing more is said in the lowest row.
+    pub(super) fn unsay(&mut self) {
+        self.changed |= self.note.take().is_some();
+    }
+
     /// The last frame.
     pub(super) fn frame(&self) -> Option<&Frame> {
         self.frame.as_ref()
+    }
+
+    /// Whether anything was shown yet.
+    pub(super) fn has_shown(&self) -> bool {
+        self.written > Duration::ZERO
     }
 
     pub(super) fn toggle_status(&mut self) {
@@ -118,6 +194,27 @@ impl Screen {
     pub(super) fn close_help(&mut self) {
         self.changed |= self.help;
         self.help = false;
+    }
+
+    /// A pixel is explained, or none any more.
+    pub(super) fn toggle_explaining(&mut self) {
+        self.explaining = match self.explaining.take() {
+            Some(_) => None,
+            None => self.frame.as_ref().and_then(Explaining::new),
+        };
+        self.changed = true;
+    }
+
+    pub(super) fn is_explaining(&self) -> bool {
+        self.explaining.is_some()
+    }
+
+    /// Another pixel is explained, or more is said of it.
+    pub(super) fn explain(&mut self, change: impl FnOnce(&mut Explaining, &Frame)) {
+        if let (Some(explaining), Some(frame)) = (&mut self.explaining, &self.frame) {
+            change(explaining, frame);
+            self.changed = true;
+        }
     }
 
     /// The terminal may show anything: the next bytes draw everything, with either half block if both meet in one line.
@@ -173,10 +270,20 @@ impl Screen {
         &mut self.bytes
     }
 
-    fn lay_panels_over(&self, grid: &mut Grid, slow: Option<Slow>) {
+    fn lay_panels_over(&mut self, grid: &mut Grid, slow: Option<Slow>) {
         let Size { columns, rows } = grid.size();
         let area = Rect::new(0, 0, columns, rows);
-        let look = panels::Look::of(self.painter.mode());
+        let mode = self.painter.mode();
+        let look = panels::Look::of(mode);
+        if let Some(explaining) = self.explaining.as_mut().filter(|_| explain::has_room(area)) {
+            let panel = explain::panel_area(area, explaining.cell(mode));
+            let mut buffer = Buffer::empty(panel);
+            explaining.draw(look, mode, panel, &mut buffer);
+            overlay::lay_over(grid, &buffer);
+            for mark in explain::marks(explaining, look, mode, area) {
+                overlay::lay_over(grid, &mark);
+            }
+        }
         let mut lay = |area: Rect, draw: &dyn Fn(Rect, &mut Buffer)| {
             let mut buffer = Buffer::empty(area);
             draw(area, &mut buffer);
@@ -186,6 +293,14 @@ impl Screen {
             lay(panels::progress_area(area), &|area, buffer| {
                 panels::draw_progress(progress, look, area, buffer);
             });
+        }
+        if let Some(frame) = &self.frame
+            && legend::has_room(area)
+        {
+            let line = legend::area(area, self.status);
+            for (text, area) in legend::shared(&frame.legends, line) {
+                lay(area, &|area, buffer| legend::draw(text, look, area, buffer));
+            }
         }
         if self.status
             && let Some(frame) = &self.frame
@@ -203,6 +318,21 @@ impl Screen {
             lay(panels::status_area(area), &|area, buffer| {
                 status.draw(look, area, buffer);
             });
+        }
+        if let Some(fault) = &self.fault
+            && legend::has_room(area)
+        {
+            let has_legend = self.frame.as_ref().is_some_and(|frame| !frame.legends.is_empty());
+            let area = fault.area(area, u16::from(self.status) + u16::from(has_legend));
+            lay(area, &|area, buffer| fault.draw(look, area, buffer));
+        }
+        if let Some(note) = &self.note
+            && legend::has_room(area)
+        {
+            lay(panels::status_area(area), &|area, buffer| legend::draw(note, look, area, buffer));
+        }
+        if let Some(question) = &self.question {
+            lay(question.area(area), &|area, buffer| question.draw(look, area, buffer));
         }
         if self.help {
             lay(panels::help_area(area), &|area, buffer| {
@@ -249,6 +379,7 @@ const PAUSE: Duration = Duration::from_millis(500);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::shown::Shown;
     use crate::capabilities::CellMode;
     use crate::export;
     use crate::render::{Cost, Sampling};
@@ -272,8 +403,13 @@ mod tests {
         let resolution = cell::resolution(capabilities.cell_mode, size, 2.0);
         let light = crate::render::render(&scene, &scene.camera, resolution, NonZeroU32::MIN);
         let frame = || Frame {
+            scene: scene.clone().into(),
             camera: scene.camera,
+            resolution,
             picture: tone(&light, &scene),
+            parts: Vec::new(),
+            shown: Shown::default(),
+            legends: Vec::new(),
             cost: Cost::default(),
             sampling: Sampling::Each(NonZeroU32::MIN),
             refines: false,

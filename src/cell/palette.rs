@@ -5,6 +5,7 @@
 //! pixel gets is decided by the blue noise at its place: a picture that stands still stays as it is.
 
 use super::blue_noise::threshold;
+use crate::capabilities::xterm_color;
 use crate::color::{LinearRgb, Srgb8, linear_from_srgb};
 
 /// Colours with a number, and what has been mixed from them so far.
@@ -121,16 +122,11 @@ struct Cube {
 
 impl Cube {
     fn new() -> Self {
-        const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
-        let greys: [u8; 24] = std::array::from_fn(|grey| 8 + 10 * grey as u8);
-        let linear = |code: u8| LinearRgb::from_srgb8(Srgb8::new(code, code, code)).r;
-        let bands = || LEVELS.into_iter();
-        let cube = bands().flat_map(|r| bands().flat_map(move |g| bands().map(move |b| Srgb8::new(r, g, b))));
-        let colors = cube.chain(greys.map(|grey| Srgb8::new(grey, grey, grey)));
+        let light = |index: usize| LinearRgb::from_srgb8(xterm_color(index as u8));
         Self {
-            levels: LEVELS.map(linear),
-            greys: greys.map(linear),
-            colors: (16..=255).zip(colors).map(|(index, color)| Candidate::new(index, color)).collect(),
+            levels: std::array::from_fn(|level| light(16 + level).b),
+            greys: std::array::from_fn(|grey| light(232 + grey).r),
+            colors: (16..=255).map(|index| Candidate::new(index, xterm_color(index))).collect(),
         }
     }
 

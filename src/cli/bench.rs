@@ -3,7 +3,7 @@
 mod generated;
 
 use super::picture::{fits, parse_size};
-use super::{Done, Failure, SceneArgs, on_threads, usage, visible, write_stdout};
+use super::{Done, Failure, Origin, on_threads, usage, visible, write_stdout};
 use clap::{Args, ValueEnum};
 use generated::Generated;
 use std::fmt::Write;
@@ -83,7 +83,7 @@ impl BenchArgs {
     /// The scene, and its name.
     fn scene(&self) -> Result<(String, Scene), Failure> {
         let (name, mut scene) = if let Some(path) = &self.scene {
-            (visible(&path.display().to_string()), SceneArgs::of(path).load()?)
+            (visible(&path.display().to_string()), Origin::of(path)?.load()?)
         } else {
             let generated = self.generated.unwrap_or(Generated::Three);
             (format!("{generated:?}").to_lowercase(), generated.scene().map_err(usage)?)

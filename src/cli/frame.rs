@@ -4,6 +4,7 @@ mod golden;
 
 use super::cells::{self, CellArgs};
 use super::picture::PictureArgs;
+use super::view::{self, ViewArgs};
 use super::{Done, Failure, SceneArgs, reason, write_stdout};
 use clap::{Args, ValueEnum};
 use std::fs;
@@ -12,12 +13,10 @@ use std::path::{Path, PathBuf};
 use termtrace::capabilities::{CellMode, Colors};
 use termtrace::cell;
 use termtrace::export;
-use termtrace::render::render;
-use termtrace::tone::tone;
 
 const FILES: &str = "\
 A frame does not depend on the terminal or the environment: auto is the ramp without colour for text, and half blocks in
-truecolor for ANSI.";
+truecolor for ANSI, SVG and HTML.";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -25,16 +24,19 @@ Examples:
   termtrace frame my.ron --format ansi --size 120x40          truecolor half blocks
   termtrace frame my.ron --glyphs shape                       text whose characters follow the shapes
   termtrace frame my.ron -o my.png --pixels 800x600 --samples 16
+  termtrace frame my.ron -o my.svg --size 120x40              a drawing for a web page; .html is a page
   termtrace frame my.ron --check my.txt --bless               write the golden frame
   termtrace frame my.ron --check my.txt                       compare with it";
 
 #[derive(Args)]
-#[command(after_help = format!("{}\n{FILES}\n\n{EXAMPLES}", cells::EXPLAINED))]
+#[command(after_help = format!("{}\n{}\n{FILES}\n\n{EXAMPLES}", cells::EXPLAINED, view::EXPLAINED))]
 pub(super) struct FrameArgs {
     #[command(flatten)]
     scene: SceneArgs,
     #[command(flatten)]
     picture: PictureArgs,
+    #[command(flatten)]
+    view: ViewArgs,
     #[command(flatten)]
     cells: CellArgs,
     /// What to write [default: as the file name's ending says, or text]
@@ -58,6 +60,10 @@ enum Format {
     Text,
     /// Cells in colour
     Ansi,
+    /// Cells as a drawing, one rectangle per half cell
+    Svg,
+    /// Cells as a web page
+    Html,
     /// A picture file, one pixel per half cell
     Png,
 }
@@ -81,7 +87,7 @@ impl FrameArgs {
     fn cell_mode(&self, format: Format) -> CellMode {
         match format {
             Format::Text => self.cells.in_file(Colors::None),
-            Format::Ansi => self.cells.in_file(Colors::Truecolor),
+            Format::Ansi | Format::Svg | Format::Html => self.cells.in_file(Colors::Truecolor),
             Format::Png => CellMode::HALF_BLOCK,
         }
     }
@@ -89,15 +95,15 @@ impl FrameArgs {
     /// Turns away what the format makes no use of.
     fn check_flags(&self, format: Format) -> Done {
         let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
+        self.view.check_samples(self.picture.samples())?;
         match format {
-            Format::Text | Format::Ansi if self.picture.has_scale() => {
-                wrong("--scale is for PNG; text and ANSI frames take their size from --size")
-            }
-            Format::Text if self.cells.wants_color() => wrong("text has no colours; say --format ansi"),
             Format::Png if self.cells.is_given() => wrong("--color and --glyphs are for cells; a PNG has pixels"),
             Format::Png if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
                 wrong("a PNG would garble the terminal; name a file with -o, or pipe it")
             }
+            Format::Png => Ok(()),
+            _ if self.picture.has_scale() => wrong("--scale is for PNG; frames of cells take their size from --size"),
+            Format::Text if self.cells.wants_color() => wrong("text has no colours; say --format ansi"),
             _ => Ok(()),
         }
     }
@@ -109,12 +115,20 @@ impl FrameArgs {
         let resolution = self.picture.resolution(mode)?;
         self.picture.fits_scaled(resolution)?;
         let samples = self.picture.samples();
-        let picture = self.scene.on_threads(|| tone(&render(&scene, &scene.camera, resolution, samples), &scene))?;
+        let view = self.view.view();
+        let picture =
+            self.scene.on_threads(|| termtrace::view::picture(view, &scene, &scene.camera, resolution, samples))?;
+        if format == Format::Png {
+            let png = export::png(&picture, resolution.pixel_aspect, self.picture.scale());
+            return png.map_err(|error| Failure::runtime("PNG", error));
+        }
+        let grid = cell::grid_from_picture(mode, &picture);
+        let cell_aspect = self.picture.cell_aspect();
         Ok(match format {
-            Format::Ansi if mode.colors != Colors::None => export::ansi(&cell::grid_from_picture(mode, &picture)),
-            Format::Text | Format::Ansi => export::text(&cell::grid_from_picture(mode, &picture)).into_bytes(),
-            Format::Png => export::png(&picture, resolution.pixel_aspect, self.picture.scale())
-                .map_err(|error| Failure::runtime("PNG", error))?,
+            Format::Ansi if mode.colors != Colors::None => export::ansi(&grid),
+            Format::Svg => export::svg(&grid, cell_aspect).into_bytes(),
+            Format::Html => export::html(&grid, cell_aspect).into_bytes(),
+            _ => export::text(&grid).into_bytes(),
         })
     }
 }
@@ -143,9 +157,11 @@ fn format_by_ending(path: &Path) -> Result<Format, Failure> {
     match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("txt" | "text") => Ok(Format::Text),
         Some("ans" | "ansi") => Ok(Format::Ansi),
+        Some("svg") => Ok(Format::Svg),
+        Some("html" | "htm") => Ok(Format::Html),
         Some("png") => Ok(Format::Png),
         _ => Err(Failure::Usage(format!(
-            "{}: the name does not end in .txt, .ansi or .png; say --format text, ansi or png",
+            "{}: the name does not end in .txt, .ansi, .svg, .html or .png; say --format text, ansi, svg, html or png",
             path.display()
         ))),
     }

@@ -1,32 +1,38 @@
 //! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
 
 use super::cells::CellArgs;
+use super::completions::{command_near, no_command};
 use super::encoding::EncodingArgs;
 use super::picture::{parse_cell_aspect, parse_samples};
-use super::{Done, Failure, SceneArgs, complain_of_panic, reason, write_stdout};
-use clap::Args;
+use super::view::ViewArgs;
+use super::{Cli, Done, Failure, LookArgs, Origin, complain_of_panic, on_threads, reason, usage, write_stdout};
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory};
 use std::io::{self, IsTerminal};
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use termtrace::app::{self, Ending, Options, Outcome};
+use std::path::{Path, PathBuf};
+use termtrace::app::{self, Ending, Options, Outcome, Source};
 use termtrace::capabilities::{Colors, USUAL_CELL_ASPECT};
 use termtrace::cell;
 use termtrace::export;
 use termtrace::grid::Size;
-use termtrace::render::{Sampling, render};
+use termtrace::render::Sampling;
 use termtrace::terminal::{Signals, die_of};
-use termtrace::tone::tone;
+use termtrace::view;
 
-/// The names of the commands, for who misspells one.
-const COMMANDS: [&str; 4] = ["frame", "record", "check", "doctor"];
+/// For who has not named a scene.
+const WELCOME: &str = "a built-in scene; termtrace FILE opens yours; ? shows the keys, q leaves";
 
 #[derive(Args)]
 pub(super) struct LiveArgs {
+    /// The scene files; - reads a scene from standard input [default: a scene that is built in]
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
     #[command(flatten)]
-    scene: SceneArgs,
-    /// What is too much, kept to say so
-    #[arg(hide = true)]
-    more: Vec<String>,
+    look: LookArgs,
+    #[command(flatten)]
+    view: ViewArgs,
     #[command(flatten)]
     cells: CellArgs,
     /// A cell's height over its width [default: as the terminal says, or 2]
@@ -41,6 +47,9 @@ pub(super) struct LiveArgs {
     /// The most frames per second [default: 60]
     #[arg(long, value_name = "N", value_parser = parse_fps)]
     fps: Option<f32>,
+    /// Each press of a key moves one step at once; nothing glides or moves by itself
+    #[arg(long)]
+    reduced_motion: bool,
     /// Do not print the camera on leaving
     #[arg(long)]
     quiet: bool,
@@ -54,7 +63,11 @@ impl LiveArgs {
         options.max_rate = self.encoding.max_rate();
         options.max_frames = self.fps;
         options.sampling = self.samples;
-        options.threads = self.scene.threads.map(usize::from);
+        options.reduced_motion = self.reduced_motion;
+        options.view = self.view.view();
+        options.exports = Some(PathBuf::from("."));
+        options.welcome = self.scenes.is_empty().then(|| WELCOME.to_owned());
+        options.threads = self.look.threads.map(usize::from);
         options
     }
 }
@@ -66,29 +79,44 @@ fn parse_fps(text: &str) -> Result<f32, String> {
 }
 
 pub(super) fn run(args: &LiveArgs) -> Done {
-    if !args.more.is_empty() {
-        return Err(too_much(&args.scene.path().display().to_string(), &args.more));
+    // The name of a command that was misspelt looks like a scene's.
+    if let Some(first) = args.scenes.first().and_then(|first| first.to_str())
+        && !Path::new(first).exists()
+        && command_near(first).is_some()
+    {
+        return Err(no_command(first));
     }
+    args.samples.map_or(Ok(()), |samples| args.view.check_samples(samples))?;
     if io::stdout().is_terminal() { look(args) } else { print(args) }
-}
-
-/// More than a scene: its name was likely meant for a command.
-fn too_much(first: &str, more: &[String]) -> Failure {
-    let close = COMMANDS.into_iter().find(|command| strsim::damerau_levenshtein(first, command) <= 2);
-    Failure::Usage(match close {
-        Some(command) => format!("there is no command \"{first}\"; did you mean \"{command}\"?"),
-        None => format!("one scene at a time: what is \"{}\" after \"{first}\"?", more.join(" ")),
-    })
 }
 
 /// One frame, as `termtrace frame` prints it.
 fn print(args: &LiveArgs) -> Done {
-    let scene = args.scene.load()?;
+    let origin = match &args.scenes[..] {
+        [] => {
+            let missing = "without a terminal to show the built-in scene on, name a scene: termtrace <SCENE>";
+            let _ = Cli::command().error(ErrorKind::MissingRequiredArgument, missing).print();
+            return Err(Failure::Said(2));
+        }
+        [scene] => Origin::of(scene)?,
+        [first, more @ ..] => {
+            let more: Vec<_> = more.iter().map(|path| path.to_string_lossy()).collect();
+            let message = format!(
+                "without a terminal one scene at a time: what is \"{}\" after \"{}\"?",
+                more.join(" "),
+                first.display()
+            );
+            return Err(Failure::Usage(message));
+        }
+    };
+    let mut scene = origin.load()?;
+    scene.camera = args.look.camera(&scene.camera).map_err(usage)?;
     let cell_aspect = args.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = args.cells.in_file(Colors::None);
     let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect);
     let sampling = args.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
-    let picture = args.scene.on_threads(|| tone(&render(&scene, &scene.camera, resolution, sampling), &scene))?;
+    let view = args.view.view();
+    let picture = on_threads(args.look.threads, || view::picture(view, &scene, &scene.camera, resolution, sampling))?;
     let grid = cell::grid_from_picture(cell_mode, &picture);
     write_stdout(&match cell_mode.colors {
         Colors::None => export::text(&grid).into_bytes(),
@@ -100,11 +128,9 @@ fn print(args: &LiveArgs) -> Done {
 fn look(args: &LiveArgs) -> Done {
     #[cfg(feature = "test-hooks")]
     rehearse();
-    let (scene, stdin, options) = (args.scene.clone(), args.scene.stdin()?, args.options());
+    let (sources, options) = (sources(args)?, args.options());
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
-    let ended = catch_unwind(AssertUnwindSafe(|| {
-        app::open(move |watcher| scene.draft(stdin.as_deref(), watcher), options, &mut signals)
-    }));
+    let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard } = match ended {
         Ok(outcome) => outcome.map_err(|error| match error {
             app::Error::Terminal(error) => Failure::runtime("terminal", reason(&error)),
@@ -120,6 +146,21 @@ fn look(args: &LiveArgs) -> Done {
         Some(camera) if heard && !args.quiet => write_stdout(format!("{},\n", camera.to_ron()).as_bytes()),
         _ => Ok(()),
     }
+}
+
+/// What there is to look at; standard input is read here, before the terminal is taken.
+fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
+    if args.scenes.is_empty() {
+        return Ok(vec![source(Origin::BuiltIn, &args.look)]);
+    }
+    args.scenes.iter().map(|path| Origin::of(path).map(|origin| source(origin, &args.look))).collect()
+}
+
+fn source(origin: Origin, look: &LookArgs) -> Source<Failure> {
+    let file = if let Origin::File(path) = &origin { Some(path.clone()) } else { None };
+    let (name, look) = (origin.to_string(), look.clone());
+    let source = Source::new(name, move |watcher| look.draft(&origin, watcher));
+    file.into_iter().fold(source, Source::with_file)
 }
 
 /// Lets the test that started us say where things are to go wrong.

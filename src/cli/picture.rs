@@ -7,20 +7,27 @@ use termtrace::capabilities::{CellMode, USUAL_CELL_ASPECT};
 use termtrace::framebuffer::Resolution;
 use termtrace::render::Sampling;
 
+/// How large a frame is.
 #[derive(Args)]
-pub(super) struct PictureArgs {
+pub(super) struct SizeArgs {
     /// The frame's size in cells [default: 80x24]
     #[arg(long, value_name = "COLSxROWS", value_parser = parse_size, conflicts_with = "pixels")]
     size: Option<(u32, u32)>,
     /// The frame's size in pixels; a cell has two of them, one above the other, or with --glyphs shape two by four
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pixels: Option<(u32, u32)>,
-    /// Rays per pixel, the first through its centre; or `best`: 1, and up to 64 where there are edges
-    #[arg(long, value_name = "N|best", default_value = "1", value_parser = parse_samples)]
-    samples: Sampling,
     /// A cell's height over its width
     #[arg(long, value_name = "A", default_value_t = USUAL_CELL_ASPECT, value_parser = parse_cell_aspect)]
     cell_aspect: f32,
+}
+
+#[derive(Args)]
+pub(super) struct PictureArgs {
+    #[command(flatten)]
+    size: SizeArgs,
+    /// Rays per pixel, the first through its centre; or `best`: 1, and up to 64 where there are edges
+    #[arg(long, value_name = "N|best", default_value = "1", value_parser = parse_samples)]
+    samples: Sampling,
     /// Picture files: make each pixel N by N of the file's [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     scale: Option<u32>,
@@ -29,7 +36,7 @@ pub(super) struct PictureArgs {
 /// The most pixels that a frame may have, and a scaled picture: some 900 MB while it is traced.
 const MAX_PIXELS: u64 = 1 << 25;
 
-impl PictureArgs {
+impl SizeArgs {
     pub(super) fn resolution(&self, mode: CellMode) -> Result<Resolution, Failure> {
         let (across, down) = mode.pixels_per_cell();
         let (columns, rows) = self.size.unwrap_or((80, 24));
@@ -40,6 +47,17 @@ impl PictureArgs {
         }
         fits(width.into(), height.into())?;
         Ok(Resolution { width, height, pixel_aspect: self.cell_aspect * across as f32 / down as f32 })
+    }
+}
+
+impl PictureArgs {
+    pub(super) fn resolution(&self, mode: CellMode) -> Result<Resolution, Failure> {
+        self.size.resolution(mode)
+    }
+
+    /// A cell's height over its width.
+    pub(super) fn cell_aspect(&self) -> f32 {
+        self.size.cell_aspect
     }
 
     pub(super) fn samples(&self) -> Sampling {

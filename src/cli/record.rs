@@ -5,6 +5,7 @@ mod progress;
 
 use super::encoding::{self, EncodingArgs};
 use super::picture::{PictureArgs, fits};
+use super::view::{self, ViewArgs};
 use super::{Done, Failure, SceneArgs, reason};
 use clap::Args;
 use numbered::Numbered;
@@ -20,9 +21,8 @@ use termtrace::export;
 use termtrace::framebuffer::Resolution;
 use termtrace::grid::Size;
 use termtrace::record::{Cast, Gif, gif_size};
-use termtrace::render::render;
 use termtrace::scene::Scene;
-use termtrace::tone::{Picture, tone};
+use termtrace::tone::Picture;
 
 const EXAMPLES: &str = "\
 Camera paths:
@@ -37,7 +37,7 @@ Examples:
   termtrace record my.ron --compressed-link | gzip >my.cast.gz";
 
 #[derive(Args)]
-#[command(after_help = format!("{}\n\n{EXAMPLES}", encoding::EXPLAINED))]
+#[command(after_help = format!("{}\n{}\n\n{EXAMPLES}", view::EXPLAINED, encoding::EXPLAINED))]
 pub(super) struct RecordArgs {
     #[command(flatten)]
     scene: SceneArgs,
@@ -52,6 +52,8 @@ pub(super) struct RecordArgs {
     fps: u32,
     #[command(flatten)]
     picture: PictureArgs,
+    #[command(flatten)]
+    view: ViewArgs,
     #[command(flatten)]
     encoding: EncodingArgs,
     /// Write to FILE.cast (asciicast), FILE.gif, or numbered from 1 to FILE-%04d.png; - is an asciicast to standard
@@ -110,6 +112,7 @@ impl RecordArgs {
     /// Turns away what the format cannot be, or makes no use of.
     fn check_flags(&self, format: &Format, resolution: Resolution) -> Done {
         let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
+        self.view.check_samples(self.picture.samples())?;
         let is_cast = matches!(format, Format::Cast(_));
         if matches!(format, Format::Cast(None)) && io::stdout().is_terminal() {
             return wrong("an asciicast would garble the terminal; name a file with -o, or pipe it");
@@ -156,7 +159,7 @@ impl RecordArgs {
         if self.path == Path::new("orbit") {
             return Ok(CameraPath::orbit(*camera, self.seconds.unwrap_or(ORBIT_SECONDS)));
         }
-        if self.scene.eye.is_some() || self.scene.target.is_some() {
+        if self.scene.look.eye.is_some() || self.scene.look.target.is_some() {
             return Err(Failure::Usage(
                 "--eye and --target are for the orbit; a path file says both itself".to_owned(),
             ));
@@ -262,8 +265,8 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     let mut sink = film.written(0, args.sink(film))?;
     let bar = progress::bar(film.cameras.len() as u64);
     for (frame, camera) in film.cameras.iter().enumerate() {
-        let light = render(&film.scene, camera, film.resolution, args.picture.samples());
-        let picture = tone(&light, &film.scene);
+        let (view, samples) = (args.view.view(), args.picture.samples());
+        let picture = termtrace::view::picture(view, &film.scene, camera, film.resolution, samples);
         film.written(frame, sink.take(&picture, &film.file(frame)))?;
         bar.inc(1);
     }

@@ -11,12 +11,32 @@ pub enum Command {
     Look(Turn),
     /// Back to the view at the start.
     Reset,
+    /// The next of several scenes.
+    NextScene,
+    /// The one before.
+    LastScene,
+    /// The camera, as a line for a scene file, into the clipboard.
+    CopyCamera,
+    /// The view into the scene file's list of them.
+    KeepView,
+    /// The picture into a file.
+    Export,
     /// The status line on or off.
     Status,
     /// The help on or off.
     Help,
     /// The help off.
     Close,
+    /// The next view of the scene.
+    NextView,
+    /// The view before.
+    LastView,
+    /// Two views side by side, with a line between them, or one again.
+    Compare,
+    /// The line between two views moves.
+    Wipe(Side),
+    /// The explanation of a pixel on or off.
+    Explain,
     /// The whole screen again, in case something else wrote on it.
     Redraw,
     /// Back to the shell, to come again.
@@ -47,6 +67,15 @@ pub enum Direction {
     Up,
     /// Against up.
     Down,
+}
+
+/// A side of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The left one.
+    Left,
+    /// The right one.
+    Right,
 }
 
 /// Where the view turns to, as the camera sees it.
@@ -112,6 +141,17 @@ pub const BINDINGS: &[Binding] = &[
     binding(&[named(KeyCode::Up), letter('k')], "Up k", Command::Look(Turn::Up), "look up"),
     binding(&[named(KeyCode::Down), letter('j')], "Down j", Command::Look(Turn::Down), "look down"),
     binding(&[letter('r')], "r", Command::Reset, "back to the first view"),
+    binding(&[letter('v')], "v", Command::NextView, "next view: depth ..."),
+    binding(&[letter('b')], "b", Command::LastView, "the view before"),
+    binding(&[letter('|')], "|", Command::Compare, "compare two views"),
+    binding(&[letter('<')], "<", Command::Wipe(Side::Left), "their line to the left"),
+    binding(&[letter('>')], ">", Command::Wipe(Side::Right), "their line to the right"),
+    binding(&[letter('n')], "n", Command::NextScene, "next scene"),
+    binding(&[letter('p')], "p", Command::LastScene, "scene before"),
+    binding(&[letter('o')], "o", Command::Export, "picture to a file"),
+    binding(&[letter('y')], "y", Command::CopyCamera, "copy the camera"),
+    binding(&[letter('Y')], "Y", Command::KeepView, "view into the scene file"),
+    binding(&[letter('x')], "x", Command::Explain, "explain a pixel's ray"),
     binding(&[letter('i')], "i", Command::Status, "status line"),
     binding(&[letter('?')], "?", Command::Help, "this help"),
     binding(&[named(KeyCode::Esc)], "Esc", Command::Close, "close it"),
@@ -134,11 +174,21 @@ pub fn command(key: &KeyEvent) -> Option<(Command, bool)> {
         code => code,
     };
     let capital = code != key.code || shift;
-    let found = BINDINGS.iter().find(|binding| binding.keys.contains(&Key { code, ctrl }))?;
+    if let (KeyCode::Char(letter), true) = (code, capital)
+        && let Some(own) = bound(Key { code: KeyCode::Char(letter.to_ascii_uppercase()), ctrl })
+        && letter.is_ascii_lowercase()
+    {
+        return Some((own.command, false));
+    }
+    let found = bound(Key { code, ctrl })?;
     let moves = found.command.moves();
     // Capitals of letters that do not move are free for other commands.
     let is_letter = matches!(code, KeyCode::Char(c) if c.is_ascii_lowercase());
     (moves || ctrl || !is_letter || !capital).then_some((found.command, moves && capital))
+}
+
+fn bound(key: Key) -> Option<&'static Binding> {
+    BINDINGS.iter().find(|binding| binding.keys.contains(&key))
 }
 
 /// A terminal sends a capital; a capital is its letter with Shift.

@@ -1,28 +1,37 @@
 //! A ray by itself, against eight boxes or parts at a time.
 
+use super::witness::{Nobody, Test, Witness};
 use crate::bvh::{Child, LeafVisitor, Queue};
-use crate::lanes::{Answers, Lanes, Work, set_bits};
+use crate::lanes::{Answers, Eight, Lanes, Work, set_bits};
 use crate::ray::{Interval, Probe, Ray, Rays};
-use crate::scene::{Grove, Parts};
+use crate::scene::{Grove, Leaf, Parts};
 use crate::shape::{Crossable, SideBySide};
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
 /// A ray, and what it has met.
-pub(super) struct Alone<'p, N, const ANY: bool> {
+pub(super) struct Alone<'p, N, const ANY: bool, W = Nobody> {
     parts: &'p Parts,
     probe: Probe,
     /// `max` is where the closest was met, or where the interval ends.
     within: Interval,
     /// What was met.
     place: Option<u32>,
+    witness: W,
     numbers: PhantomData<N>,
 }
 
 impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
     #[inline(always)]
     pub(super) fn new(parts: &'p Parts, ray: &Ray, within: Interval) -> Self {
-        Self { parts, probe: Probe::new(*ray), within, place: None, numbers: PhantomData }
+        Self::watched(parts, ray, within, Nobody)
+    }
+}
+
+impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
+    #[inline(always)]
+    pub(super) fn watched(parts: &'p Parts, ray: &Ray, within: Interval, witness: W) -> Self {
+        Self { parts, probe: Probe::new(*ray), within, place: None, witness, numbers: PhantomData }
     }
 
     /// A ray that has met this already.
@@ -41,8 +50,12 @@ impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
     #[inline(always)]
     pub(super) fn trace(&mut self, queue: &mut Queue) {
         let parts = self.parts;
-        for (place, (_, plane)) in (0..).zip(&parts.planes) {
-            if let Some((true, t)) = plane.first_crossing(&self.probe.rays, self.within.min) {
+        for (place, (id, plane)) in (0..).zip(&parts.planes) {
+            let crossing = plane.first_crossing(&self.probe.rays, self.within.min);
+            if W::IS_THERE {
+                self.witness.part(Test::of(*id, crossing.and_then(|(crosses, t)| crosses.then_some(t))));
+            }
+            if let Some((true, t)) = crossing {
                 self.meet(t, place);
             }
         }
@@ -69,7 +82,11 @@ impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
     #[inline(always)]
     fn test<S: SideBySide>(&mut self, rays: &Rays<N>, leaf: usize, grove: &Grove<S>) {
         let shapes = grove.leaves[leaf].shapes.load::<N>();
-        let Some((crosses, t)) = shapes.first_crossing(rays, N::splat(self.within.min)) else { return };
+        let crossing = shapes.first_crossing(rays, N::splat(self.within.min));
+        if W::IS_THERE {
+            self.tell(&grove.leaves[leaf], crossing);
+        }
+        let Some((crosses, t)) = crossing else { return };
         let met = (crosses & t.le(N::splat(self.within.max))).bits();
         if met == 0 {
             return;
@@ -77,6 +94,14 @@ impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
         let t = t.store();
         for lane in set_bits(met) {
             self.meet(t.0[lane], grove.place(leaf, lane));
+        }
+    }
+
+    /// Tells the witness of a leaf's parts.
+    fn tell<S>(&mut self, leaf: &Leaf<S>, crossing: Option<(N::Mask, N)>) {
+        let (crosses, t) = crossing.map_or((0, Eight::ZERO), |(crosses, t)| (crosses.bits(), t.store()));
+        for (lane, &id) in leaf.parts().iter().enumerate() {
+            self.witness.part(Test::of(id, (crosses >> lane & 1 == 1).then_some(t.0[lane])));
         }
     }
 
@@ -94,14 +119,14 @@ impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
 }
 
 /// A ray's way through a part of a tree.
-struct Search<'a, 'p, N, S, const ANY: bool> {
-    ray: &'a mut Alone<'p, N, ANY>,
+struct Search<'a, 'p, N, S, const ANY: bool, W> {
+    ray: &'a mut Alone<'p, N, ANY, W>,
     from: Child,
     grove: &'a Grove<S>,
     queue: &'a mut Queue,
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool> Work for Search<'_, '_, N, S, ANY> {
+impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> Work for Search<'_, '_, N, S, ANY, W> {
     type Output = ();
 
     /// The numbers are those that the ray has.
@@ -120,14 +145,19 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Work for Search<'_, '_, N, S, ANY
 }
 
 /// A ray in a tree.
-struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
-    ray: &'a mut Alone<'p, N, ANY>,
+struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool, W> {
+    ray: &'a mut Alone<'p, N, ANY, W>,
     /// The same in every place.
     rays: &'a Rays<N>,
     grove: &'a Grove<S>,
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool> LeafVisitor for InGrove<'_, '_, N, S, ANY> {
+impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> LeafVisitor for InGrove<'_, '_, N, S, ANY, W> {
+    #[inline(always)]
+    fn boxes(&mut self) {
+        self.ray.witness.boxes();
+    }
+
     #[inline(always)]
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
         self.ray.test(self.rays, leaf, self.grove);

@@ -125,7 +125,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
             };
             let Stacks { together, alone } = stacks;
             let groups = self.rays.len();
-            let mut in_grove = InGrove { rays: self, grove, packet, stack: alone };
+            let mut in_grove = InGrove { rays: self, grove, packet, queue: alone };
             match grove.bvh.root() {
                 Some(root) if in_grove.rays.kernel == Kernel::Auto && packet.is_scattered() => {
                     for group in 0..groups {
@@ -223,7 +223,7 @@ struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
     rays: &'a mut Together<'p, N, ANY>,
     grove: &'p Grove<S>,
     packet: &'a Packet<N>,
-    stack: &'a mut Queue,
+    queue: &'a mut Queue,
 }
 
 impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N, S, ANY> {
@@ -294,7 +294,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
             let known = place.0[lane].to_bits();
             let ray = Alone::<N, ANY>::new(self.rays.parts, &self.rays.rays[group].ray(lane), within);
             let mut ray = ray.going_on((known != NOTHING).then_some(known));
-            ray.trace_from(from, self.grove, self.stack);
+            ray.trace_from(from, self.grove, self.queue);
             if let (met, Some(found)) = ray.found() {
                 t.0[lane] = if ANY { DONE } else { met };
                 place.0[lane] = place_as_number(found);

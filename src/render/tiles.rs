@@ -8,7 +8,7 @@ use super::sampling::{footprint_share, sample_position};
 use crate::camera::{Camera, EyeRays};
 use crate::color::LinearRgb;
 use crate::framebuffer::Resolution;
-use crate::lanes::{ALL, Eight, LANES, Lanes, Vector};
+use crate::lanes::{ALL, Eight, LANES, Lanes, Number, Vector};
 use crate::ray::EightRays;
 use crate::simd::{self, Work};
 use glam::Vec3;
@@ -53,7 +53,7 @@ impl Tiles {
     }
 
     /// A picture's pixels by tiles: each gets its part of every row that it covers.
-    pub(super) fn split<'p>(&self, pixels: &'p mut [LinearRgb]) -> Vec<Vec<&'p mut [LinearRgb]>> {
+    pub(super) fn split<'p, T>(&self, pixels: &'p mut [T]) -> Vec<Vec<&'p mut [T]>> {
         let side = (SIDE * self.scale) as usize;
         let mut tiles: Vec<_> = (0..self.count()).map(|_| Vec::with_capacity(side)).collect();
         for (y, row) in pixels.chunks_mut(self.resolution.width.max(1) as usize).enumerate() {
@@ -107,6 +107,16 @@ impl Tiles {
         simd::run(MakeEyeRays { tiles: self, tile, pixels, sample, rays });
     }
 
+    /// Where a pixel's sample lies in the picture: the lecture's (qu, qv), (0, 0) being the lower left corner.
+    #[inline(always)]
+    pub(super) fn q<N: Number>(&self, [x, y]: [N; 2], sample: u32) -> [N; 2] {
+        let (sx, sy) = sample_position(sample);
+        let (width, height) = (N::splat(self.resolution.width as f32), N::splat(self.resolution.height as f32));
+        let scale = N::splat(self.scale as f32);
+        // Rows are counted from the top, the lecture's q_v from the bottom.
+        [(x + N::splat(sx)) * scale / width, (height - (y + N::splat(sy)) * scale) / height]
+    }
+
     /// By how much the direction changes from an eye ray to those beside it.
     pub(super) fn steps(&self, sample: u32) -> [Vec3; 2] {
         let share = self.scale as f32 * footprint_share(sample);
@@ -115,7 +125,7 @@ impl Tiles {
 }
 
 /// How far to the right and down a pixel is in its tile.
-const fn in_tile(pixel: usize) -> [u32; 2] {
+pub(super) const fn in_tile(pixel: usize) -> [u32; 2] {
     let at = pixel as u32;
     [at & 3 | (at >> 3 & 1) << 2 | (at >> 6 & 1) << 3, at >> 2 & 1 | (at >> 4 & 3) << 1 | (at >> 7 & 1) << 3]
 }
@@ -158,11 +168,8 @@ impl Work for MakeEyeRays<'_> {
     #[inline(always)]
     fn run<N: Lanes>(self) {
         let Self { tiles, tile, pixels, sample, rays } = self;
-        let Tiles { resolution, scale, eye_rays, .. } = tiles;
-        let (sx, sy) = sample_position(sample);
+        let eye_rays = &tiles.eye_rays;
         let [left, top] = tiles.corner(tile).map(|at| N::splat(at as f32));
-        let (width, height) = (N::splat(resolution.width as f32), N::splat(resolution.height as f32));
-        let scale = N::splat(*scale as f32);
         let origin = Vector::splat(eye_rays.eye());
         for pixels in pixels.chunks(LANES) {
             let [mut x, mut y] = [Eight::ZERO; 2];
@@ -170,10 +177,8 @@ impl Work for MakeEyeRays<'_> {
                 let pixel = usize::from(pixels[lane.min(pixels.len() - 1)]);
                 (x.0[lane], y.0[lane]) = (IN_TILE[0][pixel], IN_TILE[1][pixel]);
             }
-            let x = (left + N::load(&x) + N::splat(sx)) * scale;
-            // Rows are counted from the top, the lecture's q_v from the bottom.
-            let y = height - (top + N::load(&y) + N::splat(sy)) * scale;
-            let direction = eye_rays.direction(x / width, y / height).store();
+            let [qu, qv] = tiles.q([left + N::load(&x), top + N::load(&y)], sample);
+            let direction = eye_rays.direction(qu, qv).store();
             rays.push(EightRays { origin, direction, asked: ALL >> (LANES - pixels.len()) });
         }
     }

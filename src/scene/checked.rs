@@ -26,6 +26,7 @@ use std::collections::HashMap;
 pub(super) fn check(file: &SceneFile, meshes: &mut dyn Meshes, faults: &mut Faults) -> Option<Draft> {
     let mut checker = Checker { faults };
     let camera = file.camera.as_ref().and_then(|camera| checker.camera(camera));
+    let views = file.views.iter().filter_map(|view| checker.view(view, camera.as_ref())).collect();
     let background = file.background.as_ref().and_then(|written| checker.background(written));
     let ambient = file.ambient.and_then(|color| checker.light_color(color));
     let lights = file.lights.iter().filter_map(|light| checker.light(light)).collect();
@@ -40,6 +41,7 @@ pub(super) fn check(file: &SceneFile, meshes: &mut dyn Meshes, faults: &mut Faul
         Some(WrittenToneCurve::Filmic) => ToneCurve::Filmic,
     };
     Some(Draft::new(Scene {
+        views,
         background: background.unwrap_or(Background::Color(LinearRgb::BLACK)),
         ambient: ambient.unwrap_or(LinearRgb::BLACK),
         lights,

@@ -99,6 +99,7 @@ fn unless_gone<T, E>(watcher: &Watcher<'_>, done: Result<T, E>) -> Result<Option
 
 fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
     let name = path.to_string_lossy();
+    watcher.needs(path);
     if mesh_file::is_mesh(&name, &[]) {
         return around_mesh(path, watcher);
     }
@@ -249,6 +250,7 @@ impl checked::Meshes for Meshes<'_> {
         if let Some(mesh) = self.read.get(&path) {
             return Ok(mesh.clone());
         }
+        self.watcher.needs(&path);
         // Not from a pipe or a device, which might never end.
         if std::fs::metadata(&path).is_ok_and(|data| !data.is_file()) {
             return Err(format!("{}: this is not a file", visible(&path.to_string_lossy())));

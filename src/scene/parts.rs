@@ -55,6 +55,14 @@ pub(crate) struct Leaf<S> {
     pub(crate) ids: [PartId; LANES],
 }
 
+impl<S> Leaf<S> {
+    /// Whose parts they are. (The last one's stands in the places that are left over, too.)
+    pub(crate) fn parts(&self) -> &[PartId] {
+        let end = (1..LANES).find(|&at| self.ids[at] == self.ids[at - 1]);
+        &self.ids[..end.unwrap_or(LANES)]
+    }
+}
+
 impl Parts {
     pub(super) fn of(objects: &[Object]) -> Self {
         let built = Self::of_watched(objects, &Watcher::patient());

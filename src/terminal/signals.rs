@@ -204,6 +204,14 @@ fn ignored_in(status: &str) -> u64 {
 pub struct Waker(UnixStream);
 
 impl Waker {
+    /// One more.
+    ///
+    /// # Errors
+    /// If the operating system refuses.
+    pub fn try_clone(&self) -> io::Result<Self> {
+        self.0.try_clone().map(Self)
+    }
+
     /// Does so.
     pub fn wake(&mut self) {
         // A full pipe wakes as well; a closed one has nobody to wake.

@@ -12,6 +12,9 @@ fn a_files_ending_chooses_the_format() {
         ("frame.ans", "ansi"),
         ("frame.ansi", "ansi"),
         ("a.b.ansi", "ansi"),
+        ("frame.svg", "svg"),
+        ("frame.html", "html"),
+        ("frame.htm", "html"),
         ("frame.png", "png"),
         ("frame.PNG", "png"),
     ] {
@@ -37,11 +40,11 @@ fn the_format_said_is_stronger_than_the_ending() {
 #[test]
 fn unknown_endings_and_formats_are_turned_away() {
     let folder = Folder::new();
-    for name in ["frame.jpg", "frame", ".txt", "frame.txt~", "frame.svg"] {
+    for name in ["frame.jpg", "frame", ".txt", "frame.txt~", "frame.bmp"] {
         folder.run(&format!("frame ball.ron -o {name}")).fails_in_a_line(2, "--format");
         assert!(!folder.path(name).exists(), "{name} was made");
     }
-    folder.run("frame ball.ron --format jpeg").is_misused("text, ansi, png");
+    folder.run("frame ball.ron --format jpeg").is_misused("text, ansi, svg, html, png");
 }
 
 /// A frame that could not be made leaves the file of the last one alone.

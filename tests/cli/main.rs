@@ -4,8 +4,10 @@
 mod bench;
 mod camera;
 mod cells;
+mod describe;
 mod doctor;
 mod errors;
+mod explain;
 mod formats;
 mod golden;
 mod pictures;
@@ -13,7 +15,10 @@ mod pipes;
 #[path = "../pty/mod.rs"]
 mod pty;
 mod record;
+mod shells;
 mod sizes;
+mod views;
+mod web;
 
 use std::fs::{self, File};
 use std::io::{Read, Seek, Write};

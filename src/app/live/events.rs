@@ -1,10 +1,12 @@
 //! What the loop hears: keys, answers, and signals to stop.
 
 use super::Live;
+use crate::app::shown::Shown;
 use crate::control::{self, Command};
 use crate::input::{Input, Reply};
 use crate::terminal::{Signals, Stopped, Terminal};
-use crossterm::event::{Event, KeyEvent, KeyEventKind};
+use crate::view::View;
+use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::io;
 use std::time::Duration;
 
@@ -103,6 +105,15 @@ impl Live {
     }
 
     fn take_key(&mut self, key: &KeyEvent) -> Next {
+        if key.kind == KeyEventKind::Press {
+            self.screen.unsay();
+            if !key.modifiers.contains(KeyModifiers::CONTROL) && self.take_answer(key.code) {
+                return Next::Stay;
+            }
+        }
+        if self.screen.is_explaining() && self.point(key) {
+            return Next::Stay;
+        }
         self.stale |= self.eye.take_key(key, self.now());
         if key.kind != KeyEventKind::Press {
             return Next::Stay;
@@ -111,9 +122,19 @@ impl Live {
             Some(Command::Quit) => return Next::Leave,
             Some(Command::Suspend) => return Next::Suspend(Some(Stopped::Group)),
             Some(Command::Reset) => self.stale |= self.eye.reset(),
+            Some(Command::NextScene) => self.scenes_on += 1,
+            Some(Command::LastScene) => self.scenes_on -= 1,
+            Some(Command::CopyCamera) => self.copy_camera(),
+            Some(Command::Export) => self.ask_export(),
+            Some(Command::KeepView) => self.ask_keep(),
             Some(Command::Status) => self.screen.toggle_status(),
             Some(Command::Help) => self.screen.toggle_help(),
             Some(Command::Close) => self.screen.close_help(),
+            Some(Command::NextView) => self.show_views(|shown| shown.go_on(View::next)),
+            Some(Command::LastView) => self.show_views(|shown| shown.go_on(View::back)),
+            Some(Command::Compare) => self.show_views(Shown::compare),
+            Some(Command::Wipe(side)) => self.move_wipe(side),
+            Some(Command::Explain) => self.screen.toggle_explaining(),
             Some(Command::Redraw) => self.screen.redraw(self.capabilities.halves_meet),
             Some(Command::Move(_) | Command::Look(_)) | None => {}
         }

@@ -18,12 +18,12 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> Done {
     }
     let name = visible(&path.display().to_string());
     let difference = match format {
-        Format::Text => text_difference(&golden, frame, &name),
+        Format::Text | Format::Svg | Format::Html => text_difference(&golden, frame, &name),
         Format::Ansi => ansi_difference(&golden, frame),
         Format::Png => png_difference(&golden, frame),
     };
     write_stdout(format!("{name}: the frame differs\n{difference}").as_bytes())?;
-    Err(Failure::Difference)
+    Err(Failure::Said(1))
 }
 
 /// Line by line, as `diff -u`.

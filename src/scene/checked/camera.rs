@@ -12,31 +12,53 @@ const LARGEST_SHIFT: f64 = 1e3;
 
 impl Checker<'_> {
     pub(super) fn camera(&mut self, written: &WrittenCamera) -> Option<Camera> {
+        let rectangle = self.rectangle_of(written);
+        self.camera_with(written, (Vec3::Y, "its up vector (0, 1, 0)"), rectangle)
+    }
+
+    /// Another view: what it does not say is as the camera has it. (Where that is wrong, this is checked all the same.)
+    pub(super) fn view(&mut self, written: &WrittenCamera, camera: Option<&Camera>) -> Option<Camera> {
+        let rectangle = match camera {
+            Some(camera) if written.is_without_lens() => Some(camera.rectangle()),
+            _ => self.rectangle_of(written),
+        };
+        let up = camera.map_or(Vec3::Y, |camera| camera.pose().up);
+        self.camera_with(written, (up, "the camera's up vector"), rectangle)
+    }
+
+    /// With that up vector, and its name, if none was written.
+    fn camera_with(
+        &mut self,
+        written: &WrittenCamera,
+        (up_if_none, name): (Vec3, &'static str),
+        rectangle: Option<ViewRectangle>,
+    ) -> Option<Camera> {
         let eye = written.eye.and_then(|eye| self.point(eye));
         let target = written.target.and_then(|target| self.point(target));
         let up = match written.up {
             Some(up) => self.up(up),
-            None => Some(Vec3::Y),
+            None => Some(up_if_none),
         };
+        let pose = Pose { eye: eye?, target: target?, up: up? };
+        let places = Places {
+            whole: written.span,
+            target: written.target.map(|target| target.span),
+            up: written.up.map(|up| up.span),
+            up_if_none: name,
+        };
+        // Where the lens is wrong, the pose may be wrong as well: any rectangle tells.
+        let any = || ViewRectangle::from_vertical_fov(1.0).ok();
+        let camera = self.camera_of(pose, rectangle.or_else(any)?, places)?;
+        rectangle.and(Some(camera))
+    }
+
+    fn rectangle_of(&mut self, written: &WrittenCamera) -> Option<ViewRectangle> {
         let rectangle = self.view_rectangle(&written.lens);
         let shift = match &written.shift {
             Some(shift) => self.shift(shift),
             None => Some(Vec2::ZERO),
         };
-        let (eye, target, up) = (eye?, target?, up?);
-        let rectangle = match rectangle {
-            Some(rectangle) => rectangle,
-            // Enough to find out whether the pose is one.
-            None => ViewRectangle::from_vertical_fov(1.0).ok()?,
-        };
-        let rectangle = rectangle.with_shift(shift?).ok()?;
-        let places = Places {
-            whole: written.span,
-            target: written.target.map(|target| target.span),
-            up: written.up.map(|up| up.span),
-            up_if_none: "its up vector (0, 1, 0)",
-        };
-        self.camera_of(Pose { eye, target, up }, rectangle, places)
+        rectangle?.with_shift(shift?).ok()
     }
 
     /// The camera, or a fault where its pose was written.

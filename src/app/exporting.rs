@@ -1,0 +1,91 @@
+//! The picture that is shown -> a file's contents, and a file of a new name.
+
+use super::renderer::Frame;
+use crate::capabilities::{Capabilities, CellMode, Colors, Glyphs};
+use crate::cell;
+use crate::export::{self, Format};
+use crate::grid::Size;
+use std::fs::OpenOptions;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// A pixel of the screen is so many of a PNG, each way: large enough to be looked at.
+const SCALE: u32 = 8;
+
+/// So many names are tried.
+const MOST_NAMES: u32 = 9999;
+
+/// What is shown without panels: as the terminal's cells show it, but in all colours where the format can have them.
+pub(super) fn contents(format: Format, frame: &Frame, capabilities: &Capabilities) -> io::Result<Vec<u8>> {
+    let Capabilities { cell_mode, cell_aspect, .. } = *capabilities;
+    let grid = |mode| cell::grid_from_picture(mode, &frame.picture);
+    let in_colors = CellMode { colors: Colors::Truecolor, ..cell_mode };
+    // Half blocks without colours would not tell much. The ramp has as many pixels in a cell.
+    let glyphs = if cell_mode.glyphs == Glyphs::Half { Glyphs::Ramp } else { cell_mode.glyphs };
+    let plain = CellMode { glyphs, colors: Colors::None };
+    Ok(match format {
+        Format::Png => {
+            let pixel_aspect = cell::resolution(cell_mode, Size::new(1, 1), cell_aspect).pixel_aspect;
+            export::png(&frame.picture, pixel_aspect, SCALE).map_err(io::Error::other)?
+        }
+        Format::Ansi => export::ansi(&grid(in_colors)),
+        Format::Text => export::text(&grid(plain)).into_bytes(),
+        Format::Svg => export::svg(&grid(in_colors), cell_aspect).into_bytes(),
+        Format::Html => export::html(&grid(in_colors), cell_aspect).into_bytes(),
+    })
+}
+
+/// Writes a file of that stem and format, or of the first one with a number that is not there yet; its name.
+pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u8]) -> io::Result<String> {
+    for number in 1..=MOST_NAMES {
+        let number = if number == 1 { String::new() } else { format!("-{number}") };
+        let name = format!("{stem}{number}.{}", format.ending());
+        match OpenOptions::new().write(true).create_new(true).open(folder.join(&name)) {
+            Ok(mut file) => return file.write_all(contents).map(|()| name),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(io::Error::new(io::ErrorKind::AlreadyExists, "there are too many of that name"))
+}
+
+/// What a file of a scene of that name is called, without its ending: one plain word.
+pub(super) fn stem(name: &str) -> String {
+    let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
+    let is_plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let plain: String = stem.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+    let plain = plain.trim_start_matches(['.', '-']);
+    if plain.is_empty() { "scene".to_owned() } else { plain.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_plain_words() {
+        for (name, expected) in [
+            ("scenes/three_spheres.ron", "three_spheres"),
+            ("built-in scene", "built-in_scene"),
+            ("a\u{1b}[2J b.ply", "a__2J_b"),
+            ("-o.ron", "o"),
+            ("/", "scene"),
+            ("été.ron", "été"),
+        ] {
+            assert_eq!(stem(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_written_over() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let write = |contents: &[u8]| write_new(folder.path(), "ball", Format::Svg, contents);
+        assert_eq!(write(b"1").expect("written"), "ball.svg");
+        std::fs::create_dir(folder.path().join("ball-2.svg")).expect("a folder can be made");
+        assert_eq!(write(b"3").expect("written"), "ball-3.svg");
+        assert_eq!(std::fs::read(folder.path().join("ball.svg")).expect("it is there"), b"1");
+        std::fs::remove_file(folder.path().join("ball.svg")).expect("it can be removed");
+        assert_eq!(write(b"again").expect("written"), "ball.svg");
+        assert!(write_new(&folder.path().join("missing"), "ball", Format::Png, b"").is_err());
+    }
+}

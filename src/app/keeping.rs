@@ -1,0 +1,117 @@
+//! A view is written into its scene's file.
+
+use super::watching::Needed;
+use crate::camera::Camera;
+use crate::scene::with_view;
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// What the user is asked before anything is written.
+pub(super) struct Asked {
+    /// The file, and what it was like when he was asked.
+    file: Needed,
+    camera: Camera,
+}
+
+impl Asked {
+    /// Whether that view is to be written into that file; `None` if it is no plain file.
+    pub(super) fn new(file: &Path, camera: Camera) -> Option<Self> {
+        Needed::now(file).map(|file| Self { file, camera })
+    }
+
+    pub(super) fn file(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// He says yes. The file is replaced as a whole, with all of its other text as it was; one that has changed since he
+    /// was asked is left alone.
+    pub(super) fn write(&self) -> io::Result<()> {
+        // Where it is a link, what it leads to.
+        let path = self.file().canonicalize()?;
+        let text = fs::read_to_string(&path)?;
+        let written = with_view(&text, &self.camera).ok_or_else(|| io::Error::other("this is no scene file"))?;
+        let new = Unfinished::beside(&path)?;
+        new.fill(written.as_bytes(), &path)?;
+        if self.file.has_changed() || fs::read_to_string(&path)? != text {
+            return Err(io::Error::other("it has changed meanwhile"));
+        }
+        new.finish(&path)
+    }
+}
+
+/// A file that is to take another's place; dropped before it does, it is removed.
+struct Unfinished(PathBuf);
+
+impl Unfinished {
+    fn beside(path: &Path) -> io::Result<Self> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let new = path.with_file_name(format!(".{name}.{}~", std::process::id()));
+        OpenOptions::new().write(true).create_new(true).open(&new)?;
+        Ok(Self(new))
+    }
+
+    /// On the disk before it has the name, and with the permissions that the other has.
+    fn fill(&self, contents: &[u8], like: &Path) -> io::Result<()> {
+        let mut file = OpenOptions::new().write(true).open(&self.0)?;
+        file.write_all(contents)?;
+        file.set_permissions(fs::metadata(like)?.permissions())?;
+        file.sync_all()
+    }
+
+    fn finish(self, path: &Path) -> io::Result<()> {
+        fs::rename(&self.0, path)
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        // Once it has the other name, there is none of this.
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    const TEXT: &str = "( // mine\n    camera: (eye: (0, 0, 5), target: (0, 0, 0)),\n)\n";
+
+    fn camera() -> Camera {
+        Scene::from_ron("x", &TEXT.replace('5', "7")).expect("a scene").camera
+    }
+
+    #[test]
+    fn a_view_is_written_and_all_else_stays() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let (file, link) = (folder.path().join("x.ron"), folder.path().join("link.ron"));
+        fs::write(&file, TEXT).expect("written");
+        fs::set_permissions(&file, PermissionsExt::from_mode(0o640)).expect("it is ours");
+        symlink("x.ron", &link).expect("a link can be made");
+        Asked::new(&link, camera()).expect("a file").write().expect("written");
+        let written = fs::read_to_string(&file).expect("it is there");
+        assert_eq!(Some(written.as_str()), with_view(TEXT, &camera()).as_deref());
+        assert_eq!(fs::metadata(&file).expect("it is there").permissions().mode() & 0o777, 0o640);
+        assert!(fs::symlink_metadata(&link).expect("it is there").is_symlink());
+        assert_eq!(fs::read_dir(folder.path()).expect("it is there").count(), 2, "nothing is left over");
+    }
+
+    #[test]
+    fn a_file_that_changes_or_is_no_scene_is_left_alone() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let file = folder.path().join("x.ron");
+        fs::write(&file, TEXT).expect("written");
+        let asked = Asked::new(&file, camera()).expect("a file");
+        let changed = TEXT.replace("mine", "not mine");
+        fs::write(&file, &changed).expect("written");
+        assert!(asked.write().is_err());
+        assert_eq!(fs::read_to_string(&file).expect("it is there"), changed);
+        fs::write(&file, "no scene").expect("written");
+        assert!(Asked::new(&file, camera()).is_some_and(|asked| asked.write().is_err()));
+        fs::remove_file(&file).expect("it can be removed");
+        assert!(Asked::new(&file, camera()).is_some_and(|asked| asked.write().is_err()));
+        assert_eq!(fs::read_dir(folder.path()).expect("it is there").count(), 0, "nothing is left over");
+    }
+}

@@ -1,0 +1,84 @@
+//! What the loop does with the scenes that come, and where each was looked at from.
+
+use super::Live;
+use crate::app::loading::News;
+use crate::app::renderer::Renderer;
+use crate::app::scenes::Heard;
+use crate::app::source::Named;
+use crate::app::strip::Fault;
+use crate::camera::Camera;
+use crate::scene::Scene;
+use std::collections::HashMap;
+use std::fmt;
+use std::panic::resume_unwind;
+
+/// Which scene is shown, and what is kept of the others.
+pub(super) struct LookedAt {
+    /// What all are called.
+    named: Vec<Named>,
+    /// Its number, and from where it wants to be looked at. `None` as long as there is nothing to see.
+    now: Option<(usize, Camera)>,
+    /// From where others wanted to be looked at, and were when they were left.
+    left: HashMap<usize, (Camera, Camera)>,
+}
+
+impl LookedAt {
+    /// Nothing yet, of these.
+    pub(super) fn new(named: Vec<Named>) -> Self {
+        Self { named, now: None, left: HashMap::new() }
+    }
+
+    /// What the one that is shown is called.
+    pub(super) fn source(&self) -> Option<&Named> {
+        self.named.get(self.now?.0)
+    }
+}
+
+impl Live {
+    /// What is there of a scene is shown. A sketch is better than the picture of another scene, but not than one that was
+    /// good until its file changed. What is wrong is the error where there is nothing to see.
+    pub(super) fn take_news<E: fmt::Display>(&mut self, heard: Heard<E>, renderer: &mut Renderer) -> Result<(), E> {
+        let Heard { of, news, is_slow } = heard;
+        match news {
+            News::Progress(progress) if is_slow => self.screen.set_progress(progress),
+            News::Sketch(scene) if self.looked_at.now.is_none_or(|(now, _)| now != of) => {
+                self.screen.end_fault();
+                self.show(scene, of, renderer);
+            }
+            News::Progress(_) | News::Sketch(_) | News::Needs(_) => {}
+            News::Scene(scene) => {
+                self.screen.end_progress();
+                self.screen.end_fault();
+                self.show(scene, of, renderer);
+            }
+            News::Fault(fault) if self.looked_at.now.is_none() => return Err(fault),
+            News::Fault(fault) => {
+                self.screen.end_progress();
+                self.screen.set_fault(Fault::new(&fault.to_string()));
+            }
+            News::Panic(panic) => resume_unwind(panic),
+        }
+        Ok(())
+    }
+
+    /// From where it wants to be looked at; from where it was looked at, if it has wanted the same before.
+    fn show(&mut self, scene: Scene, of: usize, renderer: &mut Renderer) {
+        let home = scene.camera;
+        match self.looked_at.now.replace((of, home)) {
+            Some(before) if before == (of, home) => {}
+            Some((before, home_before)) => {
+                if before != of
+                    && let Some(camera) = self.eye.camera()
+                {
+                    self.looked_at.left.insert(before, (home_before, camera));
+                }
+                let left = self.looked_at.left.get(&of).filter(|(wanted, _)| before != of && *wanted == home);
+                self.eye.open_anew(home, left.map_or(home, |&(_, camera)| camera));
+            }
+            None => self.eye.open(home),
+        }
+        renderer.show(scene);
+        self.effort.forget_last();
+        self.stale = true;
+    }
+}

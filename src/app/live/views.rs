@@ -1,0 +1,34 @@
+//! Which views are shown, and the line between two.
+
+use super::Live;
+use crate::app::shown::Shown;
+use crate::control::Side;
+
+/// A press moves the line by so much of the width.
+const STEP: f32 = 1.0 / 32.0;
+
+impl Live {
+    /// Shows something else of the scene.
+    pub(super) fn show_views(&mut self, change: impl FnOnce(&mut Shown)) {
+        let before = self.shown;
+        change(&mut self.shown);
+        if self.shown != before {
+            // What its frames take is not to be compared with what those of before did.
+            self.effort.forget_last();
+            self.stale = true;
+        }
+    }
+
+    /// Moves the line between two views, if there is one: nothing is traced for it.
+    pub(super) fn move_wipe(&mut self, side: Side) {
+        let step = if side == Side::Left { -STEP } else { STEP };
+        self.wipe_to(self.screen.wipe() + step);
+    }
+
+    /// Moves that line to a share of the width.
+    fn wipe_to(&mut self, share: f32) {
+        if self.shown.is_wipe() {
+            self.screen.wipe_to(share);
+        }
+    }
+}

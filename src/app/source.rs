@@ -1,0 +1,65 @@
+//! Where a scene comes from.
+
+use crate::progress::Watcher;
+use crate::scene::Draft;
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A scene that can be read as often as it is wanted: at the start, when it is come back to, and when one of its files
+/// has changed. See [`open`](super::open).
+pub struct Source<E> {
+    named: Named,
+    read: Arc<Read<E>>,
+}
+
+/// What is known of a scene without reading it.
+#[derive(Clone, Debug)]
+pub(super) struct Named {
+    /// A person knows it by that.
+    pub(super) name: String,
+    /// The scene file that it stands in.
+    pub(super) file: Option<PathBuf>,
+}
+
+type Read<E> = dyn Fn(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + Sync;
+
+impl<E> Source<E> {
+    /// The scene that `read` gives, under a name that a person knows it by. `read` gives nothing only when its watcher has
+    /// gone. What it tells its watcher to [need](Watcher::needs) is watched: as files change, the scene is read again.
+    pub fn new(
+        name: impl Into<String>,
+        read: impl Fn(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + Sync + 'static,
+    ) -> Self {
+        Self { named: Named { name: name.into(), file: None }, read: Arc::new(read) }
+    }
+
+    /// It stands in that scene file, into which views may be written.
+    pub fn with_file(self, file: PathBuf) -> Self {
+        Self { named: Named { file: Some(file), ..self.named }, ..self }
+    }
+
+    pub(super) fn named(&self) -> &Named {
+        &self.named
+    }
+
+    /// Reads it.
+    ///
+    /// # Errors
+    /// What is wrong with the scene.
+    pub fn read(&self, watcher: &Watcher<'_>) -> Result<Option<Draft>, E> {
+        (self.read)(watcher)
+    }
+}
+
+impl<E> Clone for Source<E> {
+    fn clone(&self) -> Self {
+        Self { named: self.named.clone(), read: Arc::clone(&self.read) }
+    }
+}
+
+impl<E> fmt::Debug for Source<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Source").field("named", &self.named).finish_non_exhaustive()
+    }
+}

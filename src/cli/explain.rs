@@ -1,0 +1,51 @@
+//! `termtrace explain`: all that a pixel of a frame comes from.
+
+use super::picture::SizeArgs;
+use super::{Done, SceneArgs, usage, write_stdout};
+use clap::Args;
+use termtrace::capabilities::CellMode;
+use termtrace::explain::{cell, explain};
+use termtrace::framebuffer::Resolution;
+
+const MEANING: &str = "\
+It says what the program does for the pixel, in the symbols of the lecture: the eye ray o + t d through the point (q_u, q_v)
+of the view rectangle, the t of every surface that it was tested against, the equation of the closest one, the point p and
+its normal n, l and n.l of each light and what stands in its way, and the light from there to the bytes of the frame.
+Surfaces and lights are counted from 1, as they stand in the scene file. Of more --samples than one, it is the first.";
+
+const EXAMPLES: &str = "\
+Examples:
+  termtrace explain my.ron --pixel 40,24                  in the frame of 80x24 cells, 80x48 pixels
+  termtrace explain my.ron --pixel 0,0 --pixels 800x600   the upper left corner of a picture";
+
+#[derive(Args)]
+#[command(after_help = format!("{MEANING}\n\n{EXAMPLES}"))]
+pub(super) struct ExplainArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// The pixel's column and row, from (0, 0) at the top left
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
+    pixel: [u32; 2],
+    #[command(flatten)]
+    size: SizeArgs,
+}
+
+pub(super) fn run(args: &ExplainArgs) -> Done {
+    let mode = CellMode::HALF_BLOCK;
+    let resolution = args.size.resolution(mode)?;
+    let Resolution { width, height, .. } = resolution;
+    let [x, y] = args.pixel;
+    if x >= width || y >= height {
+        return Err(usage(format!("there is no pixel {x},{y} in a frame of {width}x{height} pixels")));
+    }
+    let scene = args.scene.load()?;
+    let explanation = explain(&scene, &scene.camera, resolution, args.pixel);
+    let lines = explanation.lines().into_iter().chain([cell(args.pixel, mode)]);
+    write_stdout(lines.map(|line| line + "\n").collect::<String>().as_bytes())
+}
+
+/// `40,24`.
+fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
+    let numbers = text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    numbers.ok_or_else(|| "expected two whole numbers from 0 on with a comma between them, such as 40,24".to_owned())
+}

@@ -1,0 +1,62 @@
+//! Where a scene comes from, and what is said if it does not.
+
+use super::{Failure, near, read_stdin, usage};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use termtrace::progress::Watcher;
+use termtrace::scene::{Draft, LoadError, Scene};
+
+/// The scene that is shown when none is named.
+const BUILT_IN: &str = include_str!("../../scenes/three_spheres.ron");
+
+/// Where a scene comes from: once found out, it can be read again and again.
+#[derive(Clone)]
+pub(super) enum Origin {
+    File(PathBuf),
+    /// What standard input said.
+    Stdin(Vec<u8>),
+    /// The program itself.
+    BuiltIn,
+}
+
+impl Origin {
+    /// What the command line calls by that name. Standard input, which may be the terminal, is read here: before that is
+    /// taken.
+    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
+        if path == Path::new("-") { read_stdin().map(Self::Stdin) } else { Ok(Self::File(path.to_owned())) }
+    }
+
+    /// The scene as it was written.
+    pub(super) fn load(&self) -> Result<Scene, Failure> {
+        let draft = self.draft(&Watcher::patient())?;
+        draft.map(Draft::finish).ok_or_else(|| Failure::runtime(self, "nobody waits for it"))
+    }
+
+    /// The scene, not built yet, while somebody waits for it; `None` if he has gone.
+    pub(super) fn draft(&self, watcher: &Watcher<'_>) -> Result<Option<Draft>, Failure> {
+        match self {
+            Self::File(path) => Draft::load(path, watcher).map_err(|error| not_loaded(path, &error)),
+            Self::Stdin(text) => Draft::from_bytes("standard input", text, watcher).map_err(usage),
+            Self::BuiltIn => Draft::from_bytes("built-in scene", BUILT_IN.as_bytes(), watcher).map_err(usage),
+        }
+    }
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(path) => path.display().fmt(f),
+            Self::Stdin(_) => f.write_str("standard input"),
+            Self::BuiltIn => f.write_str("built-in scene"),
+        }
+    }
+}
+
+/// With what may have been meant by the name of a file that is not there.
+fn not_loaded(path: &Path, error: &LoadError) -> Failure {
+    let meant = if path.exists() { None } else { near::scene(path) };
+    Failure::Usage(match meant {
+        Some(meant) => format!("{error}; did you mean {}?", meant.display()),
+        None => error.to_string(),
+    })
+}

@@ -1,0 +1,308 @@
+//! Scene + camera -> text, for those who cannot see the picture: what is where in it, what hides what, and where the
+//! light comes from.
+
+use crate::bounds::Bounds;
+use crate::camera::{Camera, Pose};
+use crate::framebuffer::Resolution;
+use crate::light::{Falloff, PointLight};
+use crate::material::Material;
+use crate::scene::{Background, Scene};
+use crate::shape::{Part, Shape, Surface};
+use glam::Vec3;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use survey::{Covered, Survey};
+use words::{color, distance, number, percent, place, points};
+
+mod survey;
+mod words;
+
+/// So many objects are told of one by one, and so many lights.
+const MOST: usize = 10;
+
+/// What a picture of that resolution shows: sentences in English, in lines. The `name` is the scene's.
+pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resolution) -> String {
+    let told = Told { scene, camera, survey: Survey::of(scene, camera, resolution) };
+    let mut text = told.beginning(name);
+    for part in [told.seen(resolution), told.unseen(resolution), told.nothing(), told.lights()] {
+        if !part.is_empty() {
+            text += "\n";
+            text += &part;
+        }
+    }
+    text
+}
+
+/// What is told of.
+struct Told<'s> {
+    scene: &'s Scene,
+    camera: &'s Camera,
+    survey: Survey,
+}
+
+impl Told<'_> {
+    fn beginning(&self, name: &str) -> String {
+        let Pose { eye, target, .. } = self.camera.pose();
+        let degrees = self.camera.rectangle().vertical_fov().to_degrees();
+        format!(
+            "{name}: {} and {}, seen from {} towards {}; the view is {} degrees high.\n",
+            counted(self.scene.objects().len(), "object"),
+            counted(self.scene.lights.len(), "light"),
+            points(eye),
+            points(target),
+            number(degrees)
+        )
+    }
+
+    /// What is in the picture, the largest first.
+    fn seen(&self, resolution: Resolution) -> String {
+        let covered = &self.survey.covered;
+        let mut order: Vec<_> = covered.keys().copied().collect();
+        order.sort_by_key(|object| (std::cmp::Reverse(covered[object].pixels), *object));
+        if order.is_empty() {
+            return "No object is in the picture.\n".to_owned();
+        }
+        let mut text = "In the picture, the largest first:\n".to_owned();
+        for &object in order.iter().take(MOST) {
+            let part = &covered[&object];
+            let _ = writeln!(
+                text,
+                "- object {}, {}: {}, {} of the picture, {}{}",
+                object + 1,
+                self.what(object, part),
+                place(part.inside(resolution)),
+                percent(part.pixels, resolution.pixel_count()),
+                distance(part.nearest, part.farthest),
+                self.hides(object)
+            );
+        }
+        if let Some(rest) = order.get(MOST..).filter(|rest| !rest.is_empty()) {
+            let pixels: usize = rest.iter().map(|object| covered[object].pixels).sum();
+            let share = percent(pixels, resolution.pixel_count());
+            let _ = writeln!(text, "- and {} more, {share} of the picture together", self.kinds(rest.iter().copied()));
+        }
+        text
+    }
+
+    /// A colour, a kind and a size.
+    fn what(&self, object: u32, part: &Covered) -> String {
+        let scene = &self.scene.objects()[object as usize];
+        let color = match scene.material {
+            Material::Checker { a, b, .. } => format!("{} and {} checkered", color(a), color(b)),
+            Material::Diffuse(reflectance) => color(reflectance).to_owned(),
+            Material::Own => color(part.mean_reflectance()).to_owned(),
+        };
+        match &scene.shape {
+            Shape::Sphere(sphere) => format!("a {color} sphere of radius {}", number(sphere.radius())),
+            Shape::Plane(_) => format!("an endless {color} plane"),
+            Shape::Triangle(triangle) => format!("a {color} triangle, {}", sides(Bounds::of(triangle.corners()))),
+            Shape::Mesh(mesh) => {
+                let count = mesh.triangle_count();
+                format!(
+                    "a {color} mesh of {count} triangles, {}",
+                    sides(Bounds::of(mesh.file().positions().iter().copied()))
+                )
+            }
+        }
+    }
+
+    /// What it stands before and behind; planes are behind everything.
+    fn hides(&self, object: u32) -> String {
+        let is_plane = |object: &u32| matches!(self.scene.objects()[*object as usize].shape, Shape::Plane(_));
+        if is_plane(&object) {
+            return String::new();
+        }
+        let list = |objects: Vec<u32>| {
+            let objects: Vec<_> = objects.into_iter().filter(|other| !is_plane(other)).collect();
+            (!objects.is_empty()).then(|| numbers(&objects))
+        };
+        let before = list(self.survey.behind(object)).map(|others| format!("; in front of {others}"));
+        let after = list(self.survey.before(object)).map(|others| format!("; partly behind {others}"));
+        let told: String = [before, after].into_iter().flatten().collect();
+        told + self.around(object)
+    }
+
+    /// Whether the eye is inside it.
+    fn around(&self, object: u32) -> &'static str {
+        match &self.scene.objects()[object as usize].shape {
+            Shape::Sphere(sphere) if sphere.center().distance(self.camera.pose().eye) < sphere.radius() => {
+                "; the eye is inside it"
+            }
+            _ => "",
+        }
+    }
+
+    /// What is not in the picture, and why.
+    fn unseen(&self, resolution: Resolution) -> String {
+        let count = self.scene.objects().len() as u32;
+        let unseen: Vec<_> = (0..count).filter(|object| !self.survey.covered.contains_key(object)).collect();
+        if unseen.is_empty() {
+            return String::new();
+        }
+        if unseen.len() > MOST {
+            return format!("Not seen: {}.\n", self.kinds(unseen.into_iter()));
+        }
+        let mut text = "Not seen:\n".to_owned();
+        for object in unseen {
+            let why = self.why_unseen(object, resolution);
+            let _ = writeln!(text, "- object {}, {}: {why}", object + 1, self.what(object, &Covered::default()));
+        }
+        text
+    }
+
+    fn why_unseen(&self, object: u32, resolution: Resolution) -> String {
+        let before = self.survey.before(object);
+        if !before.is_empty() {
+            return format!("hidden behind {}", numbers(&before));
+        }
+        let Some(middle) = middle(&self.scene.objects()[object as usize].shape) else {
+            return "no part of it is in front of the eye".to_owned();
+        };
+        let eye_rays = self.camera.eye_rays(resolution.aspect_ratio());
+        let basis = self.camera.basis();
+        let away = middle - self.camera.pose().eye;
+        let along = -away.dot(basis.w);
+        if along <= 0.0 {
+            return "behind the eye".to_owned();
+        }
+        // Where on the picture it would be: from 0 to 1 if it is inside.
+        let corner = eye_rays.through(0.0, 0.0).direction;
+        let part = |qu, qv| {
+            let side = eye_rays.through(qu, qv).direction - corner;
+            (away / along - corner).dot(side) / side.length_squared()
+        };
+        let (qu, qv) = (part(1.0, 0.0), part(0.0, 1.0));
+        let outside = [(qu < 0.0, "to the left of the picture"), (qu > 1.0, "to the right of the picture")];
+        let mut outside = outside.into_iter().chain([(qv < 0.0, "below the picture"), (qv > 1.0, "above the picture")]);
+        let told = outside.find_map(|(is_so, word)| is_so.then_some(word));
+        told.unwrap_or("too small to be seen, or hidden").to_owned()
+    }
+
+    /// What is seen where nothing is.
+    fn nothing(&self) -> String {
+        let share = self.survey.nothing;
+        if share == 0 {
+            return String::new();
+        }
+        let colors = match self.scene.background {
+            Background::Color(light) => color(light * self.scene.exposure).to_owned(),
+            Background::Gradient { bottom, top } => {
+                let [bottom, top] = [bottom, top].map(|light| color(light * self.scene.exposure));
+                format!("{bottom} below and {top} above")
+            }
+        };
+        format!("The background, {}, is seen in {} of the picture.\n", colors, percent(share, self.survey.pixels))
+    }
+
+    /// The lights, the strongest first.
+    fn lights(&self) -> String {
+        let target = self.camera.pose().target;
+        let mut lights: Vec<_> = self.scene.lights.iter().collect();
+        let strength = |light: &PointLight| {
+            light.intensity.luminance()
+                / match light.falloff {
+                    Falloff::InverseSquare => light.position.distance_squared(target).max(f32::MIN_POSITIVE),
+                    Falloff::None => 1.0,
+                }
+        };
+        lights.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+        let mut text = if lights.is_empty() { "No lights.\n" } else { "Lights, the strongest first:\n" }.to_owned();
+        for light in lights.iter().take(MOST) {
+            let brightest = light.intensity.r.max(light.intensity.g).max(light.intensity.b).max(f32::MIN_POSITIVE);
+            let _ = writeln!(
+                text,
+                "- {}, {}, {} from the target",
+                color(light.intensity * (1.0 / brightest)),
+                self.comes_from(light.position - target),
+                number(light.position.distance(target))
+            );
+        }
+        if lights.len() > MOST {
+            let _ = writeln!(text, "- and {} more", lights.len() - MOST);
+        }
+        if self.scene.ambient.luminance() > 0.0 {
+            text += "A little light comes from everywhere.\n";
+        }
+        if !self.scene.shadows && !lights.is_empty() {
+            text += "Nothing casts a shadow.\n";
+        }
+        text
+    }
+
+    /// Where something is, from the target, as who looks at it says it.
+    fn comes_from(&self, away: Vec3) -> String {
+        let basis = self.camera.basis();
+        let away = away.normalize_or_zero();
+        // A third of a right angle off an axis counts.
+        let side = |along: Vec3, words: [&'static str; 2]| match away.dot(along) {
+            part if part > 0.3 => Some(words[0]),
+            part if part < -0.3 => Some(words[1]),
+            _ => None,
+        };
+        let sides = [
+            side(basis.v, ["above", "below"]),
+            side(basis.u, ["the right", "the left"]),
+            side(basis.w, ["the viewer's side", "the far side"]),
+        ];
+        let sides: Vec<_> = sides.into_iter().flatten().collect();
+        if sides.is_empty() { "at the target".to_owned() } else { format!("from {}", listed(&sides)) }
+    }
+
+    /// How many of each kind.
+    fn kinds(&self, objects: impl Iterator<Item = u32>) -> String {
+        let mut counts = BTreeMap::new();
+        for object in objects {
+            let kind = match self.scene.objects()[object as usize].shape {
+                Shape::Sphere(_) => "sphere",
+                Shape::Plane(_) => "plane",
+                Shape::Triangle(_) => "triangle",
+                Shape::Mesh(_) => "mesh",
+            };
+            *counts.entry(kind).or_insert(0) += 1;
+        }
+        let counts: Vec<_> = counts.into_iter().map(|(kind, count)| counted(count, kind)).collect();
+        listed(&counts.iter().map(String::as_str).collect::<Vec<_>>())
+    }
+}
+
+/// Its middle; nothing of what has no end.
+fn middle(shape: &Shape) -> Option<Vec3> {
+    let bounds = match shape {
+        Shape::Mesh(mesh) => Some(Bounds::of(mesh.file().positions().iter().copied())),
+        shape => match shape.part(0) {
+            part @ (Part::Sphere(_) | Part::Triangle(_)) => part.bounds(),
+            Part::Plane(_) | Part::Facet(_) => None,
+        },
+    };
+    bounds.map(|bounds| 0.5 * (bounds.min + bounds.max))
+}
+
+fn sides(bounds: Bounds) -> String {
+    let Vec3 { x, y, z } = bounds.extent();
+    format!("{} by {} by {} in x, y and z", number(x), number(y), number(z))
+}
+
+fn counted(count: usize, what: &str) -> String {
+    let many = if what == "mesh" { "es" } else { "s" };
+    format!("{count} {what}{}", if count == 1 { "" } else { many })
+}
+
+/// a, b and c.
+fn listed(words: &[&str]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [some @ .., last] => format!("{} and {last}", some.join(", ")),
+    }
+}
+
+/// The objects' numbers in the file, from 1 on; of many the first few.
+fn numbers(objects: &[u32]) -> String {
+    const FEW: usize = 4;
+    let names: Vec<_> = objects.iter().take(FEW).map(|object| format!("object {}", object + 1)).collect();
+    let mut words: Vec<_> = names.iter().map(String::as_str).collect();
+    if objects.len() > FEW {
+        words.push("others");
+    }
+    listed(&words)
+}

@@ -1,0 +1,173 @@
+//! What covers which part of the picture, and what stands behind what.
+
+use crate::camera::Camera;
+use crate::color::LinearRgb;
+use crate::framebuffer::Resolution;
+use crate::hit::closest_hit;
+use crate::material::Material;
+use crate::ray::Ray;
+use crate::render::{Crew, Reach, Sampling, Sight, sights};
+use crate::scene::Scene;
+use std::collections::BTreeMap;
+use std::num::NonZeroU32;
+use std::sync::atomic::AtomicBool;
+
+/// What is seen in one pixel.
+#[derive(Clone, Copy)]
+struct Spot {
+    object: u32,
+    /// From the eye.
+    distance: f32,
+    reflectance: LinearRgb,
+    /// The next objects behind it.
+    behind: [Option<u32>; DEEP],
+}
+
+/// An object's part of the picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Covered {
+    /// How many pixels.
+    pub(super) pixels: usize,
+    /// The distances from the eye of its nearest and its farthest point there.
+    pub(super) nearest: f32,
+    pub(super) farthest: f32,
+    /// The sums of its pixels' columns and rows,
+    sum: [u64; 2],
+    /// the first of them and those after the last,
+    columns: [u32; 2],
+    rows: [u32; 2],
+    /// and of their reflectances.
+    reflectance: LinearRgb,
+}
+
+/// Where in the picture something is: parts of its width and height, from the upper left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Inside {
+    /// Its middle.
+    pub(super) middle: [f32; 2],
+    /// How much of the width and the height it reaches over.
+    pub(super) extent: [f32; 2],
+}
+
+impl Covered {
+    fn add(&mut self, spot: &Spot, x: u32, y: u32) {
+        if self.pixels == 0 {
+            *self = Self { nearest: f32::MAX, columns: [x, x], rows: [y, y], ..Self::default() };
+        }
+        self.pixels += 1;
+        self.nearest = self.nearest.min(spot.distance);
+        self.farthest = self.farthest.max(spot.distance);
+        self.sum[0] += u64::from(x);
+        self.sum[1] += u64::from(y);
+        self.columns = [self.columns[0].min(x), self.columns[1].max(x + 1)];
+        self.rows = [self.rows[0].min(y), self.rows[1].max(y + 1)];
+        self.reflectance += spot.reflectance;
+    }
+
+    pub(super) fn mean_reflectance(&self) -> LinearRgb {
+        match self.pixels {
+            0 => Material::DEFAULT_REFLECTANCE,
+            pixels => self.reflectance * (1.0 / pixels as f32),
+        }
+    }
+
+    pub(super) fn inside(&self, resolution: Resolution) -> Inside {
+        let sides = [resolution.width, resolution.height].map(|side| side as f32);
+        let middle = [0, 1].map(|axis| (self.sum[axis] as f32 / self.pixels as f32 + 0.5) / sides[axis]);
+        let extent = [self.columns, self.rows].map(|[first, end]| (end - first) as f32);
+        Inside { middle, extent: [extent[0] / sides[0], extent[1] / sides[1]] }
+    }
+}
+
+/// What there is to see.
+pub(super) struct Survey {
+    /// Of each object that is seen.
+    pub(super) covered: BTreeMap<u32, Covered>,
+    /// In how many pixels the first object stands before the second.
+    hides: BTreeMap<(u32, u32), usize>,
+    /// How many pixels show no object, and how many there are.
+    pub(super) nothing: usize,
+    pub(super) pixels: usize,
+}
+
+impl Survey {
+    pub(super) fn of(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
+        let never = AtomicBool::new(false);
+        let one = Sampling::Each(NonZeroU32::MIN);
+        let see = |sight: &Sight| spot(scene, sight);
+        let seen = sights(Crew::Pool(&never), scene, camera, resolution, one, Reach::Surfaces, see);
+        let spots = seen.unwrap_or_else(|| unreachable!("nobody else can set the flag")).pixels;
+        let mut survey = Self { covered: BTreeMap::new(), hides: BTreeMap::new(), nothing: 0, pixels: spots.len() };
+        for (at, spot) in (0..).zip(&spots) {
+            let Some(spot) = spot else {
+                survey.nothing += 1;
+                continue;
+            };
+            let covered = survey.covered.entry(spot.object).or_default();
+            covered.add(spot, at % resolution.width, at / resolution.width);
+            for behind in spot.behind.into_iter().flatten() {
+                *survey.hides.entry((spot.object, behind)).or_default() += 1;
+            }
+        }
+        survey
+    }
+
+    /// What that object hides a part of.
+    pub(super) fn behind(&self, object: u32) -> Vec<u32> {
+        let of_object = self.hides.range((object, 0)..=(object, u32::MAX));
+        of_object
+            .filter(|&(&(_, behind), &pixels)| self.is_much(behind, pixels))
+            .map(|(&(_, behind), _)| behind)
+            .collect()
+    }
+
+    /// What hides a part of that object.
+    pub(super) fn before(&self, object: u32) -> Vec<u32> {
+        let of_object =
+            self.hides.iter().filter(|&(&(_, behind), &pixels)| behind == object && self.is_much(object, pixels));
+        of_object.map(|(&(before, _), _)| before).collect()
+    }
+
+    /// Whether so many pixels are a part of the object that is worth a word: a twentieth of what is seen of it.
+    fn is_much(&self, object: u32, pixels: usize) -> bool {
+        20 * pixels >= self.covered.get(&object).map_or(0, |covered| covered.pixels)
+    }
+}
+
+fn spot(scene: &Scene, sight: &Sight) -> Option<Spot> {
+    let (hit, surface) = (sight.hit?, sight.surface(scene)?);
+    let own = hit.surface(scene).own_reflectance(surface.uv);
+    Some(Spot {
+        object: hit.object,
+        distance: hit.t * sight.ray.direction.length(),
+        reflectance: own.unwrap_or(Material::DEFAULT_REFLECTANCE),
+        behind: behind(scene, *sight),
+    })
+}
+
+/// So many objects are looked for behind what is seen,
+const DEEP: usize = 3;
+/// behind so many surfaces.
+const LAYERS: usize = 12;
+
+/// The next objects that the ray would meet if what is seen were not there.
+fn behind(scene: &Scene, mut sight: Sight) -> [Option<u32>; DEEP] {
+    let seen = sight.hit.map(|hit| hit.object);
+    let (mut found, mut count) = ([None; DEEP], 0);
+    for _ in 0..LAYERS {
+        let Some(surface) = sight.surface(scene) else { break };
+        // As far behind the surface as a shadow ray begins before it.
+        let origin = surface.position - surface.facing * surface.clearance;
+        sight.ray = Ray { origin, ..sight.ray };
+        sight.hit = closest_hit(scene, &sight.ray);
+        let object = sight.hit.map(|hit| hit.object);
+        if object.is_some() && object != seen && !found.contains(&object) {
+            found[count] = object;
+            count += 1;
+        }
+        if count == DEEP {
+            break;
+        }
+    }
+    found
+}

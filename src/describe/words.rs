@@ -1,0 +1,149 @@
+//! Numbers, colours and places as words.
+
+use super::survey::Inside;
+use crate::color::{LinearRgb, Oklab, Srgb8};
+use glam::Vec3;
+
+/// Colours that have a name of their own in everyday language, light and dark.
+const COLORS: [(&str, Srgb8); 32] = [
+    ("black", Srgb8::new(0, 0, 0)),
+    ("dark grey", Srgb8::new(72, 72, 72)),
+    ("grey", Srgb8::new(128, 128, 128)),
+    ("light grey", Srgb8::new(211, 211, 211)),
+    ("white", Srgb8::new(255, 255, 255)),
+    ("red", Srgb8::new(220, 40, 40)),
+    ("dark red", Srgb8::new(120, 20, 20)),
+    ("light red", Srgb8::new(245, 130, 120)),
+    ("pink", Srgb8::new(255, 180, 200)),
+    ("dark pink", Srgb8::new(220, 60, 130)),
+    ("orange", Srgb8::new(250, 140, 30)),
+    ("light orange", Srgb8::new(255, 190, 120)),
+    ("brown", Srgb8::new(130, 75, 35)),
+    ("light brown", Srgb8::new(190, 145, 95)),
+    ("dark brown", Srgb8::new(70, 42, 25)),
+    ("yellow", Srgb8::new(245, 220, 50)),
+    ("gold", Srgb8::new(235, 180, 50)),
+    ("light yellow", Srgb8::new(255, 245, 170)),
+    ("warm white", Srgb8::new(250, 235, 210)),
+    ("beige", Srgb8::new(225, 210, 180)),
+    ("olive", Srgb8::new(125, 125, 30)),
+    ("green", Srgb8::new(50, 165, 60)),
+    ("dark green", Srgb8::new(20, 85, 30)),
+    ("light green", Srgb8::new(150, 225, 140)),
+    ("teal", Srgb8::new(30, 140, 135)),
+    ("turquoise", Srgb8::new(80, 215, 210)),
+    ("blue", Srgb8::new(40, 90, 220)),
+    ("dark blue", Srgb8::new(20, 35, 110)),
+    ("light blue", Srgb8::new(140, 190, 245)),
+    ("purple", Srgb8::new(130, 50, 170)),
+    ("dark purple", Srgb8::new(70, 25, 95)),
+    ("light purple", Srgb8::new(190, 150, 235)),
+];
+
+/// The name of the nearest colour that has one.
+pub(super) fn color(light: LinearRgb) -> &'static str {
+    let seen = Oklab::from_srgb8(Srgb8::from_linear(light));
+    // A little colour makes more of a difference to the name than a little light.
+    let away = |color: Srgb8| {
+        let Oklab { l, a, b } = Oklab::from_srgb8(color);
+        let (l, a, b) = (seen.l - l, 2.0 * (seen.a - a), 2.0 * (seen.b - b));
+        l * l + a * a + b * b
+    };
+    let nearest = COLORS.into_iter().min_by(|a, b| away(a.1).total_cmp(&away(b.1)));
+    nearest.map_or("", |(name, _)| name)
+}
+
+/// Three digits, without noughts at the end.
+pub(super) fn number(value: f32) -> String {
+    let digits = match value.abs() {
+        v if v >= 100.0 => 0,
+        v if v >= 10.0 => 1,
+        v if v >= 0.1 || v == 0.0 => 2,
+        _ => return format!("{value:.1e}"),
+    };
+    let text = format!("{value:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+pub(super) fn points(point: Vec3) -> String {
+    format!("({}, {}, {})", number(point.x), number(point.y), number(point.z))
+}
+
+/// From where to where, if that makes a difference.
+pub(super) fn distance(nearest: f32, farthest: f32) -> String {
+    if farthest > 1.5 * nearest {
+        format!("from {} away on", number(nearest))
+    } else {
+        format!("{} away", number(nearest))
+    }
+}
+
+pub(super) fn percent(part: usize, of: usize) -> String {
+    match 100 * part / of.max(1) {
+        0 => "less than 1%".to_owned(),
+        share => format!("{share}%"),
+    }
+}
+
+/// Where in the picture it is.
+pub(super) fn place(inside: Inside) -> &'static str {
+    const MOST: f32 = 0.8;
+    /// Left or above, in the middle, right or below; or all over.
+    fn third(middle: f32, extent: f32) -> usize {
+        match middle {
+            _ if extent > MOST => 3,
+            m if m < 0.42 => 0,
+            m if m > 0.58 => 2,
+            _ => 1,
+        }
+    }
+    const PLACES: [[&str; 4]; 4] = [
+        ["upper left", "at the top", "upper right", "across the top"],
+        ["on the left", "in the middle", "on the right", "across the middle"],
+        ["lower left", "at the bottom", "lower right", "across the bottom"],
+        ["all along the left", "from top to bottom in the middle", "all along the right", "all over the picture"],
+    ];
+    let Inside { middle, extent } = inside;
+    PLACES[third(middle[1], extent[1])][third(middle[0], extent[0])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_have_everyday_names() {
+        for (hex, name) in [
+            (Srgb8::new(0xe0, 0x45, 0x2f), "red"),
+            (Srgb8::new(0xf0, 0xb1, 0x3a), "gold"),
+            (Srgb8::new(0x2a, 0x9d, 0x94), "teal"),
+            (Srgb8::new(0x80, 0x80, 0x84), "grey"),
+            (Srgb8::new(0x10, 0x30, 0x90), "dark blue"),
+            (Srgb8::new(0xff, 0xff, 0xf8), "white"),
+        ] {
+            assert_eq!(color(LinearRgb::from_srgb8(hex)), name);
+        }
+        for (name, srgb) in COLORS {
+            assert_eq!(color(LinearRgb::from_srgb8(srgb)), name);
+        }
+    }
+
+    #[test]
+    fn numbers_have_three_digits() {
+        let numbers = [0.0, -0.001, 1.0, 2.104, 0.55, 36.04, 123.4, -0.0].map(number);
+        assert_eq!(numbers, ["0", "-1.0e-3", "1", "2.1", "0.55", "36", "123", "0"]);
+        assert_eq!(points(Vec3::new(0.0, 2.1, 6.3)), "(0, 2.1, 6.3)");
+    }
+
+    #[test]
+    fn places_are_told_as_people_tell_them() {
+        let at = |x, y, width, height| place(Inside { middle: [x, y], extent: [width, height] });
+        assert_eq!(at(0.1, 0.1, 0.2, 0.2), "upper left");
+        assert_eq!(at(0.5, 0.5, 0.2, 0.2), "in the middle");
+        assert_eq!(at(0.9, 0.5, 0.2, 0.2), "on the right");
+        assert_eq!(at(0.5, 0.8, 1.0, 0.4), "across the bottom");
+        assert_eq!(at(0.2, 0.5, 0.3, 1.0), "all along the left");
+        assert_eq!(at(0.5, 0.5, 1.0, 1.0), "all over the picture");
+    }
+}

@@ -1,0 +1,215 @@
+//! An explanation as text: short lines in the lecture's symbols, for a panel or a page.
+
+use super::{Equation, Explanation, Lit, Seen, Tested};
+use crate::capabilities::CellMode;
+use crate::color::LinearRgb;
+use crate::scene::{Scene, ToneCurve};
+use crate::shape::{Shape, Side};
+use glam::Vec3;
+use std::fmt;
+
+/// No line is longer, in columns, unless a number has more digits than is usual.
+pub const WIDTH: usize = 35;
+
+/// What a surface is called: the number of its object in the scene file, counted from 1, and what it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Name {
+    object: u32,
+    kind: &'static str,
+    /// Which of a mesh's triangles, counted from 1.
+    face: Option<u32>,
+}
+
+impl Name {
+    pub(super) fn of(scene: &Scene, object: u32, part: u32) -> Self {
+        let (kind, face) = match scene.objects()[object as usize].shape {
+            Shape::Sphere(_) => ("sphere", None),
+            Shape::Plane(_) => ("plane", None),
+            Shape::Triangle(_) => ("triangle", None),
+            Shape::Mesh(_) => ("face", Some(part + 1)),
+        };
+        Self { object: object + 1, kind, face }
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { object, kind, face } = self;
+        match face {
+            Some(face) => write!(f, "#{object} {kind} {face}"),
+            None => write!(f, "#{object} {kind}"),
+        }
+    }
+}
+
+impl Explanation {
+    /// All of it, line by line, without control characters and in ASCII.
+    pub fn lines(&self) -> Vec<String> {
+        let [i, j] = self.pixel;
+        let mut lines = vec![
+            format!("(i, j) = ({i}, {j}) of {}x{}", self.resolution.width, self.resolution.height),
+            format!("(q_u, q_v) = ({:.4}, {:.4})", self.q.x, self.q.y),
+            vector("q", self.q_in_space()),
+            vector("o", self.ray.origin),
+            vector("d", self.ray.direction),
+        ];
+        self.add_tests(&mut lines);
+        match &self.seen {
+            Some(seen) => self.add_seen(seen, &mut lines),
+            None => lines.extend([String::new(), "nothing in front: background".to_owned()]),
+        }
+        lines.push(light("L", self.light));
+        self.add_tone(&mut lines);
+        lines
+    }
+
+    fn add_tests(&self, lines: &mut Vec<String>) {
+        let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
+        let nodes = count(self.nodes as usize, "node");
+        lines.push(String::new());
+        lines.push(format!("tested: {}, {nodes}", count(self.tested.len(), "surface")));
+        for (at, tested) in self.tested.iter().enumerate() {
+            let mark = if at == 0 && tested.t.is_some() { '>' } else { ' ' };
+            lines.push(format!("{mark} {:<14} {}", tested.name.to_string(), crossings(tested)));
+        }
+    }
+
+    fn add_seen(&self, seen: &Seen, lines: &mut Vec<String>) {
+        lines.push(String::new());
+        lines.push(format!("in front: {}, t = {}", seen.name, number(seen.hit.t).trim_start()));
+        if let Some(closest) = self.tested.first() {
+            add_equation(&closest.equation, lines);
+        }
+        let side = match seen.point.side {
+            Side::Front => "front",
+            Side::Back => "back",
+        };
+        lines.extend([
+            vector("p", seen.point.position),
+            vector("n", seen.point.normal),
+            format!("seen from the {side}"),
+        ]);
+        for (number, lit) in (1..).zip(&seen.lights) {
+            add_light(number, lit, lines);
+        }
+        lines.push(String::new());
+        lines.extend([light("ambient", seen.ambient), light("sum", seen.arriving)]);
+        lines.push(light("reflected", seen.reflectance));
+    }
+
+    fn add_tone(&self, lines: &mut Vec<String>) {
+        let curve = match self.tone_curve {
+            ToneCurve::None => "no curve",
+            ToneCurve::Reinhard => "Reinhard",
+            ToneCurve::Filmic => "Filmic",
+        };
+        lines.push(light("shown", self.shown));
+        lines.push(format!("  by exposure {}, {curve}", self.exposure));
+        let [r, g, b] = [self.bytes.r, self.bytes.g, self.bytes.b];
+        lines.push(format!("sRGB {r} {g} {b}  #{r:02x}{g:02x}{b:02x}"));
+    }
+}
+
+/// Which cell of a screen shows a pixel, and where in it.
+pub fn cell([x, y]: [u32; 2], mode: CellMode) -> String {
+    let (across, down) = mode.pixels_per_cell();
+    let place = match (across, down) {
+        (1, 2) => ["upper half", "lower half"][(y % 2) as usize].to_owned(),
+        _ => format!("part ({}, {}) of it", x % across, y % down),
+    };
+    format!("cell ({}, {}), {place}", x / across, y / down)
+}
+
+/// The t of a tested surface, as the picture has it and then as the equation has the rest.
+fn crossings(tested: &Tested) -> String {
+    let own = |other: f64| number(tested.t.unwrap_or(other as f32));
+    match tested.equation {
+        Equation::Sphere { roots: None, .. } => "  no root".to_owned(),
+        Equation::Sphere { roots: Some([first, second]), .. } => match tested.t {
+            // From inside, the first root is behind the eye.
+            Some(t) if first < 0.0 => format!("{}{}", number(first as f32), number(t)),
+            _ => format!("{}{}", own(first), number(second as f32)),
+        },
+        Equation::Plane { t: None, .. } | Equation::Triangle { t: None, .. } => "  parallel".to_owned(),
+        Equation::Plane { t: Some(t), .. } => own(t),
+        Equation::Triangle { t: Some(t), shares } => {
+            let is_outside = tested.t.is_none() && shares.iter().any(|&share| share < 0.0);
+            format!("{}{}", own(t), if is_outside { "  outside" } else { "" })
+        }
+    }
+}
+
+fn add_equation(equation: &Equation, lines: &mut Vec<String>) {
+    let line = |what: &str, value: f64| format!("  {what:<20}{}", number(value as f32));
+    match *equation {
+        Equation::Sphere { a, b, c, roots } => {
+            lines.extend([line("a = d.d", a), line("b = 2 (o-c).d", b), line("c = (o-c).(o-c)-rr", c)]);
+            let [t0, t1] = roots.unwrap_or_default().map(|root| number(root as f32));
+            lines.push("  t = (-b +- sqrt(bb - 4ac)) / 2a".to_owned());
+            lines.push(format!("    = {t0} or {t1}"));
+        }
+        Equation::Plane { numerator, denominator, t } => {
+            lines.extend([line("(a-o).n", numerator), line("d.n", denominator)]);
+            lines.push(line("t = (a-o).n / d.n", t.unwrap_or_default()));
+        }
+        Equation::Triangle { t, shares } => {
+            lines.push(line("t = (a-o).n / d.n", t.unwrap_or_default()));
+            let [a, b, c] = shares.map(|share| number(share as f32));
+            lines.push("  shares of its corners".to_owned());
+            lines.push(format!("      {a}{b}{c}"));
+        }
+    }
+}
+
+fn add_light(at: usize, lit: &Lit, lines: &mut Vec<String>) {
+    let incidence = &lit.incidence;
+    lines.push(String::new());
+    lines.push(format!("light {at}: distance {}", number(incidence.distance).trim_start()));
+    lines.push(vector("l", incidence.l));
+    let n_l = number(incidence.cosine);
+    match lit.blocker {
+        _ if !lit.faces() => lines.push(format!("n.l{n_l}, faces away")),
+        Some((name, _)) => lines.extend([format!("n.l{n_l}, in the shadow of"), format!("  {name}")]),
+        None => lines.extend([format!("n.l{n_l}, lit"), light("+", lit.contribution())]),
+    }
+}
+
+fn vector(name: &str, Vec3 { x, y, z }: Vec3) -> String {
+    format!("{name:<5}{} {} {}", number(x), number(y), number(z))
+}
+
+fn light(name: &str, LinearRgb { r, g, b }: LinearRgb) -> String {
+    let [r, g, b] = [r, g, b].map(|band| format!("{:>8}", number(band).trim_start()));
+    format!("{name:<9}{r} {g} {b}")
+}
+
+/// Nine columns, or more where that says too little.
+fn number(x: f32) -> String {
+    let size = x.abs();
+    match size {
+        _ if size == 0.0 => format!("{:9.4}", 0.0),
+        _ if !(1e-3..1e5).contains(&size) => format!("{x:>9.2e}"),
+        _ if size < 999.5 => format!("{x:9.4}"),
+        _ => format!("{x:9.2}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_take_nine_columns() {
+        for (x, text) in [
+            (0.0, "   0.0000"),
+            (-0.0, "   0.0000"),
+            (-123.456_78, "-123.4568"),
+            (-12_345.678, "-12345.68"),
+            (123_456_790.0, "   1.23e8"),
+            (-1.5e-10, "-1.50e-10"),
+            (f32::INFINITY, "      inf"),
+        ] {
+            assert_eq!(number(x), text);
+        }
+    }
+}

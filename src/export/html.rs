@@ -1,0 +1,62 @@
+//! Grid -> HTML.
+
+use super::paint::{paths, runs};
+use crate::grid::{Grid, Size};
+use std::fmt::Write;
+
+/// The grid as a page by itself, of its right shape in any font: cells are as wide as the font's characters, and
+/// `cell_aspect` times as high. Characters are text that can be selected, over an SVG of all colours behind it and of
+/// half blocks; as [`svg`](super::svg) has them. It has no script, and loads nothing.
+///
+/// ```
+/// use termtrace::{export::html, grid::{Cell, Grid, Ink, Size}};
+///
+/// let mut grid = Grid::new(Size::new(2, 1));
+/// *grid.cell_mut(1, 0) = Cell::new('<', Ink::Default, Ink::Default);
+/// assert!(html(&grid, 2.0).contains("<pre> &lt;\n</pre>"));
+/// ```
+pub fn html(grid: &Grid, cell_aspect: f32) -> String {
+    let Size { columns, rows } = grid.size();
+    let half_rows = 2 * u32::from(rows);
+    // `pre` would swallow a line feed at its beginning; a row of cells is never one.
+    let text = text(grid);
+    let text = if text.trim().is_empty() { String::new() } else { format!("<pre>{text}</pre>\n") };
+    format!(
+        r#"<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<title>termtrace</title>
+<style>
+body{{margin:0;background:#000;color:#fff;font:16px monospace}}
+div{{position:relative;width:{columns}ch;height:calc({rows}ch*{cell_aspect})}}
+svg,pre{{position:absolute;width:100%;height:100%;margin:0;font:inherit;line-height:calc(1ch*{cell_aspect})}}
+</style>
+<div>
+<svg viewBox="0 0 {columns} {half_rows}" preserveAspectRatio="none" shape-rendering="crispEdges">
+{}</svg>
+{text}</div>
+</html>
+"#,
+        paths(grid)
+    )
+}
+
+/// What is written, row by row, without blanks at the ends of rows.
+fn text(grid: &Grid) -> String {
+    let mut text = String::new();
+    for row in grid.rows() {
+        let mut end = 0;
+        for run in runs(row) {
+            text.extend(std::iter::repeat_n(' ', run.column - end));
+            let (css, escaped) = (run.css("color"), run.escaped());
+            if css.is_empty() {
+                text.push_str(&escaped);
+            } else {
+                let _ = write!(text, r#"<span style="{css}">{escaped}</span>"#);
+            }
+            end = run.column + run.columns;
+        }
+        text.push('\n');
+    }
+    text
+}

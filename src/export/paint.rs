@@ -1,0 +1,164 @@
+//! What a grid looks like without a terminal: areas of one colour, and the text over them. SVG and HTML are made of it.
+
+use crate::capabilities::xterm_color;
+use crate::color::Srgb8;
+use crate::grid::{Cell, Glyph, Grid, Ink};
+use ratatui::style::Modifier;
+use std::collections::HashMap;
+use std::fmt::Write;
+
+/// What a terminal's own colours are taken to be: light on dark.
+pub(super) const DEFAULT_TEXT: Srgb8 = Srgb8::new(255, 255, 255);
+const DEFAULT_BACKGROUND: Srgb8 = Srgb8::new(0, 0, 0);
+
+/// A rectangle of one colour: columns from the left, half cells from the top.
+struct Area {
+    x: usize,
+    y: usize,
+    width: usize,
+    height: usize,
+    color: Srgb8,
+}
+
+/// Text of one style, without a break in a row.
+pub(super) struct Run {
+    pub(super) column: usize,
+    /// How many it takes.
+    pub(super) columns: usize,
+    pub(super) text: String,
+    color: Srgb8,
+    modifier: Modifier,
+}
+
+impl Run {
+    /// How it differs from plain text in the default colour, as CSS; `fill` is the name of the text's colour.
+    pub(super) fn css(&self, fill: &str) -> String {
+        let mut css = Vec::new();
+        if self.color != DEFAULT_TEXT {
+            css.push(format!("{fill}:{}", hex(self.color)));
+        }
+        let modifiers = [
+            (Modifier::BOLD, "font-weight:bold"),
+            (Modifier::ITALIC, "font-style:italic"),
+            (Modifier::UNDERLINED, "text-decoration:underline"),
+        ];
+        css.extend(modifiers.iter().filter(|(one, _)| self.modifier.contains(*one)).map(|&(_, rule)| rule.to_owned()));
+        css.join(";")
+    }
+
+    /// The text with those characters replaced that mean something to SVG and HTML.
+    pub(super) fn escaped(&self) -> String {
+        self.text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    }
+}
+
+/// The colours behind the text and those of half blocks: SVG paths, one for each colour, a column wide and half a cell
+/// high to a unit.
+pub(super) fn paths(grid: &Grid) -> String {
+    let mut places = HashMap::new();
+    let mut outlines: Vec<(Srgb8, String)> = Vec::new();
+    for Area { x, y, width, height, color } in areas(grid) {
+        let place = *places.entry(color).or_insert_with(|| {
+            outlines.push((color, String::new()));
+            outlines.len() - 1
+        });
+        let _ = write!(outlines[place].1, "M{x} {y}h{width}v{height}h-{width}");
+    }
+    let mut paths = String::new();
+    for (color, outline) in outlines {
+        let _ = writeln!(paths, r#"<path fill="{}" d="{outline}"/>"#, hex(color));
+    }
+    paths
+}
+
+/// Runs of equal colour, joined with those above them that are as long.
+fn areas(grid: &Grid) -> Vec<Area> {
+    let mut areas: Vec<Area> = Vec::new();
+    let mut above: HashMap<(usize, usize, Srgb8), usize> = HashMap::new();
+    let half_rows = grid.rows().flat_map(|row| [0, 1].map(|half| row.iter().map(move |cell| halves(cell)[half])));
+    for (y, colors) in half_rows.enumerate() {
+        let colors: Vec<Srgb8> = colors.collect();
+        let mut here = HashMap::new();
+        let mut x = 0;
+        for run in colors.chunk_by(|a, b| a == b) {
+            let key = (x, run.len(), run[0]);
+            let area = above.get(&key).copied().unwrap_or_else(|| {
+                areas.push(Area { x, y, width: run.len(), height: 0, color: run[0] });
+                areas.len() - 1
+            });
+            areas[area].height += 1;
+            here.insert(key, area);
+            x += run.len();
+        }
+        above = here;
+    }
+    areas
+}
+
+/// The colours of the cell's upper and lower half, without its text.
+fn halves(cell: &Cell) -> [Srgb8; 2] {
+    let [fg, bg] = colors(cell);
+    match cell.glyph {
+        Glyph::Char('▀') => [fg, bg],
+        Glyph::Char('▄') => [bg, fg],
+        Glyph::Char('█') => [fg, fg],
+        _ => [bg, bg],
+    }
+}
+
+/// The glyph's colour and the one behind it.
+fn colors(cell: &Cell) -> [Srgb8; 2] {
+    let (fg, bg) = (color(cell.fg, DEFAULT_TEXT), color(cell.bg, DEFAULT_BACKGROUND));
+    if cell.modifier.contains(Modifier::REVERSED) { [bg, fg] } else { [fg, bg] }
+}
+
+fn color(ink: Ink, default: Srgb8) -> Srgb8 {
+    match ink {
+        Ink::Default => default,
+        Ink::Indexed(index) => xterm_color(index),
+        Ink::Rgb(color) => color,
+    }
+}
+
+/// What is written in a row. Blanks join what stands on both sides of them, but are no text by themselves.
+pub(super) fn runs(row: &[Cell]) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (column, cell) in row.iter().enumerate() {
+        let (color, modifier) = (colors(cell)[0], cell.modifier);
+        let Some(text) = written(cell) else {
+            if let Some(run) = runs.last_mut().filter(|run| cell.glyph == Glyph::Covered && run.end() == column) {
+                run.columns += 1;
+            }
+            continue;
+        };
+        match runs.last_mut().filter(|run| (run.color, run.modifier) == (color, modifier)) {
+            Some(run) => {
+                run.text.extend(std::iter::repeat_n(' ', column - run.end()));
+                run.text.push_str(&text);
+                run.columns = column + 1 - run.column;
+            }
+            None => runs.push(Run { column, columns: 1, text, color, modifier }),
+        }
+    }
+    runs
+}
+
+impl Run {
+    fn end(&self) -> usize {
+        self.column + self.columns
+    }
+}
+
+/// The cell's text, if it is not a part of the areas.
+fn written(cell: &Cell) -> Option<String> {
+    let underlined = cell.modifier.contains(Modifier::UNDERLINED);
+    match cell.glyph {
+        Glyph::Covered | Glyph::Foreign | Glyph::Char('▀' | '▄' | '█') => None,
+        Glyph::Char(' ') if !underlined => None,
+        _ => Some(cell.glyph.to_string()),
+    }
+}
+
+pub(super) fn hex(Srgb8 { r, g, b }: Srgb8) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}

@@ -1,0 +1,67 @@
+//! Grid -> SVG.
+
+use super::paint::{DEFAULT_TEXT, hex, paths, runs};
+use crate::grid::{Grid, Size};
+use std::fmt::Write;
+
+/// The width of a cell.
+const WIDTH: f64 = 10.0;
+
+/// The width of a character over the size of its font, in most monospace fonts.
+const ADVANCE: f64 = 0.6;
+
+/// The grid as an SVG picture of its right shape: cells 10 units wide and `cell_aspect` times as high. Half blocks are
+/// rectangles, of which equal neighbours are one; characters are text, light on dark where the grid does not say
+/// otherwise. The 256 colours are taken to be xterm's. It needs nothing but itself, and moves nothing.
+///
+/// ```
+/// use termtrace::{export::svg, grid::{Cell, Grid, Ink, Size}};
+///
+/// let mut grid = Grid::new(Size::new(2, 1));
+/// *grid.cell_mut(0, 0) = Cell::new('▀', Ink::Indexed(196), Ink::Indexed(21));
+/// assert!(svg(&grid, 2.0).contains(r##"<path fill="#ff0000" d="M0 0h1v1h-1"/>"##));
+/// ```
+pub fn svg(grid: &Grid, cell_aspect: f32) -> String {
+    let Size { columns, rows } = grid.size();
+    let cell_height = WIDTH * f64::from(cell_aspect);
+    let (width, height) = (rounded(WIDTH * f64::from(columns)), rounded(cell_height * f64::from(rows)));
+    let half = rounded(0.5 * cell_height);
+    let mut svg = format!(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">
+<g transform="scale({WIDTH} {half})" shape-rendering="crispEdges">
+{}</g>
+"#,
+        paths(grid)
+    );
+    svg.push_str(&text(grid, cell_height));
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// What is written over it; nothing if nothing is.
+fn text(grid: &Grid, cell_height: f64) -> String {
+    let font_size = (WIDTH / ADVANCE).min(0.85 * cell_height);
+    let mut lines = String::new();
+    for (row, cells) in grid.rows().enumerate() {
+        // A third of its size above the line, and none below: so characters stand in the middle of their cells.
+        let y = rounded((row as f64 + 0.5) * cell_height + font_size / 3.0);
+        for run in runs(cells) {
+            let (x, length) = (WIDTH * run.column as f64, WIDTH * run.columns as f64);
+            let style = Some(run.css("fill")).filter(|css| !css.is_empty());
+            let style = style.map(|css| format!(r#" style="{css}""#)).unwrap_or_default();
+            let _ = writeln!(lines, r#"<text x="{x}" y="{y}" textLength="{length}"{style}>{}</text>"#, run.escaped());
+        }
+    }
+    if lines.is_empty() {
+        return lines;
+    }
+    let (font_size, fill) = (rounded(font_size), hex(DEFAULT_TEXT));
+    format!(
+        "<g font-family=\"monospace\" font-size=\"{font_size}\" fill=\"{fill}\" xml:space=\"preserve\">\n{lines}</g>\n"
+    )
+}
+
+/// To a thousandth, which no screen shows: few characters, and the same everywhere.
+fn rounded(value: f64) -> f64 {
+    (1000.0 * value).round() / 1000.0
+}

@@ -1,0 +1,64 @@
+//! One pixel on its own way through the steps, with what stands between them.
+
+use super::Buffers;
+use super::tiles::{PIXELS, Tiles};
+use crate::camera::Camera;
+use crate::color::LinearRgb;
+use crate::framebuffer::Resolution;
+use crate::hit::Hit;
+use crate::lanes::{Eight, LANES};
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::shade::{self, EightArriving};
+use glam::Vec2;
+
+/// What the steps of [`render`](super::render) make of the first sample of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steps {
+    /// The lecture's (qu, qv): where in the picture the sample lies, (0, 0) being the lower left corner and (1, 1) the
+    /// upper right one.
+    pub q: Vec2,
+    /// The eye ray.
+    pub ray: Ray,
+    /// What it meets.
+    pub hit: Option<Hit>,
+    /// The light that arrives there: the ambient light and that of all lights.
+    pub arriving: LinearRgb,
+    /// How much of that is reflected, each band in 0..=1.
+    pub reflectance: LinearRgb,
+    /// What goes to the eye: from there, or from the background.
+    pub light: LinearRgb,
+}
+
+/// The steps of [`render`](super::render) for one pixel of a picture, counted from the top left: what that does for all,
+/// done by the same functions for one.
+///
+/// # Panics
+/// Outside the picture.
+pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y]: [u32; 2]) -> Steps {
+    assert!(x < resolution.width && y < resolution.height, "pixel ({x}, {y}) is outside the picture");
+    let tiles = Tiles::new(camera, resolution, 1);
+    let number = tiles.number(x, y);
+    let mut buffers = Buffers::default();
+    buffers.want(std::iter::once((number % PIXELS) as u8));
+    buffers.trace_sample(scene, &tiles, number / PIXELS, 0);
+    let light = shade::light_of(&buffers.lights[0], 0);
+    Steps {
+        q: tiles.q([x as f32, y as f32], 0).into(),
+        ray: buffers.rays[0].ray(0),
+        hit: buffers.hits[0].hit(scene, 0),
+        arriving: shade::light_of(&buffers.arriving[0].light, 0),
+        reflectance: buffers.reflectance(scene, &tiles),
+        light,
+    }
+}
+
+impl Buffers {
+    /// The reflectance of the first of the points: what is reflected where light of 1 arrives.
+    fn reflectance(&mut self, scene: &Scene, tiles: &Tiles) -> LinearRgb {
+        let Self { rays, hits, points, arriving, lights, .. } = self;
+        *arriving = vec![EightArriving { light: [Eight([1.0; LANES]); 3], lit_by: [0; LANES] }];
+        shade::reflect(scene, rays, tiles.steps(0), hits, points, arriving, lights);
+        shade::light_of(&lights[0], 0)
+    }
+}

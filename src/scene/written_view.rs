@@ -1,0 +1,216 @@
+//! A scene file's text with one more view in it, and nothing else changed: comments and blanks stay, byte for byte.
+
+use crate::camera::Camera;
+use crate::scene_file::SceneFile;
+use crate::scene_text::{Body, Faults, Field, Node, Value, parse};
+
+/// The text of a scene file with that camera as the last of its `views`. `None` if the text is no scene's.
+///
+/// ```
+/// use termtrace::scene::{Scene, with_view};
+///
+/// let text = "(\n    // From in front.\n    camera: (eye: (0, 0, 5), target: (0, 0, 0)),\n)\n";
+/// let camera = Scene::from_ron("x.ron", &text.replace("0, 0, 5", "3, 1, 2"))?.camera;
+/// assert_eq!(with_view(text, &camera).unwrap(), "(
+///     // From in front.
+///     camera: (eye: (0, 0, 5), target: (0, 0, 0)),
+///     views: [
+///         (eye: (3, 1, 2), target: (0, 0, 0), up: (0, 1, 0), vertical_fov: 45),
+///     ],
+/// )
+/// ");
+/// # Ok::<(), termtrace::scene_text::SceneError>(())
+/// ```
+pub fn with_view(text: &str, camera: &Camera) -> Option<String> {
+    let root = parse(text).ok()?;
+    let line = camera.to_ron();
+    let view = line.strip_prefix("camera: ").unwrap_or(&line);
+    let fields = fields(&root)?;
+    let field = |name| fields.iter().find(|field: &&Field<'_>| field.name.text == name);
+    let additions = match field("views") {
+        Some(views) => to_list(text, &views.value, view)?,
+        None => after(text, field("camera")?, view),
+    };
+    let written = inserted(text, additions);
+    (count(&written)? == count(text)? + 1).then_some(written)
+}
+
+/// Something to be put in at a byte of the text.
+type Addition = (usize, String);
+
+/// Into the list of views, on a line of its own if the bracket that closes it has one.
+fn to_list(text: &str, list: &Node<'_>, view: &str) -> Option<Vec<Addition>> {
+    let items = items(list)?;
+    let close = list.span.end as usize - 1;
+    let last = items.last().map(|item| item.span.end as usize);
+    let before = text[..close].trim_end().len();
+    if !text[before..close].contains('\n') {
+        return Some(vec![last.map_or_else(|| (close, view.to_owned()), |end| (end, format!(", {view}")))]);
+    }
+    let indent = match items.last() {
+        Some(item) => indent_of(text, item.span.start as usize).to_owned(),
+        None => format!("{}    ", indent_of(text, close)),
+    };
+    let missing = last.filter(|&end| !text[skip_blanks(text, end)..].starts_with(','));
+    let comma = missing.map(|end| (end, ",".to_owned()));
+    Some(comma.into_iter().chain([(before, format!("{}{indent}{view},", line_end(text)))]).collect())
+}
+
+/// As a list after that field: on lines of its own, if the field's line ends with it.
+fn after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
+    let end = field.value.span.end as usize;
+    let comma = Some(skip_blanks(text, end)).filter(|&at| text[at..].starts_with(','));
+    let next = comma.map_or(end, |at| at + 1);
+    let line = text[next..].lines().next().unwrap_or_default();
+    if !(line.trim().is_empty() || line.trim_start().starts_with("//")) || !text[next..].contains('\n') {
+        return match comma {
+            Some(at) => vec![(at + 1, format!(" views: [{view}],"))],
+            None => vec![(end, format!(", views: [{view}]"))],
+        };
+    }
+    let (newline, indent) = (line_end(text), indent_of(text, field.name.span.start as usize));
+    let list = format!("{newline}{indent}views: [{newline}{indent}    {view},{newline}{indent}],");
+    let missing = comma.is_none().then(|| (end, ",".to_owned()));
+    missing.into_iter().chain([(next + line.trim_end().len(), list)]).collect()
+}
+
+/// With all additions, which are in order.
+fn inserted(text: &str, additions: Vec<Addition>) -> String {
+    let mut written = String::with_capacity(text.len() + 200);
+    let mut from = 0;
+    for (at, addition) in additions {
+        written.push_str(&text[from..at]);
+        written.push_str(&addition);
+        from = at;
+    }
+    written.push_str(&text[from..]);
+    written
+}
+
+/// How many views the text has.
+fn count(text: &str) -> Option<usize> {
+    let root = parse(text).ok()?;
+    Some(SceneFile::read(&root, &mut Faults::default()).views.len())
+}
+
+fn fields<'n, 'a>(node: &'n Node<'a>) -> Option<&'n [Field<'a>]> {
+    match &node.value {
+        Value::Group(group) => match &group.body {
+            Body::Fields(fields) => Some(fields),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn items<'n, 'a>(node: &'n Node<'a>) -> Option<&'n [Node<'a>]> {
+    match &node.value {
+        Value::List(items) => Some(items),
+        Value::Group(group) => match &group.body {
+            Body::Values(items) => Some(items),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The blanks at the beginning of the line in which that byte is.
+fn indent_of(text: &str, at: usize) -> &str {
+    let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+    let line = &text[start..];
+    &line[..line.len() - line.trim_start_matches([' ', '\t']).len()]
+}
+
+/// How the text's lines end.
+fn line_end(text: &str) -> &'static str {
+    if text.contains("\r\n") { "\r\n" } else { "\n" }
+}
+
+/// The first place from there on that is neither blank nor comment. The text has been parsed: every comment ends.
+fn skip_blanks(text: &str, mut at: usize) -> usize {
+    loop {
+        let rest = &text[at..];
+        let blanks = rest.len() - rest.trim_start().len();
+        let rest = &rest[blanks..];
+        let comment = match rest.get(..2) {
+            Some("//") => rest.find('\n').unwrap_or(rest.len()),
+            Some("/*") => block_comment(rest),
+            _ => return at + blanks,
+        };
+        at += blanks + comment;
+    }
+}
+
+/// The length of the comment at the beginning, with those inside it.
+fn block_comment(text: &str) -> usize {
+    let (mut depth, mut at) = (0_usize, 0);
+    while at < text.len() {
+        match text.as_bytes().get(at..at + 2) {
+            Some(b"/*") => (depth, at) = (depth + 1, at + 2),
+            Some(b"*/") => (depth, at) = (depth - 1, at + 2),
+            _ => at += 1,
+        }
+        if depth == 0 {
+            break;
+        }
+    }
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    const VIEW: &str = "(eye: (3, 1, 2), target: (0, 0, 0), up: (0, 1, 0), vertical_fov: 45)";
+
+    /// What becomes of `text`, with `+` for the new view's text.
+    fn added(text: &str) -> String {
+        let camera = Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera;
+        let text = text
+            .replace('C', "camera: (eye: (0, 0, 5), target: (0, 0, 0))")
+            .replace('V', "(eye: (0, 1, 5), target: (0, 0, 0))");
+        let before = Scene::from_ron("x", &text).expect("a scene");
+        let written = with_view(&text, &camera).expect("it is a scene");
+        let scene = Scene::from_ron("x", &written).expect("it still is");
+        assert_eq!(scene.views.split_last(), Some((&camera, &before.views[..])), "{written}");
+        assert_eq!(Scene { views: before.views.clone(), ..scene }, before);
+        let short = written.replace("camera: (eye: (0, 0, 5), target: (0, 0, 0))", "C").replace(VIEW, "+");
+        short.replace("(eye: (0, 1, 5), target: (0, 0, 0))", "V")
+    }
+
+    #[test]
+    fn all_else_stays_as_it_is() {
+        for (text, wanted) in [
+            ("(C)", "(C, views: [+])"),
+            ("(C,)", "(C, views: [+],)"),
+            ("(C, shadows: true)", "(C, views: [+], shadows: true)"),
+            ("(C /* , */ , // so\n)", "(C /* , */ , // so\nviews: [\n    +,\n],\n)"),
+            ("(\n    C // so\n)\n", "(\n    C, // so\n    views: [\n        +,\n    ],\n)\n"),
+            ("(\r\n\tC,\r\n)", "(\r\n\tC,\r\n\tviews: [\r\n\t    +,\r\n\t],\r\n)"),
+            ("(views: [], C)", "(views: [+], C)"),
+            ("(C, views: [V])", "(C, views: [V, +])"),
+            ("(C, views: (V, /* ] */ V, ))", "(C, views: (V, /* ] */ V, +, ))"),
+            ("(C, views: [\n    V\n])", "(C, views: [\n    V,\n    +,\n])"),
+            (
+                "(C, views: [\n  V, // a\n  V, // b, c\n  // d\n])",
+                "(C, views: [\n  V, // a\n  V, // b, c\n  // d\n  +,\n])",
+            ),
+            ("(C, views: [\n  V /* /* , */ */ // b\n])", "(C, views: [\n  V, /* /* , */ */ // b\n  +,\n])"),
+            ("(C, views: [\n    // none yet\n])", "(C, views: [\n    // none yet\n    +,\n])"),
+            ("// \"é\" ☃\nScene(C, ambient: 1)", "// \"é\" ☃\nScene(C, views: [+], ambient: 1)"),
+        ] {
+            assert_eq!(added(text), wanted, "{text}");
+            // And another.
+            added(&wanted.replace('+', "V"));
+        }
+    }
+
+    #[test]
+    fn what_is_no_scene_is_left_alone() {
+        let camera = Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera;
+        for text in ["", "(", "5", "()", "(1, 2)", "(keyframes: [])", "(camera: 5, views: 5)", "(views: None)"] {
+            assert_eq!(with_view(text, &camera), None, "{text}");
+        }
+    }
+}

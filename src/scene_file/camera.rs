@@ -1,0 +1,119 @@
+//! Cameras as they are written: the scene's, and other views of it.
+
+use super::reader::{Fields, Reader};
+use super::words::listed;
+use super::{WrittenNumber, WrittenVector};
+use crate::scene_text::{Node, Span, quoted};
+
+/// The camera, or another view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenCamera {
+    /// Where to point when it is wrong as a whole.
+    pub span: Span,
+    /// The eye point.
+    pub eye: Option<WrittenVector>,
+    /// The target point.
+    pub target: Option<WrittenVector>,
+    /// The up vector; +y if none is given, or for a view the camera's.
+    pub up: Option<WrittenVector>,
+    /// The intrinsic parameters; for a view the camera's, if nothing is said of them.
+    pub lens: WrittenLens,
+    /// The view rectangle off centre: to the right and up, in its heights.
+    pub shift: Option<[WrittenNumber; 2]>,
+}
+
+/// The intrinsic parameters, in either of the lecture's forms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WrittenLens {
+    /// By angle.
+    FieldOfView {
+        /// In degrees; 45 if none is given.
+        vertical_fov: Option<WrittenNumber>,
+        /// Width over height; the picture's own if none is given.
+        aspect_ratio: Option<WrittenNumber>,
+    },
+    /// By the lecture's f, w and h.
+    FocalLength {
+        /// f.
+        focal_length: Option<WrittenNumber>,
+        /// w.
+        width: Option<WrittenNumber>,
+        /// h.
+        height: Option<WrittenNumber>,
+    },
+}
+
+impl WrittenCamera {
+    /// Whether nothing is said of the intrinsic parameters.
+    pub fn is_without_lens(&self) -> bool {
+        let nothing = WrittenLens::FieldOfView { vertical_fov: None, aspect_ratio: None };
+        self.lens == nothing && self.shift.is_none()
+    }
+}
+
+impl Reader<'_> {
+    pub(super) fn camera(&mut self, node: &Node<'_>) -> Option<WrittenCamera> {
+        self.camera_called(node, "a camera", "a camera (eye: ..., target: ...)")
+    }
+
+    /// The other views of a scene, each with the fields of a camera.
+    pub(super) fn views(&mut self, node: &Node<'_>) -> Option<Vec<WrittenCamera>> {
+        let items = self.list(node, "a list of views [(eye: ..., target: ...), ...]")?;
+        Some(
+            items
+                .iter()
+                .filter_map(|item| self.camera_called(item, "a view", "a view (eye: ..., target: ...)"))
+                .collect(),
+        )
+    }
+
+    fn camera_called(&mut self, node: &Node<'_>, owner: &'static str, form: &str) -> Option<WrittenCamera> {
+        const FIELDS: &[&str] =
+            &["eye", "target", "up", "vertical_fov", "aspect_ratio", "focal_length", "width", "height", "shift"];
+        let fields = self.fields(node, owner, form, FIELDS)?;
+        Some(WrittenCamera {
+            span: node.head(),
+            eye: self.required(&fields, "eye", Reader::point),
+            target: self.required(&fields, "target", Reader::point),
+            up: self.optional(&fields, "up", Reader::direction),
+            lens: self.lens(&fields),
+            shift: self.optional(&fields, "shift", Reader::shift),
+        })
+    }
+
+    fn lens(&mut self, fields: &Fields<'_>) -> WrittenLens {
+        const FOCAL: [&str; 3] = ["focal_length", "width", "height"];
+        if FOCAL.iter().all(|&name| fields.get(name).is_none()) {
+            return WrittenLens::FieldOfView {
+                vertical_fov: self.optional(fields, "vertical_fov", Reader::number),
+                aspect_ratio: self.optional(fields, "aspect_ratio", Reader::number),
+            };
+        }
+        for name in ["vertical_fov", "aspect_ratio"] {
+            if let Some(field) = fields.field(name) {
+                self.fault(field.name.span, || {
+                    format!("\"{name}\" cannot stand beside focal_length, width and height; use either form")
+                });
+            }
+        }
+        self.missing_of_focal_form(fields, &FOCAL);
+        let [focal_length, width, height] = FOCAL.map(|name| self.optional(fields, name, Reader::number));
+        WrittenLens::FocalLength { focal_length, width, height }
+    }
+
+    fn missing_of_focal_form(&mut self, fields: &Fields<'_>, names: &[&str]) {
+        let missing = names.iter().filter(|name| !fields.is_given(name));
+        let missing: Vec<_> = missing.map(|name| quoted(name)).collect();
+        let given = names.iter().find_map(|name| fields.field(name));
+        if let (false, Some(given)) = (missing.is_empty(), given) {
+            let s = if missing.len() > 1 { "s" } else { "" };
+            self.fault(given.name.span, || {
+                format!("missing field{s} {}; focal_length, width and height go together", listed(&missing))
+            });
+        }
+    }
+
+    fn shift(&mut self, node: &Node<'_>) -> Option<[WrittenNumber; 2]> {
+        self.numbers(node, "a shift (right, up)")
+    }
+}

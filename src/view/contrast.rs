@@ -1,0 +1,72 @@
+//! Black and white, with lines between objects.
+//!
+//! Light alone, cut at a threshold, loses an object on one of its own kind: two white ones become one. So where two that
+//! have the same ink meet, a line of the other ink parts them.
+
+use super::{Seen, shaded};
+use crate::camera::Camera;
+use crate::color::{LinearRgb, Srgb8};
+use crate::framebuffer::Resolution;
+use crate::render::{Crew, Reach, Sampling, sights};
+use crate::scene::Scene;
+use crate::tone::Picture;
+use std::num::NonZeroU32;
+
+const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
+const WHITE: Srgb8 = Srgb8::new(255, 255, 255);
+
+/// What is at least so bright is white: half of white as the eye sees it, of CIE 1976 L* 50.
+const MIDDLE: f32 = 0.184;
+
+pub(super) fn seen(
+    crew: Crew<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+) -> Option<Seen> {
+    let sampling = if sampling == Sampling::Coarse { sampling } else { Sampling::Each(NonZeroU32::MIN) };
+    let light = shaded(crew, scene, camera, resolution, sampling)?;
+    // Counted from 1; 0: none.
+    let objects = sights(crew, scene, camera, resolution, sampling, Reach::Surfaces, |sight| {
+        sight.hit.map_or(0, |hit| hit.object + 1)
+    })?;
+    let mut cost = light.cost;
+    cost += objects.cost;
+    Some(Seen { picture: drawn(&light.picture, &objects.pixels), cost })
+}
+
+/// The picture in two inks, where each pixel shows the object of that number.
+fn drawn(picture: &Picture, objects: &[u32]) -> Picture {
+    let width = picture.width as usize;
+    let is_white: Vec<_> =
+        picture.pixels.iter().map(|&pixel| LinearRgb::from_srgb8(pixel).luminance() >= MIDDLE).collect();
+    let ink = |at: usize| {
+        let blends = |other: usize| {
+            objects.get(other).is_some_and(|&object| object != objects[at]) && is_white[other] == is_white[at]
+        };
+        let is_line = !(at + 1).is_multiple_of(width) && blends(at + 1) || blends(at + width);
+        if is_white[at] == is_line { BLACK } else { WHITE }
+    };
+    Picture { pixels: (0..picture.pixels.len()).map(ink).collect(), ..*picture }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line between two of the same ink, none between two that differ, and none around the picture.
+    #[test]
+    fn lines_part_what_would_run_together() {
+        let [light, dark] = [Srgb8::new(200, 200, 200), Srgb8::new(90, 90, 90)];
+        let picture =
+            Picture { width: 4, height: 2, pixels: [[light, light, light, dark], [light, light, dark, dark]].concat() };
+        let drawn = drawn(&picture, &[1, 1, 2, 3, 1, 1, 3, 3]);
+        let rows: Vec<String> = drawn
+            .pixels
+            .chunks(4)
+            .map(|row| row.iter().map(|&pixel| if pixel == WHITE { '@' } else { ' ' }).collect())
+            .collect();
+        assert_eq!(rows, ["@ @ ", "@@  "]);
+    }
+}

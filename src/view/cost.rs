@@ -1,0 +1,31 @@
+//! What the rays of a pixel are tested against, each by itself: the eye ray, and the shadow rays from where it ends.
+
+use crate::hit::{Test, Witness, any_hit_watched, closest_hit_watched};
+use crate::render::Sight;
+use crate::scene::Scene;
+use crate::shade::{self, TO_THE_LIGHT};
+
+/// How many tests there were: surfaces, and nodes of the tree, whose boxes are tested at once.
+#[derive(Default)]
+struct Count(u32);
+
+impl Witness for Count {
+    fn boxes(&mut self) {
+        self.0 = self.0.saturating_add(1);
+    }
+
+    fn part(&mut self, _: Test) {
+        self.0 = self.0.saturating_add(1);
+    }
+}
+
+pub(super) fn tests(scene: &Scene, sight: &Sight) -> u32 {
+    let mut count = Count::default();
+    closest_hit_watched(scene, &sight.ray, &mut count);
+    if let Some(surface) = sight.surface(scene).filter(|_| scene.shadows) {
+        for light in scene.lights.iter().filter(|light| shade::incidence(light, &surface).is_some()) {
+            any_hit_watched(scene, &shade::shadow_ray(light, &surface), TO_THE_LIGHT, &mut count);
+        }
+    }
+    count.0
+}

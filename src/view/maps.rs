@@ -1,0 +1,136 @@
+//! Numbers -> colours, each by a map that is the same for every picture.
+
+use crate::color::Srgb8;
+use glam::Vec3;
+
+/// From 0 to 1 to a band of a colour.
+fn band(share: f32) -> u8 {
+    (share * 255.0 + 0.5) as u8
+}
+
+fn grey(share: f32) -> Srgb8 {
+    let band = band(share);
+    Srgb8::new(band, band, band)
+}
+
+/// White at 0, half as light at `middle`, black at infinity; the change is greatest near the middle.
+pub(super) fn depth(t: f32, middle: f32) -> Srgb8 {
+    let part = t / middle;
+    grey(1.0 / (1.0 + part * part))
+}
+
+/// A unit normal's coordinates, from -1 to 1, as bands from 0 to 255.
+pub(super) fn normal(n: Vec3) -> Srgb8 {
+    let [r, g, b] = n.to_array().map(|coordinate| band(0.5 * coordinate + 0.5));
+    Srgb8::new(r, g, b)
+}
+
+/// Dark grey for none of so many, white for all.
+pub(super) fn share(count: u32, of: u32) -> Srgb8 {
+    const DARK: f32 = 0.22;
+    grey(DARK + (1.0 - DARK) * count.min(of) as f32 / of.max(1) as f32)
+}
+
+/// A colour for each number: hues a golden section of the circle apart, so that neighbours differ as much as they can
+/// however many there are, in three lightnesses.
+pub(super) fn object(number: u32) -> Srgb8 {
+    const GOLDEN: u32 = 2_654_435_769; // 2^32 / 1.618...
+    const BRIGHTEST: [f32; 3] = [1.0, 0.72, 0.86];
+    const LEAST: [f32; 3] = [0.2, 0.08, 0.5];
+    // The first is a warm red.
+    let hue = 6.0 * (number.wrapping_mul(GOLDEN) >> 8) as f32 / 16_777_216.0;
+    let level = (number % 3) as usize;
+    let of_band = |middle: f32| {
+        let away = (hue - middle).abs();
+        let near = (2.0 - away.min(6.0 - away)).clamp(0.0, 1.0);
+        band(BRIGHTEST[level] * (LEAST[level] + (1.0 - LEAST[level]) * near))
+    };
+    Srgb8::new(of_band(0.0), of_band(2.0), of_band(4.0))
+}
+
+/// The colours of 1, 4, 16 and so on.
+const HEAT: [[f32; 3]; 6] =
+    [[0.1, 0.1, 0.5], [0.12, 0.5, 0.88], [0.2, 0.72, 0.3], [0.96, 0.86, 0.22], [0.87, 0.2, 0.16], [1.0, 1.0, 1.0]];
+
+/// From blue, for 1 or nothing, over green and red to white, for 1024 and more: each power of four has its own, and what
+/// lies between is mixed.
+pub(super) fn heat(count: u32) -> Srgb8 {
+    let power = count.max(1).ilog2();
+    // How many times a half of such a power, as a straight line from each power of two to the next.
+    let halves = power as f32 + (count.max(1) as f32 / (1_u64 << power) as f32 - 1.0);
+    let place = (0.5 * halves).min((HEAT.len() - 1) as f32);
+    let first = (place as usize).min(HEAT.len() - 2);
+    let part = place - first as f32;
+    let [r, g, b] = [0, 1, 2].map(|at| band(HEAT[first][at] * (1.0 - part) + HEAT[first + 1][at] * part));
+    Srgb8::new(r, g, b)
+}
+
+/// A length in a few characters: three digits, and a power of ten where they are not enough.
+pub(super) fn short(length: f32) -> String {
+    match length {
+        l if !(0.01..1e4).contains(&l) => format!("{l:.1e}"),
+        l if l >= 100.0 => format!("{l:.0}"),
+        l if l >= 10.0 => format!("{l:.1}"),
+        l => format!("{l:.2}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Oklab;
+
+    #[test]
+    fn depths_are_white_grey_and_black() {
+        let greys = [0.0, 5.0, 10.0, 20.0, f32::MAX].map(|t| depth(t, 10.0).r);
+        assert_eq!(greys, [255, 204, 128, 51, 0]);
+        let color = depth(10.0, 10.0);
+        assert!(color.r == color.g && color.g == color.b);
+    }
+
+    #[test]
+    fn normals_are_their_coordinates() {
+        assert_eq!(normal(Vec3::X), Srgb8::new(255, 128, 128));
+        assert_eq!(normal(-Vec3::Y), Srgb8::new(128, 0, 128));
+        assert_eq!(normal(Vec3::Z), Srgb8::new(128, 128, 255));
+    }
+
+    #[test]
+    fn shares_go_from_dark_to_white() {
+        assert_eq!([0, 1, 2].map(|count| share(count, 2).r), [56, 156, 255]);
+        assert_eq!(share(0, 0).r, 56);
+    }
+
+    #[test]
+    fn heat_has_a_colour_for_each_power_of_four() {
+        let at = |power: usize| HEAT[power].map(band);
+        for (count, power) in [(0, 0), (1, 0), (4, 1), (16, 2), (64, 3), (256, 4), (1024, 5), (u32::MAX, 5)] {
+            let Srgb8 { r, g, b } = heat(count);
+            assert_eq!([r, g, b], at(power), "{count}");
+        }
+        assert!(heat(8) != heat(4) && heat(8) != heat(16) && heat(9) != heat(8), "and others between");
+    }
+
+    /// Objects that stand in a row in the file are told apart at a glance, and of a thousand no two are the same.
+    #[test]
+    fn objects_have_colours_of_their_own() {
+        let colors: Vec<_> = (0..1000).map(object).collect();
+        for near in colors.windows(3) {
+            for (at, &a) in near.iter().enumerate() {
+                for &b in &near[..at] {
+                    assert!(Oklab::from_srgb8(a).distance(Oklab::from_srgb8(b)) > 0.1, "{a:?} {b:?}");
+                }
+            }
+        }
+        let mut distinct = colors.clone();
+        distinct.sort();
+        distinct.dedup();
+        assert!(distinct.len() > 900, "{} colours", distinct.len());
+    }
+
+    #[test]
+    fn lengths_are_short() {
+        let lengths = [0.0012, 6.4126, 12.345, 123.45, 98_765.4].map(short);
+        assert_eq!(lengths, ["1.2e-3", "6.41", "12.3", "123", "9.9e4"]);
+    }
+}

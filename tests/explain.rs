@@ -1,0 +1,122 @@
+//! What is said of a pixel is what the picture is made of.
+
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+use termtrace::color::LinearRgb;
+use termtrace::explain::{Equation, Explanation, WIDTH, explain};
+use termtrace::framebuffer::Resolution;
+use termtrace::render::render;
+use termtrace::scene::{Scene, ToneCurve};
+use termtrace::tone::{Picture, tone};
+
+fn shipped_scenes() -> Vec<(PathBuf, Scene)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let paths = std::fs::read_dir(folder).expect("the folder is there").map(|entry| entry.expect("a file").path());
+    let scenes = paths.filter(|path| path.extension().is_some_and(|ending| ending == "ron"));
+    scenes.map(|path| (path.clone(), Scene::load(&path).unwrap_or_else(|error| panic!("{error}")))).collect()
+}
+
+/// Not a whole number of tiles, and pixels that are not square.
+const SIZE: Resolution = Resolution { width: 60, height: 34, pixel_aspect: 1.25 };
+
+fn picture(scene: &Scene) -> Picture {
+    tone(&render(scene, &scene.camera, SIZE, NonZeroU32::MIN), scene)
+}
+
+fn pixels() -> impl Iterator<Item = [u32; 2]> {
+    (0..SIZE.height).flat_map(|y| (0..SIZE.width).map(move |x| [x, y]))
+}
+
+/// What the explanation says comes to what it says that it comes to, to the bit.
+#[track_caller]
+fn adds_up(scene: &Scene, explanation: &Explanation) {
+    let Explanation { tested, seen, light, .. } = explanation;
+    let closest = tested.first().and_then(|tested| Some((tested.name, tested.t?)));
+    assert_eq!(closest, seen.as_ref().map(|seen| (seen.name, seen.hit.t)), "{explanation:?}");
+    if let Some(seen) = seen {
+        let sum = seen.lights.iter().filter(|lit| lit.faces() && lit.blocker.is_none());
+        let sum = sum.fold(seen.ambient, |sum, lit| sum + lit.contribution());
+        assert_eq!(sum, seen.arriving, "{explanation:?}");
+        assert_eq!(sum * seen.reflectance, *light, "{explanation:?}");
+    }
+    assert_eq!(explanation.shown, termtrace::tone::shown(*light, scene));
+    let through = scene.camera.eye_rays(SIZE.aspect_ratio()).through(explanation.q.x, explanation.q.y);
+    assert_eq!(explanation.ray, through);
+}
+
+#[test]
+fn every_pixel_of_every_scene_is_explained() {
+    let scenes = shipped_scenes();
+    assert!(scenes.len() >= 11, "only {} scenes", scenes.len());
+    for (path, scene) in scenes {
+        let picture = picture(&scene);
+        for (at, pixel) in pixels().enumerate() {
+            let explanation = explain(&scene, &scene.camera, SIZE, pixel);
+            assert_eq!(explanation.bytes, picture.pixels[at], "{} {pixel:?}", path.display());
+            adds_up(&scene, &explanation);
+        }
+    }
+}
+
+#[test]
+fn exposure_and_curve_are_the_frames() {
+    let (_, mut scene) = shipped_scenes().swap_remove(0);
+    for (exposure, tone_curve) in [(3.0, ToneCurve::None), (0.5, ToneCurve::Reinhard), (2.0, ToneCurve::Filmic)] {
+        (scene.exposure, scene.tone_curve) = (exposure, tone_curve);
+        let picture = picture(&scene);
+        for (at, pixel) in pixels().enumerate().step_by(7) {
+            let explanation = explain(&scene, &scene.camera, SIZE, pixel);
+            assert_eq!(explanation.bytes, picture.pixels[at], "{tone_curve:?} {pixel:?}");
+            adds_up(&scene, &explanation);
+        }
+    }
+}
+
+/// The lecture's equations have the picture's t among their roots, and the text is short enough for any panel.
+#[test]
+fn equations_and_lines_say_the_same_as_the_picture() {
+    for (path, scene) in shipped_scenes() {
+        for pixel in pixels().step_by(5) {
+            let explanation = explain(&scene, &scene.camera, SIZE, pixel);
+            for tested in &explanation.tested {
+                let roots = match tested.equation {
+                    Equation::Sphere { roots, .. } => roots.map_or(vec![], Vec::from),
+                    Equation::Plane { t, .. } | Equation::Triangle { t, .. } => t.into_iter().collect(),
+                };
+                let is_close = |root: &f64, t: f32| (root - f64::from(t)).abs() < 2e-3 * f64::from(t).max(1.0);
+                let agrees = tested.t.is_none_or(|t| roots.iter().any(|root| is_close(root, t)));
+                assert!(agrees, "{} {pixel:?}: {tested:?}", path.display());
+            }
+            for line in explanation.lines() {
+                assert!(line.len() <= WIDTH, "{} {pixel:?}: {line:?}", path.display());
+                assert!(line.bytes().all(|byte| (b' '..=b'~').contains(&byte)), "{line:?}");
+            }
+        }
+    }
+}
+
+/// The lit and the shadowed side of a lecture's picture: a ball on a floor under one light.
+#[test]
+fn who_is_in_the_way_is_named() {
+    let scene = Scene::from_ron(
+        "ball.ron",
+        "(
+            camera: (eye: (0, 2, 7), target: (0, 1.4, 0)),
+            ambient: 0.1,
+            lights: [Point(position: (0, 8, 0), intensity: 60)],
+            objects: [
+                Plane(point: (0, 0, 0), normal: (0, 1, 0), material: Diffuse(0.5)),
+                Sphere(center: (0, 1, 0), radius: 1, material: Diffuse(0.5)),
+            ],
+        )",
+    )
+    .expect("a scene");
+    let all: Vec<_> = pixels().map(|pixel| explain(&scene, &scene.camera, SIZE, pixel)).collect();
+    let says = |words: &str| all.iter().filter(|it| it.lines().join("\n").contains(words)).count();
+    assert!(says("in the shadow of\n  #2 sphere") > 5, "the ball's shadow on the floor");
+    assert!(says("faces away") > 5, "the ball's lower half");
+    assert!(says("nothing in front: background") > 5);
+    assert!(says("in front: #1 plane") > 5 && says("in front: #2 sphere") > 5 && says("no root") > 5);
+    let dark = all.iter().find(|it| it.lines().join("\n").contains("in the shadow of")).expect("it is there");
+    assert_eq!(dark.light, LinearRgb::grey(0.1) * LinearRgb::grey(0.5), "ambient light is left");
+}

@@ -1,0 +1,135 @@
+//! A pixel explained in the live view: keys in, a panel and a cursor on the screen.
+
+mod pty;
+
+use pty::{SOON, Screen, Session, Size, Start, halves_of, picture, shows};
+use std::path::Path;
+use termtrace::capabilities::CellMode;
+use termtrace::explain::explain;
+use termtrace::grid::Grid;
+use termtrace::scene::Scene;
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
+
+fn scene() -> Scene {
+    Scene::load(Path::new(SCENE)).expect("the scene is fine")
+}
+
+fn grid(size: Size) -> Grid {
+    picture(&scene(), CellMode::HALF_BLOCK, termtrace::grid::Size::new(size.columns, size.rows), 2.0)
+}
+
+/// A session that shows its finished picture.
+#[track_caller]
+fn looking(size: Size) -> Session {
+    let mut session = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).size(size).spawn();
+    let wanted = grid(size);
+    session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+    session
+}
+
+#[track_caller]
+fn leave(session: &mut Session) {
+    session.send(b"q");
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+}
+
+/// The lines of the panel are the library's for that pixel, from the first on, as many as there is room for.
+fn explains(screen: &Screen, size: Size, pixel: [u32; 2]) -> bool {
+    let resolution = termtrace::cell::resolution(
+        CellMode::HALF_BLOCK,
+        termtrace::grid::Size::new(size.columns, size.rows),
+        f32::from(size.cell.1) / f32::from(size.cell.0),
+    );
+    let scene = scene();
+    let lines = explain(&scene, &scene.camera, resolution, pixel).lines();
+    lines[..12].iter().zip(&screen.text()[1..]).all(|(line, row)| row.contains(line.as_str()))
+}
+
+const BOTH: [(u16, u16); 2] = [(80, 24), (200, 60)];
+
+#[test]
+fn x_explains_the_middle_and_arrows_go_on_by_a_pixel() {
+    for (columns, rows) in BOTH {
+        let size = Size::cells(columns, rows);
+        let mut session = looking(size);
+        let [x, y] = [u32::from(columns) / 2, u32::from(rows)];
+        session.send(b"x");
+        session.wait_for("the panel", SOON, |seen| explains(seen.screen(), size, [x, y]));
+        for (key, pixel) in
+            [(b"\x1b[C", [x + 1, y]), (b"\x1b[B", [x + 1, y + 1]), (b"\x1b[D", [x, y + 1]), (b"\x1b[A", [x, y])]
+        {
+            session.send(key);
+            session.wait_for("the next pixel", SOON, |seen| explains(seen.screen(), size, pixel));
+        }
+        session.send(b"\x1b[1;2C");
+        session.wait_for("eight pixels on", SOON, |seen| explains(seen.screen(), size, [x + 8, y]));
+        // Esc leaves nothing behind, and the camera has not moved.
+        session.send(b"\x1b");
+        let wanted = grid(size);
+        session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+        leave(&mut session);
+    }
+}
+
+/// Wherever the cursor goes, the cell that it is on is the picture's, and the panel is on the other side of the screen.
+#[test]
+fn nothing_is_on_the_pixel_that_is_explained() {
+    let size = Size::cells(80, 24);
+    let mut session = looking(size);
+    let wanted = grid(size);
+    session.send(b"x");
+    let [mut x, y] = [40_u32, 24];
+    for step in [-8_i32, -8, 8, 8, 8, 8] {
+        session.send(if step < 0 { b"\x1b[1;2D" } else { b"\x1b[1;2C" });
+        x = x.saturating_add_signed(step);
+        session.wait_for("the pixel", SOON, |seen| explains(seen.screen(), size, [x, y]));
+        let column = x as usize;
+        let row = (y / 2) as usize;
+        let cell = session.seen().screen().cell(column, row);
+        let pixel = wanted.cell(x as u16, row as u16);
+        let glyph = ['▄', '▀', ' '].into_iter().find(|&glyph| pixel.glyph == glyph).expect("half blocks");
+        let halves = halves_of(cell.glyph, cell.foreground, cell.background);
+        assert_eq!(halves, halves_of(glyph, pixel.fg.into(), pixel.bg.into()), "{x}");
+        let border = if x < 40 { 41 } else { 0 };
+        assert_eq!(session.seen().screen().text()[0].chars().nth(border), Some('╭'), "{x}");
+    }
+    leave(&mut session);
+}
+
+#[test]
+fn the_text_is_scrolled_to_its_end() {
+    let size = Size::cells(80, 24);
+    let mut session = looking(size);
+    session.send(b"x");
+    session.wait_for_text("(i, j) = (40, 24) of 80x48");
+    session.send(b"\x1b[6~\x1b[6~\x1b[6~\x1b[6~\x1b[6~\x1b[6~");
+    session.wait_for_text("cell (40, 12), upper half");
+    session.send(b"\x1b[5~\x1b[5~\x1b[5~\x1b[5~\x1b[5~\x1b[5~");
+    session.wait_for_text("(i, j) = (40, 24) of 80x48");
+    leave(&mut session);
+}
+
+/// It says what is true of the picture that is seen: the eye that has moved, the size that has changed.
+#[test]
+fn the_explanation_goes_with_the_view_and_the_window() {
+    let size = Size::cells(80, 24);
+    let mut session = looking(size);
+    session.send(b"x");
+    session.wait_for_text("o       0.0000    1.0000    5.0000");
+    session.send(b"s ");
+    session.wait_for("another eye", SOON, |seen| !seen.screen().text().join("\n").contains("1.0000    5.0000"));
+    session.send(b"r");
+    session.wait_for_text("o       0.0000    1.0000    5.0000");
+    session.resize(Size::cells(100, 40));
+    session.wait_for_text("(i, j) = (50, 40) of 100x80");
+    // Too small for panels: they step aside, and come again.
+    let small = Size::cells(39, 24);
+    session.resize(small);
+    let wanted = grid(small);
+    session.wait_for("the picture alone", SOON, |seen| shows(seen.screen(), &wanted));
+    session.resize(Size::cells(80, 24));
+    session.wait_for_text(" of 80x48");
+    leave(&mut session);
+}

@@ -1,0 +1,156 @@
+//! The views of a scene in the live view, and two of them compared: keys in, screen out.
+
+mod pty;
+
+use pty::{SOON, Screen, Session, Size, Start, halves_of, shows};
+use std::cmp::Ordering;
+use std::path::Path;
+use termtrace::capabilities::CellMode;
+use termtrace::cell;
+use termtrace::color::Srgb8;
+use termtrace::framebuffer::Resolution;
+use termtrace::render::Sampling;
+use termtrace::scene::Scene;
+use termtrace::tone::Picture;
+use termtrace::view::{self, View};
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
+const SIZE: Size = Size { columns: 60, rows: 20, cell: (10, 20) };
+
+fn start() -> Session {
+    start_with(&[])
+}
+
+fn start_with(flags: &[&str]) -> Session {
+    started(SIZE, flags)
+}
+
+fn started(size: Size, flags: &[&str]) -> Session {
+    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).size(size);
+    flags.iter().fold(start, Start::arg).spawn()
+}
+
+fn scene() -> Scene {
+    Scene::load(Path::new(SCENE)).expect("the scene is fine")
+}
+
+/// The whole picture of a view, as fine as it gets.
+fn whole(view: View) -> Picture {
+    let scene = scene();
+    let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size(), 2.0);
+    view::picture(view, &scene, &scene.camera, resolution, Sampling::BEST)
+}
+
+fn grid_size() -> termtrace::grid::Size {
+    termtrace::grid::Size::new(SIZE.columns, SIZE.rows)
+}
+
+/// Whether the screen shows this picture in all rows but the last.
+fn shows_above(screen: &Screen, picture: &Picture) -> bool {
+    let wanted = cell::grid_from_picture(CellMode::HALF_BLOCK, picture);
+    let columns = usize::from(SIZE.columns);
+    let above = usize::from(SIZE.rows - 1) * columns;
+    wanted.cells()[..above].iter().enumerate().all(|(at, cell)| {
+        let shown = screen.cell(at % columns, at / columns);
+        let glyph = ['▄', '▀', ' '].into_iter().find(|&glyph| cell.glyph == glyph).expect("a picture");
+        halves_of(glyph, cell.fg.into(), cell.bg.into()) == halves_of(shown.glyph, shown.foreground, shown.background)
+    })
+}
+
+/// Waits for the picture in all rows but the last, and for that last row.
+#[track_caller]
+fn wait_for(session: &mut Session, what: &str, picture: &Picture, last: impl Fn(&str) -> bool) {
+    session.wait_for(what, SOON, |seen| {
+        let screen = seen.screen();
+        screen.text().last().is_some_and(|row| last(row)) && shows_above(screen, picture)
+    });
+}
+
+#[test]
+fn v_and_b_go_through_the_views_and_say_what_their_colours_mean() {
+    let mut session = start();
+    wait_for(&mut session, "the light", &whole(View::Shaded), |last| !last.contains("shaded"));
+    let scene = scene();
+    for view in View::ALL.into_iter().skip(1) {
+        session.send(b"v");
+        let legend = view.legend(&scene, &scene.camera);
+        wait_for(&mut session, view.name(), &whole(view), |last| last.contains(&legend));
+    }
+    session.send(b"v");
+    wait_for(&mut session, "the light again", &whole(View::Shaded), |last| !last.contains("contrast"));
+    session.send(b"b");
+    wait_for(&mut session, "the last view", &whole(View::Contrast), |last| last.contains("contrast"));
+    session.send(b"q");
+    session.wait_exit(SOON);
+}
+
+#[test]
+fn the_view_asked_for_is_there_at_first() {
+    let mut session = start_with(&["--view", "depth"]);
+    wait_for(&mut session, "depths", &whole(View::Depth), |last| last.contains("depth: white 0, grey 6.41"));
+    // The status line is below.
+    session.send(b"i");
+    session.wait_for("both lines", SOON, |seen| {
+        let text = seen.screen().text();
+        text[18].contains("depth:") && text[19].contains("rays/s")
+    });
+}
+
+/// Two pictures of half the width, each of the right shape; then one with a line that keys move; then one.
+#[test]
+fn two_views_are_compared() {
+    let mut session = start();
+    wait_for(&mut session, "the light", &whole(View::Shaded), |_| true);
+    session.send(b"|vv");
+    let scene = scene();
+    let half = |width, view| {
+        let resolution = Resolution::square(width, u32::from(SIZE.rows) * 2);
+        view::picture(view, &scene, &scene.camera, resolution, Sampling::BEST)
+    };
+    let legends = |last: &str| {
+        let right: String = last.chars().skip(30).collect();
+        last.starts_with(" shaded ") && right.starts_with(" normal: red x")
+    };
+    let beside = joined(&half(29, View::Shaded), &half(30, View::Normal));
+    wait_for(&mut session, "two pictures", &beside, legends);
+    session.send(b"|");
+    let wipe = |line| wiped(&whole(View::Shaded), &whole(View::Normal), line);
+    wait_for(&mut session, "a wipe", &wipe(30), legends);
+    session.send(b">>>><");
+    // Three steps of a thirty-second of 60 columns.
+    wait_for(&mut session, "the line further right", &wipe(35), legends);
+    session.send(&b"<".repeat(40));
+    wait_for(&mut session, "the line at the left edge", &wipe(0), legends);
+    session.send(b"|");
+    wait_for(&mut session, "the light alone", &whole(View::Shaded), |last| !last.contains("shaded"));
+}
+
+const LINE: Srgb8 = Srgb8::new(255, 208, 64);
+
+fn joined(left: &Picture, right: &Picture) -> Picture {
+    let rows = left.pixels.chunks(left.width as usize).zip(right.pixels.chunks(right.width as usize));
+    let pixels = rows.flat_map(|(left, right)| [left, &[LINE], right].concat()).collect();
+    Picture { width: left.width + 1 + right.width, height: left.height, pixels }
+}
+
+fn wiped(left: &Picture, right: &Picture, line: u32) -> Picture {
+    let at = |at: u32| match (at % left.width).cmp(&line) {
+        Ordering::Less => left.pixels[at as usize],
+        Ordering::Equal => LINE,
+        Ordering::Greater => right.pixels[at as usize],
+    };
+    Picture { pixels: (0..left.width * left.height).map(at).collect(), ..*left }
+}
+
+/// Panels step aside where there is no room.
+#[test]
+fn small_screens_have_no_legend() {
+    let size = Size { rows: 11, ..SIZE };
+    let mut session = started(size, &["--view", "normal"]);
+    let scene = scene();
+    let grid_size = termtrace::grid::Size::new(size.columns, size.rows);
+    let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size, 2.0);
+    let normals = view::picture(View::Normal, &scene, &scene.camera, resolution, Sampling::BEST);
+    let wanted = cell::grid_from_picture(CellMode::HALF_BLOCK, &normals);
+    session.wait_for("the normals and nothing else", SOON, |seen| shows(seen.screen(), &wanted));
+}

@@ -1,0 +1,50 @@
+//! `--reduced-motion`: each press is one step at once, and nothing moves by itself.
+
+mod pty;
+
+use pty::{SOON, Session, Size, Start};
+use std::time::Duration;
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
+
+/// Presses keys, waits until the screen no longer changes, and leaves.
+fn eye_after(keys: &[u8]) -> Vec<f32> {
+    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).size(Size::cells(40, 12));
+    let mut session = start.arg("--reduced-motion").spawn();
+    session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains('▀'));
+    session.send(keys);
+    let mut before = 0;
+    while session.sees(Duration::from_millis(300), |seen| seen.bytes().len() != before) {
+        before = session.seen().bytes().len();
+    }
+    eye(&mut session)
+}
+
+/// The eye of the line that is printed on leaving.
+fn eye(session: &mut Session) -> Vec<f32> {
+    let before = session.seen().bytes().len();
+    session.send(b"q");
+    session.wait_exit(SOON);
+    let said = String::from_utf8_lossy(&session.seen().bytes()[before..]).into_owned();
+    let (_, rest) = said.split_once("eye: (").unwrap_or_else(|| panic!("{said}"));
+    let numbers = rest.split(')').next().expect("it ends");
+    numbers.split(", ").map(|number| number.parse().expect("a number")).collect()
+}
+
+fn is_near(eye: &[f32], wanted: [f32; 3]) -> bool {
+    eye.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-3)
+}
+
+/// A tenth of the way from (0, 2.1, 6.3) to (0, 0.9, 0), and no more: a glide would go on for a third of it.
+#[test]
+fn a_press_is_one_step() {
+    let at = eye_after(b"w");
+    assert!(is_near(&at, [0.0, 1.98, 5.67]), "{at:?}");
+}
+
+/// Whatever the terminal takes repeats for, and other keys stop nothing.
+#[test]
+fn a_press_with_shift_is_four_steps_and_each_repeat_one_more() {
+    let at = eye_after(b"Ww w");
+    assert!(is_near(&at, [0.0, 1.38, 2.52]), "{at:?}");
+}

@@ -1,0 +1,269 @@
+//! The live view and the files of its scenes: several of them, none, and files that change while they are looked at.
+
+mod pty;
+
+use pty::{SOON, Session, Size, Start, shows};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use tempfile::TempDir;
+use termtrace::capabilities::CellMode;
+use termtrace::scene::Scene;
+
+/// A ball of that colour, looked at from there.
+fn ball(color: &str, eye: &str) -> String {
+    format!(
+        "(camera: (eye: {eye}, target: (0, 0, 0)), background: \"navy\", lights: [Point(position: (3, 4, 5), intensity: 40)],
+        objects: [Sphere(center: (0, 0, 0), radius: 1, material: Diffuse(\"{color}\"))])"
+    )
+}
+
+const EYE: &str = "(0, 0, 5)";
+
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a folder can be made"))
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// As most programs write.
+    fn write(&self, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
+        fs::write(self.path(name), text).expect("a file can be written");
+        self.path(name)
+    }
+
+    /// As editors do that never leave half a file behind.
+    fn replace(&self, name: &str, text: impl AsRef<[u8]>) {
+        let new = self.write("new~", text);
+        fs::rename(new, self.path(name)).expect("a file can be renamed");
+    }
+}
+
+fn program() -> Start {
+    Start::new(env!("CARGO_BIN_EXE_termtrace"))
+}
+
+/// A session that looks at these.
+fn looking(paths: &[&Path]) -> Session {
+    let mut session = paths.iter().fold(program(), Start::arg).spawn();
+    sees(&mut session, &fs::read_to_string(paths[0]).expect("it is there"));
+    session
+}
+
+/// Waits for the picture of that scene.
+#[track_caller]
+fn sees(session: &mut Session, text: &str) {
+    let scene = Scene::from_ron("wanted", text).expect("the scene is fine");
+    let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(80, 24), 2.0);
+    session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+}
+
+/// Whether the upper half of the screen shows that scene, whatever lies over the lower one.
+fn upper_half_shows(session: &mut Session, text: &str) -> bool {
+    let scene = Scene::from_ron("wanted", text).expect("the scene is fine");
+    let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(80, 24), 2.0);
+    (0..12 * 80).all(|at| {
+        let shown = session.seen().screen().cell(at % 80, at / 80);
+        let cell = &wanted.cells()[at];
+        let glyph = cell.glyph.to_string().chars().next().unwrap_or(' ');
+        let wanted = pty::halves_of(glyph, cell.fg.into(), cell.bg.into());
+        wanted.is_some() && pty::halves_of(shown.glyph, shown.foreground, shown.background) == wanted
+    })
+}
+
+fn leave(session: &mut Session) -> String {
+    let before = session.seen().bytes().len();
+    session.send(b"q");
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+    String::from_utf8_lossy(&session.seen().bytes()[before..]).into_owned()
+}
+
+#[test]
+fn a_changed_scene_is_seen_however_it_is_written() {
+    let folder = Folder::new();
+    let path = folder.write("ball.ron", ball("red", EYE));
+    let mut session = looking(&[&path]);
+    for color in ["lime", "gold"] {
+        folder.write("ball.ron", ball(color, EYE));
+        sees(&mut session, &ball(color, EYE));
+        let renamed = ball("white", EYE);
+        folder.replace("ball.ron", &renamed);
+        sees(&mut session, &renamed);
+    }
+    // As vim writes: the old file gets another name first.
+    fs::rename(&path, folder.path("ball.ron~")).expect("a file can be renamed");
+    folder.write("ball.ron", ball("teal", EYE));
+    fs::remove_file(folder.path("ball.ron~")).expect("a file can be removed");
+    sees(&mut session, &ball("teal", EYE));
+    assert!(!session.seen().has(b"no such file"), "what lasts a moment is no fault");
+    leave(&mut session);
+}
+
+#[test]
+fn a_broken_scene_keeps_its_picture_and_says_why_until_it_is_mended() {
+    let folder = Folder::new();
+    let path = folder.write("ball.ron", ball("red", EYE));
+    let mut session = looking(&[&path]);
+    folder.write("ball.ron", ball("red", EYE).replace("radius", "radus"));
+    session.wait_for_text("unknown field \"radus\"; did you mean \"radius\"?");
+    session.wait_for_text("^^^^^");
+    let text = session.seen().screen().text();
+    let caret = text.iter().position(|line| line.contains("^^^^^")).expect("a caret");
+    assert_eq!(text[caret].find('^'), text[caret - 1].find("radus"), "{text:?}");
+    assert!(caret == 23 || caret == 22, "at the bottom: {text:?}");
+    assert!(upper_half_shows(&mut session, &ball("red", EYE)), "the picture stays");
+    // Another fault takes its place.
+    folder.write("ball.ron", "(camera: (eye: (0, 0, 5)))");
+    session.wait_for_text("missing field \"target\"");
+    session.wait_for("the old fault to go", SOON, |seen| !seen.screen().text().concat().contains("radus"));
+    folder.write("ball.ron", ball("lime", EYE));
+    sees(&mut session, &ball("lime", EYE));
+    leave(&mut session);
+}
+
+/// A mesh and the texture that it uses are files of the scene, also while one of them is missing.
+#[test]
+fn a_changed_mesh_is_seen() {
+    let folder = Folder::new();
+    let square = |size: f32| {
+        format!("v -{size} -{size} 0\nv {size} -{size} 0\nv {size} {size} 0\nv -{size} {size} 0\nf 1 2 3 4\n")
+    };
+    let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, objects: [Mesh(path: \"square.obj\")])";
+    folder.write("square.obj", square(1.0));
+    let path = folder.write("square.ron", text);
+    let sees = |session: &mut Session| {
+        let scene = Scene::load(&path).expect("the scene is fine");
+        let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(80, 24), 2.0);
+        session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+    };
+    let mut session = program().arg(&path).spawn();
+    sees(&mut session);
+    folder.replace("square.obj", square(0.5));
+    sees(&mut session);
+    fs::remove_file(folder.path("square.obj")).expect("a file can be removed");
+    folder.replace("square.ron", text);
+    session.wait_for_text("square.obj");
+    folder.write("square.obj", square(1.5));
+    sees(&mut session);
+    // What it names from now on.
+    folder.write("square.obj", format!("mtllib square.mtl\nusemtl m\n{}", square(1.0)));
+    session.wait_for_text("square.mtl");
+    folder.write("square.mtl", "newmtl m\nKd 1 0 0\n");
+    sees(&mut session);
+    folder.write("square.mtl", "newmtl m\nKd 0 1 0\n");
+    sees(&mut session);
+    leave(&mut session);
+}
+
+/// The user's view stays, unless the file's changes.
+#[test]
+fn the_view_stays_where_it_is() {
+    let folder = Folder::new();
+    let path = folder.write("ball.ron", ball("red", EYE));
+    let mut session = looking(&[&path]);
+    session.send(b"d");
+    // The glide ends.
+    session.sees(Duration::from_secs(1), |_| false);
+    folder.write("ball.ron", ball("lime", EYE));
+    session.send(b"i");
+    session.wait_for_text("rays/s");
+    session.sees(Duration::from_millis(300), |_| false);
+    let status = session.seen().screen().text()[23].clone();
+    assert!(!status.contains("eye 0.00 0.00 5.00"), "{status}");
+    folder.write("ball.ron", ball("lime", "(0, 1, 6)"));
+    session.wait_for_text("eye 0.00 1.00 6.00");
+    session.send(b"i");
+    sees(&mut session, &ball("lime", "(0, 1, 6)"));
+    assert!(!leave(&mut session).contains("camera:"), "this is where the file looks from");
+}
+
+/// What happens to other files in the folder, or to this one without a change, is nothing.
+#[test]
+fn what_is_not_the_scenes_is_nothing() {
+    let folder = Folder::new();
+    let path = folder.write("ball.ron", ball("red", EYE));
+    let mut session = looking(&[&path]);
+    session.sees(Duration::from_millis(300), |_| false);
+    let before = session.seen().bytes().len();
+    folder.write("other.ron", "(");
+    fs::read(&path).expect("it can be read");
+    folder.replace("third.ron", "(");
+    assert!(!session.sees(Duration::from_millis(500), |seen| seen.bytes().len() != before), "bytes at rest");
+    leave(&mut session);
+}
+
+#[test]
+fn several_scenes_are_gone_through() {
+    let folder = Folder::new();
+    let [red, lime, gold] =
+        ["red", "lime", "gold"].map(|color| folder.write(&format!("{color}.ron"), ball(color, EYE)));
+    let mut session = looking(&[&red, &lime, &gold]);
+    for (key, color) in [(b"n", "lime"), (b"n", "gold"), (b"n", "red"), (b"p", "gold"), (b"p", "lime")] {
+        session.send(key);
+        sees(&mut session, &ball(color, EYE));
+    }
+    // The one that is looked at is the one that is watched.
+    folder.write("lime.ron", ball("teal", EYE));
+    sees(&mut session, &ball("teal", EYE));
+    // Each is left as it was.
+    session.send(b"d");
+    session.sees(Duration::from_secs(1), |_| false);
+    session.send(b"n");
+    sees(&mut session, &ball("gold", EYE));
+    session.send(b"pi");
+    session.wait_for("the moved eye", SOON, |seen| {
+        let status = &seen.screen().text()[23];
+        status.contains("eye") && !status.contains("eye 0.00 0.00 5.00")
+    });
+    assert!(leave(&mut session).contains("camera:"));
+}
+
+#[test]
+fn a_broken_one_of_several_is_told_and_left_behind() {
+    let folder = Folder::new();
+    let red = folder.write("red.ron", ball("red", EYE));
+    let broken = folder.write("broken.ron", "(camera: 5)");
+    let missing = folder.path("missing.ron");
+    let mut session = looking(&[&red, &broken, &missing]);
+    session.send(b"n");
+    session.wait_for_text("broken.ron:1:10: expected a camera");
+    session.send(b"n");
+    session.wait_for_text("missing.ron: there is no such file");
+    // It may come.
+    folder.write("missing.ron", ball("lime", EYE));
+    sees(&mut session, &ball("lime", EYE));
+    session.send(b"n");
+    sees(&mut session, &ball("red", EYE));
+    leave(&mut session);
+}
+
+#[test]
+fn without_a_scene_there_is_one() {
+    let mut session = program().spawn();
+    session.wait_for_text("termtrace FILE opens yours");
+    // Until the first key.
+    session.send(b" ");
+    sees(&mut session, include_str!("../scenes/three_spheres.ron"));
+    leave(&mut session);
+}
+
+/// On a small screen the picture has all the room.
+#[test]
+fn faults_step_aside_where_there_is_no_room() {
+    let folder = Folder::new();
+    let path = folder.write("ball.ron", ball("red", EYE));
+    let mut session = looking(&[&path]);
+    folder.write("ball.ron", "(camera: 5)");
+    session.wait_for_text("expected a camera");
+    session.resize(Size::cells(39, 24));
+    session.wait_for("the picture alone", SOON, |seen| !seen.screen().text().concat().contains("camera"));
+    session.resize(Size::cells(80, 24));
+    session.wait_for_text("expected a camera");
+    leave(&mut session);
+}

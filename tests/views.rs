@@ -1,0 +1,195 @@
+//! Every view of the same scene: looked at as text, the same bytes for any number of threads, and true to what the
+//! scene's own functions say of a pixel.
+//!
+//! `INSTA_UPDATE=always cargo test --test views` writes the goldens in `tests/snapshots/views` and the hashes anew.
+
+use std::num::NonZeroU32;
+use std::path::Path;
+use termtrace::camera::Camera;
+use termtrace::capabilities::CellMode;
+use termtrace::cell;
+use termtrace::color::{LinearRgb, Srgb8};
+use termtrace::export;
+use termtrace::framebuffer::Resolution;
+use termtrace::hit::closest_hit;
+use termtrace::render::{Crew, Sampling, render};
+use termtrace::scene::Scene;
+use termtrace::shade;
+use termtrace::shape::{Side, Surface};
+use termtrace::tone::{Picture, tone};
+use termtrace::view::{self, View, picture, seen};
+
+const ONE: NonZeroU32 = NonZeroU32::MIN;
+
+fn scene(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{name}.ron"));
+    Scene::load(&path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// FNV-1a, as of framebuffers.
+fn hash(picture: &Picture) -> u64 {
+    let size = [picture.width, picture.height].map(u32::to_le_bytes).concat();
+    let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r, pixel.g, pixel.b]);
+    let fold = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    size.into_iter().chain(bytes).fold(0xcbf2_9ce4_8422_2325, fold)
+}
+
+fn settings() -> insta::Settings {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.set_snapshot_path("snapshots/views");
+    settings
+}
+
+#[test]
+fn every_view_looks_as_its_golden() {
+    let scene = scene("three_spheres");
+    let resolution = Resolution::square(60, 40);
+    for view in View::ALL {
+        let seen = picture(view, &scene, &scene.camera, resolution, ONE);
+        let text = export::text(&cell::grid_from_picture(CellMode::RAMP, &seen));
+        let framed =
+            format!("{}\n|{}|", view.legend(&scene, &scene.camera), text.trim_end_matches('\n').replace('\n', "|\n|"));
+        settings().bind(|| insta::assert_snapshot!(view.name(), framed));
+    }
+}
+
+/// The same bytes on any number of threads, or without a pool; and no two views alike.
+#[test]
+fn every_view_has_the_same_bytes_everywhere() {
+    let mut hashes = Vec::new();
+    let mut found = Vec::new();
+    for name in ["three_spheres", "teapots", "inside_sphere"] {
+        let scene = scene(name);
+        for view in View::ALL {
+            let resolution = Resolution::square(83, 50);
+            let made = |threads| {
+                let pool =
+                    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+                hash(&pool.install(|| picture(view, &scene, &scene.camera, resolution, ONE)))
+            };
+            let [one, two, seven] = [1, 2, 7].map(made);
+            let alone =
+                seen(view, Crew::Alone, &scene, &scene.camera, resolution, ONE.into()).expect("nobody gives up");
+            assert!(one == two && one == seven && one == hash(&alone.picture), "{name} {view:?}");
+            assert!(!found.contains(&one), "{name} {view:?} looks as another view");
+            found.push(one);
+            hashes.push(format!("{name} {} {one:016x}", view.name()));
+        }
+    }
+    settings().bind(|| insta::assert_snapshot!("hashes", hashes.join("\n")));
+}
+
+/// Two by two pixels are alike while the view moves.
+#[test]
+fn a_coarse_view_is_of_larger_pixels() {
+    let scene = scene("three_spheres");
+    for view in View::ALL {
+        let coarse = picture(view, &scene, &scene.camera, Resolution::square(41, 23), Sampling::Coarse);
+        let at = |x: usize, y: usize| coarse.pixels[y * 41 + x];
+        let is_alike = |x, y| at(x, y) == at(x & !1, y & !1);
+        let lines = usize::from(view == View::Contrast) * 41 * 23;
+        let others = (0..41 * 23).filter(|pixel| !is_alike(pixel % 41, pixel / 41)).count();
+        assert!(others <= lines, "{view:?}: {others} pixels differ from their squares");
+    }
+}
+
+/// What one ray at a time finds, and the formulas of the README, pixel by pixel.
+#[test]
+fn views_say_what_is_there() {
+    for name in ["three_spheres", "inside_sphere", "teapots", "bare"] {
+        let scene = scene(name);
+        let resolution = Resolution::square(32, 20);
+        let views = View::ALL.map(|view| picture(view, &scene, &scene.camera, resolution, ONE));
+        let shown =
+            |view: View, at: usize| views[View::ALL.iter().position(|&v| v == view).expect("a view")].pixels[at];
+        let light = tone(&render(&scene, &scene.camera, resolution, ONE), &scene);
+        for at in 0..32 * 20 {
+            let ray = eye_ray(&scene.camera, resolution, at);
+            assert_eq!(shown(View::Shaded, at), light.pixels[at]);
+            let Some(hit) = closest_hit(&scene, &ray) else {
+                for view in [View::Lambert, View::Depth, View::Normal, View::Object, View::Shadow, View::Facing] {
+                    assert_eq!(shown(view, at), Srgb8::new(16, 20, 56), "{name} {view:?} {at}");
+                }
+                continue;
+            };
+            let surface = hit.surface(&scene).at_crossing(&ray, hit.t);
+            let arriving = |light| shade::incidence(light, &surface);
+            let lambert: f32 = scene.lights.iter().filter_map(arriving).map(|light| light.cosine).sum();
+            assert_eq!(shown(View::Lambert, at), Srgb8::from_linear(LinearRgb::grey(lambert)), "{name} {at}");
+            let pose = scene.camera.pose();
+            let part = hit.t / pose.eye.distance(pose.target);
+            let depth = (255.0 / (1.0 + part * part)).round() as u8;
+            assert!(shown(View::Depth, at).r.abs_diff(depth) <= 1, "{name} {at}");
+            let n = surface.normal.to_array().map(|n| (127.5 * (n + 1.0)).round() as u8);
+            let Srgb8 { r, g, b } = shown(View::Normal, at);
+            assert!([r, g, b].iter().zip(n).all(|(band, n)| band.abs_diff(n) <= 1), "{name} {at}");
+            let is_front = surface.side == Side::Front;
+            assert_eq!(shown(View::Facing, at).b > 128, is_front, "{name} {at}");
+            let in_the_way = |light| {
+                scene.shadows
+                    && termtrace::hit::any_hit(&scene, &shade::shadow_ray(light, &surface), shade::TO_THE_LIGHT)
+            };
+            let lit = scene.lights.iter().filter(|light| arriving(light).is_some() && !in_the_way(light)).count();
+            let share = 0.22 + 0.78 * lit as f32 / scene.lights.len() as f32;
+            assert!(
+                shown(View::Shadow, at).r.abs_diff((255.0 * share).round() as u8) <= 1,
+                "{name} {at}: lit by {lit}"
+            );
+        }
+    }
+}
+
+fn eye_ray(camera: &Camera, resolution: Resolution, at: usize) -> termtrace::ray::Ray {
+    let (width, height) = (resolution.width, resolution.height);
+    let (x, y) = (at as u32 % width, at as u32 / width);
+    let (qu, qv) = ((x as f32 + 0.5) / width as f32, (height as f32 - (y as f32 + 0.5)) / height as f32);
+    camera.eye_rays(resolution.aspect_ratio()).through(qu, qv)
+}
+
+/// Of the three spheres and the plane, which no tree leaves out, each ray is tested against all four: the eye ray, and one
+/// for each light that the surface faces.
+#[test]
+fn the_cost_is_what_rays_are_tested_against() {
+    let scene = scene("three_spheres");
+    let resolution = Resolution::square(40, 30);
+    let picture = picture(View::Cost, &scene, &scene.camera, resolution, ONE);
+    let mut kinds: Vec<_> = picture.pixels.clone();
+    kinds.sort();
+    kinds.dedup();
+    assert!((2..=12).contains(&kinds.len()), "{} costs", kinds.len());
+    // Into the sky goes the eye ray alone; from the spheres and the floor shadow rays go on.
+    let sky = picture.pixels[0];
+    assert_eq!(sky, Srgb8::new(31, 128, 224), "four tests: the second of the map's colours");
+    let at = |x: usize, y: usize| picture.pixels[y * 40 + x];
+    assert_eq!(at(39, 0), sky);
+    assert!(at(20, 15) != sky && at(20, 29) != sky);
+    // Without shadows no ray goes on.
+    let mut bare = scene.clone();
+    bare.shadows = false;
+    let bare = view::picture(View::Cost, &bare, &bare.camera, resolution, ONE);
+    assert!(bare.pixels.iter().all(|&pixel| pixel == sky), "each eye ray meets the same tests");
+}
+
+/// A legend fits half of a screen of 80 columns.
+#[test]
+fn legends_are_short() {
+    for name in ["three_spheres", "many_spheres", "teapots"] {
+        let scene = scene(name);
+        for view in View::ALL {
+            let legend = view.legend(&scene, &scene.camera);
+            assert!(legend.is_ascii() && legend.len() <= 38 && legend.starts_with(view.name()), "{legend}");
+        }
+    }
+}
+
+#[test]
+fn views_go_round() {
+    for view in View::ALL {
+        assert_eq!(view.next().back(), view);
+        assert_eq!(View::named(view.name()), Some(view));
+    }
+    assert_eq!(View::Shaded.back().next(), View::Shaded);
+    assert_eq!(View::named("nothing"), None);
+}
