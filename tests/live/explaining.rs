@@ -1,8 +1,6 @@
 //! A pixel explained in the live view: keys in, a panel and a cursor on the screen.
 
-mod pty;
-
-use pty::{SOON, Screen, Session, Size, Start, halves_of, picture, shows};
+use crate::pty::{SOON, Screen, Session, Size, Start, halves_of, picture, shows};
 use std::path::Path;
 use termtrace::capabilities::CellMode;
 use termtrace::explain::explain;

@@ -1,8 +1,6 @@
 //! How far a mesh is on its way to a scene: what who waits for it is told, and that he may go.
 
-mod mesh_writers;
-
-use mesh_writers::{WRITERS, ball, written};
+use crate::mesh_writers::{WRITERS, ball, written};
 use std::fs;
 use std::num::NonZeroU32;
 use std::ops::ControlFlow;

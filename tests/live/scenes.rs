@@ -1,8 +1,6 @@
 //! The live view and the files of its scenes: several of them, none, and files that change while they are looked at.
 
-mod pty;
-
-use pty::{SOON, Session, Size, Start, shows};
+use crate::pty::{self, SOON, Session, Size, Start, shows};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -249,7 +247,7 @@ fn without_a_scene_there_is_one() {
     session.wait_for_text("termtrace FILE opens yours");
     // Until the first key.
     session.send(b" ");
-    sees(&mut session, include_str!("../scenes/three_spheres.ron"));
+    sees(&mut session, include_str!("../../scenes/three_spheres.ron"));
     leave(&mut session);
 }
 

@@ -1,7 +1,7 @@
 //! The corpora of the meshes' fuzzers.
 
-mod corpus;
-mod mesh_laws;
+use crate::corpus;
+use crate::mesh_laws;
 
 #[test]
 fn the_laws_of_meshes_hold_for_the_corpora() {

@@ -1,8 +1,6 @@
 //! What the program asks its terminal, and what it makes of answers: none, all at once, late, in pieces, forged.
 
-mod pty;
-
-use pty::{Colour, SOON, Session, Size, Start, shows};
+use crate::pty::{self, Colour, SOON, Session, Size, Start, shows};
 use rustix::process::Signal;
 use std::fmt::Write;
 use std::os::unix::process::ExitStatusExt;

@@ -1,8 +1,6 @@
 //! `--reduced-motion`: each press is one step at once, and nothing moves by itself.
 
-mod pty;
-
-use pty::{SOON, Session, Size, Start};
+use crate::pty::{SOON, Session, Size, Start};
 use std::time::Duration;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");

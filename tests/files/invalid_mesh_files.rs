@@ -1,5 +1,5 @@
 //! What a person is told about a broken mesh, word for word: `tests/invalid_meshes/NAME` is a file, `NAME.txt` the
-//! message; in `beside/` are files that they name. `BLESS=1 cargo test --test invalid_mesh_files` writes the messages
+//! message; in `beside/` are files that they name. `BLESS=1 cargo test --test files invalid_mesh_files` writes the messages
 //! anew; read them before they are committed.
 
 use std::path::{Path, PathBuf};

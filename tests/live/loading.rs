@@ -2,11 +2,8 @@
 
 #![cfg(feature = "test-hooks")]
 
-mod mesh_writers;
-mod pty;
-
-use mesh_writers::{ball, written};
-use pty::{Answer, Phases, SOON, Session, Size, Start, shows};
+use crate::mesh_writers::{ball, written};
+use crate::pty::{self, Answer, Phases, SOON, Session, Size, Start, shows};
 use rustix::process::Signal;
 use std::fs;
 use std::io::Write;

@@ -1,8 +1,6 @@
 //! The views of a scene in the live view, and two of them compared: keys in, screen out.
 
-mod pty;
-
-use pty::{SOON, Screen, Session, Size, Start, halves_of, shows};
+use crate::pty::{SOON, Screen, Session, Size, Start, halves_of, shows};
 use std::cmp::Ordering;
 use std::path::Path;
 use termtrace::capabilities::CellMode;

@@ -1,5 +1,5 @@
 //! What a person is told about a broken file, word for word: `tests/invalid/NAME.ron` is a scene, or
-//! `tests/invalid_paths/NAME.ron` a camera path, and `NAME.txt` the message. `BLESS=1 cargo test --test invalid` writes
+//! `tests/invalid_paths/NAME.ron` a camera path, and `NAME.txt` the message. `BLESS=1 cargo test --test files invalid` writes
 //! the messages anew; read them before they are committed.
 
 use std::path::{Path, PathBuf};

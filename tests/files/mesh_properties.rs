@@ -1,11 +1,9 @@
 //! Properties of meshes: what is written in any format is read back; whatever happens to a file, it gives a mesh or an
 //! error.
 
-mod mesh_laws;
-mod mesh_writers;
-
+use crate::mesh_laws;
+use crate::mesh_writers::{WRITERS, Written};
 use glam::{Vec2, Vec3};
-use mesh_writers::{WRITERS, Written};
 use proptest::prelude::*;
 use std::path::Path;
 use termtrace::mesh_file::MeshFile;

@@ -1,7 +1,5 @@
 //! The harness of the live tests, proved on ordinary programs: it sees what is left behind, and only that.
 
-mod pty;
-
 use std::{
     fs::File,
     io::{Read, Write},
@@ -10,7 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use pty::{Colour, Modes, SOON, Session, Size, Start};
+use crate::pty::{Colour, Modes, SOON, Session, Size, Start};
 use rustix::process::{Pid, Signal, test_kill_process};
 
 /// Runs a script to its end.

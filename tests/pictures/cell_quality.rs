@@ -159,7 +159,7 @@ fn few_colours_look_like_the_picture_from_some_way_off() {
 
 /// The characters as a terminal draws them in cells of 10x20 pixels, side by side: how much ink each pixel has.
 fn glyph_sheet() -> Vec<Vec<f64>> {
-    let file = std::io::Cursor::new(include_bytes!("cells/dejavu_sans_mono_16.png"));
+    let file = std::io::Cursor::new(include_bytes!("../cells/dejavu_sans_mono_16.png"));
     let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
     let mut ink = vec![0; reader.output_buffer_size().expect("it is small")];
     reader.next_frame(&mut ink).expect("a PNG");

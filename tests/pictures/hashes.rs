@@ -1,7 +1,7 @@
 //! The same frame bit for bit: on any number of threads, twice in a row, in debug and release builds, on any machine.
 //!
 //! `tests/hashes.txt` has a hash of the light of every shipped scene (before tone and rounding, which would hide a
-//! wrong last bit). `BLESS=1 cargo test --test hashes` writes it anew. Both builds are held to this one file.
+//! wrong last bit). `BLESS=1 cargo test --test pictures hashes` writes it anew. Both builds are held to this one file.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -16,7 +16,7 @@ use termtrace::scene::Scene;
 const FRAMES: [(u32, u32, u32); 3] = [(80, 48, 1), (80, 48, 4), (200, 120, 1)];
 
 const HEADER: &str =
-    "# BLESS=1 cargo test --test hashes writes this file: scene, pixels, samples, hash of the light.\n";
+    "# BLESS=1 cargo test --test pictures hashes writes this file: scene, pixels, samples, hash of the light.\n";
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
@@ -77,7 +77,7 @@ fn every_frame_has_the_same_bits_everywhere() {
     assert!(
         wrong.is_empty(),
         "other bits than in tests/hashes.txt:\n{wrong}\
-        If the light was meant to change, BLESS=1 cargo test --test hashes writes the file anew."
+        If the light was meant to change, BLESS=1 cargo test --test pictures hashes writes the file anew."
     );
 }
 

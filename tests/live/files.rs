@@ -1,8 +1,6 @@
 //! What the live view writes: the picture, the camera, a view into the scene's file.
 
-mod pty;
-
-use pty::{SOON, Session, Start, shows};
+use crate::pty::{self, SOON, Session, Start, shows};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;

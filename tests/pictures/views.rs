@@ -1,7 +1,7 @@
 //! Every view of the same scene: looked at as text, the same bytes for any number of threads, and true to what the
 //! scene's own functions say of a pixel.
 //!
-//! `INSTA_UPDATE=always cargo test --test views` writes the goldens in `tests/snapshots/views` and the hashes anew.
+//! `INSTA_UPDATE=always cargo test --test pictures views` writes the goldens in `tests/snapshots/views` and the hashes anew.
 
 use std::num::NonZeroU32;
 use std::path::Path;
@@ -38,7 +38,7 @@ fn settings() -> insta::Settings {
     let mut settings = insta::Settings::clone_current();
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    settings.set_snapshot_path("snapshots/views");
+    settings.set_snapshot_path("../snapshots/views");
     settings
 }
 

@@ -285,7 +285,7 @@ fn goldens() {
     let mut settings = insta::Settings::clone_current();
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    settings.set_snapshot_path("snapshots/cells");
+    settings.set_snapshot_path("../snapshots/cells");
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/three_spheres.ron");
     let scene = termtrace::scene::Scene::load(&path).expect("the scene is fine");
     for (name, glyphs, colors, digits) in [

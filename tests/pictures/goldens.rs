@@ -1,6 +1,6 @@
 //! A golden frame of every shipped scene: 80x24 characters that a person can read in a diff.
 //!
-//! After a wanted change of the pictures, `INSTA_UPDATE=always cargo test --test goldens` writes them anew (a golden
+//! After a wanted change of the pictures, `INSTA_UPDATE=always cargo test --test pictures goldens` writes them anew (a golden
 //! whose scene is gone is removed by hand); read them before they are committed. Without that variable, a frame that
 //! differs is written beside its golden as `.snap.new`, and the test fails.
 
@@ -53,6 +53,7 @@ fn every_scene_looks_as_its_golden() {
     let scenes = scenes();
     assert!(scenes.len() >= 8, "only {} scenes", scenes.len());
     let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../snapshots");
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     // Each of them is looked at, so that one run shows all that differ.
@@ -66,7 +67,7 @@ fn every_scene_looks_as_its_golden() {
         .collect();
     assert!(
         differing.is_empty(),
-        "{differing:?}: see above; INSTA_UPDATE=always cargo test --test goldens writes the goldens anew"
+        "{differing:?}: see above; INSTA_UPDATE=always cargo test --test pictures goldens writes the goldens anew"
     );
 }
 

@@ -2,9 +2,7 @@
 
 #![cfg(feature = "test-hooks")]
 
-mod pty;
-
-use pty::{Answer, Phases, SOON, Session, Size, Start};
+use crate::pty::{self, Answer, Phases, SOON, Session, Size, Start};
 use rustix::process::{Signal, kill_process};
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;

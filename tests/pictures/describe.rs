@@ -20,7 +20,7 @@ fn shipped_scenes_are_told_as_their_goldens() {
     let mut settings = insta::Settings::clone_current();
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    settings.set_snapshot_path("snapshots/described");
+    settings.set_snapshot_path("../snapshots/described");
     for name in ["three_spheres", "many_spheres", "inside_sphere", "teapots", "three_lights"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{name}.ron"));
         let scene = Scene::load(&path).unwrap_or_else(|error| panic!("{error}"));

@@ -1,8 +1,6 @@
 //! The live view on a real pseudo-terminal: keys and signals in, bytes and an exit status out.
 
-mod pty;
-
-use pty::{SOON, Session, Size, Start, shows};
+use crate::pty::{self, SOON, Session, Size, Start, shows};
 use rustix::process::Signal;
 use std::fs::File;
 use std::io::Write;

@@ -3,9 +3,7 @@
 
 #![cfg(feature = "test-hooks")]
 
-mod pty;
-
-use pty::{Answer, Phases, SOON, Seen, Session, Size, Start, shows};
+use crate::pty::{self, Answer, Phases, SOON, Seen, Session, Size, Start, shows};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::num::NonZeroU32;

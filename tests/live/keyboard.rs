@@ -1,9 +1,7 @@
 //! Keys on a terminal that knows the kitty keyboard protocol, and what becomes of them when it does not answer in time,
 //! is left, or never knew it.
 
-mod pty;
-
-use pty::{SOON, Seen, Session, Size, Start};
+use crate::pty::{SOON, Seen, Session, Size, Start};
 use rustix::process::Signal;
 use std::time::{Duration, Instant};
 

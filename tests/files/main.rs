@@ -1,0 +1,17 @@
+//! What scene and mesh files mean, and what is wrong with them.
+
+#[path = "../corpus/mod.rs"]
+mod corpus;
+mod invalid;
+mod invalid_mesh_files;
+mod mesh_corpus;
+mod mesh_files;
+#[path = "../mesh_laws/mod.rs"]
+mod mesh_laws;
+mod mesh_properties;
+#[path = "../mesh_writers/mod.rs"]
+mod mesh_writers;
+mod progress;
+mod scene_syntax;
+mod scene_values;
+mod scenes;

@@ -1,0 +1,18 @@
+//! The live view on a real pseudo-terminal: keys and signals in, bytes and an exit status out.
+
+mod explaining;
+mod files;
+mod harness;
+mod keyboard;
+mod leaving;
+mod loading;
+#[path = "../mesh_writers/mod.rs"]
+mod mesh_writers;
+mod moving;
+#[path = "../pty/mod.rs"]
+mod pty;
+mod questions;
+mod reduced_motion;
+mod refining;
+mod scenes;
+mod views;

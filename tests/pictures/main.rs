@@ -1,0 +1,13 @@
+//! What is seen, and what is said of it.
+
+mod cell_quality;
+mod cells;
+mod closed_forms;
+mod describe;
+mod explain;
+mod goldens;
+mod hashes;
+mod properties;
+mod sampling;
+mod triangles;
+mod views;
