@@ -24,7 +24,7 @@ pub(super) struct ExplainArgs {
     #[command(flatten)]
     scene: SceneArgs,
     /// The pixel's column and row, from (0, 0) at the top left
-    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
     pixel: [u32; 2],
     #[command(flatten)]
     size: SizeArgs,

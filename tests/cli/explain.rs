@@ -54,6 +54,8 @@ fn a_pixel_that_is_not_there_is_a_usage_fault() {
     for wrong in ["", "8", "1,2,3", "1.5,0", "x,y", "-1,0", "99999999999,0"] {
         folder.run(&format!("explain ball.ron --pixel={wrong}")).is_misused("--pixel");
     }
+    // A word of its own that begins with a minus is a wrong pixel, not an option.
+    folder.run("explain ball.ron --pixel -1,2").is_misused("expected two whole numbers");
     folder.run("explain ball.ron").is_misused("--pixel");
     folder.run("explain missing.ron --pixel 1,1").fails_in_a_line(2, "missing.ron");
     folder.run("explain ball.ron --pixel 1,1 --pixels 99999x99999").fails_in_a_line(2, "too large");
