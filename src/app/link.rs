@@ -44,7 +44,7 @@ const LONG_PATIENCE: Duration = Duration::from_secs(10);
 /// So many late answers may be waited for.
 const MOST_LOST: usize = 16;
 /// How much later than expected an answer of a slow link is when the link must have become slower.
-const LATE: Duration = Duration::from_millis(100);
+const LATE: Duration = Duration::from_millis(50);
 /// How far apart questions alone are, while frames are sent.
 const PROBE: Duration = Duration::from_secs(1);
 
