@@ -38,7 +38,8 @@ pub use sights::{Reach, Sight, Sighted, sights};
 /// The picture of `scene` that `camera` sees. The first ray of a pixel goes through its centre.
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Framebuffer {
     let never = AtomicBool::new(false);
-    finished(rendered(Crew::Pool(&never), scene, camera, resolution, sampling.into())).framebuffer
+    let rendered = render_by(Crew::Pool(&never), scene, camera, resolution, sampling);
+    rendered.unwrap_or_else(|| unreachable!("nobody else can set the flag")).framebuffer
 }
 
 /// A frame, and what it took.
@@ -66,27 +67,10 @@ impl AddAssign for Cost {
     }
 }
 
-/// [`render`] on the calling thread alone: to wake others for a frame of less than about a millisecond takes longer than
-/// they save.
-pub fn render_alone(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Rendered {
-    finished(rendered(Crew::Alone, scene, camera, resolution, sampling.into()))
-}
-
-/// [`render`], given up as soon as `cancelled` is true.
-pub fn render_unless(
-    cancelled: &AtomicBool,
-    scene: &Scene,
-    camera: &Camera,
-    resolution: Resolution,
-    sampling: impl Into<Sampling>,
-) -> Option<Rendered> {
-    rendered(Crew::Pool(cancelled), scene, camera, resolution, sampling.into())
-}
-
 /// Who traces.
 #[derive(Clone, Copy, Debug)]
 pub enum Crew<'a> {
-    /// The calling thread alone.
+    /// The calling thread alone: to wake others for a frame of less than about a millisecond takes longer than they save.
     Alone,
     /// The threads of the current rayon pool, until this becomes true.
     Pool(&'a AtomicBool),
@@ -98,19 +82,15 @@ impl Crew<'_> {
     }
 }
 
-/// What a crew has done that nobody else can cancel.
-fn finished<T>(done: Option<T>) -> T {
-    done.unwrap_or_else(|| unreachable!("nobody else can set the flag"))
-}
-
-fn rendered(
+/// [`render`] by that crew; `None` if it was told to give up.
+pub fn render_by(
     crew: Crew<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
-    sampling: Sampling,
+    sampling: impl Into<Sampling>,
 ) -> Option<Rendered> {
-    match sampling {
+    match sampling.into() {
         Sampling::Coarse => alike(crew, scene, &Tiles::new(camera, resolution, 2), 1),
         Sampling::Each(samples) => alike(crew, scene, &Tiles::new(camera, resolution, 1), samples.get()),
         Sampling::UpTo(samples) => {

@@ -7,7 +7,7 @@
 use crate::camera::{Camera, Pose};
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
-use crate::render::{Cost, Crew, Reach, Sampling, Sight, render_alone, render_unless, sights};
+use crate::render::{Cost, Crew, Reach, Sampling, Sight, render_by, sights};
 use crate::scene::Scene;
 use crate::shade;
 use crate::shape::Side;
@@ -188,10 +188,7 @@ pub fn seen(
 }
 
 fn shaded(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: Resolution, sampling: Sampling) -> Option<Seen> {
-    let rendered = match crew {
-        Crew::Alone => render_alone(scene, camera, resolution, sampling),
-        Crew::Pool(cancelled) => render_unless(cancelled, scene, camera, resolution, sampling)?,
-    };
+    let rendered = render_by(crew, scene, camera, resolution, sampling)?;
     Some(Seen { picture: tone(&rendered.framebuffer, scene), cost: rendered.cost })
 }
 

@@ -17,7 +17,7 @@ use ratatui::layout::{Margin, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Clear, Paragraph, Widget};
 
-pub(super) use place::{has_room, marks, panel_area};
+pub(super) use place::{marks, panel_area};
 
 /// The pixel that is explained, and what there is to say of it.
 pub(super) struct Explaining {

@@ -5,20 +5,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Paragraph, Widget};
 
-/// The least screen on which panels lie over the picture.
-const LEAST: (u16, u16) = (40, 12);
-
-/// Whether there is room for it.
-pub(super) fn has_room(screen: Rect) -> bool {
-    screen.width >= LEAST.0 && screen.height >= LEAST.1
-}
-
-/// The lowest row, or the one above the status line.
-pub(super) fn area(screen: Rect, above_status: bool) -> Rect {
-    let from_below = 1 + u16::from(above_status);
-    Rect { y: screen.bottom().saturating_sub(from_below), height: 1, ..screen }
-}
-
 /// Each text with its place in the line, as wide as it is: the picture goes on beside it.
 pub(super) fn shared(texts: &[String], line: Rect) -> impl Iterator<Item = (&str, Rect)> {
     let count = texts.len().max(1) as u16;
@@ -36,20 +22,15 @@ pub(super) fn draw(text: &str, look: Look, area: Rect, buffer: &mut Buffer) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::panels::foot;
 
     #[test]
     fn each_view_has_its_legend_below_it() {
         let screen = Rect::new(0, 0, 81, 24);
         let texts = ["shaded".to_owned(), "depth: white 0, grey 6.41, black far".to_owned()];
-        let places: Vec<_> = shared(&texts, area(screen, false)).map(|(_, area)| area).collect();
+        let places: Vec<_> = shared(&texts, foot(screen, 0)).map(|(_, area)| area).collect();
         assert_eq!(places, [Rect::new(0, 23, 8, 1), Rect::new(41, 23, 38, 1)]);
-        assert_eq!(area(screen, true).y, 22, "above the status line");
+        assert_eq!(foot(screen, 1).y, 22, "above the status line");
         assert_eq!(shared(&texts[1..], Rect::new(0, 5, 20, 1)).next(), Some((&*texts[1], Rect::new(0, 5, 20, 1))));
-    }
-
-    #[test]
-    fn small_screens_have_none() {
-        let fits = |columns, rows| has_room(Rect::new(0, 0, columns, rows));
-        assert!(fits(40, 12) && !fits(39, 24) && !fits(80, 11));
     }
 }

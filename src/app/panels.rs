@@ -78,9 +78,17 @@ pub(super) struct Status {
     pub(super) eye: Vec3,
 }
 
-/// The lowest row.
-pub(super) fn status_area(screen: Rect) -> Rect {
-    Rect { y: screen.bottom().saturating_sub(1), height: screen.height.min(1), ..screen }
+/// The least screen on which panels lie over the picture.
+const LEAST: (u16, u16) = (40, 12);
+
+/// Whether panels may lie over the picture: on a smaller screen they would hide what they speak of.
+pub(super) fn has_room(screen: Rect) -> bool {
+    screen.width >= LEAST.0 && screen.height >= LEAST.1
+}
+
+/// The lowest row of the screen with so many below it.
+pub(super) fn foot(screen: Rect, below: u16) -> Rect {
+    Rect { y: screen.bottom().saturating_sub(1 + below), height: screen.height.min(1), ..screen }
 }
 
 impl Status {
@@ -235,6 +243,12 @@ mod tests {
 
     fn parsing(name: &str, done: usize, total: usize) -> Progress {
         Progress { work: Work::Parsing(name.to_owned()), done, total }
+    }
+
+    #[test]
+    fn small_screens_have_no_room() {
+        let fits = |columns, rows| has_room(Rect::new(0, 0, columns, rows));
+        assert!(fits(40, 12) && !fits(39, 24) && !fits(80, 11));
     }
 
     #[test]

@@ -67,7 +67,7 @@ impl Frame {
             cost += seen.cost;
             parts.push(seen.picture);
         }
-        let picture = shown.joined(&parts, MIDDLE);
+        let picture = shown.joined(&parts, MIDDLE).or_else(|| parts.pop())?;
         if !shown.is_wipe() {
             parts.clear();
         }
@@ -90,8 +90,8 @@ impl Frame {
 
     /// Moves the line between two views, if there is one, to that share of the width.
     pub(super) fn wipe(&mut self, share: f32) {
-        if !self.parts.is_empty() {
-            self.picture = self.shown.joined(&self.parts, share);
+        if let Some(picture) = self.shown.joined(&self.parts, share) {
+            self.picture = picture;
         }
     }
 }
@@ -327,7 +327,7 @@ fn panic_in_a_worker() {
 mod tests {
     use super::*;
     use crate::camera::{Pose, ViewRectangle};
-    use crate::render::render_unless;
+    use crate::render::{Crew, render_by};
     use crate::terminal::Signals;
     use glam::Vec3;
 
@@ -407,7 +407,8 @@ mod tests {
         let scene = Arc::new(three_spheres());
         let (camera, resolution) = (scene.camera, Resolution::square(40, 24));
         let never = AtomicBool::new(false);
-        let best = render_unless(&never, &scene, &camera, resolution, Sampling::BEST).expect("nobody cancels it");
+        let best =
+            render_by(Crew::Pool(&never), &scene, &camera, resolution, Sampling::BEST).expect("nobody cancels it");
         let shown = tone(&best.framebuffer, &scene);
         let mut tracer = Tracer::default();
         let mut trace_of = |scene: &Arc<Scene>, camera, sampling, refines| {

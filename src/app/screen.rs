@@ -275,7 +275,7 @@ impl Screen {
         let area = Rect::new(0, 0, columns, rows);
         let mode = self.painter.mode();
         let look = panels::Look::of(mode);
-        if let Some(explaining) = self.explaining.as_mut().filter(|_| explain::has_room(area)) {
+        if let Some(explaining) = self.explaining.as_mut().filter(|_| panels::has_room(area)) {
             let panel = explain::panel_area(area, explaining.cell(mode));
             let mut buffer = Buffer::empty(panel);
             explaining.draw(look, mode, panel, &mut buffer);
@@ -295,9 +295,9 @@ impl Screen {
             });
         }
         if let Some(frame) = &self.frame
-            && legend::has_room(area)
+            && panels::has_room(area)
         {
-            let line = legend::area(area, self.status);
+            let line = panels::foot(area, self.status.into());
             for (text, area) in legend::shared(&frame.legends, line) {
                 lay(area, &|area, buffer| legend::draw(text, look, area, buffer));
             }
@@ -315,21 +315,21 @@ impl Screen {
                 slow: slow.map(|slow| slow.rate),
                 eye: frame.camera.pose().eye,
             };
-            lay(panels::status_area(area), &|area, buffer| {
+            lay(panels::foot(area, 0), &|area, buffer| {
                 status.draw(look, area, buffer);
             });
         }
         if let Some(fault) = &self.fault
-            && legend::has_room(area)
+            && panels::has_room(area)
         {
             let has_legend = self.frame.as_ref().is_some_and(|frame| !frame.legends.is_empty());
             let area = fault.area(area, u16::from(self.status) + u16::from(has_legend));
             lay(area, &|area, buffer| fault.draw(look, area, buffer));
         }
         if let Some(note) = &self.note
-            && legend::has_room(area)
+            && panels::has_room(area)
         {
-            lay(panels::status_area(area), &|area, buffer| legend::draw(note, look, area, buffer));
+            lay(panels::foot(area, 0), &|area, buffer| legend::draw(note, look, area, buffer));
         }
         if let Some(question) = &self.question {
             lay(question.area(area), &|area, buffer| question.draw(look, area, buffer));

@@ -94,12 +94,12 @@ impl Shown {
         Sampling::UpTo(NonZeroU32::MIN)
     }
 
-    /// One picture of its parts, with the line of a wipe at that share of the width.
-    pub(super) fn joined(self, parts: &[Picture], wipe: f32) -> Picture {
-        match (self.other, parts) {
-            (Some(Other { split: Split::Beside, .. }), [left, right]) => beside(left, right),
-            (Some(Other { split: Split::Wipe, .. }), [left, right]) => wiped(left, right, wipe),
-            (_, parts) => parts[0].clone(),
+    /// One picture of two parts, with the line of a wipe at that share of the width.
+    pub(super) fn joined(self, parts: &[Picture], wipe: f32) -> Option<Picture> {
+        match (self.other?.split, parts) {
+            (Split::Beside, [left, right]) => Some(beside(left, right)),
+            (Split::Wipe, [left, right]) => Some(wiped(left, right, wipe)),
+            _ => None,
         }
     }
 }
@@ -202,10 +202,10 @@ mod tests {
     #[test]
     fn a_line_parts_two_pictures() {
         let beside = shown(View::Shaded, View::Depth, Split::Beside);
-        assert_eq!(rows(&beside.joined(&[flat(3, 1), flat(4, 2)], 0.5)), ["111|2222"; 2]);
+        assert_eq!(rows(&beside.joined(&[flat(3, 1), flat(4, 2)], 0.5).expect("two")), ["111|2222"; 2]);
         let wipe = shown(View::Shaded, View::Depth, Split::Wipe);
         for (share, row) in [(0.0, "|222"), (0.5, "11|2"), (0.9, "111|"), (1.0, "111|")] {
-            assert_eq!(rows(&wipe.joined(&[flat(4, 1), flat(4, 2)], share)), [row; 2]);
+            assert_eq!(rows(&wipe.joined(&[flat(4, 1), flat(4, 2)], share).expect("two")), [row; 2]);
         }
     }
 
@@ -216,7 +216,7 @@ mod tests {
             for split in [Split::Beside, Split::Wipe] {
                 let seen = shown(View::Shaded, View::Depth, split);
                 let parts: Vec<_> = seen.parts(whole).iter().map(|(_, part)| flat(part.width, 1)).collect();
-                let joined = seen.joined(&parts, 0.5);
+                let joined = seen.joined(&parts, 0.5).expect("two");
                 assert_eq!((joined.width, joined.pixels.len()), (width, 2 * width as usize));
             }
         }

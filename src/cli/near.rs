@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use strsim::damerau_levenshtein;
-
-/// The endings of what can be looked at.
-const ENDINGS: [&str; 6] = ["ron", "obj", "stl", "ply", "gltf", "glb"];
+use termtrace::mesh_file::is_mesh;
 
 /// So many files of a folder are looked at.
 const MOST_FILES: usize = 10_000;
@@ -15,7 +13,7 @@ pub(super) fn scene(path: &Path) -> Option<PathBuf> {
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
     let files = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
     let names = files.take(MOST_FILES).filter_map(|file| file.ok()?.file_name().into_string().ok());
-    let scenes = names.filter(|name| Path::new(name).extension().is_some_and(|end| ENDINGS.iter().any(|e| end == *e)));
+    let scenes = names.filter(|name| is_mesh(name, &[]) || Path::new(name).extension().is_some_and(|end| end == "ron"));
     let near = scenes.filter_map(|other| Some((distance(name, &other)?, other))).min()?;
     Some(folder.map_or_else(|| PathBuf::from(&near.1), |folder| folder.join(&near.1)))
 }

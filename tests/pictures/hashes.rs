@@ -9,7 +9,7 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::{Framebuffer, Resolution};
-use termtrace::render::{render, render_alone};
+use termtrace::render::{Crew, render, render_by};
 use termtrace::scene::Scene;
 
 /// Width and height in pixels, samples per pixel. The last has tiles cut off at both edges.
@@ -59,8 +59,8 @@ fn every_frame_has_the_same_bits_everywhere() {
             let hash = || render(&scene, &scene.camera, Resolution::square(width, height), samples).hash();
             let hashes = pools.each_ref().map(|(threads, pool)| (*threads, pool.install(hash)));
             let [(_, first), ..] = hashes;
-            let alone = render_alone(&scene, &scene.camera, Resolution::square(width, height), samples);
-            assert_eq!(alone.framebuffer.hash(), hashes[0].1, "{frame}: without a pool");
+            let alone = render_by(Crew::Alone, &scene, &scene.camera, Resolution::square(width, height), samples);
+            assert_eq!(alone.expect("nobody cancels it").framebuffer.hash(), hashes[0].1, "{frame}: without a pool");
             for (threads, hash) in hashes {
                 assert_eq!(hash, first, "{frame}: {threads} threads give other bits than one");
             }

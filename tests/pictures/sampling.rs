@@ -8,7 +8,7 @@ use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::{Framebuffer, Resolution};
 use termtrace::material::Material;
-use termtrace::render::{Refining, Sampling, render, render_unless};
+use termtrace::render::{Crew, Refining, Sampling, render, render_by};
 use termtrace::scene::{Object, Scene};
 use termtrace::shape::Plane;
 use termtrace::tone::tone;
@@ -57,7 +57,7 @@ fn the_steps_of_a_refinement_do_not_show() {
 #[test]
 fn samples_go_where_the_edges_are() {
     for (path, scene) in shipped() {
-        let traced = |sampling| render_unless(&NEVER, &scene, &scene.camera, SIZE, sampling).unwrap();
+        let traced = |sampling| render_by(Crew::Pool(&NEVER), &scene, &scene.camera, SIZE, sampling).unwrap();
         let (all, best, one) =
             (traced(Sampling::Each(samples(64))), traced(Sampling::BEST), traced(Sampling::Each(NonZeroU32::MIN)));
         let [near, far] = [&best, &one].map(|it| psnr(&scene, &it.framebuffer, &all.framebuffer));
@@ -96,14 +96,14 @@ fn threads_do_not_show_in_a_refined_picture() {
 fn a_coarse_picture_is_made_of_blocks() {
     for (path, scene) in shipped() {
         let resolution = Resolution::square(81, 47);
-        let coarse = render_unless(&NEVER, &scene, &scene.camera, resolution, Sampling::Coarse).unwrap();
+        let coarse = render_by(Crew::Pool(&NEVER), &scene, &scene.camera, resolution, Sampling::Coarse).unwrap();
         for y in 0..47 {
             for x in 0..81 {
                 let block = coarse.framebuffer.pixel(x / 2 * 2, y / 2 * 2);
                 assert_eq!(coarse.framebuffer.pixel(x, y), block, "{} ({x}, {y})", path.display());
             }
         }
-        let fine = render_unless(&NEVER, &scene, &scene.camera, resolution, NonZeroU32::MIN).unwrap();
+        let fine = render_by(Crew::Pool(&NEVER), &scene, &scene.camera, resolution, NonZeroU32::MIN).unwrap();
         assert!(coarse.cost.rays * 3 < fine.cost.rays, "{}", path.display());
         assert!(psnr(&scene, &coarse.framebuffer, &fine.framebuffer) > 14.0, "{}", path.display());
     }

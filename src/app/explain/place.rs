@@ -8,9 +8,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 
-/// The least screen on which panels lie over the picture.
-const LEAST: (u16, u16) = (40, 12);
-
 /// How wide the panel is, with its border and a blank at each side.
 const PANEL: u16 = WIDTH as u16 + 4;
 
@@ -19,11 +16,6 @@ const FOOT: u16 = 2;
 
 /// Of the inside of the panel, the least height of the inset, and the most.
 const INSET: [u16; 2] = [6, 16];
-
-/// Whether there is room for the panel.
-pub(in crate::app) fn has_room(screen: Rect) -> bool {
-    screen.width >= LEAST.0 && screen.height >= LEAST.1
-}
 
 /// Where the panel is: on the side of the screen where the cell is not.
 pub(in crate::app) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
