@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use crate::capabilities::Hints;
+use crate::control::Bindings;
 use crate::encode::{Order, Quality};
 use crate::render::Sampling;
 use crate::scene::Scene;
@@ -63,6 +64,8 @@ pub struct Options {
     pub welcome: Option<String>,
     /// What of the scene is shown at first.
     pub view: View,
+    /// What the keys do.
+    pub bindings: Bindings,
 }
 
 impl Options {
@@ -80,6 +83,7 @@ impl Options {
             exports: None,
             welcome: None,
             view: View::Shaded,
+            bindings: Bindings::default(),
         }
     }
 }

@@ -2,8 +2,14 @@
 //!
 //! Time is a number that is handed in, so that every movement can be tested without a clock.
 
+mod command;
+mod key;
 mod bindings;
+mod moves;
 mod motion;
 
-pub use bindings::{BINDINGS, Binding, Command, Direction, Key, Side, Turn, command};
-pub use motion::{COAST, GLIDE, Motion, speed};
+pub use bindings::{Binding, Bindings, Mode};
+pub use command::{Command, Direction, Side, Toward};
+pub use key::Key;
+pub use motion::{COAST, GLIDE, Motion};
+pub use moves::speed;

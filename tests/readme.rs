@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 use termtrace::camera_path::CameraPath;
-use termtrace::control::BINDINGS;
+use termtrace::control::{Bindings, Key};
 use termtrace::scene::Scene;
 
 fn readme() -> String {
@@ -67,10 +67,12 @@ fn every_scene_file_is_listed() {
 #[test]
 fn every_key_is_listed() {
     let readme = readme();
-    for key in BINDINGS.iter().flat_map(|binding| binding.label.split(' ')) {
-        let listed = match key {
+    for key in Bindings::default().rows().iter().flat_map(|row| &row.keys).map(Key::to_string) {
+        let listed = match &*key {
             "Left" | "Right" | "Up" | "Down" => "arrows".to_owned(),
             named if named.len() > 1 => named.to_owned(),
+            // In a table a bar is written so.
+            "|" => r"`\|`".to_owned(),
             letter => format!("`{letter}`"),
         };
         assert!(readme.contains(&listed), "{key} is not in the README");

@@ -2,8 +2,9 @@
 
 use super::keeping::Asked;
 use super::panels::Look;
+use crate::control::{Bindings, Command, Mode};
 use crate::export::Format;
-use crossterm::event::KeyCode;
+use crate::scene_text::visible;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Rect};
 use ratatui::text::Line;
@@ -26,25 +27,21 @@ pub(super) enum Answer {
     Nothing,
 }
 
-const FORMATS: [(char, &str, Format); 5] = [
-    ('p', "PNG picture", Format::Png),
-    ('a', "ANSI text in colour", Format::Ansi),
-    ('t', "plain text", Format::Text),
-    ('s', "SVG drawing", Format::Svg),
-    ('h', "HTML page", Format::Html),
-];
-
 impl Dialog {
-    /// What the key answers. Any key but those that are offered leaves the question.
-    pub(super) fn answer(self, key: KeyCode) -> Answer {
-        let KeyCode::Char(key) = key else { return Answer::Nothing };
+    /// While it is open keys mean this, and nothing else.
+    pub(super) fn mode(&self) -> Mode {
         match self {
-            Self::Export => FORMATS
-                .iter()
-                .find(|(offered, ..)| *offered == key.to_ascii_lowercase())
-                .map_or(Answer::Nothing, |&(.., format)| Answer::Export(format)),
-            Self::Keep(asked) if key.eq_ignore_ascii_case(&'y') => Answer::Keep(asked),
-            Self::Keep(_) => Answer::Nothing,
+            Self::Export => Mode::Export,
+            Self::Keep(_) => Mode::Keep,
+        }
+    }
+
+    /// What a key answers that means this. Any that is not offered leaves the question.
+    pub(super) fn answer(self, meant: Option<Command>) -> Answer {
+        match (self, meant) {
+            (Self::Export, Some(Command::Write(format))) => Answer::Export(format),
+            (Self::Keep(asked), Some(Command::Yes)) => Answer::Keep(asked),
+            _ => Answer::Nothing,
         }
     }
 
@@ -55,32 +52,29 @@ impl Dialog {
         }
     }
 
-    fn lines(&self) -> Vec<String> {
-        match self {
-            Self::Export => {
-                let formats = FORMATS.iter().map(|(key, what, _)| format!("{key}    {what}"));
-                formats.chain(["Esc  nothing".to_owned()]).collect()
-            }
-            Self::Keep(asked) => {
-                let name = asked.file().file_name().unwrap_or_default().to_string_lossy().into_owned();
-                vec![crate::scene_text::visible(&name), "y  yes    n  no".to_owned()]
-            }
-        }
+    fn lines(&self, bindings: &Bindings) -> Vec<String> {
+        let name = match self {
+            Self::Export => None,
+            Self::Keep(asked) => asked.file().file_name().map(|name| visible(&name.to_string_lossy())),
+        };
+        let answers: Vec<_> = bindings.of(self.mode()).map(|row| (row.label(), row.command.does())).collect();
+        let width = answers.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
+        name.into_iter().chain(answers.iter().map(|(label, does)| format!("{label:width$}  {does}"))).collect()
     }
 
     /// In the lower left corner, above the lowest row: most of the picture can be seen.
-    pub(super) fn area(&self, screen: Rect) -> Rect {
-        let lines = self.lines();
+    pub(super) fn area(&self, bindings: &Bindings, screen: Rect) -> Rect {
+        let lines = self.lines(bindings);
         let text = lines.iter().map(|line| line.width() + 4).max().unwrap_or(0);
         let width = (text.max(self.title().width() + 2) as u16).min(screen.width);
         let height = (lines.len() as u16 + 2).min(screen.height);
         Rect { x: screen.x, y: (screen.bottom() - height).saturating_sub(1), width, height }
     }
 
-    pub(super) fn draw(&self, look: Look, area: Rect, buffer: &mut Buffer) {
+    pub(super) fn draw(&self, bindings: &Bindings, look: Look, area: Rect, buffer: &mut Buffer) {
         Clear.render(area, buffer);
         Block::bordered().border_set(look.border()).title(self.title()).style(look.style()).render(area, buffer);
-        let lines: Vec<_> = self.lines().into_iter().map(Line::from).collect();
+        let lines: Vec<_> = self.lines(bindings).into_iter().map(Line::from).collect();
         Paragraph::new(lines).style(look.style()).render(area.inner(Margin::new(2, 1)), buffer);
     }
 }

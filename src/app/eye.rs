@@ -1,8 +1,9 @@
 //! Where the scene is looked at from, and how keys move that.
 
-use crate::camera::Camera;
-use crate::control::{self, Motion};
+use crate::camera::{Camera, Pose};
+use crate::control::{self, Command, Mode, Motion};
 use crossterm::event::{KeyEvent, KeyEventKind};
+use glam::Vec3;
 use std::time::Duration;
 
 /// The first frame after a key already shows so much movement.
@@ -13,6 +14,8 @@ pub(super) const FRAME: Duration = Duration::from_micros(16_667);
 pub(super) struct Eye {
     /// `None` as long as there is nothing to see.
     view: Option<View>,
+    /// Whether it goes around what it looks at; else it flies.
+    orbits: bool,
     motion: Motion,
     /// Up to when the motion has been carried out; `None` at rest.
     moved_until: Option<Duration>,
@@ -77,24 +80,38 @@ impl Eye {
         view.camera != before
     }
 
-    /// What was going on is carried out before the key changes it.
+    /// How it moves.
+    pub(super) fn mode(&self) -> Mode {
+        if self.orbits { Mode::Orbit } else { Mode::Fly }
+    }
+
+    /// To the other way of moving. To go around something, it looks at the point in the middle of its view: the picture
+    /// stays as it is.
+    pub(super) fn change_mode(&mut self, in_the_middle: Option<Vec3>) {
+        self.orbits = !self.orbits;
+        if let (true, Some(target), Some(view)) = (self.orbits, in_the_middle, &mut self.view) {
+            view.camera = view.camera.with_pose(Pose { target, ..view.camera.pose() }).unwrap_or(view.camera);
+        }
+    }
+
+    /// What was going on is carried out before the key, which means something or nothing, changes it.
     #[must_use]
-    pub(super) fn take_key(&mut self, key: &KeyEvent, now: Duration) -> bool {
+    pub(super) fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) -> bool {
         if self.steps {
-            return self.take_step(key);
+            return self.take_step(key, meant);
         }
         let moved = self.go_on(now);
-        self.motion.key(key, now);
+        self.motion.take_key(key, meant, now);
         // From rest, the first frame already shows a frame's worth of movement.
         self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
         moved
     }
 
     /// A press or a repeat is one step.
-    fn take_step(&mut self, key: &KeyEvent) -> bool {
+    fn take_step(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>) -> bool {
         let Some(view) = self.view.as_mut().filter(|_| key.kind != KeyEventKind::Release) else { return false };
         let mut motion = Motion::default();
-        motion.key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, Duration::ZERO);
+        motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
         let before = view.camera;
         view.camera = motion.step(&before, view.speed, Duration::ZERO, STEP);
         view.camera != before

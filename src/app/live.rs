@@ -29,6 +29,7 @@ use std::{fmt, io};
 mod events;
 mod files;
 mod explaining;
+mod moving;
 mod views;
 mod looked_at;
 
@@ -89,7 +90,7 @@ impl Live {
             questions,
             parser: Parser::new(),
             read: Duration::ZERO,
-            screen: Screen::new(&capabilities, options.order, options.quality),
+            screen: Screen::new(&capabilities, options.order, options.quality, options.bindings.clone()),
             link,
             effort: Effort::new(options.sampling),
             options,

@@ -1,7 +1,7 @@
 //! What is written over the picture: the status line and the help.
 
 use crate::capabilities::{CellMode, Colors, Glyphs};
-use crate::control::{BINDINGS, Binding};
+use crate::control::{Binding, Bindings, Mode};
 use crate::grid::Size;
 use crate::progress::{Progress, Work};
 use crate::render::Sampling;
@@ -194,26 +194,25 @@ fn bar(progress: &Progress, look: Look, width: usize) -> String {
 const HELP_NOTES: [&str; 1] = ["Shift with a movement: faster"];
 
 /// In the middle, as large as its text, or as the screen.
-pub(super) fn help_area(screen: Rect) -> Rect {
-    let lines = help_lines();
+pub(super) fn help_area(bindings: &Bindings, modes: &[Mode], screen: Rect) -> Rect {
+    let lines = help_lines(bindings, modes);
     let width = lines.iter().map(Line::width).max().unwrap_or(0) as u16 + 4;
     let height = lines.len() as u16 + 2;
     let (width, height) = (width.min(screen.width), height.min(screen.height));
     Rect::new((screen.width - width) / 2, (screen.height - height) / 2, width, height)
 }
 
-pub(super) fn draw_help(look: Look, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw_help(bindings: &Bindings, modes: &[Mode], look: Look, area: Rect, buffer: &mut Buffer) {
     Clear.render(area, buffer);
     Block::bordered().border_set(look.border).title(" keys ").style(look.style).render(area, buffer);
-    Paragraph::new(help_lines()).style(look.style).render(area.inner(Margin::new(2, 1)), buffer);
+    Paragraph::new(help_lines(bindings, modes)).style(look.style).render(area.inner(Margin::new(2, 1)), buffer);
 }
 
-/// All bindings, in two columns.
-fn help_lines() -> Vec<Line<'static>> {
-    let [left, right] = {
-        let (left, right) = BINDINGS.split_at(BINDINGS.len().div_ceil(2));
-        [left, right].map(help_column)
-    };
+/// What keys do in these modes, in two columns.
+fn help_lines(bindings: &Bindings, modes: &[Mode]) -> Vec<Line<'static>> {
+    let rows: Vec<_> = modes.iter().flat_map(|&mode| bindings.of(mode)).filter(|row| !row.keys.is_empty()).collect();
+    let (left, right) = rows.split_at(rows.len().div_ceil(2));
+    let [left, right] = [left, right].map(help_column);
     let width = left.iter().map(|line| line.width()).max().unwrap_or(0);
     let right = right.iter().map(String::as_str).chain(std::iter::repeat(""));
     let bindings = left.iter().zip(right).map(|(left, right)| format!("{left:width$}  {right}"));
@@ -221,9 +220,9 @@ fn help_lines() -> Vec<Line<'static>> {
 }
 
 /// A line for each binding.
-fn help_column(bindings: &[Binding]) -> Vec<String> {
-    let labels = bindings.iter().map(|binding| binding.label.len()).max().unwrap_or(0);
-    bindings.iter().map(|b| format!("{:labels$}  {}", b.label, b.does)).collect()
+fn help_column(rows: &[&Binding]) -> Vec<String> {
+    let labels = rows.iter().map(|row| row.label().width()).max().unwrap_or(0);
+    rows.iter().map(|row| format!("{:labels$}  {}", row.label(), row.command.does())).collect()
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use super::renderer::{Frame, MIDDLE};
 use super::strip::Fault;
 use crate::capabilities::{Capabilities, Colors};
 use crate::cell::{self, Painter};
+use crate::control::{Bindings, Mode};
 use crate::encode::{Allowance, Encoder, Order, Quality};
 use crate::grid::{Grid, Size};
 use crate::overlay;
@@ -26,6 +27,10 @@ const BYTES_PER_CELL: usize = 8;
 
 /// What the user sees.
 pub(super) struct Screen {
+    /// What is told of keys.
+    bindings: Bindings,
+    /// How the eye moves.
+    moving: Mode,
     painter: Painter,
     encoder: Encoder,
     order: Option<Order>,
@@ -56,8 +61,15 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    pub(super) fn new(capabilities: &Capabilities, order: Option<Order>, quality: Option<Quality>) -> Self {
+    pub(super) fn new(
+        capabilities: &Capabilities,
+        order: Option<Order>,
+        quality: Option<Quality>,
+        bindings: Bindings,
+    ) -> Self {
         Self {
+            bindings,
+            moving: Mode::Fly,
             painter: painter(capabilities),
             encoder: encoder(Encoder::new(), capabilities),
             order,
@@ -191,9 +203,28 @@ impl Screen {
         self.changed = true;
     }
 
-    pub(super) fn close_help(&mut self) {
-        self.changed |= self.help;
-        self.help = false;
+    /// What keys are for on a screen of that size, the topmost first.
+    pub(super) fn modes(&self, size: Size) -> Vec<Mode> {
+        if let Some(question) = &self.question {
+            return vec![question.mode()];
+        }
+        let explains = self.explaining.is_some() && panels::has_room(area(size));
+        explains.then_some(Mode::Explain).into_iter().chain([self.moving, Mode::Always]).collect()
+    }
+
+    /// The eye flies, or goes around something.
+    pub(super) fn set_moving(&mut self, moving: Mode) {
+        self.changed |= self.help && self.moving != moving;
+        self.moving = moving;
+    }
+
+    /// Of the help and the explanation, what lies on top goes.
+    pub(super) fn close_topmost(&mut self) {
+        if self.help {
+            self.toggle_help();
+        } else if self.explaining.is_some() {
+            self.toggle_explaining();
+        }
     }
 
     /// A pixel is explained, or none any more.
@@ -203,10 +234,6 @@ impl Screen {
             None => self.frame.as_ref().and_then(Explaining::new),
         };
         self.changed = true;
-    }
-
-    pub(super) fn is_explaining(&self) -> bool {
-        self.explaining.is_some()
     }
 
     /// Another pixel is explained, or more is said of it.
@@ -272,7 +299,9 @@ impl Screen {
 
     fn lay_panels_over(&mut self, grid: &mut Grid, slow: Option<Slow>) {
         let Size { columns, rows } = grid.size();
-        let area = Rect::new(0, 0, columns, rows);
+        let area = area(grid.size());
+        let modes = self.modes(grid.size());
+        let bindings = &self.bindings;
         let mode = self.painter.mode();
         let look = panels::Look::of(mode);
         if let Some(explaining) = self.explaining.as_mut().filter(|_| panels::has_room(area)) {
@@ -332,14 +361,19 @@ impl Screen {
             lay(panels::foot(area, 0), &|area, buffer| legend::draw(note, look, area, buffer));
         }
         if let Some(question) = &self.question {
-            lay(question.area(area), &|area, buffer| question.draw(look, area, buffer));
+            lay(question.area(bindings, area), &|area, buffer| question.draw(bindings, look, area, buffer));
         }
         if self.help {
-            lay(panels::help_area(area), &|area, buffer| {
-                panels::draw_help(look, area, buffer);
+            lay(panels::help_area(bindings, &modes, area), &|area, buffer| {
+                panels::draw_help(bindings, &modes, look, area, buffer);
             });
         }
     }
+}
+
+/// All of it.
+fn area(size: Size) -> Rect {
+    Rect::new(0, 0, size.columns, size.rows)
 }
 
 fn painter(capabilities: &Capabilities) -> Painter {
@@ -424,7 +458,7 @@ mod tests {
             (Some(Order::Color), None, Order::Color),
             (Some(Order::Raster), slow, Order::Raster),
         ] {
-            let mut screen = Screen::new(&capabilities, asked, exact);
+            let mut screen = Screen::new(&capabilities, asked, exact, Bindings::default());
             screen.take_frame(frame(), None);
             let mut wanted = Vec::new();
             Encoder::new().with_order(order).encode(&grid, &mut wanted);

@@ -1,201 +1,193 @@
-//! What each key does: one table.
+//! What each key does, mode by mode: one table.
 
+use super::command::{Command, Direction, Side, Toward};
+use super::key::Key;
+use crate::export::Format;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// What a key can mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Command {
-    /// The eye moves while the key is held.
-    Move(Direction),
-    /// The view turns while the key is held.
-    Look(Turn),
-    /// Back to the view at the start.
-    Reset,
-    /// The next of several scenes.
-    NextScene,
-    /// The one before.
-    LastScene,
-    /// The camera, as a line for a scene file, into the clipboard.
-    CopyCamera,
-    /// The view into the scene file's list of them.
-    KeepView,
-    /// The picture into a file.
-    Export,
-    /// The status line on or off.
-    Status,
-    /// The help on or off.
-    Help,
-    /// The help off.
-    Close,
-    /// The next view of the scene.
-    NextView,
-    /// The view before.
-    LastView,
-    /// Two views side by side, with a line between them, or one again.
-    Compare,
-    /// The line between two views moves.
-    Wipe(Side),
-    /// The explanation of a pixel on or off.
+/// What the keys are for. Several modes hold at a time, the topmost first: what one does not bind is left to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// The eye flies.
+    Fly,
+    /// The eye goes around what it looks at.
+    Orbit,
+    /// A pixel is explained; above fly or orbit.
     Explain,
-    /// The whole screen again, in case something else wrote on it.
-    Redraw,
-    /// Back to the shell, to come again.
-    Suspend,
-    /// Out.
-    Quit,
+    /// The user is asked what the picture is to be written as; by itself.
+    Export,
+    /// The user is asked whether the view is to be written into the scene's file; by itself.
+    Keep,
+    /// Below fly or orbit, whichever it is.
+    Always,
 }
 
-impl Command {
-    /// Whether it goes on as long as its key is held.
-    pub fn moves(self) -> bool {
-        matches!(self, Self::Move(_) | Self::Look(_))
+impl Mode {
+    /// All of them, in the order of the help.
+    pub const ALL: [Self; 6] = [Self::Fly, Self::Orbit, Self::Explain, Self::Export, Self::Keep, Self::Always];
+
+    /// What it is called where a person binds keys.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fly => "fly",
+            Self::Orbit => "orbit",
+            Self::Explain => "explain",
+            Self::Export => "export",
+            Self::Keep => "keep",
+            Self::Always => "always",
+        }
+    }
+
+    /// The mode of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|mode| mode.name() == name)
     }
 }
 
-/// A direction as the camera sees it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// Along the view.
-    Forward,
-    /// Against it.
-    Back,
-    /// Against u.
-    Left,
-    /// Along u.
-    Right,
-    /// Along up.
-    Up,
-    /// Against up.
-    Down,
-}
-
-/// A side of the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// The left one.
-    Left,
-    /// The right one.
-    Right,
-}
-
-/// Where the view turns to, as the camera sees it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Turn {
-    /// About up.
-    Left,
-    /// About up.
-    Right,
-    /// About u.
-    Up,
-    /// About u.
-    Down,
-}
-
-/// Keys and what they do: the one table that is asked when a key is pressed, and that the help shows.
+/// Keys of a mode, and what they do.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
-    /// The keys, each of which does it.
-    pub keys: &'static [Key],
-    /// How the help writes the keys.
-    pub label: &'static str,
+    /// When.
+    pub mode: Mode,
+    /// Each of them does it. None: it cannot be asked for.
+    pub keys: Vec<Key>,
     /// What they do.
     pub command: Command,
-    /// What the help says of it.
-    pub does: &'static str,
 }
 
-/// A key: its code, as typed without Shift, and whether Ctrl is held.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Key {
-    /// Which one.
-    pub code: KeyCode,
-    /// With Ctrl.
-    pub ctrl: bool,
+impl Binding {
+    /// How the help writes the keys.
+    pub fn label(&self) -> String {
+        self.keys.iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
+    }
 }
+
+/// What all keys do: the one table that is asked when a key is pressed, and that the help shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bindings {
+    rows: Vec<Binding>,
+}
+
+/// Those that the program comes with.
+impl Default for Bindings {
+    fn default() -> Self {
+        let row = |&(mode, keys, command): &Row| Binding { mode, keys: keys.to_vec(), command };
+        Self { rows: BUILT_IN.iter().map(row).collect() }
+    }
+}
+
+type Row = (Mode, &'static [Key], Command);
 
 const fn letter(c: char) -> Key {
-    Key { code: KeyCode::Char(c), ctrl: false }
+    Key::letter(c)
 }
 
-const fn ctrl(c: char) -> Key {
-    Key { code: KeyCode::Char(c), ctrl: true }
-}
+const LEFT: &[Key] = &[Key::named(KeyCode::Left), letter('h')];
+const RIGHT: &[Key] = &[Key::named(KeyCode::Right), letter('l')];
+const UP: &[Key] = &[Key::named(KeyCode::Up), letter('k')];
+const DOWN: &[Key] = &[Key::named(KeyCode::Down), letter('j')];
+const HIGHER: &[Key] = &[letter('e'), Key::named(KeyCode::PageUp)];
+const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 
-const fn named(code: KeyCode) -> Key {
-    Key { code, ctrl: false }
-}
-
-const fn binding(keys: &'static [Key], label: &'static str, command: Command, does: &'static str) -> Binding {
-    Binding { keys, label, command, does }
-}
-
-/// All bindings, in the order of the help.
-pub const BINDINGS: &[Binding] = &[
-    binding(&[letter('w')], "w", Command::Move(Direction::Forward), "move forward"),
-    binding(&[letter('s')], "s", Command::Move(Direction::Back), "move back"),
-    binding(&[letter('a')], "a", Command::Move(Direction::Left), "move left"),
-    binding(&[letter('d')], "d", Command::Move(Direction::Right), "move right"),
-    binding(&[letter('e'), named(KeyCode::PageUp)], "e PageUp", Command::Move(Direction::Up), "move up"),
-    binding(&[letter('c'), named(KeyCode::PageDown)], "c PageDown", Command::Move(Direction::Down), "move down"),
-    binding(&[named(KeyCode::Left), letter('h')], "Left h", Command::Look(Turn::Left), "look left"),
-    binding(&[named(KeyCode::Right), letter('l')], "Right l", Command::Look(Turn::Right), "look right"),
-    binding(&[named(KeyCode::Up), letter('k')], "Up k", Command::Look(Turn::Up), "look up"),
-    binding(&[named(KeyCode::Down), letter('j')], "Down j", Command::Look(Turn::Down), "look down"),
-    binding(&[letter('r')], "r", Command::Reset, "back to the first view"),
-    binding(&[letter('v')], "v", Command::NextView, "next view: depth ..."),
-    binding(&[letter('b')], "b", Command::LastView, "the view before"),
-    binding(&[letter('|')], "|", Command::Compare, "compare two views"),
-    binding(&[letter('<')], "<", Command::Wipe(Side::Left), "their line to the left"),
-    binding(&[letter('>')], ">", Command::Wipe(Side::Right), "their line to the right"),
-    binding(&[letter('n')], "n", Command::NextScene, "next scene"),
-    binding(&[letter('p')], "p", Command::LastScene, "scene before"),
-    binding(&[letter('o')], "o", Command::Export, "picture to a file"),
-    binding(&[letter('y')], "y", Command::CopyCamera, "copy the camera"),
-    binding(&[letter('Y')], "Y", Command::KeepView, "view into the scene file"),
-    binding(&[letter('x')], "x", Command::Explain, "explain a pixel's ray"),
-    binding(&[letter('i')], "i", Command::Status, "status line"),
-    binding(&[letter('?')], "?", Command::Help, "this help"),
-    binding(&[named(KeyCode::Esc)], "Esc", Command::Close, "close it"),
-    binding(&[ctrl('l')], "Ctrl-L", Command::Redraw, "draw the screen again"),
-    binding(&[ctrl('z')], "Ctrl-Z", Command::Suspend, "to the shell; fg comes back"),
-    binding(&[letter('q'), ctrl('c')], "q Ctrl-C", Command::Quit, "leave"),
+/// In the order of the help.
+const BUILT_IN: &[Row] = &[
+    (Mode::Fly, &[letter('w')], Command::Move(Direction::Forward)),
+    (Mode::Fly, &[letter('s')], Command::Move(Direction::Back)),
+    (Mode::Fly, &[letter('a')], Command::Move(Direction::Left)),
+    (Mode::Fly, &[letter('d')], Command::Move(Direction::Right)),
+    (Mode::Fly, HIGHER, Command::Move(Direction::Up)),
+    (Mode::Fly, LOWER, Command::Move(Direction::Down)),
+    (Mode::Fly, LEFT, Command::Look(Toward::Left)),
+    (Mode::Fly, RIGHT, Command::Look(Toward::Right)),
+    (Mode::Fly, UP, Command::Look(Toward::Up)),
+    (Mode::Fly, DOWN, Command::Look(Toward::Down)),
+    (Mode::Orbit, LEFT, Command::Around(Toward::Left)),
+    (Mode::Orbit, RIGHT, Command::Around(Toward::Right)),
+    (Mode::Orbit, UP, Command::Around(Toward::Up)),
+    (Mode::Orbit, DOWN, Command::Around(Toward::Down)),
+    (Mode::Orbit, &[letter('w')], Command::Nearer),
+    (Mode::Orbit, &[letter('s')], Command::Farther),
+    (Mode::Orbit, &[letter('a')], Command::Move(Direction::Left)),
+    (Mode::Orbit, &[letter('d')], Command::Move(Direction::Right)),
+    (Mode::Orbit, HIGHER, Command::Move(Direction::Up)),
+    (Mode::Orbit, LOWER, Command::Move(Direction::Down)),
+    (Mode::Explain, &[Key::named(KeyCode::Left)], Command::Point(Toward::Left)),
+    (Mode::Explain, &[Key::named(KeyCode::Right)], Command::Point(Toward::Right)),
+    (Mode::Explain, &[Key::named(KeyCode::Up)], Command::Point(Toward::Up)),
+    (Mode::Explain, &[Key::named(KeyCode::Down)], Command::Point(Toward::Down)),
+    (Mode::Explain, &[Key::named(KeyCode::PageUp)], Command::ScrollUp),
+    (Mode::Explain, &[Key::named(KeyCode::PageDown)], Command::ScrollDown),
+    (Mode::Export, &[letter('p')], Command::Write(Format::Png)),
+    (Mode::Export, &[letter('a')], Command::Write(Format::Ansi)),
+    (Mode::Export, &[letter('t')], Command::Write(Format::Text)),
+    (Mode::Export, &[letter('s')], Command::Write(Format::Svg)),
+    (Mode::Export, &[letter('h')], Command::Write(Format::Html)),
+    (Mode::Export, &[Key::named(KeyCode::Esc)], Command::No),
+    (Mode::Keep, &[letter('y')], Command::Yes),
+    (Mode::Keep, &[letter('n'), Key::named(KeyCode::Esc)], Command::No),
+    (Mode::Always, &[Key::named(KeyCode::Tab)], Command::ChangeMode),
+    (Mode::Always, &[letter('r')], Command::Reset),
+    (Mode::Always, &[letter('v')], Command::NextView),
+    (Mode::Always, &[letter('b')], Command::LastView),
+    (Mode::Always, &[letter('|')], Command::Compare),
+    (Mode::Always, &[letter('<')], Command::Wipe(Side::Left)),
+    (Mode::Always, &[letter('>')], Command::Wipe(Side::Right)),
+    (Mode::Always, &[letter('n')], Command::NextScene),
+    (Mode::Always, &[letter('p')], Command::LastScene),
+    (Mode::Always, &[letter('o')], Command::Export),
+    (Mode::Always, &[letter('y')], Command::CopyCamera),
+    (Mode::Always, &[letter('Y')], Command::KeepView),
+    (Mode::Always, &[letter('x')], Command::Explain),
+    (Mode::Always, &[letter('i')], Command::Status),
+    (Mode::Always, &[letter('?')], Command::Help),
+    (Mode::Always, &[Key::named(KeyCode::Esc)], Command::Close),
+    (Mode::Always, &[Key::ctrl('l')], Command::Redraw),
+    (Mode::Always, &[Key::ctrl('z')], Command::Suspend),
+    (Mode::Always, &[letter('q'), Key::ctrl('c')], Command::Quit),
 ];
 
-/// What the key means, and whether Shift makes it faster.
-pub fn command(key: &KeyEvent) -> Option<(Command, bool)> {
-    let shift = key.modifiers.contains(KeyModifiers::SHIFT);
-    let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
-    // Keys of the window manager: only terminals that tell of everything tell of them.
-    if key.modifiers.intersects(KeyModifiers::SUPER | KeyModifiers::HYPER | KeyModifiers::META) {
-        return None;
+impl Bindings {
+    /// What each mode binds, in the order of the help.
+    pub fn rows(&self) -> &[Binding] {
+        &self.rows
     }
-    let code = match unshifted(key.code) {
-        // A terminal that does not tell what Shift makes of a key: it is so on most keyboards.
-        KeyCode::Char('/') if shift => KeyCode::Char('?'),
-        code => code,
-    };
-    let capital = code != key.code || shift;
-    if let (KeyCode::Char(letter), true) = (code, capital)
-        && let Some(own) = bound(Key { code: KeyCode::Char(letter.to_ascii_uppercase()), ctrl })
-        && letter.is_ascii_lowercase()
-    {
-        return Some((own.command, false));
+
+    /// What one mode binds.
+    pub fn of(&self, mode: Mode) -> impl Iterator<Item = &Binding> {
+        self.rows.iter().filter(move |row| row.mode == mode)
     }
-    let found = bound(Key { code, ctrl })?;
-    let moves = found.command.moves();
-    // Capitals of letters that do not move are free for other commands.
-    let is_letter = matches!(code, KeyCode::Char(c) if c.is_ascii_lowercase());
-    (moves || ctrl || !is_letter || !capital).then_some((found.command, moves && capital))
-}
 
-fn bound(key: Key) -> Option<&'static Binding> {
-    BINDINGS.iter().find(|binding| binding.keys.contains(&key))
-}
+    /// From now on the key does that in that mode, or nothing; whatever it did before.
+    pub fn bind(&mut self, mode: Mode, key: Key, command: Option<Command>) {
+        for row in self.rows.iter_mut().filter(|row| row.mode == mode) {
+            row.keys.retain(|bound| *bound != key);
+        }
+        let Some(command) = command else { return };
+        match self.rows.iter_mut().find(|row| (row.mode, row.command) == (mode, command)) {
+            Some(row) => row.keys.push(key),
+            None => self.rows.push(Binding { mode, keys: vec![key], command }),
+        }
+    }
 
-/// A terminal sends a capital; a capital is its letter with Shift.
-pub(super) fn unshifted(code: KeyCode) -> KeyCode {
-    match code {
-        KeyCode::Char(c) => KeyCode::Char(c.to_ascii_lowercase()),
-        code => code,
+    /// What the key means in these modes, the topmost first, and whether Shift asks for more of it.
+    pub fn command(&self, modes: &[Mode], event: &KeyEvent) -> Option<(Command, bool)> {
+        // Keys of the window manager: only terminals that tell of everything tell of them.
+        if event.modifiers.intersects(KeyModifiers::SUPER | KeyModifiers::HYPER | KeyModifiers::META) {
+            return None;
+        }
+        let typed = Key::typed(event);
+        let has_character = matches!(typed.code, KeyCode::Char(_));
+        let shift = event.modifiers.contains(KeyModifiers::SHIFT) && !has_character;
+        modes.iter().find_map(|&mode| {
+            let exactly = self.bound(mode, typed).map(|command| (command, shift && command.has_faster()));
+            // A capital that is not bound itself is its letter with Shift.
+            let with_shift = || self.bound(mode, typed.without_shift()).filter(|command| command.has_faster());
+            exactly.or_else(|| with_shift().map(|command| (command, true)))
+        })
+    }
+
+    fn bound(&self, mode: Mode, key: Key) -> Option<Command> {
+        self.of(mode).find(|row| row.keys.contains(&key)).map(|row| row.command)
     }
 }
 
@@ -204,48 +196,104 @@ mod tests {
     use super::*;
     use std::collections::HashSet;
 
+    const FLY: &[Mode] = &[Mode::Fly, Mode::Always];
+
     fn press(c: char) -> KeyEvent {
         KeyEvent::new(KeyCode::Char(c), KeyModifiers::NONE)
     }
 
+    fn meant(event: &KeyEvent) -> Option<(Command, bool)> {
+        Bindings::default().command(FLY, event)
+    }
+
+    /// The keys of what holds at the same time, and is not meant to hide what is below it.
+    fn keys_of(bindings: &Bindings, modes: &[Mode]) -> Vec<Key> {
+        let rows = modes.iter().flat_map(|&mode| bindings.of(mode));
+        rows.flat_map(|row| row.keys.iter().copied()).collect()
+    }
+
     #[test]
-    fn no_key_is_bound_twice() {
-        let mut seen = HashSet::new();
-        for key in BINDINGS.iter().flat_map(|binding| binding.keys) {
-            assert!(seen.insert(format!("{key:?}")), "{key:?} is bound twice");
-        }
-        // Shift makes movement faster: no other command may be the capital of one of its letters.
-        for binding in BINDINGS.iter().filter(|binding| binding.command.moves()) {
-            for key in binding.keys {
-                if let KeyCode::Char(letter) = key.code {
-                    let capital = Key { code: KeyCode::Char(letter.to_ascii_uppercase()), ctrl: key.ctrl };
-                    assert!(!BINDINGS.iter().any(|other| other.keys.contains(&capital)), "{capital:?}");
+    fn no_two_bindings_collide() {
+        let bindings = Bindings::default();
+        for modes in [FLY, &[Mode::Orbit, Mode::Always], &[Mode::Explain], &[Mode::Export], &[Mode::Keep]] {
+            let mut seen = HashSet::new();
+            for key in keys_of(&bindings, modes) {
+                assert!(seen.insert(key), "{key} is bound twice in {modes:?}");
+            }
+            // Shift makes movement faster: no other command may be the capital of one of its letters.
+            let rows = modes.iter().flat_map(|&mode| bindings.of(mode)).filter(|row| row.command.has_faster());
+            for key in rows.flat_map(|row| &row.keys) {
+                if let KeyCode::Char(c) = key.code {
+                    assert!(!seen.contains(&Key::letter(c.to_ascii_uppercase())), "Shift-{key} in {modes:?}");
                 }
             }
         }
     }
 
     #[test]
+    fn no_binding_needs_a_key_that_plain_terminals_do_not_send() {
+        for key in keys_of(&Bindings::default(), &Mode::ALL) {
+            assert!(key.is_plain(), "{key}");
+        }
+    }
+
+    #[test]
+    fn each_mode_has_a_name_and_keys() {
+        for mode in Mode::ALL {
+            assert_eq!(Mode::from_name(mode.name()), Some(mode));
+            assert!(Bindings::default().of(mode).count() > 0, "{mode:?}");
+        }
+    }
+
+    #[test]
     fn keys_mean_what_the_table_says() {
-        let fast = |code| command(&KeyEvent::new(code, KeyModifiers::SHIFT));
-        assert_eq!(command(&press('w')), Some((Command::Move(Direction::Forward), false)));
-        assert_eq!(command(&press('W')), Some((Command::Move(Direction::Forward), true)));
+        let with = |code, modifiers| meant(&KeyEvent::new(code, modifiers));
+        let fast = |code| with(code, KeyModifiers::SHIFT);
+        assert_eq!(meant(&press('w')), Some((Command::Move(Direction::Forward), false)));
+        assert_eq!(meant(&press('W')), Some((Command::Move(Direction::Forward), true)));
         assert_eq!(fast(KeyCode::Char('W')), Some((Command::Move(Direction::Forward), true)));
-        assert_eq!(fast(KeyCode::Left), Some((Command::Look(Turn::Left), true)));
+        assert_eq!(fast(KeyCode::Char('w')), Some((Command::Move(Direction::Forward), true)));
+        assert_eq!(fast(KeyCode::Left), Some((Command::Look(Toward::Left), true)));
         assert_eq!(fast(KeyCode::PageUp), Some((Command::Move(Direction::Up), true)));
-        assert_eq!(command(&press('?')), Some((Command::Help, false)));
+        assert_eq!(meant(&press('?')), Some((Command::Help, false)));
         assert_eq!(fast(KeyCode::Char('?')), Some((Command::Help, false)), "however it is typed");
         assert_eq!(
             fast(KeyCode::Char('/')),
             Some((Command::Help, false)),
             "a terminal that tells only where the key is"
         );
-        assert_eq!(command(&press('/')), None);
-        assert_eq!(command(&press('R')), None, "a capital that moves nothing is free");
+        assert_eq!(meant(&press('/')), None);
+        assert_eq!(fast(KeyCode::Char('y')), Some((Command::KeepView, false)));
+        assert_eq!(meant(&press('R')), None, "a capital that moves nothing is free");
         for modifiers in [KeyModifiers::SUPER, KeyModifiers::HYPER, KeyModifiers::META] {
-            assert_eq!(command(&KeyEvent { modifiers, ..press('q') }), None, "the window manager's");
+            assert_eq!(meant(&KeyEvent { modifiers, ..press('q') }), None, "the window manager's");
         }
-        assert_eq!(command(&KeyEvent::new(KeyCode::Char('w'), KeyModifiers::CONTROL)), None);
-        assert_eq!(command(&KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL)), Some((Command::Quit, false)));
+        assert_eq!(with(KeyCode::Char('w'), KeyModifiers::CONTROL), None);
+        assert_eq!(with(KeyCode::Char('c'), KeyModifiers::CONTROL), Some((Command::Quit, false)));
+    }
+
+    #[test]
+    fn what_a_mode_does_not_bind_is_left_to_the_next() {
+        let bindings = Bindings::default();
+        let explain = [Mode::Explain, Mode::Orbit, Mode::Always];
+        let code = |code: KeyCode| bindings.command(&explain, &code.into()).map(|(command, _)| command);
+        assert_eq!(code(KeyCode::Left), Some(Command::Point(Toward::Left)));
+        assert_eq!(code(KeyCode::Char('h')), Some(Command::Around(Toward::Left)));
+        assert_eq!(code(KeyCode::Char('q')), Some(Command::Quit));
+        assert_eq!(bindings.command(&[Mode::Keep], &press('q')), None);
+    }
+
+    #[test]
+    fn keys_are_bound_anew() {
+        let mut bindings = Bindings::default();
+        bindings.bind(Mode::Fly, Key::letter('w'), Some(Command::Move(Direction::Back)));
+        bindings.bind(Mode::Fly, Key::letter('W'), Some(Command::Nearer));
+        bindings.bind(Mode::Always, Key::letter('x'), None);
+        let command = |c| bindings.command(FLY, &press(c)).map(|(command, _)| command);
+        assert_eq!(
+            [command('w'), command('s'), command('W')],
+            [Some(Command::Move(Direction::Back)), Some(Command::Move(Direction::Back)), Some(Command::Nearer)]
+        );
+        assert_eq!(command('x'), None);
     }
 }

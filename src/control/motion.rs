@@ -1,7 +1,9 @@
 //! How held keys move the eye.
 
-use super::{Command, Direction, Turn, bindings::unshifted, command};
-use crate::camera::{Camera, Pose};
+use super::key::unshifted;
+use super::moves::{around, moved, nearer, turned};
+use super::{Command, Direction, Toward};
+use crate::camera::Camera;
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifiers, ModifierKeyCode};
 use glam::{Vec2, Vec3};
 use std::time::Duration;
@@ -56,9 +58,10 @@ impl Motion {
         self.hears_releases
     }
 
-    /// A key event at a time. Where releases are not told, any press stops what was going on before.
-    pub fn key(&mut self, key: &KeyEvent, now: Duration) {
-        match (key.kind, command(key).filter(|(command, _)| command.moves())) {
+    /// A key event at a time, what the key means, and whether Shift asks for more of it. Where releases are not told, any
+    /// press stops what was going on before.
+    pub fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
+        match (key.kind, meant.filter(|(command, _)| command.moves())) {
             (KeyEventKind::Release, _) => self.held.retain(|held| held.key != place(key)),
             (_, Some((command, fast))) => self.hold(Held { key: place(key), command }, fast, key.kind, now),
             (_, None) if self.hears_releases => {}
@@ -101,16 +104,10 @@ impl Motion {
         let seconds = to.min(self.until).saturating_sub(from).as_secs_f32();
         let seconds = if self.fast { FASTER * seconds } else { seconds };
         // Half of the turn before the way and half after it: a curve is nearly the same in one step as in many.
-        let turn = |camera: Camera| match 0.5 * TURN_SPEED * seconds * sum.turn {
-            Vec2::ZERO => camera,
-            turn => with_pose(camera, turned(&camera, turn)),
-        };
-        let camera = turn(*camera);
-        let camera = match speed * seconds * sum.way {
-            Vec3::ZERO => camera,
-            way => with_pose(camera, moved(&camera, way)),
-        };
-        turn(camera)
+        let half = 0.5 * TURN_SPEED * seconds;
+        let turn = |camera| around(&turned(&camera, half * sum.turn), half * sum.around);
+        let camera = moved(&turn(*camera), speed * seconds * sum.way);
+        turn(nearer(&camera, libm::expf(-NEARER_SPEED * seconds * sum.nearer), speed))
     }
 
     /// Opposite keys cancel; two keys for the same are one.
@@ -118,14 +115,19 @@ impl Motion {
         let holds = |command: Command| self.held.iter().any(|held| held.command == command);
         let number = |command: Command| f32::from(u8::from(holds(command)));
         let way = |plus, minus| number(Command::Move(plus)) - number(Command::Move(minus));
-        let turn = |plus, minus| number(Command::Look(plus)) - number(Command::Look(minus));
+        let turn = |of: fn(Toward) -> Command| {
+            let turn = |plus, minus| number(of(plus)) - number(of(minus));
+            Vec2::new(turn(Toward::Left, Toward::Right), turn(Toward::Up, Toward::Down))
+        };
         Sum {
             way: Vec3::new(
                 way(Direction::Right, Direction::Left),
                 way(Direction::Up, Direction::Down),
                 way(Direction::Back, Direction::Forward),
             ),
-            turn: Vec2::new(turn(Turn::Left, Turn::Right), turn(Turn::Up, Turn::Down)),
+            turn: turn(Command::Look),
+            around: turn(Command::Around),
+            nearer: number(Command::Nearer) - number(Command::Farther),
         }
     }
 }
@@ -137,58 +139,18 @@ struct Sum {
     way: Vec3,
     /// To the left about up, and upwards about u.
     turn: Vec2,
+    /// The eye around the target, to the left and upwards.
+    around: Vec2,
+    /// The eye to the target.
+    nearer: f32,
 }
 
 /// With Shift.
 const FASTER: f32 = 4.0;
 /// Radians per second.
 const TURN_SPEED: f32 = std::f32::consts::FRAC_PI_4;
-/// The view keeps this far, in radians, from straight up and straight down, where no direction would be vertical.
-const POLE: f32 = 0.02;
-
-/// World units per second at which a scene is pleasant to fly through: half the way to the target.
-pub fn speed(camera: &Camera) -> f32 {
-    let Pose { eye, target, .. } = camera.pose();
-    0.5 * eye.distance(target)
-}
-
-/// Where the pose gives no picture (an eye too far out for f32), the view stays.
-fn with_pose(camera: Camera, pose: Pose) -> Camera {
-    camera.with_pose(pose).unwrap_or(camera)
-}
-
-/// `way` is along u, up and w.
-fn moved(camera: &Camera, way: Vec3) -> Pose {
-    let Pose { eye, target, up } = camera.pose();
-    let basis = camera.basis();
-    let by = way.x * basis.u + way.y * up.normalize_or_zero() + way.z * basis.w;
-    Pose { eye: eye + by, target: target + by, up }
-}
-
-/// `turn` is to the left about up, and upwards about u.
-fn turned(camera: &Camera, turn: Vec2) -> Pose {
-    let Pose { eye, target, up } = camera.pose();
-    let (left, upwards) = (turn.x, up_to_the_pole(camera, turn.y));
-    let axis_up = up.normalize_or_zero();
-    let u = rotated(camera.basis().u, axis_up, left);
-    let view = rotated(rotated(target - eye, axis_up, left), u, upwards);
-    Pose { eye, target: eye + view, up }
-}
-
-/// As much of an upward turn as the pole leaves. A view that begins beyond the limit may turn away from the pole only.
-fn up_to_the_pole(camera: &Camera, angle: f32) -> f32 {
-    let limit = std::f32::consts::FRAC_PI_2 - POLE;
-    let sine = -camera.basis().w.dot(camera.pose().up.normalize_or_zero());
-    let elevation = libm::asinf(sine.clamp(-1.0, 1.0));
-    if angle > 0.0 { angle.min((limit - elevation).max(0.0)) } else { angle.max((-limit - elevation).min(0.0)) }
-}
-
-/// Rodrigues' rotation of `v` about a unit axis, to the left when seen against it; the length is kept.
-fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
-    let (sin, cos) = libm::sincosf(angle);
-    let turned = v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
-    turned * (v.length() / turned.length())
-}
+/// In a second the distance to the target becomes 1/e of it.
+const NEARER_SPEED: f32 = 1.0;
 
 #[cfg(test)]
 mod tests;

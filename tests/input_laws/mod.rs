@@ -3,7 +3,7 @@
 
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Duration;
-use termtrace::control::{BINDINGS, COAST, GLIDE, Motion};
+use termtrace::control::{Bindings, COAST, GLIDE, Mode, Motion};
 use termtrace::input::{Input, PASTE_PATIENCE, Parser};
 
 /// Panics if a law is broken for these bytes, of which the first says how the rest is split.
@@ -111,11 +111,11 @@ fn no_key_is_stuck(keys_are_sequences: bool, pieces: &[&[u8]]) {
         now += Duration::from_millis(30);
     }
     let mut let_go = motion.clone();
-    for key in BINDINGS.iter().flat_map(|binding| binding.keys) {
+    for key in Bindings::default().rows().iter().flat_map(|row| &row.keys) {
         for state in [crossterm::event::KeyEventState::NONE, crossterm::event::KeyEventState::KEYPAD] {
             let kind = KeyEventKind::Release;
             let release = KeyEvent::new_with_kind_and_state(key.code, KeyModifiers::NONE, kind, state);
-            let_go.key(&release, now);
+            let_go.take_key(&release, None, now);
         }
     }
     assert!(!let_go.is_moving(now), "all keys are let go: {let_go:?}");
@@ -129,7 +129,7 @@ fn take(motion: &mut Motion, input: &Input, now: Duration) {
     match input {
         Input::Event(Event::Key(key)) => {
             let before = motion.is_moving(now);
-            motion.key(key, now);
+            motion.take_key(key, Bindings::default().command(&[Mode::Fly, Mode::Always], key), now);
             if key.kind == KeyEventKind::Release {
                 // Of two opposite keys, the other is then alone.
                 assert!(before || motion.hears_releases() || !motion.is_moving(now), "a release began a movement");

@@ -105,7 +105,7 @@ fn a_view_is_written_into_the_scene_after_a_yes() {
         assert_eq!(read(&folder, "ball.ron"), TEXT);
     }
     session.send(b"Y");
-    session.wait_for_text("y  yes");
+    session.wait_for_text("  yes");
     session.send(b"y");
     session.wait_for_text("written into the scene's views");
     let scene = Scene::load(&folder.path().join("ball.ron")).expect("it is a scene");
@@ -120,7 +120,7 @@ fn a_scene_that_has_changed_is_left_alone() {
     let folder = folder();
     let mut session = looking(&folder);
     session.send(b"Y");
-    session.wait_for_text("y  yes");
+    session.wait_for_text("  yes");
     let changed = TEXT.replace("Mine", "Changed");
     fs::write(folder.path().join("ball.ron"), &changed).expect("a file can be written");
     session.send(b"y");

@@ -8,7 +8,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::time::Duration;
 use termtrace::capabilities::{CellMode, Colors, Glyphs};
-use termtrace::control::BINDINGS;
+use termtrace::control::{Bindings, Mode};
 use termtrace::encode::{Encoder, Order};
 use termtrace::grid::Grid;
 use termtrace::scene::Scene;
@@ -163,9 +163,10 @@ fn reset_brings_the_first_view_back_and_quiet_is_quiet() {
 fn help_shows_every_binding_and_goes_away() {
     let mut session = looking(termtrace());
     session.send(b"?");
-    for binding in BINDINGS {
-        session.wait_for_text(binding.does);
-        session.wait_for_text(binding.label);
+    let bindings = Bindings::default();
+    for binding in bindings.of(Mode::Fly).chain(bindings.of(Mode::Always)) {
+        session.wait_for_text(binding.command.does());
+        session.wait_for_text(&binding.label());
     }
     session.send(b"?");
     wait_for_picture(&mut session, Size::cells(80, 24));

@@ -2,7 +2,7 @@
 
 use super::Live;
 use crate::app::shown::Shown;
-use crate::control::{self, Command};
+use crate::control::Command;
 use crate::input::{Input, Reply};
 use crate::terminal::{Signals, Stopped, Terminal};
 use crate::view::View;
@@ -105,38 +105,57 @@ impl Live {
     }
 
     fn take_key(&mut self, key: &KeyEvent) -> Next {
-        if key.kind == KeyEventKind::Press {
+        let is_press = key.kind == KeyEventKind::Press;
+        if is_press {
             self.screen.unsay();
-            if !key.modifiers.contains(KeyModifiers::CONTROL) && self.take_answer(key.code) {
-                return Next::Stay;
+        }
+        let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
+        let meant = self.options.bindings.command(&self.screen.modes(self.window.size), key);
+        if is_press && !ctrl && self.take_answer(meant.map(|(command, _)| command)) {
+            return Next::Stay;
+        }
+        self.stale |= self.eye.take_key(key, meant, self.now());
+        match meant {
+            Some((command, more)) if is_press || key.kind == KeyEventKind::Repeat && command.repeats() => {
+                self.obey(command, more)
             }
+            _ => Next::Stay,
         }
-        if self.screen.is_explaining() && self.point(key) {
-            return Next::Stay;
-        }
-        self.stale |= self.eye.take_key(key, self.now());
-        if key.kind != KeyEventKind::Press {
-            return Next::Stay;
-        }
-        match control::command(key).map(|(command, _)| command) {
-            Some(Command::Quit) => return Next::Leave,
-            Some(Command::Suspend) => return Next::Suspend(Some(Stopped::Group)),
-            Some(Command::Reset) => self.stale |= self.eye.reset(),
-            Some(Command::NextScene) => self.scenes_on += 1,
-            Some(Command::LastScene) => self.scenes_on -= 1,
-            Some(Command::CopyCamera) => self.copy_camera(),
-            Some(Command::Export) => self.ask_export(),
-            Some(Command::KeepView) => self.ask_keep(),
-            Some(Command::Status) => self.screen.toggle_status(),
-            Some(Command::Help) => self.screen.toggle_help(),
-            Some(Command::Close) => self.screen.close_help(),
-            Some(Command::NextView) => self.show_views(|shown| shown.go_on(View::next)),
-            Some(Command::LastView) => self.show_views(|shown| shown.go_on(View::back)),
-            Some(Command::Compare) => self.show_views(Shown::compare),
-            Some(Command::Wipe(side)) => self.move_wipe(side),
-            Some(Command::Explain) => self.screen.toggle_explaining(),
-            Some(Command::Redraw) => self.screen.redraw(self.capabilities.halves_meet),
-            Some(Command::Move(_) | Command::Look(_)) | None => {}
+    }
+
+    /// Does at once what is asked for; with Shift, more of it. What goes on while a key is held is the eye's.
+    fn obey(&mut self, command: Command, more: bool) -> Next {
+        match command {
+            Command::Quit => return Next::Leave,
+            Command::Suspend => return Next::Suspend(Some(Stopped::Group)),
+            Command::ChangeMode => self.change_mode(),
+            Command::Reset => self.stale |= self.eye.reset(),
+            Command::NextScene => self.scenes_on += 1,
+            Command::LastScene => self.scenes_on -= 1,
+            Command::CopyCamera => self.copy_camera(),
+            Command::Export => self.ask_export(),
+            Command::KeepView => self.ask_keep(),
+            Command::Status => self.screen.toggle_status(),
+            Command::Help => self.screen.toggle_help(),
+            Command::Close => self.screen.close_topmost(),
+            Command::NextView => self.show_views(|shown| shown.go_on(View::next)),
+            Command::LastView => self.show_views(|shown| shown.go_on(View::back)),
+            Command::Compare => self.show_views(Shown::compare),
+            Command::Wipe(side) => self.move_wipe(side),
+            Command::Explain => self.screen.toggle_explaining(),
+            Command::Point(toward) => self.point(toward, more),
+            Command::ScrollUp => self.scroll(-1),
+            Command::ScrollDown => self.scroll(1),
+            Command::Redraw => self.screen.redraw(self.capabilities.halves_meet),
+            // The eye has heard of it; or it is an answer, and nothing was asked.
+            Command::Move(_)
+            | Command::Look(_)
+            | Command::Around(_)
+            | Command::Nearer
+            | Command::Farther
+            | Command::Write(_)
+            | Command::Yes
+            | Command::No => {}
         }
         Next::Stay
     }

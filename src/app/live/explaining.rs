@@ -1,7 +1,7 @@
-//! Keys while a pixel is explained.
+//! Commands while a pixel is explained.
 
 use super::Live;
-use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use crate::control::Toward;
 
 /// With Shift the cursor goes so many pixels at once.
 const FASTER: i32 = 8;
@@ -10,26 +10,20 @@ const FASTER: i32 = 8;
 const PAGE: isize = 10;
 
 impl Live {
-    /// A key that moves the cursor, or the text beside it; whether it is one.
-    pub(super) fn point(&mut self, key: &KeyEvent) -> bool {
-        let pixels = if key.modifiers.contains(KeyModifiers::SHIFT) { FASTER } else { 1 };
-        let step = match key.code {
-            KeyCode::Left => [-pixels, 0],
-            KeyCode::Right => [pixels, 0],
-            KeyCode::Up => [0, -pixels],
-            KeyCode::Down => [0, pixels],
-            KeyCode::PageUp | KeyCode::PageDown | KeyCode::Esc => [0; 2],
-            _ => return false,
+    /// The cursor goes by a pixel, or more.
+    pub(super) fn point(&mut self, toward: Toward, more: bool) {
+        let pixels = if more { FASTER } else { 1 };
+        let step = match toward {
+            Toward::Left => [-pixels, 0],
+            Toward::Right => [pixels, 0],
+            Toward::Up => [0, -pixels],
+            Toward::Down => [0, pixels],
         };
-        if key.kind == KeyEventKind::Release {
-            return true;
-        }
-        match key.code {
-            KeyCode::PageUp => self.screen.explain(|explaining, _| explaining.scroll(-PAGE)),
-            KeyCode::PageDown => self.screen.explain(|explaining, _| explaining.scroll(PAGE)),
-            KeyCode::Esc => self.screen.toggle_explaining(),
-            _ => self.screen.explain(|explaining, frame| explaining.step(frame, step)),
-        }
-        true
+        self.screen.explain(|explaining, frame| explaining.step(frame, step));
+    }
+
+    /// So many pages on in what is said of the pixel.
+    pub(super) fn scroll(&mut self, pages: isize) {
+        self.screen.explain(|explaining, _| explaining.scroll(pages * PAGE));
     }
 }

@@ -4,8 +4,8 @@ use super::Live;
 use crate::app::dialog::{Answer, Dialog};
 use crate::app::exporting::{contents, stem, write_new};
 use crate::app::keeping::Asked;
+use crate::control::Command;
 use crate::export::Format;
-use crossterm::event::KeyCode;
 use std::io;
 
 impl Live {
@@ -33,10 +33,10 @@ impl Live {
         }
     }
 
-    /// Takes a key as the answer if something has been asked; whether it has.
-    pub(super) fn take_answer(&mut self, key: KeyCode) -> bool {
+    /// Takes what a key means as the answer if something has been asked; whether it has.
+    pub(super) fn take_answer(&mut self, meant: Option<Command>) -> bool {
         let Some(dialog) = self.screen.end_question() else { return false };
-        match dialog.answer(key) {
+        match dialog.answer(meant) {
             Answer::Export(format) => {
                 let said = match self.export(format) {
                     Ok(name) => format!("written: {name}"),

@@ -1,7 +1,19 @@
 //! Keys at times, and where the eye is after them.
 
 use super::*;
-use crate::camera::ViewRectangle;
+use crate::camera::{Pose, ViewRectangle};
+use crate::control::{Bindings, Mode};
+
+/// Keys that mean what they do when one flies.
+trait Flown {
+    fn key(&mut self, key: &KeyEvent, now: Duration);
+}
+
+impl Flown for Motion {
+    fn key(&mut self, key: &KeyEvent, now: Duration) {
+        self.take_key(key, Bindings::default().command(&[Mode::Fly, Mode::Always], key), now);
+    }
+}
 
 fn camera() -> Camera {
     let pose = Pose { eye: Vec3::new(0.0, 0.0, 4.0), target: Vec3::ZERO, up: Vec3::Y };
@@ -311,4 +323,35 @@ fn a_tilted_up_is_what_is_turned_about() {
     motion.key(&press('e'), ms(0));
     let eye = motion.step(&camera, 1.0, ms(0), ms(500)).pose().eye;
     assert!((eye - camera.pose().eye).abs_diff_eq(up.normalize() * 0.5, 1e-5));
+}
+
+/// Going around: the distance stays, and so does what is looked at.
+#[test]
+fn the_eye_goes_around_the_target() {
+    let after = |key: KeyCode, shift: bool| {
+        let modifiers = if shift { KeyModifiers::SHIFT } else { KeyModifiers::NONE };
+        let key = KeyEvent::new(key, modifiers);
+        let mut motion = Motion::default();
+        motion.set_hears_releases(true);
+        motion.take_key(&key, Bindings::default().command(&[Mode::Orbit], &key), ms(0));
+        motion.step(&camera(), 2.0, ms(0), ms(1_000)).pose()
+    };
+    let turn = 4.0 * std::f32::consts::FRAC_1_SQRT_2;
+    for (key, eye) in [
+        (KeyCode::Left, [-turn, 0.0, turn]),
+        (KeyCode::Char('l'), [turn, 0.0, turn]),
+        (KeyCode::Up, [0.0, turn, turn]),
+        (KeyCode::Char('j'), [0.0, -turn, turn]),
+        (KeyCode::Char('w'), [0.0, 0.0, 4.0 / std::f32::consts::E]),
+        (KeyCode::Char('s'), [0.0, 0.0, 4.0 * std::f32::consts::E]),
+    ] {
+        let pose = after(key, false);
+        assert!(pose.eye.abs_diff_eq(Vec3::from(eye), 1e-4), "{key:?}: {pose:?}");
+        assert_eq!(pose.target, Vec3::ZERO, "{key:?}");
+    }
+    let pose = after(KeyCode::Char('d'), false);
+    assert!(pose.eye.abs_diff_eq(Vec3::new(2.0, 0.0, 4.0), 1e-5), "{pose:?}");
+    assert!(pose.target.abs_diff_eq(2.0 * Vec3::X, 1e-5), "{pose:?}");
+    let fast = after(KeyCode::Left, true).eye;
+    assert!(fast.abs_diff_eq(Vec3::new(0.0, 0.0, -4.0), 1e-4), "half a round: {fast}");
 }

@@ -1,0 +1,252 @@
+//! What a key can mean, with a name for it and words for the help.
+
+use crate::export::Format;
+
+/// What a key can mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// The eye moves while the key is held, and what it looks at with it.
+    Move(Direction),
+    /// The view turns while the key is held.
+    Look(Toward),
+    /// The eye goes around the target while the key is held.
+    Around(Toward),
+    /// The eye comes nearer to the target while the key is held.
+    Nearer,
+    /// The eye goes away from the target while the key is held.
+    Farther,
+    /// From flying to going around the target, or back.
+    ChangeMode,
+    /// Back to the view at the start.
+    Reset,
+    /// The next view of the scene.
+    NextView,
+    /// The view before.
+    LastView,
+    /// Two views side by side, with a line between them, or one again.
+    Compare,
+    /// The line between two views moves.
+    Wipe(Side),
+    /// The next of several scenes.
+    NextScene,
+    /// The one before.
+    LastScene,
+    /// The picture into a file.
+    Export,
+    /// The camera, as a line for a scene file, into the clipboard.
+    CopyCamera,
+    /// The view into the scene file's list of them.
+    KeepView,
+    /// The explanation of a pixel on or off.
+    Explain,
+    /// The status line on or off.
+    Status,
+    /// The help on or off.
+    Help,
+    /// What lies over the picture goes, the topmost first.
+    Close,
+    /// The whole screen again, in case something else wrote on it.
+    Redraw,
+    /// Back to the shell, to come again.
+    Suspend,
+    /// Out.
+    Quit,
+    /// The cursor to another pixel.
+    Point(Toward),
+    /// Earlier lines of a text.
+    ScrollUp,
+    /// Later lines of a text.
+    ScrollDown,
+    /// The picture is to be written in that format.
+    Write(Format),
+    /// What was asked is to be done.
+    Yes,
+    /// It is not.
+    No,
+}
+
+/// A direction as the camera sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Along the view.
+    Forward,
+    /// Against it.
+    Back,
+    /// Against u.
+    Left,
+    /// Along u.
+    Right,
+    /// Along up.
+    Up,
+    /// Against up.
+    Down,
+}
+
+/// A direction on the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Toward {
+    /// To its left edge.
+    Left,
+    /// To its right edge.
+    Right,
+    /// To its upper edge.
+    Up,
+    /// To its lower edge.
+    Down,
+}
+
+/// A side of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The left one.
+    Left,
+    /// The right one.
+    Right,
+}
+
+/// All commands: what they are called where a person binds keys to them, and what the help says of them.
+const COMMANDS: &[(Command, &str, &str)] = &[
+    (Command::Move(Direction::Forward), "MoveForward", "move forward"),
+    (Command::Move(Direction::Back), "MoveBack", "move back"),
+    (Command::Move(Direction::Left), "MoveLeft", "move left"),
+    (Command::Move(Direction::Right), "MoveRight", "move right"),
+    (Command::Move(Direction::Up), "MoveUp", "move up"),
+    (Command::Move(Direction::Down), "MoveDown", "move down"),
+    (Command::Look(Toward::Left), "LookLeft", "look left"),
+    (Command::Look(Toward::Right), "LookRight", "look right"),
+    (Command::Look(Toward::Up), "LookUp", "look up"),
+    (Command::Look(Toward::Down), "LookDown", "look down"),
+    (Command::Around(Toward::Left), "AroundLeft", "around to the left"),
+    (Command::Around(Toward::Right), "AroundRight", "around to the right"),
+    (Command::Around(Toward::Up), "AroundUp", "around upwards"),
+    (Command::Around(Toward::Down), "AroundDown", "around downwards"),
+    (Command::Nearer, "Nearer", "nearer"),
+    (Command::Farther, "Farther", "farther away"),
+    (Command::ChangeMode, "ChangeMode", "orbit, or fly again"),
+    (Command::Reset, "Reset", "back to the first view"),
+    (Command::NextView, "NextView", "next view: depth ..."),
+    (Command::LastView, "LastView", "the view before"),
+    (Command::Compare, "Compare", "compare two views"),
+    (Command::Wipe(Side::Left), "WipeLeft", "their line to the left"),
+    (Command::Wipe(Side::Right), "WipeRight", "their line to the right"),
+    (Command::NextScene, "NextScene", "next scene"),
+    (Command::LastScene, "LastScene", "scene before"),
+    (Command::Export, "Export", "picture to a file"),
+    (Command::CopyCamera, "CopyCamera", "copy the camera"),
+    (Command::KeepView, "KeepView", "view into the scene file"),
+    (Command::Explain, "Explain", "explain a pixel's ray"),
+    (Command::Status, "Status", "status line"),
+    (Command::Help, "Help", "this help"),
+    (Command::Close, "Close", "close it"),
+    (Command::Redraw, "Redraw", "draw the screen again"),
+    (Command::Suspend, "Suspend", "to the shell; fg comes back"),
+    (Command::Quit, "Quit", "leave"),
+    (Command::Point(Toward::Left), "PointLeft", "cursor to the left"),
+    (Command::Point(Toward::Right), "PointRight", "cursor to the right"),
+    (Command::Point(Toward::Up), "PointUp", "cursor up"),
+    (Command::Point(Toward::Down), "PointDown", "cursor down"),
+    (Command::ScrollUp, "ScrollUp", "earlier lines"),
+    (Command::ScrollDown, "ScrollDown", "later lines"),
+    (Command::Write(Format::Png), "WritePng", "PNG picture"),
+    (Command::Write(Format::Ansi), "WriteAnsi", "ANSI text in colour"),
+    (Command::Write(Format::Text), "WriteText", "plain text"),
+    (Command::Write(Format::Svg), "WriteSvg", "SVG drawing"),
+    (Command::Write(Format::Html), "WriteHtml", "HTML page"),
+    (Command::Yes, "Yes", "yes"),
+    (Command::No, "No", "no"),
+];
+
+impl Command {
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        COMMANDS.iter().map(|&(command, ..)| command)
+    }
+
+    /// The command of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        COMMANDS.iter().find(|(_, known, _)| *known == name).map(|&(command, ..)| command)
+    }
+
+    /// What it is called where a person binds keys to it. Names stay: people's files have them.
+    pub fn name(self) -> &'static str {
+        self.row().1
+    }
+
+    /// What the help says of it, in a few words.
+    pub fn does(self) -> &'static str {
+        self.row().2
+    }
+
+    /// Whether it goes on as long as its key is held.
+    pub fn moves(self) -> bool {
+        matches!(self, Self::Move(_) | Self::Look(_) | Self::Around(_) | Self::Nearer | Self::Farther)
+    }
+
+    /// Whether the key's own repeats do it again.
+    pub fn repeats(self) -> bool {
+        matches!(self, Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_))
+    }
+
+    /// Whether Shift with the key does more of it.
+    pub fn has_faster(self) -> bool {
+        self.moves() || matches!(self, Self::Point(_))
+    }
+
+    fn row(self) -> &'static (Self, &'static str, &'static str) {
+        let row = COMMANDS.iter().find(|(command, ..)| *command == self);
+        row.unwrap_or_else(|| unreachable!("a command without a name: {self:?}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Its own, and by it the command is found.
+    #[test]
+    fn each_command_has_a_name() {
+        for command in Command::all() {
+            assert_eq!(Command::from_name(command.name()), Some(command));
+            assert!(command.does().len() <= 28, "too long for half of the help: {command:?}");
+        }
+        assert_eq!(Command::from_name("movE"), None);
+    }
+
+    /// The table is as long as there are commands: whoever adds one meets this match first.
+    #[test]
+    fn no_command_is_left_out() {
+        let of_kind = |command: Command| match command {
+            Command::Move(_) => 6,
+            Command::Look(_) | Command::Around(_) | Command::Point(_) => 4,
+            Command::Wipe(_) => 2,
+            Command::Write(_) => 5,
+            Command::Nearer
+            | Command::Farther
+            | Command::ChangeMode
+            | Command::Reset
+            | Command::NextView
+            | Command::LastView
+            | Command::Compare
+            | Command::NextScene
+            | Command::LastScene
+            | Command::Export
+            | Command::CopyCamera
+            | Command::KeepView
+            | Command::Explain
+            | Command::Status
+            | Command::Help
+            | Command::Close
+            | Command::Redraw
+            | Command::Suspend
+            | Command::Quit
+            | Command::ScrollUp
+            | Command::ScrollDown
+            | Command::Yes
+            | Command::No => 1,
+        };
+        for command in Command::all() {
+            let same = |other: &Command| std::mem::discriminant(other) == std::mem::discriminant(&command);
+            assert_eq!(Command::all().filter(same).count(), of_kind(command), "{command:?}");
+        }
+    }
+}
