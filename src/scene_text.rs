@@ -13,10 +13,12 @@
 mod fault;
 mod parser;
 mod tokens;
+mod whole;
 
-pub use fault::{Fault, Faults, Report, SceneError};
+pub use fault::{Fault, Faults, Report, SceneError, line_and_column};
 pub(crate) use fault::{clipped, quoted, visible};
 pub use parser::parse;
+pub use whole::{read, text_from};
 
 /// The bytes of the text that something was written in: from `start` up to, and without, `end`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -175,7 +175,7 @@ fn character_at(text: &str, place: usize) -> usize {
 }
 
 /// Line and column, counted from 1, of a byte of the text.
-pub(super) fn line_and_column(text: &str, place: usize) -> (usize, usize) {
+pub fn line_and_column(text: &str, place: usize) -> (usize, usize) {
     let mut walk = Walk::new(text);
     walk.go_to(place);
     (walk.line, walk.column)
