@@ -4,6 +4,7 @@ mod bench;
 mod cells;
 mod check;
 mod completions;
+mod config;
 mod describe;
 mod doctor;
 mod encoding;
@@ -14,9 +15,10 @@ mod near;
 mod origin;
 mod picture;
 mod record;
+mod settings;
 mod view;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use glam::Vec3;
 use origin::Origin;
 use std::ffi::OsString;
@@ -78,19 +80,29 @@ Examples:
   termtrace check my.ron                                 say what is wrong with a scene file
   termtrace bench my.ron --pixels 200x120                say how fast its rays are traced
   termtrace doctor                                       say what this terminal can do, with a test card
+  termtrace config                                       say which settings hold, and who says so
   termtrace completions bash                             what a shell completes; termtrace man is the manual
   generate_scene | termtrace -                           read the scene from standard input
 
 Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wrong arguments or a wrong scene";
 
+/// Stands below the options.
+fn help() -> String {
+    let explained = [cells::EXPLAINED, view::EXPLAINED, encoding::EXPLAINED, settings::EXPLAINED].join("\n");
+    format!("{explained}\n\n{EXAMPLES}")
+}
+
 #[derive(Parser)]
-#[command(name = "termtrace", version, about = ABOUT, after_help = format!("{}\n{}\n{}\n\n{EXAMPLES}", cells::EXPLAINED, view::EXPLAINED, encoding::EXPLAINED))]
+#[command(name = "termtrace", version, about = ABOUT, after_help = help())]
 #[command(args_conflicts_with_subcommands = true, disable_help_subcommand = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
     live: live::LiveArgs,
+    /// Read none of the user's own files
+    #[arg(long, global = true)]
+    no_config: bool,
 }
 
 #[derive(Subcommand)]
@@ -109,6 +121,8 @@ enum Command {
     Bench(bench::BenchArgs),
     /// Say what this terminal can do and who says so, and draw a test card
     Doctor(doctor::DoctorArgs),
+    /// Say which settings hold, and who says so
+    Config(config::ConfigArgs),
     /// Print what a shell is to know to complete arguments
     Completions(completions::CompletionsArgs),
     /// Print the manual, for man
@@ -223,10 +237,12 @@ fn parse_vec3(text: &str) -> Result<Vec3, String> {
 /// Reads the command line, does what it says, and says what went wrong.
 pub(crate) fn main() -> ExitCode {
     termtrace::terminal::hold_panic_messages();
-    let cli = match parse(std::env::args_os()) {
-        Ok(cli) => cli,
+    let (cli, given) = match parse(std::env::args_os()) {
+        Ok(parsed) => parsed,
         Err(exit) => return exit,
     };
+    // What was given to the command, if there is one.
+    let given = given.subcommand().map_or(&given, |(_, given)| given);
     let done = match cli.command {
         Some(Command::Frame(args)) => frame::run(&args),
         Some(Command::Record(args)) => record::run(&args),
@@ -234,10 +250,11 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Describe(args)) => describe::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
-        Some(Command::Doctor(args)) => doctor::run(&args),
+        Some(Command::Doctor(_)) => doctor::run(given),
+        Some(Command::Config(_)) => config::run(given),
         Some(Command::Completions(args)) => completions::complete(&args),
         Some(Command::Man(args)) => completions::man(&args),
-        None => live::run(&cli.live),
+        None => live::run(&cli.live, given),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -248,8 +265,9 @@ pub(crate) fn main() -> ExitCode {
 }
 
 /// Help and version are no errors; a closed pipe hides either.
-fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Cli, ExitCode> {
-    Cli::try_parse_from(arguments).map_err(|error| {
+fn parse(arguments: impl Iterator<Item = OsString>) -> Result<(Cli, ArgMatches), ExitCode> {
+    let given = Cli::command().try_get_matches_from(arguments);
+    given.and_then(|given| Ok((Cli::from_arg_matches(&given)?, given))).map_err(|error| {
         let _ = error.print();
         ExitCode::from(if error.use_stderr() { 2 } else { 0 })
     })

@@ -111,7 +111,27 @@ pub struct Field<'a> {
     pub value: Node<'a>,
 }
 
-impl Node<'_> {
+impl<'a> Node<'a> {
+    /// The fields of `(name: value, ...)`, a group that has no name itself; none of `()`.
+    pub fn fields(&self) -> Option<&[Field<'a>]> {
+        match &self.value {
+            Value::Group(group) if group.name.is_none() => match &group.body {
+                Body::Fields(fields) => Some(fields),
+                Body::Values(values) if values.is_empty() => Some(&[]),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// The word, if it is one without quotes and brackets, such as `InverseSquare`.
+    pub fn word(&self) -> Option<&'a str> {
+        match &self.value {
+            Value::Group(group) if group.body == Body::Nothing => group.name.map(|name| name.text),
+            _ => None,
+        }
+    }
+
     /// Where to point when something is missing in this value: its name, or else its first bracket.
     pub fn head(&self) -> Span {
         match &self.value {

@@ -14,8 +14,8 @@ pub struct Found<T> {
 /// Who has told something of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The command line.
-    Flag,
+    /// The user, by a flag or a setting.
+    User,
     /// The environment variable of that name.
     Variable(&'static str),
     /// The window, by its size in cells and in pixels.
@@ -47,10 +47,10 @@ pub type GlyphChoice = Option<Glyphs>;
 /// terminfo's flags; the name in `TERM`, where it is known for truecolor; terminfo's number; the name. `CLICOLOR_FORCE`, `FORCE_COLOR` and `--color=always` say the least that it has to be.
 pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Found<Colors> {
     let least = match choice {
-        ColorChoice::Never => return Found { value: Colors::None, source: Source::Flag },
-        ColorChoice::Exactly(value) => return Found { value, source: Source::Flag },
-        ColorChoice::Always => Some(Found { value: Colors::SIXTEEN, source: Source::Flag }),
-        ColorChoice::Auto => match refused(clues).or_else(|| forced(clues)) {
+        ColorChoice::Never => return Found { value: Colors::None, source: Source::User },
+        ColorChoice::Exactly(value) => return Found { value, source: Source::User },
+        ColorChoice::Always => Some(Found { value: Colors::SIXTEEN, source: Source::User }),
+        ColorChoice::Auto => match asked_for(clues) {
             Some(refused) if refused.value == Colors::None => return refused,
             forced => forced,
         },
@@ -62,7 +62,7 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Found<Colors> {
 /// What stands in cells: half blocks, unless they would be garbage, or there is no colour to tell one from another.
 pub fn glyphs(choice: GlyphChoice, colors: Found<Colors>, clues: &Clues<'_>) -> Found<Glyphs> {
     if let Some(value) = choice {
-        return Found { value, source: Source::Flag };
+        return Found { value, source: Source::User };
     }
     if colors.value == Colors::None {
         return Found { value: Glyphs::Shape, source: colors.source };
@@ -80,6 +80,11 @@ pub fn glyphs(choice: GlyphChoice, colors: Found<Colors>, clues: &Clues<'_>) -> 
 /// The variable's value, if it is set and not empty.
 fn value(clues: &Clues<'_>, name: &str) -> Option<String> {
     (clues.variable)(name).filter(|value| !value.is_empty())
+}
+
+/// What the user's own variables ask for; what is forced is only the least that it has to be.
+pub(super) fn asked_for(clues: &Clues<'_>) -> Option<Found<Colors>> {
+    refused(clues).or_else(|| forced(clues))
 }
 
 /// The custom of no-color.org: set, and not empty.
@@ -192,9 +197,9 @@ mod tests {
         let dumb = ("TERM", "dumb");
         for (choice, environment, reply, value, source) in [
             // The flag.
-            (Never, &[truecolor][..], Some(true), NoColors, Source::Flag),
-            (Exactly(Indexed256), &[truecolor, ("NO_COLOR", "1")], None, Indexed256, Source::Flag),
-            (Always, &[dumb, ("NO_COLOR", "1")], None, SIXTEEN, Source::Flag),
+            (Never, &[truecolor][..], Some(true), NoColors, Source::User),
+            (Exactly(Indexed256), &[truecolor, ("NO_COLOR", "1")], None, Indexed256, Source::User),
+            (Always, &[dumb, ("NO_COLOR", "1")], None, SIXTEEN, Source::User),
             (Always, &[xterm, ("NO_COLOR", "1")], None, Indexed256, Source::Terminfo),
             // NO_COLOR.
             (Auto, &[truecolor, ("NO_COLOR", "1"), ("FORCE_COLOR", "3")], None, NoColors, variable("NO_COLOR")),
@@ -251,8 +256,8 @@ mod tests {
             (None, Truecolor, &[("LC_ALL", "POSIX"), utf8], Shape, variable("LC_ALL")),
             (None, Truecolor, &[("LC_ALL", ""), utf8], Half, variable("LANG")),
             (None, Truecolor, &[("LC_CTYPE", "de_DE.ISO-8859-1"), utf8], Shape, variable("LC_CTYPE")),
-            (Some(Half), NoColors, &[("LC_ALL", "C")], Half, Source::Flag),
-            (Some(Ramp), Truecolor, &[utf8], Ramp, Source::Flag),
+            (Some(Half), NoColors, &[("LC_ALL", "C")], Half, Source::User),
+            (Some(Ramp), Truecolor, &[utf8], Ramp, Source::User),
         ] {
             let colors = Found { value: colors, source: Source::Terminfo };
             let found = with_clues(environment, None, |clues| glyphs(choice, colors, clues));

@@ -1,6 +1,6 @@
 //! All that is known of a terminal, from whoever knows it: the user, the environment, the window, its own answers.
 
-use super::detection::locale;
+use super::detection::{asked_for, locale};
 use super::{Answers, Capabilities, CellMode, Clues, ColorChoice, Colors, Found, GlyphChoice, Glyphs, Source};
 use super::{USUAL_CELL_ASPECT, colors, glyphs};
 
@@ -59,6 +59,15 @@ impl Hints {
     /// The locale, and the variable that names it, if one does.
     pub fn locale(&self) -> Option<(&'static str, String)> {
         self.judge(None, locale)
+    }
+
+    /// The variable by which the user asks for colours, or for none, if he does: `NO_COLOR`, `CLICOLOR_FORCE` or
+    /// `FORCE_COLOR`.
+    pub fn color_variable(&self) -> Option<&'static str> {
+        match self.judge(None, asked_for)?.source {
+            Source::Variable(name) => Some(name),
+            _ => None,
+        }
     }
 
     fn raw(&self, name: &str) -> Option<&str> {
@@ -153,7 +162,7 @@ impl Findings {
         let colors = with_answered_values(hints.colors(answers.truecolor), answers);
         let answered = |answer: Option<bool>| found(answer, Source::Reply, false);
         let of_window = |value| Found { value, source: Source::Window };
-        let cell_aspect = hints.cell_aspect.map(|value| Found { value, source: Source::Flag });
+        let cell_aspect = hints.cell_aspect.map(|value| Found { value, source: Source::User });
         let by_pixels = window.aspect.map(of_window);
         Self {
             colors,
@@ -205,7 +214,7 @@ fn with_answered_values(mut found: Found<Colors>, answers: &Answers) -> Found<Co
 /// Blocks that take two columns, or come out as several letters, are no pixels.
 fn with_answered_width(glyphs: Found<Glyphs>, answers: &Answers) -> Found<Glyphs> {
     let is_broken = glyphs.value == Glyphs::Half && answers.block_width.is_some_and(|width| width != 1);
-    if is_broken && glyphs.source != Source::Flag {
+    if is_broken && glyphs.source != Source::User {
         return Found { value: Glyphs::Shape, source: Source::Reply };
     }
     glyphs
@@ -286,8 +295,8 @@ mod tests {
             (None, Some(2), Found { value: Glyphs::Shape, source: Source::Reply }),
             (None, Some(3), Found { value: Glyphs::Shape, source: Source::Reply }),
             (None, None, Found { value: Glyphs::Half, source: Source::Variable("LANG") }),
-            (Some(Glyphs::Half), Some(2), Found { value: Glyphs::Half, source: Source::Flag }),
-            (Some(Glyphs::Ramp), Some(2), Found { value: Glyphs::Ramp, source: Source::Flag }),
+            (Some(Glyphs::Half), Some(2), Found { value: Glyphs::Half, source: Source::User }),
+            (Some(Glyphs::Ramp), Some(2), Found { value: Glyphs::Ramp, source: Source::User }),
         ] {
             let hints = Hints { glyphs: choice, ..hints(XTERM) };
             let answers = Answers { block_width: width, ..Answers::default() };
@@ -300,7 +309,7 @@ mod tests {
     fn a_cells_shape_is_the_users_then_the_windows_then_the_answers() {
         let window = CellShape { aspect: Some(1.9), halves_meet: true };
         let nothing = CellShape::default();
-        let (flag, by_window, reply) = (Source::Flag, Source::Window, Source::Reply);
+        let (flag, by_window, reply) = (Source::User, Source::Window, Source::Reply);
         for (flagged, window, pixels, aspect, meet) in [
             (Some(2.5), window, Some((8, 17)), (2.5, flag), (true, by_window)),
             (None, window, Some((8, 17)), (1.9, by_window), (true, by_window)),

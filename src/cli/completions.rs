@@ -53,8 +53,11 @@ pub(super) fn man(args: &ManArgs) -> Done {
     write_stdout(&roff)
 }
 
-/// Says so, and which one was likely meant.
+/// Says so, and which one was likely meant. What stands before a command makes it the name of a scene.
 pub(super) fn no_command(name: &str) -> Failure {
+    if Cli::command().find_subcommand(name).is_some() {
+        return Failure::Usage(format!("what goes with a command comes after it: termtrace {name} ..."));
+    }
     let meant = command_near(name).map(|meant| format!("; did you mean \"{meant}\"?")).unwrap_or_default();
     Failure::Usage(format!("there is no command \"{name}\"{meant}"))
 }

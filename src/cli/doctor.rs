@@ -3,31 +3,29 @@
 mod card;
 mod report;
 
-use super::cells::CellArgs;
-use super::picture::parse_cell_aspect;
+use super::settings::{Settings, TerminalArgs};
 use super::{Done, Failure, reason, write_stdout};
-use clap::Args;
-use report::Talk;
+use clap::{ArgMatches, Args};
+use report::{Known, Talk};
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
-use termtrace::capabilities::{Asking, CellShape, Findings, Hints};
+use termtrace::capabilities::{Asking, CellShape, Findings};
 use termtrace::input::{Input, Parser};
 use termtrace::terminal::{Questions, Signals, Terminal, die_of};
 
 #[derive(Args)]
 pub(super) struct DoctorArgs {
+    // They are read from what clap has matched, which knows which were given.
     #[command(flatten)]
-    cells: CellArgs,
-    /// A cell's height over its width [default: as the terminal says, or 2]
-    #[arg(long, value_name = "A", value_parser = parse_cell_aspect)]
-    cell_aspect: Option<f32>,
+    _terminal: TerminalArgs,
 }
 
 /// How long the terminal may take to answer.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-pub(super) fn run(args: &DoctorArgs) -> Done {
-    let hints = args.cells.hints(args.cell_aspect);
+pub(super) fn run(given: &ArgMatches) -> Done {
+    let settings = Settings::gather(given)?;
+    let hints = settings.args.terminal.hints();
     let mut questions = Questions::all(&hints);
     let mut cell = CellShape::default();
     let is_terminal = io::stdout().is_terminal();
@@ -42,12 +40,9 @@ pub(super) fn run(args: &DoctorArgs) -> Done {
         },
     };
     let findings = Findings::new(&hints, cell, questions.answers());
-    write_stdout(said(&hints, &findings, &questions, talk).as_bytes())?;
+    let known = Known { settings: &settings, hints: &hints, findings: &findings, answers: questions.answers(), talk };
+    write_stdout(report::text(&known).as_bytes())?;
     if is_terminal { write_stdout(&card::bytes(&findings.capabilities())) } else { Ok(()) }
-}
-
-fn said(hints: &Hints, findings: &Findings, questions: &Questions, talk: Talk) -> String {
-    report::text(&report::Known { hints, findings, answers: questions.answers(), talk })
 }
 
 /// Takes the terminal, asks, and gives it back.

@@ -17,17 +17,32 @@ The quality of a picture in motion (what stands still is exact within a second, 
 
 #[derive(Args)]
 pub(super) struct EncodingArgs {
+    #[command(flatten)]
+    order: OrderArgs,
+    #[command(flatten)]
+    pub(super) loss: LossArgs,
+}
+
+/// In which order.
+#[derive(Args)]
+pub(super) struct OrderArgs {
     /// In which order changed cells are sent [default: color; live, raster until the link is found slow]
     #[arg(long, value_name = "ORDER", conflicts_with = "compressed_link")]
     order: Option<Order>,
     /// The link compresses, as ssh -C does: --order raster
     #[arg(long)]
     compressed_link: bool,
-    /// How near a moving picture is to the right one; it decides bytes, not rays [default: exact; live, on a link found
-    /// slow, equal]
+}
+
+/// What may be lost on the way.
+#[derive(Args)]
+pub(super) struct LossArgs {
+    /// How near a moving picture is to the right one; it decides bytes, not rays [default: exact; live, on a slow link,
+    /// equal]
     #[arg(long, value_name = "QUALITY")]
     quality: Option<Quality>,
-    /// The most bytes per second in the mean, such as 50k or 2M; what is most wrong is sent first
+    /// The most bytes per second in the mean, such as 50k or 2M; what is most wrong is sent first [default: as many as
+    /// the link takes]
     #[arg(long, value_name = "BYTES", value_parser = parse_rate)]
     max_rate: Option<u32>,
 }
@@ -48,9 +63,16 @@ enum Quality {
 impl EncodingArgs {
     /// Whether anything of it was said.
     pub(super) fn is_given(&self) -> bool {
-        self.order.is_some() || self.compressed_link || self.quality.is_some() || self.max_rate.is_some()
+        self.order().is_some() || self.loss.quality.is_some() || self.loss.max_rate.is_some()
     }
 
+    /// If it was said.
+    pub(super) fn order(&self) -> Option<encode::Order> {
+        self.order.order()
+    }
+}
+
+impl OrderArgs {
     /// If it was said.
     pub(super) fn order(&self) -> Option<encode::Order> {
         match self.order {
@@ -59,7 +81,9 @@ impl EncodingArgs {
             None => self.compressed_link.then_some(encode::Order::Raster),
         }
     }
+}
 
+impl LossArgs {
     /// If it was said.
     pub(super) fn quality(&self) -> Option<encode::Quality> {
         self.quality.map(|quality| match quality {

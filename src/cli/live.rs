@@ -1,13 +1,11 @@
 //! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
 
-use super::cells::CellArgs;
 use super::completions::{command_near, no_command};
-use super::encoding::EncodingArgs;
-use super::picture::{parse_cell_aspect, parse_samples};
-use super::view::ViewArgs;
+use super::encoding::OrderArgs;
+use super::settings::{SettingArgs, Settings};
 use super::{Cli, Done, Failure, LookArgs, Origin, complain_of_panic, on_threads, reason, usage, write_stdout};
 use clap::error::ErrorKind;
-use clap::{Args, CommandFactory};
+use clap::{ArgMatches, Args, CommandFactory};
 use std::io::{self, IsTerminal};
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -32,39 +30,25 @@ pub(super) struct LiveArgs {
     #[command(flatten)]
     look: LookArgs,
     #[command(flatten)]
-    view: ViewArgs,
+    settings: SettingArgs,
     #[command(flatten)]
-    cells: CellArgs,
-    /// A cell's height over its width [default: as the terminal says, or 2]
-    #[arg(long, value_name = "A", value_parser = parse_cell_aspect)]
-    cell_aspect: Option<f32>,
-    #[command(flatten)]
-    encoding: EncodingArgs,
-    /// Rays per pixel, also in motion, or `best`: 1, and up to 64 where there are edges [default: in motion as many as the
-    /// time allows, at rest best]
-    #[arg(long, value_name = "N|best", value_parser = parse_samples)]
-    samples: Option<Sampling>,
-    /// The most frames per second [default: 60]
-    #[arg(long, value_name = "N", value_parser = parse_fps)]
-    fps: Option<f32>,
-    /// Each press of a key moves one step at once; nothing glides or moves by itself
-    #[arg(long)]
-    reduced_motion: bool,
+    order: OrderArgs,
     /// Do not print the camera on leaving
     #[arg(long)]
     quiet: bool,
 }
 
 impl LiveArgs {
-    fn options(&self) -> Options {
-        let mut options = Options::new(self.cells.hints(self.cell_aspect));
-        options.order = self.encoding.order();
-        options.quality = self.encoding.quality();
-        options.max_rate = self.encoding.max_rate();
-        options.max_frames = self.fps;
-        options.sampling = self.samples;
-        options.reduced_motion = self.reduced_motion;
-        options.view = self.view.view();
+    /// With these settings, which its flags are a part of.
+    fn options(&self, settings: &SettingArgs) -> Options {
+        let mut options = Options::new(settings.terminal.hints());
+        options.order = self.order.order();
+        options.quality = settings.loss.quality();
+        options.max_rate = settings.loss.max_rate();
+        options.max_frames = settings.fps;
+        options.sampling = settings.samples;
+        options.reduced_motion = settings.reduced_motion();
+        options.view = settings.view.view();
         options.exports = Some(PathBuf::from("."));
         options.welcome = self.scenes.is_empty().then(|| WELCOME.to_owned());
         options.threads = self.look.threads.map(usize::from);
@@ -72,13 +56,8 @@ impl LiveArgs {
     }
 }
 
-/// Frames per second: more than one in a hundred seconds, so that a typing error does not look like a crash.
-fn parse_fps(text: &str) -> Result<f32, String> {
-    let number = text.parse::<f32>().ok().filter(|fps| (0.01..=1_000.0).contains(fps));
-    number.ok_or_else(|| "expected frames per second, from 0.01 to 1000".to_owned())
-}
-
-pub(super) fn run(args: &LiveArgs) -> Done {
+/// `given` is what clap has matched of `args`: it knows which flags were given.
+pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> Done {
     // The name of a command that was misspelt looks like a scene's.
     if let Some(first) = args.scenes.first().and_then(|first| first.to_str())
         && !Path::new(first).exists()
@@ -86,12 +65,13 @@ pub(super) fn run(args: &LiveArgs) -> Done {
     {
         return Err(no_command(first));
     }
-    args.samples.map_or(Ok(()), |samples| args.view.check_samples(samples))?;
-    if io::stdout().is_terminal() { look(args) } else { print(args) }
+    if io::stdout().is_terminal() { look(args, given) } else { print(args) }
 }
 
-/// One frame, as `termtrace frame` prints it.
+/// One frame, as `termtrace frame` prints it: by the flags alone.
 fn print(args: &LiveArgs) -> Done {
+    let settings = &args.settings;
+    settings.check_samples()?;
     let origin = match &args.scenes[..] {
         [] => {
             let missing = "without a terminal to show the built-in scene on, name a scene: termtrace <SCENE>";
@@ -111,11 +91,11 @@ fn print(args: &LiveArgs) -> Done {
     };
     let mut scene = origin.load()?;
     scene.camera = args.look.camera(&scene.camera).map_err(usage)?;
-    let cell_aspect = args.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
-    let cell_mode = args.cells.in_file(Colors::None);
+    let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
+    let cell_mode = settings.terminal.cells.in_file(Colors::None);
     let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect);
-    let sampling = args.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
-    let view = args.view.view();
+    let sampling = settings.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
+    let view = settings.view.view();
     let picture = on_threads(args.look.threads, || view::picture(view, &scene, &scene.camera, resolution, sampling))?;
     let grid = cell::grid_from_picture(cell_mode, &picture);
     write_stdout(&match cell_mode.colors {
@@ -125,10 +105,12 @@ fn print(args: &LiveArgs) -> Done {
 }
 
 /// The live view. Whatever happens in it, the terminal is given back before a word is said.
-fn look(args: &LiveArgs) -> Done {
+fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
     #[cfg(feature = "test-hooks")]
     rehearse();
-    let (sources, options) = (sources(args)?, args.options());
+    let settings = Settings::gather(given)?.args;
+    settings.check_samples()?;
+    let (sources, options) = (sources(args)?, args.options(&settings));
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard } = match ended {

@@ -183,8 +183,8 @@ impl RecordArgs {
                     Encoder::new().with_order(self.encoding.order().unwrap_or(Order::Color)).with_upper_half(true);
                 let cast = Cast::begin(out, size, encoder, self.fps)?;
                 Sink::Cast(
-                    cast.with_quality(self.encoding.quality().unwrap_or_default())
-                        .with_max_rate(self.encoding.max_rate()),
+                    cast.with_quality(self.encoding.loss.quality().unwrap_or_default())
+                        .with_max_rate(self.encoding.loss.max_rate()),
                 )
             }
             Format::Gif(path) => {

@@ -45,10 +45,10 @@ fn another_environment_and_flags_are_told_of_too() {
             "cells                 characters by shape           NO_COLOR",
         ]
     );
-    assert_eq!(said.lines().nth(5), Some("cell, height/width    2.250                         the command line"));
+    assert_eq!(said.lines().nth(5), Some("cell, height/width    2.250                         --cell-aspect"));
     let said = doctor("--color=16 --glyphs=ramp", &environment).text();
-    assert!(said.contains("\ncolours               16                            the command line\n"), "{said}");
-    assert!(said.contains("\ncells                 characters by lightness       the command line\n"), "{said}");
+    assert!(said.contains("\ncolours               16                            --color\n"), "{said}");
+    assert!(said.contains("\ncells                 characters by lightness       --glyphs\n"), "{said}");
     let said = doctor("", &[("TERM", "some-terminal")]).text();
     assert!(said.contains("\nlocale                none: taken for UTF-8         assumed\n"), "{said}");
     let said = doctor("", &[("TERM", "some-terminal"), ("LC_ALL", "C")]).text();

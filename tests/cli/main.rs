@@ -4,6 +4,7 @@
 mod bench;
 mod camera;
 mod cells;
+mod config;
 mod describe;
 mod doctor;
 mod errors;
@@ -65,9 +66,14 @@ impl Folder {
         fs::read(self.path(name)).expect("the file was written")
     }
 
-    /// The program, called here; no argument has a blank in it.
+    /// The program, called here; no argument has a blank in it. Whoever runs the tests has no settings: their folder is
+    /// `settings` in this one.
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_termtrace"));
+        for (name, _) in std::env::vars_os().filter(|(name, _)| name.as_encoded_bytes().starts_with(b"TERMTRACE_")) {
+            command.env_remove(name);
+        }
+        command.env("XDG_CONFIG_HOME", self.path("settings"));
         command.args(arguments.split_whitespace()).current_dir(self.folder.path()).stdin(Stdio::null());
         command
     }

@@ -3,7 +3,7 @@
 use super::Folder;
 
 const SHELLS: [&str; 5] = ["bash", "zsh", "fish", "powershell", "elvish"];
-const COMMANDS: [&str; 8] = ["frame", "record", "check", "describe", "bench", "doctor", "completions", "man"];
+const COMMANDS: [&str; 9] = ["frame", "record", "check", "describe", "bench", "doctor", "config", "completions", "man"];
 
 #[test]
 fn every_shell_learns_of_every_command_and_flag() {

@@ -15,4 +15,5 @@ mod questions;
 mod reduced_motion;
 mod refining;
 mod scenes;
+mod settings;
 mod views;

@@ -1,6 +1,7 @@
 //! What is known of the terminal, as a table.
 
-use super::super::visible;
+use crate::cli::settings::Settings;
+use crate::cli::visible;
 use std::fmt::Write;
 use std::time::Duration;
 use termtrace::capabilities::{Answers, Asking, Colors, Findings, Found, Glyphs, Hints, Source};
@@ -18,6 +19,7 @@ pub(super) enum Talk {
 
 /// All that is to be told.
 pub(super) struct Known<'a> {
+    pub(super) settings: &'a Settings,
     pub(super) hints: &'a Hints,
     pub(super) findings: &'a Findings,
     pub(super) answers: &'a Answers,
@@ -42,10 +44,12 @@ impl Known<'_> {
         let findings = self.findings;
         vec![
             self.questions(),
-            row("colours", findings.colors, colors),
+            self.set("colours", "color", findings.colors, colors),
             self.locale(),
-            row("cells", findings.glyphs, |cells| glyphs(cells) + &self.width()),
-            row("cell, height/width", findings.cell_aspect, |aspect| format!("{aspect:.3}{}", self.pixels())),
+            self.set("cells", self.chosen_by(), findings.glyphs, |cells| glyphs(cells) + &self.width()),
+            self.set("cell, height/width", "cell_aspect", findings.cell_aspect, |aspect| {
+                format!("{aspect:.3}{}", self.pixels())
+            }),
             self.yes("half blocks meet", findings.halves_meet),
             self.background(),
             self.sixteen(),
@@ -53,6 +57,19 @@ impl Known<'_> {
             self.yes("kitty keyboard", findings.kitty_keyboard),
             self.mouse(),
         ]
+    }
+
+    /// What the user may have set, by that setting.
+    fn set<T>(&self, what: &'static str, setting: &str, found: Found<T>, say: impl FnOnce(T) -> String) -> Row {
+        match found.source {
+            Source::User => (what, say(found.value), self.settings.said_by(setting).to_string()),
+            _ => row(what, found, say),
+        }
+    }
+
+    /// The setting that says what stands in cells: without colours it is that of the colours.
+    fn chosen_by(&self) -> &'static str {
+        if self.hints.glyphs.is_some() { "glyphs" } else { "color" }
     }
 
     fn questions(&self) -> Row {
@@ -143,7 +160,7 @@ fn row<T>(what: &'static str, found: Found<T>, say: impl FnOnce(T) -> String) ->
 
 fn who(source: Source) -> String {
     let who = match source {
-        Source::Flag => "the command line",
+        Source::User => "the user",
         Source::Variable(name) => name,
         Source::Window => "the window's pixels",
         Source::Reply => "its answer",

@@ -1,0 +1,46 @@
+//! `termtrace config`: every setting, what holds, and who says so.
+
+use super::settings::files::path_of;
+use super::settings::{Held, SettingArgs, Settings};
+use super::{Done, visible, write_stdout};
+use clap::{ArgMatches, Args};
+use std::fmt::Write;
+use unicode_width::UnicodeWidthStr;
+
+const EXAMPLES: &str = "\
+Examples:
+  termtrace config                     what holds, and who says so
+  termtrace config --fps 30            the same with a flag
+  termtrace config --no-config         the same without the files";
+
+#[derive(Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct ConfigArgs {
+    // They are read from what clap has matched, which knows which were given.
+    #[command(flatten)]
+    _settings: SettingArgs,
+}
+
+pub(super) fn run(given: &ArgMatches) -> Done {
+    let settings = Settings::gather(given)?;
+    let width = settings.held.iter().map(|held| held.value.width()).max().unwrap_or(0);
+    let mut text = String::new();
+    for Held { name, value, said_by } in &settings.held {
+        let _ = writeln!(text, "{name:<16}{value:<width$}  {said_by}");
+    }
+    let _ = writeln!(text, "\n{:<16}{}", "config.ron", place("config.ron", given.get_flag("no_config")));
+    write_stdout(visible(&text).as_bytes())
+}
+
+/// Where a file is looked for, and whether there is one.
+fn place(name: &str, unread: bool) -> String {
+    let Some(path) = path_of(name) else {
+        return "nowhere: neither XDG_CONFIG_HOME nor HOME names a folder".to_owned();
+    };
+    let found = match path.exists() {
+        _ if unread => "not read: --no-config",
+        true => "read",
+        false => "not there",
+    };
+    format!("{} ({found})", path.display())
+}

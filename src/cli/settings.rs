@@ -1,0 +1,229 @@
+//! The settings: flags of the live view that the environment and the user's own file, `config.ron`, may set too.
+//!
+//! There is no second list of them, and no second reader: each argument of [`SettingArgs`] is a setting, its name with
+//! underscores that in the file, and whatever is written there is read as the flag is. What comes first holds: flag,
+//! environment, file, default.
+
+mod entries;
+pub(super) mod files;
+
+use super::cells::CellArgs;
+use super::encoding::LossArgs;
+use super::picture::{parse_cell_aspect, parse_samples};
+use super::view::ViewArgs;
+use super::{Done, Failure, near, usage};
+use clap::builder::PossibleValue;
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use entries::Entry;
+use files::UserFile;
+use std::path::PathBuf;
+use termtrace::capabilities::Hints;
+use termtrace::render::Sampling;
+
+/// Stands below the options in the help.
+pub(super) const EXPLAINED: &str = "\
+Settings: what holds for good stands in config.ron, by the flags' names, as in (fps: 30, color: 256), or in the
+environment, as in TERMTRACE_FPS=30; a flag goes before the environment, and that before the file. termtrace config
+says what holds, who says so, and where the file is looked for.";
+
+/// What is wanted of the terminal.
+#[derive(Args)]
+pub(super) struct TerminalArgs {
+    #[command(flatten)]
+    pub(super) cells: CellArgs,
+    /// A cell's height over its width [default: as the terminal says, or 2]
+    #[arg(long, value_name = "A", value_parser = parse_cell_aspect)]
+    pub(super) cell_aspect: Option<f32>,
+}
+
+impl TerminalArgs {
+    /// That, and what the environment tells of it.
+    pub(super) fn hints(&self) -> Hints {
+        self.cells.hints(self.cell_aspect)
+    }
+}
+
+/// What of the live view may be set once and for all.
+#[derive(Args)]
+pub(super) struct SettingArgs {
+    #[command(flatten)]
+    pub(super) terminal: TerminalArgs,
+    #[command(flatten)]
+    pub(super) view: ViewArgs,
+    /// Rays per pixel, also in motion, or `best`: 1, and up to 64 where there are edges [default: as many as the time
+    /// allows, at rest best]
+    #[arg(long, value_name = "N|best", value_parser = parse_samples)]
+    pub(super) samples: Option<Sampling>,
+    #[command(flatten)]
+    pub(super) loss: LossArgs,
+    /// The most frames per second [default: 60]
+    #[arg(long, value_name = "N", value_parser = parse_fps)]
+    pub(super) fps: Option<f32>,
+    /// Each press of a key moves one step at once; nothing glides or moves by itself [default: false]
+    #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    #[arg(hide_possible_values = true)]
+    reduced_motion: Option<bool>,
+}
+
+impl SettingArgs {
+    /// Turns away samples that the view makes no use of.
+    pub(super) fn check_samples(&self) -> Done {
+        self.samples.map_or(Ok(()), |samples| self.view.check_samples(samples))
+    }
+
+    pub(super) fn reduced_motion(&self) -> bool {
+        self.reduced_motion.unwrap_or(false)
+    }
+}
+
+/// Frames per second: more than one in a hundred seconds, so that a typing error does not look like a crash.
+fn parse_fps(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|fps| (0.01..=1_000.0).contains(fps));
+    number.ok_or_else(|| "expected frames per second, from 0.01 to 1000".to_owned())
+}
+
+/// What holds, and who says so.
+pub(super) struct Settings {
+    pub(super) args: SettingArgs,
+    /// In the order of the help.
+    pub(super) held: Vec<Held>,
+}
+
+/// A setting as it holds.
+pub(super) struct Held {
+    /// As the file calls it.
+    pub(super) name: String,
+    pub(super) value: String,
+    pub(super) said_by: SaidBy,
+}
+
+/// Who says how something is to be.
+pub(super) enum SaidBy {
+    Flag(String),
+    Variable(String),
+    /// The file, in that line.
+    File(PathBuf, usize),
+    Nobody,
+}
+
+impl std::fmt::Display for SaidBy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Flag(flag) => f.write_str(flag),
+            Self::Variable(name) => f.write_str(name),
+            Self::File(path, line) => write!(f, "{}:{line}", path.display()),
+            Self::Nobody => f.write_str("default"),
+        }
+    }
+}
+
+impl Settings {
+    /// All of them, with the flags that were given, and the user's file unless he wants none.
+    pub(super) fn gather(given: &ArgMatches) -> Result<Self, Failure> {
+        let command = command();
+        let file = if given.get_flag("no_config") { None } else { UserFile::read("config.ron").map_err(usage)? };
+        let entries = match &file {
+            Some(file) => entries::read(file, &command).map_err(usage)?,
+            None => Vec::new(),
+        };
+        let held: Vec<_> = command
+            .get_arguments()
+            .map(|setting| {
+                let said = by_flag(setting, given)
+                    .or_else(|| by_environment(setting))
+                    .or_else(|| by_file(setting, &entries, file.as_ref()?))
+                    .unwrap_or_else(|| (default_of(setting), SaidBy::Nobody));
+                Held { name: setting.get_id().to_string(), value: said.0, said_by: said.1 }
+            })
+            .collect();
+        let mut words = Vec::new();
+        for (setting, held) in command.get_arguments().zip(&held) {
+            if let SaidBy::Variable(name) = &held.said_by {
+                check(&command, setting, &held.value)
+                    .map_err(|wrong| Failure::Usage(format!("{name}=\"{}\": {wrong}", held.value)))?;
+            }
+            if !matches!(held.said_by, SaidBy::Nobody) {
+                words.push(word(setting, &held.value));
+            }
+        }
+        let args = command.try_get_matches_from(words).and_then(|found| SettingArgs::from_arg_matches(&found));
+        Ok(Self { args: args.map_err(usage)?, held })
+    }
+
+    /// Who says how the setting of that name is to be.
+    pub(super) fn said_by(&self, name: &str) -> &SaidBy {
+        self.held.iter().find(|held| held.name == name).map_or(&SaidBy::Nobody, |held| &held.said_by)
+    }
+}
+
+/// A command line that has nothing but the settings.
+fn command() -> Command {
+    SettingArgs::augment_args(Command::new("termtrace").no_binary_name(true))
+}
+
+type Said = (String, SaidBy);
+
+fn by_flag(setting: &Arg, given: &ArgMatches) -> Option<Said> {
+    let id = setting.get_id().as_str();
+    // A command need not have all of the flags.
+    let text = given.try_get_raw(id).ok()??.next()?.to_string_lossy().into_owned();
+    let is_given = given.value_source(id) == Some(ValueSource::CommandLine);
+    is_given.then_some((text, SaidBy::Flag(flag(setting))))
+}
+
+/// By its own variable, or, for colours, by those that all programs heed.
+fn by_environment(setting: &Arg) -> Option<Said> {
+    let name = format!("TERMTRACE_{}", setting.get_id().as_str().to_uppercase());
+    if let Some(text) = std::env::var_os(&name).filter(|text| !text.is_empty()) {
+        return Some((text.to_string_lossy().into_owned(), SaidBy::Variable(name)));
+    }
+    let gathered = Hints::gather(&|name| std::env::var(name).ok(), &|_| None);
+    let name = gathered.color_variable().filter(|_| setting.get_id() == "color")?;
+    Some(("auto".to_owned(), SaidBy::Variable(name.to_owned())))
+}
+
+fn by_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<Said> {
+    let entry = entries.iter().find(|entry| setting.get_id() == entry.name.as_str())?;
+    Some((entry.text.clone(), SaidBy::File(file.path.clone(), entry.line)))
+}
+
+/// As the help says it.
+fn default_of(setting: &Arg) -> String {
+    let help = setting.get_help().map(ToString::to_string).unwrap_or_default();
+    let default = help.split_once("[default: ").and_then(|(_, rest)| rest.split_once(']'));
+    default.map_or_else(String::new, |(default, _)| default.to_owned())
+}
+
+fn flag(setting: &Arg) -> String {
+    format!("--{}", setting.get_long().unwrap_or_default())
+}
+
+fn word(setting: &Arg, text: &str) -> String {
+    format!("{}={text}", flag(setting))
+}
+
+/// What is wrong with this as the setting's value, if anything is.
+fn check(command: &Command, setting: &Arg, text: &str) -> Result<(), String> {
+    let Err(error) = command.clone().try_get_matches_from([word(setting, text)]) else { return Ok(()) };
+    if let Some(wrong) = std::error::Error::source(&error) {
+        return Err(wrong.to_string());
+    }
+    let values = setting.get_possible_values();
+    let known: Vec<_> = values.iter().map(PossibleValue::get_name).collect();
+    let meant = near::word(text, known.iter().copied()).map(|meant| format!("; did you mean {meant}?"));
+    Err(format!("expected one of {}{}", known.join(", "), meant.unwrap_or_default()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What `termtrace config` says where nobody has said anything.
+    #[test]
+    fn the_help_of_every_setting_says_its_default() {
+        for setting in command().get_arguments() {
+            assert_ne!(default_of(setting), "", "{setting}");
+        }
+    }
+}

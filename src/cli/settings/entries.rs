@@ -1,0 +1,73 @@
+//! `config.ron` -> what it says of each setting, as the flag would say it.
+
+use super::files::UserFile;
+use super::{check, near};
+use clap::Command;
+use termtrace::scene_text::{self, Faults, Field, Name, SceneError, Value, line_and_column};
+
+/// What the file says of a setting.
+pub(super) struct Entry {
+    pub(super) name: String,
+    /// As one would write it after the flag.
+    pub(super) text: String,
+    /// Counted from 1.
+    pub(super) line: usize,
+}
+
+/// All that the file says, or all that is wrong with it.
+pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, SceneError> {
+    let name = file.path.to_string_lossy();
+    scene_text::read(&name, &file.text, "file of settings is ()", |root, faults| {
+        let mut entries = Vec::new();
+        let Some(fields) = root.fields() else {
+            let expected = "expected settings with their names, as in (fps: 30, color: 256)";
+            faults.add(root.head(), || expected.to_owned());
+            return None;
+        };
+        for (i, field) in fields.iter().enumerate() {
+            let Name { text: name, span } = field.name;
+            if fields[..i].iter().any(|before| before.name.text == name) {
+                faults.add(span, || format!("duplicate setting \"{name}\""));
+            } else if let Some(text) = text_of(field, command, faults) {
+                let (line, _) = line_and_column(&file.text, span.start as usize);
+                entries.push(Entry { name: name.to_owned(), text, line });
+            }
+        }
+        faults.is_empty().then_some(entries)
+    })
+}
+
+/// What the flag would be given, if it is something that the flag takes. `None` says the same as leaving it out.
+fn text_of(field: &Field<'_>, command: &Command, faults: &mut Faults) -> Option<String> {
+    let Field { name, value } = field;
+    let Some(setting) = command.get_arguments().find(|setting| setting.get_id() == name.text) else {
+        faults.add(name.span, || unknown(name.text, command));
+        return None;
+    };
+    let text = match (&value.value, value.word()) {
+        (_, Some("None")) => return None,
+        (_, Some(word)) => word.to_owned(),
+        (Value::Bool(value), _) => value.to_string(),
+        (Value::Number(value), _) => value.to_string(),
+        (Value::String(value), _) => value.to_string(),
+        _ => {
+            faults.add(value.head(), || "expected one value: a word, a number, true or false".to_owned());
+            return None;
+        }
+    };
+    match check(command, setting, &text) {
+        Ok(()) => Some(text),
+        Err(wrong) => {
+            faults.add(value.span, || wrong);
+            None
+        }
+    }
+}
+
+fn unknown(name: &str, command: &Command) -> String {
+    let known: Vec<_> = command.get_arguments().map(|setting| setting.get_id().as_str()).collect();
+    match near::word(name, known.iter().copied()) {
+        Some(meant) => format!("unknown setting \"{name}\"; did you mean \"{meant}\"?"),
+        None => format!("unknown setting \"{name}\"; there are {}", known.join(", ")),
+    }
+}

@@ -1,0 +1,180 @@
+//! The user's settings: what holds, who says so, and what is said of a file that is wrong.
+
+use super::{Folder, Run, finish};
+use std::fs;
+use std::path::Path;
+
+/// A folder with that in the user's `config.ron`.
+fn with_settings(text: &str) -> Folder {
+    let folder = Folder::new();
+    fs::create_dir_all(folder.path("settings/termtrace")).expect("a folder can be made");
+    folder.write("settings/termtrace/config.ron", text);
+    folder
+}
+
+/// What holds of a setting, and who says so, with `~` for the folder; without `NO_COLOR` and the like.
+#[track_caller]
+fn held(folder: &Folder, arguments: &str, environment: &[(&str, &str)], setting: &str) -> String {
+    let text = config(folder, arguments, environment).text();
+    let line = text.lines().find(|line| line.split(' ').next() == Some(setting)).unwrap_or_else(|| panic!("{text}"));
+    let words: Vec<_> = line.split_whitespace().skip(1).collect();
+    words.join(" ").replace(&*folder.path("settings/termtrace").to_string_lossy(), "~")
+}
+
+fn config(folder: &Folder, arguments: &str, environment: &[(&str, &str)]) -> Run {
+    let mut command = folder.command(&format!("config {arguments}"));
+    for name in ["NO_COLOR", "CLICOLOR_FORCE", "FORCE_COLOR"] {
+        command.env_remove(name);
+    }
+    finish(command.envs(environment.iter().copied()))
+}
+
+#[test]
+fn a_flag_goes_before_the_environment_that_before_the_file_and_that_before_the_default() {
+    let folder = with_settings("(\n    // slowly\n    fps: 30,\n    view: depth,\n)");
+    let variable = [("TERMTRACE_FPS", "20")];
+    assert_eq!(held(&folder, "--fps 10", &variable, "fps"), "10 --fps");
+    assert_eq!(held(&folder, "", &variable, "fps"), "20 TERMTRACE_FPS");
+    assert_eq!(held(&folder, "", &[("TERMTRACE_FPS", "")], "fps"), "30 ~/config.ron:3", "empty is unset");
+    assert_eq!(held(&folder, "", &[], "view"), "depth ~/config.ron:4");
+    assert_eq!(held(&folder, "--no-config", &[], "fps"), "60 default");
+    assert_eq!(held(&folder, "--no-config", &variable, "fps"), "20 TERMTRACE_FPS");
+    assert_eq!(held(&Folder::new(), "", &[], "view"), "shaded default");
+}
+
+/// For colours the variables that all programs heed are the environment, too.
+#[test]
+fn no_color_goes_before_the_file() {
+    let folder = with_settings("(color: truecolor)");
+    assert_eq!(held(&folder, "", &[], "color"), "truecolor ~/config.ron:1");
+    for variable in [("NO_COLOR", "1"), ("CLICOLOR_FORCE", "1"), ("FORCE_COLOR", "0")] {
+        assert_eq!(held(&folder, "", &[variable], "color"), format!("auto {}", variable.0));
+        assert_eq!(held(&folder, "--color 16", &[variable], "color"), "16 --color");
+        assert_eq!(held(&folder, "", &[variable, ("TERMTRACE_COLOR", "256")], "color"), "256 TERMTRACE_COLOR");
+    }
+    assert_eq!(held(&folder, "", &[("NO_COLOR", ""), ("CLICOLOR_FORCE", "0")], "color"), "truecolor ~/config.ron:1");
+    let doctor = finish(folder.command("doctor").env_remove("NO_COLOR").env_remove("FORCE_COLOR")).text();
+    let line = doctor.lines().find(|line| line.starts_with("colours")).expect("a line");
+    assert!(line.contains("truecolor") && line.ends_with("config.ron:1"), "{doctor}");
+}
+
+#[test]
+fn a_flag_can_undo_what_the_file_turns_on() {
+    let folder = with_settings("(reduced_motion: true)");
+    assert_eq!(held(&folder, "", &[], "reduced_motion"), "true ~/config.ron:1");
+    assert_eq!(held(&folder, "--reduced-motion=false", &[], "reduced_motion"), "false --reduced-motion");
+    assert_eq!(held(&folder, "--no-config --reduced-motion", &[], "reduced_motion"), "true --reduced-motion");
+}
+
+/// The file that the README shows has every setting, and all of them hold.
+#[test]
+fn the_readmes_file_has_every_setting() {
+    let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("it is there");
+    let block = readme.split("```ron\n").filter_map(|rest| rest.split("```").next()).find(|text| text.contains("fps:"));
+    let folder = with_settings(block.expect("the README shows one"));
+    let text = config(&folder, "", &[]).text();
+    let (settings, place) = text.split_once("\n\n").expect("two parts");
+    assert!(settings.lines().count() >= 9, "{text}");
+    for line in settings.lines() {
+        assert!(line.contains("config.ron:"), "the README's file lacks {line}");
+    }
+    assert!(place.ends_with("settings/termtrace/config.ron (read)\n"), "{place}");
+    let text = config(&folder, "--no-config", &[]).text();
+    assert!(text.ends_with("settings/termtrace/config.ron (not read: --no-config)\n"), "{text}");
+}
+
+#[test]
+fn where_the_file_is_looked_for() {
+    let folder = with_settings("(fps: 30)");
+    let place = |variables: &[(&str, &str)]| {
+        let mut command = folder.command("config");
+        command.env_remove("XDG_CONFIG_HOME").env_remove("HOME").envs(variables.iter().copied());
+        let text = finish(&mut command).text();
+        text.lines().last().unwrap_or_default().split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
+    };
+    let (settings, home) = (folder.path("settings"), folder.path("home"));
+    let (settings, home) = (&*settings.to_string_lossy(), &*home.to_string_lossy());
+    let there = format!("{settings}/termtrace/config.ron (read)");
+    assert_eq!(place(&[("XDG_CONFIG_HOME", settings), ("HOME", home)]), there);
+    let default = format!("{home}/.config/termtrace/config.ron (not there)");
+    assert_eq!(place(&[("HOME", home)]), default);
+    assert_eq!(place(&[("XDG_CONFIG_HOME", "settings"), ("HOME", home)]), default, "no absolute path");
+    assert_eq!(place(&[]), "nowhere: neither XDG_CONFIG_HOME nor HOME names a folder");
+}
+
+const WRONG: &str = "(
+    colour: 256,
+    view: dept,
+    fps: 0,
+    fps: 30,
+    samples: (1, 2),
+    reduced_motion: maybe,
+)";
+
+/// All that is wrong, in the file's order, each with its place and what would be right.
+#[test]
+fn a_file_that_is_wrong_is_told_of_in_one_message() {
+    let folder = with_settings(WRONG);
+    for command in ["config", "doctor", "config --fps 30"] {
+        let run = folder.run(command);
+        let message = run.stderr.replace(&*folder.path("settings/termtrace").to_string_lossy(), "~");
+        run.fails(2, "config.ron:2:5: unknown setting \"colour\"; did you mean \"color\"?\n");
+        let heads: Vec<_> = message.lines().filter(|line| line.contains("~/config.ron")).collect();
+        assert_eq!(
+            heads,
+            [
+                "termtrace: ~/config.ron:2:5: unknown setting \"colour\"; did you mean \"color\"?",
+                "~/config.ron:3:11: expected one of shaded, lambert, depth, normal, object, shadow, cost, facing, \
+                 contrast; did you mean depth?",
+                "~/config.ron:4:10: expected frames per second, from 0.01 to 1000",
+                "~/config.ron:5:5: duplicate setting \"fps\"",
+                "~/config.ron:6:14: expected one value: a word, a number, true or false",
+                "~/config.ron:7:21: expected one of true, false",
+            ]
+        );
+        assert!(message.contains("  3 |     view: dept,\n    |           ^^^^\n"), "{message}");
+    }
+    assert_eq!(folder.run("config --no-config").code, Some(0));
+    for (text, words) in [
+        ("", "the file is empty; the smallest file of settings is ()"),
+        ("(fps: 30", "this `(` is never closed by a `)`"),
+        ("[30]", "expected settings with their names"),
+        ("(30)", "expected settings with their names"),
+        ("\0", "not a text file"),
+    ] {
+        with_settings(text).run("config").fails(2, words);
+    }
+    with_settings("()").run("config").done();
+    with_settings("(fps: None)").run("config").done();
+    let folder = Folder::new();
+    fs::create_dir_all(folder.path("settings/termtrace/config.ron")).expect("a folder can be made");
+    folder.run("config").fails_in_a_line(2, "config.ron: this is a directory, not a file");
+}
+
+#[test]
+fn a_variable_that_is_wrong_is_told_of_by_its_name() {
+    let run = config(&Folder::new(), "", &[("TERMTRACE_FPS", "many")]);
+    run.fails_in_a_line(2, "TERMTRACE_FPS=\"many\": expected frames per second, from 0.01 to 1000");
+    config(&Folder::new(), "--fps 3", &[("TERMTRACE_FPS", "many")]).done();
+}
+
+/// What golden frames are made of depends on arguments alone.
+#[test]
+fn frames_know_nothing_of_settings() {
+    let plain = Folder::new();
+    for text in ["(color: truecolor, glyphs: shape, view: depth, samples: 4)", WRONG] {
+        let folder = with_settings(text);
+        for command in ["ball.ron", "frame ball.ron", "frame ball.ron --format ansi --size 20x6", "describe ball.ron"] {
+            let mut with_variable = folder.command(command);
+            with_variable.env("TERMTRACE_VIEW", "normal");
+            assert!(finish(&mut with_variable).done() == plain.run(command).done(), "{command}");
+        }
+    }
+}
+
+#[test]
+fn the_flag_goes_with_every_command() {
+    let folder = Folder::new();
+    assert!(folder.run("frame ball.ron --no-config").done() == folder.run("frame ball.ron").done());
+    folder.run("--no-config frame ball.ron").fails_in_a_line(2, "it: termtrace frame ...");
+}
