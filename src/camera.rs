@@ -253,7 +253,7 @@ impl ViewRectangle {
 
     /// Width, height and middle for a picture of another shape. The whole rectangle stays in view and nothing is
     /// stretched: it grows about its middle, to the sides in a wider picture, up and down in a narrower one.
-    fn fitted_to(&self, aspect_ratio: f32) -> (f32, f32, Vec2) {
+    pub(crate) fn fitted_to(&self, aspect_ratio: f32) -> (f32, f32, Vec2) {
         let (width, height) = match self.width {
             Some(width) if width > self.height * aspect_ratio => (width, width / aspect_ratio),
             _ => (self.height * aspect_ratio, self.height),

@@ -12,4 +12,4 @@ pub use bindings::{Binding, Bindings, Mode};
 pub use command::{Command, Direction, Side, Toward};
 pub use key::Key;
 pub use motion::{COAST, GLIDE, Motion};
-pub use moves::speed;
+pub use moves::{framing, on_turntable, speed, zoomed};

@@ -15,6 +15,7 @@ pub use draft::Draft;
 pub use load::LoadError;
 pub use written_view::with_view;
 
+use crate::bounds::Bounds;
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::light::PointLight;
@@ -70,6 +71,11 @@ impl Scene {
     /// The objects, in the order of the scene file.
     pub fn objects(&self) -> &[Object] {
         &self.objects
+    }
+
+    /// The smallest box around all objects that have an end; nothing if there are none.
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.parts.bounds
     }
 
     /// How much memory the tree over the parts of all objects takes, in bytes.

@@ -75,6 +75,8 @@ fn every_key_is_listed() {
             named if named.len() > 1 => named.to_owned(),
             // In a table a bar is written so.
             "|" => r"`\|`".to_owned(),
+            // From the first to the last.
+            "2" | "3" | "4" | "5" | "6" | "7" | "8" => "`1` to `9`".to_owned(),
             letter => format!("`{letter}`"),
         };
         assert!(readme.contains(&listed), "{key} is not in the README");

@@ -2,7 +2,7 @@
 
 use super::keeping::Asked;
 use super::panels::Look;
-use crate::control::{Bindings, Command, Mode};
+use crate::control::{Binding, Bindings, Command, Mode};
 use crate::export::Format;
 use crate::scene_text::visible;
 use ratatui::buffer::Buffer;
@@ -17,10 +17,13 @@ pub(super) enum Dialog {
     Export,
     /// Whether a view is to be written into the scene's file.
     Keep(Asked),
+    /// By which number the view is to be saved.
+    Save,
 }
 
 /// What is to be done.
 pub(super) enum Answer {
+    Save(u8),
     Export(Format),
     Keep(Asked),
     /// Nothing: he leaves the question.
@@ -33,6 +36,8 @@ impl Dialog {
         match self {
             Self::Export => Mode::Export,
             Self::Keep(_) => Mode::Keep,
+            // The key that will come back to it.
+            Self::Save => Mode::Always,
         }
     }
 
@@ -41,6 +46,7 @@ impl Dialog {
         match (self, meant) {
             (Self::Export, Some(Command::Write(format))) => Answer::Export(format),
             (Self::Keep(asked), Some(Command::Yes)) => Answer::Keep(asked),
+            (Self::Save, Some(Command::View(number))) => Answer::Save(number),
             _ => Answer::Nothing,
         }
     }
@@ -49,6 +55,7 @@ impl Dialog {
         match self {
             Self::Export => " write the picture as ",
             Self::Keep(_) => " write this view into the scene's file? ",
+            Self::Save => " save this view as ",
         }
     }
 
@@ -56,6 +63,10 @@ impl Dialog {
         let name = match self {
             Self::Export => None,
             Self::Keep(asked) => asked.file().file_name().map(|name| visible(&name.to_string_lossy())),
+            Self::Save => {
+                let views = bindings.of(self.mode()).filter(|row| matches!(row.command, Command::View(_)));
+                return vec![views.map(Binding::label).collect::<Vec<_>>().join(" ")];
+            }
         };
         let answers: Vec<_> = bindings.of(self.mode()).map(|row| (row.label(), row.command.does())).collect();
         let width = answers.iter().map(|(label, _)| label.width()).max().unwrap_or(0);

@@ -2,6 +2,7 @@
 
 use crate::camera::{Camera, Pose};
 use crate::control::{self, Command, Mode, Motion};
+use crate::scene::Scene;
 use crossterm::event::{KeyEvent, KeyEventKind};
 use glam::Vec3;
 use std::time::Duration;
@@ -14,20 +15,47 @@ pub(super) const FRAME: Duration = Duration::from_micros(16_667);
 pub(super) struct Eye {
     /// `None` as long as there is nothing to see.
     view: Option<View>,
-    /// Whether it goes around what it looks at; else it flies.
-    orbits: bool,
     motion: Motion,
+    /// Whether it goes around the target by itself.
+    turntable: bool,
     /// Up to when the motion has been carried out; `None` at rest.
     moved_until: Option<Duration>,
     /// Whether each press is one step at once, and nothing moves by itself.
     steps: bool,
 }
 
-/// How the scene is looked at.
-struct View {
+/// How a scene is looked at.
+#[derive(Clone)]
+pub(super) struct View {
     home: Camera,
     camera: Camera,
     speed: f32,
+    /// Whether the eye goes around what it looks at; else it flies.
+    orbits: bool,
+    /// What the scene's file has.
+    written: Vec<Camera>,
+    /// What was saved since, and by which number.
+    saved: [Option<Camera>; 9],
+}
+
+impl View {
+    /// As the scene wants to be looked at.
+    pub(super) fn of(scene: &Scene, orbits: bool) -> Self {
+        let home = scene.camera;
+        Self {
+            home,
+            camera: home,
+            speed: control::speed(&home),
+            orbits,
+            written: scene.views.clone(),
+            saved: [None; 9],
+        }
+    }
+
+    /// From where the scene wanted to be looked at.
+    pub(super) fn home(&self) -> Camera {
+        self.home
+    }
 }
 
 /// A step is as far as a key moves that is held for so long: a tenth of the way to the target, or nine degrees.
@@ -39,14 +67,17 @@ impl Eye {
         Self { steps, ..Self::default() }
     }
 
-    /// There is something to see, and from there it is looked at first.
-    pub(super) fn open(&mut self, camera: Camera) {
-        self.view.get_or_insert(View { home: camera, camera, speed: control::speed(&camera) });
+    /// There is something else to see; how what was seen before was looked at.
+    pub(super) fn open(&mut self, view: View) -> Option<View> {
+        self.turntable = false;
+        self.view.replace(view)
     }
 
-    /// There is something else to see: from where it wants to be looked at, and from where it is.
-    pub(super) fn open_anew(&mut self, home: Camera, camera: Camera) {
-        self.view = Some(View { home, camera, speed: control::speed(&home) });
+    /// The scene's file has other views now.
+    pub(super) fn set_written(&mut self, views: &[Camera]) {
+        if let Some(view) = &mut self.view {
+            view.written = views.to_vec();
+        }
     }
 
     /// `None` as long as there is nothing to see.
@@ -73,23 +104,71 @@ impl Eye {
     #[must_use]
     pub(super) fn go_on(&mut self, now: Duration) -> bool {
         let Some(since) = self.moved_until else { return false };
-        self.moved_until = self.motion.is_moving(now).then_some(now);
+        self.moved_until = (self.turntable || self.motion.is_moving(now)).then_some(now);
         let Some(view) = &mut self.view else { return false };
         let before = view.camera;
         view.camera = self.motion.step(&before, view.speed, since, now);
+        if self.turntable {
+            view.camera = control::on_turntable(&view.camera, now.saturating_sub(since).as_secs_f32());
+        }
         view.camera != before
+    }
+
+    /// Does something to the camera, which is told how large the scene is. It stops what moves the eye by itself.
+    #[must_use]
+    pub(super) fn change(&mut self, now: Duration, change: impl FnOnce(&Camera, f32) -> Camera) -> bool {
+        let moved = self.go_on(now);
+        self.turntable = false;
+        let Some(view) = &mut self.view else { return moved };
+        let before = view.camera;
+        view.camera = change(&before, view.speed);
+        moved || view.camera != before
+    }
+
+    /// Goes around the target by itself from now on, or no more.
+    #[must_use]
+    pub(super) fn toggle_turntable(&mut self, now: Duration) -> bool {
+        let moved = self.go_on(now);
+        self.turntable = !self.turntable;
+        self.begin(now);
+        moved
+    }
+
+    /// From rest, the first frame already shows a frame's worth of movement.
+    fn begin(&mut self, now: Duration) {
+        let moves = self.turntable || self.motion.is_moving(now);
+        self.moved_until = moves.then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
+    }
+
+    /// To that view of the scene's file, or the one that was saved by that number, from 1: `None` if there is none.
+    #[must_use]
+    pub(super) fn go_to(&mut self, number: u8, now: Duration) -> Option<bool> {
+        let view = self.view.as_ref()?;
+        let at = usize::from(number).checked_sub(1)?;
+        let saved = view.saved.get(at).copied().flatten().or_else(|| view.written.get(at).copied())?;
+        Some(self.change(now, |_, _| saved))
+    }
+
+    /// Saves the view by that number.
+    pub(super) fn save(&mut self, number: u8) {
+        if let Some(view) = &mut self.view
+            && let Some(saved) = usize::from(number).checked_sub(1).and_then(|at| view.saved.get_mut(at))
+        {
+            *saved = Some(view.camera);
+        }
     }
 
     /// How it moves.
     pub(super) fn mode(&self) -> Mode {
-        if self.orbits { Mode::Orbit } else { Mode::Fly }
+        if self.view.as_ref().is_some_and(|view| view.orbits) { Mode::Orbit } else { Mode::Fly }
     }
 
     /// To the other way of moving. To go around something, it looks at the point in the middle of its view: the picture
     /// stays as it is.
     pub(super) fn change_mode(&mut self, in_the_middle: Option<Vec3>) {
-        self.orbits = !self.orbits;
-        if let (true, Some(target), Some(view)) = (self.orbits, in_the_middle, &mut self.view) {
+        let Some(view) = &mut self.view else { return };
+        view.orbits = !view.orbits;
+        if let (true, Some(target)) = (view.orbits, in_the_middle) {
             view.camera = view.camera.with_pose(Pose { target, ..view.camera.pose() }).unwrap_or(view.camera);
         }
     }
@@ -101,9 +180,9 @@ impl Eye {
             return self.take_step(key, meant);
         }
         let moved = self.go_on(now);
+        self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.moves());
         self.motion.take_key(key, meant, now);
-        // From rest, the first frame already shows a frame's worth of movement.
-        self.moved_until = self.motion.is_moving(now).then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
+        self.begin(now);
         moved
     }
 
@@ -119,9 +198,18 @@ impl Eye {
 
     /// Nothing is held any more.
     #[must_use]
-    pub(super) fn stand_still(&mut self, now: Duration) -> bool {
+    pub(super) fn let_go(&mut self, now: Duration) -> bool {
         let moved = self.go_on(now);
         self.motion.stop();
+        self.moved_until = self.moved_until.filter(|_| self.turntable);
+        moved
+    }
+
+    /// Nothing moves any more.
+    #[must_use]
+    pub(super) fn stand_still(&mut self, now: Duration) -> bool {
+        let moved = self.let_go(now);
+        self.turntable = false;
         self.moved_until = None;
         moved
     }
@@ -129,7 +217,7 @@ impl Eye {
     /// Whether the terminal tells of releases from now on. What is held is let go of when it no longer does.
     #[must_use]
     pub(super) fn set_hears_releases(&mut self, hears_releases: bool, now: Duration) -> bool {
-        let moved = self.hears_releases() && !hears_releases && self.stand_still(now);
+        let moved = self.hears_releases() && !hears_releases && self.let_go(now);
         self.motion.set_hears_releases(hears_releases);
         moved
     }
@@ -140,11 +228,8 @@ impl Eye {
 
     /// Back to where it was first.
     #[must_use]
-    pub(super) fn reset(&mut self) -> bool {
-        let moved = self.moved().is_some();
-        if let Some(view) = &mut self.view {
-            view.camera = view.home;
-        }
-        moved
+    pub(super) fn reset(&mut self, now: Duration) -> bool {
+        let home = self.view.as_ref().map(|view| view.home);
+        self.change(now, |camera, _| home.unwrap_or(*camera))
     }
 }

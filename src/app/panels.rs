@@ -211,6 +211,7 @@ pub(super) fn draw_help(bindings: &Bindings, modes: &[Mode], look: Look, area: R
 /// What keys do in these modes, in two columns.
 fn help_lines(bindings: &Bindings, modes: &[Mode]) -> Vec<Line<'static>> {
     let rows: Vec<_> = modes.iter().flat_map(|&mode| bindings.of(mode)).filter(|row| !row.keys.is_empty()).collect();
+    let rows: Vec<_> = rows.chunk_by(|a, b| a.command.does() == b.command.does()).map(help_row).collect();
     let (left, right) = rows.split_at(rows.len().div_ceil(2));
     let [left, right] = [left, right].map(help_column);
     let width = left.iter().map(|line| line.width()).max().unwrap_or(0);
@@ -219,10 +220,20 @@ fn help_lines(bindings: &Bindings, modes: &[Mode]) -> Vec<Line<'static>> {
     bindings.chain(HELP_NOTES.map(str::to_owned)).map(Line::from).collect()
 }
 
-/// A line for each binding.
-fn help_column(rows: &[&Binding]) -> Vec<String> {
-    let labels = rows.iter().map(|row| row.label().width()).max().unwrap_or(0);
-    rows.iter().map(|row| format!("{:labels$}  {}", row.label(), row.command.does())).collect()
+/// Keys, and what they do; of many that do the same, the first and the last.
+fn help_row<'b>(same: &[&'b Binding]) -> (String, &'b str) {
+    let label = match same {
+        [only] => only.label(),
+        [first, .., last] => format!("{}..{}", first.label(), last.label()),
+        [] => String::new(),
+    };
+    (label, same.first().map_or("", |row| row.command.does()))
+}
+
+/// A line for each.
+fn help_column(rows: &[(String, &str)]) -> Vec<String> {
+    let labels = rows.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
+    rows.iter().map(|(label, does)| format!("{label:labels$}  {does}")).collect()
 }
 
 #[cfg(test)]

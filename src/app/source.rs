@@ -20,6 +20,8 @@ pub(super) struct Named {
     pub(super) name: String,
     /// The scene file that it stands in.
     pub(super) file: Option<PathBuf>,
+    /// Whether the eye goes around it at first.
+    pub(super) orbited: bool,
 }
 
 type Read<E> = dyn Fn(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + Sync;
@@ -31,12 +33,17 @@ impl<E> Source<E> {
         name: impl Into<String>,
         read: impl Fn(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + Sync + 'static,
     ) -> Self {
-        Self { named: Named { name: name.into(), file: None }, read: Arc::new(read) }
+        Self { named: Named { name: name.into(), file: None, orbited: false }, read: Arc::new(read) }
     }
 
     /// It stands in that scene file, into which views may be written.
     pub fn with_file(self, file: PathBuf) -> Self {
         Self { named: Named { file: Some(file), ..self.named }, ..self }
+    }
+
+    /// The eye goes around it at first, and does not fly: good for a thing by itself.
+    pub fn orbited(self) -> Self {
+        Self { named: Named { orbited: true, ..self.named }, ..self }
     }
 
     pub(super) fn named(&self) -> &Named {

@@ -15,6 +15,7 @@ use termtrace::capabilities::{Colors, USUAL_CELL_ASPECT};
 use termtrace::cell;
 use termtrace::export;
 use termtrace::grid::Size;
+use termtrace::mesh_file::is_mesh;
 use termtrace::render::Sampling;
 use termtrace::terminal::{Signals, die_of};
 use termtrace::view;
@@ -141,7 +142,9 @@ fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
 fn source(origin: Origin, look: &LookArgs) -> Source<Failure> {
     let file = if let Origin::File(path) = &origin { Some(path.clone()) } else { None };
     let (name, look) = (origin.to_string(), look.clone());
+    let is_mesh = is_mesh(&name, &[]);
     let source = Source::new(name, move |watcher| look.draft(&origin, watcher));
+    let source = if is_mesh { source.orbited() } else { source };
     file.into_iter().fold(source, Source::with_file)
 }
 

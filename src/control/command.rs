@@ -17,6 +17,18 @@ pub enum Command {
     Farther,
     /// From flying to going around the target, or back.
     ChangeMode,
+    /// All of the scene is seen.
+    Frame,
+    /// The field of view becomes narrower.
+    Narrower,
+    /// The field of view becomes wider.
+    Wider,
+    /// The eye goes around the target by itself, or no more.
+    Turntable,
+    /// To a view of the scene file, or one that was saved: from 1 to 9.
+    View(u8),
+    /// The view is saved under the number that follows.
+    SaveView,
     /// Back to the view at the start.
     Reset,
     /// The next view of the scene.
@@ -123,6 +135,20 @@ const COMMANDS: &[(Command, &str, &str)] = &[
     (Command::Nearer, "Nearer", "nearer"),
     (Command::Farther, "Farther", "farther away"),
     (Command::ChangeMode, "ChangeMode", "orbit, or fly again"),
+    (Command::Frame, "Frame", "see everything"),
+    (Command::Narrower, "Narrower", "narrower field of view"),
+    (Command::Wider, "Wider", "wider field of view"),
+    (Command::Turntable, "Turntable", "turntable"),
+    (Command::View(1), "View1", A_VIEW),
+    (Command::View(2), "View2", A_VIEW),
+    (Command::View(3), "View3", A_VIEW),
+    (Command::View(4), "View4", A_VIEW),
+    (Command::View(5), "View5", A_VIEW),
+    (Command::View(6), "View6", A_VIEW),
+    (Command::View(7), "View7", A_VIEW),
+    (Command::View(8), "View8", A_VIEW),
+    (Command::View(9), "View9", A_VIEW),
+    (Command::SaveView, "SaveView", "save the view as 1 to 9"),
     (Command::Reset, "Reset", "back to the first view"),
     (Command::NextView, "NextView", "next view: depth ..."),
     (Command::LastView, "LastView", "the view before"),
@@ -156,6 +182,9 @@ const COMMANDS: &[(Command, &str, &str)] = &[
     (Command::No, "No", "no"),
 ];
 
+/// The help has them in one row.
+const A_VIEW: &str = "a saved view";
+
 impl Command {
     /// All of them.
     pub fn all() -> impl Iterator<Item = Self> {
@@ -184,7 +213,10 @@ impl Command {
 
     /// Whether the key's own repeats do it again.
     pub fn repeats(self) -> bool {
-        matches!(self, Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_))
+        matches!(
+            self,
+            Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_) | Self::Narrower | Self::Wider
+        )
     }
 
     /// Whether Shift with the key does more of it.
@@ -220,9 +252,15 @@ mod tests {
             Command::Look(_) | Command::Around(_) | Command::Point(_) => 4,
             Command::Wipe(_) => 2,
             Command::Write(_) => 5,
+            Command::View(_) => 9,
             Command::Nearer
             | Command::Farther
             | Command::ChangeMode
+            | Command::Frame
+            | Command::Narrower
+            | Command::Wider
+            | Command::Turntable
+            | Command::SaveView
             | Command::Reset
             | Command::NextView
             | Command::LastView

@@ -1,8 +1,9 @@
 //! One move of the camera, of any size. None of them turns the picture upside down, and where one would give no picture
 //! (an eye too far out for f32), the view stays.
 
+use crate::bounds::Bounds;
 use crate::camera::{Camera, Pose};
-use glam::{Vec2, Vec3};
+use glam::{BVec3, Vec2, Vec3};
 
 /// The view keeps this far, in radians, from straight up and straight down, where no direction would be vertical.
 const POLE: f32 = 0.02;
@@ -75,6 +76,53 @@ pub(super) fn nearer(camera: &Camera, factor: f32, size: f32) -> Camera {
     with_pose(camera, Pose { eye: target + wanted * camera.basis().w, target, up })
 }
 
+/// The turntable turns so many radians a second: once around in twenty seconds.
+const TURNTABLE_SPEED: f32 = std::f32::consts::PI / 10.0;
+
+/// The eye goes around the target as it would stand before a turntable, for so many seconds.
+pub fn on_turntable(camera: &Camera, seconds: f32) -> Camera {
+    around(camera, Vec2::new(-TURNTABLE_SPEED * seconds, 0.0))
+}
+
+/// So much of the picture's sides is filled by what is framed.
+const FILLED: f32 = 0.95;
+
+/// The same direction of view, from where a picture of that aspect ratio (width / height) is filled by the box, in whose
+/// middle the target then is.
+pub fn framing(camera: &Camera, bounds: &Bounds, aspect_ratio: f32) -> Camera {
+    let (width, height, centre) = camera.rectangle().fitted_to(aspect_ratio);
+    let half = 0.5 * FILLED * Vec2::new(width, height);
+    let basis = camera.basis();
+    let middle = bounds.min + 0.5 * bounds.extent();
+    // How far away the eye has to be for a corner to be inside the picture.
+    let distance = (0..8).map(|corner| {
+        let is_max = |axis: u32| corner >> axis & 1 == 1;
+        let corner = Vec3::select(BVec3::new(is_max(0), is_max(1), is_max(2)), bounds.max, bounds.min) - middle;
+        let nearer = corner.dot(basis.w);
+        let aside = Vec2::new(corner.dot(basis.u), corner.dot(basis.v)) + nearer * centre;
+        nearer + (aside.abs() / half).max_element()
+    });
+    let distance = distance.fold(0.0, f32::max);
+    if distance <= 0.0 {
+        return *camera;
+    }
+    // Where the picture's middle is not straight ahead, the box is where that is.
+    let target = middle - distance * (centre.x * basis.u + centre.y * basis.v);
+    with_pose(camera, Pose { eye: target + distance * basis.w, target, ..camera.pose() })
+}
+
+/// The vertical field of view stays between these, in radians: 1 and 150 degrees.
+const FIELD_OF_VIEW: [f32; 2] = [0.017_453_3, 2.617_994];
+
+/// The same pose with a view rectangle that many times as large, as far as a field of view can be.
+pub fn zoomed(camera: &Camera, factor: f32) -> Camera {
+    let rectangle = camera.rectangle();
+    let [least, most] = FIELD_OF_VIEW.map(|angle| 2.0 * libm::tanf(0.5 * angle));
+    let height = rectangle.height();
+    let wanted = (factor * height).clamp(least.min(height), most.max(height));
+    rectangle.scaled(wanted / height).map_or(*camera, |rectangle| camera.with_rectangle(rectangle))
+}
+
 /// As much of an upward turn as the pole leaves. A view that begins beyond the limit may turn away from the pole only.
 fn up_to_the_pole(camera: &Camera, angle: f32) -> f32 {
     let limit = std::f32::consts::FRAC_PI_2 - POLE;
@@ -89,3 +137,6 @@ fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
     let turned = v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
     turned * (v.length() / turned.length())
 }
+
+#[cfg(test)]
+mod tests;

@@ -28,6 +28,8 @@ pub(crate) struct Parts {
     pub(crate) triangles: Grove<Corners<Eight>>,
     /// Whether any triangles stand for a smooth surface.
     pub(crate) has_smooth: bool,
+    /// Around all that stand in the trees; nothing if there are none.
+    pub(super) bounds: Option<Bounds>,
 }
 
 /// Parts of one kind, and a tree over them.
@@ -84,6 +86,8 @@ impl Parts {
                 }
             }
         }
+        let boxes = || balls.boxes.iter().chain(&triangles.boxes);
+        let bounds = boxes().next().map(|first| boxes().fold(*first, |all, next| all.union(next)));
         let (done, total) = (AtomicUsize::new(0), balls.boxes.len() + triangles.boxes.len());
         let report = |more| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
@@ -92,7 +96,7 @@ impl Parts {
         let balls = balls.planted(planes.len() as u32, &report)?;
         let triangles = triangles.planted(balls.first + (balls.leaves.len() * LANES) as u32, &report)?;
         let has_smooth = objects.iter().any(|object| matches!(&object.shape, Shape::Mesh(mesh) if mesh.is_smooth()));
-        Some(Self { planes, balls, triangles, has_smooth })
+        Some(Self { planes, balls, triangles, has_smooth, bounds })
     }
 
     /// How much memory it takes, in bytes.

@@ -9,6 +9,7 @@ mod loading;
 #[path = "../mesh_writers/mod.rs"]
 mod mesh_writers;
 mod moving;
+mod orbit;
 #[path = "../pty/mod.rs"]
 mod pty;
 mod questions;

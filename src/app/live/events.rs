@@ -1,6 +1,8 @@
 //! What the loop hears: keys, answers, and signals to stop.
 
 use super::Live;
+use super::moving::ZOOM;
+use crate::app::dialog::Dialog;
 use crate::app::shown::Shown;
 use crate::control::Command;
 use crate::input::{Input, Reply};
@@ -91,7 +93,7 @@ impl Live {
                 Input::Event(Event::Key(key)) => self.take_key(key),
                 // Nobody says when the keys held now are let go.
                 Input::Event(Event::FocusLost) => {
-                    self.stale |= self.eye.stand_still(self.now());
+                    self.stale |= self.eye.let_go(self.now());
                     Next::Stay
                 }
                 Input::Reply(reply) => self.take_reply(reply),
@@ -129,7 +131,13 @@ impl Live {
             Command::Quit => return Next::Leave,
             Command::Suspend => return Next::Suspend(Some(Stopped::Group)),
             Command::ChangeMode => self.change_mode(),
-            Command::Reset => self.stale |= self.eye.reset(),
+            Command::Frame => self.frame_everything(),
+            Command::Narrower => self.zoom(1.0 / ZOOM),
+            Command::Wider => self.zoom(ZOOM),
+            Command::Turntable => self.toggle_turntable(),
+            Command::View(number) => self.go_to_view(number),
+            Command::SaveView => self.screen.ask(Dialog::Save),
+            Command::Reset => self.stale |= self.eye.reset(self.now()),
             Command::NextScene => self.scenes_on += 1,
             Command::LastScene => self.scenes_on -= 1,
             Command::CopyCamera => self.copy_camera(),

@@ -51,6 +51,7 @@ impl Live {
                 };
                 self.screen.say(said);
             }
+            Answer::Save(number) => self.save_view(number),
             Answer::Nothing => {}
         }
         true

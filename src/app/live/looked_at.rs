@@ -1,6 +1,7 @@
 //! What the loop does with the scenes that come, and where each was looked at from.
 
 use super::Live;
+use crate::app::eye::View;
 use crate::app::loading::News;
 use crate::app::renderer::Renderer;
 use crate::app::scenes::Heard;
@@ -18,8 +19,8 @@ pub(super) struct LookedAt {
     named: Vec<Named>,
     /// Its number, and from where it wants to be looked at. `None` as long as there is nothing to see.
     now: Option<(usize, Camera)>,
-    /// From where others wanted to be looked at, and were when they were left.
-    left: HashMap<usize, (Camera, Camera)>,
+    /// How others were looked at when they were left.
+    left: HashMap<usize, View>,
 }
 
 impl LookedAt {
@@ -64,19 +65,19 @@ impl Live {
     /// From where it wants to be looked at; from where it was looked at, if it has wanted the same before.
     fn show(&mut self, scene: Scene, of: usize, renderer: &mut Renderer) {
         let home = scene.camera;
-        match self.looked_at.now.replace((of, home)) {
-            Some(before) if before == (of, home) => {}
-            Some((before, home_before)) => {
-                if before != of
-                    && let Some(camera) = self.eye.camera()
-                {
-                    self.looked_at.left.insert(before, (home_before, camera));
-                }
-                let left = self.looked_at.left.get(&of).filter(|(wanted, _)| before != of && *wanted == home);
-                self.eye.open_anew(home, left.map_or(home, |&(_, camera)| camera));
+        let before = self.looked_at.now.replace((of, home));
+        if before == Some((of, home)) {
+            self.eye.set_written(&scene.views);
+        } else {
+            let orbits = self.looked_at.source().is_some_and(|source| source.orbited);
+            let left = self.looked_at.left.remove(&of).filter(|left| left.home() == home);
+            let left = self.eye.open(left.unwrap_or_else(|| View::of(&scene, orbits)));
+            if let Some(((before, _), left)) = before.zip(left).filter(|((before, _), _)| *before != of) {
+                self.looked_at.left.insert(before, left);
             }
-            None => self.eye.open(home),
+            self.eye.set_written(&scene.views);
         }
+        self.screen.set_moving(self.eye.mode());
         renderer.show(scene);
         self.effort.forget_last();
         self.stale = true;

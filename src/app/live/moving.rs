@@ -1,16 +1,22 @@
 //! How the eye moves, beside what held keys do.
 
 use super::Live;
+use crate::control;
 use crate::hit::closest_hit;
 use crate::ray::Ray;
 use glam::Vec3;
+
+/// A press makes the view rectangle so many times as large.
+pub(super) const ZOOM: f32 = 1.1;
 
 impl Live {
     /// The eye goes around what is in the middle of the picture, or flies again.
     pub(super) fn change_mode(&mut self) {
         let in_the_middle = self.in_the_middle();
         self.eye.change_mode(in_the_middle);
+        self.stale = true;
         self.screen.set_moving(self.eye.mode());
+        self.screen.say(format!("{}: ? shows its keys", self.eye.mode().name()));
     }
 
     /// The point of the scene that the eye looks at.
@@ -18,5 +24,51 @@ impl Live {
         let (scene, camera) = (&self.screen.frame()?.scene, self.eye.camera()?);
         let ray = Ray { origin: camera.pose().eye, direction: -camera.basis().w };
         closest_hit(scene, &ray).map(|hit| ray.at(hit.t))
+    }
+
+    /// All that has an end is seen, as large as it can be; from the same direction.
+    pub(super) fn frame_everything(&mut self) {
+        let Some(bounds) = self.screen.frame().and_then(|frame| frame.scene.bounds()) else {
+            self.screen.say("nothing here has an end");
+            return;
+        };
+        // Of two views side by side, each is a picture of its own.
+        let parts = self.shown.parts(self.resolution());
+        let aspect_ratio = parts.first().map_or(1.0, |(_, part)| part.aspect_ratio());
+        let now = self.now();
+        self.stale |= self.eye.change(now, |camera, _| control::framing(camera, &bounds, aspect_ratio));
+    }
+
+    /// The field of view becomes narrower or wider, and is told.
+    pub(super) fn zoom(&mut self, factor: f32) {
+        let now = self.now();
+        self.stale |= self.eye.change(now, |camera, _| control::zoomed(camera, factor));
+        if let Some(camera) = self.eye.camera() {
+            let degrees = camera.rectangle().vertical_fov().to_degrees();
+            self.screen.say(format!("field of view: {degrees:.1} degrees"));
+        }
+    }
+
+    /// The eye goes around by itself, where the user has not asked that nothing does.
+    pub(super) fn toggle_turntable(&mut self) {
+        if self.options.reduced_motion {
+            self.screen.say("nothing moves by itself with --reduced-motion");
+            return;
+        }
+        self.stale |= self.eye.toggle_turntable(self.now());
+    }
+
+    /// To a view of the scene's file, or one that was saved.
+    pub(super) fn go_to_view(&mut self, number: u8) {
+        match self.eye.go_to(number, self.now()) {
+            Some(moved) => self.stale |= moved,
+            None => self.screen.say(format!("there is no view {number}: m {number} saves this one")),
+        }
+    }
+
+    /// This view can be come back to.
+    pub(super) fn save_view(&mut self, number: u8) {
+        self.eye.save(number);
+        self.screen.say(format!("saved as view {number}, until you leave; Y writes it into the scene's file"));
     }
 }

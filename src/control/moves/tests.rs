@@ -1,0 +1,112 @@
+//! Moves of every size, from every side, in small and large scenes.
+
+use super::*;
+use crate::camera::ViewRectangle;
+
+fn camera(eye: Vec3, target: Vec3) -> Camera {
+    let rectangle = ViewRectangle::from_vertical_fov(0.7).expect("an angle");
+    Camera::new(Pose { eye, target, up: Vec3::Y }, rectangle).expect("a pose")
+}
+
+/// The part of the picture's half width and height that a point is away from the middle.
+fn place(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Vec2 {
+    let (width, height, centre) = camera.rectangle().fitted_to(aspect_ratio);
+    let (basis, way) = (camera.basis(), point - camera.pose().eye);
+    let depth = -way.dot(basis.w);
+    assert!(depth > 0.0, "{point} is behind the eye");
+    (Vec2::new(way.dot(basis.u), way.dot(basis.v)) / depth - centre) / (0.5 * Vec2::new(width, height))
+}
+
+fn corners(bounds: &Bounds) -> impl Iterator<Item = Vec3> {
+    let Bounds { min, max } = *bounds;
+    [min, max]
+        .into_iter()
+        .flat_map(move |x| [min, max].into_iter().flat_map(move |y| [min, max].map(move |z| Vec3::new(x.x, y.y, z.z))))
+}
+
+#[test]
+fn all_corners_of_what_is_framed_are_in_the_picture_and_one_is_at_its_side() {
+    let boxes = [Bounds { min: -Vec3::ONE, max: Vec3::ONE }, Bounds { min: Vec3::ZERO, max: Vec3::new(9.0, 1.0, 2.0) }];
+    let shifted = |camera: Camera, shift| camera.with_rectangle(camera.rectangle().with_shift(shift).expect("finite"));
+    for scale in [1e-4, 1.0, 1e6] {
+        for bounds in boxes.map(|Bounds { min, max }| Bounds { min: scale * min, max: scale * max }) {
+            for eye in [Vec3::new(1.0, 2.0, 7.0), Vec3::new(-3.0, -1.0, 0.2), Vec3::new(0.0, 9.0, 0.1)] {
+                for (aspect_ratio, shift) in [(1.6, Vec2::ZERO), (0.5, Vec2::ZERO), (1.6, Vec2::new(0.2, -0.3))] {
+                    let before = shifted(camera(scale * eye, Vec3::ZERO), shift);
+                    let after = framing(&before, &bounds, aspect_ratio);
+                    assert!(after.basis().w.abs_diff_eq(before.basis().w, 1e-4), "the direction stays");
+                    let places = corners(&bounds).map(|corner| place(&after, corner, aspect_ratio).abs().max_element());
+                    let most = places.fold(0.0, f32::max);
+                    assert!((most - FILLED).abs() < 1e-3, "{bounds:?} {eye} {aspect_ratio} {shift}: {most}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_point_cannot_be_framed() {
+    let before = camera(Vec3::Z, Vec3::ZERO);
+    assert_eq!(framing(&before, &Bounds { min: Vec3::X, max: Vec3::X }, 1.0), before);
+}
+
+/// However often, from wherever: the distance is kept, up is up, and the target is in the middle.
+#[test]
+fn the_eye_never_turns_over_a_pole() {
+    for scale in [1e-3, 1.0, 1e7] {
+        let target = scale * Vec3::new(1.0, 2.0, 3.0);
+        let mut camera = camera(target + scale * Vec3::new(0.0, 1.0, 4.0), target);
+        for step in 0..400 {
+            let upwards = if step % 200 < 100 { 0.1 } else { -0.1 };
+            camera = around(&camera, Vec2::new(0.3, upwards));
+            let (pose, basis) = (camera.pose(), camera.basis());
+            assert_eq!(pose.target, target);
+            assert!((pose.eye.distance(target) / (scale * 17f32.sqrt()) - 1.0).abs() < 1e-2, "{pose:?}");
+            assert!(basis.v.y > 0.0 && basis.w.y.abs() < 1.0, "{basis:?}");
+        }
+    }
+}
+
+#[test]
+fn the_eye_never_goes_through_the_target_nor_to_infinity() {
+    for size in [1e-6, 1.0, 1e9] {
+        let start = camera(Vec3::new(0.0, 0.0, size), Vec3::ZERO);
+        let (mut near, mut far) = (start, start);
+        for _ in 0..200 {
+            near = nearer(&near, 0.5, size);
+            far = nearer(&far, 2.0, size);
+        }
+        for (camera, distance) in [(near, NEAREST * size), (far, FARTHEST * size)] {
+            assert_eq!(camera.basis().w, Vec3::Z);
+            assert!((camera.pose().eye.z / distance - 1.0).abs() < 1e-3, "{:?}", camera.pose());
+        }
+    }
+    // Far from the origin numbers are coarse.
+    let target = Vec3::splat(1e6);
+    let mut camera = camera(target + Vec3::Z, target);
+    for _ in 0..200 {
+        camera = nearer(&camera, 0.5, 1.0);
+    }
+    assert!(camera.pose().eye.distance(target) > 0.0);
+}
+
+#[test]
+fn a_field_of_view_has_its_limits() {
+    let start = camera(Vec3::Z, Vec3::ZERO);
+    let after = |factor| (0..300).fold(start, |camera, _| zoomed(&camera, factor)).rectangle().vertical_fov();
+    assert!((after(0.9).to_degrees() - 1.0).abs() < 1e-2 && (after(1.1).to_degrees() - 150.0).abs() < 1e-2);
+    let near = zoomed(&start, 0.5).rectangle().height();
+    assert!((near / start.rectangle().height() - 0.5).abs() < 1e-6);
+    assert_eq!(zoomed(&start, 0.5).pose(), start.pose());
+}
+
+#[test]
+fn a_turntable_turns_once_in_twenty_seconds_whatever_its_steps() {
+    let start = camera(Vec3::new(0.0, 1.0, 4.0), Vec3::ZERO);
+    let once = on_turntable(&start, 20.0).pose().eye;
+    assert!(once.abs_diff_eq(start.pose().eye, 1e-4), "{once}");
+    let quarter = on_turntable(&start, 5.0).pose().eye;
+    assert!(quarter.abs_diff_eq(Vec3::new(4.0, 1.0, 0.0), 1e-4), "{quarter}");
+    let in_steps = (0..500).fold(start, |camera, _| on_turntable(&camera, 0.01)).pose().eye;
+    assert!(in_steps.abs_diff_eq(quarter, 1e-3), "{in_steps}");
+}

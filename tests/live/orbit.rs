@@ -1,0 +1,168 @@
+//! Two ways to move, and what else changes the view: keys in, the camera that is printed on leaving out.
+
+use crate::pty::{SOON, Session, Size, Start};
+use glam::Vec3;
+use std::time::Duration;
+use termtrace::camera::{Camera, Pose};
+use termtrace::control::framing;
+use termtrace::scene::Scene;
+
+const BALL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
+const TEAPOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/teapot.obj");
+
+fn load(scene: &str) -> Scene {
+    Scene::load(scene.as_ref()).expect("the scene is fine")
+}
+
+/// At rest: what moves by itself would show.
+fn looking(scene: &str, flags: &[&str]) -> Session {
+    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(scene).size(Size::cells(40, 12));
+    let mut session = flags.iter().fold(start, Start::arg).spawn();
+    session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains('▀'));
+    wait_for_rest(&mut session);
+    session
+}
+
+fn wait_for_rest(session: &mut Session) {
+    let mut before = 0;
+    while session.sees(Duration::from_millis(300), |seen| seen.bytes().len() != before) {
+        before = session.seen().bytes().len();
+    }
+}
+
+/// Leaves, and reads the camera that is printed; `None` if it was not moved.
+fn camera(session: &mut Session) -> Option<Camera> {
+    let before = session.seen().bytes().len();
+    session.send(b"q");
+    session.wait_exit(SOON);
+    session.assert_clean();
+    let said = String::from_utf8_lossy(&session.seen().bytes()[before..]).into_owned();
+    let line = said.lines().find_map(|line| Some(&line[line.find("camera:")?..]))?;
+    Some(Scene::from_ron("printed", &format!("({line})")).expect("a line for a scene file").camera)
+}
+
+/// Where these keys lead, each of which is one step.
+fn after(scene: &str, keys: &[u8]) -> Camera {
+    let mut session = looking(scene, &["--reduced-motion"]);
+    session.send(keys);
+    wait_for_rest(&mut session);
+    camera(&mut session).unwrap_or_else(|| load(scene).camera)
+}
+
+/// A step is nine degrees.
+fn turned(v: Vec3, steps: f32) -> Vec3 {
+    let (sin, cos) = libm::sincosf(steps * std::f32::consts::PI / 20.0);
+    Vec3::new(v.x * cos + v.z * sin, v.y, v.z * cos - v.x * sin)
+}
+
+#[test]
+fn a_mesh_given_by_name_is_gone_around() {
+    let Pose { eye, target, .. } = load(TEAPOT).camera.pose();
+    for (keys, steps) in [(&b"\x1b[D\x1b[Dh"[..], -3.0), (b"\x1b[Cll", 3.0), (b"L", 4.0)] {
+        let pose = after(TEAPOT, keys).pose();
+        let wanted = target + turned(eye - target, steps);
+        assert!(pose.eye.abs_diff_eq(wanted, 1e-3), "{} is not {wanted}", pose.eye);
+        assert_eq!(pose.target, target);
+    }
+    let higher = after(TEAPOT, b"k\x1b[Ajk").pose().eye;
+    assert!(higher.y > eye.y && (higher.distance(target) / eye.distance(target) - 1.0).abs() < 1e-4);
+    let nearer = after(TEAPOT, b"ww").pose();
+    assert!((nearer.eye.distance(target) / eye.distance(target) - libm::expf(-0.4)).abs() < 1e-4);
+    assert_eq!(after(TEAPOT, b"wsr"), load(TEAPOT).camera);
+}
+
+/// With Tab the eye goes around what is in the middle, and flies again.
+#[test]
+fn a_scene_is_flown_through_until_tab() {
+    let start = load(BALL).camera.pose();
+    let flown = after(BALL, b"h").pose();
+    assert_eq!(flown.eye, start.eye, "it looks around");
+    let pose = after(BALL, b"\thh").pose();
+    // The ball has radius 1, and the eye is straight before it.
+    assert!(pose.target.abs_diff_eq(Vec3::new(0.0, 1.0, 1.0), 1e-5), "{}", pose.target);
+    let wanted = pose.target + turned(4.0 * Vec3::Z, -2.0);
+    assert!(pose.eye.abs_diff_eq(wanted, 1e-4), "{} is not {wanted}", pose.eye);
+    let again = after(BALL, b"\t\th").pose();
+    assert_eq!(again.eye, start.eye, "it looks around again");
+}
+
+#[test]
+fn f_shows_everything() {
+    let scene = load(BALL);
+    let bounds = scene.bounds().expect("there is a ball");
+    let found = after(BALL, b"wwwf");
+    // 40x24 square pixels.
+    let wanted = framing(&scene.camera, &bounds, 40.0 / 24.0).pose();
+    assert!(found.pose().eye.abs_diff_eq(wanted.eye, 1e-3) && found.pose().target.abs_diff_eq(wanted.target, 1e-3));
+}
+
+#[test]
+fn brackets_change_the_field_of_view_and_tell_it() {
+    let mut session = looking(BALL, &[]);
+    session.send(b"[[[");
+    session.wait_for_text("field of view: 34.6 degrees");
+    session.send(b"]");
+    session.wait_for_text("field of view: 37.8 degrees");
+    let camera = camera(&mut session).expect("it was changed");
+    assert!((camera.rectangle().vertical_fov().to_degrees() - 37.8).abs() < 0.1);
+    assert_eq!(camera.pose(), load(BALL).camera.pose());
+}
+
+/// It turns until something else moves the eye, and then all is still.
+#[test]
+fn t_turns_until_the_next_move() {
+    let mut session = looking(TEAPOT, &[]);
+    session.send(b"t");
+    let mut frames = session.seen().bytes().len();
+    for _ in 0..5 {
+        session.wait_for("the next frame", SOON, |seen| seen.bytes().len() > frames);
+        frames = session.seen().bytes().len();
+    }
+    // The help does not move it.
+    session.send(b"?");
+    session.wait_for_text(" keys ");
+    frames = session.seen().bytes().len();
+    session.wait_for("a frame below the help", SOON, |seen| seen.bytes().len() > frames);
+    session.send(b"1r");
+    session.send(b"?");
+    wait_for_rest(&mut session);
+    assert_eq!(camera(&mut session), None, "r stops it and goes back");
+}
+
+#[test]
+fn nothing_turns_by_itself_where_motion_is_reduced() {
+    let mut session = looking(TEAPOT, &["--reduced-motion"]);
+    session.send(b"t");
+    session.wait_for_text("nothing moves by itself");
+    wait_for_rest(&mut session);
+    assert_eq!(camera(&mut session), None);
+}
+
+#[test]
+fn digits_go_to_the_views_of_the_scene_and_to_saved_ones() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let file = folder.path().join("views.ron");
+    let text = std::fs::read_to_string(BALL).expect("it is there").replacen(
+        "camera:",
+        "views: [(eye: (1, 9, 0), target: (0, 0, 0)), (eye: (6, 1, 0), target: (0, 1, 0), vertical_fov: 30)],\n camera:",
+        1,
+    );
+    std::fs::write(&file, text).expect("written");
+    let file = file.to_str().expect("a plain name");
+    let scene = load(file);
+    assert_eq!(after(file, b"1"), scene.views[0]);
+    assert_eq!(after(file, b"1r2"), scene.views[1]);
+    // Saved over, and only for this session; by the number that follows.
+    let moved = after(file, b"2w");
+    assert_eq!(after(file, b"2wm1r1"), moved);
+    assert_eq!(after(file, b"2wm9rr9"), moved);
+    assert_eq!(after(file, b"2wmx1"), scene.views[0], "x is no number, and explains nothing");
+    let mut session = looking(file, &[]);
+    session.send(b"m");
+    session.wait_for_text("save this view as");
+    session.send(b"3");
+    session.wait_for_text("saved as view 3");
+    session.send(b"4");
+    session.wait_for_text("there is no view 4");
+    assert_eq!(camera(&mut session), None);
+}
