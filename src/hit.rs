@@ -8,7 +8,7 @@ use crate::lanes::{Answers, Eight, LANES, Lanes, set_bits};
 use crate::ray::{EightRays, Interval, Probe, Ray};
 use crate::scene::{PartId, Parts, Scene};
 use crate::shape::{Part, Surface};
-use crate::simd::{self, Instructions, Work};
+use crate::simd::{self, Work};
 use alone::Alone;
 use together::Together;
 
@@ -158,8 +158,7 @@ impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
 
 impl Kernel {
     fn run<W: Work>(self, work: W) -> W::Output {
-        let instructions = if self == Self::Scalar { Instructions::Baseline } else { Instructions::best() };
-        simd::run_with(instructions, work)
+        if self == Self::Scalar { simd::run_scalar(work) } else { simd::run(work) }
     }
 
     /// Whether so many groups of rays go together.

@@ -10,42 +10,88 @@ use crate::lanes::Eight;
 
 pub use crate::lanes::Work;
 
-/// Which numbers work is done with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Instructions {
-    /// Plain arrays: all that the target is sure to have.
-    Baseline,
-    /// x86-64's registers of 256 bits.
-    Avx2,
-}
-
-impl Instructions {
-    /// The best that this CPU has.
-    #[inline]
-    pub fn best() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi1") && is_x86_feature_detected!("lzcnt") {
-            return Self::Avx2;
-        }
-        Self::Baseline
-    }
-}
-
 /// Does the work with the best that this CPU has.
 #[inline]
 pub fn run<W: Work>(work: W) -> W::Output {
-    run_with(Instructions::best(), work)
+    #[cfg(target_arch = "x86_64")]
+    return if has_avx2() { avx2::run(work) } else { sse2::run(work) };
+    #[cfg(not(target_arch = "x86_64"))]
+    run_scalar(work)
 }
 
-/// Does the work with these, or with the baseline where the CPU does not have them.
+/// Does the work with plain arrays: the truth that all else is tested against.
 #[inline]
-pub fn run_with<W: Work>(instructions: Instructions, work: W) -> W::Output {
-    match instructions {
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx2 if Instructions::best() == Instructions::Avx2 => avx2::run(work),
-        _ => work.run::<Eight>(),
-    }
+pub fn run_scalar<W: Work>(work: W) -> W::Output {
+    work.run::<Eight>()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline]
+fn has_avx2() -> bool {
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi1") && is_x86_feature_detected!("lzcnt")
 }
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::{Answers, LANES, Lanes};
+
+    /// Each operation on pairs of eight, in a row: numbers as bits, and answers.
+    struct All<'w>(&'w [[Eight; 2]]);
+
+    impl Work for All<'_> {
+        type Output = Vec<[u32; LANES]>;
+
+        #[inline(always)]
+        fn run<N: Lanes>(self) -> Self::Output {
+            let mut all = Vec::new();
+            for [a, b] in self.0 {
+                let (x, y) = (N::load(a), N::load(b));
+                let numbers = [x + y, x - y, x * y, x / y, -x, x.sqrt(), x.abs(), x.floor(), x.max(y), x.min(y)];
+                let answers = [x.lt(y), x.le(y), x.same(y), x.lt(y) & x.le(y), x.lt(y) | y.lt(x), !x.lt(y)];
+                let chosen = answers.map(|answer| N::select(answer, x, y));
+                let each = N::each([x, y], |[x, y]| [y, x]);
+                let all_numbers = numbers.into_iter().chain(chosen).chain(each).chain([N::splat(b.0[0])]);
+                // Which NaN comes of an operation is nobody's business: none is ever seen.
+                let bits = |number: f32| if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() };
+                all.extend(all_numbers.map(|numbers| numbers.store().0.map(bits)));
+                let marks = [N::answers(0b1010_0110), x.has_bits(a.0[3].to_bits())];
+                all.extend(answers.into_iter().chain(marks).map(|mask| [mask.bits(); LANES]));
+                let whole = [x, y, x.abs(), y.abs(), -x.abs(), x, y, x].map(|x| N::select(x.lt(N::splat(9.0)), x, y));
+                let whole = whole.map(|x| N::select(x.same(x), x, N::splat(0.5)));
+                let ends = [N::least_of_each(&whole), N::greatest_of_each(&whole)];
+                all.extend(ends.map(|ends| (ends + N::splat(0.0)).store().0.map(f32::to_bits)));
+            }
+            all
+        }
+    }
+
+    /// Every pair of numbers at the edges of what there is.
+    #[test]
+    fn all_instructions_have_the_same_bits() {
+        let mut edges =
+            vec![0.0, 0.3, 0.5, 1.0, 1.5, 2.5, 3.0e-39, 1e-20, 7.0e9, 3.0e38, f32::INFINITY, f32::MIN_POSITIVE];
+        edges.extend([8_388_607.5, 8_388_608.0, 8_388_609.0, 2_147_483_520.0, 2_147_483_648.0, 16_777_217.0]);
+        edges.extend(edges.clone().iter().map(|edge| -edge));
+        edges.push(f32::NAN);
+        let eights =
+            |from: usize, step: usize| Eight(std::array::from_fn(|lane| edges[(from + step * lane) % edges.len()]));
+        let pairs: Vec<_> = (0..edges.len())
+            .flat_map(|from| (0..edges.len()).map(move |other| [(from, 1), (other, 3)]))
+            .map(|places| places.map(|(from, step)| eights(from, step)))
+            .collect();
+        let truth = run_scalar(All(&pairs));
+        let check = |found: Vec<[u32; LANES]>, instructions| {
+            let differs = truth.iter().zip(&found).position(|(truth, found)| truth != found);
+            assert_eq!(differs.map(|at| (at, truth[at], found[at])), None, "{instructions}");
+        };
+        check(run(All(&pairs)), "the best");
+        #[cfg(target_arch = "x86_64")]
+        check(sse2::run(All(&pairs)), "SSE2");
+    }
+}

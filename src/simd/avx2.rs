@@ -20,7 +20,7 @@ pub(super) fn run<W: Work>(work: W) -> W::Output {
     fn compiled_for_avx2<W: Work>(work: W) -> W::Output {
         work.run::<Register>()
     }
-    // SAFETY: `run_with` has asked the CPU, and `Register::apart` is reached by what runs on it.
+    // SAFETY: `super::run` has asked the CPU, and `Register::apart` is reached by what runs on it.
     unsafe { compiled_for_avx2(work) }
 }
 
