@@ -107,8 +107,13 @@ impl Srgb8 {
     /// NaN counts as no light.
     #[inline]
     pub fn from_linear(light: LinearRgb) -> Self {
+        TRANSFER.color(light)
+    }
+
+    /// The same of all in a row.
+    pub fn all_from_linear(lights: impl Iterator<Item = LinearRgb>) -> impl Iterator<Item = Self> {
         let transfer = &*TRANSFER;
-        Self::new(transfer.srgb8(light.r), transfer.srgb8(light.g), transfer.srgb8(light.b))
+        lights.map(|light| transfer.color(light))
     }
 }
 
@@ -160,8 +165,8 @@ const LEAST_LIGHT: f32 = 1.0 / 16_384.0;
 /// A bucket is a run of floats that share sign, exponent and the first 7 bits of the mantissa: short enough that it
 /// holds at most one of the 255 steps.
 const BUCKET_SHIFT: u32 = 16;
-/// One bucket past 1.0's own.
-const BUCKETS: usize = ((1.0_f32.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT) as usize + 1;
+/// More than there are up to 1.0: a power of two, so that a remainder is in it without being asked.
+const BUCKETS: usize = (((1.0_f32.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT) as usize + 1).next_power_of_two();
 
 /// The transfer function, tabulated.
 struct Transfer {
@@ -174,6 +179,11 @@ struct Transfer {
 }
 
 impl Transfer {
+    #[inline]
+    fn color(&self, light: LinearRgb) -> Srgb8 {
+        Srgb8::new(self.srgb8(light.r), self.srgb8(light.g), self.srgb8(light.b))
+    }
+
     /// One band: clamp, encode, round.
     ///
     /// Calling `pow` for each band of each pixel would cost more than tracing it. Rounding has only 255 steps, so the
@@ -182,8 +192,10 @@ impl Transfer {
     #[inline]
     fn srgb8(&self, linear: f32) -> u8 {
         // NaN is black, as what is below the first bucket is.
-        let linear = if linear > LEAST_LIGHT { linear.min(1.0) } else { LEAST_LIGHT };
-        let code = self.first_code[((linear.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT) as usize];
+        let linear = if linear > LEAST_LIGHT { linear } else { LEAST_LIGHT };
+        let linear = if linear < 1.0 { linear } else { 1.0 };
+        let bucket = (linear.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT;
+        let code = self.first_code[bucket as usize % BUCKETS];
         code + u8::from(linear >= self.linear_at_step[usize::from(code)])
     }
 }

@@ -10,18 +10,18 @@
 use crate::camera::Camera;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::hit::{self, EightHits, Kernel};
-use crate::lanes::LANES;
+use crate::lanes::{Eight, LANES};
 use crate::ray::EightRays;
 use crate::scene::Scene;
 use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
-use pixel::{Pixel, Seen, Sum, Watched};
+use pixel::{Seen, Watched};
 use rayon::prelude::*;
 use sampling::PASSES;
 use std::num::NonZeroU32;
 use std::ops::{AddAssign, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use tiles::{PIXELS, Tiles};
+use tiles::{ALL_PIXELS, PIXELS, Tiles};
 
 mod count;
 mod one;
@@ -105,11 +105,18 @@ pub fn render_by(
 fn alike(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Option<Rendered> {
     let mut framebuffer = Framebuffer::new(tiles.resolution);
     let parts = tiles.split(&mut framebuffer.pixels);
+    let share = 1.0 / samples as f32;
     let cost = crew.trace(parts, |buffers, (tile, mut part)| {
-        let mut pixels = [Sum::default(); PIXELS];
-        buffers.want(tiles.inside(tile));
-        let cost = buffers.trace_tile(crew, scene, tiles, tile, 0..samples, &mut pixels)?;
-        tiles.show(&pixels, &mut part);
+        let mut sums = [[Eight::ZERO; 3]; PIXELS / LANES];
+        tiles.inside(tile, &mut buffers.wanted);
+        let cost = buffers.trace_tile(crew, scene, tiles, tile, 0..samples, |buffers| {
+            for (sums, lights) in sums.iter_mut().zip(&buffers.lights) {
+                for (sum, &light) in sums.iter_mut().zip(lights) {
+                    *sum = *sum + light;
+                }
+            }
+        })?;
+        tiles.show(&buffers.wanted, |at| shade::light_of(&sums[at / LANES], at % LANES) * share, &mut part);
         Some(cost)
     })?;
     Some(Rendered { framebuffer, cost })
@@ -168,8 +175,9 @@ impl Refining {
             let tiles = self.tiles;
             let parts = self.pixels.chunks_mut(PIXELS).zip(needs_more.chunks(PIXELS)).collect();
             cost += crew.trace(parts, |buffers, (tile, (pixels, needs_more))| {
-                buffers.want(tiles.inside(tile).filter(|&pixel| needs_more[usize::from(pixel)]));
-                buffers.trace_tile(crew, scene, &tiles, tile, pass.clone(), pixels)
+                tiles.inside(tile, &mut buffers.wanted);
+                buffers.wanted.retain(|&pixel| needs_more[usize::from(pixel)]);
+                buffers.trace_tile(crew, scene, &tiles, tile, pass.clone(), |buffers| buffers.add_to(pixels))
             })?;
             self.passes += 1;
         }
@@ -185,7 +193,7 @@ impl Refining {
     pub fn framebuffer(&self) -> Framebuffer {
         let mut framebuffer = Framebuffer::new(self.tiles.resolution);
         for (pixels, mut part) in self.pixels.chunks(PIXELS).zip(self.tiles.split(&mut framebuffer.pixels)) {
-            self.tiles.show(pixels, &mut part);
+            self.tiles.show(&ALL_PIXELS, |pixel| pixels[pixel].mean(), &mut part);
         }
         framebuffer
     }
@@ -231,21 +239,16 @@ struct Buffers {
 }
 
 impl Buffers {
-    /// Which pixels of the tile are to be traced.
-    fn want(&mut self, pixels: impl Iterator<Item = u8>) {
-        self.wanted.clear();
-        self.wanted.extend(pixels);
-    }
-
-    /// Those pixels with more samples. `None`: given up, between one sample of them and the next.
-    fn trace_tile<P: Pixel>(
+    /// The wanted pixels with more samples, each of which somebody takes. `None`: given up, between one sample of them and
+    /// the next.
+    fn trace_tile(
         &mut self,
         crew: Crew<'_>,
         scene: &Scene,
         tiles: &Tiles,
         tile: usize,
         samples: Range<u32>,
-        pixels: &mut [P],
+        mut take: impl FnMut(&Self),
     ) -> Option<Cost> {
         let start = Instant::now();
         let mut traced = 0;
@@ -254,17 +257,22 @@ impl Buffers {
                 return None;
             }
             let shadow_rays = self.trace_sample(scene, tiles, tile, sample);
-            let Self { wanted, points, arriving, lights, .. } = &*self;
-            let groups = wanted.chunks(LANES).zip(points.iter()).zip(arriving.iter()).zip(lights.iter());
-            for (((wanted, points), arriving), light) in groups {
-                for (lane, &pixel) in wanted.iter().enumerate() {
-                    let seen = || Seen::of(points.seen(lane), arriving.lit_by[lane]);
-                    pixels[usize::from(pixel)].add(shade::light_of(light, lane), seen);
-                }
-            }
-            traced += wanted.len() as u64 + shadow_rays;
+            take(self);
+            traced += self.wanted.len() as u64 + shadow_rays;
         }
         Some(Cost { rays: traced, work: start.elapsed() })
+    }
+
+    /// Adds the sample to those of the tile's pixels that it is of.
+    fn add_to(&self, pixels: &mut [Watched]) {
+        let Self { wanted, points, arriving, lights, .. } = self;
+        let groups = wanted.chunks(LANES).zip(points).zip(arriving).zip(lights);
+        for (((wanted, points), arriving), light) in groups {
+            for (lane, &pixel) in wanted.iter().enumerate() {
+                let seen = || Seen::of(points.seen(lane), arriving.lit_by[lane]);
+                pixels[usize::from(pixel)].add(shade::light_of(light, lane), seen);
+            }
+        }
     }
 
     /// All steps for one sample of those pixels. Returns the number of shadow rays that this took.

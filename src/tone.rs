@@ -3,6 +3,7 @@
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::scene::{Scene, ToneCurve};
+use rayon::prelude::*;
 
 /// The picture as files and terminals take it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,9 +19,21 @@ pub struct Picture {
 /// The framebuffer as `scene` wants its light shown.
 pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     let Resolution { width, height, .. } = framebuffer.resolution;
-    let show = |&light: &LinearRgb| Srgb8::from_linear(shown(light, scene));
-    Picture { width, height, pixels: framebuffer.pixels.iter().map(show).collect() }
+    let mut pixels = vec![Srgb8::new(0, 0, 0); framebuffer.pixels.len()];
+    let show = |(pixels, lights): (&mut [Srgb8], &[LinearRgb])| {
+        let shown = Srgb8::all_from_linear(lights.iter().map(|&light| shown(light, scene)));
+        pixels.iter_mut().zip(shown).for_each(|(pixel, shown)| *pixel = shown);
+    };
+    if pixels.len() <= ALONE {
+        show((&mut pixels, &framebuffer.pixels));
+    } else {
+        pixels.par_chunks_mut(ALONE).zip(framebuffer.pixels.par_chunks(ALONE)).for_each(show);
+    }
+    Picture { width, height, pixels }
 }
+
+/// To wake another thread for fewer pixels takes longer than it saves.
+const ALONE: usize = 1 << 16;
 
 /// The light as `scene` wants it shown: exposed, then after the tone curve. 1 is white, and so is more.
 pub fn shown(light: LinearRgb, scene: &Scene) -> LinearRgb {

@@ -4,7 +4,7 @@ use super::tiles::Tiles;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::hit::{self, EightHits, Kernel};
-use crate::lanes::set_bits;
+use crate::lanes::{Eight, Lanes, Number};
 use crate::ray::EightRays;
 use crate::scene::Scene;
 use crate::shade::{self, EightPoints, TO_THE_LIGHT};
@@ -68,8 +68,7 @@ struct Buffers {
 
 impl Buffers {
     fn count_tile(&mut self, kernel: Kernel, scene: &Scene, tiles: &Tiles, tile: usize, samples: Range<u32>) -> Counts {
-        self.wanted.clear();
-        self.wanted.extend(tiles.inside(tile));
+        tiles.inside(tile, &mut self.wanted);
         let mut counts = Counts::default();
         for sample in samples {
             tiles.make_eye_rays(tile, &self.wanted, sample, &mut self.rays);
@@ -85,7 +84,9 @@ impl Buffers {
         let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
         for hits in hits.iter() {
             counts.hits += u64::from(hits.met.count_ones());
-            counts.depths += set_bits(hits.met).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
+            // Nothing for those without a hit: a sum without branches.
+            let depths = Eight::select(Eight::answers(hits.met), hits.t, Eight::ZERO);
+            counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
         }
         if scene.shadows {
             shade::surface_points(scene, rays, hits, points);

@@ -40,7 +40,7 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     let tiles = Tiles::new(camera, resolution, 1);
     let number = tiles.number(x, y);
     let mut buffers = Buffers::default();
-    buffers.want(std::iter::once((number % PIXELS) as u8));
+    buffers.wanted.push((number % PIXELS) as u8);
     buffers.trace_sample(scene, &tiles, number / PIXELS, 0);
     let light = shade::light_of(&buffers.lights[0], 0);
     Steps {

@@ -3,26 +3,12 @@
 use crate::color::LinearRgb;
 use glam::Vec3;
 
-/// What keeps a pixel's samples.
-pub(super) trait Pixel: Copy + Default + Send + Sync {
-    /// One more.
-    fn add(&mut self, light: LinearRgb, seen: impl FnOnce() -> Seen);
-
-    /// The mean of their light.
-    fn mean(&self) -> LinearRgb;
-}
-
-/// The samples' light, and nothing else.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sum {
-    light: LinearRgb,
-    count: u32,
-}
-
-/// With what tells whether more samples would change it.
+/// A pixel's samples, with what tells whether more would change it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Watched {
-    sum: Sum,
+    /// The sum of their light.
+    light: LinearRgb,
+    count: u32,
     /// What the first of them saw.
     seen: Seen,
     /// The least and the greatest light of them, band by band.
@@ -55,35 +41,25 @@ impl Seen {
     }
 }
 
-impl Pixel for Sum {
-    fn add(&mut self, light: LinearRgb, _: impl FnOnce() -> Seen) {
-        self.light += light;
-        self.count += 1;
-    }
-
-    fn mean(&self) -> LinearRgb {
-        self.light * (1.0 / self.count.max(1) as f32)
-    }
-}
-
-impl Pixel for Watched {
-    fn add(&mut self, light: LinearRgb, seen: impl FnOnce() -> Seen) {
-        if self.sum.count == 0 {
+impl Watched {
+    /// One more sample.
+    pub(super) fn add(&mut self, light: LinearRgb, seen: impl FnOnce() -> Seen) {
+        if self.count == 0 {
             self.seen = seen();
             self.range = [light; 2];
         }
         self.range = [by_band(self.range[0], light, f32::min), by_band(self.range[1], light, f32::max)];
-        self.sum.add(light, Seen::default);
+        self.light += light;
+        self.count += 1;
     }
 
-    fn mean(&self) -> LinearRgb {
-        self.sum.mean()
+    /// The mean of their light.
+    pub(super) fn mean(&self) -> LinearRgb {
+        self.light * (1.0 / self.count.max(1) as f32)
     }
-}
 
-impl Watched {
     pub(super) fn count(&self) -> u32 {
-        self.sum.count
+        self.count
     }
 
     /// Whether an edge may run between the two, after one sample of each; `white` is the light that is shown as white.

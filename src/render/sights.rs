@@ -1,6 +1,6 @@
 //! What the rays through a picture's pixels meet, for pictures of something else than light.
 
-use super::tiles::{Tiles, in_tile};
+use super::tiles::Tiles;
 use super::{Buffers, Cost, Crew, Sampling};
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
@@ -67,14 +67,9 @@ pub fn sights<T: Copy + Default + Send>(
         if crew.is_cancelled() {
             return None;
         }
-        buffers.want(tiles.inside(tile));
-        Some(buffers.see_tile(scene, &tiles, tile, reach, |pixel, sight| {
-            let ([x, y], side) = (in_tile(pixel.into()).map(|at| (at * scale) as usize), scale as usize);
-            let seen = see(sight);
-            for row in part.iter_mut().skip(y).take(side) {
-                row.iter_mut().skip(x).take(side).for_each(|pixel| *pixel = seen);
-            }
-        }))
+        tiles.inside(tile, &mut buffers.wanted);
+        let show = |pixel, sight: &Sight| tiles.put(pixel, see(sight), &mut part);
+        Some(buffers.see_tile(scene, &tiles, tile, reach, show))
     })?;
     Some(Sighted { pixels, cost })
 }

@@ -3,10 +3,8 @@
 //! Tile by tile, and in a tile square by square of 8 by 8 and group by group of 4 by 2, pixels that lie side by side are
 //! neighbours in memory: a group's eye rays are eight that go together, a square's are a packet.
 
-use super::pixel::Pixel;
 use super::sampling::{footprint_share, sample_position};
 use crate::camera::{Camera, EyeRays};
-use crate::color::LinearRgb;
 use crate::framebuffer::Resolution;
 use crate::lanes::{ALL, Eight, LANES, Lanes, Number, Vector};
 use crate::ray::EightRays;
@@ -65,16 +63,29 @@ impl Tiles {
         tiles
     }
 
-    /// Puts the light of a tile's pixels into its part of a picture.
-    pub(super) fn show<P: Pixel>(&self, pixels: &[P], part: &mut [&mut [LinearRgb]]) {
-        let scale = self.scale as usize;
-        for (y, row) in part.iter_mut().enumerate() {
-            for (shown, &pixel) in row.chunks_mut(scale).zip(&IN_ROW[y / scale]) {
-                let mean = pixels[usize::from(pixel)].mean();
-                for shown in shown {
-                    *shown = mean;
+    /// Puts what these pixels of a tile show, by their place in the list, into the tile's part of a picture; what is outside
+    /// is left out.
+    pub(super) fn show<T: Copy>(&self, pixels: &[u8], shown: impl Fn(usize) -> T, part: &mut [&mut [T]]) {
+        if pixels.len() == PIXELS && self.scale == 1 {
+            // The same as what follows, row by row.
+            for (row, pixels) in part.iter_mut().zip(&IN_ROW) {
+                for (place, &pixel) in row.iter_mut().zip(pixels) {
+                    *place = shown(pixel.into());
                 }
             }
+            return;
+        }
+        for (at, &pixel) in pixels.iter().enumerate() {
+            self.put(pixel, shown(at), part);
+        }
+    }
+
+    /// Puts what one pixel shows there.
+    pub(super) fn put<T: Copy>(&self, pixel: u8, shown: T, part: &mut [&mut [T]]) {
+        let scale = self.scale as usize;
+        let [x, y] = in_tile(pixel.into()).map(|at| at as usize * scale);
+        for row in part.iter_mut().skip(y).take(scale) {
+            row.iter_mut().skip(x).take(scale).for_each(|place| *place = shown);
         }
     }
 
@@ -91,14 +102,17 @@ impl Tiles {
     }
 
     /// Which pixels of a tile are in the picture, by their number in it.
-    pub(super) fn inside(&self, tile: usize) -> impl Iterator<Item = u8> {
+    pub(super) fn inside(&self, tile: usize, pixels: &mut Vec<u8>) {
+        pixels.clear();
+        pixels.extend_from_slice(&ALL_PIXELS);
         let [left, top] = self.corner(tile);
         let [right, bottom] = [self.columns - left, self.rows - top];
-        let is_whole = right >= SIDE && bottom >= SIDE;
-        (0..=u8::MAX).filter(move |&pixel| {
-            let [x, y] = in_tile(pixel.into());
-            is_whole || x < right && y < bottom
-        })
+        if right < SIDE || bottom < SIDE {
+            pixels.retain(|&pixel| {
+                let [x, y] = in_tile(pixel.into());
+                x < right && y < bottom
+            });
+        }
     }
 
     /// One eye ray for each of these pixels of a tile.
@@ -123,6 +137,17 @@ impl Tiles {
         self.eye_rays.steps(self.resolution.width, self.resolution.height).map(|step| step * share)
     }
 }
+
+/// The numbers of all of them.
+pub(super) static ALL_PIXELS: [u8; PIXELS] = {
+    let mut all = [0; PIXELS];
+    let mut pixel = 0;
+    while pixel < PIXELS {
+        all[pixel] = pixel as u8;
+        pixel += 1;
+    }
+    all
+};
 
 /// How far to the right and down a pixel is in its tile.
 pub(super) const fn in_tile(pixel: usize) -> [u32; 2] {
