@@ -7,9 +7,11 @@ mod key;
 mod bindings;
 mod moves;
 mod motion;
+mod pointer;
 
 pub use bindings::{Binding, Bindings, Mode};
 pub use command::{Command, Direction, Side, Toward};
 pub use key::Key;
 pub use motion::{COAST, GLIDE, Motion};
-pub use moves::{framing, on_turntable, speed, zoomed};
+pub use moves::{dragged, framing, on_turntable, place_of, speed, wheeled, zoomed};
+pub use pointer::{Gesture, Grip, Pointer};

@@ -61,6 +61,8 @@ pub struct Window {
     pub size: Size,
     /// What its size in pixels tells.
     pub cell: CellShape,
+    /// A cell's width and height in pixels, where the system knows them.
+    pub cell_pixels: Option<(u16, u16)>,
 }
 
 impl Terminal {
@@ -95,7 +97,9 @@ impl Terminal {
         let size = if columns == 0 || rows == 0 { Size::new(80, 24) } else { Size::new(columns, rows) };
         let aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
         let cell = CellShape { aspect, halves_meet: capabilities::halves_meet(rows, window.ws_ypixel) };
-        Ok(Window { size, cell })
+        let cell_pixels =
+            cell.aspect.and(window.ws_xpixel.checked_div(columns).zip(window.ws_ypixel.checked_div(rows)));
+        Ok(Window { size, cell, cell_pixels })
     }
 
     /// Sends a frame or questions, in one write where the terminal takes them whole. What it does not take at once goes
@@ -119,6 +123,15 @@ impl Terminal {
     /// If the terminal is gone.
     pub fn push_keyboard(&mut self) -> io::Result<()> {
         self.modes.push_keyboard(&mut self.output)
+    }
+
+    /// Has places of the mouse told in pixels from now on, until the terminal is given back. For a terminal that knows mode
+    /// 1016. Asked for again, nothing is sent.
+    ///
+    /// # Errors
+    /// If the terminal is gone.
+    pub fn count_pixels(&mut self) -> io::Result<()> {
+        self.modes.count_pixels(&mut self.output)
     }
 
     /// Gives the user's clipboard a text, where the terminal lets programs do that (OSC 52).

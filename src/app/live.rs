@@ -19,6 +19,7 @@ use super::{Ending, Error, Options};
 use crate::camera::Camera;
 use crate::capabilities::{Capabilities, Findings};
 use crate::cell;
+use crate::control::Pointer;
 use crate::framebuffer::Resolution;
 use crate::input::Parser;
 use crate::render::Sampling;
@@ -30,11 +31,13 @@ mod events;
 mod files;
 mod explaining;
 mod moving;
+mod pointing;
 mod views;
 mod looked_at;
 
 use events::Next;
 use looked_at::LookedAt;
+use pointing::Grasped;
 
 /// The loop's time: a frame's worth at the start, so that whatever is pressed then may have begun a frame ago.
 struct Clock {
@@ -56,6 +59,9 @@ pub(super) struct Live {
     capabilities: Capabilities,
     questions: Questions,
     parser: Parser,
+    pointer: Pointer,
+    /// What the mouse has taken hold of.
+    grasped: Grasped,
     /// When the last bytes came from the terminal, or were waited for in vain.
     read: Duration,
     screen: Screen,
@@ -89,6 +95,8 @@ impl Live {
             capabilities,
             questions,
             parser: Parser::new(),
+            pointer: Pointer::default(),
+            grasped: Grasped::View,
             read: Duration::ZERO,
             screen: Screen::new(&capabilities, options.order, options.quality, options.bindings.clone()),
             link,
@@ -166,6 +174,9 @@ impl Live {
             }
             if self.knows_keyboard() {
                 terminal.push_keyboard()?;
+            }
+            if self.mouse_pixels().is_some() {
+                terminal.count_pixels()?;
             }
             while let Some(frame) = renderer.finished() {
                 self.take_frame(frame);
@@ -287,6 +298,7 @@ impl Live {
         let now = self.now();
         self.stale |= self.eye.stand_still(now) | self.eye.set_hears_releases(false, now);
         self.parser = Parser::new();
+        self.pointer.let_go();
         self.link.forget();
         terminal.give_back();
         if let Some(who) = stop {

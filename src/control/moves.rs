@@ -1,6 +1,7 @@
 //! One move of the camera, of any size. None of them turns the picture upside down, and where one would give no picture
 //! (an eye too far out for f32), the view stays.
 
+use super::{Grip, Mode};
 use crate::bounds::Bounds;
 use crate::camera::{Camera, Pose};
 use glam::{BVec3, Vec2, Vec3};
@@ -74,6 +75,55 @@ pub(super) fn nearer(camera: &Camera, factor: f32, size: f32) -> Camera {
         return *camera;
     }
     with_pose(camera, Pose { eye: target + wanted * camera.basis().w, target, up })
+}
+
+/// Around the target, across the whole height of the picture: half a round.
+const TURN_OF_HEIGHT: f32 = std::f32::consts::PI;
+
+/// What is taken hold of in a picture of that aspect ratio goes so far to the right and down, in parts of the picture's
+/// width and height: the view turns, in `orbit` about the target, or shifts as far as makes the target follow.
+pub fn dragged(camera: &Camera, mode: Mode, grip: Grip, by: Vec2, aspect_ratio: f32) -> Camera {
+    let (width, height, _) = camera.rectangle().fitted_to(aspect_ratio);
+    // On the plane at distance 1.
+    let across = by * Vec2::new(width, height);
+    match grip {
+        Grip::Pan => {
+            let (Pose { eye, target, up }, basis) = (camera.pose(), camera.basis());
+            let way = eye.distance(target) * (across.y * basis.v - across.x * basis.u);
+            with_pose(camera, Pose { eye: eye + way, target: target + way, up })
+        }
+        Grip::Turn if mode == Mode::Orbit => around(camera, TURN_OF_HEIGHT * Vec2::new(by.x * aspect_ratio, by.y)),
+        Grip::Turn => turned(camera, across),
+    }
+}
+
+/// A notch of the wheel leaves so much of the distance.
+const NOTCH: f32 = 0.88;
+
+/// The eye comes nearer to the point by so many notches of the wheel, which stays where it is in the picture. In `orbit`
+/// the target comes as much nearer to it, in a scene of about that size.
+pub fn wheeled(camera: &Camera, mode: Mode, point: Vec3, notches: f32, size: f32) -> Camera {
+    let Pose { eye, target, up } = camera.pose();
+    let factor = libm::powf(NOTCH, notches);
+    if mode != Mode::Orbit {
+        let way = (1.0 - factor) * (point - eye);
+        return with_pose(camera, Pose { eye: eye + way, target: target + way, up });
+    }
+    let after = nearer(camera, factor, size).pose();
+    let factor = after.eye.distance(target) / eye.distance(target);
+    let target = point + factor * (target - point);
+    with_pose(camera, Pose { eye: target + factor * (eye - camera.pose().target), target, up })
+}
+
+/// Where a point is in a picture of that aspect ratio, in parts of its width and height from its upper left corner; nothing
+/// for one that is not in front of the eye.
+pub fn place_of(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Option<Vec2> {
+    let (basis, way) = (camera.basis(), point - camera.pose().eye);
+    let (width, height, centre) = camera.rectangle().fitted_to(aspect_ratio);
+    let depth = -way.dot(basis.w);
+    let on_plane = Vec2::new(way.dot(basis.u), way.dot(basis.v)) / depth - centre;
+    let place = 0.5 + on_plane / Vec2::new(width, -height);
+    (depth > 0.0 && place.is_finite()).then_some(place)
 }
 
 /// The turntable turns so many radians a second: once around in twenty seconds.

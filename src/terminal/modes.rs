@@ -33,6 +33,14 @@ const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUAT
 /// Asks which flags of the kitty keyboard protocol are on.
 const WHICH_KEYBOARD: &str = "\x1b[?u";
 
+/// Word of the mouse's buttons and wheel, and of its ways while a button is held. (crossterm's command asks for its ways
+/// without a button, too: many events that mean nothing here.)
+const BUTTONS: (&str, &str) = ("\x1b[?1002h", "\x1b[?1002l");
+/// With numbers of any size, and of which button is let go.
+const SGR: (&str, &str) = ("\x1b[?1006h", "\x1b[?1006l");
+/// The same with places in pixels.
+const PIXELS: (&str, &str) = ("\x1b[?1016h", "\x1b[?1016l");
+
 /// How long the terminal may take over the last bytes. One that has stopped reading (Ctrl-S, a dead link) is left without.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -42,7 +50,7 @@ impl Modes {
         Self { on: Vec::new() }
     }
 
-    /// Raw mode, the alternate screen, no cursor, pastes in brackets, word of the focus. What is about to be turned on is
+    /// Raw mode, the alternate screen, no cursor, pastes in brackets, word of the focus and of the mouse. What is about to be turned on is
     /// listed first: half done is undone too.
     pub(super) fn turn_on(&mut self, keys: &File, output: &mut Output) -> io::Result<()> {
         let before = termios::tcgetattr(keys)?;
@@ -60,8 +68,22 @@ impl Modes {
         self.list(&mut turn_on, cursor::Hide, cursor::Show);
         self.list(&mut turn_on, event::EnableBracketedPaste, event::DisableBracketedPaste);
         self.list(&mut turn_on, event::EnableFocusChange, event::DisableFocusChange);
+        for (on, off) in [BUTTONS, SGR] {
+            self.on.push(Mode::Screen(off.to_owned()));
+            turn_on.push_str(on);
+        }
         output.send(turn_on.as_bytes())?;
         rehearsal::reach("all modes")
+    }
+
+    /// Places of the mouse in pixels, once.
+    pub(super) fn count_pixels(&mut self, output: &mut Output) -> io::Result<()> {
+        let (on, off) = PIXELS;
+        if self.on.iter().any(|mode| matches!(mode, Mode::Screen(known) if known == off)) {
+            return Ok(());
+        }
+        self.on.push(Mode::Screen(off.to_owned()));
+        output.send(on.as_bytes())
     }
 
     /// The kitty keyboard protocol, once, with the question whether it is on.

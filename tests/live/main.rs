@@ -8,6 +8,7 @@ mod leaving;
 mod loading;
 #[path = "../mesh_writers/mod.rs"]
 mod mesh_writers;
+mod mouse;
 mod moving;
 mod orbit;
 #[path = "../pty/mod.rs"]

@@ -7,15 +7,15 @@ use termtrace::camera::{Camera, Pose};
 use termtrace::control::framing;
 use termtrace::scene::Scene;
 
-const BALL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
-const TEAPOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/teapot.obj");
+pub(crate) const BALL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
+pub(crate) const TEAPOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/teapot.obj");
 
-fn load(scene: &str) -> Scene {
+pub(crate) fn load(scene: &str) -> Scene {
     Scene::load(scene.as_ref()).expect("the scene is fine")
 }
 
 /// At rest: what moves by itself would show.
-fn looking(scene: &str, flags: &[&str]) -> Session {
+pub(crate) fn looking(scene: &str, flags: &[&str]) -> Session {
     let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(scene).size(Size::cells(40, 12));
     let mut session = flags.iter().fold(start, Start::arg).spawn();
     session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains('▀'));
@@ -23,7 +23,7 @@ fn looking(scene: &str, flags: &[&str]) -> Session {
     session
 }
 
-fn wait_for_rest(session: &mut Session) {
+pub(crate) fn wait_for_rest(session: &mut Session) {
     let mut before = 0;
     while session.sees(Duration::from_millis(300), |seen| seen.bytes().len() != before) {
         before = session.seen().bytes().len();
@@ -31,7 +31,7 @@ fn wait_for_rest(session: &mut Session) {
 }
 
 /// Leaves, and reads the camera that is printed; `None` if it was not moved.
-fn camera(session: &mut Session) -> Option<Camera> {
+pub(crate) fn camera(session: &mut Session) -> Option<Camera> {
     let before = session.seen().bytes().len();
     session.send(b"q");
     session.wait_exit(SOON);
@@ -50,7 +50,7 @@ fn after(scene: &str, keys: &[u8]) -> Camera {
 }
 
 /// A step is nine degrees.
-fn turned(v: Vec3, steps: f32) -> Vec3 {
+pub(crate) fn turned(v: Vec3, steps: f32) -> Vec3 {
     let (sin, cos) = libm::sincosf(steps * std::f32::consts::PI / 20.0);
     Vec3::new(v.x * cos + v.z * sin, v.y, v.z * cos - v.x * sin)
 }

@@ -1,7 +1,7 @@
 //! What the loop hears: keys, answers, and signals to stop.
 
-use super::Live;
 use super::moving::ZOOM;
+use super::{Live, pointing};
 use crate::app::dialog::Dialog;
 use crate::app::shown::Shown;
 use crate::control::Command;
@@ -88,8 +88,13 @@ impl Live {
     }
 
     fn take_inputs(&mut self, inputs: &[Input]) -> Next {
-        for input in inputs {
+        for (at, input) in inputs.iter().enumerate() {
             let next = match input {
+                input if pointing::is_outdated(input, inputs.get(at + 1)) => Next::Stay,
+                Input::Event(Event::Mouse(event)) => {
+                    self.take_mouse(*event);
+                    Next::Stay
+                }
                 Input::Event(Event::Key(key)) => self.take_key(key),
                 // Nobody says when the keys held now are let go.
                 Input::Event(Event::FocusLost) => {
@@ -126,7 +131,7 @@ impl Live {
     }
 
     /// Does at once what is asked for; with Shift, more of it. What goes on while a key is held is the eye's.
-    fn obey(&mut self, command: Command, more: bool) -> Next {
+    pub(super) fn obey(&mut self, command: Command, more: bool) -> Next {
         match command {
             Command::Quit => return Next::Leave,
             Command::Suspend => return Next::Suspend(Some(Stopped::Group)),

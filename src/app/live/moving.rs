@@ -2,6 +2,7 @@
 
 use super::Live;
 use crate::control;
+use crate::framebuffer::Resolution;
 use crate::hit::closest_hit;
 use crate::ray::Ray;
 use glam::Vec3;
@@ -32,11 +33,14 @@ impl Live {
             self.screen.say("nothing here has an end");
             return;
         };
-        // Of two views side by side, each is a picture of its own.
-        let parts = self.shown.parts(self.resolution());
-        let aspect_ratio = parts.first().map_or(1.0, |(_, part)| part.aspect_ratio());
-        let now = self.now();
+        let (now, aspect_ratio) = (self.now(), self.part().aspect_ratio());
         self.stale |= self.eye.change(now, |camera, _| control::framing(camera, &bounds, aspect_ratio));
+    }
+
+    /// The picture's size; of two views side by side, each is a picture of its own.
+    pub(super) fn part(&self) -> Resolution {
+        let whole = self.resolution();
+        self.shown.parts(whole).first().map_or(whole, |(_, part)| *part)
     }
 
     /// The field of view becomes narrower or wider, and is told.

@@ -26,7 +26,7 @@ impl Live {
     }
 
     /// Moves that line to a share of the width.
-    fn wipe_to(&mut self, share: f32) {
+    pub(super) fn wipe_to(&mut self, share: f32) {
         if self.shown.is_wipe() {
             self.screen.wipe_to(share);
         }

@@ -8,13 +8,22 @@ fn camera(eye: Vec3, target: Vec3) -> Camera {
     Camera::new(Pose { eye, target, up: Vec3::Y }, rectangle).expect("a pose")
 }
 
-/// The part of the picture's half width and height that a point is away from the middle.
+/// The part of the picture's half width and height that a point is to the right of the middle and above it.
 fn place(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Vec2 {
-    let (width, height, centre) = camera.rectangle().fitted_to(aspect_ratio);
-    let (basis, way) = (camera.basis(), point - camera.pose().eye);
-    let depth = -way.dot(basis.w);
-    assert!(depth > 0.0, "{point} is behind the eye");
-    (Vec2::new(way.dot(basis.u), way.dot(basis.v)) / depth - centre) / (0.5 * Vec2::new(width, height))
+    let place = place_of(camera, point, aspect_ratio).expect("it is in front of the eye");
+    (2.0 * place - 1.0) * Vec2::new(1.0, -1.0)
+}
+
+#[test]
+fn a_point_is_where_its_ray_is() {
+    let camera = camera(Vec3::new(1.0, 2.0, 7.0), Vec3::ZERO);
+    let shifted = camera.with_rectangle(camera.rectangle().with_shift(Vec2::new(0.2, -0.3)).expect("finite"));
+    for camera in [camera, shifted] {
+        let ray = camera.eye_rays(1.6).through(0.3, 0.6);
+        assert!(place_of(&camera, ray.at(4.0), 1.6).expect("in front").abs_diff_eq(Vec2::new(0.3, 0.4), 1e-5));
+        assert_eq!(place_of(&camera, ray.at(-1.0), 1.6), None);
+        assert_eq!(place_of(&camera, ray.origin, 1.6), None);
+    }
 }
 
 fn corners(bounds: &Bounds) -> impl Iterator<Item = Vec3> {
@@ -109,4 +118,45 @@ fn a_turntable_turns_once_in_twenty_seconds_whatever_its_steps() {
     assert!(quarter.abs_diff_eq(Vec3::new(4.0, 1.0, 0.0), 1e-4), "{quarter}");
     let in_steps = (0..500).fold(start, |camera, _| on_turntable(&camera, 0.01)).pose().eye;
     assert!(in_steps.abs_diff_eq(quarter, 1e-3), "{in_steps}");
+}
+
+#[test]
+fn what_is_dragged_follows() {
+    let start = camera(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO);
+    let aspect_ratio = 1.6;
+    let by = Vec2::new(0.2, 0.1);
+    for mode in [Mode::Orbit, Mode::Fly] {
+        let after = dragged(&start, mode, Grip::Pan, by, aspect_ratio);
+        // Places count from the middle, in halves, upwards.
+        let at = place(&after, Vec3::ZERO, aspect_ratio);
+        assert!(at.abs_diff_eq(Vec2::new(0.4, -0.2), 1e-5), "{at}");
+        assert!(after.basis().w.abs_diff_eq(Vec3::Z, 1e-6));
+    }
+    let at = place(&dragged(&start, Mode::Fly, Grip::Turn, by, aspect_ratio), Vec3::ZERO, aspect_ratio);
+    assert!(at.abs_diff_eq(Vec2::new(0.4, -0.2), 0.02), "the middle stays about under the pointer: {at}");
+    let around = dragged(&start, Mode::Orbit, Grip::Turn, Vec2::new(0.5 / aspect_ratio, 0.0), aspect_ratio).pose();
+    assert!(around.eye.abs_diff_eq(-5.0 * Vec3::X, 1e-4), "what is before it goes to the right: {around:?}");
+    assert_eq!(around.target, Vec3::ZERO);
+    let above = dragged(&start, Mode::Orbit, Grip::Turn, Vec2::new(0.0, 0.25), aspect_ratio).pose();
+    assert!(above.eye.abs_diff_eq(3.535_534 * Vec3::new(0.0, 1.0, 1.0), 1e-4), "{above:?}");
+}
+
+#[test]
+fn the_wheel_comes_nearer_to_a_point_which_stays_where_it_is() {
+    let start = camera(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO);
+    for point in [Vec3::new(1.0, 0.5, 1.0), Vec3::new(-1.0, 0.0, -20.0)] {
+        for notches in [1.0, -1.0, 7.0] {
+            for mode in [Mode::Orbit, Mode::Fly] {
+                let after = wheeled(&start, mode, point, notches, 1.0);
+                assert!(place(&after, point, 1.6).abs_diff_eq(place(&start, point, 1.6), 1e-4), "{mode:?} {notches}");
+                let share = after.pose().eye.distance(point) / start.pose().eye.distance(point);
+                assert!((share - libm::powf(NOTCH, notches)).abs() < 1e-4, "{mode:?} {notches}");
+                let distance = after.pose().eye.distance(after.pose().target);
+                let wanted = if mode == Mode::Fly { 5.0 } else { 5.0 * share };
+                assert!((distance - wanted).abs() < 1e-4, "{mode:?} {notches}");
+            }
+        }
+    }
+    let near = (0..500).fold(start, |camera, _| wheeled(&camera, Mode::Orbit, Vec3::ZERO, 1.0, 1.0));
+    assert!(near.pose().eye.z > 0.0, "never through the target");
 }
