@@ -251,7 +251,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Describe(args)) => describe::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Doctor(_)) => doctor::run(given),
-        Some(Command::Config(_)) => config::run(given),
+        Some(Command::Config(args)) => config::run(&args, given),
         Some(Command::Completions(args)) => completions::complete(&args),
         Some(Command::Man(args)) => completions::man(&args),
         None => live::run(&cli.live, given),

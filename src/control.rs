@@ -5,6 +5,7 @@
 mod command;
 mod key;
 mod bindings;
+mod own;
 mod moves;
 mod motion;
 mod pointer;

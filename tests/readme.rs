@@ -23,8 +23,8 @@ fn every_scene_and_path_in_it_loads() {
     assert!(scenes.len() >= 2, "the scenes were found");
     let any = Scene::from_ron("any", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))").expect("a scene");
     for text in scenes {
-        // The camera path, too, is RON, and so are settings, which are read in `tests/cli/config.rs`.
-        let read = if text.contains("fps:") {
+        // The camera path, too, is RON, and so are settings and keys, which are read in `tests/cli/config.rs`.
+        let read = if text.contains("fps:") || text.contains("fly:") {
             continue;
         } else if text.contains("keyframes:") {
             CameraPath::from_ron("README.md", text, &any.camera).map(|_| ())
@@ -81,4 +81,25 @@ fn every_key_is_listed() {
         };
         assert!(readme.contains(&listed), "{key} is not in the README");
     }
+}
+
+/// The first column of the table of keys: whatever stands there in quotes is bound.
+#[test]
+fn every_key_of_its_table_does_something() {
+    let readme = readme();
+    let (_, section) = readme.split_once("\n## Keys\n").expect("there is a section on keys");
+    let rows = section.split("\n## ").next().unwrap_or_default().lines().filter(|line| line.starts_with("| "));
+    let bindings = Bindings::default();
+    let mut count = 0;
+    for row in rows {
+        let first = row.trim_start_matches("| ").replace(r"\|", "\u{7c}\u{7c}");
+        let first = first.split(" | ").next().unwrap_or_default().replace("||", "|");
+        for name in first.split('`').skip(1).step_by(2) {
+            let key = Key::from_name(name);
+            let is_bound = key.is_some_and(|key| bindings.rows().iter().any(|row| row.keys.contains(&key)));
+            assert!(is_bound, "{name} does nothing: {row}");
+            count += 1;
+        }
+    }
+    assert!(count > 25, "the table was read");
 }

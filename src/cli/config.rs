@@ -1,7 +1,7 @@
-//! `termtrace config`: every setting, what holds, and who says so.
+//! `termtrace config`: every setting, what holds, and who says so; and the keys.
 
 use super::settings::files::path_of;
-use super::settings::{Held, SettingArgs, Settings};
+use super::settings::{Held, SettingArgs, Settings, keys};
 use super::{Done, visible, write_stdout};
 use clap::{ArgMatches, Args};
 use std::fmt::Write;
@@ -11,7 +11,8 @@ const EXAMPLES: &str = "\
 Examples:
   termtrace config                     what holds, and who says so
   termtrace config --fps 30            the same with a flag
-  termtrace config --no-config         the same without the files";
+  termtrace config --no-config         the same without the files
+  termtrace config --keys              what keys do; the start of a keys.ron of one's own";
 
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
@@ -19,16 +20,27 @@ pub(super) struct ConfigArgs {
     // They are read from what clap has matched, which knows which were given.
     #[command(flatten)]
     _settings: SettingArgs,
+    /// Print what keys do instead, in the form of keys.ron
+    #[arg(long)]
+    keys: bool,
 }
 
-pub(super) fn run(given: &ArgMatches) -> Done {
+pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> Done {
+    let no_config = given.get_flag("no_config");
+    let bindings = keys::bindings(no_config)?;
+    if args.keys {
+        return write_stdout(bindings.to_ron().as_bytes());
+    }
     let settings = Settings::gather(given)?;
     let width = settings.held.iter().map(|held| held.value.width()).max().unwrap_or(0);
     let mut text = String::new();
     for Held { name, value, said_by } in &settings.held {
         let _ = writeln!(text, "{name:<16}{value:<width$}  {said_by}");
     }
-    let _ = writeln!(text, "\n{:<16}{}", "config.ron", place("config.ron", given.get_flag("no_config")));
+    text.push('\n');
+    for name in ["config.ron", "keys.ron"] {
+        let _ = writeln!(text, "{name:<16}{}", place(name, no_config));
+    }
     write_stdout(visible(&text).as_bytes())
 }
 

@@ -2,7 +2,7 @@
 
 use super::completions::{command_near, no_command};
 use super::encoding::OrderArgs;
-use super::settings::{SettingArgs, Settings};
+use super::settings::{SettingArgs, Settings, keys};
 use super::{Cli, Done, Failure, LookArgs, Origin, complain_of_panic, on_threads, reason, usage, write_stdout};
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, CommandFactory};
@@ -111,7 +111,9 @@ fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
     rehearse();
     let settings = Settings::gather(given)?.args;
     settings.check_samples()?;
-    let (sources, options) = (sources(args)?, args.options(&settings));
+    let mut options = args.options(&settings);
+    options.bindings = keys::bindings(given.get_flag("no_config"))?;
+    let sources = sources(args)?;
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard } = match ended {

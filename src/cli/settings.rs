@@ -6,6 +6,7 @@
 
 mod entries;
 pub(super) mod files;
+pub(super) mod keys;
 
 use super::cells::CellArgs;
 use super::encoding::LossArgs;

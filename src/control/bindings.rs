@@ -14,9 +14,9 @@ pub enum Mode {
     Orbit,
     /// A pixel is explained; above fly or orbit.
     Explain,
-    /// The user is asked what the picture is to be written as; by itself.
+    /// The user is asked what the picture is to be written as; a key that does not answer takes the question away.
     Export,
-    /// The user is asked whether the view is to be written into the scene's file; by itself.
+    /// The user is asked whether the view is to be written into the scene's file; likewise.
     Keep,
     /// Below fly or orbit, whichever it is.
     Always,
@@ -35,6 +35,15 @@ impl Mode {
             Self::Export => "export",
             Self::Keep => "keep",
             Self::Always => "always",
+        }
+    }
+
+    /// Whether the command can mean anything in it: answers are for questions.
+    pub fn takes(self, command: Command) -> bool {
+        match self {
+            Self::Export => matches!(command, Command::Write(_) | Command::No),
+            Self::Keep => matches!(command, Command::Yes | Command::No),
+            _ => !command.answers(),
         }
     }
 

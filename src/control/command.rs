@@ -165,7 +165,7 @@ const COMMANDS: &[(Command, &str, &str)] = &[
     (Command::Help, "Help", "this help"),
     (Command::Close, "Close", "close it"),
     (Command::Redraw, "Redraw", "draw the screen again"),
-    (Command::Suspend, "Suspend", "to the shell; fg comes back"),
+    (Command::Suspend, "Suspend", "to the shell; fg returns"),
     (Command::Quit, "Quit", "leave"),
     (Command::Point(Toward::Left), "PointLeft", "cursor to the left"),
     (Command::Point(Toward::Right), "PointRight", "cursor to the right"),
@@ -211,6 +211,11 @@ impl Command {
         matches!(self, Self::Move(_) | Self::Look(_) | Self::Around(_) | Self::Nearer | Self::Farther)
     }
 
+    /// Whether it answers a question.
+    pub fn answers(self) -> bool {
+        matches!(self, Self::Write(_) | Self::Yes | Self::No)
+    }
+
     /// Whether the key's own repeats do it again.
     pub fn repeats(self) -> bool {
         matches!(
@@ -239,7 +244,7 @@ mod tests {
     fn each_command_has_a_name() {
         for command in Command::all() {
             assert_eq!(Command::from_name(command.name()), Some(command));
-            assert!(command.does().len() <= 28, "too long for half of the help: {command:?}");
+            assert!(command.does().len() <= 24, "too long for a help of 40 columns: {command:?}");
         }
         assert_eq!(Command::from_name("movE"), None);
     }

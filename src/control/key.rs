@@ -71,6 +71,11 @@ impl Key {
         code.map(Self::named)
     }
 
+    /// What keys without a character of their own are called.
+    pub(super) fn names() -> impl Iterator<Item = &'static str> {
+        NAMED.iter().map(|&(name, _)| name).chain([SPACE])
+    }
+
     /// Whether every terminal sends it, as itself: none without the kitty keyboard protocol can tell Ctrl-I from Tab,
     /// nor Ctrl and an arrow from the arrow.
     pub fn is_plain(self) -> bool {
@@ -81,6 +86,11 @@ impl Key {
             KeyCode::F(1..=12) => !self.ctrl,
             code => !self.ctrl && NAMED.iter().any(|&(_, named)| named == code),
         }
+    }
+
+    /// What a plain terminal tells when it is pressed.
+    pub fn pressed(self) -> KeyEvent {
+        KeyEvent::new(self.code, if self.ctrl { KeyModifiers::CONTROL } else { KeyModifiers::NONE })
     }
 
     /// What was typed.

@@ -6,10 +6,22 @@ use std::path::Path;
 
 /// A folder with that in the user's `config.ron`.
 fn with_settings(text: &str) -> Folder {
+    with_file("config.ron", text)
+}
+
+/// The same with another of his files.
+fn with_file(name: &str, text: &str) -> Folder {
     let folder = Folder::new();
     fs::create_dir_all(folder.path("settings/termtrace")).expect("a folder can be made");
-    folder.write("settings/termtrace/config.ron", text);
+    folder.write(&format!("settings/termtrace/{name}"), text);
     folder
+}
+
+/// The first block of RON in the README that has these words.
+fn in_the_readme(words: &str) -> String {
+    let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("it is there");
+    let mut blocks = readme.split("```ron\n").filter_map(|rest| rest.split("```").next());
+    blocks.find(|text| text.contains(words)).expect("the README shows one").to_owned()
 }
 
 /// What holds of a setting, and who says so, with `~` for the folder; without `NO_COLOR` and the like.
@@ -69,18 +81,17 @@ fn a_flag_can_undo_what_the_file_turns_on() {
 /// The file that the README shows has every setting, and all of them hold.
 #[test]
 fn the_readmes_file_has_every_setting() {
-    let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("it is there");
-    let block = readme.split("```ron\n").filter_map(|rest| rest.split("```").next()).find(|text| text.contains("fps:"));
-    let folder = with_settings(block.expect("the README shows one"));
+    let folder = with_settings(&in_the_readme("fps:"));
     let text = config(&folder, "", &[]).text();
     let (settings, place) = text.split_once("\n\n").expect("two parts");
     assert!(settings.lines().count() >= 9, "{text}");
     for line in settings.lines() {
         assert!(line.contains("config.ron:"), "the README's file lacks {line}");
     }
-    assert!(place.ends_with("settings/termtrace/config.ron (read)\n"), "{place}");
+    assert!(place.contains("settings/termtrace/config.ron (read)\n"), "{place}");
+    assert!(place.ends_with("settings/termtrace/keys.ron (not there)\n"), "{place}");
     let text = config(&folder, "--no-config", &[]).text();
-    assert!(text.ends_with("settings/termtrace/config.ron (not read: --no-config)\n"), "{text}");
+    assert!(text.contains("settings/termtrace/config.ron (not read: --no-config)\n"), "{text}");
 }
 
 #[test]
@@ -90,7 +101,8 @@ fn where_the_file_is_looked_for() {
         let mut command = folder.command("config");
         command.env_remove("XDG_CONFIG_HOME").env_remove("HOME").envs(variables.iter().copied());
         let text = finish(&mut command).text();
-        text.lines().last().unwrap_or_default().split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
+        let line = text.lines().find(|line| line.starts_with("config.ron")).unwrap_or_default();
+        line.split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
     };
     let (settings, home) = (folder.path("settings"), folder.path("home"));
     let (settings, home) = (&*settings.to_string_lossy(), &*home.to_string_lossy());
@@ -177,4 +189,37 @@ fn the_flag_goes_with_every_command() {
     let folder = Folder::new();
     assert!(folder.run("frame ball.ron --no-config").done() == folder.run("frame ball.ron").done());
     folder.run("--no-config frame ball.ron").fails_in_a_line(2, "it: termtrace frame ...");
+}
+
+/// The whole table, in the form of the file: what was printed is the start of one's own.
+#[test]
+fn the_table_of_keys_is_a_file_of_keys() {
+    let built_in = Folder::new().run("config --keys").text();
+    assert!(built_in.contains("    orbit: {\n") && built_in.contains("\"w\": MoveForward,"), "{built_in}");
+    assert_eq!(with_file("keys.ron", &built_in).run("config --keys").text(), built_in);
+    let folder = with_file("keys.ron", &in_the_readme("fly:"));
+    let own = folder.run("config --keys").text();
+    for line in
+        ["\"z\": MoveForward,", "[\"s\", \"u\", \"Home\"]: MoveBack,", "\"w\": None,", "[\"o\", \"Ctrl-P\"]: Export,"]
+    {
+        assert!(own.contains(&format!("\n        {line}")), "{line} is not in\n{own}");
+    }
+    assert_eq!(with_file("keys.ron", &own).run("config --keys").text(), own);
+    assert_eq!(folder.run("config --keys --no-config").text(), built_in);
+}
+
+#[test]
+fn keys_that_are_wrong_are_told_of_in_one_message() {
+    let folder =
+        with_file("keys.ron", "(\n    fly: { \"8\": MovForward, \"Ctrl-I\": Reset },\n    always: { \"q\": None },\n)");
+    for command in ["config", "config --keys"] {
+        let run = folder.run(command);
+        run.fails(2, "keys.ron:2:17: there is no command MovForward; did you mean MoveForward?\n");
+        for (place, words) in [("2:29", "is no key that every terminal sends"), ("3:15", "no key but Ctrl-C leaves")] {
+            assert!(run.stderr.contains(&format!("keys.ron:{place}: ")) && run.stderr.contains(words), "{run:?}");
+        }
+    }
+    folder.run("config --no-config --keys").done();
+    folder.run("frame ball.ron").done();
+    folder.run("doctor").done();
 }

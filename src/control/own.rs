@@ -1,0 +1,357 @@
+//! Bindings of one's own: RON -> the built-in table, changed; and back.
+
+use super::{Bindings, Command, Key, Mode};
+use crate::scene_file::{closest, listed};
+use crate::scene_text::{self, Faults, Field, Node, SceneError, Span, Value, clipped, quoted};
+use std::collections::HashSet;
+use std::fmt::Write;
+
+/// Always leaves, whatever is bound: nobody is to be caught.
+const WAY_OUT: Key = Key::ctrl('c');
+
+impl Bindings {
+    /// The built-in bindings, changed as the text says: for each mode a map from a key, or a list of keys, to a command,
+    /// or to `None` for nothing. The name is the file's, for messages only.
+    ///
+    /// ```
+    /// use crossterm::event::KeyCode;
+    /// use termtrace::control::{Bindings, Command, Mode};
+    ///
+    /// let text = r#"(
+    ///     fly: { "8": MoveForward, ["2", "Home"]: MoveBack, "w": None },
+    ///     always: { "Q": Quit },
+    /// )"#;
+    /// let bindings = Bindings::from_ron("keys.ron", text)?;
+    /// let meant = bindings.command(&[Mode::Fly, Mode::Always], &KeyCode::Char('Q').into());
+    /// assert_eq!(meant, Some((Command::Quit, false)));
+    /// # Ok::<(), termtrace::scene_text::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The first fault of the syntax; if there is none, all others: unknown modes, commands and keys, keys that not every
+    /// terminal sends, what is bound twice or hidden by another mode's binding, and a table in which no key leaves.
+    pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
+        scene_text::read(name, text, "file of keys is ()", |root, faults| {
+            let lines = lines(root, faults);
+            let mut bindings = Self::default();
+            for line in &lines {
+                bindings.bind(line.mode, line.key, line.command);
+            }
+            bindings.check(&lines, faults);
+            faults.is_empty().then_some(bindings)
+        })
+    }
+
+    /// All of it as a file of one's own, with what each command does: [`from_ron`](Self::from_ron) reads the same from it.
+    pub fn to_ron(&self) -> String {
+        let mut text = "(\n".to_owned();
+        for mode in Mode::ALL {
+            let _ = writeln!(text, "    {}: {{", mode.name());
+            for row in self.of(mode).filter(|row| !row.keys.is_empty()) {
+                let entry = format!("{}: {},", keys_as_ron(&row.keys), row.command.name());
+                let _ = writeln!(text, "        {entry:<36}// {}", row.command.does());
+            }
+            for key in self.freed(mode) {
+                let _ = writeln!(text, "        {}: None,", keys_as_ron(&[key]));
+            }
+            text.push_str("    },\n");
+        }
+        text + ")\n"
+    }
+
+    /// The keys that do something by the built-in table, and nothing by this.
+    fn freed(&self, mode: Mode) -> Vec<Key> {
+        let bound: HashSet<_> = self.of(mode).flat_map(|row| &row.keys).copied().collect();
+        let built_in = Self::default();
+        built_in.of(mode).flat_map(|row| row.keys.clone()).filter(|key| !bound.contains(key)).collect()
+    }
+
+    /// Whether each line does what it says, and there is a way out.
+    fn check(&self, lines: &[Line], faults: &mut Faults) {
+        for (i, line) in lines.iter().enumerate() {
+            let Line { mode, key, .. } = *line;
+            if lines[..i].iter().any(|before| (before.mode, before.key) == (mode, key)) {
+                faults.add(line.span, || format!("{} is bound twice in {}", quoted_key(key), mode.name()));
+            } else if key == WAY_OUT && line.command != Some(Command::Quit) {
+                faults.add(line.span, || format!("{} always leaves", quoted_key(key)));
+            } else {
+                self.check_is_reached(line, lines, faults);
+            }
+        }
+        if !self.can_be_left() {
+            let built_in = Self::default();
+            let takes_it = |line: &&Line| {
+                built_in.of(Mode::Always).any(|row| row.command == Command::Quit && row.keys.contains(&line.key))
+            };
+            let span = lines.iter().rev().find(takes_it).map(|line| line.span).unwrap_or_default();
+            let message = "no key but Ctrl-C leaves any more: bind one to Quit in always";
+            faults.add(span, || message.to_owned());
+        }
+    }
+
+    /// What is bound always is hidden where a mode above binds the same key. That is meant if the file itself says both.
+    fn check_is_reached(&self, line: &Line, lines: &[Line], faults: &mut Faults) {
+        let Line { mode: Mode::Always, key, command: Some(command), span } = *line else { return };
+        for above in [Mode::Fly, Mode::Orbit] {
+            let hides = |other: &Line| other.mode == above && [key, key.without_shift()].contains(&other.key);
+            let meant = self.command(&[above, Mode::Always], &key.pressed()).map(|(meant, _)| meant);
+            if let Some(meant) = meant.filter(|&meant| meant != command && !lines.iter().any(hides)) {
+                let (key, above, meant) = (quoted_key(key), above.name(), meant.name());
+                faults.add(span, || format!("{key} is {meant} in {above}, which goes before always"));
+                return;
+            }
+        }
+    }
+
+    /// Whether some key that can be bound leaves, however the eye moves.
+    fn can_be_left(&self) -> bool {
+        let leaves =
+            |above, key: Key| self.command(&[above, Mode::Always], &key.pressed()) == Some((Command::Quit, false));
+        let rows = self.rows().iter().filter(|row| row.command == Command::Quit);
+        let keys: Vec<_> = rows.flat_map(|row| row.keys.clone()).filter(|&key| key != WAY_OUT).collect();
+        [Mode::Fly, Mode::Orbit].into_iter().all(|above| keys.iter().any(|&key| leaves(above, key)))
+    }
+}
+
+/// What a file says of one key.
+struct Line {
+    mode: Mode,
+    key: Key,
+    /// Where the key stands.
+    span: Span,
+    command: Option<Command>,
+}
+
+fn quoted_key(key: Key) -> String {
+    format!("\"{key}\"")
+}
+
+/// `"w"`, or `["Up", "k"]`.
+fn keys_as_ron(keys: &[Key]) -> String {
+    let keys: Vec<_> = keys.iter().map(|key| format!("{:?}", key.to_string())).collect();
+    if let [only] = &keys[..] { only.clone() } else { format!("[{}]", keys.join(", ")) }
+}
+
+/// `(mode: { key: command, ... }, ...)`
+fn lines(root: &Node<'_>, faults: &mut Faults) -> Vec<Line> {
+    const FORM: &str = "modes with their keys, as in (fly: { \"8\": MoveForward })";
+    let Some(fields) = root.fields() else {
+        faults.add(root.head(), || format!("expected {FORM}"));
+        return Vec::new();
+    };
+    let mut lines = Vec::new();
+    for (i, Field { name, value }) in fields.iter().enumerate() {
+        if fields[..i].iter().any(|before| before.name.text == name.text) {
+            faults.add(name.span, || format!("duplicate mode {}", quoted(name.text)));
+        }
+        match (Mode::from_name(name.text), &value.value) {
+            (None, _) => faults.add(name.span, || unknown_mode(name.text)),
+            (Some(mode), Value::Map(entries)) => {
+                for (keys, command) in entries {
+                    let keys = keys_of(keys, faults);
+                    let command = match command.word() {
+                        Some("None") => None,
+                        _ => match command_of(mode, command, faults) {
+                            None => continue,
+                            command => command,
+                        },
+                    };
+                    lines.extend(keys.into_iter().map(|(key, span)| Line { mode, key, span, command }));
+                }
+            }
+            (Some(_), _) => faults.add(value.head(), || format!("expected {FORM}")),
+        }
+    }
+    lines
+}
+
+fn unknown_mode(name: &str) -> String {
+    let known = Mode::ALL.map(Mode::name);
+    match closest(name, known) {
+        Some(meant) => format!("there is no mode {}; did you mean \"{meant}\"?", quoted(name)),
+        None => format!("there is no mode {}; there are {}", quoted(name), listed(&known)),
+    }
+}
+
+/// A key or a list of keys, and where each stands.
+fn keys_of(node: &Node<'_>, faults: &mut Faults) -> Vec<(Key, Span)> {
+    match &node.value {
+        Value::List(items) => items.iter().filter_map(|item| Some((key_of(item, faults)?, item.span))).collect(),
+        _ => key_of(node, faults).map(|key| (key, node.span)).into_iter().collect(),
+    }
+}
+
+fn key_of(node: &Node<'_>, faults: &mut Faults) -> Option<Key> {
+    let Value::String(name) = &node.value else {
+        faults.add(node.head(), || "expected a key in quotes, as in \"w\", or a list of keys".to_owned());
+        return None;
+    };
+    let key = Key::from_name(name);
+    if key.is_none() {
+        faults.add(node.span, || match closest(name, Key::names()) {
+            Some(meant) => format!("there is no key {}; did you mean \"{meant}\"?", quoted(name)),
+            None => format!(
+                "{} is no key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, or a name \
+                 such as PageUp, Space or F1",
+                quoted(name)
+            ),
+        });
+    }
+    key
+}
+
+/// The command, if it is one that means something in the mode.
+fn command_of(mode: Mode, node: &Node<'_>, faults: &mut Faults) -> Option<Command> {
+    let Some(word) = node.word() else {
+        let expected = "expected a command without quotes, such as MoveForward, or None";
+        faults.add(node.head(), || expected.to_owned());
+        return None;
+    };
+    let Some(command) = Command::from_name(word) else {
+        let meant = closest(word, Command::all().map(Command::name));
+        let meant = meant.map(|meant| format!("; did you mean {meant}?")).unwrap_or_default();
+        faults.add(node.span, || format!("there is no command {}{meant}", clipped(word)));
+        return None;
+    };
+    if !mode.takes(command) {
+        faults.add(node.span, || format!("{word} means nothing in {}", mode.name()));
+        return None;
+    }
+    Some(command)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Direction;
+    use crossterm::event::KeyCode;
+
+    const FORWARD: Command = Command::Move(Direction::Forward);
+
+    fn meant(bindings: &Bindings, mode: Mode, key: Key) -> Option<Command> {
+        bindings.command(&[mode, Mode::Always], &key.pressed()).map(|(command, _)| command)
+    }
+
+    /// Each fault's place and message.
+    fn faults(text: &str) -> Vec<String> {
+        let error = Bindings::from_ron("keys.ron", text).expect_err(text);
+        error.reports().iter().map(|report| format!("{}:{} {}", report.line, report.column, report.message)).collect()
+    }
+
+    #[test]
+    fn keys_are_added_replaced_and_freed() {
+        let text = r#"( // mine
+            fly: { "8": MoveForward, ["z", "Home"]: MoveUp, "w": None, "s": Some(Status) },
+            orbit: { "Ctrl-F": Reset },
+            explain: { "Space": ScrollDown },
+            export: { "g": WritePng, "p": None },
+            always: { "Q": Quit, "\\": Compare, "\"": Compare, "x": None },
+        )"#;
+        let bindings = Bindings::from_ron("keys.ron", text).unwrap_or_else(|error| panic!("{error}"));
+        let fly = |key| meant(&bindings, Mode::Fly, key);
+        assert_eq!([fly(Key::letter('8')), fly(Key::letter('w'))], [Some(FORWARD), None]);
+        let up = Some(Command::Move(Direction::Up));
+        assert_eq!([fly(Key::letter('z')), fly(Key::named(KeyCode::Home)), fly(Key::letter('e'))], [up; 3]);
+        assert_eq!(fly(Key::letter('s')), Some(Command::Status));
+        assert_eq!([fly(Key::letter('q')), fly(Key::letter('Q'))], [Some(Command::Quit); 2]);
+        assert_eq!([fly(Key::letter('\\')), fly(Key::letter('"'))], [Some(Command::Compare); 2]);
+        assert_eq!(fly(Key::letter('x')), None);
+        assert_eq!([fly(Key::ctrl('f')), meant(&bindings, Mode::Orbit, Key::ctrl('f'))], [None, Some(Command::Reset)]);
+        assert_eq!(meant(&bindings, Mode::Explain, Key::letter(' ')), Some(Command::ScrollDown));
+        assert_eq!(meant(&bindings, Mode::Keep, Key::letter('n')), Some(Command::No));
+        assert_eq!(meant(&bindings, Mode::Export, Key::letter('g')).map(Command::name), Some("WritePng"));
+    }
+
+    /// The table can be the start of one's own, changed or not.
+    #[test]
+    fn what_is_written_is_read_again() {
+        let changes = r#"(fly: { ["8", "\\", "\""]: MoveForward, "w": None }, always: { "x": None, "z": Explain })"#;
+        for text in ["()", changes] {
+            let bindings = Bindings::from_ron("keys.ron", text).unwrap_or_else(|error| panic!("{error}"));
+            let written = bindings.to_ron();
+            let again = Bindings::from_ron("keys.ron", &written).unwrap_or_else(|error| panic!("{error}\n{written}"));
+            assert_eq!(again.to_ron(), written);
+            for mode in Mode::ALL {
+                for key in (' '..='~').map(Key::letter).chain(('a'..='z').map(Key::ctrl)) {
+                    assert_eq!(meant(&again, mode, key), meant(&bindings, mode, key), "{key} in {mode:?}\n{written}");
+                }
+            }
+        }
+        let written = Bindings::default().to_ron();
+        let lines: Vec<_> = written.lines().collect();
+        assert_eq!(lines[..3], ["(", "    fly: {", r#"        "w": MoveForward,                   // move forward"#]);
+        assert!(lines.contains(&r#"        ["q", "Ctrl-C"]: Quit,              // leave"#), "{written}");
+    }
+
+    #[test]
+    fn all_that_is_wrong_is_told_at_once() {
+        let text = r#"(
+    flying: {},
+    fly: {
+        "PgUp": MoveUp,
+        "Pageup": MoveUp,
+        "Ctrl-I": MoveUp,
+        8: MoveUp,
+        "8": MovForward,
+        "9": Dance,
+        "7": "MoveUp",
+        ["6", "6"]: MoveUp,
+        "5": WritePng,
+    },
+    keep: { "z": MoveUp },
+    always: { "w": Status, "Ctrl-C": None },
+    explain: [],
+    fly: {},
+)"#;
+        assert_eq!(
+            faults(text),
+            [
+                "2:5 there is no mode \"flying\"; there are fly, orbit, explain, export, keep and always",
+                "4:9 \"PgUp\" is no key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, or \
+                 a name such as PageUp, Space or F1",
+                "5:9 there is no key \"Pageup\"; did you mean \"PageUp\"?",
+                "6:9 \"Ctrl-I\" is no key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, \
+                 or a name such as PageUp, Space or F1",
+                "7:9 expected a key in quotes, as in \"w\", or a list of keys",
+                "8:14 there is no command MovForward; did you mean MoveForward?",
+                "9:14 there is no command Dance",
+                "10:14 expected a command without quotes, such as MoveForward, or None",
+                "11:15 \"6\" is bound twice in fly",
+                "12:14 WritePng means nothing in fly",
+                "14:18 MoveUp means nothing in keep",
+                "15:15 \"w\" is MoveForward in fly, which goes before always",
+                "15:28 \"Ctrl-C\" always leaves",
+                "16:14 expected modes with their keys, as in (fly: { \"8\": MoveForward })",
+                "17:5 duplicate mode \"fly\"",
+            ]
+        );
+        assert_eq!(faults("[]"), ["1:1 expected modes with their keys, as in (fly: { \"8\": MoveForward })"]);
+    }
+
+    /// A capital of a key that moves is its Shift.
+    #[test]
+    fn what_could_never_be_reached_is_refused() {
+        assert_eq!(
+            faults(r#"(always: { "W": Status })"#),
+            ["1:12 \"W\" is MoveForward in fly, which goes before always"]
+        );
+        for text in [
+            r#"(fly: { "w": None }, orbit: { "w": None }, always: { "w": Status })"#,
+            r#"(fly: { "w": MoveBack }, orbit: { "w": MoveBack }, always: { "w": Status })"#,
+            r#"(fly: { "v": MoveBack })"#,
+        ] {
+            assert!(Bindings::from_ron("keys.ron", text).is_ok(), "{text}");
+        }
+    }
+
+    #[test]
+    fn somebody_must_be_able_to_leave() {
+        let caught = "no key but Ctrl-C leaves any more: bind one to Quit in always";
+        assert_eq!(faults(r#"(always: { "q": None })"#), [format!("1:12 {caught}")]);
+        assert_eq!(faults(r#"(always: { "q": Status })"#), [format!("1:12 {caught}")]);
+        assert!(Bindings::from_ron("keys.ron", r#"(always: { "q": None, "Q": Quit })"#).is_ok());
+        assert!(Bindings::from_ron("keys.ron", r#"(always: { ["q", "Ctrl-C"]: Quit })"#).is_ok());
+        // Hidden by another mode, it is no way out there.
+        assert_eq!(faults(r#"(fly: { "q": Status })"#), [format!("1:9 {caught}")]);
+    }
+}
