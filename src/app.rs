@@ -17,6 +17,7 @@ mod dialog;
 mod exporting;
 mod explain;
 mod eye;
+mod help;
 mod keeping;
 mod legend;
 mod link;

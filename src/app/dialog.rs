@@ -59,18 +59,35 @@ impl Dialog {
         }
     }
 
+    /// The keys that answer it.
+    fn answers<'b>(&self, bindings: &'b Bindings) -> impl Iterator<Item = &'b Binding> {
+        let saves = matches!(self, Self::Save);
+        bindings.of(self.mode()).filter(move |row| !saves || matches!(row.command, Command::View(_)))
+    }
+
     fn lines(&self, bindings: &Bindings) -> Vec<String> {
         let name = match self {
             Self::Export => None,
             Self::Keep(asked) => asked.file().file_name().map(|name| visible(&name.to_string_lossy())),
-            Self::Save => {
-                let views = bindings.of(self.mode()).filter(|row| matches!(row.command, Command::View(_)));
-                return vec![views.map(Binding::label).collect::<Vec<_>>().join(" ")];
-            }
+            Self::Save => return vec![self.keys(bindings)],
         };
-        let answers: Vec<_> = bindings.of(self.mode()).map(|row| (row.label(), row.command.does())).collect();
+        let answers: Vec<_> = self.answers(bindings).map(|row| (row.label(), row.command.does())).collect();
         let width = answers.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
         name.into_iter().chain(answers.iter().map(|(label, does)| format!("{label:width$}  {does}"))).collect()
+    }
+
+    fn keys(&self, bindings: &Bindings) -> String {
+        self.answers(bindings).map(Binding::label).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The question in a line, for where there is no room for more: the keys that answer it, and as few words as will do.
+    pub(super) fn line(&self, bindings: &Bindings) -> String {
+        let word = match self {
+            Self::Export => "write",
+            Self::Keep(_) => "keep?",
+            Self::Save => "as",
+        };
+        format!("{word} {}", self.keys(bindings))
     }
 
     /// In the lower left corner, above the lowest row: most of the picture can be seen.

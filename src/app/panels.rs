@@ -1,7 +1,6 @@
-//! What is written over the picture: the status line and the help.
+//! What is written over the picture: how it looks, where there is room for it, and the status line.
 
 use crate::capabilities::{CellMode, Colors, Glyphs};
-use crate::control::{Binding, Bindings, Mode};
 use crate::grid::Size;
 use crate::progress::{Progress, Work};
 use crate::render::Sampling;
@@ -91,9 +90,14 @@ pub(super) fn foot(screen: Rect, below: u16) -> Rect {
     Rect { y: screen.bottom().saturating_sub(1 + below), height: screen.height.min(1), ..screen }
 }
 
+/// Text on a row of its own.
+pub(super) fn draw_line(text: &str, look: Look, area: Rect, buffer: &mut Buffer) {
+    Paragraph::new(text).style(look.style).render(area, buffer);
+}
+
 impl Status {
     pub(super) fn draw(&self, look: Look, area: Rect, buffer: &mut Buffer) {
-        Paragraph::new(self.text()).style(look.style).render(area, buffer);
+        draw_line(&self.text(), look, area, buffer);
     }
 
     fn text(&self) -> String {
@@ -189,51 +193,6 @@ fn bar(progress: &Progress, look: Look, width: usize) -> String {
     let filled = (share * room as f64) as usize;
     let [done, open] = look.bar;
     (0..room).map(|at| if at < filled { done } else { open }).chain(per_cent.chars()).collect()
-}
-
-const HELP_NOTES: [&str; 1] = ["Shift with a movement: faster"];
-
-/// In the middle, as large as its text, or as the screen.
-pub(super) fn help_area(bindings: &Bindings, modes: &[Mode], screen: Rect) -> Rect {
-    let lines = help_lines(bindings, modes);
-    let width = lines.iter().map(Line::width).max().unwrap_or(0) as u16 + 4;
-    let height = lines.len() as u16 + 2;
-    let (width, height) = (width.min(screen.width), height.min(screen.height));
-    Rect::new((screen.width - width) / 2, (screen.height - height) / 2, width, height)
-}
-
-pub(super) fn draw_help(bindings: &Bindings, modes: &[Mode], look: Look, area: Rect, buffer: &mut Buffer) {
-    Clear.render(area, buffer);
-    Block::bordered().border_set(look.border).title(" keys ").style(look.style).render(area, buffer);
-    Paragraph::new(help_lines(bindings, modes)).style(look.style).render(area.inner(Margin::new(2, 1)), buffer);
-}
-
-/// What keys do in these modes, in two columns.
-fn help_lines(bindings: &Bindings, modes: &[Mode]) -> Vec<Line<'static>> {
-    let rows: Vec<_> = modes.iter().flat_map(|&mode| bindings.of(mode)).filter(|row| !row.keys.is_empty()).collect();
-    let rows: Vec<_> = rows.chunk_by(|a, b| a.command.does() == b.command.does()).map(help_row).collect();
-    let (left, right) = rows.split_at(rows.len().div_ceil(2));
-    let [left, right] = [left, right].map(help_column);
-    let width = left.iter().map(|line| line.width()).max().unwrap_or(0);
-    let right = right.iter().map(String::as_str).chain(std::iter::repeat(""));
-    let bindings = left.iter().zip(right).map(|(left, right)| format!("{left:width$}  {right}"));
-    bindings.chain(HELP_NOTES.map(str::to_owned)).map(Line::from).collect()
-}
-
-/// Keys, and what they do; of many that do the same, the first and the last.
-fn help_row<'b>(same: &[&'b Binding]) -> (String, &'b str) {
-    let label = match same {
-        [only] => only.label(),
-        [first, .., last] => format!("{}..{}", first.label(), last.label()),
-        [] => String::new(),
-    };
-    (label, same.first().map_or("", |row| row.command.does()))
-}
-
-/// A line for each.
-fn help_column(rows: &[(String, &str)]) -> Vec<String> {
-    let labels = rows.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
-    rows.iter().map(|(label, does)| format!("{label:labels$}  {does}")).collect()
 }
 
 #[cfg(test)]

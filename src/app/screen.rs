@@ -2,9 +2,10 @@
 
 use super::dialog::Dialog;
 use super::explain::{self, Explaining};
+use super::help::{self, Help};
 use super::legend;
 use super::link::Slow;
-use super::panels;
+use super::panels::{self, Look};
 use super::renderer::{Frame, MIDDLE};
 use super::strip::Fault;
 use crate::capabilities::{Capabilities, Colors};
@@ -47,7 +48,8 @@ pub(super) struct Screen {
     /// What there is to say until the next key.
     note: Option<String>,
     status: bool,
-    help: bool,
+    /// The page of the help that is open, if one is.
+    help: Option<usize>,
     /// The pixel that is explained, if one is.
     explaining: Option<Explaining>,
     /// Whether anything has changed since the last bytes.
@@ -81,7 +83,7 @@ impl Screen {
             question: None,
             note: None,
             status: false,
-            help: false,
+            help: None,
             explaining: None,
             changed: false,
             written: Duration::ZERO,
@@ -198,15 +200,20 @@ impl Screen {
         self.changed = true;
     }
 
-    pub(super) fn toggle_help(&mut self) {
-        self.help = !self.help;
+    /// Opens the help, turns to its next page, or closes it after the last.
+    pub(super) fn turn_help(&mut self, size: Size) {
+        let pages = Help::new(&self.bindings, &self.modes(size), area(size)).pages();
+        self.help = match self.help {
+            None => Some(0),
+            Some(page) => Some(page + 1).filter(|&page| page < pages && panels::has_room(area(size))),
+        };
         self.changed = true;
     }
 
     /// What keys are for on a screen of that size, the topmost first.
     pub(super) fn modes(&self, size: Size) -> Vec<Mode> {
         if let Some(question) = &self.question {
-            return vec![question.mode()];
+            return vec![question.mode(), Mode::Always];
         }
         let explains = self.explaining.is_some() && panels::has_room(area(size));
         explains.then_some(Mode::Explain).into_iter().chain([self.moving, Mode::Always]).collect()
@@ -214,14 +221,18 @@ impl Screen {
 
     /// The eye flies, or goes around something.
     pub(super) fn set_moving(&mut self, moving: Mode) {
-        self.changed |= self.help && self.moving != moving;
+        self.changed |= self.tells_of_keys() && self.moving != moving;
         self.moving = moving;
+    }
+
+    fn tells_of_keys(&self) -> bool {
+        self.help.is_some() || self.status
     }
 
     /// Of the help and the explanation, what lies on top goes.
     pub(super) fn close_topmost(&mut self) {
-        if self.help {
-            self.toggle_help();
+        if self.help.take().is_some() {
+            self.changed = true;
         } else if self.explaining.is_some() {
             self.toggle_explaining();
         }
@@ -298,77 +309,103 @@ impl Screen {
     }
 
     fn lay_panels_over(&mut self, grid: &mut Grid, slow: Option<Slow>) {
-        let Size { columns, rows } = grid.size();
-        let area = area(grid.size());
-        let modes = self.modes(grid.size());
-        let bindings = &self.bindings;
+        let screen = area(grid.size());
         let mode = self.painter.mode();
-        let look = panels::Look::of(mode);
-        if let Some(explaining) = self.explaining.as_mut().filter(|_| panels::has_room(area)) {
-            let panel = explain::panel_area(area, explaining.cell(mode));
-            let mut buffer = Buffer::empty(panel);
-            explaining.draw(look, mode, panel, &mut buffer);
-            overlay::lay_over(grid, &buffer);
-            for mark in explain::marks(explaining, look, mode, area) {
+        let look = Look::of(mode);
+        // What the status line takes at the foot besides the lowest row.
+        let more_status = self.status_rows(screen).saturating_sub(1);
+        if let Some(explaining) = self.explaining.as_mut().filter(|_| panels::has_room(screen)) {
+            let above = Rect { height: screen.height - more_status, ..screen };
+            let panel = explain::panel_area(above, explaining.cell(mode));
+            lay(grid, panel, |panel, buffer| explaining.draw(look, mode, panel, buffer));
+            for mark in explain::marks(explaining, look, mode, screen) {
                 overlay::lay_over(grid, &mark);
             }
         }
-        let mut lay = |area: Rect, draw: &dyn Fn(Rect, &mut Buffer)| {
-            let mut buffer = Buffer::empty(area);
-            draw(area, &mut buffer);
-            overlay::lay_over(grid, &buffer);
-        };
         if let Some(progress) = &self.progress {
-            lay(panels::progress_area(area), &|area, buffer| {
+            lay(grid, panels::progress_area(screen), |area, buffer| {
                 panels::draw_progress(progress, look, area, buffer);
             });
         }
-        if let Some(frame) = &self.frame
-            && panels::has_room(area)
-        {
-            let line = panels::foot(area, self.status.into());
-            for (text, area) in legend::shared(&frame.legends, line) {
-                lay(area, &|area, buffer| legend::draw(text, look, area, buffer));
-            }
+        self.lay_status(grid, look, slow);
+        if panels::has_room(screen) {
+            self.lay_lines(grid, look);
         }
-        if self.status
-            && let Some(frame) = &self.frame
-        {
-            let status = panels::Status {
-                cells: Size { columns, rows },
-                sampling: frame.sampling,
-                trace: frame.trace,
-                encode: self.encode,
-                shown: self.pace.frames_per_second,
-                rays: frame.cost.rays,
-                slow: slow.map(|slow| slow.rate),
-                eye: frame.camera.pose().eye,
-            };
-            lay(panels::foot(area, 0), &|area, buffer| {
-                status.draw(look, area, buffer);
-            });
+        self.lay_topmost(grid, look);
+    }
+
+    /// How many rows at the foot the status line takes: below its figures stand the keys, where there is room for panels.
+    fn status_rows(&self, screen: Rect) -> u16 {
+        u16::from(self.status) * (1 + u16::from(panels::has_room(screen)))
+    }
+
+    fn lay_status(&self, grid: &mut Grid, look: Look, slow: Option<Slow>) {
+        let Some(frame) = self.frame.as_ref().filter(|_| self.status) else { return };
+        let status = panels::Status {
+            cells: grid.size(),
+            sampling: frame.sampling,
+            trace: frame.trace,
+            encode: self.encode,
+            shown: self.pace.frames_per_second,
+            rays: frame.cost.rays,
+            slow: slow.map(|slow| slow.rate),
+            eye: frame.camera.pose().eye,
+        };
+        let screen = area(grid.size());
+        if self.status_rows(screen) > 1 {
+            let keys = help::line(&self.bindings, &self.modes(grid.size()), screen.width.into());
+            lay(grid, panels::foot(screen, 1), |area, buffer| panels::draw_line(&keys, look, area, buffer));
         }
-        if let Some(fault) = &self.fault
-            && panels::has_room(area)
-        {
-            let has_legend = self.frame.as_ref().is_some_and(|frame| !frame.legends.is_empty());
-            let area = fault.area(area, u16::from(self.status) + u16::from(has_legend));
-            lay(area, &|area, buffer| fault.draw(look, area, buffer));
+        lay(grid, panels::foot(screen, 0), |area, buffer| status.draw(look, area, buffer));
+    }
+
+    /// What is told of the picture, of its file, and of what was just done.
+    fn lay_lines(&self, grid: &mut Grid, look: Look) {
+        let screen = area(grid.size());
+        let legends = self.frame.as_ref().map_or(&[][..], |frame| &frame.legends);
+        let status = self.status_rows(screen);
+        for (text, area) in legend::shared(legends, panels::foot(screen, status)) {
+            lay(grid, area, |area, buffer| legend::draw(text, look, area, buffer));
         }
-        if let Some(note) = &self.note
-            && panels::has_room(area)
-        {
-            lay(panels::foot(area, 0), &|area, buffer| legend::draw(note, look, area, buffer));
+        if let Some(fault) = &self.fault {
+            let area = fault.area(screen, status + u16::from(!legends.is_empty()));
+            lay(grid, area, |area, buffer| fault.draw(look, area, buffer));
         }
-        if let Some(question) = &self.question {
-            lay(question.area(bindings, area), &|area, buffer| question.draw(bindings, look, area, buffer));
-        }
-        if self.help {
-            lay(panels::help_area(bindings, &modes, area), &|area, buffer| {
-                panels::draw_help(bindings, &modes, look, area, buffer);
-            });
+        if let Some(note) = &self.note {
+            lay(grid, panels::foot(screen, 0), |area, buffer| legend::draw(note, look, area, buffer));
         }
     }
+
+    /// What the user has asked, or is asked; where there is no room for it, in a line.
+    fn lay_topmost(&self, grid: &mut Grid, look: Look) {
+        let screen = area(grid.size());
+        let has_room = panels::has_room(screen);
+        let in_a_line = |grid: &mut Grid, text: &str| {
+            lay(grid, panels::foot(screen, 0), |area, buffer| panels::draw_line(text, look, area, buffer));
+        };
+        let bindings = &self.bindings;
+        match &self.question {
+            Some(question) if has_room => {
+                lay(grid, question.area(bindings, screen), |area, buffer| question.draw(bindings, look, area, buffer));
+            }
+            Some(question) => in_a_line(grid, &question.line(bindings)),
+            None => {}
+        }
+        match self.help {
+            Some(page) if has_room => {
+                let help = Help::new(bindings, &self.modes(grid.size()), screen);
+                lay(grid, help.area(page, screen), |area, buffer| help.draw(page, look, area, buffer));
+            }
+            Some(_) => in_a_line(grid, help::NO_ROOM),
+            None => {}
+        }
+    }
+}
+
+fn lay(grid: &mut Grid, area: Rect, draw: impl FnOnce(Rect, &mut Buffer)) {
+    let mut buffer = Buffer::empty(area);
+    draw(area, &mut buffer);
+    overlay::lay_over(grid, &buffer);
 }
 
 /// All of it.

@@ -120,11 +120,11 @@ fn t_turns_until_the_next_move() {
     }
     // The help does not move it.
     session.send(b"?");
-    session.wait_for_text(" keys ");
+    session.wait_for_text("keys: orbit");
     frames = session.seen().bytes().len();
     session.wait_for("a frame below the help", SOON, |seen| seen.bytes().len() > frames);
     session.send(b"1r");
-    session.send(b"?");
+    session.send(b"\x1b");
     wait_for_rest(&mut session);
     assert_eq!(camera(&mut session), None, "r stops it and goes back");
 }

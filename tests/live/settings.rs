@@ -1,8 +1,10 @@
-//! The user's own files in the live view.
+//! The user's own settings and keys in the live view, and what is told of keys.
 
 use crate::pty::{SOON, Session, Size, Start};
 use std::fs;
+use std::time::Duration;
 use tempfile::TempDir;
+use termtrace::control::{Bindings, Mode};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 
@@ -23,6 +25,34 @@ fn start(home: &TempDir, flags: &[&str]) -> Session {
     flags.iter().fold(start.arg(SCENE), Start::arg).spawn()
 }
 
+/// Somebody without files looks at the scene on a screen of that size.
+fn looking(columns: u16, rows: u16) -> Session {
+    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).size(Size::cells(columns, rows));
+    let mut session = start.spawn();
+    wait_for_picture(&mut session);
+    session
+}
+
+fn wait_for_picture(session: &mut Session) {
+    session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains(['▄', '▀']));
+}
+
+/// The screen no longer has this.
+#[track_caller]
+fn wait_for_no(session: &mut Session, words: &str) {
+    session.wait_for(&format!("no {words}"), SOON, |seen| !seen.screen().text().concat().contains(words));
+}
+
+/// Leaves with that key; whether the camera was moved.
+#[track_caller]
+fn leave_moved(session: &mut Session, key: &[u8]) -> bool {
+    let before = session.seen().bytes().len();
+    session.send(key);
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
+    session.assert_clean();
+    String::from_utf8_lossy(&session.seen().bytes()[before..]).contains("camera:")
+}
+
 /// The last row of the screen has this.
 #[track_caller]
 fn wait_for_last(session: &mut Session, words: &str) {
@@ -31,9 +61,7 @@ fn wait_for_last(session: &mut Session, words: &str) {
 
 #[track_caller]
 fn leave(session: &mut Session) {
-    session.send(b"q");
-    assert_eq!(session.wait_exit(SOON).code(), Some(0));
-    session.assert_clean();
+    leave_moved(session, b"q");
 }
 
 #[test]
@@ -50,7 +78,7 @@ fn what_the_file_sets_holds_unless_a_flag_or_a_variable_says_otherwise() {
     leave(&mut session);
     // The status line has the last row to itself: no legend, so it is the shaded view.
     let mut session = start(&home, &["--no-config"]);
-    session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains('▄'));
+    wait_for_picture(&mut session);
     session.send(b"i");
     wait_for_last(&mut session, "rays/s");
     assert!(!session.seen().screen().text().concat().contains("depth:"));
@@ -68,4 +96,127 @@ fn a_file_that_is_wrong_is_told_of_before_anything_else() {
     assert!(said.contains("config.ron:2:5: unknown setting \"veiw\"; did you mean \"view\"?"), "{said}");
     assert!(said.contains("config.ron:3:10: expected frames per second"), "{said}");
     assert!(!said.contains('\x1b'), "{said}");
+}
+
+#[test]
+fn keys_of_ones_own_do_what_the_file_says_and_are_told_of() {
+    let keys = r#"(fly: { "8": MoveForward, "w": None }, always: { "Q": Quit, "q": None, "?": None, "F1": Help })"#;
+    let home = user(&[("keys.ron", keys)]);
+    let mut session = start(&home, &["--reduced-motion"]);
+    wait_for_picture(&mut session);
+    session.send(b"wq?i");
+    session.wait_for_text("fly   F1 help   Q leave");
+    session.send(b"\x1bOP");
+    session.wait_for("its help", SOON, |seen| {
+        let text = seen.screen().text();
+        let forward = text.iter().find(|row| row.contains("move forward"));
+        forward.is_some_and(|row| row.contains("│ 8 "))
+            && text.iter().any(|row| row.contains("F1") && row.contains("this help"))
+    });
+    session.send(b"\x1b");
+    wait_for_no(&mut session, "move forward");
+    session.wait_for_text("eye 0.00 2.10 6.30");
+    session.send(b"8");
+    session.wait_for_text("eye 0.00 1.98 5.67");
+    assert!(leave_moved(&mut session, b"Q"));
+    let mut session = start(&home, &["--no-config"]);
+    wait_for_picture(&mut session);
+    leave(&mut session);
+}
+
+#[test]
+fn keys_that_are_wrong_are_told_of_before_anything_else() {
+    let home = user(&[("keys.ron", "(fly: { \"Up\": MovForward })")]);
+    let mut session = start(&home, &[]);
+    assert_eq!(session.wait_exit(SOON).code(), Some(2));
+    let said = String::from_utf8_lossy(session.seen().bytes()).into_owned();
+    assert!(said.contains("keys.ron:1:15: there is no command MovForward; did you mean MoveForward?"), "{said}");
+    assert!(!said.contains('\x1b'), "{said}");
+}
+
+/// Where it does not fit on the screen, page by page.
+#[test]
+fn the_help_has_pages_where_the_screen_is_small() {
+    let mut session = looking(40, 12);
+    let mut told = String::new();
+    let mut page = 0;
+    while !told.contains(&format!("page {page} of {page} ")) {
+        page += 1;
+        session.send(b"?");
+        session.wait_for_text(&format!("keys: fly, page {page} of "));
+        told += &session.seen().screen().text().concat();
+    }
+    session.send(b"?");
+    wait_for_no(&mut session, "keys: fly");
+    let bindings = Bindings::default();
+    for row in bindings.of(Mode::Fly).chain(bindings.of(Mode::Always)) {
+        assert!(told.contains(row.command.does()), "{row:?} in {told}");
+    }
+    leave(&mut session);
+}
+
+#[test]
+fn below_40x12_panels_step_aside_and_their_keys_with_them() {
+    let mut session = looking(20, 10);
+    session.send(b"?");
+    wait_for_last(&mut session, "help needs 40x12");
+    session.send(b"\x1b");
+    wait_for_no(&mut session, "help");
+    session.send(b"o");
+    wait_for_last(&mut session, "write p a t s h Esc");
+    session.send(b"\x1b");
+    wait_for_no(&mut session, "write");
+    // The cursor of an explanation that cannot be seen takes no key: the eye looks to the left.
+    session.send(b"x\x1b[D");
+    session.sees(Duration::from_millis(300), |_| false);
+    assert!(leave_moved(&mut session, b"q"));
+    let mut session = looking(80, 24);
+    session.send(b"x");
+    session.wait_for_text("in front:");
+    session.send(b"\x1b[D");
+    session.sees(Duration::from_millis(300), |_| false);
+    assert!(!leave_moved(&mut session, b"q"));
+}
+
+#[test]
+fn the_status_line_tells_the_mode_and_its_keys() {
+    let mut session = looking(80, 24);
+    session.send(b"i");
+    let row = |session: &mut Session, words: &str| {
+        session.wait_for(words, SOON, |seen| seen.screen().text()[22].trim_end() == words);
+    };
+    row(&mut session, " fly   ? help   q leave   Tab orbit   wasd move   arrows look   x explain");
+    wait_for_last(&mut session, "rays/s");
+    session.send(b"\t");
+    row(&mut session, " orbit   ? help   q leave   Tab fly   arrows turn   ws distance   x explain");
+    session.send(b"x");
+    row(&mut session, " explain   ? help   q leave   arrows another pixel   PageUp PageDown more");
+    leave(&mut session);
+}
+
+#[test]
+fn escape_closes_what_lies_on_top() {
+    let mut session = looking(80, 24);
+    session.send(b"x");
+    session.wait_for_text("in front:");
+    session.send(b"?");
+    session.wait_for_text("keys: explain, fly");
+    session.send(b"\x1b");
+    wait_for_no(&mut session, "keys: explain");
+    session.wait_for_text("in front:");
+    session.send(b"\x1b");
+    wait_for_no(&mut session, "in front:");
+    leave(&mut session);
+}
+
+/// Also while something is asked, of which it is no answer.
+#[test]
+fn ctrl_c_always_leaves() {
+    for key in [&b"o"[..], b"Y", b"?", b"x"] {
+        let mut session = looking(80, 24);
+        let before = session.seen().bytes().len();
+        session.send(key);
+        session.wait_for("an answer", SOON, |seen| seen.bytes().len() > before);
+        leave_moved(&mut session, b"\x03");
+    }
 }

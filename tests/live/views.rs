@@ -86,11 +86,11 @@ fn v_and_b_go_through_the_views_and_say_what_their_colours_mean() {
 fn the_view_asked_for_is_there_at_first() {
     let mut session = start_with(&["--view", "depth"]);
     wait_for(&mut session, "depths", &whole(View::Depth), |last| last.contains("depth: white 0, grey 6.41"));
-    // The status line is below.
+    // The status line and its keys are below.
     session.send(b"i");
-    session.wait_for("both lines", SOON, |seen| {
+    session.wait_for("all three lines", SOON, |seen| {
         let text = seen.screen().text();
-        text[18].contains("depth:") && text[19].contains("rays/s")
+        text[17].contains("depth:") && text[18].contains("? help") && text[19].contains("rays/s")
     });
 }
 

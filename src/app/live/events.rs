@@ -116,9 +116,11 @@ impl Live {
         if is_press {
             self.screen.unsay();
         }
-        let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         let meant = self.options.bindings.command(&self.screen.modes(self.window.size), key);
-        if is_press && !ctrl && self.take_answer(meant.map(|(command, _)| command)) {
+        // A question takes all keys but those with Ctrl, which may leave, unless they answer it.
+        let is_for_all = key.modifiers.contains(KeyModifiers::CONTROL);
+        let answer = meant.map(|(command, _)| command).filter(|command| command.answers() || !is_for_all);
+        if is_press && (answer.is_some() || !is_for_all) && self.take_answer(answer) {
             return Next::Stay;
         }
         self.stale |= self.eye.take_key(key, meant, self.now());
@@ -149,7 +151,7 @@ impl Live {
             Command::Export => self.ask_export(),
             Command::KeepView => self.ask_keep(),
             Command::Status => self.screen.toggle_status(),
-            Command::Help => self.screen.toggle_help(),
+            Command::Help => self.screen.turn_help(self.window.size),
             Command::Close => self.screen.close_topmost(),
             Command::NextView => self.show_views(|shown| shown.go_on(View::next)),
             Command::LastView => self.show_views(|shown| shown.go_on(View::back)),
