@@ -3,11 +3,14 @@
 
 #![cfg(feature = "test-hooks")]
 
+mod mesh_writers;
 mod pty;
 
-use pty::{Answer, Phases, SOON, Session, Size, Start};
+use mesh_writers::{ball, written};
+use pty::{Answer, Phases, SOON, Seen, Session, Size, Start};
 use rustix::process::Signal;
 use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
 use std::process::ExitStatus;
 use std::time::{Duration, Instant};
 
@@ -22,6 +25,10 @@ const LOADING: Duration = Duration::from_millis(200);
 const VANISHED: Duration = Duration::from_secs(1);
 /// with so many hundredths of a second of CPU.
 const VANISHED_TICKS: u64 = 10;
+/// A scene that is saved is seen within this.
+const SAVED: Duration = Duration::from_millis(100);
+/// A mesh that is saved is seen within so much of the time that it takes to read and build it.
+const MESH_SAVED: f64 = 1.2;
 
 /// Waits for the exit, which has a limit.
 #[track_caller]
@@ -174,5 +181,65 @@ fn a_mesh_that_does_not_come_is_left() {
         let status = exit_within(LOADING, "while it reads", &mut session);
         assert_eq!(status.signal(), signal.map(Signal::as_raw));
         drop(pipe);
+    }
+}
+
+/// A file is put in its place at once, as editors do; how long until the middle of the screen shows something else.
+fn reload(session: &mut Session, path: &Path, contents: &[u8]) -> Duration {
+    let new = path.with_extension("new");
+    std::fs::write(&new, contents).expect("a file can be written");
+    let middle = |seen: &Seen| seen.screen().cell(40, 12);
+    let before = middle(session.seen());
+    let start = Instant::now();
+    std::fs::rename(new, path).expect("a file can be renamed");
+    session.wait_for("another picture", SOON, |seen| middle(seen) != before);
+    start.elapsed()
+}
+
+/// A scene that shows a mesh in that colour.
+fn scene_of_mesh(color: &str) -> String {
+    format!(
+        "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, background: \"navy\",
+        objects: [Mesh(path: \"ball.stl\", material: Diffuse(\"{color}\"))])"
+    )
+}
+
+#[test]
+fn a_scene_that_is_saved_is_soon_seen() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = folder.path().join("ball.ron");
+    std::fs::write(folder.path().join("ball.stl"), written(&ball(200), "binary.stl")).expect("a file can be written");
+    std::fs::write(&path, scene_of_mesh("white")).expect("a file can be written");
+    let mut session = Start::new(PROGRAM).arg(&path).spawn();
+    session.wait_for("the ball", SOON, |seen| seen.screen().cell(40, 12) != seen.screen().cell(0, 0));
+    for color in ["red", "lime", "gold", "white", "red", "lime", "gold", "white"] {
+        let took = reload(&mut session, &path, scene_of_mesh(color).as_bytes());
+        println!("a saved scene: seen after {took:?}");
+        assert!(took < 3 * SAVED, "{took:?}");
+    }
+}
+
+/// It takes as long as to read and build it, and no more: `check` does nothing else.
+#[test]
+fn a_mesh_that_is_saved_is_seen_when_it_is_built() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let (path, mesh) = (folder.path().join("ball.ron"), folder.path().join("ball.stl"));
+    let [here, away] = [0.0, 9.0].map(|x| {
+        let mut ball = ball(400_000);
+        ball.positions.iter_mut().for_each(|position| position.x += x);
+        written(&ball, "binary.stl")
+    });
+    std::fs::write(&mesh, &here).expect("a file can be written");
+    std::fs::write(&path, scene_of_mesh("white")).expect("a file can be written");
+    let mut session = Start::new(PROGRAM).arg(&path).spawn();
+    session.wait_for("the ball", SOON, |seen| seen.screen().cell(40, 12) != seen.screen().cell(0, 0));
+    for contents in [&away, &here, &away, &here] {
+        let took = reload(&mut session, &mesh, contents);
+        let start = Instant::now();
+        let checked = std::process::Command::new(PROGRAM).arg("check").arg(&path).output();
+        assert!(checked.is_ok_and(|output| output.status.success()));
+        let built = start.elapsed();
+        println!("a saved mesh: seen after {took:?}, read and built in {built:?}");
+        assert!(took < built.mul_f64(3.0 * MESH_SAVED) + 3 * SAVED, "{took:?}, built in {built:?}");
     }
 }
