@@ -22,6 +22,7 @@ mod keeping;
 mod legend;
 mod link;
 mod live;
+mod mark;
 mod loading;
 mod panels;
 mod renderer;

@@ -1,4 +1,4 @@
-//! Keys + camera -> camera, pure: what each key does, and how held keys move the eye.
+//! Keys, mouse + camera -> camera, pure: what each key does, what the mouse does, and how the eye moves.
 //!
 //! Time is a number that is handed in, so that every movement can be tested without a clock.
 
@@ -14,5 +14,5 @@ pub use bindings::{Binding, Bindings, Mode};
 pub use command::{Command, Direction, Side, Toward};
 pub use key::Key;
 pub use motion::{COAST, GLIDE, Motion};
-pub use moves::{dragged, framing, on_turntable, place_of, speed, wheeled, zoomed};
+pub use moves::{dragged, framing, on_turntable, place_of, point_dragged, point_wheeled, speed, wheeled, zoomed};
 pub use pointer::{Gesture, Grip, Pointer};

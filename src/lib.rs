@@ -67,7 +67,7 @@
 //! With a person:
 //! - [`input`]: bytes -> events and replies
 //! - [`terminal`]: the one owner of the terminal
-//! - [`control`]: keys + camera -> camera
+//! - [`control`]: keys, mouse + camera -> camera
 //! - [`app`]: the loop, and the panels
 //!
 //! # Laws

@@ -22,8 +22,9 @@ use crate::light::PointLight;
 use crate::material::Material;
 use crate::shape::Shape;
 pub(crate) use parts::{Grove, Leaf, PartId, Parts};
+use std::sync::Arc;
 
-/// Everything that a picture depends on, besides its size.
+/// Everything that a picture depends on, besides its size. A copy costs little, however large it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Where the scene wants to be looked at from.
@@ -42,8 +43,9 @@ pub struct Scene {
     pub exposure: f32,
     /// How light beyond the screen's range is brought into it.
     pub tone_curve: ToneCurve,
-    objects: Vec<Object>,
-    parts: Parts,
+    // Shared by copies, so that one with other lights costs little.
+    objects: Arc<[Object]>,
+    parts: Arc<Parts>,
 }
 
 impl Scene {
@@ -63,8 +65,8 @@ impl Scene {
             shadows: true,
             exposure: 1.0,
             tone_curve: ToneCurve::None,
-            objects,
-            parts: Parts::default(),
+            objects: objects.into(),
+            parts: Arc::default(),
         }
     }
 

@@ -163,6 +163,12 @@ fn matter(mode: Mode) -> &'static [(&'static [Command], &'static str)] {
         Command::Point(Toward::Up),
         Command::Point(Toward::Down),
     ];
+    const LIGHT: &[Command] = &[
+        Command::MoveLight(Toward::Left),
+        Command::MoveLight(Toward::Right),
+        Command::MoveLight(Toward::Up),
+        Command::MoveLight(Toward::Down),
+    ];
     match mode {
         Mode::Fly => {
             &[(&[Command::ChangeMode], "orbit"), (MOVE, "move"), (LOOK, "look"), (&[Command::Explain], "explain")]
@@ -177,6 +183,12 @@ fn matter(mode: Mode) -> &'static [(&'static [Command], &'static str)] {
             (POINT, "another pixel"),
             (&[Command::ScrollUp, Command::ScrollDown], "more"),
             (&[Command::Close], "close"),
+        ],
+        Mode::Light => &[
+            (LIGHT, "the light"),
+            (&[Command::LightFarther, Command::LightNearer], "its distance"),
+            (&[Command::LightBack], "back"),
+            (&[Command::Close], "done"),
         ],
         Mode::Export | Mode::Keep | Mode::Always => &[],
     }
@@ -204,9 +216,10 @@ mod tests {
     use super::*;
     use crate::capabilities::CellMode;
 
-    fn all_modes() -> [Vec<Mode>; 3] {
+    fn all_modes() -> [Vec<Mode>; 4] {
         let under = |mode| vec![mode, Mode::Always];
-        [under(Mode::Fly), under(Mode::Orbit), vec![Mode::Explain, Mode::Fly, Mode::Always]]
+        let above = |mode| vec![mode, Mode::Fly, Mode::Always];
+        [under(Mode::Fly), under(Mode::Orbit), above(Mode::Explain), above(Mode::Light)]
     }
 
     /// The text of all pages on a screen of that size.

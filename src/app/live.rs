@@ -29,6 +29,7 @@ use std::{fmt, io};
 
 mod events;
 mod files;
+mod lighting;
 mod explaining;
 mod moving;
 mod pointing;
@@ -36,6 +37,7 @@ mod views;
 mod looked_at;
 
 use events::Next;
+use lighting::Lights;
 use looked_at::LookedAt;
 use pointing::Grasped;
 
@@ -70,6 +72,7 @@ pub(super) struct Live {
     clock: Clock,
     /// What the picture is of.
     looked_at: LookedAt,
+    lights: Lights,
     /// What is to be given to the user's clipboard.
     to_copy: Option<String>,
     /// How many scenes further on the user wants to be.
@@ -104,6 +107,7 @@ impl Live {
             options,
             clock: Clock { start: Instant::now() },
             looked_at: LookedAt::new(scenes),
+            lights: Lights::default(),
             to_copy: None,
             scenes_on: 0,
             stale: true,
@@ -242,13 +246,16 @@ impl Live {
     /// Begins a frame of the new view if there is one, else the next step of the last one, if there is one.
     fn begin(&mut self, terminal: &mut Terminal, renderer: &mut Renderer) -> io::Result<()> {
         let Some(camera) = self.eye.camera() else { return Ok(()) };
+        if let Some(scene) = self.lights.take_changed() {
+            renderer.light(scene);
+        }
         let job = if self.stale {
             terminal.send(self.link.probe(self.now()))?;
             self.stale = false;
             self.begun = Some(self.now());
             // On a slow link the next frame begins when an answer comes: all the time that it takes is the link's.
             let sampling = self.effort.of_new_view(self.begun_in_motion && !self.link.is_slow());
-            self.begun_in_motion = self.eye.is_moving();
+            self.begun_in_motion = self.is_in_motion();
             self.job(camera, sampling)
         } else if let Some(sampling) = self.next_step() {
             terminal::reach("refinement")?;
@@ -266,7 +273,12 @@ impl Live {
         if !frame.refines {
             self.effort.took(frame.sampling, frame.trace, self.link.frame_time());
         }
-        self.screen.take_frame(frame, self.eye.is_moving().then(|| self.now()));
+        self.screen.take_frame(frame, self.is_in_motion().then(|| self.now()));
+    }
+
+    /// Whether the next frame is likely to be of another view, too.
+    fn is_in_motion(&self) -> bool {
+        self.eye.is_moving() || self.pointer.holds()
     }
 
     fn job(&self, camera: Camera, sampling: Sampling) -> Job {

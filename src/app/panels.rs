@@ -8,7 +8,7 @@ use crate::scene_text::visible;
 use glam::Vec3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Rect};
-use ratatui::style::{Color, Style};
+use ratatui::style::{Color, Modifier, Style};
 use ratatui::symbols::border;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Clear, Paragraph, Widget};
@@ -20,6 +20,8 @@ use unicode_width::UnicodeWidthStr;
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     style: Style,
+    /// How marks on the picture are written.
+    mark: Style,
     border: border::Set<'static>,
     /// What is done of something, and what is not.
     bar: [char; 2],
@@ -37,11 +39,20 @@ impl Look {
             Glyphs::Half => (border::ROUNDED, ['█', '░']),
             Glyphs::Shape | Glyphs::Ramp => (ASCII_BORDER, ['#', '.']),
         };
-        Self { style, border, bar }
+        let mark = match cell_mode.colors {
+            Colors::None => style.add_modifier(Modifier::BOLD),
+            _ => style.fg(Color::LightYellow),
+        };
+        Self { style, mark, border, bar }
     }
 
     pub(super) fn border(self) -> border::Set<'static> {
         self.border
+    }
+
+    /// How marks on the picture are written.
+    pub(super) fn mark(self) -> Style {
+        self.mark
     }
 
     /// How text is written.

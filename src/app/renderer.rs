@@ -165,9 +165,14 @@ impl Renderer {
     }
 
     /// From now on frames are of that scene.
-    pub(super) fn show(&mut self, scene: Scene) {
-        self.scene = Some(Arc::new(scene));
+    pub(super) fn show(&mut self, scene: Arc<Scene>) {
+        self.scene = Some(scene);
         self.seconds_per_pixel = None;
+    }
+
+    /// From now on frames are of the same scene in another light: they take about as long.
+    pub(super) fn light(&mut self, scene: Arc<Scene>) {
+        self.scene = Some(scene);
     }
 
     /// Whether no frame can be begun: one is on its way, or there is no scene yet.
@@ -384,7 +389,7 @@ mod tests {
         let camera = scene.camera;
         let waker = Signals::catch().and_then(|signals| signals.waker()).expect("pipes can be made");
         let mut renderer = Renderer::start(Some(2), waker).expect("threads can be started");
-        renderer.show(scene);
+        renderer.show(scene.into());
         let job = |side| Job {
             camera,
             resolution: Resolution::square(side, side),

@@ -5,16 +5,18 @@ use super::explain::{self, Explaining};
 use super::help::{self, Help};
 use super::legend;
 use super::link::Slow;
+use super::mark;
 use super::panels::{self, Look};
 use super::renderer::{Frame, MIDDLE};
 use super::strip::Fault;
 use crate::capabilities::{Capabilities, Colors};
 use crate::cell::{self, Painter};
-use crate::control::{Bindings, Mode};
+use crate::control::{self, Bindings, Mode};
 use crate::encode::{Allowance, Encoder, Order, Quality};
 use crate::grid::{Grid, Size};
 use crate::overlay;
 use crate::progress::Progress;
+use glam::Vec3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::time::{Duration, Instant};
@@ -52,6 +54,8 @@ pub(super) struct Screen {
     help: Option<usize>,
     /// The pixel that is explained, if one is.
     explaining: Option<Explaining>,
+    /// Where the light is that is held, if one is.
+    light: Option<Vec3>,
     /// Whether anything has changed since the last bytes.
     changed: bool,
     /// When the last bytes were written.
@@ -85,6 +89,7 @@ impl Screen {
             status: false,
             help: None,
             explaining: None,
+            light: None,
             changed: false,
             written: Duration::ZERO,
             pace: Pace::default(),
@@ -216,7 +221,8 @@ impl Screen {
             return vec![question.mode(), Mode::Always];
         }
         let explains = self.explaining.is_some() && panels::has_room(area(size));
-        explains.then_some(Mode::Explain).into_iter().chain([self.moving, Mode::Always]).collect()
+        let above = [self.light.map(|_| Mode::Light), explains.then_some(Mode::Explain)];
+        above.into_iter().flatten().chain([self.moving, Mode::Always]).collect()
     }
 
     /// The eye flies, or goes around something.
@@ -229,13 +235,22 @@ impl Screen {
         self.help.is_some() || self.status
     }
 
-    /// Of the help and the explanation, what lies on top goes.
-    pub(super) fn close_topmost(&mut self) {
-        if self.help.take().is_some() {
-            self.changed = true;
-        } else if self.explaining.is_some() {
-            self.toggle_explaining();
-        }
+    /// The help goes; whether it was there.
+    pub(super) fn close_help(&mut self) -> bool {
+        let was_open = self.help.take().is_some();
+        self.changed |= was_open;
+        was_open
+    }
+
+    /// The explanation goes.
+    pub(super) fn close_explaining(&mut self) {
+        self.changed |= self.explaining.take().is_some();
+    }
+
+    /// A light is held, and is there; or none is.
+    pub(super) fn mark_light(&mut self, light: Option<Vec3>) {
+        self.changed |= self.light != light;
+        self.light = light;
     }
 
     /// A pixel is explained, or none any more.
@@ -322,6 +337,10 @@ impl Screen {
                 overlay::lay_over(grid, &mark);
             }
         }
+        let held = self.light.zip(self.frame.as_ref());
+        if let Some(place) = held.and_then(|(light, frame)| marked(light, frame, screen)) {
+            lay(grid, place, |area, buffer| mark::draw(look, area, buffer));
+        }
         if let Some(progress) = &self.progress {
             lay(grid, panels::progress_area(screen), |area, buffer| {
                 panels::draw_progress(progress, look, area, buffer);
@@ -406,6 +425,14 @@ fn lay(grid: &mut Grid, area: Rect, draw: impl FnOnce(Rect, &mut Buffer)) {
     let mut buffer = Buffer::empty(area);
     draw(area, &mut buffer);
     overlay::lay_over(grid, &buffer);
+}
+
+/// Where the mark of a light is over a frame: in the left one of two pictures.
+fn marked(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
+    let (part, _) = frame.part_at([0, 0]);
+    let place = control::place_of(&frame.camera, light, part.aspect_ratio())?;
+    let columns = f32::from(screen.width) * part.width as f32 / frame.resolution.width as f32;
+    Some(mark::area(screen, place.x * columns, place.y * f32::from(screen.height)))
 }
 
 /// All of it.

@@ -14,6 +14,8 @@ pub enum Mode {
     Orbit,
     /// A pixel is explained; above fly or orbit.
     Explain,
+    /// A light is held; above all of these.
+    Light,
     /// The user is asked what the picture is to be written as; a key that does not answer takes the question away.
     Export,
     /// The user is asked whether the view is to be written into the scene's file; likewise.
@@ -24,7 +26,8 @@ pub enum Mode {
 
 impl Mode {
     /// All of them, in the order of the help.
-    pub const ALL: [Self; 6] = [Self::Fly, Self::Orbit, Self::Explain, Self::Export, Self::Keep, Self::Always];
+    pub const ALL: [Self; 7] =
+        [Self::Fly, Self::Orbit, Self::Explain, Self::Light, Self::Export, Self::Keep, Self::Always];
 
     /// What it is called where a person binds keys.
     pub fn name(self) -> &'static str {
@@ -32,6 +35,7 @@ impl Mode {
             Self::Fly => "fly",
             Self::Orbit => "orbit",
             Self::Explain => "explain",
+            Self::Light => "light",
             Self::Export => "export",
             Self::Keep => "keep",
             Self::Always => "always",
@@ -126,6 +130,13 @@ const BUILT_IN: &[Row] = &[
     (Mode::Explain, &[Key::named(KeyCode::Down)], Command::Point(Toward::Down)),
     (Mode::Explain, &[Key::named(KeyCode::PageUp)], Command::ScrollUp),
     (Mode::Explain, &[Key::named(KeyCode::PageDown)], Command::ScrollDown),
+    (Mode::Light, &[Key::named(KeyCode::Left)], Command::MoveLight(Toward::Left)),
+    (Mode::Light, &[Key::named(KeyCode::Right)], Command::MoveLight(Toward::Right)),
+    (Mode::Light, &[Key::named(KeyCode::Up)], Command::MoveLight(Toward::Up)),
+    (Mode::Light, &[Key::named(KeyCode::Down)], Command::MoveLight(Toward::Down)),
+    (Mode::Light, &[Key::named(KeyCode::PageUp)], Command::LightFarther),
+    (Mode::Light, &[Key::named(KeyCode::PageDown)], Command::LightNearer),
+    (Mode::Light, &[letter('r')], Command::LightBack),
     (Mode::Export, &[letter('p')], Command::Write(Format::Png)),
     (Mode::Export, &[letter('a')], Command::Write(Format::Ansi)),
     (Mode::Export, &[letter('t')], Command::Write(Format::Text)),
@@ -161,6 +172,7 @@ const BUILT_IN: &[Row] = &[
     (Mode::Always, &[letter('y')], Command::CopyCamera),
     (Mode::Always, &[letter('Y')], Command::KeepView),
     (Mode::Always, &[letter('x')], Command::Explain),
+    (Mode::Always, &[letter('g')], Command::Light),
     (Mode::Always, &[letter('i')], Command::Status),
     (Mode::Always, &[letter('?')], Command::Help),
     (Mode::Always, &[Key::named(KeyCode::Esc)], Command::Close),
@@ -238,7 +250,9 @@ mod tests {
     #[test]
     fn no_two_bindings_collide() {
         let bindings = Bindings::default();
-        for modes in [FLY, &[Mode::Orbit, Mode::Always], &[Mode::Explain], &[Mode::Export], &[Mode::Keep]] {
+        for modes in
+            [FLY, &[Mode::Orbit, Mode::Always], &[Mode::Explain], &[Mode::Light], &[Mode::Export], &[Mode::Keep]]
+        {
             let mut seen = HashSet::new();
             for key in keys_of(&bindings, modes) {
                 assert!(seen.insert(key), "{key} is bound twice in {modes:?}");

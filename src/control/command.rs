@@ -51,6 +51,16 @@ pub enum Command {
     KeepView,
     /// The explanation of a pixel on or off.
     Explain,
+    /// A light is taken hold of, the nearest to the pointer; or the next one.
+    Light,
+    /// It moves as the screen has it, at the same depth.
+    MoveLight(Toward),
+    /// It comes nearer to the eye.
+    LightNearer,
+    /// It goes away from the eye.
+    LightFarther,
+    /// It goes back to where the scene has it.
+    LightBack,
     /// The status line on or off.
     Status,
     /// The help on or off.
@@ -161,6 +171,14 @@ const COMMANDS: &[(Command, &str, &str)] = &[
     (Command::CopyCamera, "CopyCamera", "copy the camera"),
     (Command::KeepView, "KeepView", "view into the scene file"),
     (Command::Explain, "Explain", "explain a pixel's ray"),
+    (Command::Light, "Light", "move a light"),
+    (Command::MoveLight(Toward::Left), "LightLeft", "light to the left"),
+    (Command::MoveLight(Toward::Right), "LightRight", "light to the right"),
+    (Command::MoveLight(Toward::Up), "LightUp", "light up"),
+    (Command::MoveLight(Toward::Down), "LightDown", "light down"),
+    (Command::LightNearer, "LightNearer", "light nearer to the eye"),
+    (Command::LightFarther, "LightFarther", "light farther away"),
+    (Command::LightBack, "LightBack", "light back to its place"),
     (Command::Status, "Status", "status line"),
     (Command::Help, "Help", "this help"),
     (Command::Close, "Close", "close it"),
@@ -218,15 +236,17 @@ impl Command {
 
     /// Whether the key's own repeats do it again.
     pub fn repeats(self) -> bool {
-        matches!(
-            self,
-            Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_) | Self::Narrower | Self::Wider
-        )
+        let of_panels = matches!(self, Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_));
+        of_panels || self.moves_light() || matches!(self, Self::Narrower | Self::Wider)
     }
 
     /// Whether Shift with the key does more of it.
     pub fn has_faster(self) -> bool {
-        self.moves() || matches!(self, Self::Point(_))
+        self.moves() || self.moves_light() || matches!(self, Self::Point(_))
+    }
+
+    fn moves_light(self) -> bool {
+        matches!(self, Self::MoveLight(_) | Self::LightNearer | Self::LightFarther)
     }
 
     fn row(self) -> &'static (Self, &'static str, &'static str) {
@@ -254,13 +274,17 @@ mod tests {
     fn no_command_is_left_out() {
         let of_kind = |command: Command| match command {
             Command::Move(_) => 6,
-            Command::Look(_) | Command::Around(_) | Command::Point(_) => 4,
+            Command::Look(_) | Command::Around(_) | Command::Point(_) | Command::MoveLight(_) => 4,
             Command::Wipe(_) => 2,
             Command::Write(_) => 5,
             Command::View(_) => 9,
             Command::Nearer
             | Command::Farther
             | Command::ChangeMode
+            | Command::Light
+            | Command::LightNearer
+            | Command::LightFarther
+            | Command::LightBack
             | Command::Frame
             | Command::Narrower
             | Command::Wider

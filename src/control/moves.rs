@@ -126,6 +126,22 @@ pub fn place_of(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Option<Vec2>
     (depth > 0.0 && place.is_finite()).then_some(place)
 }
 
+/// A point goes so far to the right and down in a picture of that aspect ratio, in parts of its width and height, and
+/// stays as deep in it as it is.
+pub fn point_dragged(camera: &Camera, point: Vec3, by: Vec2, aspect_ratio: f32) -> Vec3 {
+    let (Pose { eye, target, .. }, basis) = (camera.pose(), camera.basis());
+    let (width, height, _) = camera.rectangle().fitted_to(aspect_ratio);
+    // What is behind the eye, or beside it, goes as far as what is looked at would.
+    let depth = Some((eye - point).dot(basis.w)).filter(|depth| *depth > 0.0).unwrap_or(eye.distance(target));
+    point + depth * (by.x * width * basis.u - by.y * height * basis.v)
+}
+
+/// A point goes away from the eye by so many notches of the wheel, and stays where it is in the picture.
+pub fn point_wheeled(camera: &Camera, point: Vec3, notches: f32) -> Vec3 {
+    let eye = camera.pose().eye;
+    eye + libm::powf(NOTCH, -notches) * (point - eye)
+}
+
 /// The turntable turns so many radians a second: once around in twenty seconds.
 const TURNTABLE_SPEED: f32 = std::f32::consts::PI / 10.0;
 

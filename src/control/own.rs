@@ -306,7 +306,7 @@ mod tests {
         assert_eq!(
             faults(text),
             [
-                "2:5 there is no mode \"flying\"; there are fly, orbit, explain, export, keep and always",
+                "2:5 there is no mode \"flying\"; there are fly, orbit, explain, light, export, keep and always",
                 "4:9 \"PgUp\" is no key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, or \
                  a name such as PageUp, Space or F1",
                 "5:9 there is no key \"Pageup\"; did you mean \"PageUp\"?",

@@ -49,18 +49,18 @@ impl Draft {
             None => Some(object.clone()),
         };
         let objects: Vec<_> = self.scene.objects.iter().filter_map(sketched).collect();
-        Some(Scene { parts: Parts::of(&objects), objects, ..self.scene.clone() })
+        Some(Scene { parts: Parts::of(&objects).into(), objects: objects.into(), ..self.scene.clone() })
     }
 
     /// The scene, built on all threads of the current rayon pool, while somebody waits for it; `None` if he has gone.
     pub fn build(self, watcher: &Watcher<'_>) -> Option<Scene> {
-        let parts = Parts::of_watched(&self.scene.objects, watcher)?;
+        let parts = Parts::of_watched(&self.scene.objects, watcher)?.into();
         Some(Scene { parts, ..self.scene })
     }
 
     /// The scene, however long it takes.
     pub fn finish(self) -> Scene {
-        let parts = Parts::of(&self.scene.objects);
+        let parts = Parts::of(&self.scene.objects).into();
         Scene { parts, ..self.scene }
     }
 }

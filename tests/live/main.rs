@@ -5,6 +5,7 @@ mod files;
 mod harness;
 mod keyboard;
 mod leaving;
+mod lights;
 mod loading;
 #[path = "../mesh_writers/mod.rs"]
 mod mesh_writers;

@@ -19,7 +19,7 @@ const WHEEL_UP: u16 = 64;
 const WHEEL_DOWN: u16 = 65;
 
 /// A report of the mouse in a cell, from (0, 0).
-fn report(code: u16, [column, row]: [u16; 2], end: char) -> String {
+pub(crate) fn report(code: u16, [column, row]: [u16; 2], end: char) -> String {
     format!("\x1b[<{code};{};{}{end}", column + 1, row + 1)
 }
 
@@ -27,7 +27,7 @@ fn click(at: [u16; 2]) -> String {
     report(LEFT, at, 'M') + &report(LEFT, at, 'm')
 }
 
-fn drag(button: u16, from: [u16; 2], to: [u16; 2]) -> String {
+pub(crate) fn drag(button: u16, from: [u16; 2], to: [u16; 2]) -> String {
     report(button, from, 'M') + &report(button + WAY, to, 'M') + &report(button, to, 'm')
 }
 

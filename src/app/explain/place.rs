@@ -2,11 +2,10 @@
 
 use super::Explaining;
 use crate::app::panels::Look;
-use crate::capabilities::{CellMode, Colors, Glyphs};
+use crate::capabilities::{CellMode, Glyphs};
 use crate::explain::WIDTH;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::{Color, Modifier, Style};
 
 /// How wide the panel is, with its border and a blank at each side.
 const PANEL: u16 = WIDTH as u16 + 4;
@@ -48,17 +47,13 @@ pub(in crate::app) fn marks(explaining: &Explaining, look: Look, mode: CellMode,
         (Glyphs::Half, _) => [["▄", "▄"], ["│", "│"]],
         _ => [[">", "<"], ["v", "^"]],
     };
-    let style = match mode.colors {
-        Colors::None => look.style().add_modifier(Modifier::BOLD),
-        _ => look.style().patch(Style::new().fg(Color::LightYellow)),
-    };
     let mut marks = Vec::new();
     let mut mark = |x: Option<u16>, y: Option<u16>, symbol: &str| {
         if let (Some(x), Some(y)) = (x, y)
             && screen.contains((x, y).into())
         {
             let mut buffer = Buffer::empty(Rect::new(x, y, 1, 1));
-            buffer.set_string(x, y, symbol, style);
+            buffer.set_string(x, y, symbol, look.mark());
             marks.push(buffer);
         }
     };

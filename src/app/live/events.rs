@@ -98,6 +98,7 @@ impl Live {
                 Input::Event(Event::Key(key)) => self.take_key(key),
                 // Nobody says when the keys held now are let go.
                 Input::Event(Event::FocusLost) => {
+                    self.pointer.let_go();
                     self.stale |= self.eye.let_go(self.now());
                     Next::Stay
                 }
@@ -152,7 +153,16 @@ impl Live {
             Command::KeepView => self.ask_keep(),
             Command::Status => self.screen.toggle_status(),
             Command::Help => self.screen.turn_help(self.window.size),
-            Command::Close => self.screen.close_topmost(),
+            Command::Close => {
+                if !self.screen.close_help() && !self.leave_light() {
+                    self.screen.close_explaining();
+                }
+            }
+            Command::Light => self.take_light(),
+            Command::MoveLight(toward) => self.step_light(toward, more),
+            Command::LightFarther => self.wheel_light(1.0),
+            Command::LightNearer => self.wheel_light(-1.0),
+            Command::LightBack => self.put_light_back(),
             Command::NextView => self.show_views(|shown| shown.go_on(View::next)),
             Command::LastView => self.show_views(|shown| shown.go_on(View::back)),
             Command::Compare => self.show_views(Shown::compare),

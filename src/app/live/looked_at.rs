@@ -1,6 +1,7 @@
 //! What the loop does with the scenes that come, and where each was looked at from.
 
 use super::Live;
+use super::lighting::Lights;
 use crate::app::eye::View;
 use crate::app::loading::News;
 use crate::app::renderer::Renderer;
@@ -12,6 +13,7 @@ use crate::scene::Scene;
 use std::collections::HashMap;
 use std::fmt;
 use std::panic::resume_unwind;
+use std::sync::Arc;
 
 /// Which scene is shown, and what is kept of the others.
 pub(super) struct LookedAt {
@@ -78,6 +80,9 @@ impl Live {
             self.eye.set_written(&scene.views);
         }
         self.screen.set_moving(self.eye.mode());
+        let scene = Arc::new(scene);
+        let _ = self.leave_light();
+        self.lights = Lights::of(&scene);
         renderer.show(scene);
         self.effort.forget_last();
         self.stale = true;

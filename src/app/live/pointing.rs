@@ -15,6 +15,7 @@ pub(super) enum Grasped {
     Line,
     /// The cursor of an explanation.
     Cursor,
+    Light,
 }
 
 /// Who takes hold so many columns beside a line takes hold of the line.
@@ -74,6 +75,7 @@ impl Live {
         let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.window.size.columns);
         match grip {
             Grip::Turn if self.shown.is_wipe() && beside <= NEAR => Grasped::Line,
+            Grip::Turn if modes.contains(&Mode::Light) => Grasped::Light,
             Grip::Turn if modes.contains(&Mode::Explain) => Grasped::Cursor,
             _ => Grasped::View,
         }
@@ -86,6 +88,7 @@ impl Live {
                 let pixel = self.pixel(to);
                 self.screen.explain(|explaining, frame| explaining.put(frame, pixel));
             }
+            Grasped::Light => self.drag_light(self.part_of(to - from)),
             Grasped::View if from == to => {}
             Grasped::View => {
                 let (by, aspect_ratio) = (self.part_of(to - from), self.part().aspect_ratio());
@@ -97,6 +100,10 @@ impl Live {
     }
 
     fn wheel(&mut self, at: Vec2, notches: f32) {
+        if self.holds_light() {
+            self.wheel_light(notches);
+            return;
+        }
         let Some(point) = self.point_under(at) else { return };
         let (mode, now) = (self.eye.mode(), self.now());
         let wheel = |camera: &_, size| control::wheeled(camera, mode, point, notches, size);
@@ -125,5 +132,27 @@ impl Live {
         // Along -w, t is the depth.
         let t = closest_hit(&frame.scene, &ray).map_or(pose.eye.distance(pose.target), |hit| hit.t);
         Some(ray.at(t))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crossterm::event::{KeyCode, KeyModifiers, MouseButton};
+
+    #[test]
+    fn of_ways_that_lead_on_the_last_one_counts() {
+        let mouse = |kind, column| {
+            Input::Event(Event::Mouse(MouseEvent { kind, column, row: 0, modifiers: KeyModifiers::NONE }))
+        };
+        let (left, right) = (MouseEventKind::Drag(MouseButton::Left), MouseEventKind::Drag(MouseButton::Right));
+        let way = mouse(left, 1);
+        assert!(is_outdated(&way, Some(&mouse(left, 2))));
+        let key = Input::Event(Event::Key(KeyCode::Char('w').into()));
+        let (up, wheel) = (mouse(MouseEventKind::Up(MouseButton::Left), 2), mouse(MouseEventKind::ScrollUp, 2));
+        for next in [None, Some(&up), Some(&mouse(right, 2)), Some(&wheel), Some(&key)] {
+            assert!(!is_outdated(&way, next), "{next:?}");
+        }
+        assert!(!is_outdated(&wheel, Some(&wheel)) && !is_outdated(&key, Some(&key)), "each of them counts");
     }
 }

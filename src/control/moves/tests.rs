@@ -23,6 +23,11 @@ fn a_point_is_where_its_ray_is() {
         assert!(place_of(&camera, ray.at(4.0), 1.6).expect("in front").abs_diff_eq(Vec2::new(0.3, 0.4), 1e-5));
         assert_eq!(place_of(&camera, ray.at(-1.0), 1.6), None);
         assert_eq!(place_of(&camera, ray.origin, 1.6), None);
+        let dragged = point_dragged(&camera, ray.at(4.0), Vec2::new(0.1, 0.2), 1.6);
+        assert!(place_of(&camera, dragged, 1.6).expect("in front").abs_diff_eq(Vec2::new(0.4, 0.6), 1e-5));
+        assert!(point_wheeled(&camera, ray.at(4.0), 2.0).abs_diff_eq(ray.at(4.0 / (NOTCH * NOTCH)), 1e-4));
+        let behind = point_dragged(&camera, ray.at(-1.0), Vec2::new(0.1, 0.0), 1.6);
+        assert!((behind - ray.at(-1.0)).dot(camera.basis().u) > 0.0, "as on the screen");
     }
 }
 
@@ -159,4 +164,32 @@ fn the_wheel_comes_nearer_to_a_point_which_stays_where_it_is() {
     }
     let near = (0..500).fold(start, |camera, _| wheeled(&camera, Mode::Orbit, Vec3::ZERO, 1.0, 1.0));
     assert!(near.pose().eye.z > 0.0, "never through the target");
+}
+
+/// Drags and notches in any order: the picture stays upright, and the eye away from the target.
+#[test]
+fn whatever_the_mouse_does_there_is_a_picture() {
+    for size in [1e-6, 1.0, 1e9] {
+        let mut camera = camera(size * Vec3::new(0.0, 1.0, 2.0), Vec3::ZERO);
+        let mut seed = 1u32;
+        let mut number = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 23) as f32 - 1.0
+        };
+        for step in 0..2_000 {
+            let mode = if step / 100 % 2 == 0 { Mode::Orbit } else { Mode::Fly };
+            let by = Vec2::new(number(), number());
+            let pose = camera.pose();
+            camera = match step % 4 {
+                0 => dragged(&camera, mode, Grip::Turn, by, 1.6),
+                1 => dragged(&camera, mode, Grip::Pan, by, 1.6),
+                2 => wheeled(&camera, mode, pose.target + size * Vec3::new(by.x, by.y, 0.5), 10.0 * number(), size),
+                _ => zoomed(&camera, 1.0 + 0.5 * number()),
+            };
+            let (pose, basis) = (camera.pose(), camera.basis());
+            assert!(pose.eye.is_finite() && basis.v.y > 0.0, "{step} {pose:?}");
+            let distance = pose.eye.distance(pose.target);
+            assert!(distance >= 0.99 * NEAREST * size && distance <= 1.01 * FARTHEST * size, "{step} {distance}");
+        }
+    }
 }
