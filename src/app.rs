@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::capabilities::Hints;
-use crate::control::Bindings;
+use crate::control::{Bindings, Pace};
 use crate::encode::{Order, Quality};
 use crate::render::Sampling;
 use crate::scene::Scene;
@@ -58,6 +58,8 @@ pub struct Options {
     pub sampling: Option<Sampling>,
     /// How many threads trace; `None`: as many as there are cores.
     pub threads: Option<usize>,
+    /// How fast keys move and turn the view.
+    pub pace: Pace,
     /// Whether each press of a key moves one step at once, and nothing glides or moves by itself.
     pub reduced_motion: bool,
     /// The folder that the user may have the picture written into; `None`: he may not.
@@ -81,6 +83,7 @@ impl Options {
             max_frames: None,
             sampling: None,
             threads: None,
+            pace: Pace::default(),
             reduced_motion: false,
             exports: None,
             welcome: None,

@@ -13,6 +13,6 @@ mod pointer;
 pub use bindings::{Binding, Bindings, Mode};
 pub use command::{Command, Direction, Side, Toward};
 pub use key::Key;
-pub use motion::{COAST, GLIDE, Motion};
+pub use motion::{COAST, GLIDE, Motion, Pace};
 pub use moves::{dragged, framing, on_turntable, place_of, point_dragged, point_wheeled, speed, wheeled, zoomed};
 pub use pointer::{Gesture, Grip, Pointer};

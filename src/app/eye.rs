@@ -1,7 +1,7 @@
 //! Where the scene is looked at from, and how keys move that.
 
 use crate::camera::{Camera, Pose};
-use crate::control::{self, Command, Mode, Motion};
+use crate::control::{self, Command, Mode, Motion, Pace};
 use crate::scene::Scene;
 use crossterm::event::{KeyEvent, KeyEventKind};
 use glam::Vec3;
@@ -62,9 +62,10 @@ impl View {
 const STEP: Duration = Duration::from_millis(200);
 
 impl Eye {
-    /// Whether each press of a key is to be one step at once, and nothing glides: for those whom movement makes unwell.
-    pub(super) fn in_steps(steps: bool) -> Self {
-        Self { steps, ..Self::default() }
+    /// What keys do at that pace, and whether each press is to be one step at once, and nothing glides: for those whom
+    /// movement makes unwell.
+    pub(super) fn new(pace: Pace, steps: bool) -> Self {
+        Self { motion: Motion::at_pace(pace), steps, ..Self::default() }
     }
 
     /// There is something else to see; how what was seen before was looked at.
@@ -189,7 +190,8 @@ impl Eye {
     /// A press or a repeat is one step.
     fn take_step(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>) -> bool {
         let Some(view) = self.view.as_mut().filter(|_| key.kind != KeyEventKind::Release) else { return false };
-        let mut motion = Motion::default();
+        // It holds nothing: steps are all there is.
+        let mut motion = self.motion.clone();
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
         let before = view.camera;
         view.camera = motion.step(&before, view.speed, Duration::ZERO, STEP);

@@ -92,7 +92,7 @@ impl Live {
         let link = Link::new(options.max_rate, options.max_frames, questions.is_open());
         let capabilities = Findings::new(&options.hints, window.cell, questions.answers()).capabilities();
         let mut live = Self {
-            eye: Eye::in_steps(options.reduced_motion),
+            eye: Eye::new(options.pace, options.reduced_motion),
             shown: Shown::one(options.view),
             window,
             capabilities,

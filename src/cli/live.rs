@@ -48,6 +48,7 @@ impl LiveArgs {
         options.max_rate = settings.loss.max_rate();
         options.max_frames = settings.fps;
         options.sampling = settings.samples;
+        options.pace = settings.pace();
         options.reduced_motion = settings.reduced_motion();
         options.view = settings.view.view();
         options.exports = Some(PathBuf::from("."));

@@ -20,6 +20,7 @@ use entries::Entry;
 use files::UserFile;
 use std::path::PathBuf;
 use termtrace::capabilities::Hints;
+use termtrace::control::Pace;
 use termtrace::render::Sampling;
 
 /// Stands below the options in the help.
@@ -61,6 +62,12 @@ pub(super) struct SettingArgs {
     /// The most frames per second [default: 60]
     #[arg(long, value_name = "N", value_parser = parse_fps)]
     pub(super) fps: Option<f32>,
+    /// How fast keys move the eye: a factor from 0.1 to 10 [default: 1]
+    #[arg(long, value_name = "N", value_parser = parse_speed)]
+    move_speed: Option<f32>,
+    /// How fast keys turn the view: a factor from 0.1 to 10 [default: 1]
+    #[arg(long, value_name = "N", value_parser = parse_speed)]
+    turn_speed: Option<f32>,
     /// Each press of a key moves one step at once; nothing glides or moves by itself [default: false]
     #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     #[arg(hide_possible_values = true)]
@@ -73,6 +80,10 @@ impl SettingArgs {
         self.samples.map_or(Ok(()), |samples| self.view.check_samples(samples))
     }
 
+    pub(super) fn pace(&self) -> Pace {
+        Pace { moving: self.move_speed.unwrap_or(1.0), turning: self.turn_speed.unwrap_or(1.0) }
+    }
+
     pub(super) fn reduced_motion(&self) -> bool {
         self.reduced_motion.unwrap_or(false)
     }
@@ -82,6 +93,12 @@ impl SettingArgs {
 fn parse_fps(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|fps| (0.01..=1_000.0).contains(fps));
     number.ok_or_else(|| "expected frames per second, from 0.01 to 1000".to_owned())
+}
+
+/// So many times as fast as usual.
+fn parse_speed(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|speed| (0.1..=10.0).contains(speed));
+    number.ok_or_else(|| "expected a factor from 0.1 to 10".to_owned())
 }
 
 /// What holds, and who says so.

@@ -24,6 +24,22 @@ pub struct Motion {
     /// With Shift.
     fast: bool,
     hears_releases: bool,
+    pace: Pace,
+}
+
+/// How fast keys move and turn the view, in multiples of what is usual.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pace {
+    /// Ways, and distances from the target.
+    pub moving: f32,
+    /// Turns, of the view and around the target.
+    pub turning: f32,
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Self { moving: 1.0, turning: 1.0 }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +61,11 @@ pub const GLIDE: Duration = Duration::from_millis(700);
 pub const COAST: Duration = Duration::from_millis(150);
 
 impl Motion {
+    /// Nothing is held yet; what will be moves the eye at that pace.
+    pub fn at_pace(pace: Pace) -> Self {
+        Self { pace, ..Self::default() }
+    }
+
     /// Whether the terminal tells of releases from now on. What is held is let go of when it no longer does.
     pub fn set_hears_releases(&mut self, hears_releases: bool) {
         if self.hears_releases && !hears_releases {
@@ -104,8 +125,9 @@ impl Motion {
         let seconds = to.min(self.until).saturating_sub(from).as_secs_f32();
         let seconds = if self.fast { FASTER * seconds } else { seconds };
         // Half of the turn before the way and half after it: a curve is nearly the same in one step as in many.
-        let half = 0.5 * TURN_SPEED * seconds;
+        let half = 0.5 * TURN_SPEED * self.pace.turning * seconds;
         let turn = |camera| around(&turned(&camera, half * sum.turn), half * sum.around);
+        let seconds = self.pace.moving * seconds;
         let camera = moved(&turn(*camera), speed * seconds * sum.way);
         turn(nearer(&camera, libm::expf(-NEARER_SPEED * seconds * sum.nearer), speed))
     }

@@ -6,9 +6,9 @@ use std::time::Duration;
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 
 /// Presses keys, waits until the screen no longer changes, and leaves.
-fn eye_after(keys: &[u8]) -> Vec<f32> {
+fn eye_after(keys: &[u8], flags: &[&str]) -> Vec<f32> {
     let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).size(Size::cells(40, 12));
-    let mut session = start.arg("--reduced-motion").spawn();
+    let mut session = flags.iter().fold(start.arg("--reduced-motion"), Start::arg).spawn();
     session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains('▀'));
     session.send(keys);
     let mut before = 0;
@@ -36,13 +36,21 @@ fn is_near(eye: &[f32], wanted: [f32; 3]) -> bool {
 /// A tenth of the way from (0, 2.1, 6.3) to (0, 0.9, 0), and no more: a glide would go on for a third of it.
 #[test]
 fn a_press_is_one_step() {
-    let at = eye_after(b"w");
+    let at = eye_after(b"w", &[]);
     assert!(is_near(&at, [0.0, 1.98, 5.67]), "{at:?}");
+}
+
+#[test]
+fn a_step_is_as_long_as_the_speed_that_was_set() {
+    let at = eye_after(b"w", &["--move-speed=2"]);
+    assert!(is_near(&at, [0.0, 1.86, 5.04]), "{at:?}");
+    let at = eye_after(b"w", &["--move-speed=0.5", "--turn-speed=10"]);
+    assert!(is_near(&at, [0.0, 2.04, 5.985]), "{at:?}");
 }
 
 /// Whatever the terminal takes repeats for, and other keys stop nothing.
 #[test]
 fn a_press_with_shift_is_four_steps_and_each_repeat_one_more() {
-    let at = eye_after(b"Ww w");
+    let at = eye_after(b"Ww w", &[]);
     assert!(is_near(&at, [0.0, 1.38, 2.52]), "{at:?}");
 }

@@ -62,6 +62,20 @@ fn assert_after_a_second(keys: &str, eye: [f32; 3], view: [f32; 3]) {
 const AHEAD: [f32; 3] = [0.0, 0.0, -1.0];
 const HERE: [f32; 3] = [0.0, 0.0, 4.0];
 
+#[test]
+fn ways_and_turns_have_a_pace_of_their_own() {
+    let after = |keys, pace| {
+        let motion = Motion { pace, ..holding(keys) };
+        after(&motion, ms(1_000))
+    };
+    let usual = Pace::default();
+    let (eye, _) = after("w", Pace { moving: 2.0, ..usual });
+    assert!(eye.abs_diff_eq(Vec3::new(0.0, 0.0, 2.0), 1e-5), "{eye}");
+    assert_eq!(after("w", Pace { turning: 2.0, ..usual }), after("w", usual));
+    let (_, view) = after("l", Pace { turning: 2.0, moving: 5.0 });
+    assert!(view.abs_diff_eq(Vec3::X, 1e-5), "{view}");
+}
+
 /// Key, and where eye and view direction are after a second of it at speed 1.
 #[test]
 fn each_key_moves_the_camera_its_way() {
