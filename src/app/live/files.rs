@@ -13,7 +13,7 @@ impl Live {
     pub(super) fn copy_camera(&mut self) {
         if let Some(camera) = self.eye.camera() {
             self.to_copy = Some(format!("{},", camera.to_ron()));
-            self.screen.say("camera copied, where the terminal allows it (OSC 52); it is printed on leaving, too");
+            self.screen.say("camera copied, where OSC 52 is allowed; on leaving it is printed, too");
         }
     }
 
