@@ -104,8 +104,8 @@ impl Explaining {
         lines
     }
 
-    /// Draws the panel: the text, and the view from the side below it.
-    pub(super) fn draw(&mut self, look: Look, mode: CellMode, area: Rect, buffer: &mut Buffer) {
+    /// Draws the panel: the text, which these keys scroll, and the view from the side below it.
+    pub(super) fn draw(&mut self, scroll: &str, look: Look, mode: CellMode, area: Rect, buffer: &mut Buffer) {
         let lines = self.lines(mode);
         let inside = area.inner(Margin::new(2, 1));
         let [text, inset] = place::split(inside, lines.len() as u16);
@@ -115,7 +115,7 @@ impl Explaining {
         let mut block = Block::bordered().border_set(look.border()).style(look.style()).title(" explain ");
         if usize::from(text.height) < lines.len() {
             let first = self.scrolled + 1;
-            block = block.title_bottom(format!(" {first}-{last} of {}: PageUp, PageDown ", lines.len()));
+            block = block.title_bottom(format!(" {first}-{last} of {}: {scroll} ", lines.len()));
         }
         block.render(area, buffer);
         let seen: Vec<_> = lines.into_iter().skip(self.scrolled).map(Line::from).collect();

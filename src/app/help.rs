@@ -1,6 +1,6 @@
 //! What is told of keys: the help, and a line of those that matter most. Both are made from the bindings that hold.
 
-use super::panels::Look;
+use super::panels::{self, Look};
 use crate::control::{Bindings, Command, Direction, Key, Mode, Toward};
 use crossterm::event::KeyCode;
 use ratatui::buffer::Buffer;
@@ -8,9 +8,6 @@ use ratatui::layout::{Margin, Rect};
 use ratatui::widgets::{Block, Clear, Paragraph, Widget};
 use std::collections::HashSet;
 use unicode_width::UnicodeWidthStr;
-
-/// What is said where there is no room for it.
-pub(super) const NO_ROOM: &str = "help needs 40x12";
 
 /// Between two columns.
 const GAP: usize = 2;
@@ -73,6 +70,12 @@ impl Help {
             rest = Rect { x: rest.x + taken, width: rest.width - taken, ..rest };
         }
     }
+}
+
+/// What is said where there is no room for it.
+pub(super) fn no_room() -> String {
+    let (columns, rows) = panels::LEAST;
+    format!("help needs {columns}x{rows}")
 }
 
 /// What keys mean now. What a mode binds is hidden where one above it binds the same key. Of many that do the same, such as
@@ -195,20 +198,13 @@ fn matter(mode: Mode) -> &'static [(&'static [Command], &'static str)] {
 }
 
 /// A key of each command, if all have one; the four arrows by that name.
-fn keys(bindings: &Bindings, modes: &[Mode], commands: &[Command]) -> Option<String> {
-    let keys: Option<Vec<Key>> = commands.iter().map(|&command| key_of(bindings, modes, command)).collect();
+pub(super) fn keys(bindings: &Bindings, modes: &[Mode], commands: &[Command]) -> Option<String> {
+    let keys: Option<Vec<Key>> = commands.iter().map(|&command| bindings.key_of(modes, command)).collect();
     let keys = keys?;
     let arrows = [KeyCode::Left, KeyCode::Right, KeyCode::Up, KeyCode::Down].map(Key::named);
     let names: Vec<_> = keys.iter().map(Key::to_string).collect();
     let is_short = names.iter().all(|name| name.width() == 1);
     Some(if keys == arrows { "arrows".to_owned() } else { names.join(if is_short { "" } else { " " }) })
-}
-
-/// The first of the keys that do it in these modes, one without Ctrl if there is any.
-fn key_of(bindings: &Bindings, modes: &[Mode], command: Command) -> Option<Key> {
-    let rows = modes.iter().flat_map(|&mode| bindings.of(mode)).filter(|row| row.command == command);
-    let does = |key: &&Key| bindings.command(modes, &key.pressed()).is_some_and(|(meant, _)| meant == command);
-    rows.flat_map(|row| &row.keys).filter(does).min_by_key(|key| key.ctrl).copied()
 }
 
 #[cfg(test)]

@@ -89,7 +89,7 @@ pub(super) struct Status {
 }
 
 /// The least screen on which panels lie over the picture.
-const LEAST: (u16, u16) = (40, 12);
+pub(super) const LEAST: (u16, u16) = (40, 12);
 
 /// Whether panels may lie over the picture: on a smaller screen they would hide what they speak of.
 pub(super) fn has_room(screen: Rect) -> bool {

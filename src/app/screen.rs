@@ -11,7 +11,7 @@ use super::renderer::{Frame, MIDDLE};
 use super::strip::Fault;
 use crate::capabilities::{Capabilities, Colors};
 use crate::cell::{self, Painter};
-use crate::control::{self, Bindings, Mode};
+use crate::control::{self, Bindings, Command, Mode};
 use crate::encode::{Allowance, Encoder, Order, Quality};
 use crate::grid::{Grid, Size};
 use crate::overlay;
@@ -329,10 +329,12 @@ impl Screen {
         let look = Look::of(mode);
         // What the status line takes at the foot besides the lowest row.
         let more_status = self.status_rows(screen).saturating_sub(1);
+        let scroll = help::keys(&self.bindings, &self.modes(grid.size()), &[Command::ScrollUp, Command::ScrollDown]);
+        let scroll = scroll.unwrap_or_default();
         if let Some(explaining) = self.explaining.as_mut().filter(|_| panels::has_room(screen)) {
             let above = Rect { height: screen.height - more_status, ..screen };
             let panel = explain::panel_area(above, explaining.cell(mode));
-            lay(grid, panel, |panel, buffer| explaining.draw(look, mode, panel, buffer));
+            lay(grid, panel, |panel, buffer| explaining.draw(&scroll, look, mode, panel, buffer));
             for mark in explain::marks(explaining, look, mode, screen) {
                 overlay::lay_over(grid, &mark);
             }
@@ -415,7 +417,7 @@ impl Screen {
                 let help = Help::new(bindings, &self.modes(grid.size()), screen);
                 lay(grid, help.area(page, screen), |area, buffer| help.draw(page, look, area, buffer));
             }
-            Some(_) => in_a_line(grid, help::NO_ROOM),
+            Some(_) => in_a_line(grid, &help::no_room()),
             None => {}
         }
     }

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use termtrace::app::{self, Ending, Options, Outcome, Source};
 use termtrace::capabilities::{Colors, USUAL_CELL_ASPECT};
 use termtrace::cell;
+use termtrace::control::{Bindings, Command, Mode};
 use termtrace::export;
 use termtrace::grid::Size;
 use termtrace::mesh_file::is_mesh;
@@ -21,7 +22,13 @@ use termtrace::terminal::{Signals, die_of};
 use termtrace::view;
 
 /// For who has not named a scene.
-const WELCOME: &str = "a built-in scene; termtrace FILE opens yours; ? shows the keys, q leaves";
+fn welcome(bindings: &Bindings) -> String {
+    let [help, quit] = [Command::Help, Command::Quit].map(|command| {
+        let key = bindings.key_of(&[Mode::Fly, Mode::Always], command);
+        key.map(|key| key.to_string()).unwrap_or_default()
+    });
+    format!("a built-in scene; termtrace FILE opens yours; {help} shows the keys, {quit} leaves")
+}
 
 #[derive(Args)]
 pub(super) struct LiveArgs {
@@ -40,8 +47,8 @@ pub(super) struct LiveArgs {
 }
 
 impl LiveArgs {
-    /// With these settings, which its flags are a part of.
-    fn options(&self, settings: &SettingArgs) -> Options {
+    /// With these settings, which its flags are a part of, and these keys.
+    fn options(&self, settings: &SettingArgs, bindings: Bindings) -> Options {
         let mut options = Options::new(settings.terminal.hints());
         options.order = self.order.order();
         options.quality = settings.loss.quality();
@@ -52,7 +59,8 @@ impl LiveArgs {
         options.reduced_motion = settings.reduced_motion();
         options.view = settings.view.view();
         options.exports = Some(PathBuf::from("."));
-        options.welcome = self.scenes.is_empty().then(|| WELCOME.to_owned());
+        options.welcome = self.scenes.is_empty().then(|| welcome(&bindings));
+        options.bindings = bindings;
         options.threads = self.look.threads.map(usize::from);
         options
     }
@@ -112,9 +120,8 @@ fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
     rehearse();
     let settings = Settings::gather(given)?.args;
     settings.check_samples()?;
-    let mut options = args.options(&settings);
-    options.bindings = keys::bindings(given.get_flag("no_config"))?;
-    let sources = sources(args)?;
+    let bindings = keys::bindings(given.get_flag("no_config"))?;
+    let (sources, options) = (sources(args)?, args.options(&settings, bindings));
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard } = match ended {

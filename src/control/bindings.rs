@@ -221,6 +221,13 @@ impl Bindings {
         })
     }
 
+    /// A key that does it in these modes, if one does: the first, and one without Ctrl where there is any.
+    pub fn key_of(&self, modes: &[Mode], command: Command) -> Option<Key> {
+        let rows = modes.iter().flat_map(|&mode| self.of(mode)).filter(|row| row.command == command);
+        let does = |key: &&Key| self.command(modes, &key.pressed()).is_some_and(|(meant, _)| meant == command);
+        rows.flat_map(|row| &row.keys).filter(does).min_by_key(|key| key.ctrl).copied()
+    }
+
     fn bound(&self, mode: Mode, key: Key) -> Option<Command> {
         self.of(mode).find(|row| row.keys.contains(&key)).map(|row| row.command)
     }

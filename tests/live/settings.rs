@@ -124,6 +124,20 @@ fn keys_of_ones_own_do_what_the_file_says_and_are_told_of() {
     leave(&mut session);
 }
 
+/// Whatever speaks of a key speaks of the one that is bound.
+#[test]
+fn all_that_is_said_of_keys_goes_by_the_file() {
+    let keys = r#"(explain: { "Space": ScrollDown, "PageDown": None }, always: { "Q": Quit, "q": None, "F1": Help, "?": None })"#;
+    let home = user(&[("keys.ron", keys)]);
+    let mut session = Start::new(env!("CARGO_BIN_EXE_termtrace")).env("HOME", home.path()).spawn();
+    wait_for_last(&mut session, "F1 shows the keys, Q leaves");
+    session.send(b"x");
+    session.wait_for_text(" of 40: PageUp Space ");
+    session.send(b"   ");
+    session.wait_for_text("-40 of 40: ");
+    leave_moved(&mut session, b"Q");
+}
+
 #[test]
 fn keys_that_are_wrong_are_told_of_before_anything_else() {
     let home = user(&[("keys.ron", "(fly: { \"Up\": MovForward })")]);
