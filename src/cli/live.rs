@@ -23,11 +23,11 @@ use termtrace::view;
 
 /// For who has not named a scene.
 fn welcome(bindings: &Bindings) -> String {
-    let [help, quit] = [Command::Help, Command::Quit].map(|command| {
+    let said = [(Command::Help, "shows the keys"), (Command::Quit, "leaves")].map(|(command, does)| {
         let key = bindings.key_of(&[Mode::Fly, Mode::Always], command);
-        key.map(|key| key.to_string()).unwrap_or_default()
+        key.map_or_else(String::new, |key| format!("; {key} {does}"))
     });
-    format!("a built-in scene; termtrace FILE opens yours; {help} shows the keys, {quit} leaves")
+    format!("a built-in scene; termtrace FILE opens yours{}", said.concat())
 }
 
 #[derive(Args)]

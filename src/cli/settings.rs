@@ -26,8 +26,8 @@ use termtrace::render::Sampling;
 /// Stands below the options in the help.
 pub(super) const EXPLAINED: &str = "\
 Settings: what holds for good stands in config.ron, by the flags' names, as in (fps: 30, color: 256), or in the
-environment, as in TERMTRACE_FPS=30; a flag goes before the environment, and that before the file. termtrace config
-says what holds, who says so, and where the file is looked for.";
+environment, as in TERMTRACE_FPS=30; a flag goes before the environment, and that before the file. keys.ron beside it
+binds keys. termtrace config says what holds, who says so, and where the files are looked for.";
 
 /// What is wanted of the terminal.
 #[derive(Args)]

@@ -130,7 +130,9 @@ fn all_that_is_said_of_keys_goes_by_the_file() {
     let keys = r#"(explain: { "Space": ScrollDown, "PageDown": None }, always: { "Q": Quit, "q": None, "F1": Help, "?": None })"#;
     let home = user(&[("keys.ron", keys)]);
     let mut session = Start::new(env!("CARGO_BIN_EXE_termtrace")).env("HOME", home.path()).spawn();
-    wait_for_last(&mut session, "F1 shows the keys, Q leaves");
+    wait_for_last(&mut session, "; F1 shows the keys; Q leaves");
+    session.send(b"\t");
+    wait_for_last(&mut session, "orbit; F1 shows its keys");
     session.send(b"x");
     session.wait_for_text(" of 40: PageUp Space ");
     session.send(b"   ");

@@ -70,8 +70,8 @@ impl Live {
         let at = self.lights.held();
         let is_seen = |camera: Camera| at.is_some_and(|at| control::place_of(&camera, at, 1.0).is_some());
         let behind = if self.eye.camera().is_some_and(is_seen) { "" } else { ", behind the eye" };
-        self.screen.say(format!("light {} of {count}{behind}: drag it; ? shows its keys", light + 1));
         self.screen.mark_light(at);
+        self.screen.say(format!("light {} of {count}{behind}: drag it{}", light + 1, self.who_shows_its_keys()));
     }
 
     /// Lets go of it; whether there was one.

@@ -1,7 +1,7 @@
 //! How the eye moves, beside what held keys do.
 
 use super::Live;
-use crate::control;
+use crate::control::{self, Command};
 use crate::framebuffer::Resolution;
 use crate::hit::closest_hit;
 use crate::ray::Ray;
@@ -17,7 +17,13 @@ impl Live {
         self.eye.change_mode(in_the_middle);
         self.stale = true;
         self.screen.set_moving(self.eye.mode());
-        self.screen.say(format!("{}: ? shows its keys", self.eye.mode().name()));
+        self.screen.say(format!("{}{}", self.eye.mode().name(), self.who_shows_its_keys()));
+    }
+
+    /// For a note on what keys are for now.
+    pub(super) fn who_shows_its_keys(&self) -> String {
+        let key = self.options.bindings.key_of(&self.screen.modes(self.window.size), Command::Help);
+        key.map_or_else(String::new, |key| format!("; {key} shows its keys"))
     }
 
     /// The point of the scene that the eye looks at.
