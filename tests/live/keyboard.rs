@@ -162,7 +162,7 @@ fn only_a_press_acts() {
     }
     release(&session, '?');
     // A release of a key never pressed, a modifier alone, a key that means nothing.
-    session.send(b"\x1b[113;1:3u\x1b[99;5:3u\x1b[57441;2u\x1b[57441;1:3u\x1b[120u\x1b[57376u");
+    session.send(b"\x1b[113;1:3u\x1b[99;5:3u\x1b[57441;2u\x1b[57441;1:3u\x1b[122u\x1b[57376u");
     rest(&mut session);
     session.wait_for_text("move forward");
     assert_eq!(eye(&mut session), [0.0, 1.0, 5.0]);

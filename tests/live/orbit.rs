@@ -118,7 +118,8 @@ fn t_turns_until_the_next_move() {
         session.wait_for("the next frame", SOON, |seen| seen.bytes().len() > frames);
         frames = session.seen().bytes().len();
     }
-    // The help does not move it.
+    // Whoever looks elsewhere lets go of keys, not of the turntable; and the help does not move it.
+    session.send(b"\x1b[O");
     session.send(b"?");
     session.wait_for_text("keys: orbit");
     frames = session.seen().bytes().len();
