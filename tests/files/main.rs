@@ -1,9 +1,10 @@
-//! What scene and mesh files mean, and what is wrong with them.
+//! What files of scenes, meshes and keys mean, and what is wrong with them.
 
 #[path = "../corpus/mod.rs"]
 mod corpus;
 mod invalid;
 mod invalid_mesh_files;
+mod keys;
 mod mesh_corpus;
 mod mesh_files;
 #[path = "../mesh_laws/mod.rs"]
