@@ -85,8 +85,8 @@ impl Node {
             let (bounds, near) = (&self.bounds[axis], usize::from(slabs.is_backward[axis]));
             let origin = slabs.origin[axis];
             // NaN is left out, as there.
-            start = ((N::load(&bounds[near]) - origin) * slabs.near[axis]).max(start);
-            end = ((N::load(&bounds[1 - near]) - origin) * slabs.far[axis]).min(end);
+            start = ((origin - N::load(&bounds[near])) * slabs.near[axis]).max(start);
+            end = ((origin - N::load(&bounds[1 - near])) * slabs.far[axis]).min(end);
         }
         (start, start.le(end).bits())
     }
@@ -96,6 +96,8 @@ impl Node {
 /// [`Bounds::crossed`] says.
 struct Slabs<N> {
     origin: [N; 3],
+    /// The inverse with its sign turned, for the near planes and for the far ones: from a plane to the origin it is as far as
+    /// from there to it, and a CPU can take what it takes away from memory.
     near: [N; 3],
     far: [N; 3],
     is_backward: [bool; 3],
@@ -110,7 +112,7 @@ impl<N: Lanes> Slabs<N> {
     #[inline(always)]
     fn of(rays: &Rays<N>) -> Self {
         let (origin, inverse) = (rays.origin, rays.inverse);
-        let (less, more, zero) = (N::splat(1.0 - MORE), N::splat(1.0 + MORE), N::splat(0.0));
+        let (less, more, zero) = (N::splat(MORE - 1.0), N::splat(-1.0 - MORE), N::splat(0.0));
         // Written out: the compiler does not look into closures for the registers that they may use.
         Self {
             origin: [origin.x, origin.y, origin.z],

@@ -4,7 +4,7 @@ use super::witness::{Nobody, Test, Witness};
 use crate::bvh::{Child, LeafVisitor, Queue};
 use crate::lanes::{Answers, Eight, Lanes, Work, set_bits};
 use crate::ray::{Interval, Probe, Ray, Rays};
-use crate::scene::{Grove, Leaf, Parts};
+use crate::scene::{Grove, PartId, Parts};
 use crate::shape::{Crossable, SideBySide};
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -81,10 +81,10 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
 
     #[inline(always)]
     fn test<S: SideBySide>(&mut self, rays: &Rays<N>, leaf: usize, grove: &Grove<S>) {
-        let shapes = grove.leaves[leaf].shapes.load::<N>();
+        let shapes = grove.leaves[leaf].load::<N>();
         let crossing = shapes.first_crossing(rays, N::splat(self.within.min));
         if W::IS_THERE {
-            self.tell(&grove.leaves[leaf], crossing);
+            self.tell(grove.parts(leaf), crossing);
         }
         let Some((crosses, t)) = crossing else { return };
         let met = (crosses & t.le(N::splat(self.within.max))).bits();
@@ -98,9 +98,9 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     }
 
     /// Tells the witness of a leaf's parts.
-    fn tell<S>(&mut self, leaf: &Leaf<S>, crossing: Option<(N::Mask, N)>) {
+    fn tell(&mut self, parts: &[PartId], crossing: Option<(N::Mask, N)>) {
         let (crosses, t) = crossing.map_or((0, Eight::ZERO), |(crosses, t)| (crosses.bits(), t.store()));
-        for (lane, &id) in leaf.parts().iter().enumerate() {
+        for (lane, &id) in parts.iter().enumerate() {
             self.witness.part(Test::of(id, (crosses >> lane & 1 == 1).then_some(t.0[lane])));
         }
     }

@@ -180,7 +180,7 @@ impl<N: Lanes, const ANY: bool> Met<N, ANY> {
     fn test_few<S: SideBySide>(&mut self, grove: &Grove<S>, rays: &Rays<N>, min: N, parts: &Parts) {
         let Some(leaf) = grove.leaves.first() else { return };
         for lane in 0..grove.few {
-            self.test(&leaf.shapes.splat(lane), grove.place(0, lane), rays, min, parts);
+            self.test(&leaf.splat(lane), grove.place(0, lane), rays, min, parts);
         }
     }
 
@@ -244,7 +244,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
 
     #[inline(always)]
     fn leaf(&mut self, leaf: usize) {
-        let shapes = &self.grove.leaves[leaf].shapes;
+        let shapes = &self.grove.leaves[leaf];
         let min = N::splat(self.rays.within.min);
         let [enters, leaves] = self.packet.crossed(shapes.load::<N>().boxes());
         let is_met = enters.max(min).le(leaves.min(N::splat(self.farthest()))).bits();

@@ -36,8 +36,11 @@ pub(crate) struct Parts {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Grove<S> {
     pub(crate) bvh: Bvh,
-    /// What is in each leaf.
-    pub(crate) leaves: Vec<Leaf<S>>,
+    /// What is in each leaf: up to eight parts.
+    pub(crate) leaves: Vec<S>,
+    /// Whose they are, apart: that is asked only of what is met. (The last one's stands in the places that are left over,
+    /// too.)
+    ids: Vec<[PartId; LANES]>,
     /// The place of the first of them.
     pub(crate) first: u32,
     /// How many there are, where the tree is but one leaf and leaves nothing out; else 0.
@@ -46,22 +49,7 @@ pub(crate) struct Grove<S> {
 
 impl<S> Default for Grove<S> {
     fn default() -> Self {
-        Self { bvh: Bvh::default(), leaves: Vec::new(), first: 0, few: 0 }
-    }
-}
-
-/// Up to eight parts of one kind.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Leaf<S> {
-    pub(crate) shapes: S,
-    pub(crate) ids: [PartId; LANES],
-}
-
-impl<S> Leaf<S> {
-    /// Whose parts they are. (The last one's stands in the places that are left over, too.)
-    pub(crate) fn parts(&self) -> &[PartId] {
-        let end = (1..LANES).find(|&at| self.ids[at] == self.ids[at - 1]);
-        &self.ids[..end.unwrap_or(LANES)]
+        Self { bvh: Bvh::default(), leaves: Vec::new(), ids: Vec::new(), first: 0, few: 0 }
     }
 }
 
@@ -125,7 +113,7 @@ impl Parts {
 
 impl<S> Grove<S> {
     fn bytes(&self) -> usize {
-        self.bvh.bytes() + size_of_val(&self.leaves[..])
+        self.bvh.bytes() + size_of_val(&self.leaves[..]) + size_of_val(&self.ids[..])
     }
 
     /// The place of what stands in that leaf.
@@ -142,15 +130,23 @@ impl<S> Grove<S> {
 
     /// The leaf in which that place is, and which of its parts stands there.
     #[inline(always)]
-    pub(crate) fn leaf(&self, place: u32) -> (&Leaf<S>, usize) {
+    pub(crate) fn leaf(&self, place: u32) -> (&S, usize) {
         let at = (place - self.first) as usize;
         (&self.leaves[at / LANES], at % LANES)
     }
 
+    /// Whose part has that place.
     #[inline(always)]
-    fn id(&self, place: u32) -> PartId {
-        let (leaf, at) = self.leaf(place);
-        leaf.ids[at]
+    pub(crate) fn id(&self, place: u32) -> PartId {
+        let at = (place - self.first) as usize;
+        self.ids[at / LANES][at % LANES]
+    }
+
+    /// Whose parts are in that leaf.
+    pub(crate) fn parts(&self, leaf: usize) -> &[PartId] {
+        let ids = &self.ids[leaf];
+        let end = (1..LANES).find(|&at| ids[at] == ids[at - 1]);
+        &ids[..end.unwrap_or(LANES)]
     }
 }
 
@@ -186,9 +182,11 @@ impl<T: Surface + Copy + Sync> Listed<T> {
             let numbers = places.boxes(leaf);
             let number = |lane: usize| numbers[lane.min(numbers.len() - 1)] as usize;
             let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)]);
-            Leaf { shapes: S::of(&shapes[..numbers.len()]), ids: from_fn(|lane| self.ids[number(lane)]) }
+            (S::of(&shapes[..numbers.len()]), from_fn(|lane| self.ids[number(lane)]))
         };
         let few = if bvh.is_leaf() { self.ids.len() } else { 0 };
-        Some(Grove { bvh, leaves: (0..places.count()).into_par_iter().map(leaf).collect(), first, few })
+        let (mut leaves, mut ids) = (Vec::new(), Vec::new());
+        (0..places.count()).into_par_iter().map(leaf).unzip_into_vecs(&mut leaves, &mut ids);
+        Some(Grove { bvh, leaves, ids, first, few })
     }
 }

@@ -131,15 +131,15 @@ fn in_grove<N: Lanes, S: SideBySide>(
     let first = hits.place(lanes.trailing_zeros() as usize % LANES);
     let (leaf, place) = grove.leaf(first);
     if hits.at::<N>(first) == lanes {
-        at.set_ids(lanes, leaf.ids[place]);
-        return leaf.shapes.splat::<N>(place).points_at(&rays, t);
+        at.set_ids(lanes, grove.id(first));
+        return leaf.splat::<N>(place).points_at(&rays, t);
     }
     // Who has met something else has it cross what stands there, and that is not looked at.
-    let mut shapes = leaf.shapes;
+    let mut shapes = *leaf;
     for lane in set_bits(lanes) {
         let (leaf, place) = grove.leaf(hits.place(lane));
-        shapes.put(lane, &leaf.shapes, place);
-        at.ids[lane] = leaf.ids[place];
+        shapes.put(lane, leaf, place);
+        at.ids[lane] = grove.id(hits.place(lane));
     }
     shapes.load::<N>().points_at(&rays, t)
 }
