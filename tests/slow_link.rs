@@ -140,6 +140,49 @@ fn a_key_is_soon_seen_on_a_slow_link() {
     assert!(relay.frames.last().is_some_and(|frame| frame.status.contains("slow link")));
 }
 
+/// How long each of these takes until something is seen to be different from before.
+fn seen_after<T: PartialEq>(
+    relay: &mut Relay,
+    inputs: &[Vec<u8>],
+    what: &str,
+    see: impl Fn(&Relay) -> Option<T>,
+) -> Vec<Duration> {
+    let times = inputs.iter().enumerate().map(|(number, input)| {
+        let (before, pressed) = (see(relay), relay.now());
+        relay.press(input);
+        assert!(relay.run(SOON, |relay| see(relay) != before), "{what} {number} is seen");
+        let took = relay.since(pressed);
+        relay.run(ms(50 + 37 * number as u64 % 200), |_| false);
+        took
+    });
+    let times: Vec<_> = times.collect();
+    let (p50, p99) = (percentile(&times, 0.5), percentile(&times, 0.99));
+    println!("{what}, {} times: p50 {p50:?} p99 {p99:?}", times.len());
+    assert!(p50 <= ms(310).mul_f64(SLACK), "{what}: p50 {p50:?}");
+    assert!(p99 <= ms(400).mul_f64(SLACK), "{what}: p99 {p99:?}");
+    times
+}
+
+/// A panel that changes with each key, and a picture that follows the pointer.
+#[test]
+fn panels_and_the_pointer_are_as_quick_as_the_picture() {
+    let mut relay = looking(termtrace(), SLOW);
+    walk(&mut relay, 4);
+    relay.press(b"x");
+    let explained = |relay: &Relay| relay.screen().text().into_iter().find(|line| line.contains("(i, j) = "));
+    assert!(relay.run(SOON, |relay| explained(relay).is_some()), "an explanation");
+    let arrows: Vec<_> = [b"\x1b[C", b"\x1b[D"].iter().cycle().take(keys()).map(|key| key.to_vec()).collect();
+    seen_after(&mut relay, &arrows, "an explanation", explained);
+    relay.press(b"x");
+    relay.press(b"\t");
+    relay.run(ms(1_000), |_| false);
+    relay.press(b"\x1b[<0;40;12M");
+    let drags: Vec<_> =
+        [44, 40].iter().cycle().take(keys()).map(|x| format!("\x1b[<32;{x};12M").into_bytes()).collect();
+    let eye = |relay: &Relay| relay.frames.last().and_then(|frame| eye(&frame.status));
+    seen_after(&mut relay, &drags, "a drag", eye);
+}
+
 /// Frames of one size, whatever the link: only their number can be fitted to it.
 #[test]
 fn a_key_is_soon_seen_among_frames_of_four_kilobytes() {
@@ -182,9 +225,9 @@ fn spheres(scene: &Scene, eye: Option<[f64; 3]>) -> Grid {
     pty::picture(&scene, CellMode::HALF_BLOCK, Size::new(80, 24), 2.0)
 }
 
-/// The halves of all cells but those of the lowest row, where the status is.
+/// The halves of all cells but those of the lowest rows, where the status is.
 fn halves(columns: usize, mut cell: impl FnMut(usize, usize) -> Option<[Colour; 2]>) -> Vec<[f64; 3]> {
-    let cells = (0..23).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    let cells = (0..22).flat_map(|row| (0..columns).map(move |column| (column, row)));
     let halves = cells.flat_map(|(column, row)| cell(column, row).expect("a cell of a picture"));
     halves
         .map(|half| match half {
