@@ -2,7 +2,7 @@
 
 use super::Live;
 use crate::camera::Camera;
-use crate::control::{self, Toward};
+use crate::control::{self, Command, Toward};
 use crate::light::PointLight;
 use crate::scene::Scene;
 use glam::{Vec2, Vec3};
@@ -71,7 +71,11 @@ impl Live {
         let is_seen = |camera: Camera| at.is_some_and(|at| control::place_of(&camera, at, 1.0).is_some());
         let behind = if self.eye.camera().is_some_and(is_seen) { "" } else { ", behind the eye" };
         self.screen.mark_light(at);
-        self.screen.say(format!("light {} of {count}{behind}: drag it{}", light + 1, self.who_shows_its_keys()));
+        self.screen.say(format!(
+            "light {} of {count}{behind}: drag it{}",
+            light + 1,
+            self.hint(Command::Help, "shows its keys")
+        ));
     }
 
     /// Lets go of it; whether there was one.

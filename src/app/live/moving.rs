@@ -17,13 +17,13 @@ impl Live {
         self.eye.change_mode(in_the_middle);
         self.stale = true;
         self.screen.set_moving(self.eye.mode());
-        self.screen.say(format!("{}{}", self.eye.mode().name(), self.who_shows_its_keys()));
+        self.screen.say(format!("{}{}", self.eye.mode().name(), self.hint(Command::Help, "shows its keys")));
     }
 
-    /// For a note on what keys are for now.
-    pub(super) fn who_shows_its_keys(&self) -> String {
-        let key = self.options.bindings.key_of(&self.screen.modes(self.window.size), Command::Help);
-        key.map_or_else(String::new, |key| format!("; {key} shows its keys"))
+    /// What a key does about what a note says, for its end; nothing, if no key is bound to that.
+    pub(super) fn hint(&self, command: Command, does: &str) -> String {
+        let key = self.options.bindings.key_of(&self.screen.modes(self.window.size), command);
+        key.map_or_else(String::new, |key| format!("; {key} {does}"))
     }
 
     /// The point of the scene that the eye looks at.
@@ -70,15 +70,18 @@ impl Live {
 
     /// To a view of the scene's file, or one that was saved.
     pub(super) fn go_to_view(&mut self, number: u8) {
-        match self.eye.go_to(number, self.now()) {
-            Some(moved) => self.stale |= moved,
-            None => self.screen.say(format!("there is no view {number}: m {number} saves this one")),
+        if let Some(moved) = self.eye.go_to(number, self.now()) {
+            self.stale |= moved;
+        } else {
+            let hint = self.hint(Command::SaveView, "saves this one");
+            self.screen.say(format!("there is no view {number}{hint}"));
         }
     }
 
     /// This view can be come back to.
     pub(super) fn save_view(&mut self, number: u8) {
         self.eye.save(number);
-        self.screen.say(format!("saved as view {number}, until you leave; Y writes it into the scene's file"));
+        let hint = self.hint(Command::KeepView, "writes it into the scene's file");
+        self.screen.say(format!("saved as view {number}, until you leave{hint}"));
     }
 }
