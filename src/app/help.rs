@@ -188,10 +188,10 @@ fn matter(mode: Mode) -> &'static [(&'static [Command], &'static str)] {
             (&[Command::Close], "close"),
         ],
         Mode::Light => &[
-            (LIGHT, "the light"),
-            (&[Command::LightFarther, Command::LightNearer], "its distance"),
-            (&[Command::LightBack], "back"),
+            (LIGHT, "move it"),
             (&[Command::Close], "done"),
+            (&[Command::LightBack], "back"),
+            (&[Command::LightFarther, Command::LightNearer], "distance"),
         ],
         Mode::Export | Mode::Keep | Mode::Always => &[],
     }
