@@ -98,13 +98,21 @@ impl EightHits {
 /// The closest hit of each ray that is asked about, on its half line; of two at the same t, what comes first in the scene.
 pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mut Vec<EightHits>) {
     hits.clear();
-    kernel.run(ClosestHits { kernel, parts: scene.parts(), rays, hits });
+    let parts = scene.parts();
+    match kernel {
+        Kernel::Scalar => simd::run_scalar(ClosestAlone { parts, rays, hits }),
+        _ => simd::run(ClosestHits { kernel, parts, rays, hits }),
+    }
 }
 
 /// Which of the rays that are asked about meet anything inside the interval: a bit for each.
 pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Interval, met: &mut Vec<u32>) {
     met.clear();
-    kernel.run(AnyHits { kernel, parts: scene.parts(), rays, within, met });
+    let parts = scene.parts();
+    match kernel {
+        Kernel::Scalar => simd::run_scalar(AnyAlone { parts, rays, within, met }),
+        _ => simd::run(AnyHits { kernel, parts, rays, within, met }),
+    }
 }
 
 /// The closest hit of one ray.
@@ -157,10 +165,6 @@ impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
 }
 
 impl Kernel {
-    fn run<W: Work>(self, work: W) -> W::Output {
-        if self == Self::Scalar { simd::run_scalar(work) } else { simd::run(work) }
-    }
-
     /// Whether so many groups of rays go together.
     fn is_together(self, groups: usize) -> bool {
         match self {
@@ -195,20 +199,41 @@ impl Work for ClosestHits<'_> {
                 packet.tell_hits(hits);
                 continue;
             }
-            for rays in rays {
-                let mut hit =
-                    EightHits { met: 0, t: Eight::ZERO, places: Eight([f32::from_bits(EightHits::NOTHING); LANES]) };
-                for lane in set_bits(rays.asked) {
-                    let mut ray = Alone::<N, CLOSEST>::new(parts, &rays.ray(lane), Interval::IN_FRONT);
-                    ray.trace(&mut stacks.alone);
-                    if let (t, Some(place)) = ray.found() {
-                        hit.met |= 1 << lane;
-                        (hit.t.0[lane], hit.places.0[lane]) = (t, f32::from_bits(place));
-                    }
-                }
-                hits.push(hit);
+            closest_alone::<N>(parts, rays, &mut stacks.alone, hits);
+        }
+    }
+}
+
+/// The same one by one.
+struct ClosestAlone<'w> {
+    parts: &'w Parts,
+    rays: &'w [EightRays],
+    hits: &'w mut Vec<EightHits>,
+}
+
+impl Work for ClosestAlone<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        closest_alone::<N>(self.parts, self.rays, &mut Queue::default(), self.hits);
+    }
+}
+
+#[inline(always)]
+fn closest_alone<N: Lanes>(parts: &Parts, rays: &[EightRays], queue: &mut Queue, hits: &mut Vec<EightHits>) {
+    for rays in rays {
+        let nothing = Eight([f32::from_bits(EightHits::NOTHING); LANES]);
+        let mut hit = EightHits { met: 0, t: Eight::ZERO, places: nothing };
+        for lane in set_bits(rays.asked) {
+            let mut ray = Alone::<N, CLOSEST>::new(parts, &rays.ray(lane), Interval::IN_FRONT);
+            ray.trace(queue);
+            if let (t, Some(place)) = ray.found() {
+                hit.met |= 1 << lane;
+                (hit.t.0[lane], hit.places.0[lane]) = (t, f32::from_bits(place));
             }
         }
+        hits.push(hit);
     }
 }
 
@@ -235,16 +260,38 @@ impl Work for AnyHits<'_> {
                 packet.tell_met(met);
                 continue;
             }
-            for rays in rays {
-                let mut of_group = 0;
-                for lane in set_bits(rays.asked) {
-                    let mut ray = Alone::<N, ANY>::new(parts, &rays.ray(lane), within);
-                    ray.trace(&mut stacks.alone);
-                    of_group |= u32::from(ray.found().1.is_some()) << lane;
-                }
-                met.push(of_group);
-            }
+            any_alone::<N>(parts, rays, within, &mut stacks.alone, met);
         }
+    }
+}
+
+/// The same one by one.
+struct AnyAlone<'w> {
+    parts: &'w Parts,
+    rays: &'w [EightRays],
+    within: Interval,
+    met: &'w mut Vec<u32>,
+}
+
+impl Work for AnyAlone<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        any_alone::<N>(self.parts, self.rays, self.within, &mut Queue::default(), self.met);
+    }
+}
+
+#[inline(always)]
+fn any_alone<N: Lanes>(parts: &Parts, rays: &[EightRays], within: Interval, queue: &mut Queue, met: &mut Vec<u32>) {
+    for rays in rays {
+        let mut of_group = 0;
+        for lane in set_bits(rays.asked) {
+            let mut ray = Alone::<N, ANY>::new(parts, &rays.ray(lane), within);
+            ray.trace(queue);
+            of_group |= u32::from(ray.found().1.is_some()) << lane;
+        }
+        met.push(of_group);
     }
 }
 

@@ -6,7 +6,7 @@
 //!
 //! This module alone has unsafe code.
 
-use crate::lanes::Eight;
+use crate::lanes::{Eight, Lanes, Number};
 
 pub use crate::lanes::Work;
 
@@ -31,6 +31,23 @@ fn has_avx2() -> bool {
     is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi1") && is_x86_feature_detected!("lzcnt")
 }
 
+/// [`Number::each`] of what is in registers.
+#[inline(always)]
+fn each<N: Lanes, const IN: usize, const OUT: usize>(
+    numbers: [N; IN],
+    formula: impl Fn([f32; IN]) -> [f32; OUT],
+) -> [N; OUT] {
+    let mut stored = [Eight::ZERO; IN];
+    for (stored, numbers) in stored.iter_mut().zip(numbers) {
+        *stored = numbers.store();
+    }
+    let mut results = [N::splat(0.0); OUT];
+    for (results, stored) in results.iter_mut().zip(Eight::each(stored, formula)) {
+        *results = N::load(&stored);
+    }
+    results
+}
+
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
@@ -39,7 +56,7 @@ mod sse2;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::{Answers, LANES, Lanes};
+    use crate::lanes::{Answers, LANES};
 
     /// Each operation on pairs of eight, in a row: numbers as bits, and answers.
     struct All<'w>(&'w [[Eight; 2]]);

@@ -157,15 +157,7 @@ impl Number for Registers {
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],
     ) -> [Self; OUT] {
-        let mut stored = [Eight::ZERO; IN];
-        for (stored, numbers) in stored.iter_mut().zip(numbers) {
-            *stored = numbers.store();
-        }
-        let mut results = [Self::splat(0.0); OUT];
-        for (results, stored) in results.iter_mut().zip(Eight::each(stored, formula)) {
-            *results = Self::load(&stored);
-        }
-        results
+        super::each(numbers, formula)
     }
 }
 
