@@ -1,8 +1,8 @@
 //! What the CPU at hand can do: eight numbers in one register where it has such.
 //!
-//! Work over [`Lanes`](crate::lanes::Lanes) is compiled once for each set of instructions, and [`run`] asks the CPU which
-//! of them it has. What is on the way has to be inlined (`#[inline(always)]`) down to here: only then is it made of those
-//! instructions. None of them is but what IEEE 754 defines to the last bit; none multiplies and adds at once.
+//! Work over [`Lanes`] is compiled once for each set of instructions, and [`run`] asks the CPU which of them it has. What is
+//! on the way has to be inlined (`#[inline(always)]`) down to here: only then is it made of those instructions. None of
+//! them is but what IEEE 754 defines to the last bit; none multiplies and adds at once.
 //!
 //! This module alone has unsafe code.
 
