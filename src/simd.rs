@@ -1,12 +1,12 @@
 //! What the CPU at hand can do: eight numbers in one register where it has such.
 //!
-//! Work over [`Lanes`] is compiled once for each set of instructions, and [`run`] asks the CPU which of them it has. What is
-//! on the way has to be inlined (`#[inline(always)]`) down to here: only then is it made of those instructions. None of
-//! them is but what IEEE 754 defines to the last bit; none multiplies and adds at once.
+//! Work over [`Lanes`](crate::lanes::Lanes) is compiled once for each set of instructions, and [`run`] asks the CPU which
+//! of them it has. What is on the way has to be inlined (`#[inline(always)]`) down to here: only then is it made of those
+//! instructions. None of them is but what IEEE 754 defines to the last bit; none multiplies and adds at once.
 //!
 //! This module alone has unsafe code.
 
-use crate::lanes::{Eight, Lanes, Number};
+use crate::lanes::Eight;
 
 pub use crate::lanes::Work;
 
@@ -31,23 +31,6 @@ fn has_avx2() -> bool {
     is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi1") && is_x86_feature_detected!("lzcnt")
 }
 
-/// [`Number::each`] of what is in registers.
-#[inline(always)]
-fn each<N: Lanes, const IN: usize, const OUT: usize>(
-    numbers: [N; IN],
-    formula: impl Fn([f32; IN]) -> [f32; OUT],
-) -> [N; OUT] {
-    let mut stored = [Eight::ZERO; IN];
-    for (stored, numbers) in stored.iter_mut().zip(numbers) {
-        *stored = numbers.store();
-    }
-    let mut results = [N::splat(0.0); OUT];
-    for (results, stored) in results.iter_mut().zip(Eight::each(stored, formula)) {
-        *results = N::load(&stored);
-    }
-    results
-}
-
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
@@ -56,7 +39,7 @@ mod sse2;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::{Answers, LANES};
+    use crate::lanes::{Answers, LANES, Lanes};
 
     /// Each operation on pairs of eight, in a row: numbers as bits, and answers.
     struct All<'w>(&'w [[Eight; 2]]);

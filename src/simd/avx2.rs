@@ -3,6 +3,7 @@
 #![allow(unsafe_code)]
 
 use super::Work;
+use super::sse2::each;
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Number};
 use std::arch::x86_64::{
     __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_blendv_ps,
@@ -147,7 +148,7 @@ impl Number for Register {
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],
     ) -> [Self; OUT] {
-        super::each(numbers, formula)
+        each(numbers, formula)
     }
 }
 

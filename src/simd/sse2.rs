@@ -18,6 +18,23 @@ pub(super) fn run<W: Work>(work: W) -> W::Output {
     work.run::<Registers>()
 }
 
+/// [`Number::each`] of what is in registers.
+#[inline(always)]
+pub(super) fn each<N: Lanes, const IN: usize, const OUT: usize>(
+    numbers: [N; IN],
+    formula: impl Fn([f32; IN]) -> [f32; OUT],
+) -> [N; OUT] {
+    let mut stored = [Eight::ZERO; IN];
+    for (stored, numbers) in stored.iter_mut().zip(numbers) {
+        *stored = numbers.store();
+    }
+    let mut results = [N::splat(0.0); OUT];
+    for (results, stored) in results.iter_mut().zip(Eight::each(stored, formula)) {
+        *results = N::load(&stored);
+    }
+    results
+}
+
 /// The first four numbers and the last.
 #[derive(Clone, Copy, Debug)]
 struct Registers([__m128; 2]);
@@ -157,7 +174,7 @@ impl Number for Registers {
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],
     ) -> [Self; OUT] {
-        super::each(numbers, formula)
+        each(numbers, formula)
     }
 }
 
