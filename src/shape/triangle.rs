@@ -136,8 +136,14 @@ impl<N: Number> Crossable<N> for Corners<N> {
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
         let (crosses, Crossing { sum, t, .. }) = self.crossing(rays)?;
+        let t = t / sum;
+        // Behind the origin lies, most often, what the ray starts on.
+        let crosses = crosses & min.le(t);
+        if !crosses.any() {
+            return None;
+        }
         let [start, end] = crossed(self.boxes(), rays);
-        let t = nearest_in(start, end, t / sum);
+        let t = nearest_in(start, end, t);
         Some((crosses & start.le(end) & min.le(t), t))
     }
 
