@@ -14,7 +14,13 @@ pub use crate::lanes::Work;
 #[inline]
 pub fn run<W: Work>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
-    return if has_avx2() { avx2::run(work) } else { sse2::run(work) };
+    return if has_avx512() {
+        avx512::run(work)
+    } else if has_avx2() {
+        avx2::run(work)
+    } else {
+        sse2::run(work)
+    };
     #[cfg(not(target_arch = "x86_64"))]
     run_scalar(work)
 }
@@ -32,7 +38,22 @@ fn has_avx2() -> bool {
 }
 
 #[cfg(target_arch = "x86_64")]
+#[inline]
+fn has_avx512() -> bool {
+    has_avx2()
+        && is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512vl")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512bw")
+        && is_x86_feature_detected!("bmi2")
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx;
+#[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 
@@ -92,6 +113,14 @@ mod tests {
         };
         check(run(All(&pairs)), "the best");
         #[cfg(target_arch = "x86_64")]
-        check(sse2::run(All(&pairs)), "SSE2");
+        {
+            check(sse2::run(All(&pairs)), "SSE2");
+            if has_avx2() {
+                check(avx2::run(All(&pairs)), "AVX2");
+            }
+            if has_avx512() {
+                check(avx512::run(All(&pairs)), "AVX-512");
+            }
+        }
     }
 }

@@ -1,0 +1,213 @@
+//! Eight numbers in a register of AVX. What their comparisons answer depends on what else the CPU has.
+
+#![allow(unsafe_code)]
+
+use super::sse2::each;
+use crate::lanes::{Answers, Eight, LANES, Lanes, Number, Work};
+use std::arch::x86_64::{
+    __m256, _mm256_add_ps, _mm256_andnot_ps, _mm256_div_ps, _mm256_floor_ps, _mm256_load_ps, _mm256_max_ps,
+    _mm256_min_ps, _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_set1_ps, _mm256_shuffle_ps, _mm256_sqrt_ps,
+    _mm256_store_ps, _mm256_sub_ps, _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_ps,
+};
+use std::marker::PhantomData;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Answers for eight numbers in a register, and the instructions that give them.
+pub(super) trait Marks: Answers {
+    /// Does the work with registers that have such answers. The CPU has what they need.
+    fn run<W: Work>(work: W) -> W::Output;
+
+    /// [`Number::lt`].
+    fn lt(a: __m256, b: __m256) -> Self;
+
+    /// [`Number::le`].
+    fn le(a: __m256, b: __m256) -> Self;
+
+    /// [`Number::select`].
+    fn select(self, yes: __m256, no: __m256) -> __m256;
+
+    /// [`Lanes::answers`].
+    fn of_bits(bits: u32) -> Self;
+
+    /// [`Lanes::has_bits`].
+    fn has_bits(numbers: __m256, bits: u32) -> Self;
+}
+
+/// Only [`Marks::run`] has work done with it: where there is one, the CPU has AVX.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Register<M>(__m256, PhantomData<M>);
+
+impl<M> Register<M> {
+    #[inline(always)]
+    fn of(numbers: __m256) -> Self {
+        Self(numbers, PhantomData)
+    }
+}
+
+/// An instruction of AVX.
+macro_rules! avx {
+    ($instruction:expr) => {
+        // SAFETY: the CPU has AVX, as `Register` says; what is loaded and stored is a whole and aligned `Eight`.
+        unsafe { $instruction }
+    };
+}
+
+pub(super) use avx;
+
+/// What is chosen of each eight, where the order does not count: of neighbours, then of pairs, then of halves.
+macro_rules! of_each {
+    ($choose:ident, $eights:expr) => {{
+        let [a, b, c, d, e, f, g, h] = *$eights;
+        let (ab, cd) = (neighbours(a, b), neighbours(c, d));
+        let (ef, gh) = (neighbours(e, f), neighbours(g, h));
+        let left = pairs(ab[0].$choose(ab[1]), cd[0].$choose(cd[1]));
+        let right = pairs(ef[0].$choose(ef[1]), gh[0].$choose(gh[1]));
+        let [first, last] = halves(left[0].$choose(left[1]), right[0].$choose(right[1]));
+        first.$choose(last)
+    }};
+}
+
+macro_rules! operators {
+    ($($operation:ident $function:ident $instruction:ident)*) => {
+        $(impl<M> $operation for Register<M> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                Self::of(avx!($instruction(self.0, other.0)))
+            }
+        })*
+    };
+}
+
+operators! { Add add _mm256_add_ps Sub sub _mm256_sub_ps Mul mul _mm256_mul_ps Div div _mm256_div_ps }
+
+impl<M> Neg for Register<M> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::of(avx!(_mm256_xor_ps(self.0, _mm256_set1_ps(-0.0))))
+    }
+}
+
+impl<M: Marks> Number for Register<M> {
+    type Mask = M;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self::of(avx!(_mm256_set1_ps(value)))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::of(avx!(_mm256_sqrt_ps(self.0)))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self::of(avx!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0)))
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        Self::of(avx!(_mm256_floor_ps(self.0)))
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> M {
+        M::lt(self.0, other.0)
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> M {
+        M::le(self.0, other.0)
+    }
+
+    #[inline(always)]
+    fn select(answer: M, yes: Self, no: Self) -> Self {
+        Self::of(answer.select(yes.0, no.0))
+    }
+
+    /// Of the instruction, too: where one is NaN and where both are zero, the second.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::of(avx!(_mm256_max_ps(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::of(avx!(_mm256_min_ps(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn each<const IN: usize, const OUT: usize>(
+        numbers: [Self; IN],
+        formula: impl Fn([f32; IN]) -> [f32; OUT],
+    ) -> [Self; OUT] {
+        each(numbers, formula)
+    }
+}
+
+impl<M: Marks> Lanes for Register<M> {
+    #[inline(always)]
+    fn apart<W: Work>(work: W) -> W::Output {
+        M::run(work)
+    }
+
+    #[inline(always)]
+    fn load(numbers: &Eight) -> Self {
+        Self::of(avx!(_mm256_load_ps(numbers.0.as_ptr())))
+    }
+
+    #[inline(always)]
+    fn store(self) -> Eight {
+        let mut numbers = Eight([0.0; LANES]);
+        avx!(_mm256_store_ps(numbers.0.as_mut_ptr(), self.0));
+        numbers
+    }
+
+    #[inline(always)]
+    fn answers(bits: u32) -> M {
+        M::of_bits(bits)
+    }
+
+    #[inline(always)]
+    fn has_bits(self, bits: u32) -> M {
+        M::has_bits(self.0, bits)
+    }
+
+    #[inline(always)]
+    fn least_of_each(eights: &[Self; LANES]) -> Self {
+        of_each!(min, eights)
+    }
+
+    #[inline(always)]
+    fn greatest_of_each(eights: &[Self; LANES]) -> Self {
+        of_each!(max, eights)
+    }
+}
+
+/// The first and the last numbers of both, neighbours beside each other.
+#[inline(always)]
+fn neighbours<M: Marks>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
+    avx!([Register::of(_mm256_unpacklo_ps(a.0, b.0)), Register::of(_mm256_unpackhi_ps(a.0, b.0))])
+}
+
+/// The first and the last pairs of both.
+#[inline(always)]
+fn pairs<M: Marks>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
+    avx!([
+        Register::of(_mm256_shuffle_ps::<0b01_00_01_00>(a.0, b.0)),
+        Register::of(_mm256_shuffle_ps::<0b11_10_11_10>(a.0, b.0)),
+    ])
+}
+
+/// The first and the last halves of both.
+#[inline(always)]
+fn halves<M: Marks>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
+    avx!([
+        Register::of(_mm256_permute2f128_ps::<0x20>(a.0, b.0)),
+        Register::of(_mm256_permute2f128_ps::<0x31>(a.0, b.0)),
+    ])
+}

@@ -1,0 +1,105 @@
+//! AVX-512: the answers for eight numbers are a bit each. (Registers of sixteen are not used: what eight rays or eight
+//! boxes need is in one of eight.)
+
+#![allow(unsafe_code)]
+
+use super::avx::{Marks, Register, avx};
+use crate::lanes::{Answers, Mask, Work};
+use std::arch::x86_64::{
+    __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_castps_si256, _mm256_cmp_ps_mask, _mm256_cmpeq_epi32_mask,
+    _mm256_mask_blend_ps, _mm256_set1_epi32,
+};
+use std::ops::{BitAnd, BitOr, Not};
+
+/// Does the work with the registers and masks of AVX-512, which this CPU has to have.
+pub(super) fn run<W: Work>(work: W) -> W::Output {
+    Bits::run(work)
+}
+
+/// A bit for each number, 1 for yes.
+#[derive(Clone, Copy, Debug)]
+struct Bits(u8);
+
+impl Marks for Bits {
+    fn run<W: Work>(work: W) -> W::Output {
+        #[inline(never)]
+        #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,bmi1,bmi2,lzcnt,popcnt")]
+        fn compiled_for_avx512<W: Work>(work: W) -> W::Output {
+            work.run::<Register<Bits>>()
+        }
+        // SAFETY: `simd::run` has asked the CPU, and what runs on it comes here again by `Lanes::apart` alone.
+        unsafe { compiled_for_avx512(work) }
+    }
+
+    #[inline(always)]
+    fn lt(a: __m256, b: __m256) -> Self {
+        Self(avx!(_mm256_cmp_ps_mask::<_CMP_LT_OQ>(a, b)))
+    }
+
+    #[inline(always)]
+    fn le(a: __m256, b: __m256) -> Self {
+        Self(avx!(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b)))
+    }
+
+    #[inline(always)]
+    fn select(self, yes: __m256, no: __m256) -> __m256 {
+        avx!(_mm256_mask_blend_ps(self.0, no, yes))
+    }
+
+    #[inline(always)]
+    fn of_bits(bits: u32) -> Self {
+        Self(bits as u8)
+    }
+
+    #[inline(always)]
+    fn has_bits(numbers: __m256, bits: u32) -> Self {
+        let bits = avx!(_mm256_set1_epi32(bits.cast_signed()));
+        Self(avx!(_mm256_cmpeq_epi32_mask(_mm256_castps_si256(numbers), bits)))
+    }
+}
+
+impl BitAnd for Bits {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+impl BitOr for Bits {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl Not for Bits {
+    type Output = Self;
+
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(!self.0)
+    }
+}
+
+impl Mask for Bits {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.0 != 0
+    }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        self.0 == u8::MAX
+    }
+}
+
+impl Answers for Bits {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.0.into()
+    }
+}
