@@ -29,10 +29,14 @@ pub(super) struct Together<'p, N: Lanes, const ANY: bool> {
 const NOTHING: u32 = EightHits::NOTHING;
 
 /// If no more rays than these meet a node, they go on by themselves;
-const SOME: u32 = 8;
+const SOME: u32 = 6;
 
 /// or if no more than these of each group do.
 const A_FEW: u32 = 2;
+
+/// If more groups than these may meet it, one of them stands for the others first: most often all go on together, and
+/// to count them one by one takes longer than the node itself.
+const MANY: u32 = 5;
 
 /// Nothing is met so early.
 const DONE: f32 = f32::NEG_INFINITY;
@@ -263,15 +267,20 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
         if self.rays.kernel == Kernel::Packet {
             return groups == 0;
         }
-        let min = N::splat(self.rays.within.min);
-        let mut of_group = [0; GROUPS];
-        let mut count = 0;
-        for group in set_bits(groups) {
-            let [enters, leaves] = crossed(one, &self.rays.groups[group]);
-            of_group[group] = enters.max(min).le(leaves.min(self.rays.t[group])).bits();
-            count += of_group[group].count_ones();
+        let count = groups.count_ones();
+        let limit = SOME.max(count * A_FEW);
+        // Of so many there is one in the middle.
+        let middle = 3 + (groups >> 3).trailing_zeros() as usize;
+        if count > MANY && self.met_by(one, middle).count_ones() * count > limit {
+            return false;
         }
-        if count > SOME.max(groups.count_ones() * A_FEW) {
+        let mut of_group = [0; GROUPS];
+        let mut rays = 0;
+        for group in set_bits(groups) {
+            of_group[group] = self.met_by(one, group);
+            rays += of_group[group].count_ones();
+        }
+        if rays > limit {
             return false;
         }
         for group in set_bits(groups) {
@@ -282,6 +291,13 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
 }
 
 impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
+    /// Which rays of a group meet the box, a bit for each.
+    #[inline(always)]
+    fn met_by(&self, one: [Vector<N>; 2], group: usize) -> u32 {
+        let [enters, leaves] = crossed(one, &self.rays.groups[group]);
+        enters.max(N::splat(self.rays.within.min)).le(leaves.min(self.rays.t[group])).bits()
+    }
+
     /// Goes on with these rays of a group, a bit for each.
     #[inline(always)]
     fn rays_alone(&mut self, from: Child, group: usize, rays: u32) {
