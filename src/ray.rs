@@ -142,6 +142,12 @@ impl Probe {
     pub fn new(ray: Ray) -> Self {
         Self { ray, rays: Rays::new(Vector::splat(ray.origin), Vector::splat(ray.direction)) }
     }
+
+    /// The same without what only triangles ask for.
+    #[inline]
+    pub fn unsheared(ray: Ray) -> Self {
+        Self { ray, rays: Rays::unsheared(Vector::splat(ray.origin), Vector::splat(ray.direction)) }
+    }
 }
 
 /// The change of coordinates in which a ray runs along the z axis, one unit for each t: first the axes are exchanged, so

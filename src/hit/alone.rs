@@ -31,7 +31,8 @@ impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
 impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     #[inline(always)]
     pub(super) fn watched(parts: &'p Parts, ray: &Ray, within: Interval, witness: W) -> Self {
-        Self { parts, probe: Probe::new(*ray), within, place: None, witness, numbers: PhantomData }
+        let probe = if parts.triangles.leaves.is_empty() { Probe::unsheared(*ray) } else { Probe::new(*ray) };
+        Self { parts, probe, within, place: None, witness, numbers: PhantomData }
     }
 
     /// A ray that has met this already.
@@ -65,8 +66,11 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
 
     #[inline(always)]
     fn trace_grove<S: SideBySide>(&mut self, grove: &Grove<S>, queue: &mut Queue) {
-        if let Some(root) = grove.bvh.root() {
-            self.trace_from(root, grove, queue);
+        match grove.bvh.root() {
+            Some(root) if grove.has_tree() => self.trace_from(root, grove, queue),
+            // The only leaf: what a tree takes to begin with would be most of the time.
+            Some(_) if !(ANY && self.place.is_some()) => self.test(&self.probe.rays.splat(), 0, grove),
+            _ => {}
         }
     }
 
