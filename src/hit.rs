@@ -100,7 +100,7 @@ pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mu
     hits.clear();
     let parts = scene.parts();
     match kernel {
-        Kernel::Scalar => simd::run_scalar(ClosestAlone { parts, rays, hits }),
+        Kernel::Scalar => closest_alone::<Eight>(parts, rays, &mut Queue::default(), hits),
         _ => simd::run(ClosestHits { kernel, parts, rays, hits }),
     }
 }
@@ -110,7 +110,7 @@ pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Inter
     met.clear();
     let parts = scene.parts();
     match kernel {
-        Kernel::Scalar => simd::run_scalar(AnyAlone { parts, rays, within, met }),
+        Kernel::Scalar => any_alone::<Eight>(parts, rays, within, &mut Queue::default(), met),
         _ => simd::run(AnyHits { kernel, parts, rays, within, met }),
     }
 }
@@ -205,21 +205,6 @@ impl Work for ClosestHits<'_> {
 }
 
 /// The same one by one.
-struct ClosestAlone<'w> {
-    parts: &'w Parts,
-    rays: &'w [EightRays],
-    hits: &'w mut Vec<EightHits>,
-}
-
-impl Work for ClosestAlone<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<N: Lanes>(self) {
-        closest_alone::<N>(self.parts, self.rays, &mut Queue::default(), self.hits);
-    }
-}
-
 #[inline(always)]
 fn closest_alone<N: Lanes>(parts: &Parts, rays: &[EightRays], queue: &mut Queue, hits: &mut Vec<EightHits>) {
     for rays in rays {
@@ -266,22 +251,6 @@ impl Work for AnyHits<'_> {
 }
 
 /// The same one by one.
-struct AnyAlone<'w> {
-    parts: &'w Parts,
-    rays: &'w [EightRays],
-    within: Interval,
-    met: &'w mut Vec<u32>,
-}
-
-impl Work for AnyAlone<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<N: Lanes>(self) {
-        any_alone::<N>(self.parts, self.rays, self.within, &mut Queue::default(), self.met);
-    }
-}
-
 #[inline(always)]
 fn any_alone<N: Lanes>(parts: &Parts, rays: &[EightRays], within: Interval, queue: &mut Queue, met: &mut Vec<u32>) {
     for rays in rays {

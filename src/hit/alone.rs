@@ -31,7 +31,7 @@ impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
 impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     #[inline(always)]
     pub(super) fn watched(parts: &'p Parts, ray: &Ray, within: Interval, witness: W) -> Self {
-        let probe = if parts.triangles.leaves.is_empty() { Probe::unsheared(*ray) } else { Probe::new(*ray) };
+        let probe = if parts.has_triangles() { Probe::new(*ray) } else { Probe::unsheared(*ray) };
         Self { parts, probe, within, place: None, witness, numbers: PhantomData }
     }
 

@@ -70,7 +70,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
         // Who is not asked about does not widen the packet.
         let Some(one) = rays.iter().find(|rays| rays.asked != 0) else { return self.reset(0..GROUPS) };
         let parts = self.parts;
-        let (has_trees, has_triangles) = (parts.has_trees(), !parts.triangles.leaves.is_empty());
+        let (has_trees, has_triangles) = (parts.has_trees(), parts.has_triangles());
         for (group, of_group) in rays.iter().enumerate() {
             let asked = of_group.asked;
             let rays = Rays::load(if asked == 0 { one } else { of_group }, has_triangles);

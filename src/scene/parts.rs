@@ -98,6 +98,12 @@ impl Parts {
         self.balls.has_tree() || self.triangles.has_tree()
     }
 
+    /// Whether there are triangles.
+    #[inline(always)]
+    pub(crate) fn has_triangles(&self) -> bool {
+        !self.triangles.leaves.is_empty()
+    }
+
     /// Which part has that place.
     #[inline(always)]
     pub(crate) fn id(&self, place: u32) -> PartId {
