@@ -45,12 +45,14 @@ impl Leaves {
 }
 
 /// Eight boxes side by side, and what is in them.
+///
+/// The children stand beside the first boxes: a CPU has fetched them by the time it knows which of them are met.
 #[derive(Clone, Debug, PartialEq)]
-#[repr(align(64))]
+#[repr(C, align(64))]
 struct Node {
+    children: [Child; LANES],
     /// Along each axis from where to where. Of what is lacking, from beyond all to before all: no ray meets it.
     bounds: [[Eight; 2]; 3],
-    children: [Child; LANES],
 }
 
 impl Node {
@@ -205,28 +207,29 @@ impl Bvh {
     ) {
         let slabs = Slabs::of(rays);
         queue.waiting = 0;
-        let mut next = Turn::new(from, within.min);
+        let mut child = from;
         loop {
-            // Something nearer may have been found since; what is as near may come first in the scene.
-            if next.start() <= within.max {
-                let child = next.child();
-                if let Some(leaf) = child.as_leaf() {
-                    match visitor.visit(leaf) {
-                        ControlFlow::Continue(max) => within.max = max,
-                        ControlFlow::Break(()) => return,
-                    }
-                } else {
-                    let node = &self.nodes[child.0 as usize];
-                    visitor.boxes();
-                    let (starts, is_met) = node.met(&slabs, within);
-                    if is_met != 0 {
-                        next = queue.nearest(node, is_met, &starts.store());
-                        continue;
-                    }
+            if let Some(leaf) = child.as_leaf() {
+                match visitor.visit(leaf) {
+                    ControlFlow::Continue(max) => within.max = max,
+                    ControlFlow::Break(()) => return,
+                }
+            } else {
+                let node = &self.nodes[child.0 as usize];
+                visitor.boxes();
+                let (starts, is_met) = node.met(&slabs, within);
+                if is_met != 0 {
+                    child = queue.nearest(node, is_met, starts);
+                    continue;
                 }
             }
-            let Some(waiting) = queue.pop() else { return };
-            next = waiting;
+            // Something nearer may have been found since; what is as near may come first in the scene.
+            child = loop {
+                let Some(waiting) = queue.pop() else { return };
+                if waiting.start() <= within.max {
+                    break waiting.child();
+                }
+            };
         }
     }
 }
@@ -264,16 +267,19 @@ pub struct Queue {
 impl Queue {
     /// Of the children that are met, one at least, the nearest; the others wait, the nearer above the farther.
     #[inline(always)]
-    fn nearest(&mut self, node: &Node, mut is_met: u32, starts: &Eight) -> Turn {
+    fn nearest<N: Lanes>(&mut self, node: &Node, mut is_met: u32, starts: N) -> Child {
+        let lowest = |bits: u32| bits.trailing_zeros() as usize % LANES;
+        // Most often there is one, and its node is not to wait until it is known from where on it is met.
+        if is_met & is_met.wrapping_sub(1) == 0 {
+            return node.children[lowest(is_met)];
+        }
+        let starts = starts.store();
         let mut take = || {
-            let lane = is_met.trailing_zeros() as usize % LANES;
+            let lane = lowest(is_met);
             is_met &= is_met.wrapping_sub(1);
             (Turn::new(node.children[lane], starts.0[lane]), is_met != 0)
         };
-        let (first, is_more) = take();
-        if !is_more {
-            return first;
-        }
+        let (first, _) = take();
         let (second, mut is_more) = take();
         self.make_room();
         let (mut nearest, bottom) = (first.min(second), self.waiting);
@@ -292,7 +298,7 @@ impl Queue {
             }
             self.turns[at] = other;
         }
-        nearest
+        nearest.child()
     }
 
     #[inline(always)]
