@@ -1,6 +1,6 @@
 //! A ray: the half line { origin + t * direction | t >= 0 } of the lecture.
 
-use crate::lanes::{ALL, Eight, LANES, Lanes, Mask, Number, Vector};
+use crate::lanes::{ALL, Answers, Eight, EightAnswers, LANES, Lanes, Mask, Number, Vector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
@@ -89,6 +89,43 @@ impl<N: Lanes> Rays<N> {
         let shear = if has_triangles { Shear::of(direction) } else { Shear::none() };
         Self { shear, ..Self::unsheared(rays.origin.load(), direction) }
     }
+
+    /// To memory.
+    #[inline(always)]
+    pub fn store(&self) -> Rays<Eight> {
+        Rays {
+            origin: self.origin.store(),
+            direction: self.direction.store(),
+            inverse: self.inverse.store(),
+            squared_length: self.squared_length.store(),
+            inverse_squared_length: self.inverse_squared_length.store(),
+            shear: Shear {
+                longest: self.shear.longest.store(),
+                factor: self.shear.factor.store(),
+                length: self.shear.length.store(),
+            },
+        }
+    }
+}
+
+impl Rays<Eight> {
+    /// One of them.
+    #[inline(always)]
+    pub fn one(&self, lane: usize) -> Rays<f32> {
+        let one = |v: &Vector<Eight>| Vector { x: v.x.0[lane], y: v.y.0[lane], z: v.z.0[lane] };
+        Rays {
+            origin: one(&self.origin),
+            direction: one(&self.direction),
+            inverse: one(&self.inverse),
+            squared_length: self.squared_length.0[lane],
+            inverse_squared_length: self.inverse_squared_length.0[lane],
+            shear: Shear {
+                longest: self.shear.longest.one(lane),
+                factor: one(&self.shear.factor),
+                length: self.shear.length.0[lane],
+            },
+        }
+    }
 }
 
 /// Eight rays side by side, or fewer.
@@ -141,12 +178,6 @@ impl Probe {
     #[inline]
     pub fn new(ray: Ray) -> Self {
         Self { ray, rays: Rays::new(Vector::splat(ray.origin), Vector::splat(ray.direction)) }
-    }
-
-    /// The same without what only triangles ask for.
-    #[inline]
-    pub fn unsheared(ray: Ray) -> Self {
-        Self { ray, rays: Rays::unsheared(Vector::splat(ray.origin), Vector::splat(ray.direction)) }
     }
 }
 
@@ -234,6 +265,36 @@ impl<M: Mask> Longest<M> {
             Self::Each { x: is_x, y: is_y } => {
                 let choose = |of_x: N, of_y: N, of_z: N| N::select(is_x, of_x, N::select(is_y, of_y, of_z));
                 Vector { x: choose(y, z, x), y: choose(z, x, y), z: choose(x, y, z) }
+            }
+        }
+    }
+}
+
+impl<M: Answers> Longest<M> {
+    /// To memory.
+    #[inline(always)]
+    fn store(self) -> Longest<EightAnswers> {
+        match self {
+            Self::X => Longest::X,
+            Self::Y => Longest::Y,
+            Self::Z => Longest::Z,
+            Self::Each { x, y } => Longest::Each { x: Eight::answers(x.bits()), y: Eight::answers(y.bits()) },
+        }
+    }
+}
+
+impl Longest<EightAnswers> {
+    /// Of one of them.
+    #[inline(always)]
+    fn one(self, lane: usize) -> Longest<bool> {
+        match self {
+            Self::X => Longest::X,
+            Self::Y => Longest::Y,
+            Self::Z => Longest::Z,
+            // Looked up: nobody can guess it.
+            Self::Each { x, y } => {
+                let at = (x.bits() >> lane & 1) + 2 * (y.bits() >> lane & 1);
+                [Longest::Z, Longest::X, Longest::Y, Longest::Y][at as usize % 4]
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::witness::{Nobody, Test, Witness};
 use crate::bvh::{Child, LeafVisitor, Queue};
 use crate::lanes::{Answers, Eight, Lanes, Work, set_bits};
-use crate::ray::{Interval, Probe, Ray, Rays};
+use crate::ray::{Interval, Rays};
 use crate::scene::{Grove, PartId, Parts};
 use crate::shape::{Crossable, SideBySide};
 use std::marker::PhantomData;
@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 /// A ray, and what it has met.
 pub(super) struct Alone<'p, N, const ANY: bool, W = Nobody> {
     parts: &'p Parts,
-    probe: Probe,
+    rays: Rays<f32>,
     /// `max` is where the closest was met, or where the interval ends.
     within: Interval,
     /// What was met.
@@ -23,16 +23,15 @@ pub(super) struct Alone<'p, N, const ANY: bool, W = Nobody> {
 
 impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
     #[inline(always)]
-    pub(super) fn new(parts: &'p Parts, ray: &Ray, within: Interval) -> Self {
-        Self::watched(parts, ray, within, Nobody)
+    pub(super) fn new(parts: &'p Parts, rays: Rays<f32>, within: Interval) -> Self {
+        Self::watched(parts, rays, within, Nobody)
     }
 }
 
 impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     #[inline(always)]
-    pub(super) fn watched(parts: &'p Parts, ray: &Ray, within: Interval, witness: W) -> Self {
-        let probe = if parts.has_triangles() { Probe::new(*ray) } else { Probe::unsheared(*ray) };
-        Self { parts, probe, within, place: None, witness, numbers: PhantomData }
+    pub(super) fn watched(parts: &'p Parts, rays: Rays<f32>, within: Interval, witness: W) -> Self {
+        Self { parts, rays, within, place: None, witness, numbers: PhantomData }
     }
 
     /// A ray that has met this already.
@@ -52,7 +51,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     pub(super) fn trace(&mut self, queue: &mut Queue) {
         let parts = self.parts;
         for (place, (id, plane)) in (0..).zip(&parts.planes) {
-            let crossing = plane.first_crossing(&self.probe.rays, self.within.min);
+            let crossing = plane.first_crossing(&self.rays, self.within.min);
             if W::IS_THERE {
                 self.witness.part(Test::of(*id, crossing.and_then(|(crosses, t)| crosses.then_some(t))));
             }
@@ -69,7 +68,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
         match grove.bvh.root() {
             Some(root) if grove.has_tree() => self.trace_from(root, grove, queue),
             // The only leaf: what a tree takes to begin with would be most of the time.
-            Some(_) if !(ANY && self.place.is_some()) => self.test(&self.probe.rays.splat(), 0, grove),
+            Some(_) if !(ANY && self.place.is_some()) => self.test(&self.rays.splat(), 0, grove),
             _ => {}
         }
     }
@@ -137,7 +136,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> Work for Search<'_, '
     #[inline(always)]
     fn run<Same: Lanes>(self) {
         let Self { ray, from, grove, queue } = self;
-        let (rays, within) = (ray.probe.rays.splat::<N>(), ray.within);
+        let (rays, within) = (ray.rays.splat::<N>(), ray.within);
         let mut there = InGrove { ray, rays: &rays, grove };
         if within.min >= 0.0 {
             grove.bvh.visit(from, &rays, within, queue, &mut there);
