@@ -158,7 +158,8 @@ impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
         let Self { scene, ray, within, witness } = self;
-        let mut ray = Alone::<N, ANY, _>::watched(scene.parts(), Probe::new(*ray).rays, within, witness);
+        let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), true);
+        let mut ray = Alone::<N, ANY, _>::watched(scene.parts(), &rays, 0, within, witness);
         ray.trace(&mut Queue::default());
         ray.found()
     }
@@ -211,9 +212,9 @@ fn closest_alone<N: Lanes>(parts: &Parts, rays: &[EightRays], queue: &mut Queue,
         let nothing = Eight([f32::from_bits(EightHits::NOTHING); LANES]);
         let mut hit = EightHits { met: 0, t: Eight::ZERO, places: nothing };
         // What tests have in common is reckoned for all eight at once.
-        let prepared = Rays::<N>::load(rays, parts.has_triangles()).store();
+        let eight = Rays::load(rays, parts.has_triangles());
         for lane in set_bits(rays.asked) {
-            let mut ray = Alone::<N, CLOSEST>::new(parts, prepared.one(lane), Interval::IN_FRONT);
+            let mut ray = Alone::<N, CLOSEST>::new(parts, &eight, lane, Interval::IN_FRONT);
             ray.trace(queue);
             if let (t, Some(place)) = ray.found() {
                 hit.met |= 1 << lane;
@@ -257,9 +258,9 @@ impl Work for AnyHits<'_> {
 fn any_alone<N: Lanes>(parts: &Parts, rays: &[EightRays], within: Interval, queue: &mut Queue, met: &mut Vec<u32>) {
     for rays in rays {
         let mut of_group = 0;
-        let prepared = Rays::<N>::load(rays, parts.has_triangles()).store();
+        let eight = Rays::load(rays, parts.has_triangles());
         for lane in set_bits(rays.asked) {
-            let mut ray = Alone::<N, ANY>::new(parts, prepared.one(lane), within);
+            let mut ray = Alone::<N, ANY>::new(parts, &eight, lane, within);
             ray.trace(queue);
             of_group |= u32::from(ray.found().1.is_some()) << lane;
         }

@@ -94,6 +94,18 @@ pub trait Lanes: Number<Mask: Answers> {
     /// To memory.
     fn store(self) -> Eight;
 
+    /// One of them.
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f32 {
+        self.store().0[lane]
+    }
+
+    /// One of them, everywhere.
+    #[inline(always)]
+    fn splat_lane(self, lane: usize) -> Self {
+        Self::splat(self.lane(lane))
+    }
+
     /// The answers that these [bits](Answers::bits) stand for.
     fn answers(bits: u32) -> Self::Mask;
 

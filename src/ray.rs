@@ -1,6 +1,6 @@
 //! A ray: the half line { origin + t * direction | t >= 0 } of the lecture.
 
-use crate::lanes::{ALL, Answers, Eight, EightAnswers, LANES, Lanes, Mask, Number, Vector};
+use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Mask, Number, Vector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
@@ -59,28 +59,6 @@ impl<N: Number> Rays<N> {
     }
 }
 
-impl Rays<f32> {
-    /// The same ray in every place.
-    #[inline(always)]
-    pub fn splat<N: Number>(&self) -> Rays<N> {
-        let vector = |v: Vector<f32>| Vector { x: N::splat(v.x), y: N::splat(v.y), z: N::splat(v.z) };
-        let longest = match self.shear.longest {
-            Longest::X => Longest::X,
-            Longest::Y => Longest::Y,
-            // One by itself is not Each.
-            Longest::Z | Longest::Each { .. } => Longest::Z,
-        };
-        Rays {
-            origin: vector(self.origin),
-            direction: vector(self.direction),
-            inverse: vector(self.inverse),
-            squared_length: N::splat(self.squared_length),
-            inverse_squared_length: N::splat(self.inverse_squared_length),
-            shear: Shear { longest, factor: vector(self.shear.factor), length: N::splat(self.shear.length) },
-        }
-    }
-}
-
 impl<N: Lanes> Rays<N> {
     /// Of eight. What only triangles ask for is left out where there are none.
     #[inline(always)]
@@ -90,39 +68,36 @@ impl<N: Lanes> Rays<N> {
         Self { shear, ..Self::unsheared(rays.origin.load(), direction) }
     }
 
-    /// To memory.
+    /// One of them.
     #[inline(always)]
-    pub fn store(&self) -> Rays<Eight> {
+    pub fn lane(&self, lane: usize) -> Rays<f32> {
         Rays {
-            origin: self.origin.store(),
-            direction: self.direction.store(),
-            inverse: self.inverse.store(),
-            squared_length: self.squared_length.store(),
-            inverse_squared_length: self.inverse_squared_length.store(),
+            origin: self.origin.lane(lane),
+            direction: self.direction.lane(lane),
+            inverse: self.inverse.lane(lane),
+            squared_length: self.squared_length.lane(lane),
+            inverse_squared_length: self.inverse_squared_length.lane(lane),
             shear: Shear {
-                longest: self.shear.longest.store(),
-                factor: self.shear.factor.store(),
-                length: self.shear.length.store(),
+                longest: self.shear.longest.lane(lane),
+                factor: self.shear.factor.lane(lane),
+                length: self.shear.length.lane(lane),
             },
         }
     }
-}
 
-impl Rays<Eight> {
-    /// One of them.
+    /// One of them, in every place.
     #[inline(always)]
-    pub fn one(&self, lane: usize) -> Rays<f32> {
-        let one = |v: &Vector<Eight>| Vector { x: v.x.0[lane], y: v.y.0[lane], z: v.z.0[lane] };
-        Rays {
-            origin: one(&self.origin),
-            direction: one(&self.direction),
-            inverse: one(&self.inverse),
-            squared_length: self.squared_length.0[lane],
-            inverse_squared_length: self.inverse_squared_length.0[lane],
+    pub fn splat_lane(&self, lane: usize) -> Self {
+        Self {
+            origin: self.origin.splat_lane(lane),
+            direction: self.direction.splat_lane(lane),
+            inverse: self.inverse.splat_lane(lane),
+            squared_length: self.squared_length.splat_lane(lane),
+            inverse_squared_length: self.inverse_squared_length.splat_lane(lane),
             shear: Shear {
-                longest: self.shear.longest.one(lane),
-                factor: one(&self.shear.factor),
-                length: self.shear.length.0[lane],
+                longest: self.shear.longest.lane(lane),
+                factor: self.shear.factor.splat_lane(lane),
+                length: self.shear.length.splat_lane(lane),
             },
         }
     }
@@ -271,28 +246,15 @@ impl<M: Mask> Longest<M> {
 }
 
 impl<M: Answers> Longest<M> {
-    /// To memory.
+    /// Of one of them: never `Each`.
     #[inline(always)]
-    fn store(self) -> Longest<EightAnswers> {
+    fn lane<Other: Copy>(self, lane: usize) -> Longest<Other> {
         match self {
             Self::X => Longest::X,
             Self::Y => Longest::Y,
             Self::Z => Longest::Z,
-            Self::Each { x, y } => Longest::Each { x: Eight::answers(x.bits()), y: Eight::answers(y.bits()) },
-        }
-    }
-}
-
-impl Longest<EightAnswers> {
-    /// Of one of them.
-    #[inline(always)]
-    fn one(self, lane: usize) -> Longest<bool> {
-        match self {
-            Self::X => Longest::X,
-            Self::Y => Longest::Y,
-            Self::Z => Longest::Z,
-            // Looked up: nobody can guess it.
             Self::Each { x, y } => {
+                // Nobody can guess it: a table does not ask the CPU to.
                 let at = (x.bits() >> lane & 1) + 2 * (y.bits() >> lane & 1);
                 [Longest::Z, Longest::X, Longest::Y, Longest::Y][at as usize % 4]
             }

@@ -6,32 +6,32 @@ use crate::lanes::{Answers, Eight, Lanes, Work, set_bits};
 use crate::ray::{Interval, Rays};
 use crate::scene::{Grove, PartId, Parts};
 use crate::shape::{Crossable, SideBySide};
-use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
 /// A ray, and what it has met.
-pub(super) struct Alone<'p, N, const ANY: bool, W = Nobody> {
+pub(super) struct Alone<'p, N: Lanes, const ANY: bool, W = Nobody> {
     parts: &'p Parts,
-    rays: Rays<f32>,
+    /// It is one of these.
+    rays: &'p Rays<N>,
+    lane: usize,
     /// `max` is where the closest was met, or where the interval ends.
     within: Interval,
     /// What was met.
     place: Option<u32>,
     witness: W,
-    numbers: PhantomData<N>,
 }
 
 impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
     #[inline(always)]
-    pub(super) fn new(parts: &'p Parts, rays: Rays<f32>, within: Interval) -> Self {
-        Self::watched(parts, rays, within, Nobody)
+    pub(super) fn new(parts: &'p Parts, rays: &'p Rays<N>, lane: usize, within: Interval) -> Self {
+        Self::watched(parts, rays, lane, within, Nobody)
     }
 }
 
 impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     #[inline(always)]
-    pub(super) fn watched(parts: &'p Parts, rays: Rays<f32>, within: Interval, witness: W) -> Self {
-        Self { parts, rays, within, place: None, witness, numbers: PhantomData }
+    pub(super) fn watched(parts: &'p Parts, rays: &'p Rays<N>, lane: usize, within: Interval, witness: W) -> Self {
+        Self { parts, rays, lane, within, place: None, witness }
     }
 
     /// A ray that has met this already.
@@ -51,7 +51,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     pub(super) fn trace(&mut self, queue: &mut Queue) {
         let parts = self.parts;
         for (place, (id, plane)) in (0..).zip(&parts.planes) {
-            let crossing = plane.first_crossing(&self.rays, self.within.min);
+            let crossing = plane.first_crossing(&self.rays.lane(self.lane), self.within.min);
             if W::IS_THERE {
                 self.witness.part(Test::of(*id, crossing.and_then(|(crosses, t)| crosses.then_some(t))));
             }
@@ -68,7 +68,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
         match grove.bvh.root() {
             Some(root) if grove.has_tree() => self.trace_from(root, grove, queue),
             // The only leaf: what a tree takes to begin with would be most of the time.
-            Some(_) if !(ANY && self.place.is_some()) => self.test(&self.rays.splat(), 0, grove),
+            Some(_) if !(ANY && self.place.is_some()) => self.test(&self.rays.splat_lane(self.lane), 0, grove),
             _ => {}
         }
     }
@@ -122,7 +122,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
 }
 
 /// A ray's way through a part of a tree.
-struct Search<'a, 'p, N, S, const ANY: bool, W> {
+struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     ray: &'a mut Alone<'p, N, ANY, W>,
     from: Child,
     grove: &'a Grove<S>,
@@ -136,7 +136,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> Work for Search<'_, '
     #[inline(always)]
     fn run<Same: Lanes>(self) {
         let Self { ray, from, grove, queue } = self;
-        let (rays, within) = (ray.rays.splat::<N>(), ray.within);
+        let (rays, within) = (ray.rays.splat_lane(ray.lane), ray.within);
         let mut there = InGrove { ray, rays: &rays, grove };
         if within.min >= 0.0 {
             grove.bvh.visit(from, &rays, within, queue, &mut there);

@@ -305,11 +305,10 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
             return;
         }
         let (mut t, mut place) = (self.rays.t[group].store(), self.rays.place[group].store());
-        let prepared = self.rays.groups[group].store();
         for lane in set_bits(rays) {
             let within = Interval { min: self.rays.within.min, max: t.0[lane] };
             let known = place.0[lane].to_bits();
-            let ray = Alone::<N, ANY>::new(self.rays.parts, prepared.one(lane), within);
+            let ray = Alone::<N, ANY>::new(self.rays.parts, &self.rays.groups[group], lane, within);
             let mut ray = ray.going_on((known != NOTHING).then_some(known));
             ray.trace_from(from, self.grove, self.queue);
             if let (met, Some(found)) = ray.found() {

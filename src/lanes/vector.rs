@@ -93,6 +93,18 @@ impl Vector<Eight> {
 }
 
 impl<N: Lanes> Vector<N> {
+    /// One of the eight.
+    #[inline(always)]
+    pub fn lane(self, lane: usize) -> Vector<f32> {
+        Vector { x: self.x.lane(lane), y: self.y.lane(lane), z: self.z.lane(lane) }
+    }
+
+    /// One of the eight, everywhere.
+    #[inline(always)]
+    pub fn splat_lane(self, lane: usize) -> Self {
+        Self { x: self.x.splat_lane(lane), y: self.y.splat_lane(lane), z: self.z.splat_lane(lane) }
+    }
+
     /// To memory.
     #[inline(always)]
     pub fn store(self) -> Vector<Eight> {

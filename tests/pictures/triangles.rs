@@ -19,7 +19,7 @@ use termtrace::lanes::{ALL, LANES, set_bits};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
-use termtrace::ray::{EightRays, Interval, Probe, Ray};
+use termtrace::ray::{EightRays, Interval, Probe, Ray, Rays};
 use termtrace::render::render;
 use termtrace::scene::{Object, Scene};
 use termtrace::shade::{TO_THE_LIGHT, shadow_ray};
@@ -493,9 +493,9 @@ fn a_tree_is_never_too_deep_for_its_stack() {
         })
         .collect();
     let (bvh, leaves) = Bvh::new(&boxes);
-    let probe = Probe::new(Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 1.0, 0.0) });
+    let ray = Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 1.0, 0.0) };
     let mut count = Count(&leaves, 0);
-    let rays = probe.rays.splat::<Eight>();
+    let rays = Rays::<Eight>::load(&EightRays::of(&[ray]), false);
     bvh.visit(bvh.root().unwrap(), &rays, Interval::IN_FRONT, &mut Queue::default(), &mut count);
     assert_eq!(count.1, boxes.len(), "the ray meets them all");
 }
