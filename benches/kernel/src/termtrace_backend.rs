@@ -8,7 +8,7 @@ use std::time::Instant;
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::hit::{self, EightHits, Kernel};
-use termtrace::lanes::{Eight, Vector, set_bits};
+use termtrace::lanes::{Eight, Vector};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
@@ -66,18 +66,18 @@ impl Termtrace {
     fn trace(&self, full: bool, buffers: &mut Buffers) -> Acc {
         let Buffers { rays, hits, points, shadow_rays, blocked } = buffers;
         hit::closest_hits(self.kernel, &self.scene, rays, hits);
-        let mut sum = Acc { rays: shade::count(rays), ..Acc::default() };
+        let mut sum = Acc::default();
         for hits in hits.iter() {
             sum.hits += u64::from(hits.met.count_ones());
-            sum.tsum += set_bits(hits.met).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
+            sum.tsum += depths(hits);
         }
         if full {
             shade::surface_points(&self.scene, rays, hits, points);
             shade::shadow_rays(&self.light, points, shadow_rays);
             hit::any_hits(self.kernel, &self.scene, shadow_rays, TO_THE_LIGHT, blocked);
-            let traced = shade::count(shadow_rays);
-            sum.rays += traced;
-            sum.lit = traced - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
+            // One from each hit.
+            sum.rays = sum.hits;
+            sum.lit = sum.hits - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
         }
         sum
     }
@@ -88,8 +88,16 @@ fn eye_rays(f: &Frame, [x, y]: [u32; 2], [x1, y1]: [u32; 2]) -> EightRays {
     let (across, down) = (Eight([0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]), Eight([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]));
     let (at_x, at_y) = (Eight([x as f32; 8]) + across, Eight([y as f32; 8]) + down);
     let [d00, du, dv] = [f.d00, f.du, f.dv].map(|v| Vector::splat(vec3(v)));
-    let asked = (0..8).filter(|lane| x + lane % 4 < x1 && y + lane / 4 < y1).fold(0, |asked, lane| asked | 1 << lane);
+    let is_inside = |lane: u32| x + lane % 4 < x1 && y + lane / 4 < y1;
+    let asked = if is_inside(7) { 0xff } else { (0..8).filter(|&lane| is_inside(lane)).fold(0, |asked, lane| asked | 1 << lane) };
     EightRays { origin: Vector::splat(vec3(f.o)), direction: d00 + du * at_x + dv * at_y, asked }
+}
+
+/// The sum of the depths of what is met, without a branch for each.
+fn depths(hits: &EightHits) -> f64 {
+    let depth = |lane: usize| if hits.met >> lane & 1 == 1 { f64::from(hits.t.0[lane]) } else { 0.0 };
+    let [a, b, c, d] = [0, 2, 4, 6].map(|lane| [depth(lane), depth(lane + 1)]);
+    (a[0] + b[0]) + (c[0] + d[0]) + ((a[1] + b[1]) + (c[1] + d[1]))
 }
 
 fn vec3(v: Vec3A) -> Vec3 {
@@ -108,7 +116,8 @@ impl Backend for Termtrace {
             let groups = squares.flat_map(|(x, y)| (0..8).map(move |at| [x + at % 2 * 4, y + at / 2 * 2]));
             buffers.rays.clear();
             buffers.rays.extend(groups.map(|at| eye_rays(f, at, [x1, y1])));
-            self.trace(f.full, buffers)
+            let sum = self.trace(f.full, buffers);
+            Acc { rays: sum.rays + u64::from((x1 - x0) * (y1 - y0)), ..sum }
         })
     }
 
@@ -131,7 +140,7 @@ impl Backend for Termtrace {
                 hit::closest_hits(self.kernel, &self.scene, rays_of_a_tile, &mut hits);
                 for hits in &hits {
                     sum.hits += u64::from(hits.met.count_ones());
-                    sum.tsum += set_bits(hits.met).map(|lane| f64::from(hits.t.0[lane])).sum::<f64>();
+                    sum.tsum += depths(hits);
                 }
             }
         }
