@@ -160,21 +160,19 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// A power of two so little that everything up to the next one is black.
-const LEAST_LIGHT: f32 = 1.0 / 16_384.0;
-/// A bucket is a run of floats that share sign, exponent and the first 7 bits of the mantissa: short enough that it
-/// holds at most one of the 255 steps.
-const BUCKET_SHIFT: u32 = 16;
-/// More than there are up to 1.0: a power of two, so that a remainder is in it without being asked.
-const BUCKETS: usize = (((1.0_f32.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT) as usize + 1).next_power_of_two();
+/// So many floats that follow each other are a bucket: they share the upper half of their bits, which is the exponent and
+/// the first 7 bits of the mantissa. It is so short that it holds at most one of the 255 steps.
+const BUCKET: u32 = 1 << 16;
+const BUCKETS: usize = 1 << 16;
 
 /// The transfer function, tabulated.
 struct Transfer {
     /// Light of each 8-bit code.
     linear_from_srgb8: [f32; 256],
-    /// `linear_at_step[k]`: the least light that rounds to code k + 1. Nothing does to 256.
-    linear_at_step: [f32; 256],
-    /// The code of the least light in each bucket.
+    /// `bits_at_step[k]`: the least light that rounds to code k + 1, as bits, whose order is the same. Nothing does to 256.
+    bits_at_step: [u32; 256],
+    /// The code of the least light in each bucket. Most are of light beyond black and white: with them, none has to be
+    /// brought in between first.
     first_code: [u8; BUCKETS],
 }
 
@@ -191,24 +189,23 @@ impl Transfer {
     /// bits lead to, or in the one above it.
     #[inline]
     fn srgb8(&self, linear: f32) -> u8 {
-        // NaN is black, as what is below the first bucket is.
-        let linear = if linear > LEAST_LIGHT { linear } else { LEAST_LIGHT };
-        let linear = if linear < 1.0 { linear } else { 1.0 };
-        let bucket = (linear.to_bits() - LEAST_LIGHT.to_bits()) >> BUCKET_SHIFT;
-        let code = self.first_code[bucket as usize % BUCKETS];
-        code + u8::from(linear >= self.linear_at_step[usize::from(code)])
+        // Below zero the order of bits is another. NaN is black, too.
+        let bits = if linear > 0.0 { linear } else { 0.0 }.to_bits();
+        let code = self.first_code[(bits / BUCKET) as usize];
+        code + u8::from(bits >= self.bits_at_step[usize::from(code)])
     }
 }
 
 static TRANSFER: LazyLock<Transfer> = LazyLock::new(|| {
     let linear_from_srgb8 = std::array::from_fn(|code| linear_from_srgb(code as f64 / 255.0) as f32);
-    let step = |k: usize| least_f32_at_or_above(linear_from_srgb((k as f64 + 0.5) / 255.0));
-    let linear_at_step: [f32; 256] = std::array::from_fn(|k| if k < 255 { step(k) } else { f32::INFINITY });
-    let first_code = std::array::from_fn(|bucket| {
-        let least = f32::from_bits(LEAST_LIGHT.to_bits() + ((bucket as u32) << BUCKET_SHIFT));
-        linear_at_step.iter().take_while(|&&step| least >= step).count() as u8 // at most 255 steps
-    });
-    Transfer { linear_from_srgb8, linear_at_step, first_code }
+    let step = |k: u8| least_f32_at_or_above(linear_from_srgb((f64::from(k) + 0.5) / 255.0)).to_bits();
+    let bits_at_step = std::array::from_fn(|code| if code < 255 { step(code as u8) } else { u32::MAX });
+    let mut first_code = [0; BUCKETS];
+    for code in 1..=255 {
+        let [start, end] = [code - 1, code].map(|at| bits_at_step[at].div_ceil(BUCKET) as usize);
+        first_code[start..end].fill(code as u8);
+    }
+    Transfer { linear_from_srgb8, bits_at_step, first_code }
 });
 
 /// Casting rounds to nearest, which may be below.
@@ -249,7 +246,8 @@ mod tests {
     #[test]
     fn quantising_is_the_formula_rounded() {
         let by_formula = |x: f32| (srgb_from_linear(f64::from(x)) * 255.0).round() as u8;
-        let steps = TRANSFER.linear_at_step.iter().flat_map(|&s| [s.next_down(), s, s.next_up()]);
+        let steps = TRANSFER.bits_at_step[..255].iter().map(|&step| f32::from_bits(step));
+        let steps = steps.flat_map(|s| [s.next_down(), s, s.next_up()]);
         let spread = (0..0x3f80_0000_u32).step_by(997).map(f32::from_bits);
         for x in steps.chain(spread) {
             assert_eq!(TRANSFER.srgb8(x), by_formula(x), "{x:e}");
