@@ -69,12 +69,12 @@ impl Tiles {
         if pixels.len() == PIXELS && self.scale == 1 {
             // The same as what follows, row by row: four neighbours at a time.
             for (row, pixels) in part.iter_mut().zip(&IN_ROW) {
-                for (places, pixels) in row.chunks_exact_mut(4).zip(pixels.chunks_exact(4)) {
-                    let first = usize::from(pixels[0]) & !3;
-                    for (at, place) in places.iter_mut().enumerate() {
-                        *place = shown(first | at);
-                    }
+                let (fours, rest) = row.as_chunks_mut::<4>();
+                let left = &pixels[4 * fours.len()..];
+                for (four, &[first, ..]) in fours.iter_mut().zip(pixels.as_chunks::<4>().0) {
+                    *four = std::array::from_fn(|at| shown(usize::from(first) & !3 | at));
                 }
+                rest.iter_mut().zip(left).for_each(|(place, &pixel)| *place = shown(pixel.into()));
             }
             return;
         }

@@ -34,7 +34,7 @@ pub(super) trait Marks: Answers {
     fn has_bits(numbers: __m256, bits: u32) -> Self;
 }
 
-/// Only [`Marks::run`] has work done with it: where there is one, the CPU has AVX.
+/// Only [`Marks::run`] has work done with it: where there is one, the CPU has AVX2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Register<M>(__m256, PhantomData<M>);
 
@@ -45,10 +45,10 @@ impl<M> Register<M> {
     }
 }
 
-/// An instruction of AVX.
+/// An instruction of AVX or AVX2.
 macro_rules! avx {
     ($instruction:expr) => {
-        // SAFETY: the CPU has AVX, as `Register` says; what is loaded and stored is a whole and aligned `Eight`.
+        // SAFETY: the CPU has AVX2, as `Register` says; what is loaded and stored is a whole and aligned `Eight`.
         unsafe { $instruction }
     };
 }

@@ -68,15 +68,20 @@ fn samples_go_where_the_edges_are() {
     }
 }
 
-/// A level that is a whole pass is what it says it is: at most so many samples, and at least one.
+/// A level that is a whole pass is what it says it is: at most so many samples, and at least one. Also where the picture
+/// ends within a tile.
 #[test]
 fn one_sample_at_most_is_one_sample() {
-    for (_, scene) in shipped() {
-        let one = render(&scene, &scene.camera, SIZE, NonZeroU32::MIN);
-        for most in [1, 2, 3] {
-            assert_eq!(render(&scene, &scene.camera, SIZE, Sampling::UpTo(samples(most))).hash(), one.hash());
+    for (path, scene) in shipped() {
+        for size in [SIZE, Resolution::square(81, 45), Resolution::square(70, 33), Resolution::square(3, 2)] {
+            let one = render(&scene, &scene.camera, size, NonZeroU32::MIN);
+            for most in [1, 2, 3] {
+                let at_most = render(&scene, &scene.camera, size, Sampling::UpTo(samples(most)));
+                assert_eq!(at_most.hash(), one.hash(), "{} {size:?}, {most} at most", path.display());
+            }
         }
-        assert_ne!(render(&scene, &scene.camera, SIZE, Sampling::UpTo(samples(4))).hash(), one.hash());
+        let [one, four] = [1, 4].map(|most| render(&scene, &scene.camera, SIZE, Sampling::UpTo(samples(most))));
+        assert_ne!(four.hash(), one.hash(), "{}", path.display());
     }
 }
 
