@@ -46,7 +46,7 @@ impl Leaves {
 
 /// Eight boxes side by side, and what is in them.
 ///
-/// The children stand beside the first boxes: a CPU has fetched them by the time it knows which of them are met.
+/// The children stand beside the first bounds: a CPU has fetched them by the time it knows which of them are met.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C, align(64))]
 struct Node {

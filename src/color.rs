@@ -160,8 +160,8 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// So many floats that follow each other are a bucket: they share the upper half of their bits, which is the exponent and
-/// the first 7 bits of the mantissa. It is so short that it holds at most one of the 255 steps.
+/// So many floats that follow each other are a bucket: they share the upper half of their bits, which is the sign, the
+/// exponent and the first 7 bits of the mantissa. It is so short that it holds at most one of the 255 steps.
 const BUCKET: u32 = 1 << 16;
 const BUCKETS: usize = 1 << 16;
 
@@ -171,8 +171,8 @@ struct Transfer {
     linear_from_srgb8: [f32; 256],
     /// `bits_at_step[k]`: the least light that rounds to code k + 1, as bits, whose order is the same. Nothing does to 256.
     bits_at_step: [u32; 256],
-    /// The code of the least light in each bucket. Most are of light beyond black and white: with them, none has to be
-    /// brought in between first.
+    /// The code of the least light in each bucket. Most of them are never looked at, as they are of nothing that a screen
+    /// shows: with them, light need not be brought into bounds first.
     first_code: [u8; BUCKETS],
 }
 

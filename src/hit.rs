@@ -158,7 +158,7 @@ impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
         let Self { scene, ray, within, witness } = self;
-        let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), true);
+        let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), scene.parts().has_triangles());
         let mut ray = Alone::<N, ANY, _>::watched(scene.parts(), &rays, 0, within, witness);
         ray.trace(&mut Queue::default());
         ray.found()

@@ -94,13 +94,16 @@ pub trait Lanes: Number<Mask: Answers> {
     /// To memory.
     fn store(self) -> Eight;
 
-    /// One of them.
+    /// One of them: `lane` is less than [`LANES`].
+    ///
+    /// # Panics
+    /// If it is not; but it may also be answered with another one.
     #[inline(always)]
     fn lane(self, lane: usize) -> f32 {
         self.store().0[lane]
     }
 
-    /// One of them, everywhere.
+    /// One of them, everywhere. As [`lane`](Self::lane).
     #[inline(always)]
     fn splat_lane(self, lane: usize) -> Self {
         Self::splat(self.lane(lane))

@@ -68,26 +68,9 @@ impl<N: Lanes> Rays<N> {
         Self { shear, ..Self::unsheared(rays.origin.load(), direction) }
     }
 
-    /// One of them.
-    #[inline(always)]
-    pub fn lane(&self, lane: usize) -> Rays<f32> {
-        Rays {
-            origin: self.origin.lane(lane),
-            direction: self.direction.lane(lane),
-            inverse: self.inverse.lane(lane),
-            squared_length: self.squared_length.lane(lane),
-            inverse_squared_length: self.inverse_squared_length.lane(lane),
-            shear: Shear {
-                longest: self.shear.longest.lane(lane),
-                factor: self.shear.factor.lane(lane),
-                length: self.shear.length.lane(lane),
-            },
-        }
-    }
-
     /// One of them, in every place.
     #[inline(always)]
-    pub fn splat_lane(&self, lane: usize) -> Self {
+    pub(crate) fn splat_lane(&self, lane: usize) -> Self {
         Self {
             origin: self.origin.splat_lane(lane),
             direction: self.direction.splat_lane(lane),
@@ -95,7 +78,7 @@ impl<N: Lanes> Rays<N> {
             squared_length: self.squared_length.splat_lane(lane),
             inverse_squared_length: self.inverse_squared_length.splat_lane(lane),
             shear: Shear {
-                longest: self.shear.longest.lane(lane),
+                longest: self.shear.longest.of_lane(lane),
                 factor: self.shear.factor.splat_lane(lane),
                 length: self.shear.length.splat_lane(lane),
             },
@@ -248,16 +231,14 @@ impl<M: Mask> Longest<M> {
 impl<M: Answers> Longest<M> {
     /// Of one of them: never `Each`.
     #[inline(always)]
-    fn lane<Other: Copy>(self, lane: usize) -> Longest<Other> {
+    fn of_lane(self, lane: usize) -> Self {
         match self {
-            Self::X => Longest::X,
-            Self::Y => Longest::Y,
-            Self::Z => Longest::Z,
             Self::Each { x, y } => {
                 // Nobody can guess it: a table does not ask the CPU to.
                 let at = (x.bits() >> lane & 1) + 2 * (y.bits() >> lane & 1);
-                [Longest::Z, Longest::X, Longest::Y, Longest::Y][at as usize % 4]
+                [Self::Z, Self::X, Self::Y, Self::Y][at as usize % 4]
             }
+            of_all => of_all,
         }
     }
 }

@@ -80,7 +80,8 @@ mod tests {
                 let answers = [x.lt(y), x.le(y), x.same(y), x.lt(y) & x.le(y), x.lt(y) | y.lt(x), !x.lt(y)];
                 let chosen = answers.map(|answer| N::select(answer, x, y));
                 let each = N::each([x, y], |[x, y]| [y, x]);
-                let spread = [N::splat(b.0[0]), x.splat_lane(5), N::splat(y.lane(6))];
+                let one = |lane: usize| [x.splat_lane(lane), N::splat(x.lane(lane))];
+                let spread = (0..LANES).flat_map(one).chain([N::splat(b.0[0])]);
                 let all_numbers = numbers.into_iter().chain(chosen).chain(each).chain(spread);
                 // Which NaN comes of an operation is nobody's business: none is ever seen.
                 let bits = |number: f32| if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() };

@@ -51,11 +51,13 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     pub(super) fn trace(&mut self, queue: &mut Queue) {
         let parts = self.parts;
         for (place, (id, plane)) in (0..).zip(&parts.planes) {
-            let crossing = plane.first_crossing(&self.rays.lane(self.lane), self.within.min);
+            let crossing = plane
+                .first_crossing(self.rays, N::splat(self.within.min))
+                .and_then(|(crosses, t)| (crosses.bits() >> self.lane & 1 == 1).then(|| t.lane(self.lane)));
             if W::IS_THERE {
-                self.witness.part(Test::of(*id, crossing.and_then(|(crosses, t)| crosses.then_some(t))));
+                self.witness.part(Test::of(*id, crossing));
             }
-            if let Some((true, t)) = crossing {
+            if let Some(t) = crossing {
                 self.meet(t, place);
             }
         }

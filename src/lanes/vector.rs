@@ -93,15 +93,9 @@ impl Vector<Eight> {
 }
 
 impl<N: Lanes> Vector<N> {
-    /// One of the eight.
-    #[inline(always)]
-    pub fn lane(self, lane: usize) -> Vector<f32> {
-        Vector { x: self.x.lane(lane), y: self.y.lane(lane), z: self.z.lane(lane) }
-    }
-
     /// One of the eight, everywhere.
     #[inline(always)]
-    pub fn splat_lane(self, lane: usize) -> Self {
+    pub(crate) fn splat_lane(self, lane: usize) -> Self {
         Self { x: self.x.splat_lane(lane), y: self.y.splat_lane(lane), z: self.z.splat_lane(lane) }
     }
 

@@ -72,6 +72,7 @@ impl Tiles {
                 let (fours, rest) = row.as_chunks_mut::<4>();
                 let left = &pixels[4 * fours.len()..];
                 for (four, &[first, ..]) in fours.iter_mut().zip(pixels.as_chunks::<4>().0) {
+                    // It is a multiple of 4, which the compiler is told so.
                     *four = std::array::from_fn(|at| shown(usize::from(first) & !3 | at));
                 }
                 rest.iter_mut().zip(left).for_each(|(place, &pixel)| *place = shown(pixel.into()));

@@ -1,4 +1,4 @@
-//! Eight numbers in a register of AVX. What their comparisons answer depends on what else the CPU has.
+//! Eight numbers in a register of AVX2. What their comparisons answer depends on whether the CPU has AVX-512, too.
 
 #![allow(unsafe_code)]
 
@@ -45,10 +45,11 @@ impl<M> Register<M> {
     }
 }
 
-/// An instruction of AVX or AVX2.
+/// An instruction on such a register.
 macro_rules! avx {
     ($instruction:expr) => {
-        // SAFETY: the CPU has AVX2, as `Register` says; what is loaded and stored is a whole and aligned `Eight`.
+        // SAFETY: the CPU has AVX2, as `Register` says, and where masks are asked for AVX-512, as theirs says; what is
+        // loaded and stored is a whole and aligned `Eight`.
         unsafe { $instruction }
     };
 }

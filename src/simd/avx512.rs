@@ -16,7 +16,7 @@ pub(super) fn run<W: Work>(work: W) -> W::Output {
     Bits::run(work)
 }
 
-/// A bit for each number, 1 for yes.
+/// A bit for each number, 1 for yes. Only [`Marks::run`] has work done with it: where there is one, the CPU has AVX-512.
 #[derive(Clone, Copy, Debug)]
 struct Bits(u8);
 
