@@ -271,6 +271,9 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
         let limit = SOME.max(count * A_FEW);
         // Of so many there is one in the middle.
         let middle = 3 + (groups >> 3).trailing_zeros() as usize;
+        if !ANY && count > MANY {
+            return false;
+        }
         if count > MANY && self.met_by(one, middle).count_ones() * count > limit {
             return false;
         }
