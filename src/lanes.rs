@@ -109,6 +109,12 @@ pub trait Lanes: Number<Mask: Answers> {
         Self::splat(self.lane(lane))
     }
 
+    /// The greatest of them; none is NaN.
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self.store().greatest()
+    }
+
     /// The answers that these [bits](Answers::bits) stand for.
     fn answers(bits: u32) -> Self::Mask;
 

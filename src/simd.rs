@@ -90,7 +90,7 @@ mod tests {
                 all.extend(answers.into_iter().chain(marks).map(|mask| [mask.bits(); LANES]));
                 let whole = [x, y, x.abs(), y.abs(), -x.abs(), x, y, x].map(|x| N::select(x.lt(N::splat(9.0)), x, y));
                 let whole = whole.map(|x| N::select(x.same(x), x, N::splat(0.5)));
-                let ends = [N::least_of_each(&whole), N::greatest_of_each(&whole)];
+                let ends = [N::least_of_each(&whole), N::greatest_of_each(&whole), N::splat(whole[0].greatest())];
                 all.extend(ends.map(|ends| (ends + N::splat(0.0)).store().0.map(f32::to_bits)));
             }
             all
