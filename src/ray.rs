@@ -4,6 +4,10 @@ use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Mask, Number, Vector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
+mod pencil;
+
+pub use pencil::Pencil;
+
 /// `origin + t * direction`. The direction need not have unit length: t is counted in lengths of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {

@@ -10,7 +10,7 @@
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::lanes::{Lanes, Number, Vector};
-use crate::ray::{Interval, Probe, Ray, Rays};
+use crate::ray::{Interval, Pencil, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ pub mod triangle;
 pub use mesh::{Facet, Mesh};
 pub use plane::Plane;
 pub use sphere::{Balls, Sphere};
-pub use triangle::{Corners, Triangle};
+pub use triangle::{Corners, Edges, Triangle};
 
 /// What every surface can answer.
 pub trait Surface {
@@ -135,6 +135,15 @@ pub trait SideBySide: Copy {
 
     /// Puts one of others in that place.
     fn put(&mut self, lane: usize, others: &Self, from: usize);
+
+    /// Whether they have [`edges`](Self::edges).
+    const HAVE_EDGES: bool = false;
+
+    /// What tells beforehand that rays pass by one of them, where that takes less than the test itself.
+    #[inline(always)]
+    fn edges<N: Lanes>(&self, _: &Pencil<N>) -> Option<Edges> {
+        None
+    }
 }
 
 /// A point on a surface, as seen from where the ray came.

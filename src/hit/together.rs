@@ -5,7 +5,7 @@ use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector, set_bits};
-use crate::ray::{EightRays, Interval, Rays};
+use crate::ray::{EightRays, Interval, Pencil, Rays};
 use crate::scene::{Grove, Parts};
 use crate::shape::{Crossable, SideBySide};
 use std::ops::Range;
@@ -129,7 +129,8 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
             };
             let Stacks { together, alone } = stacks;
             let groups = self.rays.len();
-            let mut in_grove = InGrove { rays: self, grove, packet, queue: alone };
+            let pencil = if S::HAVE_EDGES { Pencil::of(&self.groups) } else { None };
+            let mut in_grove = InGrove { rays: self, grove, packet, pencil, queue: alone };
             match grove.bvh.root() {
                 Some(root) if in_grove.rays.kernel == Kernel::Auto && packet.is_scattered() => {
                     for group in 0..groups {
@@ -168,7 +169,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
     fn set(&mut self, group: usize, Met { t, place }: Met<N, ANY>) {
         self.t[group] = t;
         self.place[group] = place;
-        self.reach.0[group] = t.store().greatest();
+        self.reach.0[group] = t.greatest();
     }
 }
 
@@ -227,6 +228,7 @@ struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
     rays: &'a mut Together<'p, N, ANY>,
     grove: &'p Grove<S>,
     packet: &'a Packet<N>,
+    pencil: Option<Pencil<N>>,
     queue: &'a mut Queue,
 }
 
@@ -243,22 +245,37 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
 
     #[inline(always)]
     fn farthest(&self) -> f32 {
-        self.rays.reach.greatest()
+        N::load(&self.rays.reach).greatest()
     }
 
     #[inline(always)]
     fn leaf(&mut self, leaf: usize) {
         let shapes = &self.grove.leaves[leaf];
         let min = N::splat(self.rays.within.min);
-        let [enters, leaves] = self.packet.crossed(shapes.load::<N>().boxes());
+        let boxes = shapes.load::<N>().boxes();
+        let [enters, leaves] = self.packet.crossed(boxes);
         let is_met = enters.max(min).le(leaves.min(N::splat(self.farthest()))).bits();
+        let edges = match &self.pencil {
+            Some(pencil) if is_met != 0 => shapes.edges(pencil),
+            _ => None,
+        };
+        let [low, high] = [boxes[0].store(), boxes[1].store()];
+        // All that are to be tested, a bit for each: a loop over them is guessed wrong once, at its end.
+        let mut pairs = 0_u64;
         for lane in set_bits(is_met) {
-            let shape = shapes.splat::<N>(lane);
-            let [enters, leaves] = self.packet.crossed_by_groups(shape.boxes());
-            let groups = enters.max(min).le(leaves.min(self.reach())).bits();
-            for group in set_bits(groups) {
-                self.rays.test(group, &shape, self.grove.place(leaf, lane));
+            let one = [Vector::splat(low.of_lane(lane)), Vector::splat(high.of_lane(lane))];
+            let [enters, leaves] = self.packet.crossed_by_groups(one);
+            let mut groups = enters.max(min).le(leaves.min(self.reach())).bits();
+            if let (Some(edges), Some(pencil)) = (&edges, &self.pencil) {
+                groups &= !edges.passed_by(lane, pencil);
             }
+            pairs |= u64::from(groups) << (GROUPS * lane);
+        }
+        while pairs != 0 {
+            let (lane, group) =
+                (pairs.trailing_zeros() as usize / GROUPS % LANES, pairs.trailing_zeros() as usize % GROUPS);
+            pairs &= pairs.wrapping_sub(1);
+            self.rays.test(group, &shapes.splat(lane), self.grove.place(leaf, lane));
         }
     }
 

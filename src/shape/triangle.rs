@@ -3,9 +3,13 @@
 use super::{AtCrossing, Crossable, Points, SideBySide, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
-use crate::ray::{Interval, Probe, Ray, Rays, nearest_in, sheared_exactly};
+use crate::ray::{Interval, Pencil, Probe, Ray, Rays, nearest_in, sheared_exactly};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
+
+mod edges;
+
+pub use edges::Edges;
 
 /// All points of the plane through three corners that lie between them. It is seen from both sides; the front is the
 /// one from which the corners go round counterclockwise.
@@ -157,6 +161,13 @@ impl<N: Number> Crossable<N> for Corners<N> {
 impl SideBySide for Corners<Eight> {
     type Shape = Triangle;
     type Of<N: Number> = Corners<N>;
+
+    const HAVE_EDGES: bool = true;
+
+    #[inline(always)]
+    fn edges<N: Lanes>(&self, pencil: &Pencil<N>) -> Option<Edges> {
+        Some(self.load::<N>().edges(pencil))
+    }
 
     fn of(shapes: &[Triangle]) -> Self {
         let corners = |lane: usize| shapes.get(lane).map_or([Vec3::INFINITY; 3], Triangle::corners);
