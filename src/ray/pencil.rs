@@ -8,17 +8,17 @@ use crate::lanes::{LANES, Lanes, Mask, Vector};
 #[derive(Clone, Copy, Debug)]
 pub struct Pencil<N: Lanes> {
     apex: Vector<N>,
-    /// Along no axis do the lines miss the apex by more than so many units of 2^-24.
+    /// How far the lines miss the apex, along any axis, at most: a length, times 2^24.
     pub blur: N,
     longest: Longest<N::Mask>,
     /// How far the ray in the picture's middle goes along x and y, while it goes one unit along its longest axis.
     slope: [N; 2],
-    /// Where the rays are in the picture, which is how much farther they go than that one: the middle of each group, along
-    /// x and y.
+    /// A ray's place in the picture is how far it goes along x and y, while it goes one unit along that axis, less the
+    /// slope. The middle of each group's places:
     pub middles: [N; 2],
-    /// How far from the middle of its group a ray is at most.
+    /// and how far from it one of them is, at most.
     pub reaches: [N; 2],
-    /// How far from the picture's middle a ray is at most, along either axis: up to 1.
+    /// How far a place is from zero, along either axis, at most: up to 1.
     pub width: N,
 }
 
@@ -69,8 +69,9 @@ impl<N: Lanes> Pencil<N> {
         are_near.all().then_some(Self { apex, blur, longest, slope, middles, reaches, width })
     }
 
-    /// A point in coordinates around the apex, in which the ray in the middle runs along z. Its x and y are off by 2 |x| + 4
-    /// |z| units of 2^-24 at most, as in [`Shear::apply`]; for lines that miss the apex, by twice the blur more.
+    /// A point in coordinates around the apex, in which the ray in the middle runs along z. (Rounding of the slope is no
+    /// error: the picture is that of the slope as it is.) To first order, in units of 2^-24, its x and y are off by 2 |x| + 3
+    /// |z| at most and its z by |z|; for a line that misses the apex, by twice the blur and by the blur more.
     #[inline(always)]
     pub fn apply(&self, point: Vector<N>) -> Vector<N> {
         let Vector { x, y, z } = self.longest.last(point - self.apex);
@@ -83,7 +84,38 @@ impl<N: Lanes> Pencil<N> {
 fn farthest<N: Lanes>(groups: &[Rays<N>; LANES], t: N, point: Vector<N>) -> N {
     let mut farthest = N::splat(0.0);
     for rays in groups {
-        farthest = farthest.max((rays.origin + rays.direction * t - point).largest());
+        // In this order, so that NaN is left out: what is not finite meets nothing, whoever goes with it.
+        farthest = (rays.origin + rays.direction * t - point).largest().max(farthest);
     }
     N::splat(farthest.greatest())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::Eight;
+    use crate::ray::{EightRays, Ray};
+    use glam::Vec3;
+    use std::array::from_fn;
+
+    /// A packet of rays from one point, but for some.
+    fn pencil(others: &[(usize, usize, Ray)]) -> Option<Pencil<Eight>> {
+        let mut rays = [[Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, 1.0) }; LANES]; LANES];
+        for &(group, lane, ray) in others {
+            rays[group][lane] = ray;
+        }
+        let groups: [Rays<Eight>; LANES] = from_fn(|group| Rays::load(&EightRays::of(&rays[group]), true));
+        Pencil::of(&groups)
+    }
+
+    #[test]
+    fn a_ray_beside_the_point_is_noticed() {
+        let beside = Ray { origin: Vec3::X * 5.0, direction: Vec3::new(0.1, 0.1, 1.0) };
+        let endless = Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, f32::INFINITY) };
+        let across = Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 0.0, 0.0) };
+        assert!(pencil(&[]).is_some());
+        for others in [vec![(1, 3, beside)], vec![(1, 3, beside), (2, 3, endless)], vec![(7, 0, across)]] {
+            assert!(pencil(&others).is_none(), "{others:?}");
+        }
+    }
 }
