@@ -77,6 +77,22 @@ impl EightHits {
         N::load(&self.places).has_bits(place).bits()
     }
 
+    /// Where in its leaf each of them has met something: its place, of which the lowest three bits count.
+    #[inline(always)]
+    pub(crate) fn in_leaf<N: Lanes>(&self) -> N {
+        N::load(&self.places)
+    }
+
+    /// In which leaf, of all that there are: the bits of these numbers.
+    #[inline(always)]
+    pub(crate) fn leaves<N: Lanes>(&self) -> N {
+        let mut leaves = Eight::ZERO;
+        for (leaf, place) in leaves.0.iter_mut().zip(self.places.0) {
+            *leaf = f32::from_bits(place.to_bits() / LANES as u32);
+        }
+        N::load(&leaves)
+    }
+
     /// Who has met what has one of the places from the first up to the second.
     #[inline(always)]
     pub(crate) fn between(&self, start: u32, end: u32) -> u32 {

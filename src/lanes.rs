@@ -109,6 +109,16 @@ pub trait Lanes: Number<Mask: Answers> {
         Self::splat(self.lane(lane))
     }
 
+    /// One of them in each place: the one whose number is the lowest three bits of what `lanes` has there.
+    #[inline(always)]
+    fn pick(self, lanes: Self) -> Self {
+        let (mut picked, numbers, lanes) = (Eight::ZERO, self.store(), lanes.store());
+        for (picked, lane) in picked.0.iter_mut().zip(lanes.0) {
+            *picked = numbers.0[lane.to_bits() as usize % LANES];
+        }
+        Self::load(&picked)
+    }
+
     /// The greatest of them; none is NaN.
     #[inline(always)]
     fn greatest(self) -> f32 {

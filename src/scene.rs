@@ -21,7 +21,7 @@ use crate::color::LinearRgb;
 use crate::light::PointLight;
 use crate::material::Material;
 use crate::shape::Shape;
-pub(crate) use parts::{Grove, PartId, Parts};
+pub(crate) use parts::{Grove, PartId, PartIds, Parts};
 use std::sync::Arc;
 
 /// Everything that a picture depends on, besides its size. A copy costs little, however large it is.

@@ -219,9 +219,8 @@ impl Work for Reflect<'_> {
             }
             let mut left = points.met;
             while left != 0 {
-                let object = points.ids[left.trailing_zeros() as usize % LANES].object;
-                let same =
-                    set_bits(left).fold(0, |same, lane| same | u32::from(points.ids[lane].object == object) << lane);
+                let object = points.ids.id(left.trailing_zeros() as usize % LANES).object;
+                let same = left & points.ids.are_of::<N>(object);
                 let reflectance = self.reflectances::<N>(&self.scene.objects()[object as usize], at, same);
                 for (band, light) in light.iter_mut().enumerate() {
                     let reflected = reflectance[band] * N::load(&self.arriving[at].light[band]);
@@ -244,7 +243,7 @@ impl Reflect<'_> {
             (Material::Own, shape) => {
                 let mut bands = [Eight::ZERO; 3];
                 for lane in set_bits(own) {
-                    let reflectance = shape.part(points.ids[lane].part).own_reflectance(points.uv(lane));
+                    let reflectance = shape.part(points.ids.id(lane).part).own_reflectance(points.uv(lane));
                     let LinearRgb { r, g, b } = reflectance.unwrap_or(Material::DEFAULT_REFLECTANCE);
                     [bands[0].0[lane], bands[1].0[lane], bands[2].0[lane]] = [r, g, b];
                 }

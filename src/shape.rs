@@ -133,8 +133,11 @@ pub trait SideBySide: Copy {
     /// One of them, the same in every place, for several rays.
     fn splat<N: Number>(&self, lane: usize) -> Self::Of<N>;
 
-    /// Puts one of others in that place.
-    fn put(&mut self, lane: usize, others: &Self, from: usize);
+    /// One of them in each place, for several rays, as [`Lanes::pick`] has it.
+    fn pick<N: Lanes>(&self, lanes: N) -> Self::Of<N>;
+
+    /// `yes` where the answer was yes, else `no`.
+    fn select<N: Number>(answer: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;
 
     /// Whether they have [`edges`](Self::edges).
     const HAVE_EDGES: bool = false;

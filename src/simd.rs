@@ -82,7 +82,8 @@ mod tests {
                 let each = N::each([x, y], |[x, y]| [y, x]);
                 let one = |lane: usize| [x.splat_lane(lane), N::splat(x.lane(lane))];
                 let spread = (0..LANES).flat_map(one).chain([N::splat(b.0[0])]);
-                let all_numbers = numbers.into_iter().chain(chosen).chain(each).chain(spread);
+                let all_numbers =
+                    numbers.into_iter().chain(chosen).chain(each).chain(spread).chain([x.pick(y), y.pick(x)]);
                 // Which NaN comes of an operation is nobody's business: none is ever seen.
                 let bits = |number: f32| if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() };
                 all.extend(all_numbers.map(|numbers| numbers.store().0.map(bits)));

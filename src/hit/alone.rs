@@ -103,9 +103,9 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     }
 
     /// Tells the witness of a leaf's parts.
-    fn tell(&mut self, parts: &[PartId], crossing: Option<(N::Mask, N)>) {
+    fn tell(&mut self, parts: impl Iterator<Item = PartId>, crossing: Option<(N::Mask, N)>) {
         let (crosses, t) = crossing.map_or((0, Eight::ZERO), |(crosses, t)| (crosses.bits(), t.store()));
-        for (lane, &id) in parts.iter().enumerate() {
+        for (lane, id) in parts.enumerate() {
             self.witness.part(Test::of(id, (crosses >> lane & 1 == 1).then_some(t.0[lane])));
         }
     }

@@ -93,6 +93,12 @@ impl Vector<Eight> {
 }
 
 impl<N: Lanes> Vector<N> {
+    /// One of the eight in each place, as [`Lanes::pick`] has it.
+    #[inline(always)]
+    pub(crate) fn pick(self, lanes: N) -> Self {
+        Self { x: self.x.pick(lanes), y: self.y.pick(lanes), z: self.z.pick(lanes) }
+    }
+
     /// One of the eight, everywhere.
     #[inline(always)]
     pub(crate) fn splat_lane(self, lane: usize) -> Self {

@@ -3,7 +3,7 @@
 use super::Object;
 use crate::bounds::Bounds;
 use crate::bvh::Bvh;
-use crate::lanes::{Eight, LANES};
+use crate::lanes::{Answers, Eight, LANES, Lanes};
 use crate::progress::{Progress, Watcher, Work};
 use crate::shape::{Balls, Corners, Part, Plane, Shape, SideBySide, Surface};
 use rayon::prelude::*;
@@ -19,7 +19,65 @@ pub(crate) struct PartId {
     pub(crate) part: u32,
 }
 
-/// What a ray is tested against. Each part has a place: first the planes', then those of the trees.
+/// Whose parts eight are: the bits of these numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PartIds<N> {
+    object: N,
+    part: N,
+}
+
+impl PartIds<Eight> {
+    /// Eight times the first part of the first object.
+    pub(crate) const ZERO: Self = Self { object: Eight::ZERO, part: Eight::ZERO };
+
+    fn of(ids: [PartId; LANES]) -> Self {
+        Self {
+            object: Eight(ids.map(|id| f32::from_bits(id.object))),
+            part: Eight(ids.map(|id| f32::from_bits(id.part))),
+        }
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub(crate) fn id(&self, lane: usize) -> PartId {
+        PartId { object: self.object.0[lane].to_bits(), part: self.part.0[lane].to_bits() }
+    }
+
+    /// Which are of that object, a bit for each.
+    #[inline(always)]
+    pub(crate) fn are_of<N: Lanes>(&self, object: u32) -> u32 {
+        N::load(&self.object).has_bits(object).bits()
+    }
+
+    /// One of them in each place, as [`Lanes::pick`] has it.
+    #[inline(always)]
+    pub(crate) fn pick<N: Lanes>(&self, lanes: N) -> PartIds<N> {
+        PartIds { object: N::load(&self.object).pick(lanes), part: N::load(&self.part).pick(lanes) }
+    }
+}
+
+impl<N: Lanes> PartIds<N> {
+    /// The same everywhere.
+    #[inline(always)]
+    pub(crate) fn splat(PartId { object, part }: PartId) -> Self {
+        Self { object: N::splat(f32::from_bits(object)), part: N::splat(f32::from_bits(part)) }
+    }
+
+    /// `yes` where the answer was yes, else `no`.
+    #[inline(always)]
+    pub(crate) fn select(answer: N::Mask, yes: Self, no: Self) -> Self {
+        Self { object: N::select(answer, yes.object, no.object), part: N::select(answer, yes.part, no.part) }
+    }
+
+    /// To memory.
+    #[inline(always)]
+    pub(crate) fn store(self) -> PartIds<Eight> {
+        PartIds { object: self.object.store(), part: self.part.store() }
+    }
+}
+
+/// What a ray is tested against. Each part has a place: first the planes', then those of the trees, each leaf's eight from
+/// a multiple of eight on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Parts {
     /// Those that have no end.
@@ -40,7 +98,7 @@ pub(crate) struct Grove<S> {
     pub(crate) leaves: Vec<S>,
     /// Whose they are, apart: that is asked only of what is met. (The last one's stands in the places that are left over,
     /// too.)
-    ids: Vec<[PartId; LANES]>,
+    ids: Vec<PartIds<Eight>>,
     /// The place of the first of them.
     pub(crate) first: u32,
     /// How many there are, where the tree is but one leaf and leaves nothing out; else 0.
@@ -81,7 +139,7 @@ impl Parts {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             watcher.tell(Progress { work: Work::Building, done, total })
         };
-        let balls = balls.planted(planes.len() as u32, &report)?;
+        let balls = balls.planted((planes.len() as u32).next_multiple_of(LANES as u32), &report)?;
         let triangles = triangles.planted(balls.first + (balls.leaves.len() * LANES) as u32, &report)?;
         let has_smooth = objects.iter().any(|object| matches!(&object.shape, Shape::Mesh(mesh) if mesh.is_smooth()));
         Some(Self { planes, balls, triangles, has_smooth, bounds })
@@ -134,25 +192,25 @@ impl<S> Grove<S> {
         !self.bvh.is_leaf()
     }
 
-    /// The leaf in which that place is, and which of its parts stands there.
+    /// The leaf in which that place is, and whose its parts are.
     #[inline(always)]
-    pub(crate) fn leaf(&self, place: u32) -> (&S, usize) {
-        let at = (place - self.first) as usize;
-        (&self.leaves[at / LANES], at % LANES)
+    pub(crate) fn leaf(&self, place: u32) -> (&S, &PartIds<Eight>) {
+        let leaf = (place - self.first) as usize / LANES;
+        (&self.leaves[leaf], &self.ids[leaf])
     }
 
     /// Whose part has that place.
     #[inline(always)]
     pub(crate) fn id(&self, place: u32) -> PartId {
         let at = (place - self.first) as usize;
-        self.ids[at / LANES][at % LANES]
+        self.ids[at / LANES].id(at % LANES)
     }
 
     /// Whose parts are in that leaf.
-    pub(crate) fn parts(&self, leaf: usize) -> &[PartId] {
-        let ids = &self.ids[leaf];
-        let end = (1..LANES).find(|&at| ids[at] == ids[at - 1]);
-        &ids[..end.unwrap_or(LANES)]
+    pub(crate) fn parts(&self, leaf: usize) -> impl Iterator<Item = PartId> {
+        let id = move |lane| self.ids[leaf].id(lane);
+        let end = (1..LANES).find(|&at| id(at) == id(at - 1));
+        (0..end.unwrap_or(LANES)).map(id)
     }
 }
 
@@ -188,7 +246,7 @@ impl<T: Surface + Copy + Sync> Listed<T> {
             let numbers = places.boxes(leaf);
             let number = |lane: usize| numbers[lane.min(numbers.len() - 1)] as usize;
             let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)]);
-            (S::of(&shapes[..numbers.len()]), from_fn(|lane| self.ids[number(lane)]))
+            (S::of(&shapes[..numbers.len()]), PartIds::of(from_fn(|lane| self.ids[number(lane)])))
         };
         let few = if bvh.is_leaf() { self.ids.len() } else { 0 };
         let (mut leaves, mut ids) = (Vec::new(), Vec::new());

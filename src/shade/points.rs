@@ -1,9 +1,9 @@
 //! Hits -> the surfaces there, eight at a time.
 
 use crate::hit::EightHits;
-use crate::lanes::{ALL, Eight, LANES, Lanes, Vector, set_bits};
+use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
-use crate::scene::{Grove, PartId, Parts, Scene};
+use crate::scene::{Grove, PartId, PartIds, Parts, Scene};
 use crate::shape::{AtCrossing, Part, Points, SideBySide};
 use crate::simd::{self, Work};
 use glam::Vec2;
@@ -14,7 +14,7 @@ pub struct EightPoints {
     /// Which of the rays have met one, a bit for each. What stands for the others has no meaning.
     pub met: u32,
     /// Whose it is.
-    pub(super) ids: [PartId; LANES],
+    pub(super) ids: PartIds<Eight>,
     /// As [`SurfacePoint`](crate::shape::SurfacePoint) has them.
     pub(super) position: Vector<Eight>,
     pub(super) normal: Vector<Eight>,
@@ -27,23 +27,13 @@ impl EightPoints {
     /// Of rays that have met nothing.
     const NONE: Self = Self {
         met: 0,
-        ids: [PartId { object: 0, part: 0 }; LANES],
+        ids: PartIds::ZERO,
         position: Vector::ZERO,
         normal: Vector::ZERO,
         facing: Vector::ZERO,
         clearance: Eight::ZERO,
         uv: [Eight::ZERO; 2],
     };
-
-    /// These have met that.
-    #[inline(always)]
-    fn set_ids(&mut self, lanes: u32, id: PartId) {
-        if lanes == ALL {
-            self.ids = [id; LANES];
-        } else {
-            set_bits(lanes).for_each(|lane| self.ids[lane] = id);
-        }
-    }
 
     #[inline(always)]
     pub(super) fn uv(&self, lane: usize) -> Vec2 {
@@ -53,7 +43,7 @@ impl EightPoints {
     /// The object, by its place in [`Scene::objects`], and the normal that one of the rays has met.
     #[inline]
     pub fn seen(&self, lane: usize) -> Option<(u32, glam::Vec3)> {
-        (self.met >> lane & 1 == 1).then(|| (self.ids[lane].object, self.normal.of_lane(lane)))
+        (self.met >> lane & 1 == 1).then(|| (self.ids.id(lane).object, self.normal.of_lane(lane)))
     }
 }
 
@@ -90,27 +80,30 @@ impl Work for SurfacePoints<'_> {
 
 #[inline(always)]
 fn of_hits<N: Lanes>(parts: &Parts, rays: &EightRays, hits: &EightHits, at: &mut EightPoints) {
-    let t = N::load(&hits.t);
     let mut points = Points::<N>::nowhere();
+    let mut ids = PartIds::<N>::splat(PartId { object: 0, part: 0 });
     let mut left = at.met;
     while left != 0 {
         let place = hits.place(left.trailing_zeros() as usize % LANES);
         // A plane is by itself; those that stand in trees are looked at together.
-        let (lanes, found) = if place < parts.balls.first {
-            let lanes = hits.at::<N>(place);
+        let (lanes, whose, found) = if place < parts.balls.first {
             let (id, plane) = &parts.planes[place as usize];
-            at.set_ids(lanes, *id);
-            (lanes, plane.points_at(&Rays::<N>::load(rays, false), t))
+            let found = plane.points_at(&Rays::<N>::load(rays, false), N::load(&hits.t));
+            (hits.at::<N>(place), PartIds::splat(*id), found)
         } else if place < parts.triangles.first {
-            let lanes = hits.between(parts.balls.first, parts.triangles.first);
-            (lanes, in_grove(&parts.balls, rays, hits, lanes, at))
+            in_grove(&parts.balls, rays, hits, hits.between(parts.balls.first, parts.triangles.first))
         } else {
-            let lanes = hits.between(parts.triangles.first, EightHits::NOTHING);
-            (lanes, in_grove(&parts.triangles, rays, hits, lanes, at))
+            in_grove(&parts.triangles, rays, hits, hits.between(parts.triangles.first, EightHits::NOTHING))
         };
-        points = if lanes == ALL { found } else { Points::select(N::answers(lanes), found, points) };
+        if lanes == ALL {
+            (points, ids) = (found, whose);
+        } else {
+            points = Points::select(N::answers(lanes), found, points);
+            ids = PartIds::select(N::answers(lanes), whose, ids);
+        }
         left &= !lanes;
     }
+    at.ids = ids.store();
     at.position = points.position.store();
     at.facing = points.facing.store();
     at.normal = at.facing;
@@ -118,36 +111,35 @@ fn of_hits<N: Lanes>(parts: &Parts, rays: &EightRays, hits: &EightHits, at: &mut
     at.uv = [points.uv[0].store(), points.uv[1].store()];
 }
 
-/// What these of the rays have met in a tree.
+/// What these of the rays have met in a tree: who, whose, and what.
 #[inline(always)]
 fn in_grove<N: Lanes, S: SideBySide>(
     grove: &Grove<S>,
     rays: &EightRays,
     hits: &EightHits,
     lanes: u32,
-    at: &mut EightPoints,
-) -> Points<N> {
-    let (rays, t) = (Rays::load(rays, true), N::load(&hits.t));
-    let first = hits.place(lanes.trailing_zeros() as usize % LANES);
-    let (leaf, place) = grove.leaf(first);
-    if hits.at::<N>(first) == lanes {
-        at.set_ids(lanes, grove.id(first));
-        return leaf.splat::<N>(place).points_at(&rays, t);
+) -> (u32, PartIds<N>, Points<N>) {
+    let (leaves, in_leaf) = (hits.leaves::<N>(), hits.in_leaf::<N>());
+    let place_of_first = |left: u32| hits.place(left.trailing_zeros() as usize % LANES);
+    // Most often all stand in one leaf. Who has met nothing here is given whatever it has, and that is not looked at.
+    let first = place_of_first(lanes);
+    let (leaf, ids) = grove.leaf(first);
+    let (mut shapes, mut whose) = (leaf.pick(in_leaf), ids.pick(in_leaf));
+    let mut left = lanes & !leaves.has_bits(first / LANES as u32).bits();
+    while left != 0 {
+        let place = place_of_first(left);
+        let ((leaf, ids), are_here) = (grove.leaf(place), leaves.has_bits(place / LANES as u32));
+        shapes = S::select(are_here, leaf.pick(in_leaf), shapes);
+        whose = PartIds::select(are_here, ids.pick(in_leaf), whose);
+        left &= !are_here.bits();
     }
-    // Who has met something else has it cross what stands there, and that is not looked at.
-    let mut shapes = *leaf;
-    for lane in set_bits(lanes) {
-        let (leaf, place) = grove.leaf(hits.place(lane));
-        shapes.put(lane, leaf, place);
-        at.ids[lane] = grove.id(hits.place(lane));
-    }
-    shapes.load::<N>().points_at(&rays, t)
+    (lanes, whose, shapes.points_at(&Rays::load(rays, true), N::load(&hits.t)))
 }
 
 /// Goes over to the smooth surfaces that triangles stand for.
 fn smooth(scene: &Scene, at: &mut EightPoints) {
     for lane in set_bits(at.met) {
-        let PartId { object, part } = at.ids[lane];
+        let PartId { object, part } = at.ids.id(lane);
         if let Part::Facet(facet) = scene.objects()[object as usize].shape.part(part)
             && let Some((position, normal)) =
                 facet.smooth(at.position.of_lane(lane), at.facing.of_lane(lane), at.uv(lane))

@@ -150,9 +150,17 @@ impl SideBySide for Balls<Eight> {
     }
 
     #[inline(always)]
-    fn put(&mut self, lane: usize, others: &Self, from: usize) {
-        self.center.put(lane, others.center.of_lane(from));
-        self.radius.0[lane] = others.radius.0[from];
+    fn pick<N: Lanes>(&self, lanes: N) -> Balls<N> {
+        let Balls { center, radius } = self.load::<N>();
+        Balls { center: center.pick(lanes), radius: radius.pick(lanes) }
+    }
+
+    #[inline(always)]
+    fn select<N: Number>(answer: N::Mask, yes: Balls<N>, no: Balls<N>) -> Balls<N> {
+        Balls {
+            center: Vector::select(answer, yes.center, no.center),
+            radius: N::select(answer, yes.radius, no.radius),
+        }
     }
 }
 

@@ -186,10 +186,15 @@ impl SideBySide for Corners<Eight> {
     }
 
     #[inline(always)]
-    fn put(&mut self, lane: usize, others: &Self, from: usize) {
-        for (corner, other) in self.0.iter_mut().zip(&others.0) {
-            corner.put(lane, other.of_lane(from));
-        }
+    fn pick<N: Lanes>(&self, lanes: N) -> Corners<N> {
+        let [a, b, c] = self.load::<N>().0;
+        Corners([a.pick(lanes), b.pick(lanes), c.pick(lanes)])
+    }
+
+    #[inline(always)]
+    fn select<N: Number>(answer: N::Mask, Corners([a, b, c]): Corners<N>, Corners(no): Corners<N>) -> Corners<N> {
+        let of_two = |yes, no| Vector::select(answer, yes, no);
+        Corners([of_two(a, no[0]), of_two(b, no[1]), of_two(c, no[2])])
     }
 }
 

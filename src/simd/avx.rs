@@ -5,10 +5,10 @@
 use super::sse2::each;
 use crate::lanes::{Answers, Eight, LANES, Lanes, Number, Work};
 use std::arch::x86_64::{
-    __m256, _mm256_add_ps, _mm256_andnot_ps, _mm256_cvtss_f32, _mm256_div_ps, _mm256_floor_ps, _mm256_load_ps,
-    _mm256_max_ps, _mm256_min_ps, _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_permutevar8x32_ps, _mm256_set1_epi32,
-    _mm256_set1_ps, _mm256_shuffle_ps, _mm256_sqrt_ps, _mm256_store_ps, _mm256_sub_ps, _mm256_unpackhi_ps,
-    _mm256_unpacklo_ps, _mm256_xor_ps,
+    __m256, _mm256_add_ps, _mm256_andnot_ps, _mm256_castps_si256, _mm256_cvtss_f32, _mm256_div_ps, _mm256_floor_ps,
+    _mm256_load_ps, _mm256_max_ps, _mm256_min_ps, _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_permutevar8x32_ps,
+    _mm256_set1_epi32, _mm256_set1_ps, _mm256_shuffle_ps, _mm256_sqrt_ps, _mm256_store_ps, _mm256_sub_ps,
+    _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -173,6 +173,11 @@ impl<M: Marks> Lanes for Register<M> {
     fn splat_lane(self, lane: usize) -> Self {
         let lane = avx!(_mm256_set1_epi32((lane as u32).cast_signed()));
         Self::of(avx!(_mm256_permutevar8x32_ps(self.0, lane)))
+    }
+
+    #[inline(always)]
+    fn pick(self, lanes: Self) -> Self {
+        Self::of(avx!(_mm256_permutevar8x32_ps(self.0, _mm256_castps_si256(lanes.0))))
     }
 
     #[inline(always)]
