@@ -16,7 +16,7 @@ use crate::scene::Scene;
 use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
 use pixel::{Seen, Watched};
 use rayon::prelude::*;
-use sampling::PASSES;
+use sampling::{MOST_RAYS, PASSES, Run, Runs};
 use std::num::NonZeroU32;
 use std::ops::{AddAssign, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -105,21 +105,39 @@ pub fn render_by(
 fn alike(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Option<Rendered> {
     let mut framebuffer = Framebuffer::new(tiles.resolution);
     let parts = tiles.split(&mut framebuffer.pixels);
-    let share = 1.0 / samples as f32;
+    let (runs, share) = (Runs::of(0..samples), 1.0 / samples as f32);
     let cost = crew.trace(parts, |buffers, (tile, mut part)| {
         let mut sums = [[Eight::ZERO; 3]; PIXELS / LANES];
         tiles.inside(tile, &mut buffers.wanted);
-        let cost = buffers.trace_tile(crew, scene, tiles, tile, 0..samples, |buffers| {
-            for (sums, lights) in sums.iter_mut().zip(&buffers.lights) {
-                for (sum, &light) in sums.iter_mut().zip(lights) {
-                    *sum = *sum + light;
-                }
-            }
+        let cost = buffers.trace_tile(crew, scene, tiles, tile, &runs, |buffers, run, lot| {
+            add_lights(&mut sums, &buffers.lights, run.each(), lot);
         })?;
         tiles.show(&buffers.wanted, |at| shade::light_of(&sums[at / LANES], at % LANES) * share, &mut part);
         Some(cost)
     })?;
     Some(Rendered { framebuffer, cost })
+}
+
+/// Adds the light of so many rays each to that of these pixels: of each pixel in the order of its samples.
+fn add_lights(sums: &mut [EightLights], lights: &[EightLights], each: usize, pixels: Range<usize>) {
+    if each == 1 {
+        for (sums, lights) in sums.iter_mut().zip(lights) {
+            for (sum, &light) in sums.iter_mut().zip(lights) {
+                *sum = *sum + light;
+            }
+        }
+        return;
+    }
+    for band in 0..3 {
+        let mut in_row = [0.0; MOST_RAYS];
+        for (in_row, light) in in_row.as_chunks_mut().0.iter_mut().zip(lights) {
+            *in_row = light[band].0;
+        }
+        for (pixel, lights) in pixels.clone().zip(in_row.chunks_exact(each)) {
+            let sum = &mut sums[pixel / LANES][band].0[pixel % LANES];
+            *sum = lights.iter().fold(*sum, |sum, light| sum + light);
+        }
+    }
 }
 
 impl Crew<'_> {
@@ -172,12 +190,12 @@ impl Refining {
         let mut cost = Cost::default();
         while let Some(pass) = PASSES.get(self.passes).filter(|pass| pass.end <= samples.get()) {
             let needs_more = self.unsettled(crew, scene);
-            let tiles = self.tiles;
+            let (tiles, runs) = (self.tiles, Runs::of(pass.clone()));
             let parts = self.pixels.chunks_mut(PIXELS).zip(needs_more.chunks(PIXELS)).collect();
             cost += crew.trace(parts, |buffers, (tile, (pixels, needs_more))| {
                 tiles.inside(tile, &mut buffers.wanted);
                 buffers.wanted.retain(|&pixel| needs_more[usize::from(pixel)]);
-                buffers.trace_tile(crew, scene, &tiles, tile, pass.clone(), |buffers| buffers.add_to(pixels))
+                buffers.trace_tile(crew, scene, &tiles, tile, &runs, |buffers, _, _| buffers.add_to(pixels))
             })?;
             self.passes += 1;
         }
@@ -230,6 +248,8 @@ impl Refining {
 #[derive(Default)]
 struct Buffers {
     wanted: Vec<u8>,
+    /// Of each ray of the lot, its own.
+    pixels: Vec<u8>,
     rays: Vec<EightRays>,
     hits: Vec<EightHits>,
     points: Vec<EightPoints>,
@@ -239,50 +259,50 @@ struct Buffers {
 }
 
 impl Buffers {
-    /// The wanted pixels with more samples, each of which somebody takes. `None`: given up, between one sample of them and
-    /// the next.
+    /// The wanted pixels with more samples, which somebody takes lot by lot. `None`: given up, between one lot and the next.
     fn trace_tile(
         &mut self,
         crew: Crew<'_>,
         scene: &Scene,
         tiles: &Tiles,
         tile: usize,
-        samples: Range<u32>,
-        mut take: impl FnMut(&Self),
+        runs: &Runs,
+        mut take: impl FnMut(&Self, &Run, Range<usize>),
     ) -> Option<Cost> {
         let start = Instant::now();
         let mut traced = 0;
-        for sample in samples {
-            if crew.is_cancelled() {
-                return None;
+        for run in runs.iter() {
+            for lot in run.lots(self.wanted.len()) {
+                if crew.is_cancelled() {
+                    return None;
+                }
+                traced += self.trace_lot(scene, tiles, tile, &run, lot.clone());
+                take(self, &run, lot);
             }
-            let shadow_rays = self.trace_sample(scene, tiles, tile, sample);
-            take(self);
-            traced += self.wanted.len() as u64 + shadow_rays;
         }
         Some(Cost { rays: traced, work: start.elapsed() })
     }
 
-    /// Adds the sample to those of the tile's pixels that it is of.
+    /// Adds the lot's samples to those of the tile's pixels that they are of.
     fn add_to(&self, pixels: &mut [Watched]) {
-        let Self { wanted, points, arriving, lights, .. } = self;
-        let groups = wanted.chunks(LANES).zip(points).zip(arriving).zip(lights);
-        for (((wanted, points), arriving), light) in groups {
-            for (lane, &pixel) in wanted.iter().enumerate() {
+        let groups = self.pixels.chunks(LANES).zip(&self.points).zip(&self.arriving).zip(&self.lights);
+        for (((of_rays, points), arriving), light) in groups {
+            for (lane, &pixel) in of_rays.iter().enumerate() {
                 let seen = || Seen::of(points.seen(lane), arriving.lit_by[lane]);
                 pixels[usize::from(pixel)].add(shade::light_of(light, lane), seen);
             }
         }
     }
 
-    /// All steps for one sample of those pixels. Returns the number of shadow rays that this took.
-    fn trace_sample(&mut self, scene: &Scene, tiles: &Tiles, tile: usize, sample: u32) -> u64 {
-        let Self { wanted, rays, hits, points, shadows, arriving, lights } = self;
-        tiles.make_eye_rays(tile, wanted, sample, rays);
+    /// All steps for a lot. Returns the number of rays that this took.
+    fn trace_lot(&mut self, scene: &Scene, tiles: &Tiles, tile: usize, run: &Run, lot: Range<usize>) -> u64 {
+        let Self { wanted, pixels, rays, hits, points, shadows, arriving, lights } = self;
+        run.spread(&wanted[lot], pixels);
+        tiles.make_eye_rays(tile, pixels, run, rays);
         hit::closest_hits(Kernel::Auto, scene, rays, hits);
         shade::surface_points(scene, rays, hits, points);
         let shadow_rays = shade::arriving_light(scene, points, shadows, arriving);
-        shade::reflect(scene, rays, tiles.steps(sample), hits, points, arriving, lights);
-        shadow_rays
+        shade::reflect(scene, rays, tiles.steps(run.samples.start), hits, points, arriving, lights);
+        pixels.len() as u64 + shadow_rays
     }
 }

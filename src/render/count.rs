@@ -1,5 +1,6 @@
 //! The trace stage alone, for those who time it: eye rays -> closest hits -> a shadow ray from each.
 
+use super::sampling::Runs;
 use super::tiles::Tiles;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
@@ -10,7 +11,7 @@ use crate::scene::Scene;
 use crate::shade::{self, EightPoints, TO_THE_LIGHT};
 use rayon::prelude::*;
 use std::num::NonZeroU32;
-use std::ops::{Add, Range};
+use std::ops::Add;
 
 /// What a picture's rays met.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,7 +44,8 @@ impl Add for Counts {
 /// rayon pool.
 pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
     let tiles = Tiles::new(camera, resolution, 1);
-    let tile = |buffers: &mut Buffers, tile: usize| buffers.count_tile(kernel, scene, &tiles, tile, 0..samples.get());
+    let runs = Runs::of(0..samples.get());
+    let tile = |buffers: &mut Buffers, tile: usize| buffers.count_tile(kernel, scene, &tiles, tile, &runs);
     let counts: Vec<_> = match rayon::current_num_threads() {
         1 => {
             let mut buffers = Buffers::default();
@@ -59,6 +61,7 @@ pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolut
 #[derive(Default)]
 struct Buffers {
     wanted: Vec<u8>,
+    pixels: Vec<u8>,
     rays: Vec<EightRays>,
     hits: Vec<EightHits>,
     points: Vec<EightPoints>,
@@ -67,13 +70,16 @@ struct Buffers {
 }
 
 impl Buffers {
-    fn count_tile(&mut self, kernel: Kernel, scene: &Scene, tiles: &Tiles, tile: usize, samples: Range<u32>) -> Counts {
+    fn count_tile(&mut self, kernel: Kernel, scene: &Scene, tiles: &Tiles, tile: usize, runs: &Runs) -> Counts {
         tiles.inside(tile, &mut self.wanted);
         let mut counts = Counts::default();
-        for sample in samples {
-            tiles.make_eye_rays(tile, &self.wanted, sample, &mut self.rays);
-            hit::closest_hits(kernel, scene, &self.rays, &mut self.hits);
-            counts = counts + self.count(kernel, scene);
+        for run in runs.iter() {
+            for lot in run.lots(self.wanted.len()) {
+                run.spread(&self.wanted[lot], &mut self.pixels);
+                tiles.make_eye_rays(tile, &self.pixels, &run, &mut self.rays);
+                hit::closest_hits(kernel, scene, &self.rays, &mut self.hits);
+                counts = counts + self.count(kernel, scene);
+            }
         }
         counts
     }

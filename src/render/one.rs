@@ -1,6 +1,7 @@
 //! One pixel on its own way through the steps, with what stands between them.
 
 use super::Buffers;
+use super::sampling::{Run, sample_position};
 use super::tiles::{PIXELS, Tiles};
 use crate::camera::Camera;
 use crate::color::LinearRgb;
@@ -41,10 +42,10 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     let number = tiles.number(x, y);
     let mut buffers = Buffers::default();
     buffers.wanted.push((number % PIXELS) as u8);
-    buffers.trace_sample(scene, &tiles, number / PIXELS, 0);
+    buffers.trace_lot(scene, &tiles, number / PIXELS, &Run::first(), 0..1);
     let light = shade::light_of(&buffers.lights[0], 0);
     Steps {
-        q: tiles.q([x as f32, y as f32], 0).into(),
+        q: tiles.q([x as f32, y as f32], sample_position(0).into()).into(),
         ray: buffers.rays[0].ray(0),
         hit: buffers.hits[0].hit(scene, 0),
         arriving: shade::light_of(&buffers.arriving[0].light, 0),

@@ -1,5 +1,7 @@
 //! How many samples a pixel gets, and where they lie.
 
+use crate::lanes::{Eight, LANES};
+use std::borrow::Cow;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
@@ -29,6 +31,91 @@ impl From<NonZeroU32> for Sampling {
 /// The samples of each pass over a picture: each makes four out of one.
 pub(super) const PASSES: [Range<u32>; 4] = [0..1, 1..4, 4..16, 16..64];
 
+/// Samples that are traced together, those of one pixel after those of another: rays through one pixel meet the same things
+/// more often than rays through those beside it. All have one [`footprint_share`].
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    pub(super) samples: Range<u32>,
+    /// Where the rays of a lot go through their pixels, eight by eight.
+    pub(super) positions: [[Eight; 2]; MOST_RAYS / LANES],
+}
+
+/// The most rays that go through the steps at once: what is kept of them fits the nearest caches.
+pub(super) const MOST_RAYS: usize = 256;
+
+/// The most samples of a pixel among them.
+const MOST_SAMPLES: u32 = 64;
+
+/// Some samples in runs.
+pub(super) struct Runs {
+    samples: Range<u32>,
+    /// The first of them. What comes after is long, and little beside what tracing it takes.
+    kept: Vec<Run>,
+}
+
+impl Runs {
+    pub(super) fn of(samples: Range<u32>) -> Self {
+        let kept = cut(samples.clone()).take(PASSES.len()).map(Run::of).collect();
+        Self { samples, kept }
+    }
+
+    /// One after the other.
+    pub(super) fn iter(&self) -> impl Iterator<Item = Cow<'_, Run>> {
+        cut(self.samples.clone()).enumerate().map(|(at, samples)| match self.kept.get(at) {
+            Some(run) => Cow::Borrowed(run),
+            None => Cow::Owned(Run::of(samples)),
+        })
+    }
+}
+
+/// Cut at the ends of passes, and where there are more than are traced at once.
+fn cut(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
+    std::iter::from_fn(move || {
+        let Range { start, end } = samples;
+        let of_pass = PASSES.iter().map(|pass| pass.end).find(|&end| start < end);
+        samples.start = end.min(of_pass.unwrap_or(end)).min(start.saturating_add(MOST_SAMPLES));
+        (start < end).then_some(start..samples.start)
+    })
+}
+
+impl Run {
+    /// The first sample of each pixel.
+    pub(super) fn first() -> Self {
+        Self::of(0..1)
+    }
+
+    fn of(samples: Range<u32>) -> Self {
+        let mut run = Self { samples, positions: [[Eight::ZERO; 2]; MOST_RAYS / LANES] };
+        for ray in 0..MOST_RAYS {
+            let (x, y) = sample_position(run.samples.start + (ray % run.each()) as u32);
+            let [all_x, all_y] = &mut run.positions[ray / LANES];
+            (all_x.0[ray % LANES], all_y.0[ray % LANES]) = (x, y);
+        }
+        run
+    }
+
+    /// How many there are of each pixel.
+    pub(super) fn each(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// So many pixels in lots, each of which goes through the steps at once.
+    pub(super) fn lots(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> {
+        let at_once = MOST_RAYS / self.each();
+        (0..pixels).step_by(at_once).map(move |first| first..pixels.min(first + at_once))
+    }
+
+    /// Puts down which pixel each of the rays through these goes through.
+    pub(super) fn spread(&self, pixels: &[u8], of_rays: &mut Vec<u8>) {
+        of_rays.clear();
+        if self.each() == 1 {
+            of_rays.extend_from_slice(pixels);
+        } else {
+            of_rays.extend(pixels.iter().flat_map(|&pixel| std::iter::repeat_n(pixel, self.each())));
+        }
+    }
+}
+
 /// Where in the pixel a sample lies, as parts of its width and height from the top left corner: the centre first, then
 /// on through Roberts' R2 sequence (multiples of the inverses of the plastic number and its square, modulo 1), whose
 /// every beginning covers the pixel evenly. Counted in integers, so that it is exact.
@@ -48,5 +135,37 @@ pub(super) fn footprint_share(sample: u32) -> f32 {
         1..4 => 0.5,
         4..16 => 0.25,
         _ => 0.125,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever is asked for, each sample of each pixel is traced once, in its order, where it lies; and those that go
+    /// together stand for the same share of a pixel.
+    #[test]
+    fn runs_and_lots_leave_nothing_out() {
+        for samples in [0..1, 0..3, 0..16, 1..4, 4..16, 16..64, 0..64, 0..65, 0..300, 5..7] {
+            for pixels in [0, 1, 5, 21, 22, 255, 256] {
+                let mut traced = vec![Vec::new(); pixels];
+                for run in Runs::of(samples.clone()).iter() {
+                    let shares = [run.samples.start, run.samples.end - 1].map(footprint_share);
+                    assert_eq!(shares[0], shares[1], "{:?}", run.samples);
+                    for lot in run.lots(pixels) {
+                        let numbers: Vec<_> = (0..=u8::MAX).take(pixels).collect();
+                        let mut of_rays = Vec::new();
+                        run.spread(&numbers[lot], &mut of_rays);
+                        assert!(of_rays.len() <= MOST_RAYS, "{samples:?} of {pixels} pixels");
+                        for (ray, &pixel) in of_rays.iter().enumerate() {
+                            let [x, y] = &run.positions[ray / LANES];
+                            traced[usize::from(pixel)].push((x.0[ray % LANES], y.0[ray % LANES]));
+                        }
+                    }
+                }
+                let wanted: Vec<_> = samples.clone().map(sample_position).collect();
+                assert!(traced.iter().all(|traced| *traced == wanted), "{samples:?} of {pixels} pixels");
+            }
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! What the rays through a picture's pixels meet, for pictures of something else than light.
 
+use super::sampling::Run;
 use super::tiles::Tiles;
 use super::{Buffers, Cost, Crew, Sampling};
 use crate::camera::Camera;
@@ -62,6 +63,7 @@ pub fn sights<T: Copy + Default + Send>(
 ) -> Option<Sighted<T>> {
     let scale = if sampling == Sampling::Coarse { 2 } else { 1 };
     let tiles = Tiles::new(camera, resolution, scale);
+    let run = Run::first();
     let mut pixels = vec![T::default(); resolution.pixel_count()];
     let cost = crew.trace(tiles.split(&mut pixels), |buffers: &mut Buffers, (tile, mut part)| {
         if crew.is_cancelled() {
@@ -69,7 +71,7 @@ pub fn sights<T: Copy + Default + Send>(
         }
         tiles.inside(tile, &mut buffers.wanted);
         let show = |pixel, sight: &Sight| tiles.put(pixel, see(sight), &mut part);
-        Some(buffers.see_tile(scene, &tiles, tile, reach, show))
+        Some(buffers.see_tile(scene, &tiles, tile, &run, reach, show))
     })?;
     Some(Sighted { pixels, cost })
 }
@@ -81,12 +83,13 @@ impl Buffers {
         scene: &Scene,
         tiles: &Tiles,
         tile: usize,
+        run: &Run,
         reach: Reach,
         mut show: impl FnMut(u8, &Sight),
     ) -> Cost {
         let Self { wanted, rays, hits, points, shadows, arriving, .. } = self;
         let start = Instant::now();
-        tiles.make_eye_rays(tile, wanted, 0, rays);
+        tiles.make_eye_rays(tile, wanted, run, rays);
         hit::closest_hits(Kernel::Auto, scene, rays, hits);
         let mut traced = wanted.len() as u64;
         arriving.clear();

@@ -1,9 +1,10 @@
 //! A picture in tiles: where each pixel is, and the eye rays through it.
 //!
 //! Tile by tile, and in a tile square by square of 8 by 8 and group by group of 4 by 2, pixels that lie side by side are
-//! neighbours in memory: a group's eye rays are eight that go together, a square's are a packet.
+//! neighbours in memory: a group's eye rays are eight that go together, a square's are a packet. Of several samples those of
+//! one pixel are neighbours.
 
-use super::sampling::{footprint_share, sample_position};
+use super::sampling::{Run, footprint_share};
 use crate::camera::{Camera, EyeRays};
 use crate::framebuffer::Resolution;
 use crate::lanes::{ALL, Eight, LANES, Lanes, Number, Vector};
@@ -119,20 +120,20 @@ impl Tiles {
         }
     }
 
-    /// One eye ray for each of these pixels of a tile.
-    pub(super) fn make_eye_rays(&self, tile: usize, pixels: &[u8], sample: u32, rays: &mut Vec<EightRays>) {
+    /// The eye rays of a lot, of each of which that is its pixel in the tile.
+    pub(super) fn make_eye_rays(&self, tile: usize, pixels: &[u8], run: &Run, rays: &mut Vec<EightRays>) {
         rays.clear();
-        simd::run(MakeEyeRays { tiles: self, tile, pixels, sample, rays });
+        simd::run(MakeEyeRays { tiles: self, tile, pixels, run, rays });
     }
 
-    /// Where a pixel's sample lies in the picture: the lecture's (qu, qv), (0, 0) being the lower left corner.
+    /// Where a pixel's sample, which has that place in the pixel, lies in the picture: the lecture's (qu, qv), (0, 0) being
+    /// the lower left corner.
     #[inline(always)]
-    pub(super) fn q<N: Number>(&self, [x, y]: [N; 2], sample: u32) -> [N; 2] {
-        let (sx, sy) = sample_position(sample);
+    pub(super) fn q<N: Number>(&self, [x, y]: [N; 2], [sx, sy]: [N; 2]) -> [N; 2] {
         let (width, height) = (N::splat(self.resolution.width as f32), N::splat(self.resolution.height as f32));
         let scale = N::splat(self.scale as f32);
         // Rows are counted from the top, the lecture's q_v from the bottom.
-        [(x + N::splat(sx)) * scale / width, (height - (y + N::splat(sy)) * scale) / height]
+        [(x + sx) * scale / width, (height - (y + sy) * scale) / height]
     }
 
     /// By how much the direction changes from an eye ray to those beside it.
@@ -187,7 +188,7 @@ struct MakeEyeRays<'w> {
     tiles: &'w Tiles,
     tile: usize,
     pixels: &'w [u8],
-    sample: u32,
+    run: &'w Run,
     rays: &'w mut Vec<EightRays>,
 }
 
@@ -196,17 +197,17 @@ impl Work for MakeEyeRays<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) {
-        let Self { tiles, tile, pixels, sample, rays } = self;
+        let Self { tiles, tile, pixels, run, rays } = self;
         let eye_rays = &tiles.eye_rays;
         let [left, top] = tiles.corner(tile).map(|at| N::splat(at as f32));
         let origin = Vector::splat(eye_rays.eye());
-        for pixels in pixels.chunks(LANES) {
+        for (pixels, [sx, sy]) in pixels.chunks(LANES).zip(&run.positions) {
             let [mut x, mut y] = [Eight::ZERO; 2];
             for lane in 0..LANES {
                 let pixel = usize::from(pixels[lane.min(pixels.len() - 1)]);
                 (x.0[lane], y.0[lane]) = (IN_TILE[0][pixel], IN_TILE[1][pixel]);
             }
-            let [qu, qv] = tiles.q([left + N::load(&x), top + N::load(&y)], sample);
+            let [qu, qv] = tiles.q([left + N::load(&x), top + N::load(&y)], [N::load(sx), N::load(sy)]);
             let direction = eye_rays.direction(qu, qv).store();
             rays.push(EightRays { origin, direction, asked: ALL >> (LANES - pixels.len()) });
         }
