@@ -87,7 +87,7 @@
 //! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no
 //!    timer runs.
 //! 7. The library neither prints nor exits, and installs nothing by itself.
-//! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over a tile's arrays, in which
+//! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over arrays of its rays, in which
 //!    eight rays stand side by side all the way ([`EightRays`](ray::EightRays)), each with a bit for whether it is asked
 //!    about.
 //!

@@ -1,6 +1,6 @@
 //! Scene -> framebuffer, tile by tile: eye rays -> hits -> shadow rays -> shade.
 //!
-//! What crosses a tile goes together: each step is a function over arrays of the tile's rays, so that tracing them
+//! What crosses a tile goes together: each step is a function over arrays of its rays, 256 at most, so that tracing them
 //! as packets, looking at a tile's edges or explaining one ray is a choice inside a step.
 //!
 //! A frame is a pure function of scene, camera, resolution and [`Sampling`]. Tiles run on the threads of the current
@@ -121,6 +121,7 @@ fn alike(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Option<R
 /// Adds the light of so many rays each to that of these pixels: of each pixel in the order of its samples.
 fn add_lights(sums: &mut [EightLights], lights: &[EightLights], each: usize, pixels: Range<usize>) {
     if each == 1 {
+        const { assert!(PIXELS <= MOST_RAYS, "one sample of each pixel is one lot") };
         for (sums, lights) in sums.iter_mut().zip(lights) {
             for (sum, &light) in sums.iter_mut().zip(lights) {
                 *sum = *sum + light;

@@ -49,7 +49,7 @@ const MOST_SAMPLES: u32 = 64;
 /// Some samples in runs.
 pub(super) struct Runs {
     samples: Range<u32>,
-    /// The first of them. What comes after is long, and little beside what tracing it takes.
+    /// The first of them. Others are made anew for each tile: that is little beside what tracing so many takes.
     kept: Vec<Run>,
 }
 

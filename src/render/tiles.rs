@@ -201,13 +201,17 @@ impl Work for MakeEyeRays<'_> {
         let eye_rays = &tiles.eye_rays;
         let [left, top] = tiles.corner(tile).map(|at| N::splat(at as f32));
         let origin = Vector::splat(eye_rays.eye());
-        for (pixels, [sx, sy]) in pixels.chunks(LANES).zip(&run.positions) {
+        for (pixels, &[mut sx, mut sy]) in pixels.chunks(LANES).zip(&run.positions) {
             let [mut x, mut y] = [Eight::ZERO; 2];
+            let last = pixels.len() - 1;
             for lane in 0..LANES {
-                let pixel = usize::from(pixels[lane.min(pixels.len() - 1)]);
+                let pixel = usize::from(pixels[lane.min(last)]);
                 (x.0[lane], y.0[lane]) = (IN_TILE[0][pixel], IN_TILE[1][pixel]);
             }
-            let [qu, qv] = tiles.q([left + N::load(&x), top + N::load(&y)], [N::load(sx), N::load(sy)]);
+            for lane in pixels.len()..LANES {
+                (sx.0[lane], sy.0[lane]) = (sx.0[last], sy.0[last]);
+            }
+            let [qu, qv] = tiles.q([left + N::load(&x), top + N::load(&y)], [N::load(&sx), N::load(&sy)]);
             let direction = eye_rays.direction(qu, qv).store();
             rays.push(EightRays { origin, direction, asked: ALL >> (LANES - pixels.len()) });
         }
