@@ -187,7 +187,7 @@ fn view<E: fmt::Display + Send + 'static>(
     if let Some(signal) = signals.deadly() {
         return Ok(Outcome { ending: Ending::Signal(signal), moved: None, heard: true });
     }
-    let mut terminal = Terminal::take()?;
+    let mut terminal = Terminal::take(signals)?;
     let mut live = Live::new(options, terminal.window()?, scenes.named());
     let ended = live.run(&mut terminal, &mut renderer, &mut scenes, signals);
     let ending = ended.or_else(|error| match error {

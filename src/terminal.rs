@@ -67,14 +67,14 @@ pub struct Window {
 
 impl Terminal {
     /// Takes the terminal over: the picture goes to standard output; keys come from standard input, or from the
-    /// controlling terminal where standard input is something else.
+    /// controlling terminal where standard input is something else. In the background it waits to be in the foreground.
     ///
     /// # Errors
     /// If either is not a terminal, or cannot be set up; it is then as it was.
-    pub fn take() -> io::Result<Self> {
+    pub fn take(signals: &Signals) -> io::Result<Self> {
         let output = Output::open()?;
         let mut terminal = Self { keys: keys_file()?, output, modes: Modes::none(), unanswered: Unanswered::default() };
-        terminal.take_again()?;
+        terminal.take_again(signals)?;
         Ok(terminal)
     }
 
@@ -82,8 +82,8 @@ impl Terminal {
     ///
     /// # Errors
     /// If it cannot be set up; what was done is undone when this is dropped.
-    pub fn take_again(&mut self) -> io::Result<()> {
-        self.modes.turn_on(&self.keys, &mut self.output)
+    pub fn take_again(&mut self, signals: &Signals) -> io::Result<()> {
+        self.modes.turn_on(&self.keys, &mut self.output, signals)
     }
 
     /// The window's size now.

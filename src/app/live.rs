@@ -319,7 +319,7 @@ impl Live {
         if signals.deadly().is_some() {
             return Ok(());
         }
-        terminal.take_again()?;
+        terminal.take_again(signals)?;
         // What was on its way then is lost.
         if self.questions.is_open() {
             terminal.send(self.questions.bytes())?;

@@ -48,7 +48,7 @@ pub(super) fn run(given: &ArgMatches) -> Done {
 /// Takes the terminal, asks, and gives it back.
 fn talk(questions: &mut Questions, cell: &mut CellShape) -> io::Result<Talk> {
     let mut signals = Signals::catch()?;
-    let mut terminal = Terminal::take()?;
+    let mut terminal = Terminal::take(&signals)?;
     *cell = terminal.window()?.cell;
     terminal.send(questions.bytes())?;
     let asked = Instant::now();

@@ -2,10 +2,10 @@
 
 use super::output::Output;
 use super::unanswered::{Unanswered, is_in_background};
-use super::{FENCE, panics, rehearsal, signals};
+use super::{FENCE, Signals, panics, rehearsal, signals};
 use crossterm::event::{self, KeyboardEnhancementFlags};
 use crossterm::{Command, cursor, style, terminal};
-use rustix::termios::{self, OptionalActions, QueueSelector, Termios};
+use rustix::termios::{self, Action, OptionalActions, QueueSelector, Termios};
 use std::fs::File;
 use std::io;
 use std::time::{Duration, Instant};
@@ -52,13 +52,13 @@ impl Modes {
 
     /// Raw mode, the alternate screen, no cursor, pastes in brackets, word of the focus and of the mouse. What is about to be turned on is
     /// listed first: half done is undone too.
-    pub(super) fn turn_on(&mut self, keys: &File, output: &mut Output) -> io::Result<()> {
+    pub(super) fn turn_on(&mut self, keys: &File, output: &mut Output, signals: &Signals) -> io::Result<()> {
+        wait_for_foreground(keys, signals)?;
         let before = termios::tcgetattr(keys)?;
         let mut raw = before.clone();
         raw.make_raw();
         self.on.push(Mode::Raw(Box::new(before)));
         panics::hold(true);
-        // In the background this stops the process, until it is brought to the foreground.
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
         rehearsal::reach("raw mode")?;
         let mut turn_on = String::new();
@@ -136,6 +136,17 @@ impl Modes {
         panics::hold(false);
         heard
     }
+}
+
+/// The settings of now are given back in the end, so they must be the shell's for its jobs, not those with which it reads
+/// its next line.
+fn wait_for_foreground(keys: &File, signals: &Signals) -> io::Result<()> {
+    // In the background this stops the process, until it is brought to the foreground. (Nothing else comes of it: no
+    // program of ours has held the output up.)
+    termios::tcflow(keys, Action::OOn)?;
+    // Nothing was on the screen that somebody could have written over.
+    signals.take_continued();
+    Ok(())
 }
 
 /// Keys that were meant for us are not left for the shell. (TCSAFLUSH would do both, but it waits for the output to be

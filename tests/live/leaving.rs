@@ -2,7 +2,7 @@
 
 #![cfg(feature = "test-hooks")]
 
-use crate::pty::{self, Answer, Phases, SOON, Session, Size, Start};
+use crate::pty::{self, Answer, Phases, SOON, Seen, Session, Size, Start};
 use rustix::process::{Signal, kill_process};
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
@@ -468,6 +468,26 @@ fn in_the_background_it_leaves_the_terminal_alone() {
     session.assert_clean();
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
+    // It was continued twice, and has taken the terminal once: giving it back throws keys away.
+    let leaves = |seen: &Seen| seen.bytes()[before..].windows(8).any(|bytes| bytes == b"\x1b[?1049l");
+    assert!(!session.sees(Duration::from_millis(200), leaves), "taken a second time");
+    session.send(b"q");
+    session.wait_for_text("ended <0>");
+    session.assert_clean();
+}
+
+/// Started in the background while the shell reads a line with settings of its own, it gives back those that it found in
+/// the foreground.
+#[test]
+fn the_settings_given_back_are_those_of_the_foreground() {
+    let script = format!(
+        "set -m; foreground=$(stty -g); stty -icanon; '{PROGRAM}' '{SCENE}' & read line; stty \"$foreground\"; \
+         fg >/dev/null; echo \"ended <$?>\"; read line"
+    );
+    let mut session = Start::shell(&script).spawn();
+    assert!(!session.sees(Duration::from_millis(400), |seen| seen.has(b"\x1b")), "escapes from the background");
+    session.send(b"\n");
+    session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
     session.send(b"q");
     session.wait_for_text("ended <0>");
     session.assert_clean();
