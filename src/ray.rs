@@ -217,6 +217,12 @@ pub fn sheared_exactly(from_origin: DVec3, direction: Vec3) -> DVec3 {
 }
 
 impl<M: Mask> Longest<M> {
+    /// Whether both say of all that it is along the same axis.
+    #[inline(always)]
+    fn is_shared<O>(self, other: Longest<O>) -> bool {
+        matches!((self, other), (Self::X, Longest::X) | (Self::Y, Longest::Y) | (Self::Z, Longest::Z))
+    }
+
     /// The coordinates turned about so that the longest is z. A right-handed basis stays one.
     #[inline(always)]
     fn last<N: Number<Mask = M>>(self, Vector { x, y, z }: Vector<N>) -> Vector<N> {

@@ -150,7 +150,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
         let t = N::select(N::answers(asked), N::splat(self.within.max), N::splat(DONE));
         let mut met = Met { t, place: N::splat(place_as_number(NOTHING)) };
         for (place, (_, plane)) in (0..).zip(&parts.planes) {
-            met.test(plane, place, rays, min, parts);
+            met.take(place, plane.first_crossing(rays, min), parts);
         }
         met.test_few(&parts.balls, rays, min, parts);
         met.test_few(&parts.triangles, rays, min, parts);
@@ -158,9 +158,10 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
     }
 
     #[inline(always)]
-    fn test<C: Crossable<N>>(&mut self, group: usize, shape: &C, place: u32) {
+    fn test<C: Crossable<N>>(&mut self, group: usize, shape: &C, place: u32, rough: N) {
         let mut met = Met::<N, ANY> { t: self.t[group], place: self.place[group] };
-        if met.test(shape, place, &self.groups[group], N::splat(self.within.min), self.parts) {
+        let (rays, min) = (&self.groups[group], N::splat(self.within.min));
+        if met.take(place, shape.first_crossing_in_pencil(rays, min, rough), self.parts) {
             self.set(group, met);
         }
     }
@@ -185,14 +186,15 @@ impl<N: Lanes, const ANY: bool> Met<N, ANY> {
     fn test_few<S: SideBySide>(&mut self, grove: &Grove<S>, rays: &Rays<N>, min: N, parts: &Parts) {
         let Some(leaf) = grove.leaves.first() else { return };
         for lane in 0..grove.few {
-            self.test(&leaf.splat(lane), grove.place(0, lane), rays, min, parts);
+            let shape = leaf.splat(lane);
+            self.take(grove.place(0, lane), shape.first_crossing(rays, min), parts);
         }
     }
 
-    /// Tests one part; answers whether it is met.
+    /// Takes a part where it is met; answers whether it is.
     #[inline(always)]
-    fn test<C: Crossable<N>>(&mut self, shape: &C, place: u32, rays: &Rays<N>, min: N, parts: &Parts) -> bool {
-        let Some((crosses, t)) = shape.first_crossing(rays, min) else { return false };
+    fn take(&mut self, place: u32, crossing: Option<(N::Mask, N)>, parts: &Parts) -> bool {
+        let Some((crosses, t)) = crossing else { return false };
         if ANY {
             return self.meet(crosses & t.le(self.t), N::splat(DONE), place);
         }
@@ -255,9 +257,16 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
         let boxes = shapes.load::<N>().boxes();
         let [enters, leaves] = self.packet.crossed(boxes);
         let is_met = enters.max(min).le(leaves.min(N::splat(self.farthest()))).bits();
+        if is_met == 0 {
+            return;
+        }
         let edges = match &self.pencil {
-            Some(pencil) if is_met != 0 => shapes.edges(pencil),
-            _ => None,
+            Some(pencil) => shapes.edges(pencil),
+            None => None,
+        };
+        let rough = match &edges {
+            Some(edges) => edges.rough,
+            None => Eight([f32::INFINITY; LANES]),
         };
         let [low, high] = [boxes[0].store(), boxes[1].store()];
         // All that are to be tested, a bit for each: a loop over them is guessed wrong once, at its end.
@@ -275,7 +284,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
             let (lane, group) =
                 (pairs.trailing_zeros() as usize / GROUPS % LANES, pairs.trailing_zeros() as usize % GROUPS);
             pairs &= pairs.wrapping_sub(1);
-            self.rays.test(group, &shapes.splat(lane), self.grove.place(leaf, lane));
+            self.rays.test(group, &shapes.splat(lane), self.grove.place(leaf, lane), N::splat(rough.0[lane]));
         }
     }
 

@@ -20,6 +20,9 @@ pub struct Pencil<N: Lanes> {
     pub reaches: [N; 2],
     /// How far a place is from zero, along either axis, at most: up to 1.
     pub width: N,
+    /// Between where along z the rays' origins lie, if that is the axis which is longest for all of them; without an end
+    /// where it is not.
+    pub depths: [N; 2],
 }
 
 impl<N: Lanes> Pencil<N> {
@@ -40,7 +43,8 @@ impl<N: Lanes> Pencil<N> {
             return None;
         }
         // As far as was found, where each end is rounded by a unit itself, twice over.
-        Self::around(end, off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0), groups)
+        let blur = off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0);
+        Self::around(end, blur, groups)
     }
 
     #[inline(always)]
@@ -50,12 +54,17 @@ impl<N: Lanes> Pencil<N> {
         let (zero, one) = (N::splat(0.0), N::splat(1.0));
         let (mut xs, mut ys) = ([zero; LANES], [zero; LANES]);
         let mut are_near = zero.le(one);
+        let (mut depths, mut share_axis) = ([N::splat(f32::INFINITY), N::splat(f32::NEG_INFINITY)], true);
         for (at, rays) in groups.iter().enumerate() {
             let (direction, inverse) = (longest.last(rays.direction), longest.last(rays.inverse));
             xs[at] = direction.x * inverse.z - slope[0];
             ys[at] = direction.y * inverse.z - slope[1];
             // No for NaN as well.
             are_near = are_near & xs[at].abs().le(one) & ys[at].abs().le(one);
+            let depth = longest.last(rays.origin - apex).z;
+            // In this order, so that NaN is left out.
+            depths = [depth.min(depths[0]), depth.max(depths[1])];
+            share_axis &= rays.shear.longest.is_shared(longest);
         }
         let (x0, x1) = (N::least_of_each(&xs), N::greatest_of_each(&xs));
         let (y0, y1) = (N::least_of_each(&ys), N::greatest_of_each(&ys));
@@ -66,7 +75,12 @@ impl<N: Lanes> Pencil<N> {
         let reaches = [(x1 - middles[0]).max(middles[0] - x0) * more, (y1 - middles[1]).max(middles[1] - y0) * more];
         let width = x0.abs().max(x1.abs()).max(y0.abs().max(y1.abs()));
         let width = N::splat(width.greatest());
-        are_near.all().then_some(Self { apex, blur, longest, slope, middles, reaches, width })
+        let depths = if share_axis {
+            [N::splat(-(-depths[0]).greatest()), N::splat(depths[1].greatest())]
+        } else {
+            [N::splat(f32::NEG_INFINITY), N::splat(f32::INFINITY)]
+        };
+        are_near.all().then_some(Self { apex, blur, longest, slope, middles, reaches, width, depths })
     }
 
     /// A point in coordinates around the apex, in which the ray in the middle runs along z. (Rounding of the slope is no

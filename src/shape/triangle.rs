@@ -32,26 +32,72 @@ struct Crossing<N> {
     t: N,
 }
 
+impl<N: Number> Crossing<N> {
+    #[inline(always)]
+    fn of([a, b, c]: [Vector<N>; 3], weights: Vector<N>) -> Self {
+        let sum = weights.x + weights.y + weights.z;
+        Self { weights, sum, t: weights.dot(Vector { x: a.z, y: b.z, z: c.z }) }
+    }
+}
+
 impl<N: Number> Corners<N> {
     /// The test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013). In the ray's own coordinates
     /// it runs along z, and it is inside if the origin of the xy plane lies on the same side of all three edges, or on
     /// them. Where f32 cannot tell on which, f64 does.
     #[inline(always)]
     fn crossing(&self, rays: &Rays<N>) -> Option<(N::Mask, Crossing<N>)> {
-        let [a, b, c] = self.0;
-        let (o, shear) = (rays.origin, &rays.shear);
-        let corners = [shear.apply(a - o), shear.apply(b - o), shear.apply(c - o)];
+        let corners = self.sheared(rays);
+        self.crossing_of(corners, weights(corners), rays)
+    }
+
+    /// The same of rays whose [`doubt`] is no more than `rough`: if that is enough to tell, it need not be known.
+    #[inline(always)]
+    fn crossing_in_pencil(&self, rays: &Rays<N>, rough: N) -> Option<(N::Mask, Crossing<N>)> {
+        let corners = self.sheared(rays);
         let weights = weights(corners);
-        let [agree, differ] = signs(weights, doubt(corners, shear.length));
+        let [agree, differ] = signs(weights, rough);
+        if !(agree | differ).all() {
+            return self.crossing_of(corners, weights, rays);
+        }
+        agree.any().then(|| (agree, Crossing::of(corners, weights)))
+    }
+
+    /// The corners in the rays' own coordinates.
+    #[inline(always)]
+    fn sheared(&self, Rays { origin, shear, .. }: &Rays<N>) -> [Vector<N>; 3] {
+        let [a, b, c] = self.0;
+        [shear.apply(a - *origin), shear.apply(b - *origin), shear.apply(c - *origin)]
+    }
+
+    #[inline(always)]
+    fn crossing_of(
+        &self,
+        corners: [Vector<N>; 3],
+        weights: Vector<N>,
+        rays: &Rays<N>,
+    ) -> Option<(N::Mask, Crossing<N>)> {
+        let [agree, differ] = signs(weights, doubt(corners, rays.shear.length));
         // Where there is a triangle at all.
-        let is_close = !(agree | differ) & a.x.le(N::splat(f32::MAX));
+        let is_close = !(agree | differ) & self.0[0].x.le(N::splat(f32::MAX));
         if !(agree | is_close).any() {
             return None;
         }
-        let [a, b, c] = corners;
-        let sum = weights.x + weights.y + weights.z;
-        let crossing = Crossing { weights, sum, t: weights.dot(Vector { x: a.z, y: b.z, z: c.z }) };
+        let crossing = Crossing::of(corners, weights);
         if is_close.any() { Some(self.with_close(agree, is_close, crossing, rays)) } else { Some((agree, crossing)) }
+    }
+
+    /// What [`first_crossing`](Crossable::first_crossing) answers.
+    #[inline(always)]
+    fn first_from(&self, min: N, rays: &Rays<N>, (crosses, crossing): (N::Mask, Crossing<N>)) -> Option<(N::Mask, N)> {
+        let t = crossing.t / crossing.sum;
+        // Behind the origin lies, most often, what the ray starts on.
+        let crosses = crosses & min.le(t);
+        if !crosses.any() {
+            return None;
+        }
+        let [start, end] = crossed(self.boxes(), rays);
+        let t = nearest_in(start, end, t);
+        Some((crosses & start.le(end) & min.le(t), t))
     }
 
     /// The same with those that pass close to an edge.
@@ -139,16 +185,12 @@ fn signs<N: Number>(Vector { x, y, z }: Vector<N>, doubt: N) -> [N::Mask; 2] {
 impl<N: Number> Crossable<N> for Corners<N> {
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
-        let (crosses, Crossing { sum, t, .. }) = self.crossing(rays)?;
-        let t = t / sum;
-        // Behind the origin lies, most often, what the ray starts on.
-        let crosses = crosses & min.le(t);
-        if !crosses.any() {
-            return None;
-        }
-        let [start, end] = crossed(self.boxes(), rays);
-        let t = nearest_in(start, end, t);
-        Some((crosses & start.le(end) & min.le(t), t))
+        self.first_from(min, rays, self.crossing(rays)?)
+    }
+
+    #[inline(always)]
+    fn first_crossing_in_pencil(&self, rays: &Rays<N>, min: N, rough: N) -> Option<(N::Mask, N)> {
+        self.first_from(min, rays, self.crossing_in_pencil(rays, rough)?)
     }
 
     #[inline(always)]
