@@ -46,7 +46,7 @@ pub trait Crossable<N: Number> {
     /// [`closest_crossing`](Surface::closest_crossing) has it; nothing where there is none at all.
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)>;
 
-    /// The same of rays of a pencil, with what is known of all of them ([`Edges::rough`]).
+    /// The same of rays of a pencil, with what is known of all of them ([`Edges::rough`]); infinite: nothing.
     #[inline(always)]
     fn first_crossing_in_pencil(&self, rays: &Rays<N>, min: N, _rough: N) -> Option<(N::Mask, N)> {
         self.first_crossing(rays, min)

@@ -20,10 +20,14 @@ pub struct Pencil<N: Lanes> {
     pub reaches: [N; 2],
     /// How far a place is from zero, along either axis, at most: up to 1.
     pub width: N,
-    /// Between where along z the rays' origins lie, if that is the axis which is longest for all of them; without an end
-    /// where it is not.
+    /// Between where along z, from the apex on, the rays' origins lie, if that is the axis which is longest for all of them
+    /// and nothing on their way is too long or too short for f32; else without an end.
     pub depths: [N; 2],
 }
+
+/// Lengths that a direction usually has: what is divided by one and multiplied by it again is off by no more than 2^-117,
+/// and not too great for f32 unless it was more than 2^95 before.
+const USUAL: [f32; 2] = [1.0 / 4_294_967_296.0, 4_294_967_296.0];
 
 impl<N: Lanes> Pencil<N> {
     /// Of these rays, if all begin in one point, or have one at t = 1 but for rounding, and are not too wide apart.
@@ -43,8 +47,7 @@ impl<N: Lanes> Pencil<N> {
             return None;
         }
         // As far as was found, where each end is rounded by a unit itself, twice over.
-        let blur = off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0);
-        Self::around(end, blur, groups)
+        Self::around(end, off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0), groups)
     }
 
     #[inline(always)]
@@ -53,7 +56,7 @@ impl<N: Lanes> Pencil<N> {
         let slope = [factor.x, factor.y];
         let (zero, one) = (N::splat(0.0), N::splat(1.0));
         let (mut xs, mut ys) = ([zero; LANES], [zero; LANES]);
-        let mut are_near = zero.le(one);
+        let (mut are_near, mut are_usual) = (zero.le(one), zero.le(one));
         let (mut depths, mut share_axis) = ([N::splat(f32::INFINITY), N::splat(f32::NEG_INFINITY)], true);
         for (at, rays) in groups.iter().enumerate() {
             let (direction, inverse) = (longest.last(rays.direction), longest.last(rays.inverse));
@@ -65,6 +68,8 @@ impl<N: Lanes> Pencil<N> {
             // In this order, so that NaN is left out.
             depths = [depth.min(depths[0]), depth.max(depths[1])];
             share_axis &= rays.shear.longest.is_shared(longest);
+            let length = rays.shear.length;
+            are_usual = are_usual & N::splat(USUAL[0]).le(length) & length.le(N::splat(USUAL[1]));
         }
         let (x0, x1) = (N::least_of_each(&xs), N::greatest_of_each(&xs));
         let (y0, y1) = (N::least_of_each(&ys), N::greatest_of_each(&ys));
@@ -75,8 +80,8 @@ impl<N: Lanes> Pencil<N> {
         let reaches = [(x1 - middles[0]).max(middles[0] - x0) * more, (y1 - middles[1]).max(middles[1] - y0) * more];
         let width = x0.abs().max(x1.abs()).max(y0.abs().max(y1.abs()));
         let width = N::splat(width.greatest());
-        let depths = if share_axis {
-            [N::splat(-(-depths[0]).greatest()), N::splat(depths[1].greatest())]
+        let depths = if share_axis && are_usual.all() {
+            [N::splat(depths[0].store().least()), N::splat(depths[1].greatest())]
         } else {
             [N::splat(f32::NEG_INFINITY), N::splat(f32::INFINITY)]
         };

@@ -4,7 +4,7 @@ use super::Corners;
 use crate::lanes::{Answers, Eight, Lanes, Vector};
 use crate::ray::Pencil;
 
-/// What tells of eight triangles beforehand which rays of a pencil pass them by.
+/// What tells of eight triangles beforehand which rays of a pencil pass them by, and how much doubt there is of the others.
 ///
 /// In the picture that is seen from the apex, the weight of each corner is a linear function of the place, zero along the
 /// edge between the other two (Pineda, A Parallel Algorithm for Polygon Rasterization, 1988). So it is worked out once for
@@ -57,9 +57,10 @@ impl<N: Lanes> Corners<N> {
     ///
     /// A ray that is longest along the same axis has a corner, in its own coordinates, at the x and y of here less the place
     /// times z, and at a z that is counted from its origin: so no x or y is more than s + u r, and no z than f, the farthest that
-    /// a corner is from an origin along z. Rounding here and there adds 4 s + 12 r + 4 f to these x and y, and less than 16 (r +
+    /// a corner is from an origin along z. Rounding here and there adds 4 s + 16 r + 4 f to these x and y, and less than 16 (r +
     /// f) to z; 256 (r + f) is added here. So [`doubt`](super::doubt), each step of which is monotone, is never more than the
-    /// same steps make of this.
+    /// same steps make of this: with a unit in 24 for s, and for the 2^-117 by which z may be off besides; where that is more
+    /// than such a part of x or y, all of it is less than the numbers that are added. Where z is too great for f32, so is this.
     #[inline(always)]
     pub(super) fn edges(&self, pencil: &Pencil<N>) -> Edges {
         let [a, b, c] = self.0;
@@ -153,6 +154,42 @@ mod tests {
         seed % 2 == 1
     }
 
+    /// What the test finds that goes by `rough` first: t where a ray crosses the triangle.
+    fn found(shape: &Corners<Eight>, rays: &Rays<Eight>, rough: f32) -> Option<[u32; LANES]> {
+        let crossing = shape.first_crossing_in_pencil(rays, Eight::ZERO, Eight::splat(rough));
+        crossing.map(|(crosses, t)| Eight::select(crosses, t, Eight::splat(-1.0)).0.map(f32::to_bits))
+    }
+
+    /// However long or short directions are, and whoever else is among the rays.
+    #[test]
+    fn what_f32_cannot_hold_is_not_decided_for_all() {
+        let forward = Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, 1.0) };
+        let endless = Ray { direction: Vec3::new(0.1, 0.1, f32::INFINITY), ..forward };
+        let across = [Vec3::new(-1.0, -1.0, 5.0), Vec3::new(3.0, -1.0, 5.0), Vec3::new(-1.0, 3.0, 5.0)];
+        let along = [Vec3::new(1.0, -1.0, 1000.0), Vec3::new(-1.0, -1.0, -800.0), Vec3::new(0.0, 1.0, 0.0)];
+        let close = [Vec3::new(1e-9, -1e-9, 2e-7), Vec3::new(-1e-9, -1e-9, 2e-7), Vec3::new(0.0, 1e-9, 2e-7)];
+        let stories = [-126, -120, -60, -30, 0, 30, 60, 120, 127].map(|power| {
+            (
+                Ray { direction: Vec3::Z * two_to(power), ..forward },
+                Ray { direction: forward.direction * two_to(power), ..forward },
+            )
+        });
+        for (one, other) in stories.into_iter().chain([(forward, endless)]) {
+            let mut rays = [[one; LANES]; LANES];
+            rays[3][5] = other;
+            let groups: [Rays<Eight>; LANES] = from_fn(|group| Rays::load(&EightRays::of(&rays[group]), true));
+            let pencil = Pencil::of(&groups).expect("all begin in one point");
+            let shapes = Corners::<Eight>::of(&[across, along, close].map(Triangle::new));
+            let edges = shapes.edges(&pencil);
+            for lane in 0..3 {
+                let (shape, rough) = (shapes.splat::<Eight>(lane), edges.rough.0[lane]);
+                for rays in &groups {
+                    assert_eq!(found(&shape, rays, rough), found(&shape, rays, f32::INFINITY), "{one:?} {lane}");
+                }
+            }
+        }
+    }
+
     /// No ray has more doubt than is said of all, and that is most often not much more.
     #[test]
     fn the_doubt_of_all_is_no_less_than_that_of_each() {
@@ -168,14 +205,7 @@ mod tests {
                 for (group, rays) in groups.iter().enumerate() {
                     let own = doubt(shape.sheared(rays), rays.shear.length).greatest();
                     assert!(own <= rough, "seed {seed}: triangle {lane}, group {group}: {own} and {rough}");
-                    let min = Eight::splat(f32::MIN);
-                    let crossing = shape.first_crossing_in_pencil(rays, min, Eight::splat(rough));
-                    let told = |(crosses, t): (_, Eight)| Eight::select(crosses, t, Eight::ZERO).0.map(f32::to_bits);
-                    assert_eq!(
-                        crossing.map(told),
-                        shape.first_crossing(rays, min).map(told),
-                        "seed {seed}: triangle {lane}, group {group}"
-                    );
+                    assert_eq!(found(&shape, rays, rough), found(&shape, rays, f32::INFINITY), "seed {seed}");
                     all += usize::from(rough.is_finite());
                     near += usize::from(own * 100.0 > rough);
                 }
