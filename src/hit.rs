@@ -210,10 +210,12 @@ impl Work for ClosestHits<'_> {
         let Self { kernel, parts, rays, hits } = self;
         let mut stacks = Stacks::default();
         let mut packet = Together::<N, CLOSEST>::new(kernel, parts, Interval::IN_FRONT);
+        let mut together = true;
         for rays in rays.chunks(GROUPS) {
-            if kernel.is_together(rays.len()) {
+            if together && kernel.is_together(rays.len()) {
                 packet.trace(rays, &mut stacks);
                 packet.tell_hits(hits);
+                together = kernel == Kernel::Packet || !packet.fell_apart();
                 continue;
             }
             closest_alone::<N>(parts, rays, &mut stacks.alone, hits);
@@ -257,11 +259,13 @@ impl Work for AnyHits<'_> {
         let Self { kernel, parts, rays, within, met } = self;
         let mut stacks = Stacks::default();
         let mut packet = Together::<N, ANY>::new(kernel, parts, within);
+        // A packet knows of nothing behind the origins.
+        let mut together = within.min >= 0.0;
         for rays in rays.chunks(GROUPS) {
-            // A packet knows of nothing behind the origins.
-            if kernel.is_together(rays.len()) && within.min >= 0.0 {
+            if together && kernel.is_together(rays.len()) {
                 packet.trace(rays, &mut stacks);
                 packet.tell_met(met);
+                together = kernel == Kernel::Packet || !packet.fell_apart();
                 continue;
             }
             any_alone::<N>(parts, rays, within, &mut stacks.alone, met);

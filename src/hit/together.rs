@@ -23,6 +23,10 @@ pub(super) struct Together<'p, N: Lanes, const ANY: bool> {
     place: [N; GROUPS],
     /// The greatest t of each group.
     reach: Eight,
+    /// How many of these rays have gone on by themselves, each as often as it has.
+    alone: u32,
+    /// How many leaves they have met together.
+    leaves: u32,
 }
 
 /// No part's place.
@@ -37,6 +41,9 @@ const A_FEW: u32 = 2;
 /// If more groups than these may meet it, one of them stands for the others first: most often all go on together, and
 /// to count them one by one takes longer than the node itself.
 const MANY: u32 = 5;
+
+/// So many leaves for a packet are next to nothing.
+const HARDLY_ANY: u32 = 6;
 
 /// Nothing is met so early.
 const DONE: f32 = f32::NEG_INFINITY;
@@ -60,13 +67,23 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
             t: [N::splat(DONE); GROUPS],
             place: [N::splat(place_as_number(NOTHING)); GROUPS],
             reach: Eight([DONE; LANES]),
+            alone: 0,
+            leaves: 0,
         }
+    }
+
+    /// Whether the last rays had better been traced one by one from the start: that is what became of them, and hardly a
+    /// leaf was met before. Those of the packets that follow are likely to do the same.
+    #[inline(always)]
+    pub(super) fn fell_apart(&self) -> bool {
+        let asked: u32 = self.rays.iter().map(|rays| rays.asked.count_ones()).sum();
+        self.leaves <= HARDLY_ANY && self.alone > asked
     }
 
     /// Takes these rays, at most as many as a packet has, and finds what they meet.
     #[inline(always)]
     pub(super) fn trace(&mut self, rays: &'p [EightRays], stacks: &mut Stacks) {
-        self.rays = rays;
+        (self.rays, self.alone, self.leaves) = (rays, 0, 0);
         // Who is not asked about does not widen the packet.
         let Some(one) = rays.iter().find(|rays| rays.asked != 0) else { return self.reset(0..GROUPS) };
         let parts = self.parts;
@@ -260,6 +277,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
         if is_met == 0 {
             return;
         }
+        self.rays.leaves += 1;
         let edges = match &self.pencil {
             Some(pencil) => shapes.edges(pencil),
             None => None,
@@ -333,6 +351,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
         if rays == 0 {
             return;
         }
+        self.rays.alone += rays.count_ones();
         let (mut t, mut place) = (self.rays.t[group].store(), self.rays.place[group].store());
         for lane in set_bits(rays) {
             let within = Interval { min: self.rays.within.min, max: t.0[lane] };

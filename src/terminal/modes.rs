@@ -141,8 +141,8 @@ impl Modes {
 /// The settings of now are given back in the end, so they must be the shell's for its jobs, not those with which it reads
 /// its next line.
 fn wait_for_foreground(keys: &File, signals: &Signals) -> io::Result<()> {
-    // In the background this stops the process, until it is brought to the foreground. (Nothing else comes of it: no
-    // program of ours has held the output up.)
+    // In the background this stops the process, until it is brought to the foreground, unless it ignores SIGTTOU. (It has
+    // output go on that a program has held up, on some systems also what Ctrl-S has.)
     termios::tcflow(keys, Action::OOn)?;
     // Nothing was on the screen that somebody could have written over.
     signals.take_continued();
