@@ -215,7 +215,7 @@ impl Work for ClosestHits<'_> {
             if together && kernel.is_together(rays.len()) {
                 packet.trace(rays, &mut stacks);
                 packet.tell_hits(hits);
-                together = kernel == Kernel::Packet || !packet.fell_apart();
+                together = !packet.fell_apart();
                 continue;
             }
             closest_alone::<N>(parts, rays, &mut stacks.alone, hits);
@@ -265,7 +265,7 @@ impl Work for AnyHits<'_> {
             if together && kernel.is_together(rays.len()) {
                 packet.trace(rays, &mut stacks);
                 packet.tell_met(met);
-                together = kernel == Kernel::Packet || !packet.fell_apart();
+                together = !packet.fell_apart();
                 continue;
             }
             any_alone::<N>(parts, rays, within, &mut stacks.alone, met);
