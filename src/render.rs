@@ -129,16 +129,23 @@ fn add_lights(sums: &mut [EightLights], lights: &[EightLights], each: usize, pix
         }
         return;
     }
-    for band in 0..3 {
-        let mut in_row = [0.0; MOST_RAYS];
-        for (in_row, light) in in_row.as_chunks_mut().0.iter_mut().zip(lights) {
-            *in_row = light[band].0;
-        }
+    for (band, in_row) in in_rows(lights).iter().enumerate() {
         for (pixel, lights) in pixels.clone().zip(in_row.chunks_exact(each)) {
             let sum = &mut sums[pixel / LANES][band].0[pixel % LANES];
             *sum = lights.iter().fold(*sum, |sum, light| sum + light);
         }
     }
+}
+
+/// The light of all rays of a lot, band by band.
+fn in_rows(lights: &[EightLights]) -> [[f32; MOST_RAYS]; 3] {
+    let mut rows = [[0.0; MOST_RAYS]; 3];
+    for (band, row) in rows.iter_mut().enumerate() {
+        for (eight, light) in row.as_chunks_mut().0.iter_mut().zip(lights) {
+            *eight = light[band].0;
+        }
+    }
+    rows
 }
 
 impl Crew<'_> {
@@ -188,19 +195,43 @@ impl Refining {
     }
 
     fn refine(&mut self, crew: Crew<'_>, scene: &Scene, samples: NonZeroU32) -> Option<Cost> {
+        let wanted = PASSES.iter().filter(|pass| pass.end <= samples.get()).count();
         let mut cost = Cost::default();
-        while let Some(pass) = PASSES.get(self.passes).filter(|pass| pass.end <= samples.get()) {
-            let needs_more = self.unsettled(crew, scene);
-            let (tiles, runs) = (self.tiles, Runs::of(pass.clone()));
-            let parts = self.pixels.chunks_mut(PIXELS).zip(needs_more.chunks(PIXELS)).collect();
-            cost += crew.trace(parts, |buffers, (tile, (pixels, needs_more))| {
-                tiles.inside(tile, &mut buffers.wanted);
-                buffers.wanted.retain(|&pixel| needs_more[usize::from(pixel)]);
-                buffers.trace_tile(crew, scene, &tiles, tile, &runs, |buffers, _, _| buffers.add_to(pixels))
-            })?;
-            self.passes += 1;
+        // Where edges are is seen in the whole picture of the first pass. Then each pixel by itself tells whether it needs
+        // more, and nobody waits for another tile.
+        for end in [wanted.min(1), wanted] {
+            if self.passes < end {
+                cost += self.trace(crew, scene, self.passes..end)?;
+                self.passes = end;
+            }
         }
         Some(cost)
+    }
+
+    /// The next passes: the first by itself.
+    fn trace(&mut self, crew: Crew<'_>, scene: &Scene, passes: Range<usize>) -> Option<Cost> {
+        let white = 1.0 / scene.exposure;
+        let edges = if passes.start == 1 { self.edges(crew, white) } else { Vec::new() };
+        let runs: Vec<_> = passes.map(|pass| (pass, Runs::of(PASSES[pass].clone()))).collect();
+        let tiles = self.tiles;
+        crew.trace(self.pixels.chunks_mut(PIXELS).collect(), |buffers, (tile, pixels)| {
+            tiles.inside(tile, &mut buffers.wanted);
+            let mut cost = Cost::default();
+            for &(pass, ref runs) in &runs {
+                buffers.wanted.retain(|&pixel| {
+                    let pixel = usize::from(pixel);
+                    match pass {
+                        0 => true,
+                        1 => edges[tile * PIXELS + pixel],
+                        2 => pixels[pixel].count() > 1,
+                        _ => pixels[pixel].is_rough(white),
+                    }
+                });
+                let add = |buffers: &Buffers, run: &Run, _| buffers.add_to(pixels, run.each());
+                cost += buffers.trace_tile(crew, scene, &tiles, tile, runs, add)?;
+            }
+            Some(cost)
+        })
     }
 
     /// Whether no more samples will be taken anywhere.
@@ -217,21 +248,15 @@ impl Refining {
         framebuffer
     }
 
-    /// Which pixels the next pass is for.
-    fn unsettled(&self, crew: Crew<'_>, scene: &Scene) -> Vec<bool> {
-        let white = 1.0 / scene.exposure;
-        let is_unsettled = |number: usize| {
+    /// At which pixels an edge may run; `white` is the light that is shown as white.
+    fn edges(&self, crew: Crew<'_>, white: f32) -> Vec<bool> {
+        let is_at_edge = |number: usize| {
             let pixel = &self.pixels[number];
-            match self.passes {
-                0 => true,
-                1 => self.neighbours(number).any(|neighbour| pixel.is_edge_to(neighbour, white)),
-                2 => pixel.count() > 1,
-                _ => pixel.is_rough(white),
-            }
+            self.neighbours(number).any(|neighbour| pixel.is_edge_to(neighbour, white))
         };
         match crew {
-            Crew::Alone => (0..self.pixels.len()).map(is_unsettled).collect(),
-            Crew::Pool(_) => (0..self.pixels.len()).into_par_iter().map(is_unsettled).collect(),
+            Crew::Alone => (0..self.pixels.len()).map(is_at_edge).collect(),
+            Crew::Pool(_) => (0..self.pixels.len()).into_par_iter().map(is_at_edge).collect(),
         }
     }
 
@@ -284,14 +309,16 @@ impl Buffers {
         Some(Cost { rays: traced, work: start.elapsed() })
     }
 
-    /// Adds the lot's samples to those of the tile's pixels that they are of.
-    fn add_to(&self, pixels: &mut [Watched]) {
-        let groups = self.pixels.chunks(LANES).zip(&self.points).zip(&self.arriving).zip(&self.lights);
-        for (((of_rays, points), arriving), light) in groups {
-            for (lane, &pixel) in of_rays.iter().enumerate() {
-                let seen = || Seen::of(points.seen(lane), arriving.lit_by[lane]);
-                pixels[usize::from(pixel)].add(shade::light_of(light, lane), seen);
+    /// Adds the lot's samples, so many each, to those of the tile's pixels that they are of.
+    fn add_to(&self, pixels: &mut [Watched], each: usize) {
+        let lights = in_rows(&self.lights);
+        for (first, &pixel) in self.pixels.iter().enumerate().step_by(each) {
+            let pixel = &mut pixels[usize::from(pixel)];
+            if pixel.count() == 0 {
+                let (group, lane) = (first / LANES, first % LANES);
+                *pixel = Watched::new(Seen::of(self.points[group].seen(lane), self.arriving[group].lit_by[lane]));
             }
+            pixel.add(lights.each_ref().map(|band| &band[first..first + each]));
         }
     }
 

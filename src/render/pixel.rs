@@ -11,7 +11,7 @@ pub(super) struct Watched {
     count: u32,
     /// What the first of them saw.
     seen: Seen,
-    /// The least and the greatest light of them, band by band.
+    /// The least and the greatest light of the first of them, [`MANY`] at most, band by band.
     range: [LinearRgb; 2],
 }
 
@@ -42,15 +42,24 @@ impl Seen {
 }
 
 impl Watched {
-    /// One more sample.
-    pub(super) fn add(&mut self, light: LinearRgb, seen: impl FnOnce() -> Seen) {
-        if self.count == 0 {
-            self.seen = seen();
-            self.range = [light; 2];
+    /// No sample yet, but what the first of them sees.
+    pub(super) fn new(seen: Seen) -> Self {
+        let range = [f32::INFINITY, f32::NEG_INFINITY].map(LinearRgb::grey);
+        Self { seen, range, ..Self::default() }
+    }
+
+    /// More samples: their light band by band.
+    pub(super) fn add(&mut self, light: [&[f32]; 3]) {
+        let all = |so_far: LinearRgb, join: fn(f32, f32) -> f32| {
+            let [r, g, b] = light.map(|light| light.iter().copied());
+            LinearRgb::new(r.fold(so_far.r, join), g.fold(so_far.g, join), b.fold(so_far.b, join))
+        };
+        self.light = all(self.light, |sum, light| sum + light);
+        // Nobody asks later on.
+        if self.count < MANY {
+            self.range = [all(self.range[0], f32::min), all(self.range[1], f32::max)];
         }
-        self.range = [by_band(self.range[0], light, f32::min), by_band(self.range[1], light, f32::max)];
-        self.light += light;
-        self.count += 1;
+        self.count += light[0].len() as u32;
     }
 
     /// The mean of their light.
@@ -76,15 +85,14 @@ impl Watched {
 /// Neighbours that differ by this share of their light have an edge between them that is seen.
 const VISIBLE: f32 = 0.05;
 
-/// Of 16 samples that differ by this share of their light, the mean may be off by a visible part of it.
+/// So many samples tell whether more are needed.
+const MANY: u32 = 16;
+
+/// Where so many differ by this share of their light, the mean may be off by a visible part of it.
 const UNSURE: f32 = 0.2;
 
 /// Whether the two differ by that share of the greater one in a band, and by more than is seen in the dark.
 fn is_contrast(a: LinearRgb, b: LinearRgb, share: f32, white: f32) -> bool {
     const DARK: f32 = 0.005;
     [(a.r, b.r), (a.g, b.g), (a.b, b.b)].into_iter().any(|(a, b)| (a - b).abs() > share * a.max(b) + DARK * white)
-}
-
-fn by_band(a: LinearRgb, b: LinearRgb, choose: fn(f32, f32) -> f32) -> LinearRgb {
-    LinearRgb::new(choose(a.r, b.r), choose(a.g, b.g), choose(a.b, b.b))
 }
