@@ -108,7 +108,7 @@ fn forced(clues: &Clues<'_>) -> Option<Found<Colors>> {
 }
 
 /// Other values than these two tell of colour, but not of how many.
-fn colorterm(clues: &Clues<'_>) -> Option<Found<Colors>> {
+pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Found<Colors>> {
     let colorterm = value(clues, "COLORTERM")?.to_ascii_lowercase();
     let is_truecolor = colorterm == "truecolor" || colorterm == "24bit";
     is_truecolor.then_some(Found { value: Colors::Truecolor, source: Source::Variable("COLORTERM") })

@@ -1,6 +1,6 @@
 //! All that is known of a terminal, from whoever knows it: the user, the environment, the window, its own answers.
 
-use super::detection::{asked_for, locale};
+use super::detection::{asked_for, colorterm, locale};
 use super::{Answers, Capabilities, CellMode, Clues, ColorChoice, Colors, Found, GlyphChoice, Glyphs, Source};
 use super::{USUAL_CELL_ASPECT, colors, glyphs};
 
@@ -41,9 +41,12 @@ impl Hints {
     /// What the environment says, where the user leaves all to it.
     pub fn gather(variable: &dyn Fn(&str) -> Option<String>, terminfo: &dyn Fn(&str) -> Option<Colors>) -> Self {
         let variables: Vec<_> = VARIABLES.into_iter().filter_map(|name| Some((name, variable(name)?))).collect();
-        let term = variables.iter().find(|(name, value)| *name == "TERM" && !value.is_empty());
-        let terminfo = term.and_then(|(_, term)| terminfo(term));
-        Self { variables, terminfo, ..Self::default() }
+        let mut hints = Self { variables, ..Self::default() };
+        // Where COLORTERM says it, nobody asks the database: to read it takes longer than to trace a small frame.
+        if hints.judge(None, colorterm).is_none() {
+            hints.terminfo = hints.variable("TERM").and_then(terminfo);
+        }
+        hints
     }
 
     /// Exactly this, of a terminal of which nothing is known.
@@ -229,6 +232,7 @@ fn answered_aspect(answers: &Answers) -> Option<f32> {
 mod tests {
     use super::*;
     use crate::color::Srgb8;
+    use std::cell::Cell;
 
     fn hints(environment: &[(&str, &str)]) -> Hints {
         let variable = |name: &str| environment.iter().find(|(n, _)| *n == name).map(|(_, value)| (*value).to_owned());
@@ -236,6 +240,23 @@ mod tests {
     }
 
     const XTERM: &[(&str, &str)] = &[("TERM", "xterm-256color"), ("LANG", "en_US.UTF-8")];
+
+    #[test]
+    fn the_database_is_asked_where_it_can_say_something() {
+        for (colorterm, is_asked) in [("truecolor", false), ("24bit", false), ("rxvt", true), ("", true)] {
+            let asked = Cell::new(false);
+            let variable = |name: &str| match name {
+                "TERM" => Some("xterm".to_owned()),
+                "COLORTERM" => Some(colorterm.to_owned()),
+                _ => None,
+            };
+            let hints = Hints::gather(&variable, &|_| {
+                asked.set(true);
+                Some(Colors::Indexed256)
+            });
+            assert_eq!((asked.get(), hints.terminfo.is_some()), (is_asked, is_asked), "{colorterm:?}");
+        }
+    }
 
     #[test]
     fn only_what_does_no_harm_is_asked() {
