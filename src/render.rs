@@ -160,7 +160,8 @@ impl Crew<'_> {
                 let mut buffers = Buffers::default();
                 tiles.into_iter().enumerate().map(|tile| trace(&mut buffers, tile)).collect()
             }
-            Self::Pool(_) => tiles.into_par_iter().enumerate().map_init(Buffers::default, trace).collect(),
+            // One by one: a thread that has had the easy ones takes more.
+            Self::Pool(_) => tiles.into_iter().enumerate().par_bridge().map_init(Buffers::default, trace).collect(),
         };
         let mut sum = Cost::default();
         for cost in costs? {
