@@ -14,7 +14,7 @@ use crate::lanes::{Eight, LANES};
 use crate::ray::EightRays;
 use crate::scene::Scene;
 use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
-use pixel::{Seen, Watched};
+use pixel::{First, Watched};
 use rayon::prelude::*;
 use sampling::{MOST_RAYS, PASSES, Run, Runs};
 use std::num::NonZeroU32;
@@ -176,8 +176,10 @@ impl Crew<'_> {
 #[derive(Clone, Debug)]
 pub struct Refining {
     tiles: Tiles,
-    /// Tile by tile.
-    pixels: Vec<Watched>,
+    /// What the first sample of each pixel saw, tile by tile.
+    first: Vec<Vec<First>>,
+    /// All samples of each pixel, once there are more.
+    watched: Vec<Vec<Watched>>,
     /// How many of the passes are done.
     passes: usize,
 }
@@ -186,7 +188,7 @@ impl Refining {
     /// Nothing of it is traced yet.
     pub fn new(camera: &Camera, resolution: Resolution) -> Self {
         let tiles = Tiles::new(camera, resolution, 1);
-        Self { tiles, pixels: vec![Watched::default(); tiles.count() * PIXELS], passes: 0 }
+        Self { tiles, first: vec![Vec::new(); tiles.count()], watched: vec![Vec::new(); tiles.count()], passes: 0 }
     }
 
     /// Traces what is lacking to [`Sampling::UpTo`] so many samples of that scene, which has to be the same each time.
@@ -200,36 +202,46 @@ impl Refining {
         let mut cost = Cost::default();
         // Where edges are is seen in the whole picture of the first pass. Then each pixel by itself tells whether it needs
         // more, and nobody waits for another tile.
-        for end in [wanted.min(1), wanted] {
-            if self.passes < end {
-                cost += self.trace(crew, scene, self.passes..end)?;
-                self.passes = end;
-            }
+        if self.passes == 0 && wanted > 0 {
+            cost += self.trace_first(crew, scene)?;
+            self.passes = 1;
+        }
+        if self.passes < wanted {
+            cost += self.trace_more(crew, scene, self.passes..wanted)?;
+            self.passes = wanted;
         }
         Some(cost)
     }
 
-    /// The next passes: the first by itself.
-    fn trace(&mut self, crew: Crew<'_>, scene: &Scene, passes: Range<usize>) -> Option<Cost> {
+    fn trace_first(&mut self, crew: Crew<'_>, scene: &Scene) -> Option<Cost> {
+        let (tiles, runs) = (self.tiles, Runs::of(PASSES[0].clone()));
+        crew.trace(self.first.iter_mut().collect(), |buffers, (tile, first)| {
+            tiles.inside(tile, &mut buffers.wanted);
+            first.resize(PIXELS, First::default());
+            buffers.trace_tile(crew, scene, &tiles, tile, &runs, |buffers, _, _| buffers.see_first(first))
+        })
+    }
+
+    /// The next passes.
+    fn trace_more(&mut self, crew: Crew<'_>, scene: &Scene, passes: Range<usize>) -> Option<Cost> {
         let white = 1.0 / scene.exposure;
-        let edges = if passes.start == 1 { self.edges(crew, white) } else { Vec::new() };
         let runs: Vec<_> = passes.map(|pass| (pass, Runs::of(PASSES[pass].clone()))).collect();
-        let tiles = self.tiles;
-        crew.trace(self.pixels.chunks_mut(PIXELS).collect(), |buffers, (tile, pixels)| {
+        let Self { tiles, first, watched, .. } = self;
+        let (tiles, first) = (&*tiles, &*first);
+        crew.trace(watched.iter_mut().collect(), |buffers, (tile, watched)| {
+            if watched.is_empty() {
+                watched.extend(first[tile].iter().map(Watched::new));
+            }
             tiles.inside(tile, &mut buffers.wanted);
             let mut cost = Cost::default();
             for &(pass, ref runs) in &runs {
-                buffers.wanted.retain(|&pixel| {
-                    let pixel = usize::from(pixel);
-                    match pass {
-                        0 => true,
-                        1 => edges[tile * PIXELS + pixel],
-                        2 => pixels[pixel].count() > 1,
-                        _ => pixels[pixel].is_rough(white),
-                    }
+                buffers.wanted.retain(|&pixel| match (pass, &watched[usize::from(pixel)]) {
+                    (1, _) => is_at_edge(tiles, first, tile, pixel.into(), white),
+                    (2, watched) => watched.is_at_edge(),
+                    (_, watched) => watched.is_rough(white),
                 });
-                let add = |buffers: &Buffers, run: &Run, _| buffers.add_to(pixels, run.each());
-                cost += buffers.trace_tile(crew, scene, &tiles, tile, runs, add)?;
+                let add = |buffers: &Buffers, run: &Run, _| buffers.add_to(watched, run.each());
+                cost += buffers.trace_tile(crew, scene, tiles, tile, runs, add)?;
             }
             Some(cost)
         })
@@ -243,32 +255,31 @@ impl Refining {
     /// The mean light of each pixel's samples.
     pub fn framebuffer(&self) -> Framebuffer {
         let mut framebuffer = Framebuffer::new(self.tiles.resolution);
-        for (pixels, mut part) in self.pixels.chunks(PIXELS).zip(self.tiles.split(&mut framebuffer.pixels)) {
-            self.tiles.show(&ALL_PIXELS, |pixel| pixels[pixel].mean(), &mut part);
+        let parts = self.tiles.split(&mut framebuffer.pixels);
+        for ((first, watched), mut part) in self.first.iter().zip(&self.watched).zip(parts) {
+            if !watched.is_empty() {
+                self.tiles.show(&ALL_PIXELS, |pixel| watched[pixel].mean(), &mut part);
+            } else if !first.is_empty() {
+                self.tiles.show(&ALL_PIXELS, |pixel| first[pixel].light, &mut part);
+            }
         }
         framebuffer
     }
+}
 
-    /// At which pixels an edge may run; `white` is the light that is shown as white.
-    fn edges(&self, crew: Crew<'_>, white: f32) -> Vec<bool> {
-        let is_at_edge = |number: usize| {
-            let pixel = &self.pixels[number];
-            self.neighbours(number).any(|neighbour| pixel.is_edge_to(neighbour, white))
-        };
-        match crew {
-            Crew::Alone => (0..self.pixels.len()).map(is_at_edge).collect(),
-            Crew::Pool(_) => (0..self.pixels.len()).into_par_iter().map(is_at_edge).collect(),
+/// Whether an edge may run beside that pixel of a tile; `white` is the light that is shown as white.
+fn is_at_edge(tiles: &Tiles, first: &[Vec<First>], tile: usize, pixel: usize, white: f32) -> bool {
+    let own = &first[tile][pixel];
+    let [columns, rows] = tiles.around(tile, pixel);
+    for y in rows {
+        for x in columns.clone() {
+            let (tile, pixel) = tiles.at([x, y]);
+            if own.is_edge_to(&first[tile][pixel], white) {
+                return true;
+            }
         }
     }
-
-    /// The pixel and those around it; none outside the picture.
-    fn neighbours(&self, number: usize) -> impl Iterator<Item = &Watched> {
-        let around = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
-        let Tiles { columns, rows, .. } = self.tiles;
-        self.tiles.place(number).into_iter().flat_map(move |[x, y]| {
-            around(y, rows).flat_map(move |y| around(x, columns).map(move |x| &self.pixels[self.tiles.number(x, y)]))
-        })
-    }
+    false
 }
 
 /// The arrays between the steps, kept from tile to tile.
@@ -310,16 +321,21 @@ impl Buffers {
         Some(Cost { rays: traced, work: start.elapsed() })
     }
 
+    /// Puts down what the lot's rays, one through each pixel, saw.
+    fn see_first(&self, first: &mut [First]) {
+        for (ray, &pixel) in self.pixels.iter().enumerate() {
+            let (group, lane) = (ray / LANES, ray % LANES);
+            let light = shade::light_of(&self.lights[group], lane);
+            let lit_by = self.arriving[group].lit_by[lane];
+            first[usize::from(pixel)] = First::new(light, self.points[group].seen(lane), lit_by);
+        }
+    }
+
     /// Adds the lot's samples, so many each, to those of the tile's pixels that they are of.
-    fn add_to(&self, pixels: &mut [Watched], each: usize) {
+    fn add_to(&self, watched: &mut [Watched], each: usize) {
         let lights = in_rows(&self.lights);
         for (first, &pixel) in self.pixels.iter().enumerate().step_by(each) {
-            let pixel = &mut pixels[usize::from(pixel)];
-            if pixel.count() == 0 {
-                let (group, lane) = (first / LANES, first % LANES);
-                *pixel = Watched::new(Seen::of(self.points[group].seen(lane), self.arriving[group].lit_by[lane]));
-            }
-            pixel.add(lights.each_ref().map(|band| &band[first..first + each]));
+            watched[usize::from(pixel)].add(lights.each_ref().map(|band| &band[first..first + each]));
         }
     }
 

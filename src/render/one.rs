@@ -2,7 +2,7 @@
 
 use super::Buffers;
 use super::sampling::{Run, sample_position};
-use super::tiles::{PIXELS, Tiles};
+use super::tiles::Tiles;
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::framebuffer::Resolution;
@@ -39,10 +39,10 @@ pub struct Steps {
 pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y]: [u32; 2]) -> Steps {
     assert!(x < resolution.width && y < resolution.height, "pixel ({x}, {y}) is outside the picture");
     let tiles = Tiles::new(camera, resolution, 1);
-    let number = tiles.number(x, y);
+    let (tile, pixel) = tiles.at([x, y]);
     let mut buffers = Buffers::default();
-    buffers.wanted.push((number % PIXELS) as u8);
-    buffers.trace_lot(scene, &tiles, number / PIXELS, &Run::first(), 0..1);
+    buffers.wanted.push(pixel as u8);
+    buffers.trace_lot(scene, &tiles, tile, &Run::first(), 0..1);
     let light = shade::light_of(&buffers.lights[0], 0);
     Steps {
         q: tiles.q([x as f32, y as f32], sample_position(0).into()).into(),

@@ -11,6 +11,7 @@ use crate::lanes::{ALL, Eight, LANES, Lanes, Number, Vector};
 use crate::ray::EightRays;
 use crate::simd::{self, Work};
 use glam::Vec3;
+use std::ops::Range;
 
 /// A tile's side in pixels.
 const SIDE: u32 = 16;
@@ -94,16 +95,17 @@ impl Tiles {
         }
     }
 
-    /// The number of a pixel among all tiles'.
-    pub(super) fn number(&self, x: u32, y: u32) -> usize {
-        let tile = (y / SIDE * self.across() + x / SIDE) as usize;
-        tile * PIXELS + usize::from(IN_ROW[(y % SIDE) as usize][(x % SIDE) as usize])
+    /// A pixel's column and those beside it, and the same of its row; none outside the picture.
+    pub(super) fn around(&self, tile: usize, pixel: usize) -> [Range<u32>; 2] {
+        let ([left, top], [x, y]) = (self.corner(tile), in_tile(pixel));
+        let beside = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
+        [beside(left + x, self.columns), beside(top + y, self.rows)]
     }
 
-    /// Where the pixel of that number is, if it is in the picture.
-    pub(super) fn place(&self, number: usize) -> Option<[u32; 2]> {
-        let ([left, top], [x, y]) = (self.corner(number / PIXELS), in_tile(number % PIXELS));
-        (left + x < self.columns && top + y < self.rows).then_some([left + x, top + y])
+    /// In which tile a pixel of the picture is, and its number in it.
+    pub(super) fn at(&self, [x, y]: [u32; 2]) -> (usize, usize) {
+        let tile = y / SIDE * self.across() + x / SIDE;
+        (tile as usize, IN_ROW[(y % SIDE) as usize][(x % SIDE) as usize].into())
     }
 
     /// Which pixels of a tile are in the picture, by their number in it.
