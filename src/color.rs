@@ -8,7 +8,6 @@
 //! The primaries are those of sRGB (IEC 61966-2-1), the white is D65.
 
 use std::ops::{Add, AddAssign, Mul};
-use std::sync::LazyLock;
 
 /// An amount of light in three bands, linear, in sRGB's primaries. 1 is the screen's white at exposure 1; values
 /// above 1 are legal light.
@@ -112,8 +111,7 @@ impl Srgb8 {
 
     /// The same of all in a row.
     pub fn all_from_linear(lights: impl Iterator<Item = LinearRgb>) -> impl Iterator<Item = Self> {
-        let transfer = &*TRANSFER;
-        lights.map(|light| transfer.color(light))
+        lights.map(|light| TRANSFER.color(light))
     }
 }
 
@@ -196,22 +194,60 @@ impl Transfer {
     }
 }
 
-static TRANSFER: LazyLock<Transfer> = LazyLock::new(|| {
-    let linear_from_srgb8 = std::array::from_fn(|code| linear_from_srgb(code as f64 / 255.0) as f32);
-    let step = |k: u8| least_f32_at_or_above(linear_from_srgb((f64::from(k) + 0.5) / 255.0)).to_bits();
-    let bits_at_step = std::array::from_fn(|code| if code < 255 { step(code as u8) } else { u32::MAX });
-    let mut first_code = [0; BUCKETS];
-    for code in 1..=255 {
-        let [start, end] = [code - 1, code].map(|at| bits_at_step[at].div_ceil(BUCKET) as usize);
-        first_code[start..end].fill(code as u8);
+/// The compiler reckons it: to do so at each start would take longer than to read a small scene.
+static TRANSFER: Transfer = Transfer::new();
+
+impl Transfer {
+    #[expect(clippy::large_stack_arrays, reason = "it is on no stack but the compiler's")]
+    const fn new() -> Self {
+        let mut transfer =
+            Self { linear_from_srgb8: [0.0; 256], bits_at_step: [u32::MAX; 256], first_code: [0; BUCKETS] };
+        let mut code = 0;
+        while code < 256 {
+            transfer.linear_from_srgb8[code] = decoded(code as f64 / 255.0) as f32;
+            if code < 255 {
+                let step = least_f32_at_or_above(decoded((code as f64 + 0.5) / 255.0));
+                transfer.bits_at_step[code] = step.to_bits();
+            }
+            code += 1;
+        }
+        let mut code = 0;
+        let mut bucket = 0;
+        while bucket < BUCKETS {
+            while transfer.bits_at_step[code].div_ceil(BUCKET) as usize <= bucket {
+                code += 1;
+            }
+            transfer.first_code[bucket] = code as u8;
+            bucket += 1;
+        }
+        transfer
     }
-    Transfer { linear_from_srgb8, bits_at_step, first_code }
-});
+}
+
+/// [`linear_from_srgb`] as the compiler can reckon it.
+const fn decoded(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { to_the_2_4((encoded + 0.055) / 1.055) }
+}
+
+/// The power of a number above 0 and up to 1: its square times the fifth root of that, by Newton's method, which comes
+/// down to it from 1.
+const fn to_the_2_4(number: f64) -> f64 {
+    let square = number * number;
+    let mut root = 1.0;
+    loop {
+        let fourth = root * root * root * root;
+        let next = (4.0 * root + square / fourth) / 5.0;
+        if next >= root {
+            return square * root;
+        }
+        root = next;
+    }
+}
 
 /// Casting rounds to nearest, which may be below.
-fn least_f32_at_or_above(value: f64) -> f32 {
+const fn least_f32_at_or_above(value: f64) -> f32 {
     let nearest = value as f32;
-    if f64::from(nearest) < value { nearest.next_up() } else { nearest }
+    if (nearest as f64) < value { nearest.next_up() } else { nearest }
 }
 
 #[cfg(test)]
@@ -239,6 +275,19 @@ mod tests {
         for code in 0..=255 {
             let color = Srgb8::new(code, 255 - code, code / 2);
             assert_eq!(Srgb8::from_linear(LinearRgb::from_srgb8(color)), color);
+        }
+    }
+
+    /// What the compiler has reckoned is what the formula says, to the bit.
+    #[test]
+    fn the_table_is_the_formulas() {
+        for code in 0..=255_u8 {
+            let light = |code: f64| linear_from_srgb(code / 255.0);
+            assert_eq!(TRANSFER.linear_from_srgb8[usize::from(code)], light(code.into()) as f32, "{code}");
+            if code < 255 {
+                let step = least_f32_at_or_above(light(f64::from(code) + 0.5)).to_bits();
+                assert_eq!(TRANSFER.bits_at_step[usize::from(code)], step, "{code}");
+            }
         }
     }
 
