@@ -214,6 +214,9 @@ impl<S> Grove<S> {
     }
 }
 
+/// Fewer leaves are not worth starting threads for.
+const FEW: usize = 1024;
+
 /// Parts of one kind in the order of the scene.
 struct Listed<T> {
     ids: Vec<PartId>,
@@ -250,7 +253,11 @@ impl<T: Surface + Copy + Sync> Listed<T> {
         };
         let few = if bvh.is_leaf() { self.ids.len() } else { 0 };
         let (mut leaves, mut ids) = (Vec::new(), Vec::new());
-        (0..places.count()).into_par_iter().map(leaf).unzip_into_vecs(&mut leaves, &mut ids);
+        if places.count() < FEW {
+            (leaves, ids) = (0..places.count()).map(leaf).unzip();
+        } else {
+            (0..places.count()).into_par_iter().map(leaf).unzip_into_vecs(&mut leaves, &mut ids);
+        }
         Some(Grove { bvh, leaves, ids, first, few })
     }
 }
