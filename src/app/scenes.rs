@@ -17,6 +17,8 @@ pub(super) struct Scenes<E> {
     waker: Waker,
     /// `None`: nothing is watched yet, or the system does not tell of changes.
     watching: Option<Watching>,
+    /// What the wanted scene needs, if that is not watched yet.
+    unwatched: Option<Vec<Needed>>,
 }
 
 /// What is new of the wanted scene.
@@ -33,7 +35,7 @@ impl<E: Send + 'static> Scenes<E> {
     pub(super) fn done(scene: Scene, signals: &Signals) -> io::Result<Self> {
         let waker = signals.waker()?;
         let loading = Loading::done(scene);
-        Ok(Self { sources: Vec::new(), wanted: 0, loading, threads: None, waker, watching: None })
+        Ok(Self { sources: Vec::new(), wanted: 0, loading, threads: None, waker, watching: None, unwatched: None })
     }
 
     /// Begins with the first.
@@ -41,7 +43,7 @@ impl<E: Send + 'static> Scenes<E> {
         let waker = signals.waker()?;
         let first = sources.first().cloned().ok_or_else(|| io::Error::other("there is no scene to look at"))?;
         let loading = begin(first, threads, &waker)?;
-        Ok(Self { sources, wanted: 0, loading, threads, waker, watching: None })
+        Ok(Self { sources, wanted: 0, loading, threads, waker, watching: None, unwatched: None })
     }
 
     /// Waits a moment for the first, or for what is wrong with it, which is then the error.
@@ -56,7 +58,7 @@ impl<E: Send + 'static> Scenes<E> {
         }
         while let Some(news) = self.loading.next() {
             match news {
-                News::Needs(files) => self.watch(&files)?,
+                News::Needs(files) => self.unwatched = Some(files),
                 news => return Ok(Some(Heard { of: self.wanted, news, is_slow: self.loading.is_slow() })),
             }
         }
@@ -81,17 +83,20 @@ impl<E: Send + 'static> Scenes<E> {
     /// Whatever was on its way is given up.
     fn read_again(&mut self) -> io::Result<()> {
         if let Some(source) = self.sources.get(self.wanted).cloned() {
+            self.unwatched = None;
             self.loading = begin(source, self.threads, &self.waker)?;
         }
         Ok(())
     }
 
-    fn watch(&mut self, files: &[Needed]) -> io::Result<()> {
+    /// Sees to it that changes of the files are heard of from now on, and reads them again if one has changed since.
+    pub(super) fn watch(&mut self) -> io::Result<()> {
+        let Some(files) = self.unwatched.take() else { return Ok(()) };
         if self.watching.is_none() && !files.is_empty() {
             self.watching = Watching::start(self.waker.try_clone()?).ok();
         }
         // What was read is out of date already.
-        if self.watching.as_mut().is_some_and(|watching| watching.watch(files)) {
+        if self.watching.as_mut().is_some_and(|watching| watching.watch(&files)) {
             self.read_again()?;
         }
         Ok(())
