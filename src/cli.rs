@@ -10,6 +10,7 @@ mod doctor;
 mod encoding;
 mod explain;
 mod frame;
+mod later;
 mod live;
 mod near;
 mod origin;
@@ -20,6 +21,7 @@ mod view;
 
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use glam::Vec3;
+use later::Later;
 use origin::Origin;
 use std::ffi::OsString;
 use std::fmt::{self, Display};
@@ -108,25 +110,25 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Print one frame, or compare it with a golden one
-    Frame(frame::FrameArgs),
+    Frame(Later<frame::FrameArgs>),
     /// Record a film along a camera path: asciicast, GIF or numbered PNGs
-    Record(record::RecordArgs),
+    Record(Later<record::RecordArgs>),
     /// Say what a pixel comes from: its ray, what that met, the lights
-    Explain(explain::ExplainArgs),
+    Explain(Later<explain::ExplainArgs>),
     /// Say what is wrong with a scene file, or that it is fine
-    Check(check::CheckArgs),
+    Check(Later<check::CheckArgs>),
     /// Say in words what a picture shows
-    Describe(describe::DescribeArgs),
+    Describe(Later<describe::DescribeArgs>),
     /// Time the tracing of a scene
-    Bench(bench::BenchArgs),
+    Bench(Later<bench::BenchArgs>),
     /// Say what this terminal can do and who says so, and draw a test card
-    Doctor(doctor::DoctorArgs),
+    Doctor(Later<doctor::DoctorArgs>),
     /// Say which settings hold, and who says so
-    Config(config::ConfigArgs),
+    Config(Later<config::ConfigArgs>),
     /// Print what a shell is to know to complete arguments
-    Completions(completions::CompletionsArgs),
+    Completions(Later<completions::CompletionsArgs>),
     /// Print the manual, for man
-    Man(completions::ManArgs),
+    Man(Later<completions::ManArgs>),
 }
 
 /// The scene, and who looks at it: on every command.
@@ -244,16 +246,16 @@ pub(crate) fn main() -> ExitCode {
     // What was given to the command, if there is one.
     let given = given.subcommand().map_or(&given, |(_, given)| given);
     let done = match cli.command {
-        Some(Command::Frame(args)) => frame::run(&args),
-        Some(Command::Record(args)) => record::run(&args),
-        Some(Command::Explain(args)) => explain::run(&args),
-        Some(Command::Check(args)) => check::run(&args),
-        Some(Command::Describe(args)) => describe::run(&args),
-        Some(Command::Bench(args)) => bench::run(&args),
+        Some(Command::Frame(Later(args))) => frame::run(&args),
+        Some(Command::Record(Later(args))) => record::run(&args),
+        Some(Command::Explain(Later(args))) => explain::run(&args),
+        Some(Command::Check(Later(args))) => check::run(&args),
+        Some(Command::Describe(Later(args))) => describe::run(&args),
+        Some(Command::Bench(Later(args))) => bench::run(&args),
         Some(Command::Doctor(_)) => doctor::run(given),
-        Some(Command::Config(args)) => config::run(&args, given),
-        Some(Command::Completions(args)) => completions::complete(&args),
-        Some(Command::Man(args)) => completions::man(&args),
+        Some(Command::Config(Later(args))) => config::run(&args, given),
+        Some(Command::Completions(Later(args))) => completions::complete(&args),
+        Some(Command::Man(Later(args))) => completions::man(&args),
         None => live::run(&cli.live, given),
     };
     match done {
