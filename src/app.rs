@@ -184,10 +184,15 @@ fn view<E: fmt::Display + Send + 'static>(
     let waker = signals.waker()?;
     let mut renderer = terminal::without_signals(|| Renderer::start(options.threads, waker))?;
     scenes.wait().map_err(Error::Scene)?;
+    let killed = |signal| Outcome { ending: Ending::Signal(signal), moved: None, heard: true };
     if let Some(signal) = signals.deadly() {
-        return Ok(Outcome { ending: Ending::Signal(signal), moved: None, heard: true });
+        return Ok(killed(signal));
     }
-    let mut terminal = Terminal::take(signals)?;
+    let mut terminal = match Terminal::take(signals) {
+        Ok(terminal) => terminal,
+        // Perhaps while it waited to be brought to the foreground.
+        Err(error) => return signals.deadly().map(killed).ok_or(Error::Terminal(error)),
+    };
     let mut live = Live::new(options, terminal.window()?, scenes.named());
     let ended = live.run(&mut terminal, &mut renderer, &mut scenes, signals);
     let ending = ended.or_else(|error| match error {

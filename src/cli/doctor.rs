@@ -48,7 +48,12 @@ pub(super) fn run(given: &ArgMatches) -> Done {
 /// Takes the terminal, asks, and gives it back.
 fn talk(questions: &mut Questions, cell: &mut CellShape) -> io::Result<Talk> {
     let mut signals = Signals::catch()?;
-    let mut terminal = Terminal::take(&signals)?;
+    let mut terminal = Terminal::take(&signals).inspect_err(|_| {
+        // While it waited to be brought to the foreground.
+        if let Some(signal) = signals.deadly() {
+            die_of(signal);
+        }
+    })?;
     *cell = terminal.window()?.cell;
     terminal.send(questions.bytes())?;
     let asked = Instant::now();

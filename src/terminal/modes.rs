@@ -139,10 +139,18 @@ impl Modes {
 }
 
 /// The settings of now are given back in the end, so they must be the shell's for its jobs, not those with which it reads
-/// its next line.
+/// its next line. Whoever is told to end meanwhile does not wait any longer: that is the error.
 fn wait_for_foreground(keys: &File, signals: &Signals) -> io::Result<()> {
-    // In the background this stops the process, until it is brought to the foreground, unless it ignores SIGTTOU. (It has
-    // output go on that a program has held up, on some systems also what Ctrl-S has.)
+    while is_in_background(keys) && signals::stop_for_output() {
+        if signals.deadly().is_some() {
+            return Err(io::ErrorKind::Interrupted.into());
+        }
+        if !signals.take_continued() {
+            // Nobody is there who could continue us: so says what follows.
+            break;
+        }
+    }
+    // (It has output go on that a program has held up, on some systems also what Ctrl-S has.)
     termios::tcflow(keys, Action::OOn)?;
     // Nothing was on the screen that somebody could have written over.
     signals.take_continued();

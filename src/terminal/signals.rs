@@ -6,7 +6,7 @@
 use nix::sys::signal::{SigSet, SigmaskHow, Signal, raise};
 use rustix::event::{PollFd, PollFlags};
 use rustix::fd::{AsFd, BorrowedFd};
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGWINCH};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGTTOU, SIGWINCH};
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::sync::Arc;
@@ -51,7 +51,7 @@ impl Signals {
         let (read, write) = UnixStream::pair()?;
         read.set_nonblocking(true)?;
         let ignored = ignored();
-        let is_ignored = |signal: i32| ignored >> (signal - 1) & 1 == 1;
+        let is_ignored = |signal| contains(ignored, signal);
         let deadly = Arc::new(AtomicUsize::new(0));
         // The flag before the pipe: who is woken must find it set.
         for signal in DEADLY.into_iter().filter(|&signal| !is_ignored(signal)) {
@@ -176,6 +176,14 @@ pub fn without_signals<T>(work: impl FnOnce() -> T) -> T {
     without(&SigSet::all(), work)
 }
 
+/// Stops the whole process group, as the system does for a process in the background that writes; a shell sees no stop of
+/// a job in parts. Whether that is not ignored. (The system would begin what it stopped us for anew after each signal that
+/// is caught, and so stop us again before we have heard of one.)
+pub(super) fn stop_for_output() -> bool {
+    let is_heeded = !contains(ignored(), SIGTTOU);
+    is_heeded && rustix::process::kill_current_process_group(rustix::process::Signal::TTOU).is_ok()
+}
+
 /// Does something for which the system would stop a process in the background.
 pub(super) fn in_the_background<T>(work: impl FnOnce() -> T) -> T {
     without(&SigSet::from_iter([Signal::SIGTTOU]), work)
@@ -193,6 +201,10 @@ fn without<T>(signals: &SigSet, work: impl FnOnce() -> T) -> T {
 /// The signals that are ignored now, a bit for each. Only Linux says so; elsewhere the ignored ones are caught too.
 fn ignored() -> u64 {
     ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
+}
+
+fn contains(signals: u64, signal: i32) -> bool {
+    signals >> (signal - 1) & 1 == 1
 }
 
 fn ignored_in(status: &str) -> u64 {

@@ -476,6 +476,38 @@ fn in_the_background_it_leaves_the_terminal_alone() {
     session.assert_clean();
 }
 
+/// Killed there, it ends when it hears of that, without waiting for the terminal any longer.
+#[test]
+fn killed_in_the_background_it_ends() {
+    let stopped = 128 + Signal::TTOU.as_raw();
+    for arguments in [format!("'{SCENE}'"), "doctor".to_owned()] {
+        let script = format!(
+            "set -m; '{PROGRAM}' {arguments} & read line; jobs; kill %1; kill -CONT %1; \
+             while wait %1; s=$?; [ $s = {stopped} ]; do sleep 0.05; done; echo \"ended <$s>\"; read line"
+        );
+        let mut session = Start::shell(&script).spawn();
+        session.sees(Duration::from_millis(400), |_| false);
+        session.send(b"\n");
+        session.wait_for_text(&format!("ended <{}>", 128 + Signal::TERM.as_raw()));
+        assert!(!session.seen().has(b"\x1b"), "it was never ours");
+        session.assert_clean();
+    }
+}
+
+/// A part of a job does not stop alone: its shell would not know of it, and never continue it.
+#[test]
+fn in_the_background_the_whole_job_stops() {
+    let script = format!("set -m; ('{PROGRAM}' '{SCENE}'; echo \"ended <$?>\") & read line; jobs; fg; read line");
+    let mut session = Start::shell(&script).spawn();
+    session.sees(Duration::from_millis(400), |_| false);
+    session.send(b"\n");
+    session.wait_for_text("Stopped");
+    session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
+    session.send(b"q");
+    session.wait_for_text("ended <0>");
+    session.assert_clean();
+}
+
 /// Started in the background while the shell reads a line with settings of its own, it gives back those that it found in
 /// the foreground.
 #[test]
