@@ -5,9 +5,10 @@
 //!
 //! A frame is a pure function of scene, camera, resolution and [`Sampling`]. Tiles run on the threads of the current
 //! rayon pool; as no pixel's light depends on another's, neither their number nor their order shows. Which pixels get
-//! more samples does depend on others: that is decided between two passes over the whole picture.
+//! more samples does depend on others: that is decided after a first pass over the whole picture.
 
 use crate::camera::Camera;
+use crate::color::LinearRgb;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::hit::{self, EightHits, Kernel};
 use crate::lanes::{Eight, LANES};
@@ -325,7 +326,8 @@ impl Buffers {
     fn see_first(&self, first: &mut [First]) {
         for (ray, &pixel) in self.pixels.iter().enumerate() {
             let (group, lane) = (ray / LANES, ray % LANES);
-            let light = shade::light_of(&self.lights[group], lane);
+            // As a sum of one, which is never -0.
+            let light = LinearRgb::BLACK + shade::light_of(&self.lights[group], lane);
             let lit_by = self.arriving[group].lit_by[lane];
             first[usize::from(pixel)] = First::new(light, self.points[group].seen(lane), lit_by);
         }

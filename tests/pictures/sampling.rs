@@ -53,6 +53,16 @@ fn the_steps_of_a_refinement_do_not_show() {
     }
 }
 
+/// Light that is written with the sign of a number below zero is no other light.
+#[test]
+fn zero_has_no_sign() {
+    let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), background: (-0.0, -0.0, -0.0))";
+    let dark = Scene::from_ron("dark.ron", text).expect("the scene is fine");
+    let hash = |sampling: Sampling| render(&dark, &dark.camera, SIZE, sampling).hash();
+    let [each, at_most] = [Sampling::Each, Sampling::UpTo].map(|sampling| hash(sampling(NonZeroU32::MIN)));
+    assert_eq!(each, at_most);
+}
+
 /// Nearly the picture that 64 rays through every pixel give, at a part of their price.
 #[test]
 fn samples_go_where_the_edges_are() {
