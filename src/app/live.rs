@@ -144,14 +144,14 @@ impl Live {
                 renderer.give_up_refining();
             }
             self.present(terminal, renderer)?;
-            // Takes as long as the first picture's next step, which is waited for.
-            if self.screen.has_shown() && !terminal.is_sending() {
-                scenes.watch()?;
-            }
             // Nothing is rendered that cannot be sent.
             let idle = !renderer.is_busy() && !terminal.is_sending();
             if idle && self.now() >= self.next_frame() {
                 self.begin(terminal, renderer)?;
+            }
+            // That takes a while: the first picture does not wait for it.
+            if self.screen.has_shown() && !terminal.is_sending() {
+                scenes.watch()?;
             }
             self.panic_if_asked(renderer);
             let timeout = self.timeout(terminal, renderer);
