@@ -156,21 +156,47 @@ impl Crew<'_> {
         tiles: Vec<T>,
         trace: impl Fn(&mut Buffers, (usize, T)) -> Option<Cost> + Send + Sync,
     ) -> Option<Cost> {
-        let costs: Option<Vec<_>> = match self {
-            Self::Alone => {
-                let mut buffers = Buffers::default();
-                tiles.into_iter().enumerate().map(|tile| trace(&mut buffers, tile)).collect()
-            }
-            // One by one: a thread that has had the easy ones takes more.
-            Self::Pool(_) => tiles.into_iter().enumerate().par_bridge().map_init(Buffers::default, trace).collect(),
-        };
         let mut sum = Cost::default();
-        for cost in costs? {
+        for cost in self.share(tiles, trace)? {
             sum += cost;
         }
         Some(sum)
     }
+
+    /// Has each tile worked at by somebody, who keeps buffers of his own from tile to tile. Returns what comes of them, in no
+    /// order; `None` if one was given up.
+    fn share<T: Send, B: Default, R: Send>(
+        self,
+        tiles: Vec<T>,
+        work: impl Fn(&mut B, (usize, T)) -> Option<R> + Send + Sync,
+    ) -> Option<Vec<R>> {
+        let (start, count) = (Instant::now(), tiles.len() as u32);
+        let is_short = |done: u32| start.elapsed() * count < SHORT * done;
+        let mut is_alone = matches!(self, Self::Alone);
+        let mut tiles = tiles.into_iter().enumerate();
+        let (mut buffers, mut all) = (B::default(), Vec::with_capacity(tiles.len()));
+        for (done, tile) in (1..).zip(tiles.by_ref()) {
+            all.push(work(&mut buffers, tile)?);
+            if !is_alone && !is_short(done) {
+                // Not asked before: it may start rayon's own threads.
+                is_alone = rayon::current_num_threads() == 1;
+                if !is_alone {
+                    break;
+                }
+            }
+        }
+        if tiles.len() > 0 {
+            // One by one: a thread that has had the easy ones takes more.
+            let rest: Option<Vec<_>> = tiles.par_bridge().map_init(B::default, work).collect();
+            all.extend(rest?);
+        }
+        Some(all)
+    }
 }
+
+/// What takes no longer, going by the tiles so far, is traced by the calling thread alone: to wake another one takes 16 us,
+/// and 80 after a pause.
+const SHORT: Duration = Duration::from_micros(300);
 
 /// A picture in work, which gets more samples where it has edges, as long as that is wanted. Whatever the steps in which
 /// it is made, its light is the same to the bit as if it had been made in one.

@@ -1,5 +1,6 @@
 //! The trace stage alone, for those who time it: eye rays -> closest hits -> a shadow ray from each.
 
+use super::Crew;
 use super::sampling::Runs;
 use super::tiles::Tiles;
 use crate::camera::Camera;
@@ -9,9 +10,9 @@ use crate::lanes::{Eight, Lanes, Number};
 use crate::ray::EightRays;
 use crate::scene::Scene;
 use crate::shade::{self, EightPoints, TO_THE_LIGHT};
-use rayon::prelude::*;
 use std::num::NonZeroU32;
 use std::ops::Add;
+use std::sync::atomic::AtomicBool;
 
 /// What a picture's rays met.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,19 +46,15 @@ impl Add for Counts {
 pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
     let tiles = Tiles::new(camera, resolution, 1);
     let runs = Runs::of(0..samples.get());
-    let tile = |buffers: &mut Buffers, tile: usize| buffers.count_tile(kernel, scene, &tiles, tile, &runs);
-    let counts: Vec<_> = match rayon::current_num_threads() {
-        1 => {
-            let mut buffers = Buffers::default();
-            (0..tiles.count()).map(|at| tile(&mut buffers, at)).collect()
-        }
-        _ => (0..tiles.count()).into_par_iter().map_init(Buffers::default, tile).collect(),
-    };
+    let never = AtomicBool::new(false);
+    let count =
+        |buffers: &mut Buffers, (tile, ())| Some((tile, buffers.count_tile(kernel, scene, &tiles, tile, &runs)));
+    let mut counts = Crew::Pool(&never).share(vec![(); tiles.count()], count).unwrap_or_default();
     // In the tiles' order: a sum of floats depends on it.
-    counts.into_iter().fold(Counts::default(), Add::add)
+    counts.sort_unstable_by_key(|&(tile, _)| tile);
+    counts.into_iter().fold(Counts::default(), |sum, (_, counts)| sum + counts)
 }
 
-/// The arrays between the steps, kept from tile to tile.
 #[derive(Default)]
 struct Buffers {
     wanted: Vec<u8>,
