@@ -501,7 +501,8 @@ fn in_the_background_the_whole_job_stops() {
     let mut session = Start::shell(&script).spawn();
     session.sees(Duration::from_millis(400), |_| false);
     session.send(b"\n");
-    session.wait_for_text("Stopped");
+    // Not on the screen: the picture soon takes its place.
+    session.wait_for("the stop", SOON, |seen| seen.has(b"Stopped"));
     session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
     session.send(b"q");
     session.wait_for_text("ended <0>");
