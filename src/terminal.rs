@@ -21,6 +21,7 @@ use std::time::Duration;
 mod modes;
 mod output;
 mod panics;
+mod query;
 mod questions;
 mod rehearsal;
 mod signals;
@@ -30,7 +31,8 @@ use modes::Modes;
 pub use output::stderr_is_read;
 use output::{Output, timespec};
 pub use panics::{hold_panic_messages, take_panic_messages};
-pub use questions::{FENCE, Questions};
+pub use query::{FENCE, Tag};
+pub use questions::Questions;
 #[cfg(feature = "test-hooks")]
 pub use rehearsal::rehearse;
 pub(crate) use rehearsal::{reach, reach_beside, take_worker_panic};
@@ -105,7 +107,7 @@ impl Terminal {
     /// Sends a frame or questions, in one write where the terminal takes them whole. What it does not take at once goes
     /// out while [`wait`](Self::wait) waits.
     ///
-    /// Bytes that end with [`FENCE`] are answered. Giving the terminal back waits for the answer, for as long as it does
+    /// Bytes that end with [`FENCE`] or the query of a [`Tag`] are answered. Giving the terminal back waits for the answer, for as long as it does
     /// for the last bytes to be taken, so that the shell is not sent it.
     ///
     /// # Errors

@@ -25,7 +25,7 @@ mod app {
     pub(crate) mod source;
 }
 mod terminal {
-    pub(crate) use termtrace::terminal::FENCE;
+    pub(crate) use termtrace::terminal::{FENCE, Tag};
 }
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");

@@ -254,7 +254,7 @@ impl Live {
             renderer.light(scene);
         }
         let job = if self.stale {
-            terminal.send(self.link.probe(self.now()))?;
+            terminal.send(&self.link.probe(self.now()))?;
             self.stale = false;
             self.begun = Some(self.now());
             // On a slow link the next frame begins when an answer comes: all the time that it takes is the link's.
@@ -347,15 +347,15 @@ impl Live {
             return Ok(());
         }
         let size = self.window.size;
-        let slow = self.link.slow(Screen::usual_bytes(size));
-        let bytes = self.screen.bytes(size, now, slow);
+        let limit = self.link.limit(Screen::usual_bytes(size), now);
+        let bytes = self.screen.bytes(size, now, limit);
         if bytes.is_empty() {
             return Ok(());
         }
         // Cells and bytes took their time: it is not the link's.
         let now = self.clock.now();
         // Also at rest: a frame's own round trip is longer than the link's, which its rate is judged by.
-        terminal.send(self.link.probe(now))?;
+        terminal.send(&self.link.probe(now))?;
         self.link.send(bytes, now);
         terminal.send(bytes)
     }

@@ -3,7 +3,7 @@
 use super::dialog::Dialog;
 use super::explain::Explaining;
 use super::help::Help;
-use super::link::Slow;
+use super::link::Limit;
 use super::panels;
 use super::renderer::{Frame, MIDDLE};
 use super::strip::Fault;
@@ -299,7 +299,7 @@ impl Screen {
     }
 
     /// The bytes that are to be sent now.
-    pub(super) fn bytes(&mut self, size: Size, now: Duration, slow: Option<Slow>) -> &mut Vec<u8> {
+    pub(super) fn bytes(&mut self, size: Size, now: Duration, limit: Option<Limit>) -> &mut Vec<u8> {
         self.bytes.clear();
         if self.can_show(size) {
             let start = Instant::now();
@@ -307,11 +307,11 @@ impl Screen {
                 Some(frame) => self.painter.grid(&frame.picture),
                 None => Grid::new(size),
             };
-            self.lay_panels_over(&mut grid, slow);
+            self.lay_panels_over(&mut grid, limit);
             let (usual, order) =
-                if slow.is_some() { (Quality::Equal, Order::Color) } else { (Quality::Exact, Order::Raster) };
+                if limit.is_some() { (Quality::Equal, Order::Color) } else { (Quality::Exact, Order::Raster) };
             self.encoder.set_order(self.order.unwrap_or(order));
-            let most_bytes = slow.map(|slow| slow.most_bytes);
+            let most_bytes = limit.map(|limit| limit.most_bytes);
             let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, most_bytes };
             self.encoder.encode_within(&grid, allowance, &mut self.bytes);
             self.encode = start.elapsed();
@@ -401,7 +401,7 @@ mod tests {
             trace: Duration::ZERO,
         };
         let grid = export::frame_grid(&scene, capabilities.cell_mode, size, 2.0);
-        let slow = Some(Slow { rate: 1e5, most_bytes: usize::MAX });
+        let slow = Some(Limit { rate: Some(1e5), most_bytes: usize::MAX });
         let exact = Some(Quality::Exact);
         for (asked, link, order) in [
             (None, None, Order::Raster),

@@ -6,8 +6,7 @@
 use crate::capabilities::{Answers, Asking, Hints, TEST_COLOR};
 use crate::input::Reply;
 
-/// The question behind which all are answered.
-pub const FENCE: &[u8] = b"\x1b[c";
+use super::query::{FENCE, Tag};
 
 /// A batch of questions, and the answers to it.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +40,7 @@ impl Questions {
         if asking == Asking::Tmux || asking == Asking::Everything {
             bytes.extend_from_slice(BACKGROUND);
             bytes.extend_from_slice(SYNCHRONIZED);
+            bytes.extend_from_slice(&Tag::FIRST.query());
         }
         if asking == Asking::Everything {
             bytes.extend_from_slice(MOUSE_AND_KEYBOARD);
@@ -71,6 +71,12 @@ impl Questions {
         self.open
     }
 
+    /// No more answers will come: something that was asked later has been answered, so the fence's answer is lost.
+    /// Whether any could have come until now.
+    pub fn close(&mut self) -> bool {
+        std::mem::take(&mut self.open)
+    }
+
     /// Takes a reply, if it may be to one of these questions. Whether it was the last: nothing that comes later counts.
     pub fn take(&mut self, reply: &Reply) -> bool {
         if !self.open {
@@ -78,10 +84,7 @@ impl Questions {
         }
         let answers = &mut self.answers;
         match reply {
-            Reply::DeviceAttributes(_) => {
-                self.open = false;
-                return true;
-            }
+            Reply::DeviceAttributes(_) => return self.close(),
             Reply::CursorPosition { column, .. } => answers.take_cursor(*column),
             &Reply::Mode { mode, state } => answers.take_mode(mode, state),
             &Reply::CellPixels { width, height } => answers.cell_pixels = Some((width, height)),
@@ -186,6 +189,21 @@ mod tests {
         assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));
         assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
         assert_eq!(questions.answers(), &answers);
+    }
+
+    #[test]
+    fn a_lost_fence_is_made_up_for_once() {
+        let mut questions = Questions::all(&hints("xterm", ""));
+        questions.take(&Reply::Mode { mode: 2026, state: 2 });
+        assert!(questions.close() && !questions.close() && !questions.is_open());
+        assert_eq!(questions.answers().synchronized_output, Some(true));
+    }
+
+    #[test]
+    fn tags_are_tried_where_modes_are_asked_for() {
+        for (term, expected) in [("xterm", true), ("tmux-256color", true), ("screen", false), ("linux", false)] {
+            assert_eq!(has(&Questions::needed(&hints(term, "")), &Tag::FIRST.query()), expected, "{term}");
+        }
     }
 
     #[test]

@@ -23,6 +23,8 @@ pub(super) struct RoundTrip {
     shortest: [Option<Duration>; 2],
     /// When this age began.
     since: Duration,
+    /// What was known before it was doubted.
+    before: Duration,
 }
 
 impl RoundTrip {
@@ -32,6 +34,16 @@ impl RoundTrip {
             self.since = now;
         }
         self.shortest[1] = Some(self.shortest[1].map_or(round_trip, |shortest| shortest.min(round_trip)));
+    }
+
+    /// The way may be another: what was known is no more than expected.
+    pub(super) fn doubt(&mut self) {
+        *self = Self { before: self.expected(), ..Self::default() };
+    }
+
+    /// What a reply is expected to take, from what was known last.
+    pub(super) fn expected(&self) -> Duration {
+        self.shortest.into_iter().flatten().min().unwrap_or(self.before)
     }
 
     /// Whether anything is known.

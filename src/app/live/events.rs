@@ -42,6 +42,12 @@ impl Live {
         match reply {
             // Terminals answer in order: first the questions of the start, then what ends each frame.
             Reply::DeviceAttributes(_) if !self.questions.is_open() => self.link.answer(self.now()),
+            &Reply::Mode { mode, .. } if self.link.answer_mode(mode, self.now()) => {
+                let was_open = self.questions.close();
+                if was_open {
+                    self.learn();
+                }
+            }
             reply if self.questions.take(reply) => self.learn(),
             _ => {}
         }

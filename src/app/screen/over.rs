@@ -4,7 +4,7 @@ use super::{Screen, area};
 use crate::app::explain;
 use crate::app::help::{self, Help};
 use crate::app::legend;
-use crate::app::link::Slow;
+use crate::app::link::Limit;
 use crate::app::mark;
 use crate::app::panels::{self, Look};
 use crate::app::renderer::Frame;
@@ -16,7 +16,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 impl Screen {
-    pub(super) fn lay_panels_over(&mut self, grid: &mut Grid, slow: Option<Slow>) {
+    pub(super) fn lay_panels_over(&mut self, grid: &mut Grid, limit: Option<Limit>) {
         let screen = area(grid.size());
         let mode = self.painter.mode();
         let look = Look::of(mode);
@@ -41,7 +41,7 @@ impl Screen {
                 panels::draw_progress(progress, look, area, buffer);
             });
         }
-        self.lay_status(grid, look, slow);
+        self.lay_status(grid, look, limit);
         if panels::has_room(screen) {
             self.lay_lines(grid, look);
         }
@@ -53,7 +53,7 @@ impl Screen {
         u16::from(self.status) * (1 + u16::from(panels::has_room(screen)))
     }
 
-    fn lay_status(&self, grid: &mut Grid, look: Look, slow: Option<Slow>) {
+    fn lay_status(&self, grid: &mut Grid, look: Look, limit: Option<Limit>) {
         let Some(frame) = self.frame.as_ref().filter(|_| self.status) else { return };
         let status = panels::Status {
             cells: grid.size(),
@@ -62,7 +62,7 @@ impl Screen {
             encode: self.encode,
             shown: self.pace.frames_per_second,
             rays: frame.cost.rays,
-            slow: slow.map(|slow| slow.rate),
+            slow: limit.and_then(|limit| limit.rate),
             eye: frame.camera.pose().eye,
         };
         let screen = area(grid.size());
