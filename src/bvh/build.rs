@@ -301,8 +301,14 @@ impl Cut {
     }
 }
 
+/// The half area of the box, times the expected number of tests below it.
+///
+/// A leaf's boxes are tested eight at a time, so what counts is the number of blocks of eight. A sixteenth for each box
+/// tells apart cuts with as many blocks. Counting single boxes instead made 18 % more leaves of the dragon's 871 k
+/// triangles, and 5 % slower rays.
 #[inline(always)]
 fn cost((rows, count): (Rows, u32)) -> f32 {
     let [x, y, z, _]: [f32; 4] = from_fn(|at| rows.max[at] - rows.min[at]);
-    if count == 0 { 0.0 } else { count as f32 * (x * y + y * z + z * x) }
+    let tests = count.div_ceil(LANES as u32) as f32 + count as f32 / 16.0;
+    if count == 0 { 0.0 } else { tests * (x * y + y * z + z * x) }
 }
