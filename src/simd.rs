@@ -9,6 +9,7 @@
 use crate::lanes::Eight;
 
 pub use crate::lanes::Work;
+pub use prefetch::prefetch;
 
 /// Does the work with the best that this CPU has.
 #[inline]
@@ -59,6 +60,7 @@ mod avx2;
 mod avx512;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
+mod prefetch;
 
 #[cfg(test)]
 mod tests {

@@ -2,7 +2,7 @@
 
 use super::{Stacks, alone::Alone};
 use crate::bounds::crossed;
-use crate::bvh::{Child, GROUPS, Packet, Queue, Visitor};
+use crate::bvh::{Child, GROUPS, Packet, Prefetch, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector, set_bits};
 use crate::ray::{EightRays, Interval, Pencil, Rays};
@@ -249,6 +249,13 @@ struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
     packet: &'a Packet<N>,
     pencil: Option<Pencil<N>>,
     queue: &'a mut Queue,
+}
+
+impl<N: Lanes, S, const ANY: bool> Prefetch for InGrove<'_, '_, N, S, ANY> {
+    #[inline(always)]
+    fn prefetch(&self, leaf: usize) {
+        self.grove.prefetch(leaf);
+    }
 }
 
 impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N, S, ANY> {

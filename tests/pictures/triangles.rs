@@ -7,7 +7,7 @@ use std::num::NonZeroU32;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use termtrace::bounds::Bounds;
-use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Queue};
+use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Prefetch, Queue};
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::Resolution;
@@ -475,6 +475,11 @@ fn some_of(rays: &EightRays, asked: u32) -> EightRays {
 
 /// How many boxes were visited.
 struct Count<'l>(&'l Leaves, usize);
+
+/// Its boxes have no contents.
+impl Prefetch for Count<'_> {
+    fn prefetch(&self, _: usize) {}
+}
 
 impl LeafVisitor for Count<'_> {
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
