@@ -19,4 +19,5 @@ mod reduced_motion;
 mod refining;
 mod scenes;
 mod settings;
+mod signals;
 mod views;
