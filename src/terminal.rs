@@ -156,7 +156,16 @@ impl Terminal {
     /// Gives the terminal back, as dropping it does. Whether it took all that was sent: one that has stopped reading is
     /// left after a second, and is not to be written to any more.
     pub fn give_back(&mut self) -> bool {
-        self.modes.give_back(&self.keys, &mut self.output, &mut self.unanswered)
+        self.modes.give_back(&self.keys, &mut self.output, &mut self.unanswered, None)
+    }
+
+    /// Gives the terminal back to whoever had it while the program was stopped without a word; returns what was typed
+    /// meanwhile, with the replies up to the last one. What is typed from then on stays to be read: no shell is to be
+    /// spared it.
+    pub fn hand_over(&mut self) -> Vec<u8> {
+        let mut typed = Vec::new();
+        self.modes.give_back(&self.keys, &mut self.output, &mut self.unanswered, Some(&mut typed));
+        typed
     }
 
     /// The bytes that are there. None at all: the terminal is gone.
