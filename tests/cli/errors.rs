@@ -233,6 +233,22 @@ fn no_argument_reaches_the_terminal_unquoted() {
     assert!(count > 60, "{count} flags were found");
 }
 
+/// What there is not enough memory for is refused before it is begun.
+#[cfg(target_os = "linux")]
+#[test]
+fn too_little_memory_is_an_error_message() {
+    let folder = Folder::new();
+    let count: u32 = 100_000;
+    folder.write("big.stl", [&[0; 80][..], &count.to_le_bytes(), &vec![0; 50 * count as usize]].concat());
+    folder.write("big.ron", BALL.replace("objects: [", &format!("objects: [{}", " ".repeat(3 << 20))));
+    for name in ["big.stl", "big.ron"] {
+        let script = format!("ulimit -v 70000; exec '{}' check {name}", env!("CARGO_BIN_EXE_termtrace"));
+        let mut command = std::process::Command::new("sh");
+        let run = super::finish(command.args(["-c", &script]).current_dir(folder.path("")));
+        run.fails_in_a_line(2, "there is not enough memory");
+    }
+}
+
 /// As for the scene, `-` is the standard stream.
 #[test]
 fn a_dash_is_standard_output() {
