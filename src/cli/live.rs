@@ -126,6 +126,9 @@ fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard } = match ended {
         Ok(outcome) => outcome.map_err(|error| match error {
+            app::Error::Terminal(error) if error.kind() == io::ErrorKind::OutOfMemory => {
+                Failure::Runtime(error.to_string())
+            }
             app::Error::Terminal(error) => Failure::runtime("terminal", reason(&error)),
             app::Error::Scene(failure) => failure,
         })?,

@@ -21,3 +21,4 @@ mod scenes;
 mod settings;
 mod signals;
 mod views;
+mod windows;

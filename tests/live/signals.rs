@@ -95,6 +95,34 @@ fn signals_that_the_parent_ignores_stay_ignored() {
     session.assert_clean();
 }
 
+/// A key that was typed while the program was stopped without a word, or just after, is not thrown away, whether replies are
+/// outstanding or not.
+#[test]
+fn keys_typed_around_a_stop_without_a_word_are_heard() {
+    let plain: [&[u8]; 2] = [b"q", b"\x03"];
+    let kitty: [&[u8]; 2] = [b"\x1b[113u", b"\x1b[99;5u"];
+    for (is_mute, is_kitty, [q, ctrl_c]) in [(true, false, plain), (false, false, plain), (false, true, kitty)] {
+        for (key, while_stopped) in [(q, true), (ctrl_c, true), (q, false)] {
+            let start = Start::new(PROGRAM).arg(SCENE);
+            let start = if is_mute { start.mute() } else { start };
+            let mut session = looking(if is_kitty { start.kitty() } else { start });
+            session.signal(Signal::STOP);
+            session.wait_stopped(SOON);
+            if while_stopped {
+                session.send(key);
+            }
+            session.signal(Signal::CONT);
+            if !while_stopped {
+                session.send(key);
+            }
+            let status = session.wait_exit(SOON);
+            // The terminal itself may have taken Ctrl-C, while it was given back.
+            assert!(status.code() == Some(0) || key == ctrl_c && status.signal() == Some(2), "{status}");
+            session.assert_clean();
+        }
+    }
+}
+
 /// Signals that mean nothing to a program by default mean nothing here.
 #[test]
 fn harmless_signals_do_not_end_it() {
