@@ -103,7 +103,8 @@ impl Output {
         self.count(0);
     }
 
-    /// Waits until the terminal has taken everything, at most until the deadline. Whether it has.
+    /// Waits until the terminal has taken everything and takes more, at most until the deadline. Whether it does: what is
+    /// printed next then blocks nobody. (One that has stopped reading may still have had room for the last bytes.)
     pub(super) fn finish(&mut self, deadline: Instant) -> bool {
         while self.push().is_ok() && self.is_pending() {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -112,7 +113,7 @@ impl Output {
             }
             has_room(&self.file, left);
         }
-        !self.is_pending()
+        !self.is_pending() && has_room(&self.file, deadline.saturating_duration_since(Instant::now()))
     }
 }
 
