@@ -30,6 +30,8 @@
 //! - [`ray`]: origin + t * direction, and intervals of t
 //! - [`bounds`]: boxes along the axes
 //! - [`capabilities`]: what a terminal's cells can be made of
+//! - [`text`]: printable text, from whatever comes from outside
+//! - [`memory`]: asked for before it is used
 //! - [`progress`]: how far work has come, told to who waits for it
 //!
 //! What was written:
@@ -108,6 +110,8 @@ pub mod simd;
 pub mod ray;
 pub mod bounds;
 pub mod capabilities;
+pub mod text;
+pub mod memory;
 pub mod progress;
 pub mod scene_text;
 pub mod scene_file;

@@ -41,6 +41,7 @@ pub use error::{MeshError, Place};
 pub use texture::{Texture, TexturePlacement};
 
 use crate::color::LinearRgb;
+use crate::memory;
 use crate::progress::{Progress, Watcher, Work};
 use error::{Fault, cannot_be_read};
 use glam::{Mat3, Vec2, Vec3};
@@ -289,14 +290,30 @@ fn read(name: &str, bytes: &[u8], neighbours: &mut Neighbours<'_>, watcher: &Wat
         return Err(Fault::of_file("the file is larger than 2 GiB, too large to be read"));
     }
     let meter = Meter::new(watcher, name, bytes.len());
-    match kind::of(name, bytes)? {
+    has_memory(bytes.len() * PEAK_PER_BYTE, "to read it")?;
+    let mesh = match kind::of(name, bytes)? {
         Kind::Obj => obj::read(bytes, neighbours, meter),
         Kind::StlText => stl::read_text(bytes, meter),
         Kind::StlBinary => stl::read_binary(bytes, meter),
         Kind::Ply => ply::read(bytes, meter),
         Kind::Gltf => gltf::read_json(bytes, neighbours, meter),
         Kind::Glb => gltf::read_binary(bytes, neighbours, meter),
-    }
+    }?;
+    let triangles = mesh.triangles().len();
+    has_memory(triangles * PEAK_PER_TRIANGLE, &format!("for its {triangles} triangles"))?;
+    Ok(mesh)
+}
+
+/// How many bytes of memory each byte of a file may take while it is read, besides itself. (PLY has the fewest bytes for a
+/// triangle.)
+const PEAK_PER_BYTE: usize = 8;
+
+/// How many bytes of memory a triangle may take while trees are built over all of them: 230 (PLY) to 290 (STL) were
+/// measured, with the file.
+const PEAK_PER_TRIANGLE: usize = 320;
+
+fn has_memory(bytes: usize, what_for: &str) -> Result<(), Fault> {
+    memory::check(bytes).map_err(|error| Fault::of_file(format!("{error} {what_for}")))
 }
 
 /// So many bytes come from the disk from one report to the next.

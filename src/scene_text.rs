@@ -16,7 +16,7 @@ mod tokens;
 mod whole;
 
 pub use fault::{Fault, Faults, Report, SceneError, line_and_column};
-pub(crate) use fault::{clipped, quoted, visible};
+pub(crate) use fault::{clipped, quoted};
 pub use parser::parse;
 pub use whole::{read, text_from};
 

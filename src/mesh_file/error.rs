@@ -1,6 +1,7 @@
 //! Why a file is no mesh, and how a person is told: one line with the place in it.
 
-use crate::scene_text::{clipped, visible};
+use crate::scene_text::clipped;
+use crate::text::visible;
 use std::{fmt, io};
 
 /// Why a file gave no mesh: its first fault. Printed, it is one line that controls no terminal:

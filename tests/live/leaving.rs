@@ -115,6 +115,7 @@ ways_out! {
     sighup: Way::Death(Signal::HUP);
     sigint: Way::Death(Signal::INT);
     sigquit: Way::Death(Signal::QUIT);
+    sigusr1: Way::Death(Signal::USR1);
     stop_by_sigtstp: Way::StopSignal;
     stop_by_the_ctrl_z_key: Way::StopKey;
 }

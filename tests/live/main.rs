@@ -19,4 +19,6 @@ mod reduced_motion;
 mod refining;
 mod scenes;
 mod settings;
+mod signals;
 mod views;
+mod windows;

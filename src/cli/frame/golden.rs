@@ -1,11 +1,12 @@
 //! `frame --check`: is the frame the one in the file, and if not, where do they differ?
 
 use super::Format;
-use crate::cli::{Done, Failure, reason, visible, write_stdout};
+use crate::cli::{Done, Failure, reason, write_stdout};
 use similar::TextDiff;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
+use termtrace::text::{visible, visible_lines};
 
 /// Done if the file holds exactly this frame; else a diff goes to standard output.
 pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> Done {
@@ -28,9 +29,10 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> Done {
 
 /// Line by line, as `diff -u`.
 fn text_difference(golden: &[u8], frame: &[u8], name: &str) -> String {
+    let [golden, frame] = [golden, frame].map(String::from_utf8_lossy);
+    let difference = TextDiff::from_lines(&*golden, &*frame);
     // A golden file may be anything.
-    let [golden, frame] = [golden, frame].map(|bytes| visible(&String::from_utf8_lossy(bytes)));
-    TextDiff::from_lines(&*golden, &*frame).unified_diff().context_radius(1).header(name, "this frame").to_string()
+    visible_lines(&difference.unified_diff().context_radius(1).header(name, "this frame").to_string())
 }
 
 /// The rows that differ, and where each begins to.
