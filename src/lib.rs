@@ -30,7 +30,7 @@
 //! - [`ray`]: origin + t * direction, and intervals of t
 //! - [`bounds`]: boxes along the axes
 //! - [`capabilities`]: what a terminal's cells can be made of
-//! - [`progress`]: how far work has come, told to who waits for it
+//! - [`progress`]: progress reports, and the token by which work is cancelled
 //!
 //! What was written:
 //! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret

@@ -6,7 +6,7 @@ use crate::camera_path::CameraPath;
 use crate::mesh_file::{self, MeshError, MeshFile};
 use crate::progress::Watcher;
 use crate::scene_file::{PathFile, SceneFile};
-use crate::scene_text::{MAX_BYTES, SceneError, read, text_from, visible};
+use crate::scene_text::{MAX_BYTES, SceneError, read, read_watched, text_from, visible};
 use std::collections::HashMap;
 use std::fmt;
 use std::fs::File;
@@ -112,8 +112,10 @@ fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
 
 fn draft(name: &str, text: &str, watcher: &Watcher<'_>) -> Result<Draft, SceneError> {
     let mut meshes = Meshes::beside(Path::new(name), watcher);
-    read(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", |root, faults| {
-        checked::check(&SceneFile::read(root, faults), &mut meshes, faults)
+    read_watched(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", watcher, |root, faults| {
+        let file = SceneFile::read(&root, watcher, faults);
+        drop(root);
+        checked::check(&file, &mut meshes, watcher, faults)
     })
 }
 
