@@ -32,7 +32,7 @@
 //! - [`capabilities`]: what a terminal's cells can be made of
 //! - [`text`]: printable text, from whatever comes from outside
 //! - [`memory`]: asked for before it is used
-//! - [`progress`]: how far work has come, told to who waits for it
+//! - [`progress`]: progress reports, and the token by which work is cancelled
 //!
 //! What was written:
 //! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret

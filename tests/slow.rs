@@ -219,6 +219,57 @@ fn a_scene_that_is_saved_is_soon_seen() {
     }
 }
 
+/// A scene of so many balls that cannot be seen, and one that can, in that colour.
+#[cfg(target_os = "linux")]
+fn balls(count: usize, color: &str) -> String {
+    let balls = "Sphere(center: (9, 9, 9), radius: 0.1),\n".repeat(count);
+    format!(
+        "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, background: \"navy\",
+        objects: [{balls} Sphere(center: (0, 0, 0), radius: 1, material: Diffuse(\"{color}\"))])"
+    )
+}
+
+/// The most memory that a process has had, and what it has now, in kB.
+#[cfg(target_os = "linux")]
+fn memory(session: &Session) -> [f64; 2] {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", session.pid().as_raw_nonzero())).expect("it runs");
+    ["VmHWM:", "VmRSS:"].map(|name| {
+        let line = status.lines().find_map(|line| line.strip_prefix(name)).expect("the line is there");
+        line.trim().trim_end_matches(" kB").parse().expect("a number")
+    })
+}
+
+/// Memory while a large scene is saved so often, and after it.
+#[cfg(target_os = "linux")]
+fn saved(times: usize) -> [f64; 2] {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = folder.path().join("balls.ron");
+    std::fs::write(&path, balls(0, "white")).expect("a file can be written");
+    let mut session = Start::new(PROGRAM).arg(&path).spawn();
+    session.wait_for("the ball", SOON, |seen| seen.screen().cell(40, 12) != seen.screen().cell(0, 0));
+    let middle = |seen: &Seen| seen.screen().cell(40, 12);
+    let before = middle(session.seen());
+    for save in 1..=times {
+        std::fs::write(&path, balls(100_000, if save == times { "lime" } else { "white" }))
+            .expect("a file can be written");
+        if save < times {
+            session.sees(Duration::from_millis(30), |_| false);
+        }
+    }
+    session.wait_for("another picture", SOON, |seen| middle(seen) != before);
+    session.sees(Duration::from_millis(500), |_| false);
+    memory(&session)
+}
+
+/// However often a large scene is saved while it is read, one is read at a time, and its memory is used again.
+#[cfg(target_os = "linux")]
+#[test]
+fn many_saves_take_the_memory_of_one() {
+    let (one, many) = (saved(1), saved(30));
+    println!("kB at most and afterwards: {one:?} for one save, {many:?} for 30");
+    assert!(many[0] < 2.0 * one[0] && many[1] < 1.2 * one[1], "{one:?} {many:?}");
+}
+
 /// It takes as long as to read and build it, and no more: `check` does nothing else.
 #[test]
 fn a_mesh_that_is_saved_is_seen_when_it_is_built() {

@@ -17,7 +17,7 @@ pub(super) struct Asked {
 impl Asked {
     /// Whether that view is to be written into that file; `None` if it is no plain file.
     pub(super) fn new(file: &Path, camera: Camera) -> Option<Self> {
-        Needed::now(file).map(|file| Self { file, camera })
+        Some(Needed::now(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
     }
 
     pub(super) fn file(&self) -> &Path {

@@ -160,8 +160,11 @@ impl Live {
                 self.begin(terminal, renderer)?;
             }
             // That takes a while: the first picture does not wait for it.
-            if self.screen.has_shown() && !terminal.is_sending() {
-                scenes.watch()?;
+            if self.screen.has_shown()
+                && !terminal.is_sending()
+                && let Some(problem) = scenes.watch()?
+            {
+                self.screen.say(format!("changes of the scene's files will not be seen: {problem}"));
             }
             self.panic_if_asked(renderer);
             let timeout = self.timeout(terminal, renderer);

@@ -1,5 +1,6 @@
 //! Why a file is no mesh, and how a person is told: one line with the place in it.
 
+use crate::progress::Cancelled;
 use crate::scene_text::clipped;
 use crate::text::visible;
 use std::{fmt, io};
@@ -131,6 +132,14 @@ impl Fault {
 impl From<MeshError> for Fault {
     fn from(error: MeshError) -> Self {
         Self(Box::new(Cause::Elsewhere(error)))
+    }
+}
+
+impl From<Cancelled> for Fault {
+    /// A fault that is never shown: whoever reads the file asks the watcher before the result.
+    #[cold]
+    fn from(cancelled: Cancelled) -> Self {
+        Self::of_file(cancelled.to_string())
     }
 }
 

@@ -7,7 +7,7 @@ use crate::memory;
 use crate::mesh_file::{self, MeshError, MeshFile};
 use crate::progress::Watcher;
 use crate::scene_file::{PathFile, SceneFile};
-use crate::scene_text::{MAX_BYTES, SceneError, read, text_from};
+use crate::scene_text::{MAX_BYTES, SceneError, read, read_watched, text_from};
 use crate::text::visible;
 use std::collections::HashMap;
 use std::fmt;
@@ -114,8 +114,10 @@ fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
 
 fn draft(name: &str, text: &str, watcher: &Watcher<'_>) -> Result<Draft, SceneError> {
     let mut meshes = Meshes::beside(Path::new(name), watcher);
-    read(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", |root, faults| {
-        checked::check(&SceneFile::read(root, faults), &mut meshes, faults)
+    read_watched(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", watcher, |root, faults| {
+        let file = SceneFile::read(&root, watcher, faults);
+        drop(root);
+        checked::check(&file, &mut meshes, watcher, faults)
     })
 }
 

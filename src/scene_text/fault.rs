@@ -1,6 +1,7 @@
 //! Faults, and how a person is shown them: all at once, in the order of the text, as compilers do.
 
 use super::Span;
+use crate::progress::Cancelled;
 use crate::text::{visible, visible_char};
 use std::fmt;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
@@ -12,6 +13,13 @@ pub struct Fault {
     pub message: String,
     /// The bytes it is about.
     pub span: Span,
+}
+
+impl From<Cancelled> for Fault {
+    /// A fault that is never shown: whoever reads the text asks the watcher before the result.
+    fn from(cancelled: Cancelled) -> Self {
+        Self { message: cancelled.to_string(), span: Span::at(0) }
+    }
 }
 
 /// The faults found so far. Of a text that is wrong everywhere only the first thousand are kept, the others counted.

@@ -285,6 +285,23 @@ fn what_is_wrong_with_a_mesh_is_told_when_the_terminal_is_back() {
     assert!(told.rfind("\x1b[?") < told.find(message), "told before the terminal is given back");
 }
 
+/// The picture is there, and only its changes are not.
+#[test]
+fn what_cannot_be_watched_is_said() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = folder.path().join("x.ron");
+    fs::write(&path, include_str!("../../scenes/three_spheres.ron")).expect("a file can be written");
+    let mut phases = Phases::new();
+    let mut session = program().arg(&path).env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
+    phases.wait_for_on("watching", &mut session);
+    phases.answer(Answer::Error);
+    session.wait_for_text("changes of the scene's files will not be seen: a test asked for an error");
+    session.send(b" ");
+    let wanted = picture(&Scene::load(&path).expect("it is a scene"), Size::cells(80, 24));
+    session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+    leave(&mut session, (b"q", None));
+}
+
 #[test]
 fn a_panic_while_it_builds_is_told_when_the_terminal_is_back() {
     let (mut source, mut phases) = (Source::new(), Phases::new());

@@ -12,6 +12,7 @@ mod mesh_writers;
 mod mouse;
 mod moving;
 mod orbit;
+mod paths;
 #[path = "../pty/mod.rs"]
 mod pty;
 mod questions;

@@ -9,14 +9,14 @@ use termtrace::capabilities::CellMode;
 use termtrace::scene::Scene;
 
 /// A ball of that colour, looked at from there.
-fn ball(color: &str, eye: &str) -> String {
+pub(crate) fn ball(color: &str, eye: &str) -> String {
     format!(
         "(camera: (eye: {eye}, target: (0, 0, 0)), background: \"navy\", lights: [Point(position: (3, 4, 5), intensity: 40)],
         objects: [Sphere(center: (0, 0, 0), radius: 1, material: Diffuse(\"{color}\"))])"
     )
 }
 
-const EYE: &str = "(0, 0, 5)";
+pub(crate) const EYE: &str = "(0, 0, 5)";
 
 struct Folder(TempDir);
 
@@ -42,7 +42,7 @@ impl Folder {
     }
 }
 
-fn program() -> Start {
+pub(crate) fn program() -> Start {
     Start::new(env!("CARGO_BIN_EXE_termtrace"))
 }
 
@@ -55,7 +55,7 @@ fn looking(paths: &[&Path]) -> Session {
 
 /// Waits for the picture of that scene.
 #[track_caller]
-fn sees(session: &mut Session, text: &str) {
+pub(crate) fn sees(session: &mut Session, text: &str) {
     let scene = Scene::from_ron("wanted", text).expect("the scene is fine");
     let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(80, 24), 2.0);
     session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
@@ -74,7 +74,7 @@ fn upper_half_shows(session: &mut Session, text: &str) -> bool {
     })
 }
 
-fn leave(session: &mut Session) -> String {
+pub(crate) fn leave(session: &mut Session) -> String {
     let before = session.seen().bytes().len();
     session.send(b"q");
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
