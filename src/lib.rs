@@ -63,6 +63,7 @@
 //! - [`encode`]: wanted grid, shown grid, pen -> bytes
 //! - [`export`]: grid or picture -> text, ANSI, SVG, HTML, PNG
 //! - [`record`]: frames over time -> asciicast, GIF
+//! - [`output_file`]: bytes -> a file that is replaced whole, or not at all
 //!
 //! With a person:
 //! - [`input`]: bytes -> events and replies
@@ -133,6 +134,7 @@ pub mod overlay;
 pub mod encode;
 pub mod export;
 pub mod record;
+pub mod output_file;
 pub mod input;
 pub mod terminal;
 pub mod control;
