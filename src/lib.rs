@@ -91,6 +91,7 @@
 //! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over arrays of its rays, in which
 //!    eight rays stand side by side all the way ([`EightRays`](ray::EightRays)), each with a bit for whether it is asked
 //!    about.
+//! 9. Only [`output_file`] writes files, for the library and the program.
 //!
 //! # What is not here
 //!

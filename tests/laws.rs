@@ -219,6 +219,20 @@ fn without_file_calls(code: &str) -> String {
     ["rustix::fs::", "rustix::io::"].iter().fold(code.to_owned(), |code, word| code.replace(word, ""))
 }
 
+/// Law 9: what one module promises holds for all files that are written.
+#[test]
+fn files_are_written_by_one_module() {
+    let words = ["File::create", "fs::write", "create_new(", "create(true)", "truncate(true)", "fs::rename"];
+    for (path, text) in rust_files(&root().join("src")) {
+        let code = code(&text).replace("OutputFile::create", "");
+        if stage(&path) != "output_file" {
+            for word in words {
+                assert!(!code.contains(word), "{} has {word}", path.display());
+            }
+        }
+    }
+}
+
 /// The manifest denies unsafe code; nobody may allow it again but for the CPU's instructions.
 #[test]
 fn only_simd_has_unsafe_code() {
