@@ -273,6 +273,8 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
             bar.finish_and_clear();
         }
     });
+    // Not before: a signal would leave it.
+    bar.tick();
     let mut sink = film.written(0, args.sink(film, &mut outputs))?;
     for (frame, camera) in film.cameras.iter().enumerate() {
         let (view, samples) = (args.view.view(), args.picture.samples());
