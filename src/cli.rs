@@ -14,6 +14,7 @@ mod later;
 mod live;
 mod near;
 mod origin;
+mod outputs;
 mod picture;
 mod record;
 mod settings;

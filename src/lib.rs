@@ -65,6 +65,7 @@
 //! - [`encode`]: wanted grid, shown grid, pen -> bytes
 //! - [`export`]: grid or picture -> text, ANSI, SVG, HTML, PNG
 //! - [`record`]: frames over time -> asciicast, GIF
+//! - [`output_file`]: bytes -> a file that is replaced whole, or not at all
 //!
 //! With a person:
 //! - [`input`]: bytes -> events and replies
@@ -92,6 +93,7 @@
 //! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over arrays of its rays, in which
 //!    eight rays stand side by side all the way ([`EightRays`](ray::EightRays)), each with a bit for whether it is asked
 //!    about.
+//! 9. Only [`output_file`] writes files, for the library and the program.
 //!
 //! # What is not here
 //!
@@ -137,6 +139,7 @@ pub mod overlay;
 pub mod encode;
 pub mod export;
 pub mod record;
+pub mod output_file;
 pub mod input;
 pub mod terminal;
 pub mod control;

@@ -34,7 +34,7 @@ pub use questions::{FENCE, Questions};
 #[cfg(feature = "test-hooks")]
 pub use rehearsal::rehearse;
 pub(crate) use rehearsal::{reach, reach_beside, take_worker_panic};
-pub use signals::{Signals, Stopped, Waker, die_of, fail_large_writes, without_signals};
+pub use signals::{Signals, Stopped, Waker, before_death, die_of, fail_large_writes, without_signals};
 use unanswered::Unanswered;
 
 /// A terminal in raw mode with the alternate screen, to be read, written and asked for its size.

@@ -9,7 +9,6 @@
 //! disposition back takes unsafe code, and signal-hook, which has it, does so for a list without real-time signals.)
 
 use nix::sys::signal::{SigSet, SigmaskHow, Signal, raise};
-use rustix::event::{PollFd, PollFlags};
 use rustix::fd::{AsFd, BorrowedFd};
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGTTOU, SIGWINCH, SIGXFSZ};
 use std::io::{self, Read, Write};
@@ -83,13 +82,8 @@ impl Signals {
         let (read, write) = UnixStream::pair()?;
         read.set_nonblocking(true)?;
         let ignored = ignored();
-        let is_ignored = |signal| contains(ignored, signal);
         let deadly = Arc::new(AtomicUsize::new(0));
-        // The flag before the pipe: who is woken must find it set.
-        for signal in CAUGHT.into_iter().filter(|&signal| !is_ignored(signal)) {
-            signal_hook::flag::register_usize(signal, Arc::clone(&deadly), signal as usize)?;
-            signal_hook::low_level::pipe::register(signal, write.try_clone()?)?;
-        }
+        catch_deadly(ignored, &deadly, &write)?;
         let flag = |signal| -> io::Result<Arc<AtomicBool>> {
             let flag = Arc::new(AtomicBool::new(false));
             signal_hook::flag::register(signal, Arc::clone(&flag))?;
@@ -98,7 +92,7 @@ impl Signals {
         };
         let (resized, continued) = (flag(SIGWINCH)?, flag(SIGCONT)?);
         let stops = take_held_off(ignored, Arc::clone(&deadly), Waker(write.try_clone()?))?;
-        let stops = (!is_ignored(SIGTSTP)).then_some(stops);
+        let stops = (!contains(ignored, SIGTSTP)).then_some(stops);
         Ok(Self { read, write, deadly, resized, continued, stops })
     }
 
@@ -123,22 +117,7 @@ impl Signals {
 
     /// The signal that asked the program to end, if one has.
     pub fn deadly(&self) -> Option<i32> {
-        match self.deadly.load(Ordering::SeqCst) {
-            0 => None,
-            signal => i32::try_from(signal).ok(),
-        }
-    }
-
-    /// Waits until a signal asks the program to end.
-    pub fn wait_for_deadly(&mut self) -> i32 {
-        loop {
-            if let Some(signal) = self.deadly() {
-                return signal;
-            }
-            // Whatever interrupts it, the next look finds out why.
-            let _ = rustix::event::poll(&mut [PollFd::new(&self.read, PollFlags::IN)], None);
-            self.drain();
-        }
+        signal_in(&self.deadly)
     }
 
     /// Whether the window may have changed its size since the last call.
@@ -181,6 +160,44 @@ impl Signals {
         while stops.try_recv().is_ok() {}
         self.take_continued();
     }
+}
+
+/// Catches the signals that ask the program to end, but for the ignored ones.
+fn catch_deadly(ignored: u64, deadly: &Arc<AtomicUsize>, wake: &UnixStream) -> io::Result<()> {
+    for signal in CAUGHT.into_iter().filter(|&signal| !contains(ignored, signal)) {
+        // The flag before the pipe: who is woken must find it set.
+        signal_hook::flag::register_usize(signal, Arc::clone(deadly), signal as usize)?;
+        signal_hook::low_level::pipe::register(signal, wake.try_clone()?)?;
+    }
+    Ok(())
+}
+
+fn signal_in(deadly: &AtomicUsize) -> Option<i32> {
+    match deadly.load(Ordering::SeqCst) {
+        0 => None,
+        signal => i32::try_from(signal).ok(),
+    }
+}
+
+/// For a command without a loop: from now on a signal that asks the program to end does this first, on a thread of its
+/// own, and then kills the program as if it had not been caught. Stops are not caught.
+///
+/// # Errors
+/// If the operating system refuses.
+pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> {
+    let (mut read, write) = UnixStream::pair()?;
+    let deadly = Arc::new(AtomicUsize::new(0));
+    let caught = Arc::clone(&deadly);
+    let wait = move || {
+        // An error: no signal could be caught.
+        if let (Ok(()), Some(signal)) = (read.read_exact(&mut [0]), signal_in(&caught)) {
+            last_act();
+            die_of(signal);
+        }
+    };
+    // Before the signals are caught: nobody else would hear of them.
+    thread::Builder::new().name("signals".to_owned()).spawn(wait)?;
+    catch_deadly(ignored(), &deadly, &write)
 }
 
 /// Holds off from all threads what is not caught, and has one thread take it: SIGTSTP goes into the channel, any other

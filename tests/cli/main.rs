@@ -11,6 +11,7 @@ mod errors;
 mod explain;
 mod formats;
 mod golden;
+mod outputs;
 mod pictures;
 mod pipes;
 #[path = "../pty/mod.rs"]
