@@ -31,6 +31,7 @@
 //! - [`bounds`]: boxes along the axes
 //! - [`capabilities`]: what a terminal's cells can be made of
 //! - [`progress`]: how far work has come, told to who waits for it
+//! - [`named_file`]: the bytes of a file that a person names, within bounds
 //!
 //! What was written:
 //! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret
@@ -109,6 +110,7 @@ pub mod ray;
 pub mod bounds;
 pub mod capabilities;
 pub mod progress;
+pub mod named_file;
 pub mod scene_text;
 pub mod scene_file;
 pub mod mesh_file;
