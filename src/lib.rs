@@ -33,6 +33,7 @@
 //! - [`text`]: printable text, from whatever comes from outside
 //! - [`memory`]: asked for before it is used
 //! - [`progress`]: progress reports, and the token by which work is cancelled
+//! - [`named_file`]: the bytes of a file that a person names, within bounds
 //!
 //! What was written:
 //! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret
@@ -115,6 +116,7 @@ pub mod capabilities;
 pub mod text;
 pub mod memory;
 pub mod progress;
+pub mod named_file;
 pub mod scene_text;
 pub mod scene_file;
 pub mod mesh_file;

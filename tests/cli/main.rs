@@ -11,6 +11,7 @@ mod errors;
 mod explain;
 mod formats;
 mod golden;
+mod inputs;
 mod outputs;
 mod pictures;
 mod pipes;

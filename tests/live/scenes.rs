@@ -125,6 +125,20 @@ fn a_broken_scene_keeps_its_picture_and_says_why_until_it_is_mended() {
     leave(&mut session);
 }
 
+/// A pipe that nothing is written to is a fault like another, and the view goes on.
+#[test]
+fn a_scene_that_becomes_a_pipe_is_told() {
+    let folder = Folder::new();
+    let path = folder.write("ball.ron", ball("red", EYE));
+    let mut session = looking(&[&path]);
+    let pipe = folder.path("pipe");
+    nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).expect("a pipe can be made");
+    fs::rename(pipe, &path).expect("a file can be replaced");
+    session.wait_for_text("ball.ron: this pipe delivered nothing for a second");
+    assert!(upper_half_shows(&mut session, &ball("red", EYE)), "the picture stays");
+    leave(&mut session);
+}
+
 /// A mesh and the texture that it uses are files of the scene, also while one of them is missing.
 #[test]
 fn a_changed_mesh_is_seen() {
