@@ -18,6 +18,7 @@ mod output;
 mod phases;
 mod picture;
 mod screen;
+mod signals;
 mod storm;
 mod termios;
 
@@ -46,6 +47,7 @@ use output::Output;
 pub(crate) use phases::{Answer, Phases};
 pub(crate) use picture::{halves_of, picture, picture_with, shows};
 pub(crate) use screen::{Colour, Screen};
+pub(crate) use signals::reset_for_children;
 pub(crate) use storm::Storm;
 
 /// A deadline for what happens at once, unless the machine is very busy.
@@ -209,6 +211,7 @@ impl Start {
         let before = rustix::termios::tcgetattr(&*master).expect("a terminal has settings");
         let output = Output::read_from(Arc::clone(&master)).expect("a pipe and a thread can be had");
         let name = self.program.display().to_string();
+        reset_for_children();
         let child = self.command().spawn(slave);
         let child = child.unwrap_or_else(|error| panic!("{name} does not start: {error}"));
         Session {
