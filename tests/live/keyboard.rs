@@ -314,7 +314,7 @@ fn leave_answering(session: &mut Session) {
     session.wait_for("the last question", SOON, |seen| seen.has(b"\x1b[?1049l\x1b[c"));
     release(session, 'q');
     session.send(FENCE_ANSWER);
-    assert_eq!(session.wait_exit(Duration::from_secs(3)).code(), Some(0));
+    assert_eq!(session.wait_exit(SOON).code(), Some(0));
     session.assert_clean();
     assert_eq!(session.typed_ahead(), b"");
     // Nor echoed.
