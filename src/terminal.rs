@@ -33,7 +33,7 @@ pub use panics::{hold_panic_messages, take_panic_messages};
 pub use questions::{FENCE, Questions};
 #[cfg(feature = "test-hooks")]
 pub use rehearsal::rehearse;
-pub(crate) use rehearsal::{reach, reach_beside, take_worker_panic};
+pub(crate) use rehearsal::{reach, reach_beside, rest, take_worker_panic};
 pub use signals::{Signals, Stopped, Waker, before_death, die_of, fail_large_writes, without_signals};
 use unanswered::Unanswered;
 
@@ -177,6 +177,7 @@ impl Terminal {
             match self.keys.read(buffer) {
                 Ok(count) => {
                     self.unanswered.hear(&buffer[..count]);
+                    rehearsal::count_read(count);
                     return Ok(&buffer[..count]);
                 }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}

@@ -21,6 +21,8 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 const STOPPED: Duration = Duration::from_secs(2);
 /// What is still loading is left within this.
 const LOADING: Duration = Duration::from_millis(200);
+/// A terminal that has never answered is left within this: waiting for an answer would take a second.
+const SILENT: Duration = Duration::from_millis(250);
 /// A terminal that has vanished is left within this,
 const VANISHED: Duration = Duration::from_secs(1);
 /// with so many hundredths of a second of CPU.
@@ -293,4 +295,37 @@ fn a_mesh_that_is_saved_is_seen_when_it_is_built() {
         println!("a saved mesh: seen after {took:?}, read and built in {built:?}");
         assert!(took < built.mul_f64(3.0 * MESH_SAVED) + 3 * SAVED, "{took:?}, built in {built:?}");
     }
+}
+
+/// What `--max-rate` says is kept, and used.
+#[test]
+fn the_rate_is_kept() {
+    for quality in ["exact", "equal"] {
+        let start = Start::new(PROGRAM).arg(SCENE).arg("--max-rate").arg("20k").arg("--quality").arg(quality);
+        let mut session = start.spawn();
+        session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+        // The first frame is through.
+        session.sees(Duration::from_secs(2), |_| false);
+        let (before, start) = (session.seen().bytes().len(), Instant::now());
+        for _ in 0..20 {
+            session.send(b"d");
+            session.sees(Duration::from_millis(100), |_| false);
+        }
+        let bytes = session.seen().bytes().len() - before;
+        let rate = bytes as f64 / start.elapsed().as_secs_f64();
+        println!("{quality}: {rate:.0} bytes a second");
+        // With a frame that has just been sent; a third of the least, as everywhere here.
+        assert!((5_000.0 / 3.0..35_000.0).contains(&rate), "{quality}: {rate} bytes a second");
+    }
+}
+
+/// A terminal that has never answered for three seconds is not waited for.
+#[test]
+fn a_terminal_that_has_never_answered_is_left_at_once() {
+    let mut session = Start::new(PROGRAM).arg(SCENE).mute().spawn();
+    session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+    session.sees(Duration::from_millis(3_200), |_| false);
+    session.send(b"q");
+    exit_within(SILENT, "never answered", &mut session);
+    session.assert_clean();
 }

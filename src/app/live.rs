@@ -168,6 +168,9 @@ impl Live {
             }
             self.panic_if_asked(renderer);
             let timeout = self.timeout(terminal, renderer);
+            if timeout.is_none() && !renderer.is_working() && !terminal.is_sending() {
+                terminal::rest()?;
+            }
             let woken = terminal.wait(signals.wake_pipe(), timeout)?;
             if woken.wake {
                 signals.drain();

@@ -69,7 +69,7 @@ impl Source {
 
 /// Looks at a mesh of which next to nothing comes yet.
 fn waiting(start: Start, source: &Source) -> Session {
-    let mut session = start.arg(source.path()).spawn();
+    let mut session = start.arg(source.path()).says_when_it_rests().spawn();
     session.wait_for_text("reading ball.stl");
     session
 }
@@ -129,26 +129,13 @@ fn it_can_be_left_while_it_reads() {
     }
 }
 
-/// The clock ticks of CPU that a process has used.
-#[cfg(target_os = "linux")]
-fn ticks(session: &Session) -> u64 {
-    let stat = fs::read_to_string(format!("/proc/{}/stat", session.pid().as_raw_nonzero())).expect("it runs");
-    let fields: Vec<&str> = stat.rsplit(") ").next().expect("after the name").split(' ').collect();
-    fields[11].parse::<u64>().expect("user time") + fields[12].parse::<u64>().expect("system time")
-}
-
-/// Where next to nothing comes, nothing is said and next to nothing computed; a key that moves has nothing to move.
-#[cfg(target_os = "linux")]
+/// Where next to nothing comes, nothing is said or computed; a key that moves has nothing to move.
 #[test]
 fn while_next_to_nothing_comes_nothing_happens() {
     let source = Source::new();
     let mut session = waiting(program(), &source);
     session.send(b"w");
-    session.sees(Duration::from_secs(1), |_| false);
-    let (before, bytes) = (ticks(&session), session.seen().bytes().len());
-    session.sees(Duration::from_secs(1), |_| false);
-    assert_eq!(session.seen().bytes().len(), bytes);
-    assert!(ticks(&session) <= before + 1, "ten bytes take less than ten milliseconds");
+    session.wait_for_rest();
     leave(&mut session, WAYS[0]);
 }
 
@@ -201,10 +188,11 @@ fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
     session.send(b"w");
     session.wait_for("another view", SOON, |seen| eye(seen) != before);
     session.send(b"ri");
-    pass(phases);
-    session.wait_for("the scene", SOON, |seen| shows(seen.screen(), &wanted));
-    let bytes = session.seen().bytes().len();
-    assert!(!session.sees(Duration::from_millis(500), |seen| seen.bytes().len() != bytes), "then it rests");
+    phases.send(Answer::GoOn);
+    phases.count_on("", &mut session, SOON, |seen| shows(seen.screen(), &wanted));
+    phases.count_until_rest("", &mut session);
+    drop(phases);
+    assert!(shows(session.seen().screen(), &wanted), "at rest there is the scene");
     leave(&mut session, (b"q", None));
 }
 
@@ -212,10 +200,12 @@ fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
 #[test]
 fn the_scene_is_seen_from_where_the_sketch_was() {
     let (mut source, mut phases) = (Source::new(), Phases::new());
-    let mut session = sketched(program(), &mut source, &mut phases);
-    session.send(b"id");
-    // The glide ends.
-    session.sees(Duration::from_secs(1), |_| false);
+    let mut session = sketched(program().arg("--reduced-motion"), &mut source, &mut phases);
+    session.send(b"i");
+    session.wait_for_text("rays/s");
+    let start = eye(session.seen());
+    session.send(b"d");
+    session.wait_for("a step", SOON, |seen| eye(seen) != start);
     let there = eye(session.seen());
     pass(phases);
     session.wait_for("the scene", SOON, |seen| !seen.screen().text().concat().contains('╯'));

@@ -43,7 +43,7 @@ impl Folder {
 }
 
 pub(crate) fn program() -> Start {
-    Start::new(env!("CARGO_BIN_EXE_termtrace"))
+    Start::new(env!("CARGO_BIN_EXE_termtrace")).says_when_it_rests()
 }
 
 /// A session that looks at these.
@@ -173,6 +173,20 @@ fn a_changed_mesh_is_seen() {
     leave(&mut session);
 }
 
+/// Waits until some cell is green, and none red.
+#[track_caller]
+fn sees_another_color(session: &mut Session) {
+    session.wait_for("a ball of lime", SOON, |seen| {
+        let cells = (0..24).flat_map(|row| (0..80).map(move |column| (column, row)));
+        let colors = cells.map(|(column, row)| seen.screen().cell(column, row).background);
+        let is = |wanted: fn(u8, u8) -> bool| {
+            move |color: &pty::Colour| matches!(*color, pty::Colour::Rgb(red, green, _) if wanted(red, green))
+        };
+        let colors: Vec<_> = colors.collect();
+        colors.iter().any(is(|red, green| green > 100 && red < 50)) && !colors.iter().any(is(|red, _| red > 100))
+    });
+}
+
 /// The user's view stays, unless the file's changes.
 #[test]
 fn the_view_stays_where_it_is() {
@@ -181,11 +195,11 @@ fn the_view_stays_where_it_is() {
     let mut session = looking(&[&path]);
     session.send(b"d");
     // The glide ends.
-    session.sees(Duration::from_secs(1), |_| false);
+    session.wait_for_rest();
     folder.write("ball.ron", ball("lime", EYE));
+    sees_another_color(&mut session);
     session.send(b"i");
     session.wait_for_text("rays/s");
-    session.sees(Duration::from_millis(300), |_| false);
     let status = session.seen().screen().text()[23].clone();
     assert!(!status.contains("eye 0.00 0.00 5.00"), "{status}");
     folder.write("ball.ron", ball("lime", "(0, 1, 6)"));
@@ -201,7 +215,7 @@ fn what_is_not_the_scenes_is_nothing() {
     let folder = Folder::new();
     let path = folder.write("ball.ron", ball("red", EYE));
     let mut session = looking(&[&path]);
-    session.sees(Duration::from_millis(300), |_| false);
+    session.wait_for_rest();
     let before = session.seen().bytes().len();
     folder.write("other.ron", "(");
     fs::read(&path).expect("it can be read");
@@ -225,7 +239,7 @@ fn several_scenes_are_gone_through() {
     sees(&mut session, &ball("teal", EYE));
     // Each is left as it was.
     session.send(b"d");
-    session.sees(Duration::from_secs(1), |_| false);
+    session.wait_for_rest();
     session.send(b"n");
     sees(&mut session, &ball("gold", EYE));
     session.send(b"pi");
