@@ -16,6 +16,7 @@ mod effort;
 mod dialog;
 mod exporting;
 mod explain;
+mod extent;
 mod eye;
 mod help;
 mod keeping;
@@ -33,6 +34,7 @@ mod source;
 mod strip;
 mod watching;
 
+pub use extent::MAX_PIXELS;
 use live::Live;
 use renderer::Renderer;
 use scenes::Scenes;
@@ -116,7 +118,7 @@ pub enum Ending {
 /// Shows the scene until the user leaves. The terminal is as it was when this returns, and also when it panics.
 ///
 /// # Errors
-/// If there is no terminal, or it goes away.
+/// If there is no terminal, or it goes away, or there is not enough memory for its window.
 ///
 /// # Panics
 /// With the payload of a thread that panicked while tracing.
@@ -136,7 +138,8 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
 /// the picture stays as it was.
 ///
 /// # Errors
-/// If there is no source or no terminal, or that goes away; or what is wrong with the first scene.
+/// If there is no source or no terminal, or that goes away, or there is not enough memory for its window; or what is wrong
+/// with the first scene.
 ///
 /// # Panics
 /// With the payload of a thread that panicked while tracing, or while reading or building a scene.
@@ -152,7 +155,7 @@ pub fn open<E: fmt::Display + Send + 'static>(
 /// Why there was nothing to see, or nothing more.
 #[derive(Debug)]
 pub enum Error<E> {
-    /// There is no terminal, or it has gone away.
+    /// There is no terminal, or it has gone away, or there is not enough memory for its window.
     Terminal(io::Error),
     /// What is wrong with the scene.
     Scene(E),
@@ -193,7 +196,7 @@ fn view<E: fmt::Display + Send + 'static>(
         // Perhaps while it waited to be brought to the foreground.
         Err(error) => return signals.deadly().map(killed).ok_or(Error::Terminal(error)),
     };
-    let mut live = Live::new(options, terminal.window()?, scenes.named());
+    let mut live = Live::new(options, terminal.window()?, scenes.named())?;
     let ended = live.run(&mut terminal, &mut renderer, &mut scenes, signals);
     let ending = ended.or_else(|error| match error {
         // When the terminal vanishes, the system says so by a signal too.

@@ -14,6 +14,7 @@ mod later;
 mod live;
 mod near;
 mod origin;
+mod outputs;
 mod picture;
 mod record;
 mod settings;
@@ -31,6 +32,7 @@ use std::process::ExitCode;
 use termtrace::camera::{Camera, CameraError, Pose};
 use termtrace::progress::Watcher;
 use termtrace::scene::{Draft, Scene};
+use termtrace::text::visible_lines;
 
 /// Why a command ends without having done what was asked.
 enum Failure {
@@ -239,6 +241,8 @@ fn parse_vec3(text: &str) -> Result<Vec3, String> {
 /// Reads the command line, does what it says, and says what went wrong.
 pub(crate) fn main() -> ExitCode {
     termtrace::terminal::hold_panic_messages();
+    // Where it cannot be done, such a write ends the process as it would any other.
+    let _ = termtrace::terminal::fail_large_writes();
     let (cli, given) = match parse(std::env::args_os()) {
         Ok(parsed) => parsed,
         Err(exit) => return exit,
@@ -266,30 +270,33 @@ pub(crate) fn main() -> ExitCode {
     }
 }
 
-/// Help and version are no errors; a closed pipe hides either.
 fn parse(arguments: impl Iterator<Item = OsString>) -> Result<(Cli, ArgMatches), ExitCode> {
     let given = Cli::command().try_get_matches_from(arguments);
-    given.and_then(|given| Ok((Cli::from_arg_matches(&given)?, given))).map_err(|error| {
-        let _ = error.print();
-        ExitCode::from(if error.use_stderr() { 2 } else { 0 })
-    })
+    given.and_then(|given| Ok((Cli::from_arg_matches(&given)?, given))).map_err(|error| say(&error))
+}
+
+/// Prints what clap says of the command line, which it may quote. Help and version are no errors; a closed pipe hides
+/// either.
+fn say(said: &clap::Error) -> ExitCode {
+    let text = visible_lines(&said.render().to_string());
+    if said.use_stderr() {
+        print_error(&text);
+        return ExitCode::from(2);
+    }
+    let _ = write_stdout(text.as_bytes());
+    ExitCode::SUCCESS
 }
 
 fn complain(message: &str, code: u8) -> ExitCode {
-    // Nobody may be listening any more; the exit code says it too.
-    if termtrace::terminal::stderr_is_read() {
-        let _ = writeln!(io::stderr(), "termtrace: {}", visible(message));
-    }
+    print_error(&format!("termtrace: {}\n", visible_lines(message)));
     ExitCode::from(code)
 }
 
-/// Text without control characters but line feeds: a file's name or contents must not steer the terminal.
-fn visible(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        if c.is_control() && c != '\n' { shown.extend(c.escape_default()) } else { shown.push(c) }
+/// Prints it if that stops nobody. Where no one listens any more, the exit code says it too.
+fn print_error(text: &str) {
+    if termtrace::terminal::stderr_is_read() {
+        let _ = io::stderr().write_all(text.as_bytes());
     }
-    shown
 }
 
 /// What the system says went wrong, without its number.
@@ -301,10 +308,8 @@ fn reason(error: &io::Error) -> String {
 /// Says what the threads said when they panicked, and ends as a panic does.
 fn complain_of_panic() -> ! {
     let messages = termtrace::terminal::take_panic_messages();
-    if termtrace::terminal::stderr_is_read() {
-        for message in messages {
-            let _ = writeln!(io::stderr(), "{message}");
-        }
+    for message in messages {
+        print_error(&(visible_lines(&message) + "\n"));
     }
     std::process::exit(101)
 }

@@ -30,7 +30,10 @@
 //! - [`ray`]: origin + t * direction, and intervals of t
 //! - [`bounds`]: boxes along the axes
 //! - [`capabilities`]: what a terminal's cells can be made of
-//! - [`progress`]: how far work has come, told to who waits for it
+//! - [`text`]: printable text, from whatever comes from outside
+//! - [`memory`]: asked for before it is used
+//! - [`progress`]: progress reports, and the token by which work is cancelled
+//! - [`named_file`]: the bytes of a file that a person names, within bounds
 //!
 //! What was written:
 //! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret
@@ -63,6 +66,7 @@
 //! - [`encode`]: wanted grid, shown grid, pen -> bytes
 //! - [`export`]: grid or picture -> text, ANSI, SVG, HTML, PNG
 //! - [`record`]: frames over time -> asciicast, GIF
+//! - [`output_file`]: bytes -> a file that is replaced whole, or not at all
 //!
 //! With a person:
 //! - [`input`]: bytes -> events and replies
@@ -90,6 +94,7 @@
 //! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over arrays of its rays, in which
 //!    eight rays stand side by side all the way ([`EightRays`](ray::EightRays)), each with a bit for whether it is asked
 //!    about.
+//! 9. Only [`output_file`] writes files, for the library and the program.
 //!
 //! # What is not here
 //!
@@ -108,7 +113,10 @@ pub mod simd;
 pub mod ray;
 pub mod bounds;
 pub mod capabilities;
+pub mod text;
+pub mod memory;
 pub mod progress;
+pub mod named_file;
 pub mod scene_text;
 pub mod scene_file;
 pub mod mesh_file;
@@ -133,6 +141,7 @@ pub mod overlay;
 pub mod encode;
 pub mod export;
 pub mod record;
+pub mod output_file;
 pub mod input;
 pub mod terminal;
 pub mod control;

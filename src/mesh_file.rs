@@ -26,7 +26,6 @@ mod coarse;
 mod error;
 mod gltf;
 mod kind;
-mod meter;
 mod mtl;
 mod neighbours;
 mod obj;
@@ -41,15 +40,14 @@ pub use error::{MeshError, Place};
 pub use texture::{Texture, TexturePlacement};
 
 use crate::color::LinearRgb;
-use crate::progress::{Progress, Watcher, Work};
-use error::{Fault, cannot_be_read};
+use crate::memory;
+use crate::named_file::{self, Accepted};
+use crate::progress::{Meter, Watcher};
+use error::Fault;
 use glam::{Mat3, Vec2, Vec3};
 use kind::Kind;
-use meter::Meter;
 use neighbours::Neighbours;
-use std::fs::File;
-use std::io::{self, Read};
-use std::ops::ControlFlow;
+use std::io;
 use std::path::Path;
 
 /// The most bytes that are read for one mesh, the files that it names included: 2 GiB.
@@ -174,7 +172,7 @@ impl MeshFile {
     /// # Errors
     /// If the file cannot be read, or as [`MeshFile::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, MeshError> {
-        Self::read_whole(path, &Watcher::patient())
+        Self::read_whole(path, Accepted::FilesAndPipes, &Watcher::patient())
     }
 
     /// [`load`](Self::load), while somebody waits for it; `None` if he has gone.
@@ -182,18 +180,27 @@ impl MeshFile {
     /// # Errors
     /// As [`MeshFile::load`].
     pub fn load_watched(path: &Path, watcher: &Watcher<'_>) -> Result<Option<Self>, MeshError> {
-        let mesh = Self::read_whole(path, watcher);
+        let mesh = Self::read_whole(path, Accepted::FilesAndPipes, watcher);
         // Whatever came of it then.
         if watcher.is_gone() { Ok(None) } else { mesh.map(Some) }
     }
 
     /// A fault too if he has gone: nobody will hear of it.
-    pub(crate) fn read_whole(path: &Path, watcher: &Watcher<'_>) -> Result<Self, MeshError> {
-        let name = path.to_string_lossy();
+    pub(crate) fn read_whole(path: &Path, accepted: Accepted, watcher: &Watcher<'_>) -> Result<Self, MeshError> {
+        let bytes = named_file::read(path, accepted, |_| MAX_BYTES, watcher)
+            .map_err(|error| MeshError::of_file(&path.to_string_lossy(), &named_file::reason(&error)))?;
+        Self::of_file(path, &bytes, watcher)
+    }
+
+    /// The mesh in the file at that path, of which these are the bytes. The files that it names are read from beside it.
+    pub(crate) fn of_file(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Self, MeshError> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let file = File::open(path).and_then(|file| bytes_of(file, &name, watcher));
-        let bytes = file.map_err(|error| MeshError::of_file(&name, &cannot_be_read(&error)))?;
-        Self::parse(&name, &bytes, &mut |relative| open_regular(&folder.join(relative), watcher), watcher)
+        let mut open = |relative: &Path| {
+            let path = folder.join(relative);
+            watcher.needs(&path);
+            named_file::read(&path, Accepted::Files, |_| MAX_BYTES, watcher)
+        };
+        Self::parse(&path.to_string_lossy(), bytes, &mut open, watcher)
     }
 
     /// The positions of the vertices.
@@ -289,45 +296,28 @@ fn read(name: &str, bytes: &[u8], neighbours: &mut Neighbours<'_>, watcher: &Wat
         return Err(Fault::of_file("the file is larger than 2 GiB, too large to be read"));
     }
     let meter = Meter::new(watcher, name, bytes.len());
-    match kind::of(name, bytes)? {
+    has_memory(bytes.len() * PEAK_PER_BYTE, "to read it")?;
+    let mesh = match kind::of(name, bytes)? {
         Kind::Obj => obj::read(bytes, neighbours, meter),
         Kind::StlText => stl::read_text(bytes, meter),
         Kind::StlBinary => stl::read_binary(bytes, meter),
         Kind::Ply => ply::read(bytes, meter),
         Kind::Gltf => gltf::read_json(bytes, neighbours, meter),
         Kind::Glb => gltf::read_binary(bytes, neighbours, meter),
-    }
+    }?;
+    let triangles = mesh.triangles().len();
+    has_memory(triangles * PEAK_PER_TRIANGLE, &format!("for its {triangles} triangles"))?;
+    Ok(mesh)
 }
 
-/// So many bytes come from the disk from one report to the next.
-const STRIDE: u64 = 1 << 20;
+/// How many bytes of memory each byte of a file may take while it is read, besides itself. (PLY has the fewest bytes for a
+/// triangle.)
+const PEAK_PER_BYTE: usize = 8;
 
-/// As many bytes of a file as are looked at: one more than may be. The name is for who waits for them.
-fn bytes_of(file: File, name: &str, watcher: &Watcher<'_>) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    // The size is a hint: a pipe has none, and a file may grow.
-    let size = file.metadata().map_or(0, |data| data.len());
-    if size > MAX_BYTES as u64 {
-        return Err(io::ErrorKind::FileTooLarge.into());
-    }
-    bytes.reserve_exact(size as usize + 1);
-    let mut file = file.take(MAX_BYTES as u64 + 1);
-    loop {
-        let work = Work::Reading(name.to_owned());
-        if watcher.tell(Progress { work, done: bytes.len(), total: size as usize }) == ControlFlow::Break(()) {
-            return Err(io::ErrorKind::Interrupted.into());
-        }
-        if file.by_ref().take(STRIDE).read_to_end(&mut bytes)? == 0 {
-            return Ok(bytes);
-        }
-    }
-}
+/// How many bytes of memory a triangle may take while trees are built over all of them: 230 (PLY) to 290 (STL) were
+/// measured, with the file.
+const PEAK_PER_TRIANGLE: usize = 320;
 
-/// The bytes of a file that a mesh names: not of a pipe or a device, which might never end.
-fn open_regular(path: &Path, watcher: &Watcher<'_>) -> io::Result<Vec<u8>> {
-    watcher.needs(path);
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(io::Error::other("this is not a regular file"));
-    }
-    bytes_of(File::open(path)?, &path.to_string_lossy(), watcher)
+fn has_memory(bytes: usize, what_for: &str) -> Result<(), Fault> {
+    memory::check(bytes).map_err(|error| Fault::of_file(format!("{error} {what_for}")))
 }

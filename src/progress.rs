@@ -1,7 +1,9 @@
-//! How far work has come, told to who waits for it, and who may have enough of it.
+//! Progress reports on work that takes a while, and the token by which it is cancelled.
 
+use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is being done, and how much of it is done.
@@ -30,18 +32,23 @@ pub enum Work {
 pub struct Watcher<'w> {
     hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
     hear_need: Option<&'w (dyn Fn(&Path) + Sync)>,
-    is_gone: AtomicBool,
+    cancellation: Cancellation,
 }
 
 impl<'w> Watcher<'w> {
     /// One that hears of progress by this function, and has gone when it answers `Break`.
     pub fn new(hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
-        Self { hear, hear_need: None, is_gone: AtomicBool::new(false) }
+        Self { hear, hear_need: None, cancellation: Cancellation::default() }
     }
 
     /// And that hears of each file by that function, before it is opened.
     pub fn with_needs(self, hear_need: &'w (dyn Fn(&Path) + Sync)) -> Self {
         Self { hear_need: Some(hear_need), ..self }
+    }
+
+    /// And that has also gone once this token is cancelled.
+    pub fn cancelled_by(self, cancellation: &Cancellation) -> Self {
+        Self { cancellation: cancellation.clone(), ..self }
     }
 
     /// One that waits however long it takes.
@@ -52,7 +59,7 @@ impl<'w> Watcher<'w> {
     /// Tells him. `Break`: he has gone, and the work is to be given up.
     pub fn tell(&self, progress: Progress) -> ControlFlow<()> {
         if (self.hear)(progress).is_break() {
-            self.is_gone.store(true, Ordering::Relaxed);
+            self.cancellation.cancel();
         }
         if self.is_gone() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
@@ -66,6 +73,79 @@ impl<'w> Watcher<'w> {
 
     /// Whether he has gone.
     pub fn is_gone(&self) -> bool {
-        self.is_gone.load(Ordering::Relaxed)
+        self.cancellation.is_cancelled()
+    }
+}
+
+/// A token shared by whoever waits for work and whoever does it. All clones are one token; once cancelled, it stays so.
+#[derive(Clone, Debug, Default)]
+pub struct Cancellation(Arc<AtomicBool>);
+
+impl Cancellation {
+    /// Asks for the work to be given up at its next check.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Returns whether the work is to be given up.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// The error of work that was given up because its token was cancelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cancelled;
+
+impl fmt::Display for Cancelled {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the work was cancelled")
+    }
+}
+
+impl std::error::Error for Cancelled {}
+
+/// A parser's position in its file, reported to a [`Watcher`] every [`STRIDE`] bytes.
+pub(crate) struct Meter<'a> {
+    watcher: &'a Watcher<'a>,
+    name: &'a str,
+    /// The file's length in bytes.
+    total: usize,
+    /// The first position that is to be reported.
+    next: usize,
+}
+
+/// How many bytes lie between two reports: one or two milliseconds of parsing.
+const STRIDE: usize = 256 << 10;
+
+impl<'a> Meter<'a> {
+    /// A meter at the start of the file `name`, which has `total` bytes.
+    pub(crate) fn new(watcher: &'a Watcher<'a>, name: &'a str, total: usize) -> Self {
+        Self { watcher, name, total, next: 0 }
+    }
+
+    /// Notes that the parser is at byte `at`.
+    ///
+    /// # Errors
+    /// If the file is no longer wanted.
+    #[inline]
+    pub(crate) fn reach(&mut self, at: usize) -> Result<(), Cancelled> {
+        if at < self.next { Ok(()) } else { self.tell(at, self.total) }
+    }
+
+    /// Notes progress of a parser that does not read its file from front to back: the report has no position.
+    ///
+    /// # Errors
+    /// If the file is no longer wanted.
+    pub(crate) fn step(&mut self) -> Result<(), Cancelled> {
+        self.tell(0, 0)
+    }
+
+    #[cold]
+    fn tell(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
+        self.next = done + STRIDE;
+        let work = Work::Parsing(self.name.to_owned());
+        let told = self.watcher.tell(Progress { work, done, total });
+        if told.is_break() { Err(Cancelled) } else { Ok(()) }
     }
 }

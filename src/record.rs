@@ -81,16 +81,17 @@ impl<W: Write> Cast<W> {
         Ok(())
     }
 
-    /// That was the last one.
+    /// Writes the rest after the last frame, and returns the writer.
     ///
     /// # Errors
     /// If the rest cannot be written.
-    pub fn end(mut self) -> io::Result<()> {
+    pub fn end(mut self) -> io::Result<W> {
         if let Some((grid, bytes)) = &mut self.last {
             self.encoder.encode(grid, bytes);
         }
         self.write_last()?;
-        self.out.flush()
+        self.out.flush()?;
+        Ok(self.out)
     }
 
     /// When the next frame is shown, in seconds.
@@ -155,12 +156,14 @@ impl<W: Write> Gif<W> {
         self.encoder.write_frame(&frame).map_err(io_error)
     }
 
-    /// That was the last one.
+    /// Writes the rest after the last frame, and returns the writer.
     ///
     /// # Errors
     /// If the rest cannot be written.
-    pub fn end(self) -> io::Result<()> {
-        self.encoder.into_inner().map_err(io_error)?.flush()
+    pub fn end(self) -> io::Result<W> {
+        let mut out = self.encoder.into_inner().map_err(io_error)?;
+        out.flush()?;
+        Ok(out)
     }
 
     /// The picture's pixels repeated until they fill the GIF's.

@@ -19,6 +19,7 @@ pub(crate) use colors::color_named;
 pub use path::{PathFile, WrittenKeyframe};
 pub(crate) use words::{closest, listed};
 
+use crate::progress::Watcher;
 use crate::scene_text::{Faults, Node, Span, Value};
 use reader::{Fields, Reader};
 
@@ -196,9 +197,10 @@ pub enum WrittenShape {
 }
 
 impl SceneFile {
-    /// What the tree says, as far as it is a scene; the rest goes to `faults`.
-    pub fn read(root: &Node<'_>, faults: &mut Faults) -> Self {
-        let mut reader = Reader::new(faults);
+    /// What the tree says, as far as it is a scene; the rest goes to `faults`. Once the watcher has gone, the lists end
+    /// early.
+    pub fn read(root: &Node<'_>, watcher: &Watcher<'_>, faults: &mut Faults) -> Self {
+        let mut reader = Reader::new(faults, watcher);
         let Some(fields) = reader.root(root) else {
             return Self::default();
         };
@@ -253,7 +255,7 @@ impl Reader<'_> {
 
     fn lights(&mut self, node: &Node<'_>) -> Option<Vec<WrittenLight>> {
         let items = self.list(node, "a list of lights [Point(...), ...]")?;
-        Some(items.iter().filter_map(|item| self.light(item)).collect())
+        Some(self.each(items, Self::light))
     }
 
     fn light(&mut self, node: &Node<'_>) -> Option<WrittenLight> {

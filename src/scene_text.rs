@@ -16,8 +16,9 @@ mod tokens;
 mod whole;
 
 pub use fault::{Fault, Faults, Report, SceneError, line_and_column};
-pub(crate) use fault::{clipped, quoted, visible};
+pub(crate) use fault::{clipped, quoted};
 pub use parser::parse;
+pub(crate) use whole::read_watched;
 pub use whole::{read, text_from};
 
 /// The bytes of the text that something was written in: from `start` up to, and without, `end`.

@@ -6,18 +6,23 @@
 //!
 //! This module alone has unsafe code.
 
+#![allow(unsafe_code)]
+
 use crate::lanes::Eight;
 
 pub use crate::lanes::Work;
+pub use prefetch::prefetch;
 
 /// Does the work with the best that this CPU has.
 #[inline]
 pub fn run<W: Work>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     return if has_avx512() {
-        avx512::run(work)
+        // SAFETY: the CPU was asked right here.
+        unsafe { avx512::run(work) }
     } else if has_avx2() {
-        avx2::run(work)
+        // SAFETY: the CPU was asked right here.
+        unsafe { avx2::run(work) }
     } else {
         sse2::run(work)
     };
@@ -59,6 +64,7 @@ mod avx2;
 mod avx512;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
+mod prefetch;
 
 #[cfg(test)]
 mod tests {
@@ -122,10 +128,12 @@ mod tests {
         {
             check(sse2::run(All(&pairs)), "SSE2");
             if has_avx2() {
-                check(avx2::run(All(&pairs)), "AVX2");
+                // SAFETY: the CPU was asked right here.
+                check(unsafe { avx2::run(All(&pairs)) }, "AVX2");
             }
             if has_avx512() {
-                check(avx512::run(All(&pairs)), "AVX-512");
+                // SAFETY: the CPU was asked right here.
+                check(unsafe { avx512::run(All(&pairs)) }, "AVX-512");
             }
         }
     }

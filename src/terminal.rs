@@ -35,8 +35,8 @@ pub use query::{FENCE, Tag};
 pub use questions::Questions;
 #[cfg(feature = "test-hooks")]
 pub use rehearsal::rehearse;
-pub(crate) use rehearsal::{reach, reach_beside, take_worker_panic};
-pub use signals::{Signals, Stopped, Waker, die_of, without_signals};
+pub(crate) use rehearsal::{reach, reach_beside, rest, take_worker_panic};
+pub use signals::{Signals, Stopped, Waker, before_death, die_of, fail_large_writes, without_signals};
 use unanswered::Unanswered;
 
 /// A terminal in raw mode with the alternate screen, to be read, written and asked for its size.
@@ -158,7 +158,16 @@ impl Terminal {
     /// Gives the terminal back, as dropping it does. Whether it took all that was sent: one that has stopped reading is
     /// left after a second, and is not to be written to any more.
     pub fn give_back(&mut self) -> bool {
-        self.modes.give_back(&self.keys, &mut self.output, &mut self.unanswered)
+        self.modes.give_back(&self.keys, &mut self.output, &mut self.unanswered, None)
+    }
+
+    /// Gives the terminal back to whoever had it while the program was stopped without a word; returns what was typed
+    /// meanwhile, with the replies up to the last one. What is typed from then on stays to be read: no shell is to be
+    /// spared it.
+    pub fn hand_over(&mut self) -> Vec<u8> {
+        let mut typed = Vec::new();
+        self.modes.give_back(&self.keys, &mut self.output, &mut self.unanswered, Some(&mut typed));
+        typed
     }
 
     /// The bytes that are there. None at all: the terminal is gone.
@@ -170,6 +179,7 @@ impl Terminal {
             match self.keys.read(buffer) {
                 Ok(count) => {
                     self.unanswered.hear(&buffer[..count]);
+                    rehearsal::count_read(count);
                     return Ok(&buffer[..count]);
                 }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}

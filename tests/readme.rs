@@ -58,6 +58,13 @@ fn the_message_in_it_is_the_programs() {
 }
 
 #[test]
+fn the_size_of_the_live_picture_is_the_programs() {
+    let cells = termtrace::app::MAX_PIXELS / 2;
+    let cells = format!("{},{:03},{:03} cells", cells / 1_000_000, cells / 1000 % 1000, cells % 1000);
+    assert!(readme().contains(&cells), "{cells}");
+}
+
+#[test]
 fn every_scene_file_is_listed() {
     let readme = readme();
     for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")).expect("scenes are there") {

@@ -21,6 +21,8 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 const STOPPED: Duration = Duration::from_secs(2);
 /// What is still loading is left within this.
 const LOADING: Duration = Duration::from_millis(200);
+/// A terminal that has never answered is left within this: waiting for an answer would take a second.
+const SILENT: Duration = Duration::from_millis(250);
 /// A terminal that has vanished is left within this,
 const VANISHED: Duration = Duration::from_secs(1);
 /// with so many hundredths of a second of CPU.
@@ -219,6 +221,57 @@ fn a_scene_that_is_saved_is_soon_seen() {
     }
 }
 
+/// A scene of so many balls that cannot be seen, and one that can, in that colour.
+#[cfg(target_os = "linux")]
+fn balls(count: usize, color: &str) -> String {
+    let balls = "Sphere(center: (9, 9, 9), radius: 0.1),\n".repeat(count);
+    format!(
+        "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, background: \"navy\",
+        objects: [{balls} Sphere(center: (0, 0, 0), radius: 1, material: Diffuse(\"{color}\"))])"
+    )
+}
+
+/// The most memory that a process has had, and what it has now, in kB.
+#[cfg(target_os = "linux")]
+fn memory(session: &Session) -> [f64; 2] {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", session.pid().as_raw_nonzero())).expect("it runs");
+    ["VmHWM:", "VmRSS:"].map(|name| {
+        let line = status.lines().find_map(|line| line.strip_prefix(name)).expect("the line is there");
+        line.trim().trim_end_matches(" kB").parse().expect("a number")
+    })
+}
+
+/// Memory while a large scene is saved so often, and after it.
+#[cfg(target_os = "linux")]
+fn saved(times: usize) -> [f64; 2] {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = folder.path().join("balls.ron");
+    std::fs::write(&path, balls(0, "white")).expect("a file can be written");
+    let mut session = Start::new(PROGRAM).arg(&path).spawn();
+    session.wait_for("the ball", SOON, |seen| seen.screen().cell(40, 12) != seen.screen().cell(0, 0));
+    let middle = |seen: &Seen| seen.screen().cell(40, 12);
+    let before = middle(session.seen());
+    for save in 1..=times {
+        std::fs::write(&path, balls(100_000, if save == times { "lime" } else { "white" }))
+            .expect("a file can be written");
+        if save < times {
+            session.sees(Duration::from_millis(30), |_| false);
+        }
+    }
+    session.wait_for("another picture", SOON, |seen| middle(seen) != before);
+    session.sees(Duration::from_millis(500), |_| false);
+    memory(&session)
+}
+
+/// However often a large scene is saved while it is read, one is read at a time, and its memory is used again.
+#[cfg(target_os = "linux")]
+#[test]
+fn many_saves_take_the_memory_of_one() {
+    let (one, many) = (saved(1), saved(30));
+    println!("kB at most and afterwards: {one:?} for one save, {many:?} for 30");
+    assert!(many[0] < 2.0 * one[0] && many[1] < 1.2 * one[1], "{one:?} {many:?}");
+}
+
 /// It takes as long as to read and build it, and no more: `check` does nothing else.
 #[test]
 fn a_mesh_that_is_saved_is_seen_when_it_is_built() {
@@ -242,4 +295,37 @@ fn a_mesh_that_is_saved_is_seen_when_it_is_built() {
         println!("a saved mesh: seen after {took:?}, read and built in {built:?}");
         assert!(took < built.mul_f64(3.0 * MESH_SAVED) + 3 * SAVED, "{took:?}, built in {built:?}");
     }
+}
+
+/// What `--max-rate` says is kept, and used.
+#[test]
+fn the_rate_is_kept() {
+    for quality in ["exact", "equal"] {
+        let start = Start::new(PROGRAM).arg(SCENE).arg("--max-rate").arg("20k").arg("--quality").arg(quality);
+        let mut session = start.spawn();
+        session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+        // The first frame is through.
+        session.sees(Duration::from_secs(2), |_| false);
+        let (before, start) = (session.seen().bytes().len(), Instant::now());
+        for _ in 0..20 {
+            session.send(b"d");
+            session.sees(Duration::from_millis(100), |_| false);
+        }
+        let bytes = session.seen().bytes().len() - before;
+        let rate = bytes as f64 / start.elapsed().as_secs_f64();
+        println!("{quality}: {rate:.0} bytes a second");
+        // With a frame that has just been sent; a third of the least, as everywhere here.
+        assert!((5_000.0 / 3.0..35_000.0).contains(&rate), "{quality}: {rate} bytes a second");
+    }
+}
+
+/// A terminal that has never answered for three seconds is not waited for.
+#[test]
+fn a_terminal_that_has_never_answered_is_left_at_once() {
+    let mut session = Start::new(PROGRAM).arg(SCENE).mute().spawn();
+    session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+    session.sees(Duration::from_millis(3_200), |_| false);
+    session.send(b"q");
+    exit_within(SILENT, "never answered", &mut session);
+    session.assert_clean();
 }

@@ -4,7 +4,7 @@ use super::keeping::Asked;
 use super::panels::Look;
 use crate::control::{Binding, Bindings, Command, Mode};
 use crate::export::Format;
-use crate::scene_text::visible;
+use crate::text::visible;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Rect};
 use ratatui::text::Line;

@@ -5,7 +5,7 @@ use crate::capabilities::{Capabilities, CellMode, Colors, Glyphs};
 use crate::cell;
 use crate::export::{self, Format};
 use crate::grid::Size;
-use std::fs::OpenOptions;
+use crate::output_file::OutputFile;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -40,13 +40,20 @@ pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u
     for number in 1..=MOST_NAMES {
         let number = if number == 1 { String::new() } else { format!("-{number}") };
         let name = format!("{stem}{number}.{}", format.ending());
-        match OpenOptions::new().write(true).create_new(true).open(folder.join(&name)) {
-            Ok(mut file) => return file.write_all(contents).map(|()| name),
+        match write_unused(&folder.join(&name), contents) {
+            Ok(()) => return Ok(name),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
         }
     }
     Err(io::Error::new(io::ErrorKind::AlreadyExists, "there are too many of that name"))
+}
+
+fn write_unused(path: &Path, contents: &[u8]) -> io::Result<()> {
+    let mut file = OutputFile::create_new(path)?;
+    file.remove_stale();
+    file.write_all(contents)?;
+    file.finish()
 }
 
 /// What a file of a scene of that name is called, without its ending: one plain word.

@@ -2,10 +2,11 @@
 
 use super::watching::Needed;
 use crate::camera::Camera;
+use crate::output_file::OutputFile;
 use crate::scene::with_view;
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What the user is asked before anything is written.
 pub(super) struct Asked {
@@ -17,7 +18,7 @@ pub(super) struct Asked {
 impl Asked {
     /// Whether that view is to be written into that file; `None` if it is no plain file.
     pub(super) fn new(file: &Path, camera: Camera) -> Option<Self> {
-        Needed::now(file).map(|file| Self { file, camera })
+        Some(Needed::now(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
     }
 
     pub(super) fn file(&self) -> &Path {
@@ -27,47 +28,16 @@ impl Asked {
     /// He says yes. The file is replaced as a whole, with all of its other text as it was; one that has changed since he
     /// was asked is left alone.
     pub(super) fn write(&self) -> io::Result<()> {
-        // Where it is a link, what it leads to.
-        let path = self.file().canonicalize()?;
-        let text = fs::read_to_string(&path)?;
+        let path = self.file();
+        let text = fs::read_to_string(path)?;
         let written = with_view(&text, &self.camera).ok_or_else(|| io::Error::other("this is no scene file"))?;
-        let new = Unfinished::beside(&path)?;
-        new.fill(written.as_bytes(), &path)?;
-        if self.file.has_changed() || fs::read_to_string(&path)? != text {
+        let mut file = OutputFile::create(path)?;
+        file.remove_stale();
+        file.write_all(written.as_bytes())?;
+        if self.file.has_changed() || fs::read_to_string(path)? != text {
             return Err(io::Error::other("it has changed meanwhile"));
         }
-        new.finish(&path)
-    }
-}
-
-/// A file that is to take another's place; dropped before it does, it is removed.
-struct Unfinished(PathBuf);
-
-impl Unfinished {
-    fn beside(path: &Path) -> io::Result<Self> {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let new = path.with_file_name(format!(".{name}.{}~", std::process::id()));
-        OpenOptions::new().write(true).create_new(true).open(&new)?;
-        Ok(Self(new))
-    }
-
-    /// On the disk before it has the name, and with the permissions that the other has.
-    fn fill(&self, contents: &[u8], like: &Path) -> io::Result<()> {
-        let mut file = OpenOptions::new().write(true).open(&self.0)?;
-        file.write_all(contents)?;
-        file.set_permissions(fs::metadata(like)?.permissions())?;
-        file.sync_all()
-    }
-
-    fn finish(self, path: &Path) -> io::Result<()> {
-        fs::rename(&self.0, path)
-    }
-}
-
-impl Drop for Unfinished {
-    fn drop(&mut self) {
-        // Once it has the other name, there is none of this.
-        let _ = fs::remove_file(&self.0);
+        file.finish()
     }
 }
 
@@ -96,6 +66,30 @@ mod tests {
         assert_eq!(fs::metadata(&file).expect("it is there").permissions().mode() & 0o777, 0o640);
         assert!(fs::symlink_metadata(&link).expect("it is there").is_symlink());
         assert_eq!(fs::read_dir(folder.path()).expect("it is there").count(), 2, "nothing is left over");
+    }
+
+    /// Who may write everything cannot try it.
+    #[test]
+    fn a_file_that_may_not_be_written_is_left_alone() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let file = folder.path().join("x.ron");
+        fs::write(&file, TEXT).expect("written");
+        fs::set_permissions(&file, PermissionsExt::from_mode(0o444)).expect("it is ours");
+        if fs::File::options().append(true).open(&file).is_err() {
+            let error = Asked::new(&file, camera()).expect("a file").write().expect_err("it may not be written");
+            assert_eq!(error.kind(), io::ErrorKind::PermissionDenied);
+            assert_eq!(fs::read_to_string(&file).expect("it is there"), TEXT);
+        }
+    }
+
+    #[test]
+    fn a_hard_link_is_not_cut() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let (file, other) = (folder.path().join("x.ron"), folder.path().join("y.ron"));
+        fs::write(&file, TEXT).expect("written");
+        fs::hard_link(&file, &other).expect("a link can be made");
+        Asked::new(&file, camera()).expect("a file").write().expect("written");
+        assert_eq!(fs::read_to_string(&other).ok(), with_view(TEXT, &camera()));
     }
 
     #[test]

@@ -1,19 +1,24 @@
 //! The scene on its way: read, sketched and built by a thread of its own, so that keys and signals are heard meanwhile.
+//!
+//! There is one such thread, and it reads one scene at a time: a save makes the load before it worthless, which is
+//! cancelled, so that however fast a large scene is saved, at most one load takes memory. Only a load that waits on a pipe,
+//! which may never deliver, is left behind for another thread to go on in its place.
 
 use super::source::Source;
 use super::watching::Needed;
-use crate::progress::{Progress, Watcher};
+use crate::progress::{Cancellation, Progress, Watcher};
 use crate::scene::{Draft, Scene};
 use crate::terminal::{self, Waker};
-use rayon::ThreadPoolBuilder;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::any::Any;
 use std::collections::VecDeque;
 use std::io;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -39,32 +44,27 @@ pub(super) const MOMENT: Duration = Duration::from_millis(100);
 /// Progress is told so often at most: a person sees it move.
 const STEP: Duration = Duration::from_millis(50);
 
-/// Our side of the thread. Nobody waits for its end: once this is gone, it notices at its next report.
+/// Our side of a load. Dropped, the load is cancelled, and nobody waits for its end.
 pub(super) struct Loading<E> {
     news: Receiver<News<E>>,
     /// What was heard while we waited.
     heard: VecDeque<News<E>>,
     begun: Instant,
+    cancellation: Cancellation,
 }
 
-impl<E: Send + 'static> Loading<E> {
+impl<E> Drop for Loading<E> {
+    fn drop(&mut self) {
+        self.cancellation.cancel();
+    }
+}
+
+impl<E> Loading<E> {
     /// A scene that is there.
     pub(super) fn done(scene: Scene) -> Self {
         let (_, news) = channel();
-        Self { news, heard: VecDeque::from([News::Scene(scene)]), begun: Instant::now() }
-    }
-
-    /// Starts the thread, which reads a draft, sketches and builds it.
-    pub(super) fn start(source: Source<E>, threads: Option<usize>, waker: Waker) -> io::Result<Self> {
-        let (sender, news) = channel();
-        let teller = Teller { news: sender, told: Mutex::new((waker, None)) };
-        let work = move || {
-            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| load(&source, threads, &teller))) {
-                let _ = teller.tell(News::Panic(panic));
-            }
-        };
-        thread::Builder::new().name("load".to_owned()).spawn(work)?;
-        Ok(Self { news, heard: VecDeque::new(), begun: Instant::now() })
+        let heard = VecDeque::from([News::Scene(scene)]);
+        Self { news, heard, begun: Instant::now(), cancellation: Cancellation::default() }
     }
 
     /// Waits so long for the scene, or for what is wrong with it, which is then the error.
@@ -95,74 +95,261 @@ impl<E: Send + 'static> Loading<E> {
     }
 }
 
-/// The thread's side.
-struct Teller<E> {
-    news: Sender<News<E>>,
-    /// Who is woken, and when progress was last told.
-    told: Mutex<(Waker, Option<Instant>)>,
+/// The thread that loads scenes, in the order in which they are asked for.
+pub(super) struct Loader<E> {
+    orders: Sender<Order<E>>,
 }
 
-impl<E> Teller<E> {
-    /// `Break`: nobody listens any more.
-    fn tell(&self, news: News<E>) -> ControlFlow<()> {
-        if self.news.send(news).is_err() {
-            return ControlFlow::Break(());
-        }
-        if let Ok(mut told) = self.told.lock() {
-            told.0.wake();
-        }
-        ControlFlow::Continue(())
+impl<E: Send + 'static> Loader<E> {
+    /// Starts the thread. It ends when this is gone and its last load has been cancelled.
+    pub(super) fn start(threads: Option<usize>, waker: Waker) -> io::Result<Self> {
+        let (orders, queue) = channel();
+        Worker { queue: Arc::new(Mutex::new(queue)), threads, waker: Arc::new(Mutex::new(waker)) }.start()?;
+        Ok(Self { orders })
     }
 
-    /// The same of what is soon out of date: most of it is not told.
-    fn tell_progress(&self, progress: Progress) -> ControlFlow<()> {
+    /// Asks for a load, which begins when the one before it has ended.
+    pub(super) fn load(&self, source: Source<E>) -> io::Result<Loading<E>> {
+        let (sender, news) = channel();
+        let cancellation = Cancellation::default();
+        let order = Order { source, news: sender, cancellation: cancellation.clone() };
+        self.orders.send(order).map_err(|_| io::Error::other("the thread that reads scenes has ended"))?;
+        Ok(Loading { news, heard: VecDeque::new(), begun: Instant::now(), cancellation })
+    }
+}
+
+/// A load that is wanted.
+struct Order<E> {
+    source: Source<E>,
+    news: Sender<News<E>>,
+    cancellation: Cancellation,
+}
+
+/// The thread's side.
+struct Worker<E> {
+    /// Shared with the threads that wait on pipes, which take nothing from it any more.
+    queue: Arc<Mutex<Receiver<Order<E>>>>,
+    threads: Option<usize>,
+    waker: Arc<Mutex<Waker>>,
+}
+
+impl<E: Send + 'static> Worker<E> {
+    fn start(self) -> io::Result<()> {
+        let thread = thread::Builder::new().name("load".to_owned());
+        terminal::without_signals(|| thread.spawn(|| self.run())).map(drop)
+    }
+
+    /// Loads until nothing more can be asked for, or another thread has taken over.
+    fn run(self) {
+        let mut pool = None;
+        loop {
+            let order = self.queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
+            let Ok(order) = order else { return };
+            if order.cancellation.is_cancelled() {
+                continue;
+            }
+            let is_relieved = AtomicBool::new(false);
+            let relieve = || {
+                if !is_relieved.load(Ordering::Relaxed) {
+                    is_relieved.store(self.start_another().is_ok(), Ordering::Relaxed);
+                }
+            };
+            order.carry_out(&self.waker, &relieve, || pool.get_or_insert_with(|| self.pool()).as_ref());
+            if is_relieved.into_inner() {
+                return;
+            }
+        }
+    }
+
+    /// Starts the thread that takes over.
+    fn start_another(&self) -> io::Result<()> {
+        Self { queue: Arc::clone(&self.queue), threads: self.threads, waker: Arc::clone(&self.waker) }.start()
+    }
+
+    /// The threads that the user wants; `None`: Rayon's own, as many as there are cores.
+    fn pool(&self) -> Option<ThreadPool> {
+        ThreadPoolBuilder::new().num_threads(self.threads?).build().ok()
+    }
+}
+
+impl<E: Send> Order<E> {
+    /// Loads the scene. `relieve` is called before a file is opened that may never deliver; `pool` gives the threads that
+    /// build.
+    fn carry_out<'p>(
+        self,
+        waker: &Mutex<Waker>,
+        relieve: &(dyn Fn() + Sync),
+        pool: impl FnOnce() -> Option<&'p ThreadPool>,
+    ) {
+        let Self { source, news, cancellation } = self;
+        let teller = Teller { news, waker, told: Mutex::new(None) };
+        let work = || load(&source, &cancellation, &teller, relieve, pool);
+        if let Err(panic) = catch_unwind(AssertUnwindSafe(work)) {
+            teller.tell(News::Panic(panic));
+        }
+    }
+}
+
+/// What a load tells of itself.
+struct Teller<'w, E> {
+    news: Sender<News<E>>,
+    waker: &'w Mutex<Waker>,
+    /// When progress was last told.
+    told: Mutex<Option<Instant>>,
+}
+
+impl<E> Teller<'_, E> {
+    fn tell(&self, news: News<E>) {
+        // Who does not listen any more has cancelled the load.
+        if self.news.send(news).is_ok()
+            && let Ok(mut waker) = self.waker.lock()
+        {
+            waker.wake();
+        }
+    }
+
+    /// Tells of what is soon out of date, every now and then.
+    fn tell_progress(&self, progress: Progress) {
         let now = Instant::now();
         if let Ok(mut told) = self.told.lock() {
-            if told.1.is_some_and(|last| now < last + STEP) {
-                return ControlFlow::Continue(());
+            if told.is_some_and(|last| now < last + STEP) {
+                return;
             }
-            told.1 = Some(now);
+            *told = Some(now);
         }
-        self.tell(News::Progress(progress))
+        self.tell(News::Progress(progress));
     }
 }
 
-fn load<E: Send>(source: &Source<E>, threads: Option<usize>, teller: &Teller<E>) {
-    let hear = |progress| teller.tell_progress(progress);
+fn load<'p, E: Send>(
+    source: &Source<E>,
+    cancellation: &Cancellation,
+    teller: &Teller<'_, E>,
+    relieve: &(dyn Fn() + Sync),
+    pool: impl FnOnce() -> Option<&'p ThreadPool>,
+) {
+    let hear = |progress| {
+        teller.tell_progress(progress);
+        ControlFlow::Continue(())
+    };
     let needed = Mutex::new(Vec::new());
     let hear_need = |file: &Path| {
+        let file = Needed::now(file);
+        if file.is_other() {
+            relieve();
+        }
         if let Ok(mut needed) = needed.lock() {
-            needed.extend(Needed::now(file));
+            needed.push(file);
         }
     };
-    let watcher = Watcher::new(&hear).with_needs(&hear_need);
+    let watcher = Watcher::new(&hear).with_needs(&hear_need).cancelled_by(cancellation);
     let read = source.read(&watcher);
     let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
-    let _ = teller.tell(News::Needs(needed));
-    let draft = match read {
-        Ok(Some(draft)) => draft,
-        // Nobody listens any more.
-        Ok(None) => return,
-        Err(fault) => {
-            let _ = teller.tell(News::Fault(fault));
-            return;
-        }
-    };
-    let build = || build(draft, &watcher, teller);
-    let pool = threads.map(|threads| ThreadPoolBuilder::new().num_threads(threads).build());
-    match pool {
-        Some(Ok(pool)) => pool.install(build),
-        // Rayon's own, with as many threads as there are cores.
-        _ => build(),
+    teller.tell(News::Needs(needed));
+    match read {
+        Ok(Some(draft)) => match pool() {
+            Some(pool) => pool.install(|| build(draft, &watcher, teller)),
+            None => build(draft, &watcher, teller),
+        },
+        // It was cancelled.
+        Ok(None) => {}
+        Err(fault) => teller.tell(News::Fault(fault)),
     }
 }
 
-fn build<E>(draft: Draft, watcher: &Watcher<'_>, teller: &Teller<E>) {
+fn build<E>(draft: Draft, watcher: &Watcher<'_>, teller: &Teller<'_, E>) {
     if let Some(sketch) = draft.sketch() {
-        let _ = teller.tell(News::Sketch(sketch));
+        teller.tell(News::Sketch(sketch));
     }
     let _ = terminal::reach_beside("build");
     if let Some(scene) = draft.build(watcher) {
-        let _ = teller.tell(News::Scene(scene));
+        teller.tell(News::Scene(scene));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terminal::Signals;
+    use std::convert::Infallible;
+    use std::fs;
+    use std::sync::atomic::AtomicUsize;
+
+    fn loader() -> Loader<Infallible> {
+        let waker = Signals::catch().and_then(|signals| signals.waker()).expect("pipes can be made");
+        Loader::start(None, waker).expect("a thread can be started")
+    }
+
+    fn draft(watcher: &Watcher<'_>) -> Option<Draft> {
+        let text = b"(camera: (eye: (0, 0, 5), target: (0, 0, 0)))";
+        Draft::from_bytes("x", text, watcher).expect("the scene is fine")
+    }
+
+    /// Waits until the load is done; returns whether there is a scene.
+    fn has_scene(loading: &Loading<Infallible>) -> bool {
+        loading.news.iter().any(|news| matches!(news, News::Scene(_)))
+    }
+
+    /// Loads that are cancelled before they begin are not even begun.
+    #[test]
+    fn scenes_are_read_one_at_a_time_and_the_newest_next() {
+        let (begun, at_work, most) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)), Arc::default());
+        let source = |is_last: bool| {
+            let (begun, at_work, most) = (Arc::clone(&begun), Arc::clone(&at_work), Arc::<AtomicUsize>::clone(&most));
+            Source::new("x", move |watcher| {
+                begun.fetch_add(1, Ordering::SeqCst);
+                most.fetch_max(1 + at_work.fetch_add(1, Ordering::SeqCst), Ordering::SeqCst);
+                while !is_last && !watcher.is_gone() {
+                    thread::yield_now();
+                }
+                at_work.fetch_sub(1, Ordering::SeqCst);
+                Ok(draft(watcher))
+            })
+        };
+        let loader = loader();
+        let mut loading = loader.load(source(false)).expect("the thread lives");
+        while begun.load(Ordering::SeqCst) == 0 {
+            thread::yield_now();
+        }
+        let later: Vec<_> = (0..30).map(|at| loader.load(source(at == 29)).expect("the thread lives")).collect();
+        for next in later {
+            loading = next;
+        }
+        assert!(has_scene(&loading));
+        assert_eq!(most.load(Ordering::SeqCst), 1, "at a time");
+        assert_eq!(begun.load(Ordering::SeqCst), 2, "the first and the last");
+    }
+
+    /// One that waits on a pipe, which may never deliver, keeps no other from being read.
+    #[test]
+    fn a_load_that_waits_on_a_pipe_is_left_behind() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let pipe = folder.path().join("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.is_ok_and(|status| status.success()), "a pipe with a name can be made");
+        let (told, opens) = channel();
+        let path = pipe.clone();
+        let waiting = Source::new("pipe", move |watcher| {
+            watcher.needs(&path);
+            let _ = told.send(());
+            let _ = fs::read(&path);
+            Ok(draft(watcher))
+        });
+        let loader = loader();
+        let first = loader.load(waiting).expect("the thread lives");
+        opens.recv().expect("it begins");
+        drop(first);
+        let second = loader.load(Source::new("x", |watcher| Ok(draft(watcher)))).expect("the thread lives");
+        assert!(has_scene(&second));
+        // The thread ends.
+        drop(fs::OpenOptions::new().write(true).open(&pipe));
+    }
+
+    #[test]
+    fn a_panic_ends_its_load_alone() {
+        let loader = loader();
+        let panics = loader.load(Source::new("x", |_| panic!("a test"))).expect("the thread lives");
+        assert!(panics.news.iter().any(|news| matches!(news, News::Panic(_))));
+        assert!(has_scene(&loader.load(Source::new("x", |watcher| Ok(draft(watcher)))).expect("the thread lives")));
     }
 }

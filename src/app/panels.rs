@@ -4,7 +4,7 @@ use crate::capabilities::{CellMode, Colors, Glyphs};
 use crate::grid::Size;
 use crate::progress::{Progress, Work};
 use crate::render::Sampling;
-use crate::scene_text::visible;
+use crate::text::visible;
 use glam::Vec3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Rect};

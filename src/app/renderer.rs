@@ -177,7 +177,12 @@ impl Renderer {
 
     /// Whether no frame can be begun: one is on its way, or there is no scene yet.
     pub(super) fn is_busy(&self) -> bool {
-        self.scene.is_none() || self.in_work.iter().any(InWork::is_wanted)
+        self.scene.is_none() || self.is_working()
+    }
+
+    /// Whether a frame that is wanted is on its way.
+    pub(super) fn is_working(&self) -> bool {
+        self.in_work.iter().any(InWork::is_wanted)
     }
 
     /// Whether no frame of a new view can be begun: one is on its way, or there is no scene yet.

@@ -26,6 +26,11 @@ const BREATH: Duration = Duration::from_millis(33);
 /// What a frame in which all moves takes for each cell, about.
 const BYTES_PER_CELL: usize = 8;
 
+/// Erases the whole window (ED 2), which leaves many terminals with the colour that the pen has;
+const ERASE: &[u8] = b"\x1b[2J";
+/// the same with the pen laid down before, in the terminal's own colours.
+const RESET_ERASE: &[u8] = b"\x1b[m\x1b[2J";
+
 /// What the user sees.
 pub(super) struct Screen {
     /// What is told of keys.
@@ -54,6 +59,8 @@ pub(super) struct Screen {
     explaining: Option<Explaining>,
     /// Where the light is that is held, if one is.
     light: Option<Vec3>,
+    /// Whether the next bytes erase the whole window first.
+    erases: bool,
     /// Whether anything has changed since the last bytes.
     changed: bool,
     /// When the last bytes were written.
@@ -88,6 +95,7 @@ impl Screen {
             help: None,
             explaining: None,
             light: None,
+            erases: false,
             changed: false,
             written: Duration::ZERO,
             pace: Pace::default(),
@@ -269,8 +277,10 @@ impl Screen {
     }
 
     /// The terminal may show anything: the next bytes draw everything, with either half block if both meet in one line.
-    pub(super) fn redraw(&mut self, halves_meet: bool) {
+    /// They erase the whole window before, if the picture covers only a part of it.
+    pub(super) fn redraw(&mut self, halves_meet: bool, covers_a_part: bool) {
         self.encoder.forget();
+        self.erases = covers_a_part;
         self.encoder.set_upper_half(halves_meet);
         self.changed = true;
     }
@@ -312,6 +322,13 @@ impl Screen {
                 if limit.is_some() { (Quality::Equal, Order::Color) } else { (Quality::Exact, Order::Raster) };
             self.encoder.set_order(self.order.unwrap_or(order));
             let most_bytes = limit.map(|limit| limit.most_bytes);
+            if std::mem::take(&mut self.erases) {
+                self.bytes.extend_from_slice(if self.painter.mode().colors == Colors::None {
+                    ERASE
+                } else {
+                    RESET_ERASE
+                });
+            }
             let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, most_bytes };
             self.encoder.encode_within(&grid, allowance, &mut self.bytes);
             self.encode = start.elapsed();

@@ -28,7 +28,9 @@ type Read<E> = dyn Fn(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + Sync;
 
 impl<E> Source<E> {
     /// The scene that `read` gives, under a name that a person knows it by. `read` gives nothing only when its watcher has
-    /// gone. What it tells its watcher to [need](Watcher::needs) is watched: as files change, the scene is read again.
+    /// gone. It should return soon after that, because one scene is read at a time, and the next one waits for it; only a
+    /// `read` that has told its watcher of a pipe may wait for ever. What it tells its watcher to [need](Watcher::needs) is
+    /// watched: as files change, the scene is read again.
     pub fn new(
         name: impl Into<String>,
         read: impl Fn(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + Sync + 'static,

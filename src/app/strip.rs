@@ -1,7 +1,7 @@
 //! What is wrong with a scene, at the bottom of the picture, until it is mended.
 
 use super::panels::Look;
-use crate::scene_text::visible;
+use crate::text::visible;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;

@@ -82,7 +82,7 @@ pub(super) fn build(boxes: &[Bounds], report: Report<'_>) -> Option<(Bvh, Leaves
     }
     let mut items: Vec<Item> = (0..).zip(boxes).map(item).collect();
     let pairs = subtree(&mut items, 0, 0, report)?;
-    let mut wide = Wide { pairs: &pairs, nodes: Vec::new(), leaves: Vec::new() };
+    let mut wide = Wide::of(&pairs);
     let root = Some(wide.append(0));
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
     Some((Bvh { nodes: wide.nodes, root }, Leaves { order, places: wide.leaves }))
@@ -91,11 +91,16 @@ pub(super) fn build(boxes: &[Bounds], report: Report<'_>) -> Option<(Bvh, Leaves
 /// The same tree with eight boxes in each node.
 struct Wide<'p> {
     pairs: &'p [Pair],
+    fillings: Vec<Filling>,
     nodes: Vec<Node>,
     leaves: Vec<Range<u32>>,
 }
 
-impl Wide<'_> {
+impl<'p> Wide<'p> {
+    fn of(pairs: &'p [Pair]) -> Self {
+        Self { pairs, fillings: fillings(pairs), nodes: Vec::new(), leaves: Vec::new() }
+    }
+
     fn append(&mut self, at: usize) -> Child {
         let Pair { count, at: first, .. } = self.pairs[at];
         if count > 0 {
@@ -104,8 +109,9 @@ impl Wide<'_> {
         }
         let number = self.nodes.len();
         self.nodes.push(Node::EMPTY);
-        let (below, count) = self.eight_below(at);
-        for (lane, &pair) in below[..count].iter().enumerate() {
+        let mut children = Children::default();
+        self.gather(at, LANES, &mut children);
+        for (lane, &pair) in children.pairs[..children.count].iter().enumerate() {
             let child = self.append(pair);
             let bounds = &self.pairs[pair].bounds;
             let node = &mut self.nodes[number];
@@ -118,21 +124,74 @@ impl Wide<'_> {
         Child::node(number as u32)
     }
 
-    /// Up to eight nodes that are together what is below this one: the largest is opened until there are so many.
-    fn eight_below(&self, at: usize) -> ([usize; LANES], usize) {
-        let children = |at: usize| [at + 1, at + self.pairs[at].at as usize];
-        let mut below = [0; LANES];
-        [below[0], below[1]] = children(at);
-        let mut count = 2;
-        while count < LANES {
-            let area = |at: usize| self.pairs[at].bounds.half_area();
-            let inner = (0..count).filter(|&lane| self.pairs[below[lane]].count == 0);
-            let Some(largest) = inner.max_by(|&a, &b| area(below[a]).total_cmp(&area(below[b]))) else { break };
-            [below[largest], below[count]] = children(below[largest]);
-            count += 1;
+    /// Adds what stands for a node in at most `places` places.
+    fn gather(&self, at: usize, places: usize, children: &mut Children) {
+        let left = usize::from(self.fillings[at][places - 1]);
+        if left == WHOLE {
+            children.pairs[children.count] = at;
+            children.count += 1;
+        } else {
+            self.gather(at + 1, left, children);
+            self.gather(at + self.pairs[at].at as usize, places - left, children);
         }
-        (below, count)
     }
+}
+
+/// The nodes of the binary tree that become the children of a wide node.
+#[derive(Default)]
+struct Children {
+    pairs: [usize; LANES],
+    count: usize,
+}
+
+/// How the nodes below a node of the binary tree are distributed over 1 to 8 places of a wide node: for each number of
+/// places, how many of them go to the first child, or [`WHOLE`] where the node itself takes one place.
+type Filling = [u8; LANES];
+
+/// The node takes one place by itself.
+const WHOLE: usize = 0;
+
+/// Chooses the wide nodes that a ray is expected to meet least often, by dynamic programming over the binary tree
+/// (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017).
+///
+/// To open the largest box until there are eight left a third of the nodes with two children. This way the dragon's 871 k
+/// triangles have 28 % fewer nodes.
+fn fillings(pairs: &[Pair]) -> Vec<Filling> {
+    let mut fillings = vec![[WHOLE as u8; LANES]; pairs.len()];
+    // From the last node to the first, both children come before their parent, the first child on top.
+    let mut costs: Vec<[f32; LANES]> = Vec::new();
+    for (pair, filling) in pairs.iter().zip(&mut fillings).rev() {
+        let cost = match pair.count {
+            0 => costs.pop().zip(costs.pop()).map(|(left, right)| fill(pair.bounds.half_area(), left, right, filling)),
+            // A leaf is tested wherever it stands: its cost is the same in all trees.
+            _ => None,
+        };
+        costs.push(cost.unwrap_or([0.0; LANES]));
+    }
+    fillings
+}
+
+/// Finds the cheapest distribution for each number of places, and returns what each costs: the half areas of the wide
+/// nodes in it.
+fn fill(area: f32, left: [f32; LANES], right: [f32; LANES], filling: &mut Filling) -> [f32; LANES] {
+    let mut cost = [f32::INFINITY; LANES];
+    for places in 2..=LANES {
+        for of_left in 1..places {
+            let both = left[of_left - 1] + right[places - of_left - 1];
+            // Also the first of all, where areas are too great for f32.
+            if both < cost[places - 1] || of_left == 1 {
+                (cost[places - 1], filling[places - 1]) = (both, of_left as u8);
+            }
+        }
+    }
+    // In one place it is a node of its own, with eight places below.
+    cost[0] = area + cost[LANES - 1];
+    for places in 2..LANES {
+        if cost[0] < cost[places - 1] {
+            (cost[places - 1], filling[places - 1]) = (cost[0], WHOLE as u8);
+        }
+    }
+    cost
 }
 
 /// The nodes over these items, of which the first stands at that place in the order. Large halves are built at the same
@@ -301,8 +360,104 @@ impl Cut {
     }
 }
 
+/// The half area of the box, times the expected number of tests below it.
+///
+/// A leaf's boxes are tested eight at a time, so what counts is the number of blocks of eight. A sixteenth for each box
+/// tells apart cuts with as many blocks. Counting single boxes instead made 18 % more leaves of the dragon's 871 k
+/// triangles, and 5 % slower rays.
 #[inline(always)]
 fn cost((rows, count): (Rows, u32)) -> f32 {
     let [x, y, z, _]: [f32; 4] = from_fn(|at| rows.max[at] - rows.min[at]);
-    if count == 0 { 0.0 } else { count as f32 * (x * y + y * z + z * x) }
+    let tests = count.div_ceil(LANES as u32) as f32 + count as f32 / 16.0;
+    if count == 0 { 0.0 } else { tests * (x * y + y * z + z * x) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A binary tree whose leaves have one box each, of arbitrary boxes.
+    fn pairs(boxes: usize, seed: u32) -> Vec<Pair> {
+        let mut state = seed;
+        let mut number = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
+        };
+        let mut items: Vec<Item> = (0..boxes as u32)
+            .map(|at| {
+                let min = Vec3::new(number(), number(), number()) * 10.0;
+                item((at, &Bounds { min, max: min + Vec3::new(number(), number(), number()) }))
+            })
+            .collect();
+        let mut nodes = Vec::new();
+        one_by_one(&mut items, 0, &mut nodes);
+        nodes
+    }
+
+    /// As [`append`], down to single boxes.
+    fn one_by_one(items: &mut [Item], first: usize, nodes: &mut Vec<Pair>) {
+        let bounds = Around::of(items).boxes.bounds();
+        let at = nodes.len();
+        if items.len() == 1 {
+            return nodes.push(Pair { bounds, count: 1, at: first as u32 });
+        }
+        nodes.push(Pair { bounds, count: 0, at: 0 });
+        let cut = 1 + (items.len() * 3 + first) % (items.len() - 1);
+        let (left, right) = items.split_at_mut(cut);
+        one_by_one(left, first, nodes);
+        nodes[at].at = (nodes.len() - at) as u32;
+        one_by_one(right, first + cut, nodes);
+    }
+
+    /// The least sum of half areas of wide nodes, found by trying all distributions.
+    fn least_cost(pairs: &[Pair], at: usize, places: usize) -> f64 {
+        let pair = &pairs[at];
+        if pair.count > 0 {
+            return 0.0;
+        }
+        let right = at + pair.at as usize;
+        let split = |places: usize| {
+            let of_left = 1..places;
+            let both = of_left.map(|left| least_cost(pairs, at + 1, left) + least_cost(pairs, right, places - left));
+            both.fold(f64::INFINITY, f64::min)
+        };
+        let whole = || f64::from(pair.bounds.half_area()) + split(LANES);
+        if places == 1 { whole() } else { split(places).min(whole()) }
+    }
+
+    /// The sum of half areas of the wide nodes that the fillings make, and how many boxes they reach.
+    fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
+        if wide.pairs[at].count > 0 {
+            return (0.0, 1);
+        }
+        let mut children = Children::default();
+        wide.gather(at, LANES, &mut children);
+        let below = children.pairs[..children.count].iter().map(|&child| cost_and_boxes(wide, child));
+        let own = f64::from(wide.pairs[at].bounds.half_area());
+        below.fold((own, 0), |(cost, boxes), (more, others)| (cost + more, boxes + others))
+    }
+
+    #[test]
+    fn wide_nodes_are_the_cheapest_of_all_distributions() {
+        for seed in 0..6 {
+            let pairs = pairs(14, seed);
+            let (cost, boxes) = cost_and_boxes(&Wide::of(&pairs), 0);
+            let least = least_cost(&pairs, 0, 1);
+            assert_eq!(boxes, 14, "seed {seed}");
+            assert!((cost - least).abs() < 1e-4 * least, "seed {seed}: {cost}, but {least} is possible");
+        }
+    }
+
+    #[test]
+    fn boxes_too_large_for_f32_areas_are_all_reached() {
+        let boxes: Vec<_> = (0..200)
+            .map(|at| Bounds { min: Vec3::splat(-3e38), max: Vec3::new(3e38, at as f32 * 1e36, 3e38) })
+            .collect();
+        let (bvh, leaves) = Bvh::new(&boxes);
+        let mut reached: Vec<_> = (0..leaves.count()).flat_map(|leaf| leaves.boxes(leaf).to_vec()).collect();
+        reached.sort_unstable();
+        assert_eq!(reached, (0..200).collect::<Vec<_>>());
+        let children = bvh.nodes.iter().flat_map(|node| node.children);
+        assert_eq!(children.filter_map(Child::as_leaf).count(), leaves.count());
+    }
 }

@@ -5,9 +5,9 @@
 //! arithmetic as on paper, no ray of the packet enters a box before the packet does, or leaves it later, bit for bit. (Boulos,
 //! Wald and Shirley, Geometric and Arithmetic Culling Methods for Entire Ray Packets, 2006.)
 
-use super::{Bvh, Child, Stack, Waiting, nearest_first};
+use super::{Bvh, Child, Prefetch, Stack, Waiting, in_any_order, nearest_first};
 use crate::bounds::common;
-use crate::lanes::{Answers, LANES, Lanes, Mask, Vector};
+use crate::lanes::{Answers, LANES, Lanes, Mask, Vector, set_bits};
 use crate::ray::Rays;
 
 /// So many groups of eight rays are a packet.
@@ -145,7 +145,12 @@ fn crossed<N: Lanes>([x, y, z]: &[Hull<N>; 3], senses: [Sense; 3], [min, max]: [
 }
 
 /// What becomes of a packet in a tree.
-pub trait Visitor<N> {
+pub trait Visitor<N>: Prefetch {
+    /// Whether nearer boxes are visited before farther ones: what is found there may end the rays before those. Where any
+    /// hit will do, sorting takes longer than it saves: without it shadow rays are 6 % faster on the dragon's 871 k
+    /// triangles.
+    const NEAREST_FIRST: bool;
+
     /// From where on rays are of interest: 0 or more.
     fn min(&self) -> f32;
 
@@ -166,11 +171,11 @@ pub trait Visitor<N> {
 impl Bvh {
     /// Visits the leaves that a packet meets.
     #[inline(always)]
-    pub fn visit_together<N: Lanes>(
+    pub fn visit_together<N: Lanes, V: Visitor<N>>(
         &self,
         packet: &Packet<N>,
         Stack(waiting): &mut Stack,
-        visitor: &mut impl Visitor<N>,
+        visitor: &mut V,
     ) {
         let Some(root) = self.root() else { return };
         waiting.clear();
@@ -196,7 +201,14 @@ impl Bvh {
             let [enters, leaves] = packet.crossed(node.boxes());
             let starts = enters.max(min);
             let is_met = starts.le(leaves.min(N::splat(visitor.farthest()))).bits();
-            next = nearest_first(node, child, is_met, &starts.store(), waiting);
+            for lane in set_bits(is_met) {
+                self.prefetch(node.children[lane], visitor);
+            }
+            next = if V::NEAREST_FIRST {
+                nearest_first(node, child, is_met, &starts.store(), waiting)
+            } else {
+                in_any_order(node, child, is_met, &starts.store(), waiting)
+            };
         }
     }
 }

@@ -3,7 +3,7 @@
 mod generated;
 
 use super::picture::{fits, parse_size};
-use super::{Done, Failure, Origin, on_threads, usage, visible, write_stdout};
+use super::{Done, Failure, Origin, on_threads, usage, write_stdout};
 use clap::{Args, ValueEnum};
 use generated::Generated;
 use std::fmt::Write;
@@ -14,6 +14,7 @@ use termtrace::framebuffer::Resolution;
 use termtrace::hit::Kernel;
 use termtrace::render::{Counts, count, render};
 use termtrace::scene::Scene;
+use termtrace::text::visible;
 use termtrace::tone::tone;
 
 const FIGURES: &str = "\

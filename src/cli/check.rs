@@ -1,7 +1,8 @@
 //! `termtrace check`: what is wrong with a scene file.
 
-use super::{Done, SceneArgs, visible, write_stdout};
+use super::{Done, SceneArgs, write_stdout};
 use clap::Args;
+use termtrace::text::visible;
 
 const EXAMPLES: &str = "\
 Examples:

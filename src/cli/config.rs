@@ -2,9 +2,10 @@
 
 use super::settings::files::path_of;
 use super::settings::{Held, SettingArgs, Settings, keys};
-use super::{Done, visible, write_stdout};
+use super::{Done, write_stdout};
 use clap::{ArgMatches, Args};
 use std::fmt::Write;
+use termtrace::text::visible_lines;
 use unicode_width::UnicodeWidthStr;
 
 const EXAMPLES: &str = "\
@@ -41,7 +42,7 @@ pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> Done {
     for name in ["config.ron", "keys.ron"] {
         let _ = writeln!(text, "{name:<16}{}", place(name, no_config));
     }
-    write_stdout(visible(&text).as_bytes())
+    write_stdout(visible_lines(&text).as_bytes())
 }
 
 /// Where a file is looked for, and whether there is one.

@@ -1,10 +1,11 @@
 //! `termtrace describe`: what a picture shows, as text for those who cannot see it.
 
 use super::picture::{fits, parse_size};
-use super::{Done, SceneArgs, visible, write_stdout};
+use super::{Done, SceneArgs, write_stdout};
 use clap::Args;
 use termtrace::describe::describe;
 use termtrace::framebuffer::Resolution;
+use termtrace::text::visible;
 
 const EXAMPLES: &str = "\
 It tells of the objects that are seen, the largest first: kind, colour and size, where in the picture, how much of it, how

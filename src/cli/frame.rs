@@ -5,9 +5,8 @@ mod golden;
 use super::cells::{self, CellArgs};
 use super::picture::PictureArgs;
 use super::view::{self, ViewArgs};
-use super::{Done, Failure, SceneArgs, reason, write_stdout};
+use super::{Done, Failure, SceneArgs, outputs, write_stdout};
 use clap::{Args, ValueEnum};
-use std::fs;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::capabilities::{CellMode, Colors};
@@ -141,16 +140,11 @@ pub(super) fn run(args: &FrameArgs) -> Done {
     }
     let frame = args.contents(format)?;
     match (&args.check, args.output()) {
-        (Some(golden), _) if args.bless => write_file(golden, &frame),
+        (Some(golden), _) if args.bless => outputs::write(golden, &frame),
         (Some(golden), _) => golden::check(golden, format, &frame),
-        (None, Some(output)) => write_file(output, &frame),
+        (None, Some(output)) => outputs::write(output, &frame),
         (None, None) => write_stdout(&frame),
     }
-}
-
-/// The whole frame is there before the file is touched.
-fn write_file(path: &Path, bytes: &[u8]) -> Done {
-    fs::write(path, bytes).map_err(|error| Failure::runtime(path.display(), reason(&error)))
 }
 
 fn format_by_ending(path: &Path) -> Result<Format, Failure> {

@@ -3,7 +3,7 @@
 use super::completions::{command_near, no_command};
 use super::encoding::OrderArgs;
 use super::settings::{SettingArgs, Settings, keys};
-use super::{Cli, Done, Failure, LookArgs, Origin, complain_of_panic, on_threads, reason, usage, write_stdout};
+use super::{Cli, Done, Failure, LookArgs, Origin, complain_of_panic, on_threads, reason, say, usage, write_stdout};
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, CommandFactory};
 use std::io::{self, IsTerminal};
@@ -85,7 +85,7 @@ fn print(args: &LiveArgs) -> Done {
     let origin = match &args.scenes[..] {
         [] => {
             let missing = "without a terminal to show the built-in scene on, name a scene: termtrace <SCENE>";
-            let _ = Cli::command().error(ErrorKind::MissingRequiredArgument, missing).print();
+            say(&Cli::command().error(ErrorKind::MissingRequiredArgument, missing));
             return Err(Failure::Said(2));
         }
         [scene] => Origin::of(scene)?,
@@ -126,6 +126,9 @@ fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard } = match ended {
         Ok(outcome) => outcome.map_err(|error| match error {
+            app::Error::Terminal(error) if error.kind() == io::ErrorKind::OutOfMemory => {
+                Failure::Runtime(error.to_string())
+            }
             app::Error::Terminal(error) => Failure::runtime("terminal", reason(&error)),
             app::Error::Scene(failure) => failure,
         })?,

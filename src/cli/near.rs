@@ -14,8 +14,10 @@ pub(super) fn scene(path: &Path) -> Option<PathBuf> {
     let files = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
     let names = files.take(MOST_FILES).filter_map(|file| file.ok()?.file_name().into_string().ok());
     let scenes = names.filter(|name| is_mesh(name, &[]) || Path::new(name).extension().is_some_and(|end| end == "ron"));
-    let near = scenes.filter_map(|other| Some((distance(name, &other)?, other))).min()?;
-    Some(folder.map_or_else(|| PathBuf::from(&near.1), |folder| folder.join(&near.1)))
+    let near = scenes.filter_map(|other| Some((distance(name, &other)?, other)));
+    // What a folder lists may not be there: a link that leads nowhere, the name itself among them.
+    let there = near.filter(|(_, other)| path.with_file_name(other).exists());
+    there.min().map(|(_, other)| path.with_file_name(other))
 }
 
 /// The word that was meant, if one is nearly the same.

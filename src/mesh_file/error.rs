@@ -1,7 +1,9 @@
 //! Why a file is no mesh, and how a person is told: one line with the place in it.
 
-use crate::scene_text::{clipped, visible};
-use std::{fmt, io};
+use crate::progress::Cancelled;
+use crate::scene_text::clipped;
+use crate::text::visible;
+use std::fmt;
 
 /// Why a file gave no mesh: its first fault. Printed, it is one line that controls no terminal:
 ///
@@ -133,6 +135,14 @@ impl From<MeshError> for Fault {
     }
 }
 
+impl From<Cancelled> for Fault {
+    /// A fault that is never shown: whoever reads the file asks the watcher before the result.
+    #[cold]
+    fn from(cancelled: Cancelled) -> Self {
+        Self::of_file(cancelled.to_string())
+    }
+}
+
 /// Lines end with a line feed, a carriage return, or both.
 fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
     let before = &bytes[..at.min(bytes.len())];
@@ -144,17 +154,6 @@ fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
     let text = before[start..].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&before[start..]);
     let characters = |chunk: std::str::Utf8Chunk<'_>| chunk.valid().chars().count() + chunk.invalid().len().min(1);
     (line, 1 + text.utf8_chunks().map(characters).sum::<usize>())
-}
-
-/// What the system says of a file that cannot be read, in the words of the other messages.
-pub(super) fn cannot_be_read(error: &io::Error) -> String {
-    match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::IsADirectory => "this is a directory, not a file".to_owned(),
-        io::ErrorKind::FileTooLarge => "the file is larger than 2 GiB, too large to be read".to_owned(),
-        io::ErrorKind::PermissionDenied => "no permission to read this file".to_owned(),
-        _ => format!("cannot be read: {error}"),
-    }
 }
 
 /// A piece of a file, as a message shows it.

@@ -13,8 +13,8 @@ mod primitives;
 
 use super::MeshFile;
 use super::error::{Fault, shown};
-use super::meter::Meter;
 use super::neighbours::Neighbours;
+use crate::progress::Meter;
 use buffers::Buffers;
 use json::Json;
 use serde_json::Value;

@@ -1,7 +1,8 @@
 //! The files that a mesh names.
 
 use super::MAX_BYTES;
-use super::error::{cannot_be_read, shown};
+use super::error::shown;
+use crate::named_file;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
@@ -29,7 +30,7 @@ impl<'a> Neighbours<'a> {
     pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>, String> {
         let name = self.name_of(path);
         let say = |what: &str| format!("{}: {what}", shown(name.as_bytes()));
-        let bytes = (self.open)(path).map_err(|error| say(&cannot_be_read(&error)))?;
+        let bytes = (self.open)(path).map_err(|error| say(&named_file::reason(&error)))?;
         let left = self.bytes_left.checked_sub(bytes.len());
         self.bytes_left = left.ok_or_else(|| say("with this file more than 2 GiB would be read"))?;
         Ok(bytes)

@@ -3,12 +3,12 @@
 
 use super::builder::{Builder, Triangle, unit};
 use super::error::{Fault, shown};
-use super::meter::Meter;
 use super::mtl::{self, Library};
 use super::neighbours::{Neighbours, local_path};
 use super::text::Text;
 use super::{MeshFile, polygon};
 use crate::color::{LinearRgb, linear_from_srgb};
+use crate::progress::Meter;
 use glam::{Vec2, Vec3};
 use std::path::Path;
 

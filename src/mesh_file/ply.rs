@@ -6,9 +6,9 @@ mod rows;
 
 use super::builder::{Builder, Triangle, unit};
 use super::error::Fault;
-use super::meter::Meter;
 use super::{MeshFile, polygon};
 use crate::color::{LinearRgb, Srgb8, linear_from_srgb};
+use crate::progress::Meter;
 use glam::Vec3;
 use header::{Element, Encoding, Header, Property, Shape, Type};
 use rows::{Ascii, Binary, Rows};

@@ -4,9 +4,9 @@
 use super::MeshFile;
 use super::builder::{Builder, Triangle, too_many};
 use super::error::{Fault, shown};
-use super::meter::Meter;
 use super::text::Text;
 use super::{MAX_TRIANGLES, polygon};
+use crate::progress::Meter;
 use glam::Vec3;
 
 /// 80 bytes of anything and a count of 4 bytes.

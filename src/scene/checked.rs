@@ -13,6 +13,7 @@ use crate::color::{LinearRgb, Srgb8};
 use crate::light::{Falloff, PointLight};
 use crate::material::Material;
 use crate::mesh_file::MeshFile;
+use crate::progress::Watcher;
 use crate::scene_file::{
     MaterialUse, SceneFile, Spanned, WrittenBackground, WrittenColor, WrittenFalloff, WrittenLight, WrittenMaterial,
     WrittenNumber, WrittenObject, WrittenShape, WrittenToneCurve, WrittenVector, closest, color_named, listed,
@@ -22,8 +23,14 @@ use crate::shape::{Mesh, Plane, Shape, Sphere, Triangle};
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use std::collections::HashMap;
 
-/// The scene, if nothing is wrong with it; else every fault has been added.
-pub(super) fn check(file: &SceneFile, meshes: &mut dyn Meshes, faults: &mut Faults) -> Option<Draft> {
+/// The scene, if nothing is wrong with it; else every fault has been added. Once the watcher has gone, objects are left
+/// out.
+pub(super) fn check(
+    file: &SceneFile,
+    meshes: &mut dyn Meshes,
+    watcher: &Watcher<'_>,
+    faults: &mut Faults,
+) -> Option<Draft> {
     let mut checker = Checker { faults };
     let camera = file.camera.as_ref().and_then(|camera| checker.camera(camera));
     let views = file.views.iter().filter_map(|view| checker.view(view, camera.as_ref())).collect();
@@ -31,7 +38,7 @@ pub(super) fn check(file: &SceneFile, meshes: &mut dyn Meshes, faults: &mut Faul
     let ambient = file.ambient.and_then(|color| checker.light_color(color));
     let lights = file.lights.iter().filter_map(|light| checker.light(light)).collect();
     let exposure = file.exposure.and_then(|exposure| checker.exposure(exposure));
-    let objects = checker.objects(file, meshes);
+    let objects = checker.objects(file, meshes, watcher);
     if !faults.is_empty() {
         return None;
     }
@@ -185,7 +192,7 @@ impl Checker<'_> {
 
     // Objects -------------------------------------------------------------------------------------------------------
 
-    fn objects(&mut self, file: &SceneFile, meshes: &mut dyn Meshes) -> Vec<Object> {
+    fn objects(&mut self, file: &SceneFile, meshes: &mut dyn Meshes, watcher: &Watcher<'_>) -> Vec<Object> {
         let materials: HashMap<&str, Named> = file
             .materials
             .iter()
@@ -203,7 +210,7 @@ impl Checker<'_> {
             let (shape, material) = (shape?, material?);
             Some(Object { shape, material })
         };
-        file.objects.iter().filter_map(object).collect()
+        file.objects.iter().take_while(|_| !watcher.is_gone()).filter_map(object).collect()
     }
 
     fn shape(&mut self, written: &WrittenObject, meshes: &mut dyn Meshes) -> Option<Shape> {

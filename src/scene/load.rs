@@ -3,14 +3,16 @@
 use super::{Draft, Scene, checked};
 use crate::camera::Camera;
 use crate::camera_path::CameraPath;
+use crate::memory;
 use crate::mesh_file::{self, MeshError, MeshFile};
+use crate::named_file::{self, Accepted};
 use crate::progress::Watcher;
 use crate::scene_file::{PathFile, SceneFile};
-use crate::scene_text::{MAX_BYTES, SceneError, read, text_from, visible};
+use crate::scene_text::{MAX_BYTES, SceneError, read, read_watched, text_from};
+use crate::text::visible;
 use std::collections::HashMap;
 use std::fmt;
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 
 impl Scene {
@@ -100,20 +102,22 @@ fn unless_gone<T, E>(watcher: &Watcher<'_>, done: Result<T, E>) -> Result<Option
 fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
     let name = path.to_string_lossy();
     watcher.needs(path);
-    if mesh_file::is_mesh(&name, &[]) {
-        return around_mesh(path, watcher);
+    let is_mesh = |bytes: &[u8]| mesh_file::is_mesh(&name, bytes);
+    let most = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_BYTES } else { MAX_BYTES };
+    let bytes = bytes_of(path, most, watcher)?;
+    if is_mesh(&bytes) {
+        return around_mesh(path, &bytes, watcher);
     }
-    let bytes = bytes_of(path)?;
-    if mesh_file::is_mesh(&name, &bytes) {
-        return around_mesh(path, watcher);
-    }
+    memory::check(bytes.len() * PEAK).map_err(|error| LoadError::CannotRead { path: path.to_owned(), error })?;
     Ok(draft(&name, text_from(&name, &bytes)?, watcher)?)
 }
 
 fn draft(name: &str, text: &str, watcher: &Watcher<'_>) -> Result<Draft, SceneError> {
     let mut meshes = Meshes::beside(Path::new(name), watcher);
-    read(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", |root, faults| {
-        checked::check(&SceneFile::read(root, faults), &mut meshes, faults)
+    read_watched(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", watcher, |root, faults| {
+        let file = SceneFile::read(&root, watcher, faults);
+        drop(root);
+        checked::check(&file, &mut meshes, watcher, faults)
     })
 }
 
@@ -154,7 +158,8 @@ impl CameraPath {
     /// # Errors
     /// If the file cannot be read, or as [`CameraPath::from_bytes`].
     pub fn load(path: &Path, camera: &Camera) -> Result<Self, LoadError> {
-        Ok(Self::from_bytes(&path.to_string_lossy(), &bytes_of(path)?, camera)?)
+        let bytes = bytes_of(path, |_| MAX_BYTES, &Watcher::patient())?;
+        Ok(Self::from_bytes(&path.to_string_lossy(), &bytes, camera)?)
     }
 }
 
@@ -183,13 +188,7 @@ impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::CannotRead { path, error } => {
-                let path = visible(&path.to_string_lossy());
-                match error.kind() {
-                    io::ErrorKind::NotFound => write!(f, "{path}: there is no such file"),
-                    io::ErrorKind::IsADirectory => write!(f, "{path}: this is a directory, not a file"),
-                    io::ErrorKind::PermissionDenied => write!(f, "{path}: no permission to read this file"),
-                    _ => write!(f, "{path}: cannot be read: {error}"),
-                }
+                write!(f, "{}: {}", visible(&path.to_string_lossy()), named_file::reason(error))
             }
             Self::Scene(error) => error.fmt(f),
             Self::Mesh(error) => error.fmt(f),
@@ -226,8 +225,8 @@ impl From<SceneError> for LoadError {
     }
 }
 
-fn around_mesh(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
-    let mesh = MeshFile::read_whole(path, watcher)?;
+fn around_mesh(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
+    let mesh = MeshFile::of_file(path, bytes, watcher)?;
     Draft::of_mesh(mesh).ok_or_else(|| LoadError::Unseen { path: path.to_owned() })
 }
 
@@ -251,21 +250,18 @@ impl checked::Meshes for Meshes<'_> {
             return Ok(mesh.clone());
         }
         self.watcher.needs(&path);
-        // Not from a pipe or a device, which might never end.
-        if std::fs::metadata(&path).is_ok_and(|data| !data.is_file()) {
-            return Err(format!("{}: this is not a file", visible(&path.to_string_lossy())));
-        }
-        let mesh = MeshFile::read_whole(&path, self.watcher).map_err(|error| error.to_string())?;
+        let mesh = MeshFile::read_whole(&path, Accepted::Files, self.watcher).map_err(|error| error.to_string())?;
         self.read.insert(path, mesh.clone());
         Ok(mesh)
     }
 }
 
-/// As many bytes of a file as are looked at: one more than may be.
-fn bytes_of(path: &Path) -> Result<Vec<u8>, LoadError> {
-    let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
-        .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error })?;
-    Ok(bytes)
+/// How many bytes of memory each byte of a scene file may take, with all that its objects are built into: 26 were measured,
+/// of 300,000 spheres.
+const PEAK: usize = 32;
+
+/// The bytes of a file that the user names.
+fn bytes_of(path: &Path, most: impl Fn(&[u8]) -> usize, watcher: &Watcher<'_>) -> Result<Vec<u8>, LoadError> {
+    named_file::read(path, Accepted::FilesAndPipes, most, watcher)
+        .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error })
 }

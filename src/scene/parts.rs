@@ -6,6 +6,7 @@ use crate::bvh::Bvh;
 use crate::lanes::{Answers, Eight, LANES, Lanes};
 use crate::progress::{Progress, Watcher, Work};
 use crate::shape::{Balls, Corners, Part, Plane, Shape, SideBySide, Surface};
+use crate::simd;
 use rayon::prelude::*;
 use std::array::from_fn;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -197,6 +198,12 @@ impl<S> Grove<S> {
     pub(crate) fn leaf(&self, place: u32) -> (&S, &PartIds<Eight>) {
         let leaf = (place - self.first) as usize / LANES;
         (&self.leaves[leaf], &self.ids[leaf])
+    }
+
+    /// Asks the CPU for the parts of a leaf, and does not wait for them.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, leaf: usize) {
+        simd::prefetch(&self.leaves[leaf]);
     }
 
     /// Whose part has that place.

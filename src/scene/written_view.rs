@@ -1,6 +1,7 @@
 //! A scene file's text with one more view in it, and nothing else changed: comments and blanks stay, byte for byte.
 
 use crate::camera::Camera;
+use crate::progress::Watcher;
 use crate::scene_file::SceneFile;
 use crate::scene_text::{Body, Faults, Field, Node, Value, parse};
 
@@ -90,7 +91,7 @@ fn inserted(text: &str, additions: Vec<Addition>) -> String {
 /// How many views the text has.
 fn count(text: &str) -> Option<usize> {
     let root = parse(text).ok()?;
-    Some(SceneFile::read(&root, &mut Faults::default()).views.len())
+    Some(SceneFile::read(&root, &Watcher::patient(), &mut Faults::default()).views.len())
 }
 
 fn fields<'n, 'a>(node: &'n Node<'a>) -> Option<&'n [Field<'a>]> {

@@ -59,12 +59,7 @@ impl Reader<'_> {
     /// The other views of a scene, each with the fields of a camera.
     pub(super) fn views(&mut self, node: &Node<'_>) -> Option<Vec<WrittenCamera>> {
         let items = self.list(node, "a list of views [(eye: ..., target: ...), ...]")?;
-        Some(
-            items
-                .iter()
-                .filter_map(|item| self.camera_called(item, "a view", "a view (eye: ..., target: ...)"))
-                .collect(),
-        )
+        Some(self.each(items, |reader, item| reader.camera_called(item, "a view", "a view (eye: ..., target: ...)")))
     }
 
     fn camera_called(&mut self, node: &Node<'_>, owner: &'static str, form: &str) -> Option<WrittenCamera> {

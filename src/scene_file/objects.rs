@@ -8,7 +8,7 @@ use std::collections::HashSet;
 impl Reader<'_> {
     pub(super) fn objects(&mut self, node: &Node<'_>) -> Option<Vec<WrittenObject>> {
         let items = self.list(node, "a list of objects [Sphere(...), ...]")?;
-        Some(items.iter().filter_map(|item| self.object(item)).collect())
+        Some(self.each(items, Self::object))
     }
 
     fn object(&mut self, node: &Node<'_>) -> Option<WrittenObject> {

@@ -2,6 +2,7 @@
 
 use super::reader::Reader;
 use super::{WrittenNumber, WrittenVector};
+use crate::progress::Watcher;
 use crate::scene_text::{Faults, Node, Span};
 
 /// A whole file of a camera path.
@@ -32,7 +33,8 @@ impl PathFile {
     /// What the tree says, as far as it is a camera path; the rest goes to `faults`.
     pub fn read(root: &Node<'_>, faults: &mut Faults) -> Self {
         const FORM: &str = "a camera path (keyframes: [(time: ..., eye: ..., target: ...), ...])";
-        let mut reader = Reader::new(faults);
+        let watcher = Watcher::patient();
+        let mut reader = Reader::new(faults, &watcher);
         let fields = reader.fields(root, "a camera path", FORM, &["keyframes"]);
         Self { keyframes: fields.and_then(|fields| reader.required(&fields, "keyframes", Reader::keyframes)) }
     }
@@ -41,7 +43,7 @@ impl PathFile {
 impl Reader<'_> {
     fn keyframes(&mut self, node: &Node<'_>) -> Option<(Vec<WrittenKeyframe>, Span)> {
         let items = self.list(node, "a list of keyframes [(time: ..., eye: ..., target: ...), ...]")?;
-        Some((items.iter().filter_map(|item| self.keyframe(item)).collect(), node.span))
+        Some((self.each(items, Self::keyframe), node.span))
     }
 
     fn keyframe(&mut self, node: &Node<'_>) -> Option<WrittenKeyframe> {

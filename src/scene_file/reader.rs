@@ -2,11 +2,13 @@
 
 use super::words::{closest, listed};
 use super::{Spanned, WrittenNumber, WrittenVector};
+use crate::progress::Watcher;
 use crate::scene_text::{Body, Faults, Field, Group, Name, Node, Span, Value, clipped, quoted};
 
 /// Reads values, and notes what is wrong with them.
 pub(super) struct Reader<'f> {
     faults: &'f mut Faults,
+    watcher: &'f Watcher<'f>,
 }
 
 /// The fields of one group, found by name.
@@ -38,8 +40,8 @@ impl<'n> Fields<'n> {
 }
 
 impl<'f> Reader<'f> {
-    pub(super) fn new(faults: &'f mut Faults) -> Self {
-        Self { faults }
+    pub(super) fn new(faults: &'f mut Faults, watcher: &'f Watcher<'f>) -> Self {
+        Self { faults, watcher }
     }
 
     pub(super) fn fault(&mut self, span: Span, message: impl FnOnce() -> String) {
@@ -177,6 +179,16 @@ impl<'f> Reader<'f> {
             _ => self.mismatch(node, &wanted),
         }
         None
+    }
+
+    /// The values of all items that can be read; fewer once the watcher has gone.
+    pub(super) fn each<'n, T>(
+        &mut self,
+        items: &'n [Node<'n>],
+        read: impl Fn(&mut Self, &'n Node<'n>) -> Option<T>,
+    ) -> Vec<T> {
+        let watcher = self.watcher;
+        items.iter().take_while(|_| !watcher.is_gone()).filter_map(|item| read(self, item)).collect()
     }
 
     /// `[...]`, or `(...)` without names.

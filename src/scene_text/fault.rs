@@ -1,6 +1,8 @@
 //! Faults, and how a person is shown them: all at once, in the order of the text, as compilers do.
 
 use super::Span;
+use crate::progress::Cancelled;
+use crate::text::{visible, visible_char};
 use std::fmt;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
@@ -11,6 +13,13 @@ pub struct Fault {
     pub message: String,
     /// The bytes it is about.
     pub span: Span,
+}
+
+impl From<Cancelled> for Fault {
+    /// A fault that is never shown: whoever reads the text asks the watcher before the result.
+    fn from(cancelled: Cancelled) -> Self {
+        Self { message: cancelled.to_string(), span: Span::at(0) }
+    }
 }
 
 /// The faults found so far. Of a text that is wrong everywhere only the first thousand are kept, the others counted.
@@ -248,24 +257,6 @@ fn back_by(text: &str, place: usize, columns: usize) -> usize {
         left -= width;
     }
     0
-}
-
-/// What stands for a character in a message: itself, unless it would move the cursor, start an escape sequence, or
-/// turn the direction of writing.
-fn visible_char(c: char) -> char {
-    match c {
-        '\t' => ' ',
-        '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{61c}' | '\u{feff}' => {
-            '\u{fffd}'
-        }
-        _ if c.is_control() => '\u{fffd}',
-        _ => c,
-    }
-}
-
-/// The text with nothing in it that controls a terminal.
-pub(crate) fn visible(text: &str) -> String {
-    text.chars().map(visible_char).collect()
 }
 
 /// A piece of the file for a message, cut off where it is long.

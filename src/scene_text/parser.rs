@@ -3,16 +3,22 @@
 use super::fault::{clipped, line_and_column, quoted};
 use super::tokens::{Token, Tokens};
 use super::{Body, Fault, Field, Group, MAX_DEPTH, Name, Node, Span, Value};
+use crate::progress::{Meter, Watcher};
 
 /// The one value that the text holds, or its first fault.
 ///
 /// # Errors
 /// Where the text is not RON.
 pub fn parse(text: &str) -> Result<Node<'_>, Fault> {
+    parse_metered(text, Meter::new(&Watcher::patient(), "", text.len()))
+}
+
+/// [`parse`], reporting to a watcher; a fault, too, if the watcher has gone.
+pub(super) fn parse_metered<'a>(text: &'a str, meter: Meter<'_>) -> Result<Node<'a>, Fault> {
     let mut tokens = Tokens::new(text);
     tokens.skip_attributes()?;
     let (next, span) = tokens.next()?;
-    let mut parser = Parser { text, tokens, next, span, previous_end: 0, open: Vec::new(), misaligned: None };
+    let mut parser = Parser { text, tokens, next, span, previous_end: 0, open: Vec::new(), misaligned: None, meter };
     if parser.next == Token::End {
         let message = "there is nothing here but comments or white space".to_owned();
         return Err(Fault { message, span: Span::at(text.len()) });
@@ -24,8 +30,9 @@ pub fn parse(text: &str) -> Result<Node<'_>, Fault> {
     }
 }
 
-struct Parser<'a> {
+struct Parser<'a, 'm> {
     text: &'a str,
+    meter: Meter<'m>,
     tokens: Tokens<'a>,
     /// The token to be read next, and its bytes.
     next: Token<'a>,
@@ -40,7 +47,7 @@ struct Parser<'a> {
 
 type Parsed<T> = Result<T, Fault>;
 
-impl<'a> Parser<'a> {
+impl<'a> Parser<'a, '_> {
     fn advance(&mut self) -> Parsed<Token<'a>> {
         let (next, span) = self.tokens.next()?;
         self.previous_end = self.span.end;
@@ -56,6 +63,7 @@ impl<'a> Parser<'a> {
 
     fn value(&mut self) -> Parsed<Node<'a>> {
         let start = self.span.start;
+        self.meter.reach(start as usize)?;
         let value = match self.next {
             Token::Word(word) => return self.word(word),
             Token::Open('(') => Value::Group(Box::new(Group { name: None, body: self.body()? })),

@@ -15,8 +15,11 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Answers for eight numbers in a register, and the instructions that give them.
 pub(super) trait Marks: Answers {
-    /// Does the work with registers that have such answers. The CPU has what they need.
-    fn run<W: Work>(work: W) -> W::Output;
+    /// Does the work with registers that have such answers.
+    ///
+    /// # Safety
+    /// The CPU has the instructions that they need.
+    unsafe fn run<W: Work>(work: W) -> W::Output;
 
     /// [`Number::lt`].
     fn lt(a: __m256, b: __m256) -> Self;
@@ -154,7 +157,8 @@ impl<M: Marks> Number for Register<M> {
 impl<M: Marks> Lanes for Register<M> {
     #[inline(always)]
     fn apart<W: Work>(work: W) -> W::Output {
-        M::run(work)
+        // SAFETY: outside this module the type is only named within `Marks::run`, whose caller has promised the same.
+        unsafe { M::run(work) }
     }
 
     #[inline(always)]

@@ -11,9 +11,13 @@ use std::arch::x86_64::{
 };
 use std::ops::{BitAnd, BitOr, Not};
 
-/// Does the work with the registers of AVX2, which this CPU has to have.
-pub(super) fn run<W: Work>(work: W) -> W::Output {
-    Mask256::run(work)
+/// Does the work with the registers of AVX2.
+///
+/// # Safety
+/// The CPU has AVX2, BMI1, LZCNT and POPCNT.
+pub(super) unsafe fn run<W: Work>(work: W) -> W::Output {
+    // SAFETY: as the caller has promised.
+    unsafe { Mask256::run(work) }
 }
 
 /// All bits of a number are set for yes, none for no.
@@ -21,13 +25,13 @@ pub(super) fn run<W: Work>(work: W) -> W::Output {
 struct Mask256(__m256);
 
 impl Marks for Mask256 {
-    fn run<W: Work>(work: W) -> W::Output {
+    unsafe fn run<W: Work>(work: W) -> W::Output {
         #[inline(never)]
         #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
         fn compiled_for_avx2<W: Work>(work: W) -> W::Output {
             work.run::<Register<Mask256>>()
         }
-        // SAFETY: `simd::run` has asked the CPU, and what runs on it comes here again by `Lanes::apart` alone.
+        // SAFETY: as the caller has promised.
         unsafe { compiled_for_avx2(work) }
     }
 

@@ -11,9 +11,13 @@ use std::arch::x86_64::{
 };
 use std::ops::{BitAnd, BitOr, Not};
 
-/// Does the work with the registers and masks of AVX-512, which this CPU has to have.
-pub(super) fn run<W: Work>(work: W) -> W::Output {
-    Bits::run(work)
+/// Does the work with the registers and masks of AVX-512.
+///
+/// # Safety
+/// The CPU has AVX-512 (F, VL, DQ, BW), AVX2, BMI1, BMI2, LZCNT and POPCNT.
+pub(super) unsafe fn run<W: Work>(work: W) -> W::Output {
+    // SAFETY: as the caller has promised.
+    unsafe { Bits::run(work) }
 }
 
 /// A bit for each number, 1 for yes. Only [`Marks::run`] has work done with it: where there is one, the CPU has AVX-512.
@@ -21,13 +25,13 @@ pub(super) fn run<W: Work>(work: W) -> W::Output {
 struct Bits(u8);
 
 impl Marks for Bits {
-    fn run<W: Work>(work: W) -> W::Output {
+    unsafe fn run<W: Work>(work: W) -> W::Output {
         #[inline(never)]
         #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,bmi1,bmi2,lzcnt,popcnt")]
         fn compiled_for_avx512<W: Work>(work: W) -> W::Output {
             work.run::<Register<Bits>>()
         }
-        // SAFETY: `simd::run` has asked the CPU, and what runs on it comes here again by `Lanes::apart` alone.
+        // SAFETY: as the caller has promised.
         unsafe { compiled_for_avx512(work) }
     }
 

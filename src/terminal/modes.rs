@@ -106,10 +106,18 @@ impl Modes {
         turn_on.push_str(&ansi(on));
     }
 
-    /// Turns everything off, newest first, after what is still on its way, so that nothing is torn. What fails is passed
-    /// over: the rest must be undone all the same. Replies that are on their way are waited for. Whether the terminal
-    /// took it all; asked again, it did.
-    pub(super) fn give_back(&mut self, keys: &File, output: &mut Output, unanswered: &mut Unanswered) -> bool {
+    /// Turns everything off, newest first. What still waits of a picture is dropped, between two of its sequences, so that
+    /// nothing is torn. What fails is passed over: the rest must be undone all the same. Replies that are on their way are
+    /// waited for. Keys are thrown away, unless they are to go to `typed`. Whether the terminal took it all; asked again,
+    /// it did.
+    pub(super) fn give_back(
+        &mut self,
+        keys: &File,
+        output: &mut Output,
+        unanswered: &mut Unanswered,
+        mut typed: Option<&mut Vec<u8>>,
+    ) -> bool {
+        output.drop_picture();
         let deadline = Instant::now() + PATIENCE;
         let mut heard = true;
         // It tells of releases until it has heard that it no longer should, and q is let go of about then. Its answer
@@ -127,9 +135,13 @@ impl Modes {
                     heard = output.finish(deadline);
                     // A terminal that has stopped reading does not answer either.
                     if heard {
-                        unanswered.drain(keys, deadline);
+                        let read = unanswered.drain(keys, deadline);
+                        if let Some(typed) = &mut typed {
+                            typed.extend(read);
+                        }
                     }
-                    signals::in_the_background(|| restore(keys, &before));
+                    let flushes = typed.is_none();
+                    signals::in_the_background(|| restore(keys, &before, flushes));
                 }
             }
         }
@@ -157,10 +169,12 @@ fn wait_for_foreground(keys: &File, signals: &Signals) -> io::Result<()> {
     Ok(())
 }
 
-/// Keys that were meant for us are not left for the shell. (TCSAFLUSH would do both, but it waits for the output to be
-/// read, and a terminal stopped by Ctrl-S does not read.)
-fn restore(keys: &File, before: &Termios) {
-    let _ = termios::tcflush(keys, QueueSelector::IFlush);
+/// Keys that were meant for us are not left for the shell, if they are to be flushed. (TCSAFLUSH would do both, but it waits
+/// for the output to be read, and a terminal stopped by Ctrl-S does not read.)
+fn restore(keys: &File, before: &Termios, flushes: bool) {
+    if flushes {
+        let _ = termios::tcflush(keys, QueueSelector::IFlush);
+    }
     let _ = termios::tcsetattr(keys, OptionalActions::Now, before);
 }
 

@@ -94,7 +94,17 @@ impl Output {
         }
     }
 
-    /// Waits until the terminal has taken everything, at most until the deadline. Whether it has.
+    /// Drops what the terminal has not taken of pictures, so that it need not be waited for: all that is printed, and the
+    /// sequences that place and colour it. What turns modes on or off and what asks for a reply stays.
+    pub(super) fn drop_picture(&mut self) {
+        let boundary = boundary(&self.pending, self.taken);
+        let rest = self.pending.split_off(boundary);
+        self.pending.extend(sequences(&rest).filter(|sequence| !paints(sequence)).flatten());
+        self.count(0);
+    }
+
+    /// Waits until the terminal has taken everything and takes more, at most until the deadline. Whether it does: what is
+    /// printed next then blocks nobody. (One that has stopped reading may still have had room for the last bytes.)
     pub(super) fn finish(&mut self, deadline: Instant) -> bool {
         while self.push().is_ok() && self.is_pending() {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -103,8 +113,47 @@ impl Output {
             }
             has_room(&self.file, left);
         }
-        !self.is_pending()
+        !self.is_pending() && has_room(&self.file, deadline.saturating_duration_since(Instant::now()))
     }
+}
+
+/// Where the sequence or the character ends that has begun before that place.
+fn boundary(bytes: &[u8], place: usize) -> usize {
+    let start = bytes[..place].iter().rposition(|&byte| byte == ESCAPE).unwrap_or(place);
+    let end = place.max(start + sequence_len(&bytes[start..]).unwrap_or(0));
+    let is_inside = |byte: &&u8| **byte & 0xc0 == 0x80;
+    end + bytes[end..].iter().take_while(is_inside).count()
+}
+
+/// The escape sequences of bytes that begin outside of one.
+fn sequences(mut bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    std::iter::from_fn(move || {
+        let start = bytes.iter().position(|&byte| byte == ESCAPE)?;
+        let (sequence, rest) = bytes[start..].split_at(sequence_len(&bytes[start..])?);
+        bytes = rest;
+        Some(sequence)
+    })
+}
+
+const ESCAPE: u8 = 0x1b;
+
+/// How long the escape sequence is that bytes begin with: of those that are sent, a control sequence ends with a letter, and
+/// a string with ST. `None`: there is none, or no end of it.
+fn sequence_len(bytes: &[u8]) -> Option<usize> {
+    match bytes {
+        [ESCAPE, b'[', rest @ ..] => Some(3 + rest.iter().position(|byte| (0x40..=0x7e).contains(byte))?),
+        [ESCAPE, b']', rest @ ..] => Some(4 + rest.windows(2).position(|end| end == b"\x1b\\")?),
+        [ESCAPE, _, ..] => Some(2),
+        _ => None,
+    }
+}
+
+/// Whether it only says where and in which colour something is printed.
+fn paints(sequence: &[u8]) -> bool {
+    let [ESCAPE, b'[', parameters @ .., end] = sequence else { return false };
+    // Modes and what concerns the keyboard have a mark before their parameters.
+    let is_plain = parameters.iter().all(|byte| matches!(byte, b'0'..=b'9' | b';' | b':'));
+    is_plain && matches!(end, b'm' | b'H' | b'G' | b'A'..=b'D' | b'J')
 }
 
 /// Waits until the terminal takes bytes, or is gone, at most so long. Whether it does, or is.
@@ -146,6 +195,33 @@ mod tests {
     use std::io::Read;
     use std::sync::mpsc::channel;
     use std::thread;
+
+    /// From whatever place on a picture is dropped: what was sent ends between two sequences and between two characters, and
+    /// modes, strings and queries are all sent, in their order.
+    #[test]
+    fn a_picture_is_dropped_between_its_sequences() {
+        let picture = "\x1b[?2026h\x1b[2;3H\x1b[38;2;1;2;3m▄é\x1b[58:2::1:2:3mx\x1b[C\x1b[m\x1b[2J\x1b[?2026l\x1b[c";
+        let (before, after) = ("\x1b[?1049h\x1b[>15u\x1b[?u", "\x1b]52;c;YQ==\x1b\\");
+        let sent = [before, picture, after].concat();
+        let kept = ["\x1b[?1049h", "\x1b[>15u", "\x1b[?u", "\x1b[?2026h", "\x1b[?2026l", "\x1b[c", after];
+        for taken in 0..=sent.len() {
+            let null = File::options().write(true).open("/dev/null").expect("there is always /dev/null");
+            let mut output = Output { pending: sent.clone().into_bytes(), taken, ..Output::of(null, false) };
+            output.drop_picture();
+            let shown = if output.pending.is_empty() { sent.clone() } else { string(&output.pending) };
+            let mut rest = &*shown;
+            for sequence in kept {
+                let at = rest.find(sequence).unwrap_or_else(|| panic!("{taken}: {sequence:?} in {shown:?}"));
+                rest = &rest[at + sequence.len()..];
+            }
+            let (begun, rest) = shown.split_at(boundary(sent.as_bytes(), taken).min(shown.len()));
+            assert!(sent.starts_with(begun) && !rest.contains(['▄', 'é', 'x', 'm', 'H', 'C']), "{taken}: {rest:?}");
+        }
+    }
+
+    fn string(bytes: &[u8]) -> String {
+        String::from_utf8(bytes.to_vec()).expect("no character is cut")
+    }
 
     /// Where the terminal can only be had as the shell has it, blocking, a frame that it does not take stops nobody.
     #[test]

@@ -3,13 +3,15 @@
 
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, OnceLock};
 
 /// The test, if one listens.
 static TEST: OnceLock<Mutex<UnixStream>> = OnceLock::new();
 /// Whether a worker is to panic.
 static WORKER: AtomicBool = AtomicBool::new(false);
+/// How many bytes the loop has read from the terminal.
+static READ: AtomicU64 = AtomicU64::new(0);
 
 /// From now on this test is told of every phase that is reached, and says what is to happen there.
 #[cfg(feature = "test-hooks")]
@@ -38,6 +40,22 @@ fn go_by(test: Option<MutexGuard<'_, UnixStream>>, phase: &str) -> io::Result<()
             Ok(())
         }
         _ => Ok(()),
+    }
+}
+
+/// Tells the test that the loop is about to sleep with no work under way and no timer, and how many bytes of the terminal
+/// it has read until then. So a test knows that nothing happens any more, without waiting for that.
+pub(crate) fn rest() -> io::Result<()> {
+    match test() {
+        Some(_) => reach(&format!("rest {}", READ.load(Ordering::SeqCst))),
+        None => Ok(()),
+    }
+}
+
+/// Counts bytes that the loop has read from the terminal.
+pub(super) fn count_read(bytes: usize) {
+    if cfg!(feature = "test-hooks") {
+        READ.fetch_add(bytes as u64, Ordering::SeqCst);
     }
 }
 

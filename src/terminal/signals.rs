@@ -2,11 +2,15 @@
 //!
 //! A signal that whoever started the program ignores stays ignored: a shell's `trap '' HUP`, or a job in the background
 //! of a shell without job control.
+//!
+//! Every other signal whose default action is to end the process ends the loop instead, except SIGKILL, and SIGSEGV and
+//! SIGBUS, whose handlers report a stack overflow. The usual four are caught. All others are held off like SIGTSTP and
+//! taken by one thread: their disposition stays the default, so that [`die_of`] only has to let one through. (To set a
+//! disposition back takes unsafe code, and signal-hook, which has it, does so for a list without real-time signals.)
 
 use nix::sys::signal::{SigSet, SigmaskHow, Signal, raise};
-use rustix::event::{PollFd, PollFlags};
 use rustix::fd::{AsFd, BorrowedFd};
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGTTOU, SIGWINCH};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGTTOU, SIGWINCH, SIGXFSZ};
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::sync::Arc;
@@ -27,8 +31,35 @@ pub struct Signals {
     stops: Option<Receiver<()>>,
 }
 
-/// The signals by which a program is asked to end.
-const DEADLY: [i32; 4] = [SIGTERM, SIGHUP, SIGINT, SIGQUIT];
+/// The signals by which a program is usually asked to end: they are caught.
+const CAUGHT: [i32; 4] = [SIGTERM, SIGHUP, SIGINT, SIGQUIT];
+
+/// The signals that are not held off, besides those that are caught.
+const LET_THROUGH: &[Signal] = &[
+    // No program can hold them off.
+    Signal::SIGKILL,
+    Signal::SIGSTOP,
+    // Faults of the program itself; the standard library reports a stack overflow from their handlers.
+    Signal::SIGSEGV,
+    Signal::SIGBUS,
+    // Their default is not to end the process.
+    Signal::SIGCHLD,
+    Signal::SIGURG,
+    Signal::SIGTTIN,
+    Signal::SIGTTOU,
+    #[cfg(target_os = "macos")]
+    Signal::SIGINFO,
+    // The failed write is the error: see `fail_large_writes`, and what the standard library does.
+    Signal::SIGXFSZ,
+    Signal::SIGPIPE,
+    // Caught.
+    Signal::SIGTERM,
+    Signal::SIGHUP,
+    Signal::SIGINT,
+    Signal::SIGQUIT,
+    Signal::SIGWINCH,
+    Signal::SIGCONT,
+];
 
 /// How long our own copy of a signal to the whole group may take.
 const DELIVERY: Duration = Duration::from_millis(100);
@@ -51,13 +82,8 @@ impl Signals {
         let (read, write) = UnixStream::pair()?;
         read.set_nonblocking(true)?;
         let ignored = ignored();
-        let is_ignored = |signal| contains(ignored, signal);
         let deadly = Arc::new(AtomicUsize::new(0));
-        // The flag before the pipe: who is woken must find it set.
-        for signal in DEADLY.into_iter().filter(|&signal| !is_ignored(signal)) {
-            signal_hook::flag::register_usize(signal, Arc::clone(&deadly), signal as usize)?;
-            signal_hook::low_level::pipe::register(signal, write.try_clone()?)?;
-        }
+        catch_deadly(ignored, &deadly, &write)?;
         let flag = |signal| -> io::Result<Arc<AtomicBool>> {
             let flag = Arc::new(AtomicBool::new(false));
             signal_hook::flag::register(signal, Arc::clone(&flag))?;
@@ -65,7 +91,8 @@ impl Signals {
             Ok(flag)
         };
         let (resized, continued) = (flag(SIGWINCH)?, flag(SIGCONT)?);
-        let stops = if is_ignored(SIGTSTP) { None } else { Some(hear_stops(Waker(write.try_clone()?))?) };
+        let stops = take_held_off(ignored, Arc::clone(&deadly), Waker(write.try_clone()?))?;
+        let stops = (!contains(ignored, SIGTSTP)).then_some(stops);
         Ok(Self { read, write, deadly, resized, continued, stops })
     }
 
@@ -90,22 +117,7 @@ impl Signals {
 
     /// The signal that asked the program to end, if one has.
     pub fn deadly(&self) -> Option<i32> {
-        match self.deadly.load(Ordering::SeqCst) {
-            0 => None,
-            signal => i32::try_from(signal).ok(),
-        }
-    }
-
-    /// Waits until a signal asks the program to end.
-    pub fn wait_for_deadly(&mut self) -> i32 {
-        loop {
-            if let Some(signal) = self.deadly() {
-                return signal;
-            }
-            // Whatever interrupts it, the next look finds out why.
-            let _ = rustix::event::poll(&mut [PollFd::new(&self.read, PollFlags::IN)], None);
-            self.drain();
-        }
+        signal_in(&self.deadly)
     }
 
     /// Whether the window may have changed its size since the last call.
@@ -150,20 +162,118 @@ impl Signals {
     }
 }
 
-/// SIGTSTP is not caught. It is held off from all threads and taken by one, so that its action stays the system's: that
-/// alone stops a process as its shell expects, and does not where nobody could continue it (started by a terminal
-/// without a shell, it is of an orphaned process group, and would hang for ever after SIGSTOP).
-fn hear_stops(mut waker: Waker) -> io::Result<Receiver<()>> {
-    let stop = stop_signal();
-    stop.thread_block()?;
+/// Catches the signals that ask the program to end, but for the ignored ones.
+fn catch_deadly(ignored: u64, deadly: &Arc<AtomicUsize>, wake: &UnixStream) -> io::Result<()> {
+    for signal in CAUGHT.into_iter().filter(|&signal| !contains(ignored, signal)) {
+        // The flag before the pipe: who is woken must find it set.
+        signal_hook::flag::register_usize(signal, Arc::clone(deadly), signal as usize)?;
+        signal_hook::low_level::pipe::register(signal, wake.try_clone()?)?;
+    }
+    Ok(())
+}
+
+fn signal_in(deadly: &AtomicUsize) -> Option<i32> {
+    match deadly.load(Ordering::SeqCst) {
+        0 => None,
+        signal => i32::try_from(signal).ok(),
+    }
+}
+
+/// For a command without a loop: from now on a signal that asks the program to end does this first, on a thread of its
+/// own, and then kills the program as if it had not been caught. Stops are not caught.
+///
+/// # Errors
+/// If the operating system refuses.
+pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> {
+    let (mut read, write) = UnixStream::pair()?;
+    let deadly = Arc::new(AtomicUsize::new(0));
+    let caught = Arc::clone(&deadly);
+    let wait = move || {
+        // An error: no signal could be caught.
+        if let (Ok(()), Some(signal)) = (read.read_exact(&mut [0]), signal_in(&caught)) {
+            last_act();
+            die_of(signal);
+        }
+    };
+    // Before the signals are caught: nobody else would hear of them.
+    thread::Builder::new().name("signals".to_owned()).spawn(wait)?;
+    catch_deadly(ignored(), &deadly, &write)
+}
+
+/// Holds off from all threads what is not caught, and has one thread take it: SIGTSTP goes into the channel, any other
+/// signal asks the program to end.
+///
+/// SIGTSTP is not caught, so that its action stays the system's: that alone stops a process as its shell expects, and does
+/// not where nobody could continue it (started by a terminal without a shell, it is of an orphaned process group, and would
+/// hang for ever after SIGSTOP).
+fn take_held_off(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> io::Result<Receiver<()>> {
+    let signals = held_off();
+    signals.thread_block()?;
+    let mut taken = Taken::of(&signals)?;
     let (heard, stops) = channel();
     let listen = move || {
-        while stop.wait().is_ok() && heard.send(()).is_ok() {
+        while let Ok(signal) = taken.next() {
+            // A signal that is held off stays pending even if it is ignored, so it arrives here all the same.
+            if contains(ignored, signal) {
+                continue;
+            }
+            if signal == SIGTSTP {
+                if heard.send(()).is_err() {
+                    break;
+                }
+            } else {
+                deadly.store(signal as usize, Ordering::SeqCst);
+            }
             waker.wake();
         }
     };
-    without_signals(|| thread::Builder::new().name("stops".to_owned()).spawn(listen))?;
+    without_signals(|| thread::Builder::new().name("signals".to_owned()).spawn(listen))?;
     Ok(stops)
+}
+
+/// The signals that are held off: also those that nix has no name for, the real-time signals.
+fn held_off() -> SigSet {
+    let mut signals = SigSet::all();
+    for &signal in LET_THROUGH {
+        signals.remove(signal);
+    }
+    signals
+}
+
+/// The signals that a process has pending, one by one. (`sigwait` would do, but nix returns its own enumeration, which has
+/// no real-time signals.)
+#[cfg(target_os = "linux")]
+struct Taken(nix::sys::signalfd::SignalFd);
+
+#[cfg(target_os = "linux")]
+impl Taken {
+    fn of(signals: &SigSet) -> io::Result<Self> {
+        use nix::sys::signalfd::{SfdFlags, SignalFd};
+        Ok(Self(SignalFd::with_flags(signals, SfdFlags::SFD_CLOEXEC)?))
+    }
+
+    /// Waits for the next one.
+    fn next(&mut self) -> io::Result<i32> {
+        let signal = self.0.read_signal()?.ok_or(io::ErrorKind::WouldBlock)?;
+        i32::try_from(signal.ssi_signo).map_err(io::Error::other)
+    }
+}
+
+/// The signals that a process has pending, one by one.
+#[cfg(not(target_os = "linux"))]
+struct Taken(SigSet);
+
+#[cfg(not(target_os = "linux"))]
+impl Taken {
+    #[expect(clippy::unnecessary_wraps, reason = "it can fail on Linux")]
+    fn of(signals: &SigSet) -> io::Result<Self> {
+        Ok(Self(*signals))
+    }
+
+    /// Waits for the next one.
+    fn next(&mut self) -> io::Result<i32> {
+        Ok(self.0.wait()? as i32)
+    }
 }
 
 fn stop_signal() -> SigSet {
@@ -231,10 +341,27 @@ impl Waker {
     }
 }
 
-/// Dies as if the signal had not been caught, so that the parent process sees it.
+/// Dies as if the signal had been neither caught nor held off, so that the parent process sees it.
 pub fn die_of(signal: i32) {
     // If even that fails, the caller goes on to exit.
-    let _ = signal_hook::low_level::emulate_default_handler(signal);
+    if CAUGHT.contains(&signal) {
+        let _ = signal_hook::low_level::emulate_default_handler(signal);
+    } else {
+        // Of all that is let through, what is pending for the thread itself comes first.
+        let _ = signal_hook::low_level::raise(signal);
+        let _ = held_off().thread_unblock();
+    }
+}
+
+/// Has writes beyond the limit on the size of files (`ulimit -f`) fail with an error, instead of SIGXFSZ ending the
+/// process. To be called once, by `main`, for all threads.
+///
+/// # Errors
+/// If the operating system refuses.
+pub fn fail_large_writes() -> io::Result<()> {
+    // A handler that does nothing suffices: the write has failed already. Unlike an ignored signal it goes back to the
+    // default in programs that are started.
+    signal_hook::flag::register(SIGXFSZ, Arc::default()).map(drop)
 }
 
 #[cfg(test)]

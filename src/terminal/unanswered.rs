@@ -76,16 +76,18 @@ impl Unanswered {
         left.checked_duration_since(Instant::now())
     }
 
-    /// Reads and throws away what comes up to the last answer, at most until the deadline, so that none is left for the
-    /// shell. It gets those that come later: they are waited for no longer.
-    pub(super) fn drain(&mut self, keys: &File, deadline: Instant) {
+    /// Reads what comes up to the last answer, at most until the deadline, so that none is left for the shell. It gets those
+    /// that come later: they are waited for no longer. Returns what was read.
+    pub(super) fn drain(&mut self, keys: &File, deadline: Instant) -> Vec<u8> {
+        let mut read = Vec::new();
         if !is_in_background(keys) {
-            self.read_up_to_last(keys, deadline);
+            self.read_up_to_last(keys, deadline, &mut read);
         }
         self.queries.clear();
+        read
     }
 
-    fn read_up_to_last(&mut self, mut keys: &File, deadline: Instant) {
+    fn read_up_to_last(&mut self, mut keys: &File, deadline: Instant, read: &mut Vec<u8>) {
         let mut buffer = [0; 4096];
         while let Some(patience) = self.patience() {
             let left = deadline.saturating_duration_since(Instant::now()).min(patience);
@@ -98,7 +100,10 @@ impl Unanswered {
                 Err(_) => return,
             }
             match keys.read(&mut buffer) {
-                Ok(count) if count > 0 => self.hear(&buffer[..count]),
+                Ok(count) if count > 0 => {
+                    self.hear(&buffer[..count]);
+                    read.extend_from_slice(&buffer[..count]);
+                }
                 // It is gone.
                 _ => return,
             }

@@ -186,6 +186,69 @@ fn names_of_files_reach_the_terminal_without_their_control_characters() {
     }
 }
 
+/// What a message may not hold: it would control the terminal, or turn the direction of writing.
+fn is_unprintable(c: char) -> bool {
+    let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}');
+    c != '\n' && c.is_control() || turns
+}
+
+/// A value that would set the title, clear the screen and turn what follows around.
+const EVIL: &str = "\x1b]0;X\x07\x1b[2J\u{202e}\u{2066}\u{200f}\u{61c}\u{9b}1mx";
+
+#[track_caller]
+fn says_nothing_unprintable(folder: &Folder, arguments: &str) {
+    let run = folder.run(arguments);
+    let said = String::from_utf8_lossy(&run.stdout) + &*run.stderr;
+    assert!(!said.contains(is_unprintable), "{arguments:?}: {said:?}");
+}
+
+/// The flags that take a value, as a command's help lists them.
+fn flags_with_values(help: &str) -> Vec<String> {
+    let lines = help.lines().map(str::trim_start).filter(|line| line.starts_with('-'));
+    let flags = lines.filter_map(|line| line[line.find("--")?..].split_once(['<', '[']));
+    flags.map(|(flag, _)| flag.trim_end_matches([' ', '=']).to_owned()).collect()
+}
+
+/// The same of every flag, every command and every other argument, whether clap quotes it or the program.
+#[test]
+fn no_argument_reaches_the_terminal_unquoted() {
+    let folder = Folder::new();
+    let help = folder.run("--help").text();
+    let listed =
+        help.split("Commands:\n").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("there are commands");
+    let commands: Vec<_> = listed.lines().filter_map(|line| line.split_whitespace().next()).chain([""]).collect();
+    assert!(commands.len() > 9, "{commands:?}");
+    let mut count = 0;
+    for command in commands {
+        for flag in flags_with_values(&folder.run(&format!("{command} --help")).text()) {
+            // Also beside a scene that would do.
+            says_nothing_unprintable(&folder, &format!("{command} {flag}={EVIL}"));
+            says_nothing_unprintable(&folder, &format!("{command} ball.ron {flag}={EVIL}"));
+            count += 1;
+        }
+        for arguments in [EVIL, &format!("ball.ron {EVIL}"), &format!("--{EVIL}"), &format!("-{EVIL}")] {
+            says_nothing_unprintable(&folder, &format!("{command} {arguments}"));
+        }
+    }
+    assert!(count > 60, "{count} flags were found");
+}
+
+/// What there is not enough memory for is refused before it is begun.
+#[cfg(target_os = "linux")]
+#[test]
+fn too_little_memory_is_an_error_message() {
+    let folder = Folder::new();
+    let count: u32 = 100_000;
+    folder.write("big.stl", [&[0; 80][..], &count.to_le_bytes(), &vec![0; 50 * count as usize]].concat());
+    folder.write("big.ron", BALL.replace("objects: [", &format!("objects: [{}", " ".repeat(3 << 20))));
+    for name in ["big.stl", "big.ron"] {
+        let script = format!("ulimit -v 70000; exec '{}' check {name}", env!("CARGO_BIN_EXE_termtrace"));
+        let mut command = std::process::Command::new("sh");
+        let run = super::finish(command.args(["-c", &script]).current_dir(folder.path("")));
+        run.fails_in_a_line(2, "there is not enough memory");
+    }
+}
+
 /// As for the scene, `-` is the standard stream.
 #[test]
 fn a_dash_is_standard_output() {

@@ -11,6 +11,8 @@ mod errors;
 mod explain;
 mod formats;
 mod golden;
+mod inputs;
+mod outputs;
 mod pictures;
 mod pipes;
 #[path = "../pty/mod.rs"]
@@ -69,6 +71,7 @@ impl Folder {
     /// The program, called here; no argument has a blank in it. Whoever runs the tests has no settings: their folder is
     /// `settings` in this one.
     pub(crate) fn command(&self, arguments: &str) -> Command {
+        pty::reset_for_children();
         let mut command = Command::new(env!("CARGO_BIN_EXE_termtrace"));
         for (name, _) in std::env::vars_os().filter(|(name, _)| name.as_encoded_bytes().starts_with(b"TERMTRACE_")) {
             command.env_remove(name);

@@ -45,6 +45,29 @@ fn the_manual_has_a_page_for_each_command() {
     folder.run("man nothing").fails_in_a_line(2, "there is no command \"nothing\"");
 }
 
+/// A link that leads nowhere, or in a circle, is in its folder and is no file.
+#[test]
+fn a_name_that_was_just_given_is_not_proposed() {
+    let folder = Folder::new();
+    for (name, target) in [("dangling.ron", "nowhere.ron"), ("circle.ron", "circle.ron"), ("bal.ron", "nowhere.ron")] {
+        std::os::unix::fs::symlink(target, folder.path(name)).expect("a link can be made");
+    }
+    for command in ["", "frame", "check"] {
+        for (name, reason) in [
+            ("dangling.ron", "there is no such file"),
+            ("./dangling.ron", "there is no such file"),
+            ("circle.ron", "cannot be read: Too many levels of symbolic links (os error 40)"),
+            // And neither is another one of them.
+            ("dangling", "there is no such file"),
+            ("circel.ron", "there is no such file"),
+            ("bal.ron", "there is no such file; did you mean ball.ron?"),
+        ] {
+            let run = folder.run(&format!("{command} {name}"));
+            run.fails_in_a_line(2, &format!("termtrace: {name}: {reason}\n"));
+        }
+    }
+}
+
 #[test]
 fn who_misspells_a_scene_or_a_command_is_helped() {
     let folder = Folder::new();

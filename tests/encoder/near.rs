@@ -2,6 +2,7 @@
 //! formulas are worked out here in f64, from their sources; the library's own are not asked.
 
 use super::screens::Screens;
+use std::sync::LazyLock;
 use termtrace::color::Srgb8;
 use termtrace::encode::Quality;
 use termtrace::grid::{Cell, Glyph, Grid, Ink};
@@ -78,16 +79,28 @@ pub(crate) fn square(a: Srgb8, b: Srgb8) -> u32 {
 
 /// In `OKLab`.
 pub(crate) fn distance(a: Srgb8, b: Srgb8) -> f64 {
+    // Most cells are exact.
+    if a == b {
+        return 0.0;
+    }
     let squares = oklab(a).into_iter().zip(oklab(b)).map(|(a, b)| (a - b) * (a - b));
     squares.sum::<f64>().sqrt()
 }
 
+/// The linear light of an encoded band (IEC 61966-2-1), from a table: the powers took 35 % of the time of a sequence.
+fn linear(band: u8) -> f64 {
+    static LINEAR: LazyLock<[f64; 256]> = LazyLock::new(|| {
+        std::array::from_fn(|band| {
+            let x = band as f64 / 255.0;
+            if x <= 0.040_45 { x / 12.92 } else { libm::pow((x + 0.055) / 1.055, 2.4) }
+        })
+    });
+    LINEAR[usize::from(band)]
+}
+
 /// By Ottosson's matrices.
 fn oklab(color: Srgb8) -> [f64; 3] {
-    let [r, g, b] = [color.r, color.g, color.b].map(|band| {
-        let x = f64::from(band) / 255.0;
-        if x <= 0.040_45 { x / 12.92 } else { libm::pow((x + 0.055) / 1.055, 2.4) }
-    });
+    let [r, g, b] = [color.r, color.g, color.b].map(linear);
     let times = |m: [[f64; 3]; 3], v: [f64; 3]| m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
     let cones = [
         [0.412_221_470_8, 0.536_332_536_3, 0.051_445_992_9],

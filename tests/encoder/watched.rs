@@ -43,8 +43,12 @@ impl Watched {
         Self { pieces, ..self }
     }
 
-    /// The window has another size.
+    /// The window has another size. The encoder finds that out by the next frame; where that has the size of the last one
+    /// again, it has to be told.
     pub(crate) fn resize(&mut self, size: Size) {
+        if self.last.as_ref().is_some_and(|last| last.size() == size) {
+            self.encoder.forget();
+        }
         self.screens.resize(size);
     }
 

@@ -16,3 +16,6 @@ mod progress;
 mod scene_syntax;
 mod scene_values;
 mod scenes;
+mod text_corpus;
+#[path = "../text_laws/mod.rs"]
+mod text_laws;

@@ -4,13 +4,16 @@ use crate::mesh_writers::{WRITERS, ball, written};
 use std::fs;
 use std::num::NonZeroU32;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::Mutex;
 use termtrace::color::Srgb8;
 use termtrace::framebuffer::Resolution;
 use termtrace::mesh_file::MeshFile;
-use termtrace::progress::{Progress, Watcher, Work};
+use termtrace::progress::{Cancellation, Progress, Watcher, Work};
 use termtrace::render::render;
 use termtrace::scene::{Draft, Scene};
+use termtrace::scene_file::SceneFile;
+use termtrace::scene_text::{Faults, parse};
 use termtrace::tone::tone;
 
 /// A ball of so many triangles that a test has read.
@@ -83,6 +86,49 @@ fn a_scenes_meshes_are_watched() {
     for most in 1..=reports.len() {
         assert!(heard(most, load).1.is_none(), "given up after {most}");
     }
+}
+
+/// A scene of so many balls.
+fn balls(count: usize) -> String {
+    let balls = "Sphere(center: (1, 2, 3), radius: 0.5),\n".repeat(count);
+    format!("(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [{balls}])")
+}
+
+#[test]
+fn a_scenes_text_is_watched_and_can_be_given_up() {
+    let text = balls(30_000);
+    let load = |watcher: &Watcher<'_>| Draft::from_bytes("x.ron", text.as_bytes(), watcher).expect("it is a scene");
+    let (reports, draft) = heard(usize::MAX, load);
+    assert!(draft.is_some_and(|draft| draft.finish().objects().len() == 30_000));
+    assert_steps(&reports, &Work::Parsing("x.ron".to_owned()), 256 << 10, text.len());
+    for most in 1..=reports.len() {
+        let (heard, draft) = heard(most, load);
+        assert_eq!((heard.len(), draft.is_none()), (most, true));
+    }
+}
+
+/// What comes after the text's syntax tree gives up, too.
+#[test]
+fn a_scenes_objects_are_given_up() {
+    let cancelled = Cancellation::default();
+    let hear = |_| ControlFlow::Continue(());
+    let watcher = Watcher::new(&hear).cancelled_by(&cancelled);
+    let (text, mut faults) = (balls(10), Faults::default());
+    let root = parse(&text).expect("it is RON");
+    assert_eq!(SceneFile::read(&root, &watcher, &mut faults).objects.len(), 10);
+    cancelled.cancel();
+    assert_eq!(SceneFile::read(&root, &watcher, &mut faults).objects.len(), 0);
+    // While the objects are checked: at the first mesh.
+    let cancelled = Cancellation::default();
+    let needed = Mutex::new(0);
+    let hear_need = |_: &Path| {
+        *needed.lock().expect("nobody panics") += 1;
+        cancelled.cancel();
+    };
+    let watcher = Watcher::new(&hear).with_needs(&hear_need).cancelled_by(&cancelled);
+    let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Mesh(path: "a.obj"), Mesh(path: "b.obj")])"#;
+    assert!(matches!(Draft::from_bytes("x.ron", text.as_bytes(), &watcher), Ok(None)));
+    assert_eq!(needed.into_inner().expect("nobody panics"), 1, "meshes");
 }
 
 #[test]

@@ -92,6 +92,31 @@ fn the_picture_is_written_in_five_formats_and_never_over_a_file() {
     leave(&mut session);
 }
 
+/// As on a full disk, an error comes in the middle of the file.
+#[test]
+fn a_full_disk_leaves_nothing_of_a_picture_and_the_scene_as_it_was() {
+    let folder = folder();
+    // Longer than a file may become.
+    let text = format!("// {}\n{TEXT}", "x".repeat(4000));
+    fs::write(folder.path().join("ball.ron"), &text).expect("a file can be written");
+    let limits = "trap '' XFSZ && ulimit -f 2";
+    let program = env!("CARGO_BIN_EXE_termtrace");
+    let script = format!("cd '{}' && {limits} && exec '{program}' ball.ron", folder.path().display());
+    let mut session = Start::shell(&script).spawn();
+    sees_all(&mut session, TEXT);
+    session.send(b"o");
+    session.wait_for_text("write the picture as");
+    session.send(b"s");
+    session.wait_for_text("it could not be written: File too large");
+    session.send(b"Y");
+    session.wait_for_text("  yes");
+    session.send(b"y");
+    session.wait_for_text("the scene's file is as it was: File too large");
+    assert_eq!(read(&folder, "ball.ron"), text);
+    assert_eq!(fs::read_dir(folder.path()).expect("the folder is there").count(), 1);
+    leave(&mut session);
+}
+
 #[test]
 fn a_view_is_written_into_the_scene_after_a_yes() {
     let folder = folder();

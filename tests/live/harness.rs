@@ -9,6 +9,7 @@ use std::{
 };
 
 use crate::pty::{Colour, Modes, SOON, Session, Size, Start};
+use nix::sys::signal::{SigSet, SigmaskHow};
 use rustix::process::{Pid, Signal, test_kill_process};
 
 /// Runs a script to its end.
@@ -143,6 +144,35 @@ fn a_typed_interrupt_reaches_the_foreground() {
     session.wait_for_text("ready");
     session.send(b"\x03");
     assert_eq!(session.wait_exit(SOON).signal(), Some(Signal::INT.as_raw()));
+}
+
+/// A shell without job control starts `cargo test &` like this, and `nohup` does so for SIGHUP.
+#[test]
+fn signals_that_the_tests_parent_ignores_are_not_ignored_by_their_children() {
+    let tests = std::env::current_exe().expect("a process has a program");
+    let name = module_path!().split_once("::").expect("this is a module of the test program").1;
+    let output = Command::new("sh")
+        .args(["-c", "trap '' HUP INT QUIT TERM TSTP; exec \"$@\"", "sh"])
+        .arg(tests)
+        .args(["--exact", "--test-threads", "1"])
+        .args(
+            ["death_by_a_signal_is_seen", "a_typed_interrupt_reaches_the_foreground"]
+                .map(|test| format!("{name}::{test}")),
+        )
+        .output()
+        .expect("there is a shell on every system");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && said.contains("2 passed"), "{said}");
+}
+
+#[test]
+fn signals_that_the_tests_block_are_not_blocked_in_their_children() {
+    let before = SigSet::all().thread_swap_mask(SigmaskHow::SIG_BLOCK).expect("signals can be blocked");
+    let mut session = Start::shell("printf ready; exec sleep 100").spawn();
+    before.thread_set_mask().expect("signals can be unblocked");
+    session.wait_for_text("ready");
+    session.signal(Signal::TERM);
+    assert_eq!(session.wait_exit(SOON).signal(), Some(Signal::TERM.as_raw()));
 }
 
 #[test]

@@ -115,6 +115,7 @@ ways_out! {
     sighup: Way::Death(Signal::HUP);
     sigint: Way::Death(Signal::INT);
     sigquit: Way::Death(Signal::QUIT);
+    sigusr1: Way::Death(Signal::USR1);
     stop_by_sigtstp: Way::StopSignal;
     stop_by_the_ctrl_z_key: Way::StopKey;
 }
@@ -282,19 +283,27 @@ fn random(seed: &mut u32) -> u32 {
 /// Fifty kills at random times, from before the start to the middle of a flight.
 fn kill_at_random_times(signal: Signal) {
     let mut seed = 0x5eed_0000 + signal.as_raw().unsigned_abs();
-    for _ in 0..50 {
-        let mut session = Start::new(PROGRAM).arg(SCENE).spawn();
-        session.send(b"w");
-        let time = Duration::from_micros(u64::from(random(&mut seed) % 150_000));
-        session.sees(time, |_| false);
-        session.signal(signal);
-        let status = session.wait_exit(SOON);
-        assert_eq!(status.signal(), Some(signal.as_raw()), "after {time:?}");
-        // What was typed before raw mode was on is echoed: that is nobody's fault.
-        session.assert_clean();
-        assert!(!session.seen().screen().is_alternate());
-        assert!(session.seen().screen().cursor().is_some());
-    }
+    let times: Vec<_> = (0..50).map(|_| Duration::from_micros(u64::from(random(&mut seed) % 150_000))).collect();
+    // Two at once: most of the time is spent on waiting, and more would not be read in time on a busy machine.
+    std::thread::scope(|scope| {
+        for times in times.chunks(25) {
+            scope.spawn(|| times.iter().for_each(|&time| kill_after(time, signal)));
+        }
+    });
+}
+
+/// Kills a flight at that time after its start.
+fn kill_after(time: Duration, signal: Signal) {
+    let mut session = Start::new(PROGRAM).arg(SCENE).spawn();
+    session.send(b"w");
+    session.sees(time, |_| false);
+    session.signal(signal);
+    let status = session.wait_exit(SOON);
+    assert_eq!(status.signal(), Some(signal.as_raw()), "after {time:?}");
+    // What was typed before raw mode was on is echoed: that is nobody's fault.
+    session.assert_clean();
+    assert!(!session.seen().screen().is_alternate());
+    assert!(session.seen().screen().cursor().is_some());
 }
 
 #[test]
@@ -321,8 +330,8 @@ fn fifty_kills_by_sigquit() {
 #[test]
 fn a_storm_of_resizes_leaves_a_whole_picture() {
     let mut session = looking();
-    let storm = session.storm();
-    session.sees(Duration::from_millis(300), |_| false);
+    let (storm, before) = (session.storm(), session.seen().bytes().len());
+    session.wait_for("frames of other sizes", SOON, |seen| seen.bytes().len() > before + 100_000);
     drop(storm);
     let (size, before) = (Size::cells(71, 21), session.seen().bytes().len());
     session.resize(size);
@@ -448,15 +457,19 @@ fn a_job_stopped_in_flight_can_be_killed() {
     session.assert_clean();
 }
 
+/// What a shell does to wait until its job in the background is stopped, and to say so.
+const PARKED: &str = "until ps -o stat= -p $! | grep -q '^T'; do sleep 0.01; done; echo parked";
+
 /// In the background it waits to be brought to the foreground before it touches the terminal; after `bg` too.
 #[test]
 fn in_the_background_it_leaves_the_terminal_alone() {
     let script = format!(
-        "set -m; '{PROGRAM}' '{SCENE}' & read line; jobs; fg >/dev/null; echo \"status <$?>\"; read line; bg; \
-         read line; fg >/dev/null; echo \"ended <$?>\"; read line"
+        "set -m; '{PROGRAM}' '{SCENE}' & {PARKED}; read line; jobs; fg >/dev/null; echo \"status <$?>\"; read line; bg; \
+         {PARKED}; read line; fg >/dev/null; echo \"ended <$?>\"; read line"
     );
     let mut session = Start::shell(&script).spawn();
-    assert!(!session.sees(Duration::from_millis(400), |seen| seen.has(b"\x1b")), "escapes from the background");
+    session.wait_for_text("parked");
+    assert!(!session.seen().has(b"\x1b"), "escapes from the background");
     session.assert_clean();
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
@@ -464,13 +477,18 @@ fn in_the_background_it_leaves_the_terminal_alone() {
     session.wait_for_text("status <148>");
     let before = session.seen().bytes().len();
     session.send(b"\n");
-    assert!(!session.sees(Duration::from_millis(400), |seen| seen.bytes()[before..].contains(&0x1b)), "after bg");
+    session.wait_for("it to be parked again", SOON, |seen| {
+        seen.bytes()[before..].windows(6).any(|text| text == b"parked")
+    });
+    assert!(!session.seen().bytes()[before..].contains(&0x1b), "after bg");
     session.assert_clean();
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
     // It was continued twice, and has taken the terminal once: giving it back throws keys away.
     let leaves = |seen: &Seen| seen.bytes()[before..].windows(8).any(|bytes| bytes == b"\x1b[?1049l");
-    assert!(!session.sees(Duration::from_millis(200), leaves), "taken a second time");
+    session.send(b"i");
+    session.wait_for_text("rays/s");
+    assert!(!leaves(session.seen()), "taken a second time");
     session.send(b"q");
     session.wait_for_text("ended <0>");
     session.assert_clean();
@@ -482,11 +500,11 @@ fn killed_in_the_background_it_ends() {
     let stopped = 128 + Signal::TTOU.as_raw();
     for arguments in [format!("'{SCENE}'"), "doctor".to_owned()] {
         let script = format!(
-            "set -m; '{PROGRAM}' {arguments} & read line; jobs; kill %1; kill -CONT %1; \
+            "set -m; '{PROGRAM}' {arguments} & {PARKED}; read line; jobs; kill %1; kill -CONT %1; \
              while wait %1; s=$?; [ $s = {stopped} ]; do sleep 0.05; done; echo \"ended <$s>\"; read line"
         );
         let mut session = Start::shell(&script).spawn();
-        session.sees(Duration::from_millis(400), |_| false);
+        session.wait_for_text("parked");
         session.send(b"\n");
         session.wait_for_text(&format!("ended <{}>", 128 + Signal::TERM.as_raw()));
         assert!(!session.seen().has(b"\x1b"), "it was never ours");
@@ -497,9 +515,10 @@ fn killed_in_the_background_it_ends() {
 /// A part of a job does not stop alone: its shell would not know of it, and never continue it.
 #[test]
 fn in_the_background_the_whole_job_stops() {
-    let script = format!("set -m; ('{PROGRAM}' '{SCENE}'; echo \"ended <$?>\") & read line; jobs; fg; read line");
+    let script =
+        format!("set -m; ('{PROGRAM}' '{SCENE}'; echo \"ended <$?>\") & {PARKED}; read line; jobs; fg; read line");
     let mut session = Start::shell(&script).spawn();
-    session.sees(Duration::from_millis(400), |_| false);
+    session.wait_for_text("parked");
     session.send(b"\n");
     // Not on the screen: the picture soon takes its place.
     session.wait_for("the stop", SOON, |seen| seen.has(b"Stopped"));
@@ -514,11 +533,12 @@ fn in_the_background_the_whole_job_stops() {
 #[test]
 fn the_settings_given_back_are_those_of_the_foreground() {
     let script = format!(
-        "set -m; foreground=$(stty -g); stty -icanon; '{PROGRAM}' '{SCENE}' & read line; stty \"$foreground\"; \
+        "set -m; foreground=$(stty -g); stty -icanon; '{PROGRAM}' '{SCENE}' & {PARKED}; read line; stty \"$foreground\"; \
          fg >/dev/null; echo \"ended <$?>\"; read line"
     );
     let mut session = Start::shell(&script).spawn();
-    assert!(!session.sees(Duration::from_millis(400), |seen| seen.has(b"\x1b")), "escapes from the background");
+    session.wait_for_text("parked");
+    assert!(!session.seen().has(b"\x1b"), "escapes from the background");
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
     session.send(b"q");

@@ -10,7 +10,7 @@ use std::io::Write;
 use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
 use std::process::Command;
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 use tempfile::TempDir;
 use termtrace::capabilities::CellMode;
@@ -24,11 +24,15 @@ fn big_ball() -> Vec<u8> {
     written(&ball(150_000), "binary.stl")
 }
 
-/// A mesh that comes piece by piece, when the test wants.
+/// A mesh that comes through a pipe when the test wants. Until then a byte of it comes now and then, because a pipe that
+/// delivers nothing for a second is given up.
 struct Source {
     folder: TempDir,
-    pieces: Sender<Vec<u8>>,
+    rest: Sender<Vec<u8>>,
 }
+
+/// Many times in a second.
+const NOW_AND_THEN: Duration = Duration::from_millis(100);
 
 impl Source {
     fn new() -> Self {
@@ -36,29 +40,36 @@ impl Source {
         let path = folder.path().join("ball.stl");
         let made = Command::new("mkfifo").arg(&path).status();
         assert!(made.is_ok_and(|status| status.success()), "a pipe with a name can be made");
-        let (pieces, wanted) = channel::<Vec<u8>>();
+        let (rest, wanted) = channel::<Vec<u8>>();
         std::thread::spawn(move || {
             // This waits for the child; it may leave in the middle.
-            let pipe = fs::OpenOptions::new().write(true).open(path);
-            pipe.and_then(|mut pipe| wanted.iter().try_for_each(|piece| pipe.write_all(&piece)))
+            let mut pipe = fs::OpenOptions::new().write(true).open(path)?;
+            // The balls of the tests begin alike.
+            for (written, byte) in big_ball().into_iter().enumerate() {
+                match wanted.recv_timeout(NOW_AND_THEN) {
+                    Ok(whole) => return pipe.write_all(&whole[written..]),
+                    Err(RecvTimeoutError::Timeout) => pipe.write_all(&[byte])?,
+                    Err(RecvTimeoutError::Disconnected) => break,
+                }
+            }
+            Ok(())
         });
-        Self { folder, pieces }
+        Self { folder, rest }
     }
 
     fn path(&self) -> PathBuf {
         self.folder.path().join("ball.stl")
     }
 
-    /// The rest of it.
-    fn end(&mut self, bytes: Vec<u8>) {
-        self.pieces.send(bytes).expect("the child reads");
-        self.pieces = channel().0;
+    /// This is the mesh: what is left of it comes now.
+    fn end(&mut self, whole: Vec<u8>) {
+        self.rest.send(whole).expect("the child reads");
     }
 }
 
-/// Looks at a mesh of which nothing comes yet.
+/// Looks at a mesh of which next to nothing comes yet.
 fn waiting(start: Start, source: &Source) -> Session {
-    let mut session = start.arg(source.path()).spawn();
+    let mut session = start.arg(source.path()).says_when_it_rests().spawn();
     session.wait_for_text("reading ball.stl");
     session
 }
@@ -118,26 +129,27 @@ fn it_can_be_left_while_it_reads() {
     }
 }
 
-/// The clock ticks of CPU that a process has used.
-#[cfg(target_os = "linux")]
-fn ticks(session: &Session) -> u64 {
-    let stat = fs::read_to_string(format!("/proc/{}/stat", session.pid().as_raw_nonzero())).expect("it runs");
-    let fields: Vec<&str> = stat.rsplit(") ").next().expect("after the name").split(' ').collect();
-    fields[11].parse::<u64>().expect("user time") + fields[12].parse::<u64>().expect("system time")
-}
-
-/// Where nothing comes, nothing is said or computed; a key that moves has nothing to move.
-#[cfg(target_os = "linux")]
+/// Where next to nothing comes, nothing is said or computed; a key that moves has nothing to move.
 #[test]
-fn while_nothing_comes_nothing_happens() {
+fn while_next_to_nothing_comes_nothing_happens() {
     let source = Source::new();
     let mut session = waiting(program(), &source);
     session.send(b"w");
-    session.sees(Duration::from_secs(1), |_| false);
-    let (before, bytes) = (ticks(&session), session.seen().bytes().len());
-    session.sees(Duration::from_secs(1), |_| false);
-    assert_eq!((ticks(&session), session.seen().bytes().len()), (before, bytes), "ticks and bytes");
+    session.wait_for_rest();
     leave(&mut session, WAYS[0]);
+}
+
+/// A pipe that nothing is written to keeps nobody waiting: the view hears keys, says what is wrong, and ends.
+#[test]
+fn a_pipe_without_a_writer_is_told_when_the_terminal_is_back() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = folder.path().join("ball.stl");
+    nix::unistd::mkfifo(&path, nix::sys::stat::Mode::S_IRWXU).expect("a pipe can be made");
+    let mut session = program().arg(&path).spawn();
+    session.wait_for_text("reading ball.stl");
+    assert_eq!(session.wait_exit(SOON).code(), Some(2));
+    session.assert_clean();
+    session.wait_for_text("ball.stl: this pipe delivered nothing for a second");
 }
 
 #[test]
@@ -176,10 +188,11 @@ fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
     session.send(b"w");
     session.wait_for("another view", SOON, |seen| eye(seen) != before);
     session.send(b"ri");
-    pass(phases);
-    session.wait_for("the scene", SOON, |seen| shows(seen.screen(), &wanted));
-    let bytes = session.seen().bytes().len();
-    assert!(!session.sees(Duration::from_millis(500), |seen| seen.bytes().len() != bytes), "then it rests");
+    phases.send(Answer::GoOn);
+    phases.count_on("", &mut session, SOON, |seen| shows(seen.screen(), &wanted));
+    phases.count_until_rest("", &mut session);
+    drop(phases);
+    assert!(shows(session.seen().screen(), &wanted), "at rest there is the scene");
     leave(&mut session, (b"q", None));
 }
 
@@ -187,10 +200,12 @@ fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
 #[test]
 fn the_scene_is_seen_from_where_the_sketch_was() {
     let (mut source, mut phases) = (Source::new(), Phases::new());
-    let mut session = sketched(program(), &mut source, &mut phases);
-    session.send(b"id");
-    // The glide ends.
-    session.sees(Duration::from_secs(1), |_| false);
+    let mut session = sketched(program().arg("--reduced-motion"), &mut source, &mut phases);
+    session.send(b"i");
+    session.wait_for_text("rays/s");
+    let start = eye(session.seen());
+    session.send(b"d");
+    session.wait_for("a step", SOON, |seen| eye(seen) != start);
     let there = eye(session.seen());
     pass(phases);
     session.wait_for("the scene", SOON, |seen| !seen.screen().text().concat().contains('╯'));
@@ -283,6 +298,23 @@ fn what_is_wrong_with_a_mesh_is_told_when_the_terminal_is_back() {
     let told = String::from_utf8_lossy(session.seen().bytes()).into_owned();
     assert_eq!(told.matches(message).count(), 1, "{told}");
     assert!(told.rfind("\x1b[?") < told.find(message), "told before the terminal is given back");
+}
+
+/// The picture is there, and only its changes are not.
+#[test]
+fn what_cannot_be_watched_is_said() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = folder.path().join("x.ron");
+    fs::write(&path, include_str!("../../scenes/three_spheres.ron")).expect("a file can be written");
+    let mut phases = Phases::new();
+    let mut session = program().arg(&path).env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
+    phases.wait_for_on("watching", &mut session);
+    phases.answer(Answer::Error);
+    session.wait_for_text("changes of the scene's files will not be seen: a test asked for an error");
+    session.send(b" ");
+    let wanted = picture(&Scene::load(&path).expect("it is a scene"), Size::cells(80, 24));
+    session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+    leave(&mut session, (b"q", None));
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod mesh_writers;
 mod mouse;
 mod moving;
 mod orbit;
+mod paths;
 #[path = "../pty/mod.rs"]
 mod pty;
 mod questions;
@@ -19,4 +20,6 @@ mod reduced_motion;
 mod refining;
 mod scenes;
 mod settings;
+mod signals;
 mod views;
+mod windows;

@@ -1,7 +1,7 @@
 //! The mouse: reports in, the camera that is printed on leaving and the screen out. The screen has 40x12 cells of 10x20
 //! pixels.
 
-use crate::orbit::{BALL, TEAPOT, camera, load, looking, turned, wait_for_rest};
+use crate::orbit::{BALL, TEAPOT, camera, load, looking, turned};
 use crate::pty::{SOON, Session, Size, Start};
 use glam::{Vec2, Vec3};
 use termtrace::camera::Camera;
@@ -35,7 +35,7 @@ pub(crate) fn drag(button: u16, from: [u16; 2], to: [u16; 2]) -> String {
 fn after(scene: &str, reports: &str) -> Camera {
     let mut session = looking(scene, &[]);
     session.send(reports.as_bytes());
-    wait_for_rest(&mut session);
+    session.wait_for_rest();
     camera(&mut session).unwrap_or_else(|| load(scene).camera)
 }
 
@@ -156,10 +156,10 @@ fn the_line_of_a_wipe_is_dragged() {
 
 #[test]
 fn a_click_puts_the_cursor_of_an_explanation() {
-    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(BALL);
+    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(BALL).says_when_it_rests();
     let mut session = start.spawn();
     session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains('▀'));
-    wait_for_rest(&mut session);
+    session.wait_for_rest();
     session.send(b"x");
     session.wait_for_text("(i, j) = (40, 24) of 80x48");
     session.send(click([10, 4]).as_bytes());
@@ -167,7 +167,7 @@ fn a_click_puts_the_cursor_of_an_explanation() {
     session.send(drag(LEFT, [12, 5], [70, 20]).as_bytes());
     session.wait_for_text("(i, j) = (70, 41) of 80x48");
     session.send(b"x");
-    wait_for_rest(&mut session);
+    session.wait_for_rest();
     assert_eq!(camera(&mut session), None);
 }
 
@@ -175,16 +175,17 @@ fn a_click_puts_the_cursor_of_an_explanation() {
 #[test]
 fn places_may_be_told_in_pixels() {
     let program = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(TEAPOT).size(Size::cells(40, 12)).mute();
-    let mut session = program.spawn();
+    let mut session = program.says_when_it_rests().spawn();
     session.wait_for("the questions", SOON, |seen| seen.has(b"\x1b[?1016$p"));
     assert!(!session.seen().has(b"\x1b[?1016h"));
-    let asked = session.seen().bytes().len();
     session.send(b"\x1b[?1016;2$y\x1b[?62c");
     session.wait_for("pixels", SOON, |seen| seen.has(b"\x1b[?1016h"));
-    session.answer_from(asked);
-    wait_for_rest(&mut session);
+    // What is asked after the first questions.
+    let fence = session.seen().bytes().windows(3).position(|bytes| bytes == b"\x1b[c").expect("it has asked");
+    session.answer_from(fence + 3);
+    session.wait_for_rest();
     session.send(drag(LEFT, [205, 130], [325, 130]).as_bytes());
-    wait_for_rest(&mut session);
+    session.wait_for_rest();
     let start = load(TEAPOT).camera.pose();
     let pose = camera(&mut session).expect("it was moved").pose();
     assert_near(pose.eye, start.target + turned(start.eye - start.target, -10.0));

@@ -2,7 +2,6 @@
 
 use crate::pty::{SOON, Session, Size, Start};
 use glam::Vec3;
-use std::time::Duration;
 use termtrace::camera::{Camera, Pose};
 use termtrace::control::framing;
 use termtrace::scene::Scene;
@@ -17,17 +16,10 @@ pub(crate) fn load(scene: &str) -> Scene {
 /// At rest: what moves by itself would show.
 pub(crate) fn looking(scene: &str, flags: &[&str]) -> Session {
     let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(scene).size(Size::cells(40, 12));
-    let mut session = flags.iter().fold(start, Start::arg).spawn();
+    let mut session = flags.iter().fold(start, Start::arg).says_when_it_rests().spawn();
     session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains('▀'));
-    wait_for_rest(&mut session);
+    session.wait_for_rest();
     session
-}
-
-pub(crate) fn wait_for_rest(session: &mut Session) {
-    let mut before = 0;
-    while session.sees(Duration::from_millis(300), |seen| seen.bytes().len() != before) {
-        before = session.seen().bytes().len();
-    }
 }
 
 /// Leaves, and reads the camera that is printed; `None` if it was not moved.
@@ -45,7 +37,7 @@ pub(crate) fn camera(session: &mut Session) -> Option<Camera> {
 fn after(scene: &str, keys: &[u8]) -> Camera {
     let mut session = looking(scene, &["--reduced-motion"]);
     session.send(keys);
-    wait_for_rest(&mut session);
+    session.wait_for_rest();
     camera(&mut session).unwrap_or_else(|| load(scene).camera)
 }
 
@@ -126,7 +118,7 @@ fn t_turns_until_the_next_move() {
     session.wait_for("a frame below the help", SOON, |seen| seen.bytes().len() > frames);
     session.send(b"1r");
     session.send(b"\x1b");
-    wait_for_rest(&mut session);
+    session.wait_for_rest();
     assert_eq!(camera(&mut session), None, "r stops it and goes back");
 }
 
@@ -135,7 +127,7 @@ fn nothing_turns_by_itself_where_motion_is_reduced() {
     let mut session = looking(TEAPOT, &["--reduced-motion"]);
     session.send(b"t");
     session.wait_for_text("nothing moves by itself");
-    wait_for_rest(&mut session);
+    session.wait_for_rest();
     assert_eq!(camera(&mut session), None);
 }
 

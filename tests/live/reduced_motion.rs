@@ -1,20 +1,16 @@
 //! `--reduced-motion`: each press is one step at once, and nothing moves by itself.
 
 use crate::pty::{SOON, Session, Size, Start};
-use std::time::Duration;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 
 /// Presses keys, waits until the screen no longer changes, and leaves.
 fn eye_after(keys: &[u8], flags: &[&str]) -> Vec<f32> {
     let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).size(Size::cells(40, 12));
-    let mut session = flags.iter().fold(start.arg("--reduced-motion"), Start::arg).spawn();
+    let mut session = flags.iter().fold(start.arg("--reduced-motion"), Start::arg).says_when_it_rests().spawn();
     session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains('▀'));
     session.send(keys);
-    let mut before = 0;
-    while session.sees(Duration::from_millis(300), |seen| seen.bytes().len() != before) {
-        before = session.seen().bytes().len();
-    }
+    session.wait_for_rest();
     eye(&mut session)
 }
 

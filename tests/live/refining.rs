@@ -3,12 +3,12 @@
 
 #![cfg(feature = "test-hooks")]
 
-use crate::pty::{self, Answer, Phases, SOON, Seen, Session, Size, Start, shows};
+use crate::pty::{self, Answer, Phases, SOON, Session, Size, Start, shows};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::num::NonZeroU32;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tempfile::NamedTempFile;
 use termtrace::capabilities::CellMode;
 use termtrace::encode::{Encoder, Order};
@@ -46,12 +46,7 @@ fn assert_comes_to_its_end(scene: &Path, size: Size) {
     phases.count_on("refinement", &mut session, SOON, |seen| !shows(seen.screen(), &wanted));
     // The space bar stops it.
     session.send(b" ");
-    let mut before = 0;
-    // All of the picture there has come when nothing has for a while.
-    while session.seen().bytes().len() > before {
-        before = session.seen().bytes().len();
-        phases.count_on("refinement", &mut session, Duration::from_secs(1), |seen| seen.bytes().len() > before);
-    }
+    phases.count_until_rest("refinement", &mut session);
     session.send(b"r");
     assert_refined(&mut session, &mut phases, &wanted, &format!("{what} after a key"));
 }
@@ -63,9 +58,8 @@ fn assert_refined(session: &mut Session, phases: &mut Phases, wanted: &Grid, wha
     let steps = phases.count_on("refinement", session, SOON, |seen| shows(seen.screen(), wanted));
     assert!(shows(session.seen().screen(), wanted), "{what}: not the end");
     let end = session.seen().bytes().len();
-    let more = |seen: &Seen| seen.bytes().len() > end + FENCE.len();
-    let late = phases.count_on("refinement", session, Duration::from_millis(500), more);
-    assert!(!more(session.seen()) && late == 0, "{what}: more");
+    let late = phases.count_until_rest("refinement", session);
+    assert!(session.seen().bytes().len() <= end + FENCE.len() && late == 0, "{what}: more");
     let share = (end - before) as f64 / whole_frame(wanted) as f64;
     println!("{what}: {steps} steps more, {share:.2} whole frames");
     assert!((1..=2).contains(&steps), "{what}: {steps} steps more");
@@ -94,12 +88,13 @@ fn samples_may_be_forced() {
     let scene = Path::new(SCENES).join("three_spheres.ron");
     let one = Sampling::Each(NonZeroU32::MIN);
     for (flag, sampling, told) in [("1", one, "80x24x1 "), ("best", Sampling::BEST, "80x24x64 ")] {
-        let mut session = Start::new(PROGRAM).arg(&scene).arg("--samples").arg(flag).spawn();
+        let start = Start::new(PROGRAM).arg(&scene).arg("--samples").arg(flag);
+        let mut session = start.says_when_it_rests().spawn();
         let wanted = picture(sampling, &scene, Size::cells(80, 24));
         session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
         let end = session.seen().bytes().len();
-        let more = session.sees(Duration::from_millis(500), |seen| seen.bytes().len() > end + FENCE.len());
-        assert!(!more, "{flag}: more is sent");
+        session.wait_for_rest();
+        assert!(session.seen().bytes().len() <= end + FENCE.len(), "{flag}: more is sent");
         // Also in motion.
         session.send(b"id");
         session.wait_for("a moving eye", SOON, |seen| {

@@ -9,14 +9,14 @@ use termtrace::capabilities::CellMode;
 use termtrace::scene::Scene;
 
 /// A ball of that colour, looked at from there.
-fn ball(color: &str, eye: &str) -> String {
+pub(crate) fn ball(color: &str, eye: &str) -> String {
     format!(
         "(camera: (eye: {eye}, target: (0, 0, 0)), background: \"navy\", lights: [Point(position: (3, 4, 5), intensity: 40)],
         objects: [Sphere(center: (0, 0, 0), radius: 1, material: Diffuse(\"{color}\"))])"
     )
 }
 
-const EYE: &str = "(0, 0, 5)";
+pub(crate) const EYE: &str = "(0, 0, 5)";
 
 struct Folder(TempDir);
 
@@ -42,8 +42,8 @@ impl Folder {
     }
 }
 
-fn program() -> Start {
-    Start::new(env!("CARGO_BIN_EXE_termtrace"))
+pub(crate) fn program() -> Start {
+    Start::new(env!("CARGO_BIN_EXE_termtrace")).says_when_it_rests()
 }
 
 /// A session that looks at these.
@@ -55,7 +55,7 @@ fn looking(paths: &[&Path]) -> Session {
 
 /// Waits for the picture of that scene.
 #[track_caller]
-fn sees(session: &mut Session, text: &str) {
+pub(crate) fn sees(session: &mut Session, text: &str) {
     let scene = Scene::from_ron("wanted", text).expect("the scene is fine");
     let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(80, 24), 2.0);
     session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
@@ -74,7 +74,7 @@ fn upper_half_shows(session: &mut Session, text: &str) -> bool {
     })
 }
 
-fn leave(session: &mut Session) -> String {
+pub(crate) fn leave(session: &mut Session) -> String {
     let before = session.seen().bytes().len();
     session.send(b"q");
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
@@ -125,6 +125,20 @@ fn a_broken_scene_keeps_its_picture_and_says_why_until_it_is_mended() {
     leave(&mut session);
 }
 
+/// A pipe that nothing is written to is a fault like another, and the view goes on.
+#[test]
+fn a_scene_that_becomes_a_pipe_is_told() {
+    let folder = Folder::new();
+    let path = folder.write("ball.ron", ball("red", EYE));
+    let mut session = looking(&[&path]);
+    let pipe = folder.path("pipe");
+    nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).expect("a pipe can be made");
+    fs::rename(pipe, &path).expect("a file can be replaced");
+    session.wait_for_text("ball.ron: this pipe delivered nothing for a second");
+    assert!(upper_half_shows(&mut session, &ball("red", EYE)), "the picture stays");
+    leave(&mut session);
+}
+
 /// A mesh and the texture that it uses are files of the scene, also while one of them is missing.
 #[test]
 fn a_changed_mesh_is_seen() {
@@ -159,6 +173,20 @@ fn a_changed_mesh_is_seen() {
     leave(&mut session);
 }
 
+/// Waits until some cell is green, and none red.
+#[track_caller]
+fn sees_another_color(session: &mut Session) {
+    session.wait_for("a ball of lime", SOON, |seen| {
+        let cells = (0..24).flat_map(|row| (0..80).map(move |column| (column, row)));
+        let colors = cells.map(|(column, row)| seen.screen().cell(column, row).background);
+        let is = |wanted: fn(u8, u8) -> bool| {
+            move |color: &pty::Colour| matches!(*color, pty::Colour::Rgb(red, green, _) if wanted(red, green))
+        };
+        let colors: Vec<_> = colors.collect();
+        colors.iter().any(is(|red, green| green > 100 && red < 50)) && !colors.iter().any(is(|red, _| red > 100))
+    });
+}
+
 /// The user's view stays, unless the file's changes.
 #[test]
 fn the_view_stays_where_it_is() {
@@ -167,11 +195,11 @@ fn the_view_stays_where_it_is() {
     let mut session = looking(&[&path]);
     session.send(b"d");
     // The glide ends.
-    session.sees(Duration::from_secs(1), |_| false);
+    session.wait_for_rest();
     folder.write("ball.ron", ball("lime", EYE));
+    sees_another_color(&mut session);
     session.send(b"i");
     session.wait_for_text("rays/s");
-    session.sees(Duration::from_millis(300), |_| false);
     let status = session.seen().screen().text()[23].clone();
     assert!(!status.contains("eye 0.00 0.00 5.00"), "{status}");
     folder.write("ball.ron", ball("lime", "(0, 1, 6)"));
@@ -187,7 +215,7 @@ fn what_is_not_the_scenes_is_nothing() {
     let folder = Folder::new();
     let path = folder.write("ball.ron", ball("red", EYE));
     let mut session = looking(&[&path]);
-    session.sees(Duration::from_millis(300), |_| false);
+    session.wait_for_rest();
     let before = session.seen().bytes().len();
     folder.write("other.ron", "(");
     fs::read(&path).expect("it can be read");
@@ -211,7 +239,7 @@ fn several_scenes_are_gone_through() {
     sees(&mut session, &ball("teal", EYE));
     // Each is left as it was.
     session.send(b"d");
-    session.sees(Duration::from_secs(1), |_| false);
+    session.wait_for_rest();
     session.send(b"n");
     sees(&mut session, &ball("gold", EYE));
     session.send(b"pi");

@@ -2,7 +2,6 @@
 
 use crate::pty::{SOON, Session, Size, Start};
 use std::fs;
-use std::time::Duration;
 use tempfile::TempDir;
 use termtrace::control::{Bindings, Mode};
 
@@ -28,7 +27,7 @@ fn start(home: &TempDir, flags: &[&str]) -> Session {
 /// Somebody without files looks at the scene on a screen of that size.
 fn looking(columns: u16, rows: u16) -> Session {
     let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).size(Size::cells(columns, rows));
-    let mut session = start.spawn();
+    let mut session = start.says_when_it_rests().spawn();
     wait_for_picture(&mut session);
     session
 }
@@ -184,13 +183,13 @@ fn below_40x12_panels_step_aside_and_their_keys_with_them() {
     wait_for_no(&mut session, "write");
     // The cursor of an explanation that cannot be seen takes no key: the eye looks to the left.
     session.send(b"x\x1b[D");
-    session.sees(Duration::from_millis(300), |_| false);
+    session.wait_for_rest();
     assert!(leave_moved(&mut session, b"q"));
     let mut session = looking(80, 24);
     session.send(b"x");
     session.wait_for_text("in front:");
     session.send(b"\x1b[D");
-    session.sees(Duration::from_millis(300), |_| false);
+    session.wait_for_rest();
     assert!(!leave_moved(&mut session, b"q"));
 }
 

@@ -23,6 +23,12 @@ pub(crate) fn hold_for(name: &str, bytes: &[u8]) {
     }
 }
 
+/// The same for any bytes as a texture.
+pub(crate) fn hold_for_texture(bytes: &[u8]) {
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nmtllib x.mtl\nusemtl x\nf 1/1 2/1 3/1\n\0newmtl x\nmap_Kd x.png\n\0";
+    hold_for("x.obj", &[mesh.as_bytes(), bytes].concat());
+}
+
 /// No URL, nothing absolute.
 fn assert_local(path: &Path) {
     let text = path.to_str().expect("paths are UTF-8");

@@ -7,7 +7,7 @@ use std::num::NonZeroU32;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use termtrace::bounds::Bounds;
-use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Queue};
+use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Prefetch, Queue};
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::Resolution;
@@ -442,24 +442,30 @@ proptest! {
         let back = bundle.clone().map(|ray| Ray { origin: ray.origin + ray.direction, direction: -ray.direction });
         let rays: Vec<Ray> = bundle.chain(back).chain(strays).filter(|ray| ray.direction != Vec3::ZERO).collect();
         let eights: Vec<_> = rays.chunks(LANES).map(EightRays::of).zip(asked).map(|(rays, asked)| some_of(&rays, asked)).collect();
-        let closest = |ray: &Ray| brute_force(&scene, ray, Interval::IN_FRONT);
+        let is_asked = |rays: &EightRays, lane: usize| rays.asked >> lane & 1 == 1;
+        let by_brute_force = |within: Interval| -> Vec<[Option<Hit>; LANES]> {
+            let hit = |rays: &EightRays, lane| is_asked(rays, lane).then(|| brute_force(&scene, &rays.ray(lane), within)).flatten();
+            eights.iter().map(|rays| std::array::from_fn(|lane| hit(rays, lane))).collect()
+        };
+        // Once for all kernels.
+        let closest = by_brute_force(Interval::IN_FRONT);
+        let met = [TO_THE_LIGHT, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }, Interval { min: -0.5, max: 0.5 }].map(|within| {
+            let bits = |hits: [Option<Hit>; LANES]| (0..LANES).filter(|&lane| hits[lane].is_some()).fold(0_u32, |met, lane| met | 1 << lane);
+            (within, by_brute_force(within).into_iter().map(bits).collect::<Vec<_>>())
+        });
         for kernel in [Kernel::Auto, Kernel::Packet, Kernel::Single, Kernel::Scalar] {
             let mut hits = Vec::new();
             closest_hits(kernel, &scene, &eights, &mut hits);
             prop_assert_eq!(hits.len(), eights.len());
-            for (rays, hits) in eights.iter().zip(&hits) {
-                for lane in 0..LANES {
-                    let is_asked = rays.asked >> lane & 1 == 1;
-                    prop_assert_eq!(hits.hit(&scene, lane), is_asked.then(|| closest(&rays.ray(lane))).flatten(), "{:?}", kernel);
+            for (hits, closest) in hits.iter().zip(&closest) {
+                for (lane, closest) in closest.iter().enumerate() {
+                    prop_assert_eq!(hits.hit(&scene, lane), *closest, "{:?}", kernel);
                 }
             }
-            for within in [TO_THE_LIGHT, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }, Interval { min: -0.5, max: 0.5 }] {
-                let is_met = |rays: &EightRays, lane: usize| brute_force(&scene, &rays.ray(lane), within).is_some();
-                let met = |rays: &EightRays| set_bits(rays.asked).filter(|&lane| is_met(rays, lane)).fold(0, |met, lane| met | 1 << lane);
-                let expected: Vec<u32> = eights.iter().map(met).collect();
+            for (within, expected) in &met {
                 let mut found = Vec::new();
-                any_hits(kernel, &scene, &eights, within, &mut found);
-                prop_assert_eq!(&found, &expected, "{:?} {:?}", kernel, within);
+                any_hits(kernel, &scene, &eights, *within, &mut found);
+                prop_assert_eq!(&found, expected, "{:?} {:?}", kernel, within);
             }
         }
     }
@@ -475,6 +481,11 @@ fn some_of(rays: &EightRays, asked: u32) -> EightRays {
 
 /// How many boxes were visited.
 struct Count<'l>(&'l Leaves, usize);
+
+/// Its boxes have no contents.
+impl Prefetch for Count<'_> {
+    fn prefetch(&self, _: usize) {}
+}
 
 impl LeafVisitor for Count<'_> {
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {

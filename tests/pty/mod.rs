@@ -17,11 +17,14 @@ mod modes;
 mod output;
 mod phases;
 mod picture;
+mod rest;
 mod screen;
+mod signals;
 mod storm;
 mod termios;
 
 use std::{
+    cell::Cell,
     ffi::{OsStr, OsString},
     io::{self, Read, Write},
     os::{
@@ -45,7 +48,9 @@ pub(crate) use modes::Modes;
 use output::Output;
 pub(crate) use phases::{Answer, Phases};
 pub(crate) use picture::{halves_of, picture, picture_with, shows};
+use rest::Rest;
 pub(crate) use screen::{Colour, Screen};
+pub(crate) use signals::reset_for_children;
 pub(crate) use storm::Storm;
 
 /// A deadline for what happens at once, unless the machine is very busy.
@@ -109,6 +114,7 @@ pub(crate) struct Start {
     stderr: Option<Stdio>,
     mute: bool,
     kitty: bool,
+    rest: Option<Rest>,
 }
 
 impl Start {
@@ -126,6 +132,7 @@ impl Start {
             stderr: None,
             mute: false,
             kitty: false,
+            rest: None,
         };
         start
             .env("PATH", std::env::var_os("PATH").unwrap_or_default())
@@ -183,6 +190,12 @@ impl Start {
         Self { kitty: true, ..self }
     }
 
+    /// A program with test-only hooks, which says when it rests: for [`Session::wait_for_rest`].
+    pub(crate) fn says_when_it_rests(self) -> Self {
+        let rest = Rest::listen();
+        Self { rest: Some(rest), ..self }
+    }
+
     fn command(self) -> Command {
         let mut command = Command::new(self.program).args(self.arguments).env_clear().envs(self.environment);
         if let Some(stdin) = self.stdin {
@@ -199,7 +212,7 @@ impl Start {
 
     /// Starts it, as the leader of a session whose controlling terminal is a fresh pseudo-terminal.
     #[track_caller]
-    pub(crate) fn spawn(self) -> Session {
+    pub(crate) fn spawn(mut self) -> Session {
         let (master, slave) = open().expect("a pseudo-terminal can be had");
         let (size, mute, kitty) = (self.size, self.mute, self.kitty);
         rustix::termios::tcsetwinsize(&master, size.winsize()).expect("a terminal has a size");
@@ -209,7 +222,10 @@ impl Start {
         let before = rustix::termios::tcgetattr(&*master).expect("a terminal has settings");
         let output = Output::read_from(Arc::clone(&master)).expect("a pipe and a thread can be had");
         let name = self.program.display().to_string();
-        let child = self.command().spawn(slave);
+        reset_for_children();
+        let rest = self.rest.take();
+        let start = rest.iter().fold(self, |start, rest| start.env("TERMTRACE_TEST_SOCKET", rest.path()));
+        let child = start.command().spawn(slave);
         let child = child.unwrap_or_else(|error| panic!("{name} does not start: {error}"));
         Session {
             child,
@@ -220,6 +236,8 @@ impl Start {
             output,
             unanswered: (!mute).then_some(0),
             kitty,
+            rest,
+            typed: Cell::new(0),
             seen: Seen { bytes: Vec::new(), screen: Screen::new(size.columns, size.rows) },
         }
     }
@@ -320,6 +338,9 @@ pub(crate) struct Session {
     /// From where on questions in the output are unanswered; `None`: for ever.
     unanswered: Option<usize>,
     kitty: bool,
+    rest: Option<Rest>,
+    /// How many bytes were typed or answered.
+    typed: Cell<u64>,
     seen: Seen,
 }
 
@@ -340,6 +361,7 @@ impl Session {
     pub(crate) fn send(&self, bytes: &[u8]) {
         let written = write_before(&mut &*self.master, bytes, Instant::now() + SOON);
         assert!(matches!(written, Ok(true)), "not all of {} bytes typed: {written:?}", bytes.len());
+        self.typed.update(|typed| typed + bytes.len() as u64);
     }
 
     /// Sends a signal to the child; to one that has exited nothing happens.
@@ -392,12 +414,18 @@ impl Session {
     /// Waits until the child has read all that was typed, and then some, so that what is typed next it may never read.
     #[track_caller]
     pub(crate) fn wait_for_no_reader(&mut self) {
+        self.wait_until_read();
+        self.sees(Duration::from_millis(200), |_| false);
+    }
+
+    /// Waits until the child has read all that was typed.
+    #[track_caller]
+    pub(crate) fn wait_until_read(&mut self) {
         let deadline = Instant::now() + SOON;
         while rustix::io::ioctl_fionread(&self.slave_side).expect("a terminal counts what was typed") > 0 {
             assert!(Instant::now() < deadline, "what was typed is not read");
             self.output.wait_for_more(Instant::now() + LOOK);
         }
-        self.sees(Duration::from_millis(200), |_| false);
     }
 
     /// What was typed and read by nobody: the next reader, such as a shell, would get it.
@@ -448,7 +476,36 @@ impl Session {
         }
         self.unanswered = Some(unanswered);
         // Nobody may be there any more to hear it.
-        let _ = write_before(&mut &*self.master, &answers, Instant::now() + LOOK);
+        if let Ok(true) = write_before(&mut &*self.master, &answers, Instant::now() + LOOK) {
+            self.typed.update(|typed| typed + answers.len() as u64);
+        }
+    }
+
+    /// Whether the child, which rests after it has read so many bytes, has nothing more to read when all that it wrote is
+    /// taken in.
+    fn has_nothing_under_way(&mut self, read: u64) -> bool {
+        self.take_last_output();
+        self.answer();
+        self.typed.get() == read
+    }
+
+    /// Waits until the child has read all that was typed, was sent all answers, and sleeps until something new happens,
+    /// with all that it wrote taken in: nothing is sent or computed from then on unless the test does something. (After
+    /// a signal, a resize or a change of a file its effect is to be waited for first, and between a stop and the end
+    /// bytes are thrown away that this would wait for.)
+    #[track_caller]
+    pub(crate) fn wait_for_rest(&mut self) {
+        let deadline = Instant::now() + SOON;
+        loop {
+            self.pump();
+            let typed = self.typed.get();
+            let rest = self.rest.as_ref().expect("the child says when it rests");
+            if rest.is_after(typed) && self.has_nothing_under_way(typed) {
+                return;
+            }
+            assert!(Instant::now() < deadline, "it does not come to rest: {}", self.seen.describe());
+            self.output.wait_for_more(Instant::now() + LOOK);
+        }
     }
 
     /// Waits until what came out fulfils a condition; whether it did so in time.

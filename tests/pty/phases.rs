@@ -10,7 +10,7 @@ use std::{
 use rustix::event::{PollFd, PollFlags, poll};
 use tempfile::TempDir;
 
-use super::{SOON, Seen, Session};
+use super::{SOON, Seen, Session, rest::bytes_read};
 
 /// What is to happen where the child is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +31,8 @@ pub(crate) struct Phases {
     path: PathBuf,
     _folder: TempDir,
     child: Option<BufReader<UnixStream>>,
+    /// How many bytes the child had read, if its last phase was a rest.
+    rested: Option<u64>,
 }
 
 impl Phases {
@@ -39,7 +41,7 @@ impl Phases {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let path = folder.path().join("phases");
         let listener = UnixListener::bind(&path).expect("a socket can be had");
-        Self { listener, path, _folder: folder, child: None }
+        Self { listener, path, _folder: folder, child: None, rested: None }
     }
 
     /// Where the child finds it.
@@ -94,6 +96,24 @@ impl Phases {
         count
     }
 
+    /// The same until the child rests, having read all that was typed: nothing more happens by itself then.
+    #[track_caller]
+    pub(crate) fn count_until_rest(&mut self, phase: &str, session: &mut Session) -> usize {
+        let deadline = Instant::now() + SOON;
+        let mut count = 0;
+        loop {
+            session.seen();
+            if self.is_told() {
+                count += usize::from(self.next() == phase);
+                self.send(Answer::GoOn);
+            }
+            if self.rested.is_some_and(|read| session.has_nothing_under_way(read)) {
+                return count;
+            }
+            assert!(Instant::now() < deadline, "the child does not come to rest");
+        }
+    }
+
     /// Whether the child says something now, or in a moment.
     fn is_told(&self) -> bool {
         let moment = super::LOOK.try_into().expect("it is short");
@@ -130,6 +150,7 @@ impl Phases {
         let mut line = String::new();
         child.read_line(&mut line).expect("the child reaches its phases soon");
         assert!(line.ends_with('\n'), "the child reaches no more phases");
+        self.rested = bytes_read(line.trim_end());
         line.trim_end().to_owned()
     }
 }

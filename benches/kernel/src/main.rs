@@ -1,5 +1,5 @@
 //! cargo run --release -- SCENE[,SCENE...] [--size 1024x1024] [--spp 1] [--threads 1,2] [--rounds 5] [--only prefix,prefix]
-//!     [--frames | --incoherent | --same-origins] [--brief]
+//!     [--frames | --incoherent | --same-origins] [--brief] [--shadow-offset 1e-3]
 mod embree;
 mod obvhs_backend;
 mod scene;
@@ -70,7 +70,8 @@ fn main() {
         .collect();
     let want = |n: &str| only.is_empty() || only.iter().any(|o| n.starts_with(o.as_str()));
     for name in args[0].split(',') {
-        let s = scene::load(name);
+        let mut s = scene::load(name);
+        s.eps = opt("--shadow-offset", "1e-3").parse().unwrap();
         println!(
             "## {} prims {} frame {w}x{h} spp {} ({})",
             s.name,

@@ -35,7 +35,7 @@ impl Live {
     }
 
     /// Answers to the questions change things all at once, when the last is there.
-    fn take_reply(&mut self, reply: &Reply) -> Next {
+    fn take_reply(&mut self, reply: &Reply) -> io::Result<()> {
         if let &Reply::KeyboardFlags(flags) = reply {
             self.take_keyboard(flags);
         }
@@ -45,13 +45,13 @@ impl Live {
             &Reply::Mode { mode, .. } if self.link.answer_mode(mode, self.now()) => {
                 let was_open = self.questions.close();
                 if was_open {
-                    self.learn();
+                    self.learn()?;
                 }
             }
-            reply if self.questions.take(reply) => self.learn(),
+            reply if self.questions.take(reply) => self.learn()?,
             _ => {}
         }
-        Next::Stay
+        Ok(())
     }
 
     /// When half a sequence is taken for all that there is of it, if there is one.
@@ -78,7 +78,7 @@ impl Live {
             self.read = self.now();
             self.parser.give_up_waiting(&mut inputs);
         }
-        Ok(self.take_inputs(&inputs))
+        self.take_inputs(&inputs)
     }
 
     fn read_keys(&mut self, terminal: &mut Terminal) -> io::Result<Next> {
@@ -90,10 +90,10 @@ impl Live {
         let mut inputs = Vec::new();
         self.parser.feed(bytes, &mut inputs);
         self.read = self.now();
-        Ok(self.take_inputs(&inputs))
+        self.take_inputs(&inputs)
     }
 
-    fn take_inputs(&mut self, inputs: &[Input]) -> Next {
+    pub(super) fn take_inputs(&mut self, inputs: &[Input]) -> io::Result<Next> {
         for (at, input) in inputs.iter().enumerate() {
             let next = match input {
                 input if pointing::is_outdated(input, inputs.get(at + 1)) => Next::Stay,
@@ -108,14 +108,17 @@ impl Live {
                     self.stale |= self.eye.let_go(self.now());
                     Next::Stay
                 }
-                Input::Reply(reply) => self.take_reply(reply),
+                Input::Reply(reply) => {
+                    self.take_reply(reply)?;
+                    Next::Stay
+                }
                 Input::Event(_) => Next::Stay,
             };
             if next != Next::Stay {
-                return next;
+                return Ok(next);
             }
         }
-        Next::Stay
+        Ok(Next::Stay)
     }
 
     fn take_key(&mut self, key: &KeyEvent) -> Next {
@@ -123,7 +126,7 @@ impl Live {
         if is_press {
             self.screen.unsay();
         }
-        let meant = self.options.bindings.command(&self.screen.modes(self.window.size), key);
+        let meant = self.options.bindings.command(&self.screen.modes(self.size()), key);
         // A question takes all keys but those with Ctrl, which may leave, unless they answer it.
         let is_for_all = key.modifiers.contains(KeyModifiers::CONTROL);
         let answer = meant.map(|(command, _)| command).filter(|command| command.answers() || !is_for_all);
@@ -158,7 +161,7 @@ impl Live {
             Command::Export => self.ask_export(),
             Command::KeepView => self.ask_keep(),
             Command::Status => self.screen.toggle_status(),
-            Command::Help => self.screen.turn_help(self.window.size),
+            Command::Help => self.screen.turn_help(self.size()),
             Command::Close => {
                 if !self.screen.close_help() && !self.leave_light() {
                     self.screen.close_explaining();
@@ -177,7 +180,7 @@ impl Live {
             Command::Point(toward) => self.point(toward, more),
             Command::ScrollUp => self.scroll(-1),
             Command::ScrollDown => self.scroll(1),
-            Command::Redraw => self.screen.redraw(self.capabilities.halves_meet),
+            Command::Redraw => self.redraw(),
             // The eye has heard of it; or it is an answer, and nothing was asked.
             Command::Move(_)
             | Command::Look(_)

@@ -22,7 +22,7 @@ impl Live {
 
     /// What a key does about what a note says, for its end; nothing, if no key is bound to that.
     pub(super) fn hint(&self, command: Command, does: &str) -> String {
-        let key = self.options.bindings.key_of(&self.screen.modes(self.window.size), command);
+        let key = self.options.bindings.key_of(&self.screen.modes(self.size()), command);
         key.map_or_else(String::new, |key| format!("; {key} {does}"))
     }
 

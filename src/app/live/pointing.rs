@@ -42,7 +42,7 @@ impl Live {
     /// Does what the mouse asks for. While something is asked, keys answer.
     pub(super) fn take_mouse(&mut self, event: MouseEvent) {
         let (at, now) = (self.place(event), self.now());
-        let modes = self.screen.modes(self.window.size);
+        let modes = self.screen.modes(self.size());
         let Some(gesture) = self.pointer.take(&event, at, now).filter(|_| modes.contains(&self.eye.mode())) else {
             return;
         };
@@ -65,14 +65,14 @@ impl Live {
     /// The event's place as a part of the screen's width and height: that of the middle of its cell, or of its pixel.
     fn place(&self, event: MouseEvent) -> Vec2 {
         let (width, height) = self.mouse_pixels().unwrap_or((1, 1));
-        let size = self.window.size;
+        let size = self.size();
         let screen = Vec2::new(f32::from(width) * f32::from(size.columns), f32::from(height) * f32::from(size.rows));
         let at = Vec2::new(f32::from(event.column), f32::from(event.row)) + 0.5;
         (at / screen).clamp(Vec2::ZERO, Vec2::ONE)
     }
 
     fn grasp(&self, at: Vec2, grip: Grip, modes: &[Mode]) -> Grasped {
-        let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.window.size.columns);
+        let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.size().columns);
         match grip {
             Grip::Turn if self.shown.is_wipe() && beside <= NEAR => Grasped::Line,
             Grip::Turn if modes.contains(&Mode::Light) => Grasped::Light,

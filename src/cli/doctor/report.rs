@@ -1,10 +1,10 @@
 //! What is known of the terminal, as a table.
 
 use crate::cli::settings::Settings;
-use crate::cli::visible;
 use std::fmt::Write;
 use std::time::Duration;
 use termtrace::capabilities::{Answers, Asking, Colors, Findings, Found, Glyphs, Hints, Source};
+use termtrace::text::visible_lines;
 
 /// How the talk with the terminal went.
 #[derive(Clone, Copy)]
@@ -34,7 +34,7 @@ pub(super) fn text(known: &Known<'_>) -> String {
         let _ = writeln!(text, "{what:<20}  {value:<28}  {who}");
     }
     // A name is not to steer the terminal that it is printed on.
-    visible(&text)
+    visible_lines(&text)
 }
 
 type Row = (&'static str, String, String);

@@ -1,17 +1,28 @@
 //! `frame --check`: is the frame the one in the file, and if not, where do they differ?
 
 use super::Format;
-use crate::cli::{Done, Failure, reason, visible, write_stdout};
+use crate::cli::{Done, Failure, write_stdout};
 use similar::TextDiff;
 use std::fmt::Write;
-use std::fs;
+use std::io;
 use std::path::Path;
+use termtrace::named_file::{self, Accepted};
+use termtrace::progress::Watcher;
+use termtrace::text::{visible, visible_lines};
+
+/// The most bytes that a golden frame has: 16 MiB, as any text that is read, or four times as many as the frame that it is
+/// compared with. A larger one is of another picture, and its diff would be as long.
+const MAX_BYTES: usize = 16 << 20;
 
 /// Done if the file holds exactly this frame; else a diff goes to standard output.
 pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> Done {
-    let golden = fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => Failure::runtime(path.display(), "no such golden frame; --bless writes it"),
-        _ => Failure::runtime(path.display(), reason(&error)),
+    let most = MAX_BYTES.max(4 * frame.len());
+    let golden = named_file::read(path, Accepted::FilesAndPipes, |_| most, &Watcher::patient()).map_err(|error| {
+        let reason = match error.kind() {
+            io::ErrorKind::NotFound => "no such golden frame; --bless writes it".to_owned(),
+            _ => named_file::reason(&error),
+        };
+        Failure::runtime(path.display(), reason)
     })?;
     if golden == frame {
         return Ok(());
@@ -28,9 +39,10 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> Done {
 
 /// Line by line, as `diff -u`.
 fn text_difference(golden: &[u8], frame: &[u8], name: &str) -> String {
+    let [golden, frame] = [golden, frame].map(String::from_utf8_lossy);
+    let difference = TextDiff::from_lines(&*golden, &*frame);
     // A golden file may be anything.
-    let [golden, frame] = [golden, frame].map(|bytes| visible(&String::from_utf8_lossy(bytes)));
-    TextDiff::from_lines(&*golden, &*frame).unified_diff().context_radius(1).header(name, "this frame").to_string()
+    visible_lines(&difference.unified_diff().context_radius(1).header(name, "this frame").to_string())
 }
 
 /// The rows that differ, and where each begins to.
@@ -101,7 +113,7 @@ struct Decoded {
 }
 
 fn decoded(bytes: &[u8]) -> Result<Decoded, String> {
-    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().map_err(|error| error.to_string())?;
+    let mut reader = png::Decoder::new(io::Cursor::new(bytes)).read_info().map_err(|error| error.to_string())?;
     let mut rgb = vec![0; reader.output_buffer_size().ok_or("too large")?];
     let info = reader.next_frame(&mut rgb).map_err(|error| error.to_string())?;
     if (info.color_type, info.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {

@@ -3,10 +3,8 @@
 use console::Term;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle, TermLike};
 use std::io;
-use std::thread;
-use termtrace::terminal::{Signals, die_of};
 
-/// A bar over so many frames. Nothing is left of it when it is dropped.
+/// A bar over so many frames, shown from its first tick on. Nothing is left of it when it is dropped.
 pub(super) fn bar(frames: u64) -> ProgressBar {
     let terminal = Term::buffered_stderr();
     let is_dumb = std::env::var_os("TERM").is_some_and(|name| name == "dumb");
@@ -17,24 +15,7 @@ pub(super) fn bar(frames: u64) -> ProgressBar {
     let style = style.map_or_else(|_| ProgressStyle::default_bar(), |style| style.progress_chars("=> "));
     let target = ProgressDrawTarget::term_like_with_hz(Box::new(Narrower(terminal)), 10);
     let bar = ProgressBar::with_draw_target(Some(frames), target).with_style(style);
-    let bar = bar.with_finish(ProgressFinish::AndClear);
-    clear_before_dying(&bar);
-    bar.tick();
-    bar
-}
-
-/// Who ends the recording by a signal finds a clean line as well. Where signals cannot be caught, the bar stays: no
-/// reason to give up the recording.
-fn clear_before_dying(bar: &ProgressBar) {
-    let Ok(mut signals) = Signals::catch() else { return };
-    let bar = bar.downgrade();
-    thread::spawn(move || {
-        let signal = signals.wait_for_deadly();
-        if let Some(bar) = bar.upgrade() {
-            bar.finish_and_clear();
-        }
-        die_of(signal);
-    });
+    bar.with_finish(ProgressFinish::AndClear)
 }
 
 /// The terminal without its last columns: what it echoes of Ctrl-C then stays on the bar's line, and goes with it.

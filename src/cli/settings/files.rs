@@ -1,10 +1,15 @@
 //! The user's own files: where they are, and what is in them.
 
-use std::fs::File;
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::PathBuf;
+use termtrace::named_file::{self, Accepted};
+use termtrace::progress::Watcher;
 use termtrace::scene::LoadError;
-use termtrace::scene_text::{MAX_BYTES, text_from};
+use termtrace::scene_text::text_from;
+
+/// The most bytes that a file of the user's has: 64 KiB, more than ten times the whole table of keys with what each command
+/// does, which is the longest of them (5 kB).
+const MAX_BYTES: usize = 64 << 10;
 
 /// A file of the user's that is there.
 pub(in crate::cli) struct UserFile {
@@ -16,7 +21,7 @@ impl UserFile {
     /// The file of that name; `None` if there is none, or no place for one.
     pub(in crate::cli) fn read(name: &str) -> Result<Option<Self>, LoadError> {
         let Some(path) = path_of(name) else { return Ok(None) };
-        match bytes_of(&path) {
+        match named_file::read(&path, Accepted::FilesAndPipes, |_| MAX_BYTES, &Watcher::patient()) {
             Ok(bytes) => {
                 let text = text_from(&path.to_string_lossy(), &bytes)?.to_owned();
                 Ok(Some(Self { path, text }))
@@ -26,13 +31,6 @@ impl UserFile {
             Err(error) => Err(LoadError::CannotRead { path, error }),
         }
     }
-}
-
-/// One byte more than a file may have is read: then it is known to be too large.
-fn bytes_of(path: &Path) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    File::open(path)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
 }
 
 /// Where the file of that name is looked for: below `$XDG_CONFIG_HOME`, or else `$HOME/.config`. By the XDG Base Directory

@@ -5,7 +5,7 @@ use super::json::Json;
 use super::primitives::Primitives;
 use crate::mesh_file::MeshFile;
 use crate::mesh_file::error::Fault;
-use crate::mesh_file::meter::Meter;
+use crate::progress::Meter;
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
 /// The triangles of the scene that is to be shown.

@@ -2,8 +2,8 @@
 
 use super::header::{Element, Property, Shape, Type};
 use crate::mesh_file::error::Fault;
-use crate::mesh_file::meter::Meter;
 use crate::mesh_file::text::Text;
+use crate::progress::Meter;
 
 /// A body: rows, and in them numbers, one after the other.
 pub(super) trait Rows {
@@ -50,7 +50,7 @@ impl Rows for Ascii<'_> {
     #[inline]
     fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), Fault> {
         if self.text.go_to_statement() {
-            return self.meter.reach(self.text.at());
+            return Ok(self.meter.reach(self.text.at())?);
         }
         let Element { name, count, .. } = element;
         Err(Fault::in_text(self.text.at(), format!("the file ends after {row} of {count} rows of the element {name}")))
@@ -148,7 +148,7 @@ impl<const BIG_ENDIAN: bool> Rows for Binary<'_, BIG_ENDIAN> {
     #[inline]
     fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), Fault> {
         if self.at < self.bytes.len() {
-            return self.meter.reach(self.at);
+            return Ok(self.meter.reach(self.at)?);
         }
         let Element { name, count, .. } = element;
         Err(Fault::at_byte(self.at, format!("the file ends after {row} of {count} rows of the element {name}")))

@@ -1,0 +1,9 @@
+//! Any bytes as a camera path: cameras, or faults that can be shown.
+
+#![no_main]
+#![allow(dead_code, reason = "the other targets ask for more of this module")]
+
+#[path = "../../tests/text_laws/mod.rs"]
+mod text_laws;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| text_laws::camera_path(bytes));

@@ -1,0 +1,58 @@
+//! New contents over a file's old bytes, where it cannot be replaced.
+
+use rustix::fs::{FlockOperation, fcntl_lock};
+use rustix::io::retry_on_intr;
+use std::fs::File;
+use std::io::{self, Read, Seek, Write};
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+
+/// Writes all of the contents. The old bytes are overwritten before the length changes: where the file does not grow, no
+/// space is needed, and where it cannot, all old ones can be put back.
+pub(super) fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
+    let file = open(path)?;
+    // Closing the file unlocks it. Not `flock`: `flock FILE termtrace frame ... -o FILE` would wait for itself. Some file
+    // systems have no locks.
+    let _ = retry_on_intr(|| fcntl_lock(&file, FlockOperation::LockExclusive));
+    let old = Old::read(&file, contents.len())?;
+    put(&file, contents).map_err(|error| match old.put_back(&file) {
+        Ok(()) => error,
+        Err(_) => io::Error::new(error.kind(), format!("its old contents are lost in part: {error}")),
+    })
+}
+
+/// One that may be written and not read has its old bytes put back by nobody.
+fn open(path: &Path) -> io::Result<File> {
+    File::options().read(true).write(true).open(path).or_else(|_| File::options().write(true).open(path))
+}
+
+fn put(mut file: &File, contents: &[u8]) -> io::Result<()> {
+    file.rewind()?;
+    file.write_all(contents)?;
+    file.set_len(contents.len() as u64)?;
+    file.sync_all()
+}
+
+/// What is to be put back.
+struct Old {
+    /// The first bytes: those that are overwritten.
+    start: io::Result<Vec<u8>>,
+    length: u64,
+}
+
+impl Old {
+    fn read(file: &File, most: usize) -> io::Result<Self> {
+        let mut start = Vec::new();
+        let read = file.take(most as u64).read_to_end(&mut start);
+        Ok(Self { start: read.map(|_| start), length: file.metadata()?.len() })
+    }
+
+    /// Only what was overwritten: where writing failed, it would fail again.
+    fn put_back(self, mut file: &File) -> io::Result<()> {
+        let written = file.stream_position()? as usize;
+        let start = self.start?;
+        file.write_all_at(&start[..written.min(start.len())], 0)?;
+        file.set_len(self.length)?;
+        file.sync_all()
+    }
+}

@@ -1,0 +1,71 @@
+//! Where a path leads to, and whether it may be written.
+
+use rustix::fs::{Access, access};
+use rustix::io::Errno;
+use std::fs::{self, File, Metadata};
+use std::io;
+use std::iter::successors;
+use std::path::{Path, PathBuf};
+
+/// As many as Linux follows. The system has followed them before we do, and found no loop.
+const MOST_LINKS: usize = 40;
+
+/// Opens what can only be written directly: a device, a pipe, a file of the system (`/proc/...`), or a descriptor
+/// (`/dev/stdout`), behind which may stand a plain file that somebody else has open. `None` for everything else.
+///
+/// # Errors
+/// If it cannot be opened, or the path cannot be followed.
+pub fn open_stream(path: &Path) -> io::Result<Option<File>> {
+    let is_stream = match fs::metadata(path) {
+        Ok(data) if data.is_dir() => false,
+        Ok(data) => !data.is_file() || chain(path).any(|place| is_the_systems(&place)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => false,
+        Err(error) => return Err(error),
+    };
+    is_stream.then(|| File::options().write(true).truncate(true).open(path)).transpose()
+}
+
+/// The path at the end of all symbolic links, whether or not there is something.
+pub(super) fn followed(path: &Path) -> PathBuf {
+    chain(path).last().unwrap_or_else(|| path.to_owned())
+}
+
+/// An error unless there is a plain file that this process may write. It is asked, not opened: whoever watches the
+/// file would take a closed one for a new one.
+pub(super) fn check_writable(path: &Path, data: &Metadata) -> io::Result<()> {
+    if data.is_dir() {
+        return Err(Errno::ISDIR.into());
+    }
+    if !data.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a plain file"));
+    }
+    Ok(access(path, Access::WRITE_OK)?)
+}
+
+/// An error for a new name that no file can have: renaming would find out when all is written.
+pub(super) fn check_names_a_file(path: &Path) -> io::Result<()> {
+    match path.as_os_str().as_encoded_bytes() {
+        [] => Err(Errno::NOENT.into()),
+        [.., b'/'] | [.., b'/', b'.'] => Err(Errno::ISDIR.into()),
+        _ => Ok(()),
+    }
+}
+
+pub(super) fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."))
+}
+
+/// The path, and what each symbolic link leads to.
+fn chain(path: &Path) -> impl Iterator<Item = PathBuf> {
+    let next = |place: &PathBuf| fs::read_link(place).ok().map(|to| folder_of(place).join(to));
+    successors(Some(path.to_owned()), next).take(MOST_LINKS + 1)
+}
+
+/// Whether a name is one of the system's: a descriptor's, a kernel's file. (Below `/dev` there are folders for
+/// everybody, such as `/dev/shm`.)
+fn is_the_systems(place: &Path) -> bool {
+    let folder = folder_of(place).canonicalize();
+    folder.is_ok_and(|folder| {
+        folder.starts_with("/proc") || ["/dev", "/dev/fd"].iter().any(|system| folder == Path::new(system))
+    })
+}

@@ -1,0 +1,43 @@
+//! Printable text: what comes from outside (names, arguments, files, environment variables) must not control the terminal
+//! that it is printed on.
+
+/// Returns what stands for a character in a message: itself, unless it moves the cursor, starts an escape sequence, turns
+/// the direction of writing, or cannot be seen.
+pub(crate) fn visible_char(c: char) -> char {
+    match c {
+        '\t' => ' ',
+        // Zero width, marks of direction, separators of lines and paragraphs; embeddings and overrides; the word joiner,
+        // isolates and what Unicode has withdrawn; the Arabic letter mark; the byte order mark.
+        '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{61c}' | '\u{feff}' => {
+            char::REPLACEMENT_CHARACTER
+        }
+        _ if c.is_control() => char::REPLACEMENT_CHARACTER,
+        _ => c,
+    }
+}
+
+/// Returns the text in one line, with nothing in it that controls a terminal.
+pub fn visible(text: &str) -> String {
+    text.chars().map(visible_char).collect()
+}
+
+/// Returns the text with its line feeds, and nothing else in it that controls a terminal.
+pub fn visible_lines(text: &str) -> String {
+    text.chars().map(|c| if c == '\n' { c } else { visible_char(c) }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_controls_a_terminal_is_replaced() {
+        let controls = (0..0x20).chain(0x7f..0xa0).chain(0x202a..=0x202e).chain(0x2066..=0x2069);
+        for c in controls.chain([0x200e, 0x200f, 0x61c]).filter_map(char::from_u32).filter(|&c| c != '\t') {
+            assert_eq!(visible(&format!("a{c}b")), "a\u{fffd}b", "{c:?}");
+            let lines = if c == '\n' { "a\nb" } else { "a\u{fffd}b" };
+            assert_eq!(visible_lines(&format!("a{c}b")), lines, "{c:?}");
+        }
+        assert_eq!(visible("tab\tété 地 👪"), "tab été 地 👪");
+    }
+}

@@ -1,0 +1,231 @@
+//! Whatever stands behind a name is read within bounds, or told in a line.
+
+use super::{BALL, Folder, Run, finish};
+use nix::sys::stat::Mode;
+use nix::unistd::mkfifo;
+use std::fs::{self, File, OpenOptions};
+use std::io::{PipeWriter, Write, pipe};
+use std::os::unix::fs::symlink;
+use std::os::unix::net::UnixListener;
+use std::thread;
+
+/// A name that a user gives, and the command that reads what stands behind it.
+struct Named {
+    file: &'static str,
+    command: &'static str,
+    /// The exit code if it cannot be read.
+    code: i32,
+    /// The most that is read.
+    most: &'static str,
+}
+
+const NAMED: [Named; 9] = [
+    Named { file: "golden.txt", command: "frame ball.ron --check golden.txt", code: 1, most: "16 MiB" },
+    Named { file: "golden.png", command: "frame ball.ron --check golden.png", code: 1, most: "16 MiB" },
+    Named { file: "path.ron", command: "record ball.ron --path path.ron -o x.cast", code: 2, most: "16 MiB" },
+    Named { file: "settings/termtrace/config.ron", command: "config", code: 2, most: "64 KiB" },
+    Named { file: "settings/termtrace/keys.ron", command: "config --keys", code: 2, most: "64 KiB" },
+    Named { file: "scene.ron", command: "check scene.ron", code: 2, most: "16 MiB" },
+    Named { file: "scene", command: "scene", code: 2, most: "16 MiB" },
+    Named { file: "z.obj", command: "check z.obj", code: 2, most: "2 GiB" },
+    Named { file: "z.ply", command: "frame z.ply", code: 2, most: "2 GiB" },
+];
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    fs::create_dir_all(folder.path("settings/termtrace")).expect("a folder can be made");
+    folder
+}
+
+/// Each of the names, with that made behind it, all at once.
+fn each_fails(make: impl Fn(&Folder, &Named) + Sync, words: impl Fn(&Named) -> String + Sync) {
+    thread::scope(|scope| {
+        for named in &NAMED {
+            let (make, words) = (&make, &words);
+            scope.spawn(move || {
+                let folder = folder();
+                make(&folder, named);
+                let run = folder.run(named.command);
+                run.fails_in_a_line(named.code, &format!("{}: {}\n", named.file, words(named)));
+            });
+        }
+    });
+}
+
+fn make_fifo(folder: &Folder, name: &str) {
+    mkfifo(&folder.path(name), Mode::S_IRWXU).expect("a pipe can be made");
+}
+
+#[test]
+fn a_device_is_not_read() {
+    for device in ["/dev/zero", "/dev/full", "/dev/random", "/dev/tty"] {
+        let make = |folder: &Folder, named: &Named| symlink(device, folder.path(named.file)).expect("a link is made");
+        each_fails(make, |_| "this is a device, not a file or a pipe".to_owned());
+    }
+}
+
+#[test]
+fn a_folder_or_a_socket_is_not_read() {
+    let make = |folder: &Folder, named: &Named| fs::create_dir(folder.path(named.file)).expect("a folder is made");
+    each_fails(make, |_| "this is a directory, not a file".to_owned());
+    let make = |folder: &Folder, named: &Named| drop(UnixListener::bind(folder.path(named.file)).expect("it is made"));
+    each_fails(make, |_| "this is a socket, not a file or a pipe".to_owned());
+}
+
+#[test]
+fn a_file_that_is_too_large_is_not_read() {
+    let make = |folder: &Folder, named: &Named| {
+        let file = File::create(folder.path(named.file)).expect("a file can be made");
+        file.set_len(10 << 30).expect("a file can have holes");
+    };
+    each_fails(make, |named| format!("the file is larger than {}, too large to be read", named.most));
+}
+
+#[test]
+fn a_pipe_without_a_writer_is_given_up() {
+    each_fails(
+        |folder, named| make_fifo(folder, named.file),
+        |_| "this pipe delivered nothing for a second".to_owned(),
+    );
+}
+
+/// The writer stays, and writes no more.
+#[test]
+fn a_pipe_that_stops_is_given_up() {
+    let make = |folder: &Folder, named: &Named| {
+        make_fifo(folder, named.file);
+        // Open for reading too: it waits for no reader, and outlives this scope.
+        let pipe = OpenOptions::new().read(true).write(true).open(folder.path(named.file));
+        let mut pipe = pipe.expect("a pipe can be opened");
+        pipe.write_all(b"( // and then").expect("there is room in a pipe");
+        std::mem::forget(pipe);
+    };
+    each_fails(make, |_| "this pipe delivered nothing for a second".to_owned());
+}
+
+/// As much as may be is read, and no more. (2 GiB for a mesh would take too long here.)
+#[test]
+fn a_pipe_without_end_is_given_up() {
+    for named in NAMED.iter().filter(|named| named.most != "2 GiB") {
+        let folder = folder();
+        make_fifo(&folder, named.file);
+        let run = written(&folder, named, |mut pipe| while pipe.write_all(&[b' '; 4096]).is_ok() {});
+        let words = format!("the file is larger than {}, too large to be read\n", named.most);
+        run.fails_in_a_line(named.code, &words);
+    }
+    let folder = Folder::new();
+    let mut command = folder.command("check -");
+    let endless = File::open("/dev/zero").expect("it can be read");
+    finish(command.stdin(endless)).fails(2, "standard input:1:1: the file is larger than 16 MiB");
+}
+
+/// The command, with something that is written into its pipe meanwhile.
+#[track_caller]
+fn written(folder: &Folder, named: &Named, write: impl FnOnce(File) + Send) -> Run {
+    let path = folder.path(named.file);
+    thread::scope(|scope| {
+        scope.spawn(|| write(OpenOptions::new().write(true).open(path).expect("a pipe can be opened")));
+        folder.run(named.command)
+    })
+}
+
+/// What is right for each name, which as a file is no error.
+fn right(folder: &Folder, named: &Named) -> Vec<u8> {
+    const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                       element face 1\nproperty list uchar int vertex_indices\nend_header\n\
+                       0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    match named.file {
+        "golden.txt" => folder.frame("ball.ron"),
+        "golden.png" => folder.frame("ball.ron --format png"),
+        "path.ron" => b"(keyframes: [(time: 0, eye: (0, 1, 5), target: (0, 1, 0)), (time: 0.1, eye: (0, 2, 5), \
+                       target: (0, 1, 0))])"
+            .to_vec(),
+        "scene.ron" => BALL.as_bytes().to_vec(),
+        "settings/termtrace/config.ron" => b"(fps: 30)".to_vec(),
+        "settings/termtrace/keys.ron" => folder.run("config --keys").done(),
+        "z.obj" => TRIANGLE.as_bytes().to_vec(),
+        // A mesh is known by its first bytes, too.
+        "scene" | "z.ply" => PLY.as_bytes().to_vec(),
+        other => panic!("what is right for {other}?"),
+    }
+}
+
+#[test]
+fn what_comes_through_a_pipe_is_as_good_as_a_file() {
+    for named in &NAMED {
+        let folder = folder();
+        let right = right(&folder, named);
+        make_fifo(&folder, named.file);
+        let piped = written(&folder, named, |mut pipe| {
+            for part in right.chunks(right.len() / 5 + 1) {
+                pipe.write_all(part).expect("it is read to its end");
+                thread::yield_now();
+            }
+        });
+        fs::remove_file(folder.path(named.file)).expect("it is there");
+        folder.write(named.file, &right);
+        assert!(piped.done() == folder.run(named.command).done(), "{}", named.file);
+    }
+}
+
+/// As shells have it: `frame --check <(...)`, a pipe by the number of its descriptor.
+#[test]
+fn a_golden_frame_may_come_out_of_a_descriptor() {
+    let folder = Folder::new();
+    let golden = folder.frame("ball.ron");
+    for (golden, code) in [(&golden[..], 0), (b"another", 1)] {
+        for name in ["/dev/stdin", "/dev/fd/0"] {
+            let (reader, mut writer): (_, PipeWriter) = pipe().expect("a pipe can be made");
+            let mut command = folder.command(&format!("frame ball.ron --format text --check {name}"));
+            let run = thread::scope(|scope| {
+                scope.spawn(move || writer.write_all(golden).expect("it is read"));
+                finish(command.stdin(reader))
+            });
+            assert_eq!(run.code, Some(code), "{name}: {run:?}");
+        }
+    }
+}
+
+/// An empty file by another name.
+#[test]
+fn the_null_device_is_an_empty_file() {
+    let folder = folder();
+    folder.run("check /dev/null").fails(2, "the file is empty");
+    assert_eq!(folder.run("frame ball.ron --format text --check /dev/null").code, Some(1));
+    symlink("/dev/null", folder.path("settings/termtrace/config.ron")).expect("a link is made");
+    folder.run("config").fails(2, "the file is empty");
+}
+
+/// A scene, or a mesh, may come from a stranger: what it names is a plain file.
+#[test]
+fn what_a_file_names_is_a_plain_file() {
+    let folder = Folder::new();
+    folder.write("mesh.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Mesh(path: \"named\")])");
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n";
+    folder.write("mtl.obj", format!("{triangle}mtllib named\nf 1 2 3\n"));
+    folder.write("texture.obj", format!("{triangle}mtllib x.mtl\nusemtl x\nf 1/1 2/1 3/1\n"));
+    folder.write("x.mtl", "newmtl x\nmap_Kd named\n");
+    folder.write(
+        "x.gltf",
+        r#"{"asset": {"version": "2.0"}, "buffers": [{"uri": "named", "byteLength": 9}],
+        "bufferViews": [{"buffer": 0, "byteLength": 9}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}],
+        "scenes": [{"nodes": [0]}]}"#,
+    );
+    let check = |what: &str| {
+        for name in ["mesh.ron", "mtl.obj", "texture.obj", "x.gltf"] {
+            folder.run(&format!("check {name}")).fails(2, what);
+        }
+        fs::remove_file(folder.path("named")).expect("it is there");
+    };
+    make_fifo(&folder, "named");
+    check("this is a pipe, not a plain file");
+    for device in ["/dev/zero", "/dev/null"] {
+        symlink(device, folder.path("named")).expect("a link is made");
+        check("this is a device, not a plain file");
+    }
+    File::create(folder.path("named")).and_then(|file| file.set_len(10 << 30)).expect("a file can have holes");
+    check("the file is larger than 2 GiB, too large to be read");
+}

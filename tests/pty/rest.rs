@@ -1,0 +1,60 @@
+//! Rest: the child says through its test-only hooks when it sleeps until something new happens.
+
+use std::{
+    io::{BufRead, BufReader, Write},
+    os::unix::net::UnixListener,
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+use tempfile::TempDir;
+
+/// What a child has said of its rests.
+pub(super) struct Rest {
+    folder: TempDir,
+    /// One more than the number of bytes that the child had read when it last rested; 0: it has not rested.
+    said: Arc<AtomicU64>,
+}
+
+impl Rest {
+    /// Listens to one child, and lets it go on at every phase.
+    pub(super) fn listen() -> Self {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let listener = UnixListener::bind(folder.path().join("phases")).expect("a socket can be had");
+        let said = Arc::new(AtomicU64::new(0));
+        let heard = Arc::clone(&said);
+        // It ends with the child, and with the test program where no child connects.
+        std::thread::spawn(move || hear(&listener, &heard));
+        Self { folder, said }
+    }
+
+    /// Where the child finds the listener.
+    pub(super) fn path(&self) -> PathBuf {
+        self.folder.path().join("phases")
+    }
+
+    /// Whether the child's last rest was after it had read so many bytes.
+    pub(super) fn is_after(&self, typed: u64) -> bool {
+        self.said.load(Ordering::SeqCst) == typed + 1
+    }
+}
+
+fn hear(listener: &UnixListener, said: &AtomicU64) {
+    let Ok((child, _)) = listener.accept() else { return };
+    let Ok(mut answers) = child.try_clone() else { return };
+    for phase in BufReader::new(child).lines().map_while(Result::ok) {
+        if let Some(read) = bytes_read(&phase) {
+            said.store(read + 1, Ordering::SeqCst);
+        }
+        // A dead child needs no answer.
+        let _ = answers.write_all(b".");
+    }
+}
+
+/// How many bytes a child that rests has read, if that is the phase.
+pub(super) fn bytes_read(phase: &str) -> Option<u64> {
+    phase.strip_prefix("rest ")?.parse().ok()
+}

@@ -1,0 +1,53 @@
+//! What holds for any bytes that are read as a scene, a camera path or a file of keys: for the tests and for the fuzzer.
+
+use termtrace::camera_path::CameraPath;
+use termtrace::control::Bindings;
+use termtrace::scene::Scene;
+use termtrace::scene_text::{SceneError, text_from};
+
+/// A scene, or faults that can be shown.
+pub(crate) fn scene(bytes: &[u8]) {
+    if let Err(error) = Scene::from_bytes("scene.ron", bytes) {
+        assert_shown(&error, bytes);
+    }
+}
+
+/// A path with a camera at any time, or faults that can be shown.
+pub(crate) fn camera_path(bytes: &[u8]) {
+    let scene = Scene::from_ron("x", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))").expect("a scene");
+    match CameraPath::from_bytes("path.ron", bytes, &scene.camera) {
+        Ok(path) => {
+            assert!(path.seconds().is_finite());
+            for share in [-1.0, 0.0, 0.3, 1.0, 2.0] {
+                // Half way between two eyes there may be none; that is told, too.
+                if let Err(error) = path.camera_at(share * path.seconds()) {
+                    assert!(!error.to_string().contains(char::is_control));
+                }
+            }
+        }
+        Err(error) => assert_shown(&error, bytes),
+    }
+}
+
+/// A table that can be written and read again, or faults that can be shown.
+pub(crate) fn keys(bytes: &[u8]) {
+    match text_from("keys.ron", bytes).and_then(|text| Bindings::from_ron("keys.ron", text)) {
+        Ok(bindings) => {
+            let written = bindings.to_ron();
+            let again = Bindings::from_ron("keys.ron", &written).expect("what was written can be read");
+            assert_eq!(again.to_ron(), written);
+        }
+        Err(error) => assert_shown(&error, bytes),
+    }
+}
+
+/// Each fault lies inside the text and can be printed on a terminal.
+fn assert_shown(error: &SceneError, bytes: &[u8]) {
+    assert!(!error.reports().is_empty());
+    let lines = bytes.split(|&byte| byte == b'\n').count();
+    for report in error.reports() {
+        assert!(report.span.start <= report.span.end && report.span.end as usize <= bytes.len());
+        assert!((1..=lines).contains(&report.line) && report.column >= 1 && report.caret_width >= 1);
+    }
+    assert!(!error.to_string().contains(|c: char| c.is_control() && c != '\n'));
+}
