@@ -596,6 +596,20 @@ fn ctrl_c_ends_by_the_signal_and_leaves_no_bar() {
 }
 
 #[test]
+fn ctrl_z_stops_a_recording() {
+    let folder = Folder::new();
+    let record = format!("'{}' record ball.ron --seconds 1000 -o x.cast", env!("CARGO_BIN_EXE_termtrace"));
+    // With job control, and an end that takes the stopped job along.
+    let script =
+        format!("cd '{}'; set -m; {record}; printf '\\nstatus <%s>\\n' $?; kill -KILL %1", folder.path(".").display());
+    let mut session = Start::shell(&script).spawn();
+    session.wait_for_text("/30000 frames");
+    session.send(b"\x1a");
+    session.wait_for_text(&format!("status <{}>", 128 + Signal::TSTP.as_raw()));
+    session.wait_exit(SOON);
+}
+
+#[test]
 fn a_terminal_gets_no_asciicast() {
     let folder = Folder::new();
     for flags in ["--seconds 1", "--seconds 1 -o -"] {
