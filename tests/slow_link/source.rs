@@ -23,7 +23,7 @@ pub(crate) fn run(mut terminal: File) {
             begun = start.elapsed();
             // It tells how the link is found, and has what frames may take settled.
             let slow = link.slow(80 * 24 * 8).is_some();
-            let mut bytes = link.probe(begun).to_vec();
+            let mut bytes = link.probe(begun);
             let mut frame = frame(eye, slow);
             link.send(&mut frame, begun);
             bytes.extend(frame);
