@@ -148,6 +148,9 @@ impl Encoder {
     }
 
     /// From here on nothing is known of the screen: the next frame is drawn whole, and is due at once.
+    ///
+    /// To be called when the terminal's size has changed, even if it has changed back since the last frame: a terminal
+    /// that becomes smaller loses what no longer fits, and from equal sizes the encoder cannot tell.
     pub fn forget(&mut self) {
         self.known = None;
         self.due = Some(Duration::ZERO);

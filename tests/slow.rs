@@ -3,16 +3,22 @@
 
 #![cfg(feature = "test-hooks")]
 
+mod gravel;
 mod mesh_writers;
 mod pty;
 
+use gravel::gravel;
 use mesh_writers::{ball, written};
-use pty::{Answer, Phases, SOON, Seen, Session, Size, Start};
+use pty::{Answer, Fault, Phases, SOON, Seen, Session, Size, Start, Which, picture_with, shows};
 use rustix::process::Signal;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::ExitStatus;
 use std::time::{Duration, Instant};
+use tempfile::NamedTempFile;
+use termtrace::capabilities::CellMode;
+use termtrace::render::Sampling;
+use termtrace::scene::Scene;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
@@ -23,10 +29,14 @@ const STOPPED: Duration = Duration::from_secs(2);
 const LOADING: Duration = Duration::from_millis(200);
 /// A terminal that has never answered is left within this: waiting for an answer would take a second.
 const SILENT: Duration = Duration::from_millis(250);
+/// A key is seen within this while the terminal loses a reply, before the first reply and after it.
+const KEY: [Duration; 2] = [Duration::from_millis(500), Duration::from_millis(250)];
 /// A terminal that has vanished is left within this,
 const VANISHED: Duration = Duration::from_secs(1);
 /// with so many hundredths of a second of CPU.
 const VANISHED_TICKS: u64 = 10;
+/// The replies that are lost: those at the start, at which the program knows least, and some later ones.
+const REPLIES: [usize; 5] = [1, 2, 3, 8, 21];
 /// A scene that is saved is seen within this.
 const SAVED: Duration = Duration::from_millis(100);
 /// A mesh that is saved is seen within so much of the time that it takes to read and build it.
@@ -299,6 +309,102 @@ fn a_mesh_that_is_saved_is_seen_when_it_is_built() {
     }
 }
 
+/// The coordinates of the eye in the figures that `i` shows.
+fn eye(seen: &Seen) -> Option<String> {
+    let text = seen.screen().text();
+    text.iter().find_map(|line| Some(line.split_once("  eye ")?.1.trim_end().to_owned()))
+}
+
+/// How long the slowest of the key presses takes to be seen, until that reply and some more are due.
+fn slowest_key(reports_modes: bool, fault: Fault, which: Which, last: usize) -> Duration {
+    let start = Start::new(PROGRAM).arg(SCENE).arg("--reduced-motion").with_fault(fault, which);
+    let start = if reports_modes { start.reports_modes() } else { start };
+    let mut session = start.spawn();
+    session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+    let (mut slowest, mut presses) = (Duration::ZERO, 0);
+    while session.replies() < last + 6 {
+        let before = eye(session.seen());
+        let pressed = Instant::now();
+        session.send(if presses == 0 { b"i" } else { b"d" });
+        session.wait_for("key to be seen", SOON, |seen| eye(seen).is_some_and(|eye| Some(eye) != before));
+        slowest = slowest.max(pressed.elapsed());
+        presses += 1;
+        assert!(presses < 200, "the terminal is no longer asked");
+    }
+    session.send(b"q");
+    session.wait_exit(SOON);
+    session.assert_clean();
+    slowest
+}
+
+/// Whichever reply of a terminal that is near is lost, doubled, garbled or late, no key waits for it.
+#[test]
+fn a_lost_reply_holds_no_key() {
+    let faults = [Fault::Lost, Fault::Doubled, Fault::Garbled, Fault::Late(Duration::from_secs(20))];
+    let which: Vec<_> = REPLIES.map(Which::Only).into_iter().chain([Which::EachThirdFrom(1)]).collect();
+    for (reports_modes, fault) in [true, false].into_iter().flat_map(|modes| faults.map(|fault| (modes, fault))) {
+        let wait = |which| match which {
+            Which::Only(reply) => slowest_key(reports_modes, fault, which, reply),
+            Which::EachThirdFrom(_) => slowest_key(reports_modes, fault, which, 12),
+        };
+        // Side by side, because they mostly wait; but few, because each begins with a picture.
+        for which in which.chunks(6) {
+            let waits: Vec<_> = std::thread::scope(|scope| {
+                let sessions: Vec<_> = which.iter().map(|&which| scope.spawn(move || wait(which))).collect();
+                sessions.into_iter().map(|session| session.join().expect("keys are seen")).collect()
+            });
+            println!("reports modes: {reports_modes}, {fault:?}, {which:?}: {waits:.0?}");
+            // Until the second reply the terminal has not replied to a frame.
+            let limit = |which| KEY[usize::from(!matches!(which, Which::Only(1 | 2) | Which::EachThirdFrom(_)))];
+            assert!(which.iter().zip(&waits).all(|(&which, &wait)| wait < 3 * limit(which)), "{waits:?}");
+        }
+    }
+}
+
+const LARGE: Size = Size { columns: 120, rows: 40, cell: (10, 20) };
+
+/// A session in which a refinement has just been begun.
+fn refining(scene: &NamedTempFile) -> (Session, Phases) {
+    let mut phases = Phases::new();
+    let start = Start::new(PROGRAM).arg(scene.path()).size(LARGE);
+    let mut session = start.env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
+    phases.wait_for_on("refinement", &mut session);
+    (session, phases)
+}
+
+/// What takes long is given up where somebody presses a key.
+#[test]
+fn a_key_does_not_wait_for_a_refinement() {
+    let scene = gravel();
+    let loaded = Scene::load(scene.path()).unwrap_or_else(|error| panic!("{error}"));
+    let cells = termtrace::grid::Size::new(LARGE.columns, LARGE.rows);
+    let wanted = picture_with(Sampling::BEST, &loaded, CellMode::HALF_BLOCK, cells, 2.0);
+    let (mut session, phases) = refining(&scene);
+    let start = Instant::now();
+    phases.answer(Answer::GoOn);
+    session.wait_for("the end", 6 * SOON, |seen| shows(seen.screen(), &wanted));
+    let refined = start.elapsed();
+
+    let (mut session, phases) = refining(&scene);
+    let before = session.seen().bytes().len();
+    session.send(b"w");
+    let start = Instant::now();
+    phases.answer(Answer::GoOn);
+    // More than a question.
+    session.wait_for("another picture", 6 * SOON, |seen| seen.bytes().len() > before + 1_000);
+    let seen = start.elapsed();
+
+    let (mut session, phases) = refining(&scene);
+    session.send(b"q");
+    let start = Instant::now();
+    phases.answer(Answer::GoOn);
+    assert_eq!(session.wait_exit(6 * SOON).code(), Some(0));
+    let left = start.elapsed();
+    println!("refined in {refined:?}, a key seen in {seen:?}, left in {left:?}");
+    assert!(seen * 4 < refined, "a key was seen after {seen:?} of {refined:?}");
+    assert!(left * 4 < refined, "left after {left:?} of {refined:?}");
+}
+
 /// What `--max-rate` says is kept, and used.
 #[test]
 fn the_rate_is_kept() {
@@ -319,6 +425,17 @@ fn the_rate_is_kept() {
         // With a frame that has just been sent; a third of the least, as everywhere here.
         assert!((5_000.0 / 3.0..35_000.0).contains(&rate), "{quality}: {rate} bytes a second");
     }
+}
+
+/// A terminal that has replied to all queries is left without waiting for another reply.
+#[test]
+fn a_terminal_that_has_answered_all_is_left_at_once() {
+    let mut session = Start::new(PROGRAM).arg(SCENE).says_when_it_rests().spawn();
+    session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+    session.wait_for_rest();
+    session.send(b"q");
+    exit_within(SILENT, "all answered", &mut session);
+    session.assert_clean();
 }
 
 /// A terminal that has never answered for three seconds is not waited for.

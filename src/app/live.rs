@@ -167,9 +167,9 @@ impl Live {
                 self.screen.say(format!("changes of the scene's files will not be seen: {problem}"));
             }
             self.panic_if_asked(renderer);
-            let timeout = self.timeout(terminal, renderer);
+            let mut timeout = self.timeout(terminal, renderer);
             if timeout.is_none() && !renderer.is_working() && !terminal.is_sending() {
-                terminal::rest()?;
+                timeout = terminal::rest()?;
             }
             let woken = terminal.wait(signals.wake_pipe(), timeout)?;
             if woken.wake {

@@ -5,11 +5,14 @@ use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, OnceLock};
+use std::time::Duration;
 
 /// The test, if one listens.
 static TEST: OnceLock<Mutex<UnixStream>> = OnceLock::new();
 /// Whether a worker is to panic.
 static WORKER: AtomicBool = AtomicBool::new(false);
+/// How long another thread may take to tell the test of its phase.
+const BESIDE: Duration = Duration::from_millis(2);
 /// How many bytes the loop has read from the terminal.
 static READ: AtomicU64 = AtomicU64::new(0);
 
@@ -44,12 +47,13 @@ fn go_by(test: Option<MutexGuard<'_, UnixStream>>, phase: &str) -> io::Result<()
 }
 
 /// Tells the test that the loop is about to sleep with no work under way and no timer, and how many bytes of the terminal
-/// it has read until then. So a test knows that nothing happens any more, without waiting for that.
-pub(crate) fn rest() -> io::Result<()> {
-    match test() {
-        Some(_) => reach(&format!("rest {}", READ.load(Ordering::SeqCst))),
-        None => Ok(()),
-    }
+/// it has read until then. So a test knows that nothing happens any more, without waiting for that. Returns after which
+/// time it has to be told again, if another thread is telling it something now.
+pub(crate) fn rest() -> io::Result<Option<Duration>> {
+    let Some(test) = test() else { return Ok(None) };
+    let Ok(test) = test.try_lock() else { return Ok(Some(BESIDE)) };
+    go_by(Some(test), &format!("rest {}", READ.load(Ordering::SeqCst)))?;
+    Ok(None)
 }
 
 /// Counts bytes that the loop has read from the terminal.

@@ -613,14 +613,14 @@ fn writes(session: &Session) -> u64 {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_frame_is_one_write() {
-    let mut session = Start::new(PROGRAM).arg(SCENE).size(Size::cells(40, 8)).spawn();
+    let mut session = Start::new(PROGRAM).arg(SCENE).size(Size::cells(40, 8)).says_when_it_rests().spawn();
     session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(40, 8)));
-    session.sees(Duration::from_millis(300), |_| false);
+    session.wait_for_rest();
     for key in [&b"\x0c"[..], b"i", b"\x0c", b"?"] {
         let (before, bytes) = (writes(&session), session.seen().bytes().len());
         session.send(key);
         session.wait_for("a frame", SOON, |seen| seen.bytes().len() > bytes);
-        session.sees(Duration::from_millis(200), |_| false);
+        session.wait_for_rest();
         if key == b"\x0c" {
             assert!(session.seen().bytes().len() - bytes > 2_000, "a whole frame");
         }

@@ -2,6 +2,8 @@
 
 mod explaining;
 mod files;
+#[path = "../gravel/mod.rs"]
+mod gravel;
 mod harness;
 mod keyboard;
 mod leaving;

@@ -3,13 +3,10 @@
 
 #![cfg(feature = "test-hooks")]
 
-use crate::pty::{self, Answer, Phases, SOON, Session, Size, Start, shows};
-use std::fmt::Write as _;
-use std::io::Write as _;
+use crate::gravel::gravel;
+use crate::pty::{self, Phases, SOON, Session, Size, Start, shows};
 use std::num::NonZeroU32;
 use std::path::Path;
-use std::time::Instant;
-use tempfile::NamedTempFile;
 use termtrace::capabilities::CellMode;
 use termtrace::encode::{Encoder, Order};
 use termtrace::grid::Grid;
@@ -108,66 +105,4 @@ fn samples_may_be_forced() {
     session.wait_for_text("80x24x64 ");
 }
 
-/// A scene with edges everywhere: refined, it takes nearly 64 times as long as at first.
-fn gravel() -> NamedTempFile {
-    let mut scene = String::from("(camera: (eye: (0, 0, 30), target: (0, 0, 0)), ambient: 0.2, lights: [");
-    for x in [-20, 0, 20] {
-        let _ = write!(scene, "Point(position: ({x}, 20, 30), intensity: 900),");
-    }
-    scene.push_str("], objects: [");
-    for n in 0..30_000 {
-        let _ = write!(
-            scene,
-            "Sphere(center: ({}, {}, {}), radius: 0.07),",
-            f64::from(n % 200) * 0.2 - 20.0,
-            f64::from(n / 200) * 0.2 - 15.0,
-            f64::from(n * 7 % 31) * 0.1,
-        );
-    }
-    scene.push_str("])");
-    let mut file = tempfile::Builder::new().suffix(".ron").tempfile().expect("a file can be made");
-    file.write_all(scene.as_bytes()).expect("a file can be written");
-    file
-}
-
 const LARGE: Size = Size { columns: 120, rows: 40, cell: (10, 20) };
-
-/// A session in which a refinement has just been begun.
-fn refining(scene: &NamedTempFile) -> (Session, Phases) {
-    let mut phases = Phases::new();
-    let start = Start::new(PROGRAM).arg(scene.path()).size(LARGE);
-    let mut session = start.env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
-    phases.wait_for_on("refinement", &mut session);
-    (session, phases)
-}
-
-/// What takes long is given up where somebody presses a key.
-#[test]
-fn a_key_does_not_wait_for_a_refinement() {
-    let scene = gravel();
-    let wanted = picture(Sampling::BEST, scene.path(), LARGE);
-    let (mut session, phases) = refining(&scene);
-    let start = Instant::now();
-    phases.answer(Answer::GoOn);
-    session.wait_for("the end", 6 * SOON, |seen| shows(seen.screen(), &wanted));
-    let refined = start.elapsed();
-
-    let (mut session, phases) = refining(&scene);
-    let before = session.seen().bytes().len();
-    session.send(b"w");
-    let start = Instant::now();
-    phases.answer(Answer::GoOn);
-    // More than a question.
-    session.wait_for("another picture", 6 * SOON, |seen| seen.bytes().len() > before + 1_000);
-    let seen = start.elapsed();
-
-    let (mut session, phases) = refining(&scene);
-    session.send(b"q");
-    let start = Instant::now();
-    phases.answer(Answer::GoOn);
-    assert_eq!(session.wait_exit(6 * SOON).code(), Some(0));
-    let left = start.elapsed();
-    println!("refined in {refined:?}, a key seen in {seen:?}, left in {left:?}");
-    assert!(seen * 4 < refined, "a key was seen after {seen:?} of {refined:?}");
-    assert!(left * 4 < refined, "left after {left:?} of {refined:?}");
-}

@@ -17,6 +17,7 @@ mod modes;
 mod output;
 mod phases;
 mod picture;
+mod replies;
 mod rest;
 mod screen;
 mod signals;
@@ -48,6 +49,8 @@ pub(crate) use modes::Modes;
 use output::Output;
 pub(crate) use phases::{Answer, Phases};
 pub(crate) use picture::{halves_of, picture, picture_with, shows};
+use replies::Replies;
+pub(crate) use replies::{Fault, Which};
 use rest::Rest;
 pub(crate) use screen::{Colour, Screen};
 pub(crate) use signals::reset_for_children;
@@ -61,12 +64,6 @@ const LOOK: Duration = Duration::from_millis(2);
 
 /// How long the terminal of a dead child may take to hand on its output. Only one that was stopped takes so long.
 const LAST_OUTPUT: Duration = Duration::from_secs(1);
-
-/// The question that every terminal answers.
-const DA1: &[u8] = b"\x1b[c";
-
-/// The question which flags of the kitty keyboard protocol are on.
-const KEYBOARD: &[u8] = b"\x1b[?u";
 
 /// What the harness itself writes after the child's last byte, so as to know that nothing is still on its way.
 const END_OF_OUTPUT: &[u8] = b"\x1b_the end of the output\x1b\\";
@@ -112,8 +109,7 @@ pub(crate) struct Start {
     stdin: Option<Stdio>,
     stdout: Option<Stdio>,
     stderr: Option<Stdio>,
-    mute: bool,
-    kitty: bool,
+    replies: Replies,
     rest: Option<Rest>,
 }
 
@@ -130,8 +126,7 @@ impl Start {
             stdin: None,
             stdout: None,
             stderr: None,
-            mute: false,
-            kitty: false,
+            replies: Replies::default(),
             rest: None,
         };
         start
@@ -180,14 +175,28 @@ impl Start {
     }
 
     /// A terminal that answers no question. Otherwise it answers DA1, as every terminal does, and nothing else.
-    pub(crate) fn mute(self) -> Self {
-        Self { mute: true, ..self }
+    pub(crate) fn mute(mut self) -> Self {
+        self.replies.unanswered = None;
+        self
     }
 
     /// A terminal that knows the kitty keyboard protocol, and says when it is asked which of its flags are on. (Keys are
     /// the test's to send.)
-    pub(crate) fn kitty(self) -> Self {
-        Self { kitty: true, ..self }
+    pub(crate) fn kitty(mut self) -> Self {
+        self.replies.kitty = true;
+        self
+    }
+
+    /// A terminal that reports modes as well (DECRQM): that it knows none of those asked for.
+    pub(crate) fn reports_modes(mut self) -> Self {
+        self.replies.modes = true;
+        self
+    }
+
+    /// A terminal of whose replies to DA1 and about modes some have a fault.
+    pub(crate) fn with_fault(mut self, fault: Fault, which: Which) -> Self {
+        self.replies.fault = Some((fault, which));
+        self
     }
 
     /// A program with test-only hooks, which says when it rests: for [`Session::wait_for_rest`].
@@ -214,7 +223,7 @@ impl Start {
     #[track_caller]
     pub(crate) fn spawn(mut self) -> Session {
         let (master, slave) = open().expect("a pseudo-terminal can be had");
-        let (size, mute, kitty) = (self.size, self.mute, self.kitty);
+        let size = self.size;
         rustix::termios::tcsetwinsize(&master, size.winsize()).expect("a terminal has a size");
         let slave_side = open_slave_again(&slave).expect("the slave side can be opened twice");
         set_nonblocking(&master).expect("a file descriptor has flags");
@@ -223,7 +232,7 @@ impl Start {
         let output = Output::read_from(Arc::clone(&master)).expect("a pipe and a thread can be had");
         let name = self.program.display().to_string();
         reset_for_children();
-        let rest = self.rest.take();
+        let (rest, replies) = (self.rest.take(), std::mem::take(&mut self.replies));
         let start = rest.iter().fold(self, |start, rest| start.env("TERMTRACE_TEST_SOCKET", rest.path()));
         let child = start.command().spawn(slave);
         let child = child.unwrap_or_else(|error| panic!("{name} does not start: {error}"));
@@ -234,8 +243,7 @@ impl Start {
             slave_side,
             before,
             output,
-            unanswered: (!mute).then_some(0),
-            kitty,
+            replies,
             rest,
             typed: Cell::new(0),
             seen: Seen { bytes: Vec::new(), screen: Screen::new(size.columns, size.rows) },
@@ -335,9 +343,7 @@ pub(crate) struct Session {
     slave_side: std::fs::File,
     before: Termios,
     output: Output,
-    /// From where on questions in the output are unanswered; `None`: for ever.
-    unanswered: Option<usize>,
-    kitty: bool,
+    replies: Replies,
     rest: Option<Rest>,
     /// How many bytes were typed or answered.
     typed: Cell<u64>,
@@ -455,30 +461,23 @@ impl Session {
 
     /// A mute terminal answers DA1 after all: from this byte of its output on, those from before and those to come.
     pub(crate) fn answer_from(&mut self, from: usize) {
-        self.unanswered = Some(from);
+        self.replies.unanswered = Some(from);
         self.pump();
     }
 
-    /// Answers each question, whole or in pieces in the output, once.
+    /// Answers each query, whole or in pieces in the output, once.
     fn answer(&mut self) {
-        let Some(from) = self.unanswered else { return };
-        let bytes = &self.seen.bytes;
-        let (mut answers, mut unanswered) = (Vec::new(), from);
-        for at in from..bytes.len() {
-            if bytes[at..].starts_with(DA1) {
-                answers.extend_from_slice(b"\x1b[?62;22c");
-                unanswered = at + DA1.len();
-            } else if self.kitty && bytes[at..].starts_with(KEYBOARD) {
-                let flags = Modes::after(&bytes[..at]).keyboard_flags();
-                answers.extend_from_slice(format!("\x1b[?{flags}u").as_bytes());
-                unanswered = at + KEYBOARD.len();
-            }
-        }
-        self.unanswered = Some(unanswered);
+        let replies = self.replies.to(&self.seen.bytes);
         // Nobody may be there any more to hear it.
-        if let Ok(true) = write_before(&mut &*self.master, &answers, Instant::now() + LOOK) {
-            self.typed.update(|typed| typed + answers.len() as u64);
+        if let Ok(true) = write_before(&mut &*self.master, &replies, Instant::now() + LOOK) {
+            self.typed.update(|typed| typed + replies.len() as u64);
         }
+    }
+
+    /// How many replies to DA1 and about modes were due up to now.
+    pub(crate) fn replies(&mut self) -> usize {
+        self.pump();
+        self.replies.count
     }
 
     /// Whether the child, which rests after it has read so many bytes, has nothing more to read when all that it wrote is
@@ -517,11 +516,12 @@ impl Session {
                 return true;
             }
             // A child that always has more to say must not keep us beyond the deadline.
-            if Instant::now() >= deadline || !self.output.wait_for_more(deadline) {
+            if Instant::now() >= deadline {
                 // What came between the last look and the deadline counts.
                 self.pump();
                 return wanted(&self.seen);
             }
+            self.output.wait_for_more(self.replies.next_due().map_or(deadline, |due| due.min(deadline)));
         }
     }
 
