@@ -36,7 +36,7 @@ const VANISHED: Duration = Duration::from_secs(1);
 /// with so many hundredths of a second of CPU.
 const VANISHED_TICKS: u64 = 10;
 /// The replies that are lost: those at the start, at which the program knows least, and some later ones.
-const REPLIES: [usize; 5] = [1, 2, 3, 8, 21];
+const REPLIES: [usize; 11] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
 /// A scene that is saved is seen within this.
 const SAVED: Duration = Duration::from_millis(100);
 /// A mesh that is saved is seen within so much of the time that it takes to read and build it.

@@ -148,7 +148,7 @@ impl Ledger {
     /// A reply with a number. `None`: it belongs to none of the queries.
     pub(super) fn take_tagged(&mut self, tag: Tag) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.tag() == Some(tag))?;
-        Some(self.take(at, Trust::AfterLoss))
+        Some(self.take(at))
     }
 
     /// The query that a reply without a number belongs to, if none is lost.
@@ -159,26 +159,26 @@ impl Ledger {
     /// A reply without a number, if it belongs to the oldest query.
     pub(super) fn take_oldest(&mut self) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.is_counted())?;
-        Some(self.take(at, Trust::AfterLoss))
+        Some(self.take(at))
     }
 
-    /// A reply without a number, if it belongs to the newest query that was sent by then.
+    /// A reply without a number, taken for that to the newest query that was sent by then.
     pub(super) fn take_newest_sent_by(&mut self, latest: Duration) -> Option<Matched> {
         let fits = |query: &InFlight| query.query.is_counted() && query.sent <= latest;
         let at = self.queries.iter().rposition(fits)?;
-        Some(self.take(at, Trust::Doubtful))
+        Some(Matched { trust: Trust::Doubtful, ..self.take(at) })
     }
 
-    /// Takes out the query and all older ones; trusts the match so much if one of these was given up.
-    fn take(&mut self, at: usize, after_loss: Trust) -> Matched {
+    /// Takes out the query and all older ones.
+    fn take(&mut self, at: usize) -> Matched {
         let InFlight { query, sent, bytes, late, .. } = self.queries[at];
         let mut run = (sent, bytes);
         let mut trust = if late { Trust::Late } else { Trust::Sure };
         for older in self.queries.drain(..=at).take(at) {
             if !older.given_up {
                 run = (run.0.min(older.sent), run.1 + older.bytes);
-            } else if !late || after_loss == Trust::Doubtful {
-                trust = after_loss;
+            } else if !late {
+                trust = Trust::AfterLoss;
             }
         }
         Matched { query, sent, bytes, run, trust }

@@ -57,8 +57,11 @@ impl Link {
         let matched = if in_order {
             self.ledger.take_oldest()
         } else {
-            let latest = now.saturating_sub(self.round_trip.shortest().mul_f64(0.9));
-            self.ledger.take_newest_sent_by(latest.max(now.saturating_sub(FRAME)))
+            // The shortest round trip of one that is near may be that of the start, while it was busy.
+            let least =
+                if self.is_near() { Duration::ZERO } else { self.round_trip.shortest().mul_f64(0.9).min(FRAME) };
+            let latest = now.saturating_sub(least);
+            self.ledger.take_newest_sent_by(latest)
         };
         if matched.is_some_and(|matched| matches!(matched.query, Query::Both(_))) {
             // It has passed over the tag.
@@ -101,9 +104,12 @@ impl Link {
     /// through a slow link it takes long, and the reply of a terminal that is near comes at once.
     fn is_first_pictures(&self, now: Duration) -> bool {
         let comes_at_once = |sent: Duration| now <= sent + self.round_trip.shortest() + AT_ONCE;
-        let is_near = self.round_trip.is_known() && self.round_trip.shortest() < NEAR;
-        let is_lasts = is_near && self.ledger.newest().is_some_and(comes_at_once);
+        let is_lasts = self.is_near() && self.ledger.newest().is_some_and(comes_at_once);
         self.rates.best().is_none() && !is_lasts
+    }
+
+    fn is_near(&self) -> bool {
+        self.round_trip.is_known() && self.round_trip.shortest() < NEAR
     }
 
     /// The terminal replies, to this query if to one.
