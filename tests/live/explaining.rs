@@ -85,11 +85,14 @@ fn nothing_is_on_the_pixel_that_is_explained() {
         session.wait_for("the pixel", SOON, |seen| explains(seen.screen(), size, [x, y]));
         let column = x as usize;
         let row = (y / 2) as usize;
-        let cell = session.seen().screen().cell(column, row);
         let pixel = wanted.cell(x as u16, row as u16);
         let glyph = ['▄', '▀', ' '].into_iter().find(|&glyph| pixel.glyph == glyph).expect("half blocks");
-        let halves = halves_of(cell.glyph, cell.foreground, cell.background);
-        assert_eq!(halves, halves_of(glyph, pixel.fg.into(), pixel.bg.into()), "{x}");
+        let halves = halves_of(glyph, pixel.fg.into(), pixel.bg.into());
+        // The picture may still be refined.
+        session.wait_for("the picture's own cell", SOON, |seen| {
+            let cell = seen.screen().cell(column, row);
+            halves_of(cell.glyph, cell.foreground, cell.background) == halves
+        });
         let border = if x < 40 { 41 } else { 0 };
         assert_eq!(session.seen().screen().text()[0].chars().nth(border), Some('╭'), "{x}");
     }
