@@ -21,7 +21,6 @@ mod eye;
 mod help;
 mod keeping;
 mod legend;
-mod link;
 mod live;
 mod mark;
 mod loading;

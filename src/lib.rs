@@ -70,8 +70,10 @@
 //!
 //! With a person:
 //! - [`input`]: bytes -> events and replies
-//! - [`terminal`]: the one owner of the terminal
+//! - [`protocol`]: modes and queries -> bytes; replies -> what is still outstanding
+//! - [`pace`]: what may be in flight, and when
 //! - [`control`]: keys, mouse + camera -> camera
+//! - [`terminal`]: the one owner of the terminal
 //! - [`app`]: the loop, and the panels
 //!
 //! # Laws
@@ -88,6 +90,7 @@
 //! 5. Only [`terminal`] touches the operating system's terminal and signals, and it is the one owner of what is turned
 //!    on. Everything above bytes runs without a terminal. The feature `test-hooks`, which this crate's tests turn on for
 //!    themselves (a dev-dependency of the crate on itself), lets them say where it is to fail; no other build has it.
+//!    [`input`], [`protocol`], [`pace`] and [`control`] know no file, thread or clock: they are told the time.
 //! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no
 //!    timer runs.
 //! 7. The library neither prints nor exits, and installs nothing by itself.
@@ -143,8 +146,10 @@ pub mod export;
 pub mod record;
 pub mod output_file;
 pub mod input;
-pub mod terminal;
+pub mod protocol;
+pub mod pace;
 pub mod control;
+pub mod terminal;
 pub mod app;
 
 /// The examples of the README are compiled and run with the others.

@@ -21,8 +21,6 @@ use std::time::Duration;
 mod modes;
 mod output;
 mod panics;
-mod query;
-mod questions;
 mod rehearsal;
 mod signals;
 mod unanswered;
@@ -31,8 +29,6 @@ use modes::Modes;
 pub use output::stderr_is_read;
 use output::{Output, timespec};
 pub use panics::{hold_panic_messages, take_panic_messages};
-pub use query::{FENCE, Tag};
-pub use questions::Questions;
 #[cfg(feature = "test-hooks")]
 pub use rehearsal::rehearse;
 pub(crate) use rehearsal::{reach, reach_beside, rest, take_worker_panic};
@@ -75,7 +71,7 @@ impl Terminal {
     /// If either is not a terminal, or cannot be set up; it is then as it was.
     pub fn take(signals: &Signals) -> io::Result<Self> {
         let output = Output::open()?;
-        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::none(), unanswered: Unanswered::default() };
+        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::default(), unanswered: Unanswered::new() };
         terminal.take_again(signals)?;
         Ok(terminal)
     }
@@ -107,7 +103,7 @@ impl Terminal {
     /// Sends a frame or questions, in one write where the terminal takes them whole. What it does not take at once goes
     /// out while [`wait`](Self::wait) waits.
     ///
-    /// Bytes that end with [`FENCE`] or the query of a [`Tag`] are answered. Giving the terminal back waits for the answer, for as long as it does
+    /// Bytes that end with [`FENCE`](crate::protocol::FENCE) or the query of a [`Tag`](crate::protocol::Tag) are answered. Giving the terminal back waits for the answer, for as long as it does
     /// for the last bytes to be taken, so that the shell is not sent it.
     ///
     /// # Errors

@@ -221,6 +221,34 @@ fn the_operating_systems_terminal_has_one_owner() {
     }
 }
 
+/// The modules of a person's session that need no terminal, file or clock: they are told the time, and driven by a terminal,
+/// a server or a test alike.
+const PURE: [&str; 4] = ["input", "protocol", "pace", "control"];
+
+#[test]
+fn what_needs_no_terminal_knows_no_system_and_no_clock() {
+    let files = library_files();
+    for module in PURE {
+        assert!(files.iter().any(|(path, _)| stage(path) == module), "there is no {module}");
+    }
+    for (path, text) in files.iter().filter(|(path, _)| PURE.contains(&&*stage(path))) {
+        let found = impure_words(&code(text));
+        assert!(found.is_empty(), "{} names {found:?}", path.display());
+    }
+    assert_eq!(impure_words("use std::{fmt, fs};\nuse std::time::{Duration, Instant};"), ["fs", "Instant"]);
+    assert_eq!(impure_words("std::thread::spawn(f); std::time::SystemTime::now()"), ["thread", "SystemTime"]);
+}
+
+/// What code names of the operating system and its clocks.
+fn impure_words(code: &str) -> Vec<&'static str> {
+    let of_std = names_after(code, "std::");
+    let modules = ["fs", "env", "thread", "net", "process", "io"].into_iter().filter(|&name| of_std.contains(name));
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let clocks =
+        ["Instant", "SystemTime"].into_iter().filter(|&name| code.split(|c| !is_word(c)).any(|word| word == name));
+    modules.chain(clocks).collect()
+}
+
 fn without_file_calls(code: &str) -> String {
     ["rustix::fs::", "rustix::io::"].iter().fold(code.to_owned(), |code, word| code.replace(word, ""))
 }

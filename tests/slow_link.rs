@@ -16,17 +16,8 @@ use termtrace::capabilities::CellMode;
 use termtrace::grid::{Grid, Size};
 use termtrace::scene::Scene;
 
-/// The program's own link, for a source of frames that is not the program.
-#[path = "../src/app"]
-mod app {
-    #[allow(dead_code, unused_imports)]
-    mod link;
-    #[path = "../../tests/slow_link/source.rs"]
-    pub(crate) mod source;
-}
-mod terminal {
-    pub(crate) use termtrace::terminal::{FENCE, Tag};
-}
+#[path = "slow_link/source.rs"]
+mod source;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 
@@ -189,7 +180,7 @@ fn a_key_is_soon_seen_among_frames_of_four_kilobytes() {
     let mut relay = Relay::start(Start::shell("stty raw -echo; echo ready; exec sleep 10000"), SLOW);
     assert!(relay.run(SOON, |relay| relay.taken() >= b"ready\n".len()), "a raw terminal");
     let terminal = relay.session.terminal();
-    let source = std::thread::spawn(|| app::source::run(terminal));
+    let source = std::thread::spawn(|| source::run(terminal));
     relay.run(ms(3_000), |_| false);
     let (first, since) = (relay.frames.len(), relay.now());
     relay.excess = f64::MIN;

@@ -10,7 +10,6 @@
 use super::effort::Effort;
 use super::extent;
 use super::eye::{Eye, FRAME};
-use super::link::Link;
 use super::renderer::{Frame, Job, Renderer};
 use super::scenes::Scenes;
 use super::screen::Screen;
@@ -24,8 +23,10 @@ use crate::control::Pointer;
 use crate::framebuffer::Resolution;
 use crate::grid::Size;
 use crate::input::{Input, Parser};
+use crate::pace::Link;
+use crate::protocol::Questions;
 use crate::render::Sampling;
-use crate::terminal::{self, Questions, Signals, Stopped, Terminal, Window};
+use crate::terminal::{self, Signals, Stopped, Terminal, Window};
 use std::time::{Duration, Instant};
 use std::{fmt, io};
 

@@ -3,7 +3,6 @@
 use super::dialog::Dialog;
 use super::explain::Explaining;
 use super::help::Help;
-use super::link::Limit;
 use super::panels;
 use super::renderer::{Frame, MIDDLE};
 use super::strip::Fault;
@@ -12,6 +11,7 @@ use crate::cell::{self, Painter};
 use crate::control::{Bindings, Mode};
 use crate::encode::{Allowance, Encoder, Order, Quality};
 use crate::grid::{Grid, Size};
+use crate::pace::Limit;
 use crate::progress::Progress;
 use glam::Vec3;
 use ratatui::layout::Rect;

@@ -11,7 +11,8 @@ use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 use termtrace::capabilities::{Asking, CellShape, Findings};
 use termtrace::input::{Input, Parser};
-use termtrace::terminal::{Questions, Signals, Terminal, die_of};
+use termtrace::protocol::Questions;
+use termtrace::terminal::{Signals, Terminal, die_of};
 
 #[derive(Args)]
 pub(super) struct DoctorArgs {

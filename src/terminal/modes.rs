@@ -1,55 +1,26 @@
-//! What is turned on, in order, and how each is turned off.
+//! What is turned on: raw mode, then the modes of the screen, mouse and keyboard; turned off the other way round.
 
 use super::output::Output;
 use super::unanswered::{Unanswered, is_in_background};
-use super::{FENCE, Signals, panics, rehearsal, signals};
-use crossterm::event::{self, KeyboardEnhancementFlags};
-use crossterm::{Command, cursor, style, terminal};
+use super::{Signals, panics, rehearsal, signals};
+use crate::protocol::{self, FENCE, Mode};
 use rustix::termios::{self, Action, OptionalActions, QueueSelector, Termios};
 use std::fs::File;
 use std::io;
 use std::time::{Duration, Instant};
 
-/// Everything that was turned on, oldest first.
+/// Everything that was turned on.
+#[derive(Default)]
 pub(super) struct Modes {
-    on: Vec<Mode>,
+    /// The settings from before raw mode, which is the first to be turned on.
+    before: Option<Box<Termios>>,
+    on: protocol::Modes,
 }
-
-/// One thing that was turned on: what turns it off.
-enum Mode {
-    /// Raw mode: the settings from before.
-    Raw(Box<Termios>),
-    /// A mode of the screen: the bytes that end it.
-    Screen(String),
-    /// The keyboard as the kitty protocol has it, on that protocol's stack.
-    Keyboard,
-}
-
-/// Every key as a sequence, with its release, and with what Shift makes of it.
-const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES
-    .union(KeyboardEnhancementFlags::REPORT_EVENT_TYPES)
-    .union(KeyboardEnhancementFlags::REPORT_ALTERNATE_KEYS)
-    .union(KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES);
-/// Asks which flags of the kitty keyboard protocol are on.
-const WHICH_KEYBOARD: &str = "\x1b[?u";
-
-/// Word of the mouse's buttons and wheel, and of its ways while a button is held. (crossterm's command asks for its ways
-/// without a button, too: many events that mean nothing here.)
-const BUTTONS: (&str, &str) = ("\x1b[?1002h", "\x1b[?1002l");
-/// With numbers of any size, and of which button is let go.
-const SGR: (&str, &str) = ("\x1b[?1006h", "\x1b[?1006l");
-/// The same with places in pixels.
-const PIXELS: (&str, &str) = ("\x1b[?1016h", "\x1b[?1016l");
 
 /// How long the terminal may take over the last bytes. One that has stopped reading (Ctrl-S, a dead link) is left without.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 impl Modes {
-    /// Nothing is turned on yet.
-    pub(super) fn none() -> Self {
-        Self { on: Vec::new() }
-    }
-
     /// Raw mode, the alternate screen, no cursor, pastes in brackets, word of the focus and of the mouse. What is about to be turned on is
     /// listed first: half done is undone too.
     pub(super) fn turn_on(&mut self, keys: &File, output: &mut Output, signals: &Signals) -> io::Result<()> {
@@ -57,53 +28,36 @@ impl Modes {
         let before = termios::tcgetattr(keys)?;
         let mut raw = before.clone();
         raw.make_raw();
-        self.on.push(Mode::Raw(Box::new(before)));
+        self.before = Some(Box::new(before));
         panics::hold(true);
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
         rehearsal::reach("raw mode")?;
-        let mut turn_on = String::new();
-        self.list(&mut turn_on, terminal::EnterAlternateScreen, terminal::LeaveAlternateScreen);
-        // Nothing to turn on: the pen is the picture's, and no colour is left for the shell.
-        self.on.push(Mode::Screen(ansi(style::ResetColor)));
-        self.list(&mut turn_on, cursor::Hide, cursor::Show);
-        self.list(&mut turn_on, event::EnableBracketedPaste, event::DisableBracketedPaste);
-        self.list(&mut turn_on, event::EnableFocusChange, event::DisableFocusChange);
-        for (on, off) in [BUTTONS, SGR] {
-            self.on.push(Mode::Screen(off.to_owned()));
-            turn_on.push_str(on);
+        let mut bytes = Vec::new();
+        for mode in Mode::ALL_TERMINALS {
+            self.on.switch_on(mode, &mut bytes);
         }
-        output.send(turn_on.as_bytes())?;
+        output.send(&bytes)?;
         rehearsal::reach("all modes")
     }
 
     /// Places of the mouse in pixels, once.
     pub(super) fn count_pixels(&mut self, output: &mut Output) -> io::Result<()> {
-        let (on, off) = PIXELS;
-        if self.on.iter().any(|mode| matches!(mode, Mode::Screen(known) if known == off)) {
-            return Ok(());
-        }
-        self.on.push(Mode::Screen(off.to_owned()));
-        output.send(on.as_bytes())
+        self.switch_on(Mode::MousePixels, output).map(|_| ())
     }
 
-    /// The kitty keyboard protocol, once, with the question whether it is on.
+    /// The kitty keyboard protocol, once, with the query for its flags.
     pub(super) fn push_keyboard(&mut self, output: &mut Output) -> io::Result<()> {
-        if self.has_keyboard() {
-            return Ok(());
+        if self.switch_on(Mode::Keyboard, output)? { rehearsal::reach("keyboard") } else { Ok(()) }
+    }
+
+    /// Returns whether the mode was off.
+    fn switch_on(&mut self, mode: Mode, output: &mut Output) -> io::Result<bool> {
+        let mut bytes = Vec::new();
+        self.on.switch_on(mode, &mut bytes);
+        if !bytes.is_empty() {
+            output.send(&bytes)?;
         }
-        self.on.push(Mode::Keyboard);
-        let push = ansi(event::PushKeyboardEnhancementFlags(KEYBOARD));
-        output.send((push + WHICH_KEYBOARD).as_bytes())?;
-        rehearsal::reach("keyboard")
-    }
-
-    pub(super) fn has_keyboard(&self) -> bool {
-        self.on.iter().any(|mode| matches!(mode, Mode::Keyboard))
-    }
-
-    fn list(&mut self, turn_on: &mut String, on: impl Command, off: impl Command) {
-        self.on.push(Mode::Screen(ansi(off)));
-        turn_on.push_str(&ansi(on));
+        Ok(!bytes.is_empty())
     }
 
     /// Turns everything off, newest first. What still waits of a picture is dropped, between two of its sequences, so that
@@ -118,33 +72,28 @@ impl Modes {
         mut typed: Option<&mut Vec<u8>>,
     ) -> bool {
         output.drop_picture();
-        let deadline = Instant::now() + PATIENCE;
-        let mut heard = true;
         // It tells of releases until it has heard that it no longer should, and q is let go of about then. Its answer
         // comes after the last of them.
-        let asks = self.has_keyboard() && !is_in_background(keys);
-        while let Some(mode) = self.on.pop() {
-            match mode {
-                Mode::Screen(off) => output.put(off.as_bytes()),
-                Mode::Keyboard => output.put(ansi(event::PopKeyboardEnhancementFlags).as_bytes()),
-                Mode::Raw(before) => {
-                    if asks {
-                        output.put(FENCE);
-                        unanswered.send(FENCE);
-                    }
-                    heard = output.finish(deadline);
-                    // A terminal that has stopped reading does not answer either.
-                    if heard {
-                        let read = unanswered.drain(keys, deadline);
-                        if let Some(typed) = &mut typed {
-                            typed.extend(read);
-                        }
-                    }
-                    let flushes = typed.is_none();
-                    signals::in_the_background(|| restore(keys, &before, flushes));
-                }
+        let asks = self.on.are_on(Mode::Keyboard) && !is_in_background(keys);
+        let mut off = Vec::new();
+        self.on.switch_all_off(&mut off);
+        output.put(&off);
+        let Some(before) = self.before.take() else { return true };
+        if asks {
+            output.put(FENCE);
+            unanswered.send(FENCE);
+        }
+        let deadline = Instant::now() + PATIENCE;
+        let heard = output.finish(deadline);
+        // A terminal that has stopped reading does not answer either.
+        if heard {
+            let read = unanswered.drain(keys, deadline);
+            if let Some(typed) = &mut typed {
+                typed.extend(read);
             }
         }
+        let flushes = typed.is_none();
+        signals::in_the_background(|| restore(keys, &before, flushes));
         panics::hold(false);
         heard
     }
@@ -176,11 +125,4 @@ fn restore(keys: &File, before: &Termios, flushes: bool) {
         let _ = termios::tcflush(keys, QueueSelector::IFlush);
     }
     let _ = termios::tcsetattr(keys, OptionalActions::Now, before);
-}
-
-/// A command's escape sequence.
-fn ansi(command: impl Command) -> String {
-    let mut text = String::new();
-    command.write_ansi(&mut text).expect("writing to memory does not fail");
-    text
 }

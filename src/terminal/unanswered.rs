@@ -1,49 +1,30 @@
-//! Whether replies are still on their way.
+//! The replies that are outstanding, on a real terminal.
 
 use super::output::timespec;
-use super::query::{FENCE, Tag};
-use crate::input::{Input, Parser, Reply};
+use crate::input::{Input, Parser};
+use crate::protocol::Outstanding;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::{process, termios};
-use std::collections::VecDeque;
 use std::fs::File;
 use std::io::Read;
 use std::time::{Duration, Instant};
 
-/// A terminal that has not answered after this time is taken for one that does not answer.
-const LATEST: Duration = Duration::from_secs(3);
-
-/// The most queries that are remembered: those of [`LATEST`] at 60 frames a second, and as many again.
-const MOST: usize = 360;
-
-/// What ended some bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Query {
-    Fence,
-    Tag(Tag),
-}
-
 /// Notes the queries sent, and reads along to see them answered.
-#[derive(Default)]
 pub(super) struct Unanswered {
     parser: Parser,
-    /// Those whose replies are to come, oldest first.
-    queries: VecDeque<Query>,
-    /// When the last of them was sent.
-    asked: Option<Instant>,
+    outstanding: Outstanding,
+    start: Instant,
 }
 
 impl Unanswered {
+    /// Nothing was asked yet.
+    pub(super) fn new() -> Self {
+        Self { parser: Parser::new(), outstanding: Outstanding::default(), start: Instant::now() }
+    }
+
     /// These bytes are sent now.
     pub(super) fn send(&mut self, bytes: &[u8]) {
-        let fence = bytes.ends_with(FENCE).then_some(Query::Fence);
-        if let Some(query) = fence.or_else(|| Tag::at_end_of(bytes).map(Query::Tag)) {
-            if self.queries.len() == MOST {
-                self.queries.pop_front();
-            }
-            self.queries.push_back(query);
-            self.asked = Some(Instant::now());
-        }
+        self.outstanding.sent(bytes, self.start.elapsed());
     }
 
     /// The terminal has sent these bytes.
@@ -51,29 +32,15 @@ impl Unanswered {
         let mut inputs = Vec::new();
         self.parser.feed(bytes, &mut inputs);
         for input in &inputs {
-            match input {
-                Input::Reply(Reply::DeviceAttributes(_)) => self.take(Query::Fence),
-                &Input::Reply(Reply::Mode { mode, .. }) => {
-                    if let Some(tag) = Tag::of_mode(mode) {
-                        self.take(Query::Tag(tag));
-                    }
-                }
-                _ => {}
+            if let Input::Reply(reply) = input {
+                self.outstanding.take(reply);
             }
-        }
-    }
-
-    /// The oldest such query is answered. Terminals answer in order: replies to older ones do not come any more.
-    fn take(&mut self, answered: Query) {
-        if let Some(at) = self.queries.iter().position(|&query| query == answered) {
-            self.queries.drain(..=at);
         }
     }
 
     /// How much longer replies may come, if they may.
     pub(super) fn patience(&self) -> Option<Duration> {
-        let left = self.asked.filter(|_| !self.queries.is_empty())? + LATEST;
-        left.checked_duration_since(Instant::now())
+        self.outstanding.patience(self.start.elapsed())
     }
 
     /// Reads what comes up to the last answer, at most until the deadline, so that none is left for the shell. It gets those
@@ -83,7 +50,7 @@ impl Unanswered {
         if !is_in_background(keys) {
             self.read_up_to_last(keys, deadline, &mut read);
         }
-        self.queries.clear();
+        self.outstanding.clear();
         read
     }
 
@@ -119,14 +86,14 @@ pub(super) fn is_in_background(keys: &File) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::protocol::FENCE;
 
     /// A terminal may be given back more than once.
     #[test]
     fn the_count_starts_anew_when_the_terminal_is_given_back() {
-        let mut unanswered = Unanswered::default();
+        let mut unanswered = Unanswered::new();
         unanswered.send(FENCE);
         unanswered.send(b"frame\x1b[c");
-        assert_eq!(unanswered.queries.len(), 2);
         let gone = File::open("/dev/null").expect("there is always /dev/null");
         unanswered.drain(&gone, Instant::now());
         assert_eq!(unanswered.patience(), None, "nobody waits for what is lost");
@@ -135,21 +102,6 @@ mod tests {
         unanswered.send(FENCE);
         assert!(unanswered.patience().is_some());
         unanswered.hear(b"\x1b[?62c");
-        assert_eq!(unanswered.patience(), None);
-    }
-
-    #[test]
-    fn the_reply_to_a_tag_is_the_last_of_all_before_it() {
-        let [first, second, third] = [Tag::FIRST, Tag::FIRST.next(), Tag::FIRST.next().next()];
-        let mut unanswered = Unanswered::default();
-        unanswered.send(FENCE);
-        for tag in [first, second, third] {
-            unanswered.send(&tag.query());
-        }
-        // The fence's reply and that to the first are lost; another comes twice, and one is foreign.
-        unanswered.hear(b"\x1b[?201;0$y\x1b[?201;0$y\x1b[?700;0$y\x1b[?2026;2$y\x1b[?62c");
-        assert_eq!(unanswered.queries, [Query::Tag(third)]);
-        unanswered.hear(b"\x1b[?202;0$y");
         assert_eq!(unanswered.patience(), None);
     }
 }

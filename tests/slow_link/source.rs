@@ -1,11 +1,11 @@
 //! A source of frames of one size, which has always another: it goes by the program's own [`Link`].
 
-use super::link::Link;
 use rustix::event::{PollFd, PollFlags, poll};
 use std::fs::File;
 use std::io::{Read, Write};
 use std::time::{Duration, Instant};
 use termtrace::input::{Input, Parser, Reply};
+use termtrace::pace::Link;
 
 /// The bytes of a frame, with its question.
 const FRAME: usize = 4_000;

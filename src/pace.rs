@@ -1,4 +1,4 @@
-//! The link to the terminal: how much may be in flight, and when (congestion control).
+//! The link to a terminal: how much may be in flight, and when (congestion control).
 //!
 //! A query ends each frame. When its reply comes, the frame has arrived: so the replies tell the round-trip time and the
 //! rate of the link, and how many bytes are in flight. No more than the bandwidth-delay product (the rate times the
@@ -10,9 +10,9 @@
 //! takes longer than the shortest. Frames keep a seventh below that rate, so that queues drain, and the shortest round
 //! trip stays to be seen.
 //!
-//! Replies get lost. The [`ledger`] matches those that come to their queries. Where none comes, a timeout ends the wait
-//! ([`State::Recovering`]): a frame at a time goes out, until a reply comes or the terminal is taken for silent
-//! ([`State::Silent`]). What the state decides:
+//! Replies get lost. The ledger matches those that come to their queries. Where none comes, a timeout ends the wait
+//! (`Recovering`): a frame at a time goes out, until a reply comes or the terminal is taken for silent
+//! (`Silent`). What the state decides:
 //!
 //! | State      | next frame                                  | query              | left by                               |
 //! |------------|---------------------------------------------|--------------------|---------------------------------------|
@@ -24,8 +24,23 @@
 //! | Silent     | at the rate, 30 a second                    | one at a time      | a reply                               |
 //!
 //! Pure: it is told the time, and reads and writes nothing.
+//!
+//! ```
+//! use std::time::Duration;
+//! use termtrace::pace::Link;
+//!
+//! let ms = Duration::from_millis;
+//! let mut link = Link::new(None, None, true);
+//! let mut frame = b"a frame of some bytes".to_vec();
+//! link.send(&mut frame, ms(0));
+//! assert!(frame.ends_with(b"\x1b[c"), "a query ends it");
+//! // Until its reply comes there is room for no other frame.
+//! assert!(link.free_at(ms(1)) > ms(100));
+//! link.answer(ms(3));
+//! assert!(link.free_at(ms(4)) <= ms(4));
+//! ```
 
-use crate::terminal::{FENCE, Tag};
+use crate::protocol::{FENCE, Tag};
 use std::time::Duration;
 
 mod blind;
@@ -62,7 +77,7 @@ const TRUSTED: f64 = 60_000.0;
 const LONGEST: Duration = Duration::from_secs(1);
 
 /// A link, and what is known of it.
-pub(super) struct Link {
+pub struct Link {
     max_rate: Option<f64>,
     frame: Duration,
     state: State,
@@ -120,16 +135,16 @@ enum Tagging {
 
 /// What a frame may take on a link that is slow, or of unknown rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Limit {
+pub struct Limit {
     /// The link's rate in bytes per second, if it is slow.
-    pub(super) rate: Option<f64>,
+    pub rate: Option<f64>,
     /// The most bytes that a frame should take.
-    pub(super) most_bytes: usize,
+    pub most_bytes: usize,
 }
 
 impl Link {
     /// A link that is to carry at most so many bytes and frames a second, to a terminal that may be asked, or not.
-    pub(super) fn new(max_rate: Option<u32>, max_frames: Option<f32>, may_ask: bool) -> Self {
+    pub fn new(max_rate: Option<u32>, max_frames: Option<f32>, may_ask: bool) -> Self {
         Self {
             max_rate: max_rate.map(f64::from),
             frame: max_frames.map_or(FRAME, |fps| FRAME.max(Duration::from_secs_f32(1.0 / fps))),
@@ -153,7 +168,7 @@ impl Link {
     }
 
     /// How far apart frames are at least.
-    pub(super) fn frame_time(&self) -> Duration {
+    pub fn frame_time(&self) -> Duration {
         if self.answers() { self.frame } else { self.frame.max(SILENT_FRAME) }
     }
 
@@ -172,7 +187,7 @@ impl Link {
     }
 
     /// When the next bytes may be sent, if nothing is heard until then.
-    pub(super) fn free_at(&self, now: Duration) -> Duration {
+    pub fn free_at(&self, now: Duration) -> Duration {
         // A query alone is to wait behind nothing.
         let free_at = if self.is_probe_due(now) { self.drained_at } else { self.free_at };
         free_at.max(self.has_room_at(now))
@@ -207,7 +222,7 @@ impl Link {
 
     /// What a frame that is sent now may take, if it may not take as much as it likes, on a link for screens of so many
     /// bytes.
-    pub(super) fn limit(&mut self, screen: usize, now: Duration) -> Option<Limit> {
+    pub fn limit(&mut self, screen: usize, now: Duration) -> Option<Limit> {
         self.look_at_clock(now);
         let blind = self.is_blind().then(|| Limit { rate: None, most_bytes: self.blind.most_bytes() });
         self.slow(screen).or(blind)
@@ -259,7 +274,7 @@ impl Link {
     }
 
     /// Whether the link is slow for screens of so many bytes, and what a frame may take then.
-    pub(super) fn slow(&mut self, screen: usize) -> Option<Limit> {
+    pub fn slow(&mut self, screen: usize) -> Option<Limit> {
         let limit = self.max_rate.unwrap_or(f64::INFINITY);
         let measured = self.rates.best();
         let smooth = screen as f64 * SMOOTH;
@@ -272,12 +287,12 @@ impl Link {
     }
 
     /// Whether it was slow when that was last asked.
-    pub(super) fn is_slow(&self) -> bool {
+    pub fn is_slow(&self) -> bool {
         self.slow
     }
 
     /// Puts a query behind the bytes of a frame that is sent now.
-    pub(super) fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
+    pub fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
         self.look_at_clock(now);
         let asks = match self.state {
             State::Unheard | State::Steady | State::Recovering { .. } => true,
@@ -296,7 +311,7 @@ impl Link {
     }
 
     /// A query without a frame, if it is time for one, or nothing: its round trip is the link's own, whatever the rate.
-    pub(super) fn probe(&mut self, now: Duration) -> Vec<u8> {
+    pub fn probe(&mut self, now: Duration) -> Vec<u8> {
         self.look_at_clock(now);
         let mut bytes = Vec::new();
         if self.is_probe_due(now) {
@@ -335,7 +350,7 @@ impl Link {
     }
 
     /// What was asked will not be answered: the terminal was somebody else's in between.
-    pub(super) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         self.ledger.clear();
         self.echo = false;
         if matches!(self.state, State::Recovering { .. } | State::Settling { .. }) {

@@ -35,7 +35,7 @@ const STOOD_STILL: Duration = Duration::from_secs(1);
 
 impl Link {
     /// The terminal has answered DA1.
-    pub(crate) fn answer(&mut self, now: Duration) {
+    pub fn answer(&mut self, now: Duration) {
         if let State::Settling { heard } = &mut self.state {
             *heard = now;
         }
@@ -78,7 +78,7 @@ impl Link {
 
     /// The terminal has reported a mode. Whether it is the reply to a query in flight: one that comes twice, or too late,
     /// or that something else has asked for is none.
-    pub(crate) fn answer_mode(&mut self, mode: u16, now: Duration) -> bool {
+    pub fn answer_mode(&mut self, mode: u16, now: Duration) -> bool {
         if self.tagging == Tagging::Unknown {
             self.tagging = Tagging::Possible;
         }

@@ -5,7 +5,7 @@
 //! belongs to the oldest query, until one was given up. A reply may then be that query's, late, or a newer one's (in TCP's
 //! terms, retransmission ambiguity). The shortest round trip decides, and no estimate is made from it (Karn's algorithm).
 
-use crate::terminal::Tag;
+use crate::protocol::Tag;
 use std::collections::VecDeque;
 use std::time::Duration;
 
