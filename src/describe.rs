@@ -8,6 +8,7 @@ use crate::light::{Falloff, PointLight};
 use crate::material::Material;
 use crate::scene::{Background, Scene};
 use crate::shape::{Part, Shape, Surface};
+use crate::text::listed;
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -285,15 +286,6 @@ fn sides(bounds: Bounds) -> String {
 fn counted(count: usize, what: &str) -> String {
     let many = if what == "mesh" { "es" } else { "s" };
     format!("{count} {what}{}", if count == 1 { "" } else { many })
-}
-
-/// a, b and c.
-fn listed(words: &[&str]) -> String {
-    match words {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [some @ .., last] => format!("{} and {last}", some.join(", ")),
-    }
 }
 
 /// The objects' numbers in the file, from 1 on; of many the first few.

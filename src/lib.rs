@@ -30,7 +30,7 @@
 //! - [`ray`]: origin + t * direction, and intervals of t
 //! - [`bounds`]: boxes along the axes
 //! - [`capabilities`]: what a terminal's cells can be made of
-//! - [`text`]: printable text, from whatever comes from outside
+//! - [`text`]: text for messages: printable, lists, the word that was meant
 //! - [`memory`]: asked for before it is used
 //! - [`progress`]: progress reports, and the token by which work is cancelled
 //! - [`named_file`]: the bytes of a file that a person names, within bounds

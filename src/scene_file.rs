@@ -11,13 +11,11 @@ mod colors;
 mod objects;
 mod path;
 mod reader;
-mod words;
 
 pub use camera::{WrittenCamera, WrittenLens};
 pub use colors::WrittenColor;
 pub(crate) use colors::color_named;
 pub use path::{PathFile, WrittenKeyframe};
-pub(crate) use words::{closest, listed};
 
 use crate::progress::Watcher;
 use crate::scene_text::{Faults, Node, Span, Value};

@@ -1,5 +1,9 @@
-//! Printable text: what comes from outside (names, arguments, files, environment variables) must not control the terminal
-//! that it is printed on.
+//! Text for messages: printable, whatever comes from outside (names, arguments, files, environment variables); lists in
+//! prose; the word that was probably meant.
+
+mod words;
+
+pub use words::{closest, listed};
 
 /// Returns what stands for a character in a message: itself, unless it moves the cursor, starts an escape sequence, turns
 /// the direction of writing, or cannot be seen.

@@ -1,8 +1,9 @@
 //! `termtrace completions` and `termtrace man`: what a system wants to know of the command line.
 
-use super::{Cli, Done, Failure, near, reason, write_stdout};
+use super::{Cli, Done, Failure, reason, write_stdout};
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
+use termtrace::text::closest;
 
 const COMPLETIONS: &str = "\
 Examples:
@@ -65,5 +66,5 @@ pub(super) fn no_command(name: &str) -> Failure {
 /// The command that was likely meant by a name that is none.
 pub(super) fn command_near(name: &str) -> Option<String> {
     let program = Cli::command();
-    near::word(name, program.get_subcommands().map(clap::Command::get_name)).map(str::to_owned)
+    closest(name, program.get_subcommands().map(clap::Command::get_name)).map(str::to_owned)
 }

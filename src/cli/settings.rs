@@ -12,7 +12,7 @@ use super::cells::CellArgs;
 use super::encoding::LossArgs;
 use super::picture::{parse_cell_aspect, parse_samples};
 use super::view::ViewArgs;
-use super::{Done, Failure, near, usage};
+use super::{Done, Failure, usage};
 use clap::builder::PossibleValue;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
@@ -22,6 +22,7 @@ use std::path::PathBuf;
 use termtrace::capabilities::Hints;
 use termtrace::control::Pace;
 use termtrace::render::Sampling;
+use termtrace::text::closest;
 
 /// Stands below the options in the help.
 pub(super) const EXPLAINED: &str = "\
@@ -229,7 +230,7 @@ fn check(command: &Command, setting: &Arg, text: &str) -> Result<(), String> {
     }
     let values = setting.get_possible_values();
     let known: Vec<_> = values.iter().map(PossibleValue::get_name).collect();
-    let meant = near::word(text, known.iter().copied()).map(|meant| format!("; did you mean {meant}?"));
+    let meant = closest(text, known.iter().copied()).map(|meant| format!("; did you mean {meant}?"));
     Err(format!("expected one of {}{}", known.join(", "), meant.unwrap_or_default()))
 }
 

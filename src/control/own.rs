@@ -1,8 +1,8 @@
 //! Bindings of one's own: RON -> the built-in table, changed; and back.
 
 use super::{Bindings, Command, Key, Mode};
-use crate::scene_file::{closest, listed};
 use crate::scene_text::{self, Faults, Field, Node, SceneError, Span, Value, clipped, quoted};
+use crate::text::{closest, listed};
 use std::collections::HashSet;
 use std::fmt::Write;
 

@@ -16,10 +16,11 @@ use crate::mesh_file::MeshFile;
 use crate::progress::Watcher;
 use crate::scene_file::{
     MaterialUse, SceneFile, Spanned, WrittenBackground, WrittenColor, WrittenFalloff, WrittenLight, WrittenMaterial,
-    WrittenNumber, WrittenObject, WrittenShape, WrittenToneCurve, WrittenVector, closest, color_named, listed,
+    WrittenNumber, WrittenObject, WrittenShape, WrittenToneCurve, WrittenVector, color_named,
 };
 use crate::scene_text::{Faults, Span, quoted};
 use crate::shape::{Mesh, Plane, Shape, Sphere, Triangle};
+use crate::text::{closest, listed};
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use std::collections::HashMap;
 

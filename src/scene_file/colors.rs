@@ -2,9 +2,9 @@
 
 use super::WrittenNumber;
 use super::reader::{Reader, values};
-use super::words::closest;
 use crate::color::Srgb8;
 use crate::scene_text::{Body, Group, Node, Span, Value, quoted};
+use crate::text::closest;
 use csscolorparser::NAMED_COLORS;
 
 /// A colour.

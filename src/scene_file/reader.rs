@@ -1,9 +1,9 @@
 //! From nodes of the tree to typed values: what every field's reading has in common.
 
-use super::words::{closest, listed};
 use super::{Spanned, WrittenNumber, WrittenVector};
 use crate::progress::Watcher;
 use crate::scene_text::{Body, Faults, Field, Group, Name, Node, Span, Value, clipped, quoted};
+use crate::text::{closest, listed};
 
 /// Reads values, and notes what is wrong with them.
 pub(super) struct Reader<'f> {

@@ -1,9 +1,10 @@
 //! `config.ron` -> what it says of each setting, as the flag would say it.
 
+use super::check;
 use super::files::UserFile;
-use super::{check, near};
 use clap::Command;
 use termtrace::scene_text::{self, Faults, Field, Name, SceneError, Value, line_and_column};
+use termtrace::text::closest;
 
 /// What the file says of a setting.
 pub(super) struct Entry {
@@ -66,7 +67,7 @@ fn text_of(field: &Field<'_>, command: &Command, faults: &mut Faults) -> Option<
 
 fn unknown(name: &str, command: &Command) -> String {
     let known: Vec<_> = command.get_arguments().map(|setting| setting.get_id().as_str()).collect();
-    match near::word(name, known.iter().copied()) {
+    match closest(name, known.iter().copied()) {
         Some(meant) => format!("unknown setting \"{name}\"; did you mean \"{meant}\"?"),
         None => format!("unknown setting \"{name}\"; there are {}", known.join(", ")),
     }

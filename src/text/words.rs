@@ -1,7 +1,7 @@
 //! Words for messages: lists, and the word that was probably meant.
 
-/// `a`, `a and b`, `a, b and c`.
-pub(crate) fn listed(words: &[impl AsRef<str>]) -> String {
+/// Returns the words as a list in prose: `a`, `a and b`, `a, b and c`.
+pub fn listed(words: &[impl AsRef<str>]) -> String {
     match words {
         [] => String::new(),
         [only] => only.as_ref().to_owned(),
@@ -12,9 +12,9 @@ pub(crate) fn listed(words: &[impl AsRef<str>]) -> String {
     }
 }
 
-/// The word of the list that the author probably meant: one that differs in few letters, or of which he wrote a part
+/// Returns the word of the list that was probably meant: one that differs in few letters, or of which a part was written
 /// (`fov` for `vertical_fov`).
-pub(crate) fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
+pub fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
     // The distance takes the product of the lengths; a name this long is no slip of the pen. And among thousands of
     // names something is always close.
     const LONGEST: usize = 64;
