@@ -22,6 +22,7 @@ use crate::grid::{Cell, Glyph, Grid, Size};
 
 mod backend;
 mod by_color;
+mod halves;
 mod lossy;
 mod moves;
 mod numbers;

@@ -1,6 +1,7 @@
 //! The laws of the crate's architecture (see the guide in `src/lib.rs`), held by reading the source.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -172,6 +173,47 @@ fn the_root_holds_the_route_and_nothing_else() {
         let expected = ["pub mod ", "#[cfg(not(any(target_os", "compile_error!(", "#![", "    \"", ");"];
         assert!(expected.iter().any(|start| line.starts_with(start)), "lib.rs says more than its modules: {line}");
     }
+}
+
+/// The files of one folder form no cycle either: (file's folder and name, siblings that it names).
+fn sibling_cycles(files: &[(PathBuf, String)]) -> Vec<String> {
+    let key = |path: &Path| (path.parent().map(Path::to_owned), path.file_stem().map(OsStr::to_owned));
+    let siblings: BTreeSet<_> = files.iter().map(|(path, _)| key(path)).collect();
+    let uses = |path: &Path, text: &str| -> Vec<_> {
+        let named = names_after(&code(text), "super::").into_iter().map(|name| (key(path).0, Some(name.into())));
+        named.filter(|sibling| siblings.contains(sibling) && *sibling != key(path)).collect()
+    };
+    let nested = files.iter().filter(|(path, _)| !is_top_level(path));
+    let uses: BTreeMap<_, Vec<_>> = nested.map(|(path, text)| (key(path), uses(path, text))).collect();
+    let reaches = |from| {
+        let (mut seen, mut left) = (BTreeSet::new(), vec![from]);
+        while let Some(file) = left.pop() {
+            left.extend(uses.get(file).into_iter().flatten().filter(|&next| seen.insert(next)));
+        }
+        seen
+    };
+    let cyclic = uses.keys().filter(|&file| reaches(file).contains(file));
+    cyclic.map(|(folder, name)| format!("{folder:?} {name:?} is in a cycle of siblings")).collect()
+}
+
+#[test]
+fn the_files_of_a_folder_form_no_cycle() {
+    let cycles = sibling_cycles(&library_files());
+    assert!(cycles.is_empty(), "{}", cycles.join("\n"));
+}
+
+/// The test above can fail.
+#[test]
+fn cycles_of_siblings_are_found() {
+    let found = |files: &[(&str, &str)]| {
+        let files = files.iter().map(|(file, text)| (root().join("src").join(file), (*text).to_owned()));
+        sibling_cycles(&files.collect::<Vec<_>>()).len()
+    };
+    let [a, b, c] = ["encode/a.rs", "encode/b.rs", "encode/c.rs"];
+    assert_eq!(found(&[(a, "use super::b;"), (b, "use super::a::{x, y};"), (c, "use super::a;")]), 2);
+    assert_eq!(found(&[(a, "use super::b;"), (b, "use super::{c, x};"), (c, "fn f() { super::a::x() }")]), 3);
+    assert_eq!(found(&[(a, "use super::{b, c};"), (b, "use super::c;"), (c, "use super::x;")]), 0);
+    assert_eq!(found(&[(a, "use super::b;"), ("encode/d/b.rs", "use super::a;"), (b, "")]), 0);
 }
 
 /// The test above can fail: planted ways back are found, and what only looks like one is not.

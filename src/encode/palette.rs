@@ -4,7 +4,7 @@
 //! (the greedy set cover of Johnson 1974). Then pairs of its colours, in the same way: the pair that the most cells can
 //! show, and so on, because the cells of one pair are written without a change of the pen.
 
-use super::lossy::{Halves, Tolerance, square};
+use super::halves::{Halves, Tolerance, square};
 use crate::color::{Oklab, Srgb8};
 use crate::grid::Ink;
 use std::cmp::Reverse;
