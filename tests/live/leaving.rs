@@ -616,6 +616,11 @@ fn a_frame_is_one_write() {
     let mut session = Start::new(PROGRAM).arg(SCENE).size(Size::cells(40, 8)).says_when_it_rests().spawn();
     session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(40, 8)));
     session.wait_for_rest();
+    // Threads that start beside the first picture write too: what they wake the loop with is through when a key is.
+    let bytes = session.seen().bytes().len();
+    session.send(b"\x0c");
+    session.wait_for("a frame", SOON, |seen| seen.bytes().len() > bytes + 2_000);
+    session.wait_for_rest();
     for key in [&b"\x0c"[..], b"i", b"\x0c", b"?"] {
         let (before, bytes) = (writes(&session), session.seen().bytes().len());
         session.send(key);
