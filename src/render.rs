@@ -12,6 +12,7 @@ use crate::color::LinearRgb;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::hit::{self, EightHits, Kernel};
 use crate::lanes::{Eight, LANES};
+use crate::progress::{Cancellation, Cancelled};
 use crate::ray::EightRays;
 use crate::scene::Scene;
 use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
@@ -20,7 +21,6 @@ use rayon::prelude::*;
 use sampling::{MOST_RAYS, PASSES, Run, Runs};
 use std::num::NonZeroU32;
 use std::ops::{AddAssign, Range};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use tiles::{ALL_PIXELS, PIXELS, Tiles};
 
@@ -34,13 +34,12 @@ mod tiles;
 pub use count::{Counts, count};
 pub use one::{Steps, trace_pixel};
 pub use sampling::Sampling;
+pub(crate) use sights::all_sights;
 pub use sights::{Reach, Sight, Sighted, sights};
 
 /// The picture of `scene` that `camera` sees. The first ray of a pixel goes through its centre.
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Framebuffer {
-    let never = AtomicBool::new(false);
-    let rendered = render_by(Crew::Pool(&never), scene, camera, resolution, sampling);
-    rendered.unwrap_or_else(|| unreachable!("nobody else can set the flag")).framebuffer
+    render_all(Crew::Pool, scene, camera, resolution, sampling.into()).framebuffer
 }
 
 /// A frame, and what it took.
@@ -68,42 +67,64 @@ impl AddAssign for Cost {
     }
 }
 
-/// Who traces.
+/// The threads that trace.
 #[derive(Clone, Copy, Debug)]
 pub enum Crew<'a> {
     /// The calling thread alone: to wake others for a frame of less than about a millisecond takes longer than they save.
     Alone,
-    /// The threads of the current rayon pool, until this becomes true.
-    Pool(&'a AtomicBool),
+    /// The threads of the current rayon pool.
+    Pool,
+    /// The same, until the token is cancelled.
+    Cancellable(&'a Cancellation),
 }
 
 impl Crew<'_> {
     fn is_cancelled(self) -> bool {
-        matches!(self, Self::Pool(cancelled) if cancelled.load(Ordering::Relaxed))
+        matches!(self, Self::Cancellable(token) if token.is_cancelled())
+    }
+
+    /// Returns what was traced. A crew that is cancelled passes over what is left, so this is asked when it is through: a
+    /// token that is not cancelled then never was.
+    pub(crate) fn finish<T>(self, traced: T) -> Result<T, Cancelled> {
+        if self.is_cancelled() { Err(Cancelled) } else { Ok(traced) }
     }
 }
 
-/// [`render`] by that crew; `None` if it was told to give up.
+/// [`render`] by that crew.
+///
+/// # Errors
+/// [`Cancelled`], if the crew's token is.
 pub fn render_by(
     crew: Crew<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: impl Into<Sampling>,
-) -> Option<Rendered> {
-    match sampling.into() {
+) -> Result<Rendered, Cancelled> {
+    crew.finish(render_all(crew, scene, camera, resolution, sampling.into()))
+}
+
+/// [`render`] by that crew; one that is cancelled passes over what is left.
+pub(crate) fn render_all(
+    crew: Crew<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+) -> Rendered {
+    match sampling {
         Sampling::Coarse => alike(crew, scene, &Tiles::new(camera, resolution, 2), 1),
         Sampling::Each(samples) => alike(crew, scene, &Tiles::new(camera, resolution, 1), samples.get()),
         Sampling::UpTo(samples) => {
             let mut picture = Refining::new(camera, resolution);
-            let cost = picture.refine(crew, scene, samples)?;
-            Some(Rendered { framebuffer: picture.framebuffer(), cost })
+            let cost = picture.refine(crew, scene, samples);
+            Rendered { framebuffer: picture.framebuffer(), cost }
         }
     }
 }
 
 /// The picture with so many samples of each pixel.
-fn alike(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Option<Rendered> {
+fn alike(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Rendered {
     let mut framebuffer = Framebuffer::new(tiles.resolution);
     let parts = tiles.split(&mut framebuffer.pixels);
     let (runs, share) = (Runs::of(0..samples), 1.0 / samples as f32);
@@ -112,11 +133,11 @@ fn alike(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Option<R
         tiles.inside(tile, &mut buffers.wanted);
         let cost = buffers.trace_tile(crew, scene, tiles, tile, &runs, |buffers, run, lot| {
             add_lights(&mut sums, &buffers.lights, run.each(), lot);
-        })?;
+        });
         tiles.show(&buffers.wanted, |at| shade::light_of(&sums[at / LANES], at % LANES) * share, &mut part);
-        Some(cost)
-    })?;
-    Some(Rendered { framebuffer, cost })
+        cost
+    });
+    Rendered { framebuffer, cost }
 }
 
 /// Adds the light of so many rays each to that of these pixels: of each pixel in the order of its samples.
@@ -150,33 +171,29 @@ fn in_rows(lights: &[EightLights]) -> [[f32; MOST_RAYS]; 3] {
 }
 
 impl Crew<'_> {
-    /// Has each tile traced by somebody. Returns what all took; `None` if one was given up.
-    fn trace<T: Send>(
-        self,
-        tiles: Vec<T>,
-        trace: impl Fn(&mut Buffers, (usize, T)) -> Option<Cost> + Send + Sync,
-    ) -> Option<Cost> {
+    /// Traces each tile on one of the threads. Returns what all took.
+    fn trace<T: Send>(self, tiles: Vec<T>, trace: impl Fn(&mut Buffers, (usize, T)) -> Cost + Send + Sync) -> Cost {
         let mut sum = Cost::default();
-        for cost in self.share(tiles, trace)? {
+        for cost in self.share(tiles, trace) {
             sum += cost;
         }
-        Some(sum)
+        sum
     }
 
-    /// Has each tile worked at by somebody, who keeps buffers of his own from tile to tile. Returns what comes of them, in no
-    /// order; `None` if one was given up.
+    /// Does the work of each tile on one of the threads, each of which keeps its buffers from tile to tile. Returns the
+    /// results, in no order.
     fn share<T: Send, B: Default, R: Send>(
         self,
         tiles: Vec<T>,
-        work: impl Fn(&mut B, (usize, T)) -> Option<R> + Send + Sync,
-    ) -> Option<Vec<R>> {
+        work: impl Fn(&mut B, (usize, T)) -> R + Send + Sync,
+    ) -> Vec<R> {
         let (start, count) = (Instant::now(), tiles.len() as u32);
         let is_short = |done: u32| start.elapsed() * count < SHORT * done;
         let mut is_alone = matches!(self, Self::Alone);
         let mut tiles = tiles.into_iter().enumerate();
         let (mut buffers, mut all) = (B::default(), Vec::with_capacity(tiles.len()));
         for (done, tile) in (1..).zip(tiles.by_ref()) {
-            all.push(work(&mut buffers, tile)?);
+            all.push(work(&mut buffers, tile));
             if !is_alone && !is_short(done) {
                 // Not asked before: it may start rayon's own threads.
                 is_alone = rayon::current_num_threads() == 1;
@@ -187,10 +204,9 @@ impl Crew<'_> {
         }
         if tiles.len() > 0 {
             // One by one: a thread that has had the easy ones takes more.
-            let rest: Option<Vec<_>> = tiles.par_bridge().map_init(B::default, work).collect();
-            all.extend(rest?);
+            all.par_extend(tiles.par_bridge().map_init(B::default, work));
         }
-        Some(all)
+        all
     }
 }
 
@@ -219,28 +235,37 @@ impl Refining {
     }
 
     /// Traces what is lacking to [`Sampling::UpTo`] so many samples of that scene, which has to be the same each time.
-    /// Returns what that took. `None`: given up, because `cancelled` was true; then it cannot be gone on with.
-    pub fn refine_unless(&mut self, cancelled: &AtomicBool, scene: &Scene, samples: NonZeroU32) -> Option<Cost> {
-        self.refine(Crew::Pool(cancelled), scene, samples)
+    /// Returns what that took.
+    ///
+    /// # Errors
+    /// [`Cancelled`], if the token is; then the picture cannot be refined any further.
+    pub fn refine_or_cancel(
+        &mut self,
+        token: &Cancellation,
+        scene: &Scene,
+        samples: NonZeroU32,
+    ) -> Result<Cost, Cancelled> {
+        let crew = Crew::Cancellable(token);
+        crew.finish(self.refine(crew, scene, samples))
     }
 
-    fn refine(&mut self, crew: Crew<'_>, scene: &Scene, samples: NonZeroU32) -> Option<Cost> {
+    fn refine(&mut self, crew: Crew<'_>, scene: &Scene, samples: NonZeroU32) -> Cost {
         let wanted = PASSES.iter().filter(|pass| pass.end <= samples.get()).count();
         let mut cost = Cost::default();
         // Where edges are is seen in the whole picture of the first pass. Then each pixel by itself tells whether it needs
         // more, and nobody waits for another tile.
         if self.passes == 0 && wanted > 0 {
-            cost += self.trace_first(crew, scene)?;
+            cost += self.trace_first(crew, scene);
             self.passes = 1;
         }
         if self.passes < wanted {
-            cost += self.trace_more(crew, scene, self.passes..wanted)?;
+            cost += self.trace_more(crew, scene, self.passes..wanted);
             self.passes = wanted;
         }
-        Some(cost)
+        cost
     }
 
-    fn trace_first(&mut self, crew: Crew<'_>, scene: &Scene) -> Option<Cost> {
+    fn trace_first(&mut self, crew: Crew<'_>, scene: &Scene) -> Cost {
         let (tiles, runs) = (self.tiles, Runs::of(PASSES[0].clone()));
         crew.trace(self.first.iter_mut().collect(), |buffers, (tile, first)| {
             tiles.inside(tile, &mut buffers.wanted);
@@ -250,7 +275,7 @@ impl Refining {
     }
 
     /// The next passes.
-    fn trace_more(&mut self, crew: Crew<'_>, scene: &Scene, passes: Range<usize>) -> Option<Cost> {
+    fn trace_more(&mut self, crew: Crew<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
         let white = 1.0 / scene.exposure;
         let runs: Vec<_> = passes.map(|pass| (pass, Runs::of(PASSES[pass].clone()))).collect();
         let Self { tiles, first, watched, .. } = self;
@@ -268,9 +293,9 @@ impl Refining {
                     (_, watched) => watched.is_rough(white),
                 });
                 let add = |buffers: &Buffers, run: &Run, _| buffers.add_to(watched, run.each());
-                cost += buffers.trace_tile(crew, scene, tiles, tile, runs, add)?;
+                cost += buffers.trace_tile(crew, scene, tiles, tile, runs, add);
             }
-            Some(cost)
+            cost
         })
     }
 
@@ -324,7 +349,7 @@ struct Buffers {
 }
 
 impl Buffers {
-    /// The wanted pixels with more samples, which somebody takes lot by lot. `None`: given up, between one lot and the next.
+    /// Traces samples of the wanted pixels, and hands them to `take` lot by lot, until the crew is cancelled.
     fn trace_tile(
         &mut self,
         crew: Crew<'_>,
@@ -333,19 +358,19 @@ impl Buffers {
         tile: usize,
         runs: &Runs,
         mut take: impl FnMut(&Self, &Run, Range<usize>),
-    ) -> Option<Cost> {
+    ) -> Cost {
         let start = Instant::now();
         let mut traced = 0;
-        for run in runs.iter() {
+        'runs: for run in runs.iter() {
             for lot in run.lots(self.wanted.len()) {
                 if crew.is_cancelled() {
-                    return None;
+                    break 'runs;
                 }
                 traced += self.trace_lot(scene, tiles, tile, &run, lot.clone());
                 take(self, &run, lot);
             }
         }
-        Some(Cost { rays: traced, work: start.elapsed() })
+        Cost { rays: traced, work: start.elapsed() }
     }
 
     /// Puts down what the lot's rays, one through each pixel, saw.

@@ -7,12 +7,12 @@
 use crate::camera::{Camera, Pose};
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
-use crate::render::{Cost, Crew, Reach, Sampling, Sight, render_by, sights};
+use crate::progress::Cancelled;
+use crate::render::{Cost, Crew, Reach, Sampling, Sight, all_sights, render_all};
 use crate::scene::Scene;
 use crate::shade;
 use crate::shape::Side;
 use crate::tone::{Picture, tone};
-use std::sync::atomic::AtomicBool;
 
 mod contrast;
 mod cost;
@@ -142,12 +142,13 @@ pub fn picture(
     resolution: Resolution,
     sampling: impl Into<Sampling>,
 ) -> Picture {
-    let never = AtomicBool::new(false);
-    let seen = seen(view, Crew::Pool(&never), scene, camera, resolution, sampling.into());
-    seen.unwrap_or_else(|| unreachable!("nobody else can set the flag")).picture
+    all_seen(view, Crew::Pool, scene, camera, resolution, sampling.into()).picture
 }
 
-/// [`picture`], traced by somebody who may give it up: `None`.
+/// [`picture`], traced by that crew.
+///
+/// # Errors
+/// [`Cancelled`], if the crew's token is.
 pub fn seen(
     view: View,
     crew: Crew<'_>,
@@ -155,11 +156,22 @@ pub fn seen(
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
-) -> Option<Seen> {
+) -> Result<Seen, Cancelled> {
+    crew.finish(all_seen(view, crew, scene, camera, resolution, sampling))
+}
+
+fn all_seen(
+    view: View,
+    crew: Crew<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+) -> Seen {
     let painted = |reach, paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| {
-        let sighted = sights(crew, scene, camera, resolution, sampling, reach, paint)?;
+        let sighted = all_sights(crew, scene, camera, resolution, sampling, reach, paint);
         let Resolution { width, height, .. } = resolution;
-        Some(Seen { picture: Picture { width, height, pixels: sighted.pixels }, cost: sighted.cost })
+        Seen { picture: Picture { width, height, pixels: sighted.pixels }, cost: sighted.cost }
     };
     let of_surfaces = |paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| painted(Reach::Surfaces, paint);
     match view {
@@ -187,9 +199,9 @@ pub fn seen(
     }
 }
 
-fn shaded(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: Resolution, sampling: Sampling) -> Option<Seen> {
-    let rendered = render_by(crew, scene, camera, resolution, sampling)?;
-    Some(Seen { picture: tone(&rendered.framebuffer, scene), cost: rendered.cost })
+fn shaded(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: Resolution, sampling: Sampling) -> Seen {
+    let rendered = render_all(crew, scene, camera, resolution, sampling);
+    Seen { picture: tone(&rendered.framebuffer, scene), cost: rendered.cost }
 }
 
 /// The lecture's n.l of all lights, as light.

@@ -4,6 +4,7 @@
 use super::shown::Shown;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
+use crate::progress::{Cancellation, Cancelled};
 use crate::render::{Cost, Crew, Refining, Sampling};
 use crate::scene::Scene;
 use crate::terminal::Waker;
@@ -16,7 +17,6 @@ use std::io;
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -56,8 +56,12 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// What `see` sees of each part. `None`: it was given up.
-    fn of(scene: &Arc<Scene>, job: &Job, mut see: impl FnMut(View, Resolution) -> Option<Seen>) -> Option<Self> {
+    /// Returns what `see` sees of each part.
+    fn of(
+        scene: &Arc<Scene>,
+        job: &Job,
+        mut see: impl FnMut(View, Resolution) -> Result<Seen, Cancelled>,
+    ) -> Result<Self, Cancelled> {
         let start = Instant::now();
         let &Job { camera, resolution, sampling, shown, refines, .. } = job;
         let mut cost = Cost::default();
@@ -67,13 +71,14 @@ impl Frame {
             cost += seen.cost;
             parts.push(seen.picture);
         }
-        let picture = shown.joined(&parts, MIDDLE).or_else(|| parts.pop())?;
+        let joined = shown.joined(&parts, MIDDLE).or_else(|| parts.pop());
+        let picture = joined.expect("at least one view is shown");
         if !shown.is_wipe() {
             parts.clear();
         }
         let legends = shown.legends(scene, &camera);
         let (scene, trace) = (Arc::clone(scene), start.elapsed());
-        Some(Self { scene, camera, resolution, picture, parts, sampling, shown, legends, refines, cost, trace })
+        Ok(Self { scene, camera, resolution, picture, parts, sampling, shown, legends, refines, cost, trace })
     }
 
     /// Of two views side by side, each is a picture of its own: how large the one is that has this pixel, and which of its
@@ -99,8 +104,8 @@ impl Frame {
 /// Where the line between two views is at first.
 pub(super) const MIDDLE: f32 = 0.5;
 
-/// The thread's result: a frame, none if it was cancelled, or what it panicked with.
-type Traced = Result<Option<Frame>, Box<dyn Any + Send>>;
+/// The thread's result: a frame unless it was cancelled, or what it panicked with.
+type Traced = Result<Result<Frame, Cancelled>, Box<dyn Any + Send>>;
 
 /// Frames that take no longer are traced by the loop.
 const SMALL: Duration = Duration::from_micros(1500);
@@ -121,13 +126,12 @@ pub(super) struct Renderer {
 /// What is known here of a job.
 struct InWork {
     refines: bool,
-    /// Whether nobody wants it any more.
-    cancelled: Arc<AtomicBool>,
+    token: Cancellation,
 }
 
 impl InWork {
     fn is_wanted(&self) -> bool {
-        !self.cancelled.load(Ordering::Relaxed)
+        !self.token.is_cancelled()
     }
 }
 
@@ -197,11 +201,11 @@ impl Renderer {
             // The same light as of one sample at most, without what is kept to go on: that is little to trace again.
             let one = Sampling::Each(NonZeroU32::MIN);
             let see = |view, part| view::seen(view, Crew::Alone, &scene, &job.camera, part, one);
-            return Frame::of(&scene, &job, see).map(|frame| self.noted(frame));
+            return Frame::of(&scene, &job, see).ok().map(|frame| self.noted(frame));
         }
-        let work = InWork { refines: job.refines, cancelled: Arc::default() };
+        let work = InWork { refines: job.refines, token: Cancellation::default() };
         if let Some(jobs) = &self.jobs
-            && jobs.send(Order { scene, job, cancelled: Arc::clone(&work.cancelled) }).is_ok()
+            && jobs.send(Order { scene, job, token: work.token.clone() }).is_ok()
         {
             self.in_work.push_back(work);
         }
@@ -211,7 +215,7 @@ impl Renderer {
     /// The view has changed: what refines the last one is given up at once.
     pub(super) fn give_up_refining(&self) {
         for work in self.in_work.iter().filter(|work| work.refines) {
-            work.cancelled.store(true, Ordering::Relaxed);
+            work.token.cancel();
         }
     }
 
@@ -226,7 +230,7 @@ impl Renderer {
             // The message is out already, or kept; the panic goes on here, where the terminal is given back.
             let frame = traced.unwrap_or_else(|panic| resume_unwind(panic));
             // One may have been given up too late to be stopped.
-            if let Some(frame) = frame.filter(|_| is_wanted) {
+            if let (Ok(frame), true) = (frame, is_wanted) {
                 return Some(self.noted(frame));
             }
         }
@@ -254,7 +258,7 @@ impl Drop for Renderer {
     /// The frame in work is given up at its next tile, so that leaving is quick.
     fn drop(&mut self) {
         for work in &self.in_work {
-            work.cancelled.store(true, Ordering::Relaxed);
+            work.token.cancel();
         }
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
@@ -267,7 +271,7 @@ impl Drop for Renderer {
 struct Order {
     scene: Arc<Scene>,
     job: Job,
-    cancelled: Arc<AtomicBool>,
+    token: Cancellation,
 }
 
 /// The thread's side.
@@ -296,8 +300,7 @@ impl Kept {
 }
 
 impl Tracer {
-    /// `None`: it was cancelled.
-    fn trace(&mut self, order: &Order) -> Option<Frame> {
+    fn trace(&mut self, order: &Order) -> Result<Frame, Cancelled> {
         if cfg!(feature = "test-hooks") && order.job.test_panic {
             panic_in_a_worker();
         }
@@ -311,16 +314,22 @@ impl Tracer {
     }
 
     /// One of a frame's pictures; the light of the scene is gone on with where that can be.
-    fn seen(&mut self, order: &Order, view: View, resolution: Resolution, kept: Option<Kept>) -> Option<Seen> {
-        let Order { scene, job, cancelled } = order;
+    fn seen(
+        &mut self,
+        order: &Order,
+        view: View,
+        resolution: Resolution,
+        kept: Option<Kept>,
+    ) -> Result<Seen, Cancelled> {
+        let Order { scene, job, token } = order;
         let samples = match job.sampling {
             Sampling::UpTo(samples) if view.refines() => samples,
-            sampling => return view::seen(view, Crew::Pool(cancelled), scene, &job.camera, resolution, sampling),
+            sampling => return view::seen(view, Crew::Cancellable(token), scene, &job.camera, resolution, sampling),
         };
         let mut kept = kept.unwrap_or_else(|| Kept::new(order, resolution));
-        let cost = kept.picture.refine_unless(cancelled, scene, samples)?;
+        let cost = kept.picture.refine_or_cancel(token, scene, samples)?;
         let light = self.kept.insert(kept).picture.framebuffer();
-        Some(Seen { picture: tone(&light, scene), cost })
+        Ok(Seen { picture: tone(&light, scene), cost })
     }
 }
 
@@ -368,7 +377,7 @@ mod tests {
     #[test]
     fn a_refinement_given_up_too_late_is_thrown_away() {
         let (done, frames) = channel();
-        let work = |refines| InWork { refines, cancelled: Arc::default() };
+        let work = |refines| InWork { refines, token: Cancellation::default() };
         let mut renderer = Renderer {
             scene: Some(Arc::new(three_spheres())),
             jobs: None,
@@ -378,11 +387,11 @@ mod tests {
             seconds_per_pixel: None,
         };
         assert!(renderer.is_busy_with_new_view());
-        let _ = done.send(Ok(Some(frame(true))));
+        let _ = done.send(Ok(Ok(frame(true))));
         renderer.give_up_refining();
         assert!(renderer.finished().is_none());
         assert!(renderer.is_busy());
-        let _ = done.send(Ok(Some(frame(false))));
+        let _ = done.send(Ok(Ok(frame(false))));
         assert!(renderer.finished().is_some_and(|frame| !frame.refines));
         assert!(!renderer.is_busy());
     }
@@ -416,14 +425,12 @@ mod tests {
     fn a_picture_is_gone_on_with_where_it_was_left() {
         let scene = Arc::new(three_spheres());
         let (camera, resolution) = (scene.camera, Resolution::square(40, 24));
-        let never = AtomicBool::new(false);
-        let best =
-            render_by(Crew::Pool(&never), &scene, &camera, resolution, Sampling::BEST).expect("nobody cancels it");
+        let best = render_by(Crew::Pool, &scene, &camera, resolution, Sampling::BEST).expect("it has no token");
         let shown = tone(&best.framebuffer, &scene);
         let mut tracer = Tracer::default();
         let mut trace_of = |scene: &Arc<Scene>, camera, sampling, refines| {
             let job = Job { camera, resolution, sampling, shown: Shown::default(), refines, test_panic: false };
-            tracer.trace(&Order { scene: Arc::clone(scene), job, cancelled: Arc::default() }).expect("a frame")
+            tracer.trace(&Order { scene: Arc::clone(scene), job, token: Cancellation::default() }).expect("a frame")
         };
         let mut trace = |camera, sampling, refines| trace_of(&scene, camera, sampling, refines);
         let one = Sampling::UpTo(NonZeroU32::MIN);

@@ -6,11 +6,10 @@ use crate::framebuffer::Resolution;
 use crate::hit::closest_hit;
 use crate::material::Material;
 use crate::ray::Ray;
-use crate::render::{Crew, Reach, Sampling, Sight, sights};
+use crate::render::{Crew, Reach, Sampling, Sight, all_sights};
 use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
-use std::sync::atomic::AtomicBool;
 
 /// What is seen in one pixel.
 #[derive(Clone, Copy)]
@@ -92,11 +91,9 @@ pub(super) struct Survey {
 
 impl Survey {
     pub(super) fn of(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
-        let never = AtomicBool::new(false);
         let one = Sampling::Each(NonZeroU32::MIN);
         let see = |sight: &Sight| spot(scene, sight);
-        let seen = sights(Crew::Pool(&never), scene, camera, resolution, one, Reach::Surfaces, see);
-        let spots = seen.unwrap_or_else(|| unreachable!("nobody else can set the flag")).pixels;
+        let spots = all_sights(Crew::Pool, scene, camera, resolution, one, Reach::Surfaces, see).pixels;
         let mut survey = Self { covered: BTreeMap::new(), hides: BTreeMap::new(), nothing: 0, pixels: spots.len() };
         for (at, spot) in (0..).zip(&spots) {
             let Some(spot) = spot else {

@@ -12,7 +12,6 @@ use crate::scene::Scene;
 use crate::shade::{self, EightPoints, TO_THE_LIGHT};
 use std::num::NonZeroU32;
 use std::ops::Add;
-use std::sync::atomic::AtomicBool;
 
 /// What a picture's rays met.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -46,10 +45,8 @@ impl Add for Counts {
 pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
     let tiles = Tiles::new(camera, resolution, 1);
     let runs = Runs::of(0..samples.get());
-    let never = AtomicBool::new(false);
-    let count =
-        |buffers: &mut Buffers, (tile, ())| Some((tile, buffers.count_tile(kernel, scene, &tiles, tile, &runs)));
-    let mut counts = Crew::Pool(&never).share(vec![(); tiles.count()], count).unwrap_or_default();
+    let count = |buffers: &mut Buffers, (tile, ())| (tile, buffers.count_tile(kernel, scene, &tiles, tile, &runs));
+    let mut counts = Crew::Pool.share(vec![(); tiles.count()], count);
     // In the tiles' order: a sum of floats depends on it.
     counts.sort_unstable_by_key(|&(tile, _)| tile);
     counts.into_iter().fold(Counts::default(), |sum, (_, counts)| sum + counts)

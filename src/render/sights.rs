@@ -7,6 +7,7 @@ use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::hit::{self, Hit, Kernel};
 use crate::lanes::LANES;
+use crate::progress::Cancelled;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade;
@@ -51,7 +52,10 @@ pub struct Sighted<T> {
 }
 
 /// What `see` makes of the sight through each pixel: the eye rays of [`render`](super::render), one for each pixel, or for
-/// two by two where the sampling is [`Coarse`](Sampling::Coarse). `None`: the crew has given up.
+/// two by two where the sampling is [`Coarse`](Sampling::Coarse).
+///
+/// # Errors
+/// [`Cancelled`], if the crew's token is.
 pub fn sights<T: Copy + Default + Send>(
     crew: Crew<'_>,
     scene: &Scene,
@@ -60,20 +64,33 @@ pub fn sights<T: Copy + Default + Send>(
     sampling: Sampling,
     reach: Reach,
     see: impl Fn(&Sight) -> T + Sync,
-) -> Option<Sighted<T>> {
+) -> Result<Sighted<T>, Cancelled> {
+    crew.finish(all_sights(crew, scene, camera, resolution, sampling, reach, see))
+}
+
+/// [`sights`], the rest of which a crew that is cancelled passes over.
+pub(crate) fn all_sights<T: Copy + Default + Send>(
+    crew: Crew<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+    reach: Reach,
+    see: impl Fn(&Sight) -> T + Sync,
+) -> Sighted<T> {
     let scale = if sampling == Sampling::Coarse { 2 } else { 1 };
     let tiles = Tiles::new(camera, resolution, scale);
     let run = Run::first();
     let mut pixels = vec![T::default(); resolution.pixel_count()];
     let cost = crew.trace(tiles.split(&mut pixels), |buffers: &mut Buffers, (tile, mut part)| {
         if crew.is_cancelled() {
-            return None;
+            return Cost::default();
         }
         tiles.inside(tile, &mut buffers.wanted);
         let show = |pixel, sight: &Sight| tiles.put(pixel, see(sight), &mut part);
-        Some(buffers.see_tile(scene, &tiles, tile, &run, reach, show))
-    })?;
-    Some(Sighted { pixels, cost })
+        buffers.see_tile(scene, &tiles, tile, &run, reach, show)
+    });
+    Sighted { pixels, cost }
 }
 
 impl Buffers {

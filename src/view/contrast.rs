@@ -7,7 +7,7 @@ use super::{Seen, shaded};
 use crate::camera::Camera;
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
-use crate::render::{Crew, Reach, Sampling, sights};
+use crate::render::{Crew, Reach, Sampling, all_sights};
 use crate::scene::Scene;
 use crate::tone::Picture;
 use std::num::NonZeroU32;
@@ -18,22 +18,16 @@ const WHITE: Srgb8 = Srgb8::new(255, 255, 255);
 /// What is at least so bright is white: half of white as the eye sees it, of CIE 1976 L* 50.
 const MIDDLE: f32 = 0.184;
 
-pub(super) fn seen(
-    crew: Crew<'_>,
-    scene: &Scene,
-    camera: &Camera,
-    resolution: Resolution,
-    sampling: Sampling,
-) -> Option<Seen> {
+pub(super) fn seen(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: Resolution, sampling: Sampling) -> Seen {
     let sampling = if sampling == Sampling::Coarse { sampling } else { Sampling::Each(NonZeroU32::MIN) };
-    let light = shaded(crew, scene, camera, resolution, sampling)?;
+    let light = shaded(crew, scene, camera, resolution, sampling);
     // Counted from 1; 0: none.
-    let objects = sights(crew, scene, camera, resolution, sampling, Reach::Surfaces, |sight| {
+    let objects = all_sights(crew, scene, camera, resolution, sampling, Reach::Surfaces, |sight| {
         sight.hit.map_or(0, |hit| hit.object + 1)
-    })?;
+    });
     let mut cost = light.cost;
     cost += objects.cost;
-    Some(Seen { picture: drawn(&light.picture, &objects.pixels), cost })
+    Seen { picture: drawn(&light.picture, &objects.pixels), cost }
 }
 
 /// The picture in two inks, where each pixel shows the object of that number.

@@ -3,18 +3,17 @@
 use glam::Vec3;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::{Framebuffer, Resolution};
 use termtrace::material::Material;
+use termtrace::progress::{Cancellation, Cancelled};
 use termtrace::render::{Crew, Refining, Sampling, render, render_by};
 use termtrace::scene::{Object, Scene};
 use termtrace::shape::Plane;
 use termtrace::tone::tone;
 
 const SIZE: Resolution = Resolution::square(80, 48);
-static NEVER: AtomicBool = AtomicBool::new(false);
 
 fn shipped() -> impl Iterator<Item = (PathBuf, Scene)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
@@ -45,7 +44,7 @@ fn the_steps_of_a_refinement_do_not_show() {
         for steps in [&[1, 4, 16, 64][..], &[4, 64], &[1, 2, 3, 17, 63, 64], &[16, 16, 64, 64]] {
             let mut picture = Refining::new(&scene.camera, SIZE);
             for &step in steps {
-                picture.refine_unless(&NEVER, &scene, samples(step)).unwrap();
+                picture.refine_or_cancel(&Cancellation::default(), &scene, samples(step)).unwrap();
             }
             assert_eq!(picture.framebuffer().hash(), at_once, "{} in {steps:?}", path.display());
             assert!(picture.is_final());
@@ -67,7 +66,7 @@ fn zero_has_no_sign() {
 #[test]
 fn samples_go_where_the_edges_are() {
     for (path, scene) in shipped() {
-        let traced = |sampling| render_by(Crew::Pool(&NEVER), &scene, &scene.camera, SIZE, sampling).unwrap();
+        let traced = |sampling| render_by(Crew::Pool, &scene, &scene.camera, SIZE, sampling).unwrap();
         let (all, best, one) =
             (traced(Sampling::Each(samples(64))), traced(Sampling::BEST), traced(Sampling::Each(NonZeroU32::MIN)));
         let [near, far] = [&best, &one].map(|it| psnr(&scene, &it.framebuffer, &all.framebuffer));
@@ -111,14 +110,14 @@ fn threads_do_not_show_in_a_refined_picture() {
 fn a_coarse_picture_is_made_of_blocks() {
     for (path, scene) in shipped() {
         let resolution = Resolution::square(81, 47);
-        let coarse = render_by(Crew::Pool(&NEVER), &scene, &scene.camera, resolution, Sampling::Coarse).unwrap();
+        let coarse = render_by(Crew::Pool, &scene, &scene.camera, resolution, Sampling::Coarse).unwrap();
         for y in 0..47 {
             for x in 0..81 {
                 let block = coarse.framebuffer.pixel(x / 2 * 2, y / 2 * 2);
                 assert_eq!(coarse.framebuffer.pixel(x, y), block, "{} ({x}, {y})", path.display());
             }
         }
-        let fine = render_by(Crew::Pool(&NEVER), &scene, &scene.camera, resolution, NonZeroU32::MIN).unwrap();
+        let fine = render_by(Crew::Pool, &scene, &scene.camera, resolution, NonZeroU32::MIN).unwrap();
         assert!(coarse.cost.rays * 3 < fine.cost.rays, "{}", path.display());
         assert!(psnr(&scene, &coarse.framebuffer, &fine.framebuffer) > 14.0, "{}", path.display());
     }
@@ -128,7 +127,11 @@ fn a_coarse_picture_is_made_of_blocks() {
 fn a_refinement_can_be_given_up() {
     let (_, scene) = shipped().next().expect("there are scenes");
     let mut picture = Refining::new(&scene.camera, SIZE);
-    assert_eq!(picture.refine_unless(&AtomicBool::new(true), &scene, samples(64)), None);
+    let token = Cancellation::default();
+    token.cancel();
+    assert_eq!(picture.refine_or_cancel(&token, &scene, samples(64)), Err(Cancelled));
+    let cancelled = render_by(Crew::Cancellable(&token), &scene, &scene.camera, SIZE, Sampling::BEST);
+    assert_eq!(cancelled, Err(Cancelled));
 }
 
 /// A checkered floor to the horizon, lit by ambient light alone.

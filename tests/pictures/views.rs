@@ -71,7 +71,7 @@ fn every_view_has_the_same_bytes_everywhere() {
             };
             let [one, two, seven] = [1, 2, 7].map(made);
             let alone =
-                seen(view, Crew::Alone, &scene, &scene.camera, resolution, ONE.into()).expect("nobody gives up");
+                seen(view, Crew::Alone, &scene, &scene.camera, resolution, ONE.into()).expect("it has no token");
             assert!(one == two && one == seven && one == hash(&alone.picture), "{name} {view:?}");
             assert!(!found.contains(&one), "{name} {view:?} looks as another view");
             found.push(one);
