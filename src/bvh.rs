@@ -8,6 +8,7 @@ use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Number, Vector, set_bits}
 use crate::ray::{Interval, Rays};
 use crate::simd;
 use glam::Vec3;
+use std::convert::Infallible;
 use std::ops::{ControlFlow, Range};
 
 mod build;
@@ -167,15 +168,22 @@ impl Bvh {
     /// # Panics
     /// If there are 2^31 of them or more.
     pub fn new(boxes: &[Bounds]) -> (Self, Leaves) {
-        Self::new_unless(boxes, &|_| ControlFlow::Continue(())).unwrap_or_default()
+        let Ok(built) = Self::new_or_cancel(boxes, &|_| Ok::<_, Infallible>(()));
+        built
     }
 
-    /// [`new`](Self::new), given up where a report is answered by `Break`. Every now and then, from any thread, it is
-    /// reported how many more boxes have come to their leaves, perhaps none.
+    /// [`new`](Self::new), until a report is answered by an error. Every now and then, from any thread, it is reported how
+    /// many more boxes have come to their leaves, perhaps none.
+    ///
+    /// # Errors
+    /// An error of a report.
     ///
     /// # Panics
     /// If there are 2^31 boxes or more.
-    pub fn new_unless(boxes: &[Bounds], report: &(dyn Fn(usize) -> ControlFlow<()> + Sync)) -> Option<(Self, Leaves)> {
+    pub fn new_or_cancel<E: Send>(
+        boxes: &[Bounds],
+        report: &(dyn Fn(usize) -> Result<(), E> + Sync),
+    ) -> Result<(Self, Leaves), E> {
         build::build(boxes, report)
     }
 

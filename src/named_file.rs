@@ -10,7 +10,6 @@ use rustix::fs::OFlags;
 use std::fmt;
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read};
-use std::ops::ControlFlow;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -51,7 +50,7 @@ pub fn read(
     let mut bytes = Vec::new();
     loop {
         let work = Work::Reading(name.clone().into_owned());
-        if watcher.tell(Progress { work, done: bytes.len(), total: size }) == ControlFlow::Break(()) {
+        if watcher.tell(Progress { work, done: bytes.len(), total: size }).is_err() {
             return Err(ErrorKind::Interrupted.into());
         }
         if read_on(&mut file, &mut bytes)? {
@@ -168,6 +167,7 @@ mod tests {
     use nix::unistd::mkfifo;
     use std::fs;
     use std::io::Write;
+    use std::ops::ControlFlow;
     use std::os::unix::net::UnixListener;
     use std::path::PathBuf;
 

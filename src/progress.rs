@@ -56,12 +56,15 @@ impl<'w> Watcher<'w> {
         Watcher::new(&|_| ControlFlow::Continue(()))
     }
 
-    /// Tells him. `Break`: he has gone, and the work is to be given up.
-    pub fn tell(&self, progress: Progress) -> ControlFlow<()> {
+    /// Reports progress.
+    ///
+    /// # Errors
+    /// [`Cancelled`], if the work is to be given up.
+    pub fn tell(&self, progress: Progress) -> Result<(), Cancelled> {
         if (self.hear)(progress).is_break() {
             self.cancellation.cancel();
         }
-        if self.is_gone() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.is_gone() { Err(Cancelled) } else { Ok(()) }
     }
 
     /// Tells him that the work needs that file, which may not be there.
@@ -145,7 +148,6 @@ impl<'a> Meter<'a> {
     fn tell(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
         self.next = done + STRIDE;
         let work = Work::Parsing(self.name.to_owned());
-        let told = self.watcher.tell(Progress { work, done, total });
-        if told.is_break() { Err(Cancelled) } else { Ok(()) }
+        self.watcher.tell(Progress { work, done, total })
     }
 }

@@ -262,7 +262,7 @@ fn build<E>(draft: Draft, watcher: &Watcher<'_>, teller: &Teller<'_, E>) {
         teller.tell(News::Sketch(sketch));
     }
     let _ = terminal::reach_beside("build");
-    if let Some(scene) = draft.build(watcher) {
+    if let Ok(scene) = draft.build_or_cancel(watcher) {
         teller.tell(News::Scene(scene));
     }
 }

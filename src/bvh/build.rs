@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::lanes::LANES;
 use glam::Vec3;
 use std::array::from_fn;
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 
 /// A box around all that is below it, of a tree with two in each node. A node's first child follows it.
 #[derive(Clone, Copy)]
@@ -73,19 +73,19 @@ const MAX_DEPTH: usize = 96;
 /// halved 32 times.
 const FREE_DEPTH: usize = MAX_DEPTH - 34;
 
-type Report<'r> = &'r (dyn Fn(usize) -> ControlFlow<()> + Sync);
+type Report<'r, E> = &'r (dyn Fn(usize) -> Result<(), E> + Sync);
 
-pub(super) fn build(boxes: &[Bounds], report: Report<'_>) -> Option<(Bvh, Leaves)> {
+pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<(Bvh, Leaves), E> {
     assert!(boxes.len() < 1 << 31, "there are fewer than 2^31 boxes");
     if boxes.is_empty() {
-        return Some((Bvh::default(), Leaves::default()));
+        return Ok((Bvh::default(), Leaves::default()));
     }
     let mut items: Vec<Item> = (0..).zip(boxes).map(item).collect();
     let pairs = subtree(&mut items, 0, 0, report)?;
     let mut wide = Wide::of(&pairs);
     let root = Some(wide.append(0));
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
-    Some((Bvh { nodes: wide.nodes, root }, Leaves { order, places: wide.leaves }))
+    Ok((Bvh { nodes: wide.nodes, root }, Leaves { order, places: wide.leaves }))
 }
 
 /// The same tree with eight boxes in each node.
@@ -196,15 +196,13 @@ fn fill(area: f32, left: [f32; LANES], right: [f32; LANES], filling: &mut Fillin
 
 /// The nodes over these items, of which the first stands at that place in the order. Large halves are built at the same
 /// time; as nodes find their children by distance, those of a subtree are the same wherever it comes to stand.
-fn subtree(items: &mut [Item], first: usize, depth: usize, report: Report<'_>) -> Option<Vec<Pair>> {
+fn subtree<E: Send>(items: &mut [Item], first: usize, depth: usize, report: Report<'_, E>) -> Result<Vec<Pair>, E> {
     if items.len() < FEW {
         let mut nodes = Vec::with_capacity(items.len());
         append(items, first, depth, &mut nodes);
-        return report(items.len()).is_continue().then_some(nodes);
+        return report(items.len()).map(|()| nodes);
     }
-    if report(0).is_break() {
-        return None;
-    }
+    report(0)?;
     let around = Around::of(items);
     let bounds = around.boxes.bounds();
     let cut = cut(items, &around, depth).unwrap_or(items.len() / 2);
@@ -216,7 +214,7 @@ fn subtree(items: &mut [Item], first: usize, depth: usize, report: Report<'_>) -
     nodes.push(Pair { bounds, count: 0, at: 1 + left.len() as u32 });
     nodes.extend(left);
     nodes.extend(right);
-    Some(nodes)
+    Ok(nodes)
 }
 
 /// The same on one thread, at the end of other nodes.

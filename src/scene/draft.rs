@@ -2,7 +2,7 @@
 
 use super::{Object, Parts, Scene};
 use crate::camera::Camera;
-use crate::progress::Watcher;
+use crate::progress::{Cancelled, Watcher};
 use crate::shape::{Mesh, Shape};
 
 /// A scene of which all is known, and which no ray can be sent into yet: for that it is [built](Self::build). In the
@@ -52,10 +52,13 @@ impl Draft {
         Some(Scene { parts: Parts::of(&objects).into(), objects: objects.into(), ..self.scene.clone() })
     }
 
-    /// The scene, built on all threads of the current rayon pool, while somebody waits for it; `None` if he has gone.
-    pub fn build(self, watcher: &Watcher<'_>) -> Option<Scene> {
-        let parts = Parts::of_watched(&self.scene.objects, watcher)?.into();
-        Some(Scene { parts, ..self.scene })
+    /// The scene, built on all threads of the current rayon pool, until the watcher cancels it.
+    ///
+    /// # Errors
+    /// [`Cancelled`], if the watcher cancels it.
+    pub fn build_or_cancel(self, watcher: &Watcher<'_>) -> Result<Scene, Cancelled> {
+        let parts = Parts::of_or_cancel(&self.scene.objects, watcher)?.into();
+        Ok(Scene { parts, ..self.scene })
     }
 
     /// The scene, however long it takes.

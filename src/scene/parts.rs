@@ -4,11 +4,12 @@ use super::Object;
 use crate::bounds::Bounds;
 use crate::bvh::Bvh;
 use crate::lanes::{Answers, Eight, LANES, Lanes};
-use crate::progress::{Progress, Watcher, Work};
+use crate::progress::{Cancelled, Progress, Watcher, Work};
 use crate::shape::{Balls, Corners, Part, Plane, Shape, SideBySide, Surface};
 use crate::simd;
 use rayon::prelude::*;
 use std::array::from_fn;
+use std::convert::Infallible;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A part of an object. They are ordered as they stand in the scene.
@@ -114,12 +115,16 @@ impl<S> Default for Grove<S> {
 
 impl Parts {
     pub(super) fn of(objects: &[Object]) -> Self {
-        let built = Self::of_watched(objects, &Watcher::patient());
-        built.unwrap_or_else(|| unreachable!("who is patient does not go"))
+        let Ok(parts) = Self::reporting(objects, &|_| Ok::<_, Infallible>(()));
+        parts
     }
 
-    /// The same while somebody waits for it; `None` if he has gone.
-    pub(super) fn of_watched(objects: &[Object], watcher: &Watcher<'_>) -> Option<Self> {
+    /// [`of`](Self::of), until the watcher cancels it.
+    pub(super) fn of_or_cancel(objects: &[Object], watcher: &Watcher<'_>) -> Result<Self, Cancelled> {
+        Self::reporting(objects, &|progress| watcher.tell(progress))
+    }
+
+    fn reporting<E: Send>(objects: &[Object], report: &(dyn Fn(Progress) -> Result<(), E> + Sync)) -> Result<Self, E> {
         let mut planes = Vec::new();
         let (mut balls, mut triangles) = (Listed::default(), Listed::default());
         for (object, Object { shape, .. }) in (0..).zip(objects) {
@@ -136,14 +141,14 @@ impl Parts {
         let boxes = || balls.boxes.iter().chain(&triangles.boxes);
         let bounds = boxes().next().map(|first| boxes().fold(*first, |all, next| all.union(next)));
         let (done, total) = (AtomicUsize::new(0), balls.boxes.len() + triangles.boxes.len());
-        let report = |more| {
+        let report_more = |more| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
-            watcher.tell(Progress { work: Work::Building, done, total })
+            report(Progress { work: Work::Building, done, total })
         };
-        let balls = balls.planted((planes.len() as u32).next_multiple_of(LANES as u32), &report)?;
-        let triangles = triangles.planted(balls.first + (balls.leaves.len() * LANES) as u32, &report)?;
+        let balls = balls.planted((planes.len() as u32).next_multiple_of(LANES as u32), &report_more)?;
+        let triangles = triangles.planted(balls.first + (balls.leaves.len() * LANES) as u32, &report_more)?;
         let has_smooth = objects.iter().any(|object| matches!(&object.shape, Shape::Mesh(mesh) if mesh.is_smooth()));
-        Some(Self { planes, balls, triangles, has_smooth, bounds })
+        Ok(Self { planes, balls, triangles, has_smooth, bounds })
     }
 
     /// How much memory it takes, in bytes.
@@ -246,12 +251,12 @@ impl<T: Surface + Copy + Sync> Listed<T> {
         }
     }
 
-    fn planted<S: SideBySide<Shape = T> + Send>(
+    fn planted<S: SideBySide<Shape = T> + Send, E: Send>(
         self,
         first: u32,
-        report: &(dyn Fn(usize) -> std::ops::ControlFlow<()> + Sync),
-    ) -> Option<Grove<S>> {
-        let (bvh, places) = Bvh::new_unless(&self.boxes, report)?;
+        report: &(dyn Fn(usize) -> Result<(), E> + Sync),
+    ) -> Result<Grove<S>, E> {
+        let (bvh, places) = Bvh::new_or_cancel(&self.boxes, report)?;
         let leaf = |leaf: usize| {
             let numbers = places.boxes(leaf);
             let number = |lane: usize| numbers[lane.min(numbers.len() - 1)] as usize;
@@ -265,6 +270,6 @@ impl<T: Surface + Copy + Sync> Listed<T> {
         } else {
             (0..places.count()).into_par_iter().map(leaf).unzip_into_vecs(&mut leaves, &mut ids);
         }
-        Some(Grove { bvh, leaves, ids, first, few })
+        Ok(Grove { bvh, leaves, ids, first, few })
     }
 }

@@ -134,7 +134,7 @@ fn a_scenes_objects_are_given_up() {
 #[test]
 fn building_is_watched_and_can_be_given_up() {
     let draft = Draft::of_mesh(read(100_000)).expect("it has a size");
-    let build = |watcher: &Watcher<'_>| draft.clone().build(watcher);
+    let build = |watcher: &Watcher<'_>| draft.clone().build_or_cancel(watcher).ok();
     let (reports, scene) = heard(usize::MAX, build);
     let total = scene.as_ref().map_or(0, |scene| scene.objects()[0].shape.part_count() as usize);
     assert!(scene == Some(draft.clone().finish()), "the same scene");

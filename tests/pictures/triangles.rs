@@ -19,6 +19,7 @@ use termtrace::lanes::{ALL, LANES, set_bits};
 use termtrace::light::{Falloff, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
+use termtrace::progress::Cancelled;
 use termtrace::ray::{EightRays, Interval, Probe, Ray, Rays};
 use termtrace::render::render;
 use termtrace::scene::{Object, Scene};
@@ -517,15 +518,15 @@ fn building_tells_how_far_it_is_and_can_be_given_up() {
     let corners = |triangle: &[u32; 3]| triangle.map(|corner| points[corner as usize]);
     let boxes: Vec<Bounds> = triangles.iter().map(|triangle| Bounds::of(corners(triangle))).collect();
     let placed = AtomicUsize::new(0);
-    let built = Bvh::new_unless(&boxes, &|count| {
+    let built = Bvh::new_or_cancel(&boxes, &|count| {
         placed.fetch_add(count, Ordering::Relaxed);
-        ControlFlow::Continue(())
+        Ok::<_, Cancelled>(())
     });
-    assert_eq!((built, placed.into_inner()), (Some(Bvh::new(&boxes)), boxes.len()));
+    assert_eq!((built, placed.into_inner()), (Ok(Bvh::new(&boxes)), boxes.len()));
     let placed = AtomicUsize::new(0);
-    let given_up = Bvh::new_unless(&boxes, &|count| {
+    let given_up = Bvh::new_or_cancel(&boxes, &|count| {
         placed.fetch_add(count, Ordering::Relaxed);
-        ControlFlow::Break(())
+        Err(Cancelled)
     });
-    assert_eq!((given_up, placed.into_inner()), (None, 0));
+    assert_eq!((given_up, placed.into_inner()), (Err(Cancelled), 0));
 }
