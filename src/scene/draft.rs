@@ -5,8 +5,8 @@ use crate::camera::Camera;
 use crate::progress::{Cancelled, Watcher};
 use crate::shape::{Mesh, Shape};
 
-/// A scene of which all is known, and which no ray can be sent into yet: for that it is [built](Self::build). In the
-/// meantime a [sketch](Self::sketch) can be looked at.
+/// A scene of which all is known, and which no ray can be sent into yet: for that it is
+/// [built](Self::build_or_cancel). In the meantime a [sketch](Self::sketch) can be looked at.
 #[derive(Clone, Debug)]
 pub struct Draft {
     /// Without parts.
