@@ -10,7 +10,10 @@
 
 use nix::sys::signal::{SigSet, SigmaskHow, Signal, raise};
 use rustix::fd::{AsFd, BorrowedFd};
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGTTOU, SIGWINCH, SIGXFSZ};
+use signal_hook::consts::{
+    SIGALRM, SIGCONT, SIGHUP, SIGINT, SIGPROF, SIGQUIT, SIGSYS, SIGTERM, SIGTRAP, SIGTSTP, SIGTTOU, SIGUSR1, SIGUSR2,
+    SIGVTALRM, SIGWINCH, SIGXCPU, SIGXFSZ,
+};
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::sync::Arc;
@@ -33,6 +36,11 @@ pub struct Signals {
 
 /// The signals by which a program is usually asked to end: they are caught.
 const CAUGHT: [i32; 4] = [SIGTERM, SIGHUP, SIGINT, SIGQUIT];
+
+/// The other signals that end a program by default and that signal-hook can set back. [`before_death`] catches them too:
+/// it is called when threads run already, which would not hold them off. Real-time signals, SIGIO, SIGPWR and SIGSTKFLT
+/// are missing; the next run removes what they leave.
+const CAUGHT_BEFORE_DEATH: [i32; 8] = [SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGSYS, SIGTRAP];
 
 /// The signals that are not held off, besides those that are caught.
 const LET_THROUGH: &[Signal] = &[
@@ -83,7 +91,7 @@ impl Signals {
         read.set_nonblocking(true)?;
         let ignored = ignored();
         let deadly = Arc::new(AtomicUsize::new(0));
-        catch_deadly(ignored, &deadly, &write)?;
+        catch_deadly(&CAUGHT, ignored, &deadly, &write)?;
         let flag = |signal| -> io::Result<Arc<AtomicBool>> {
             let flag = Arc::new(AtomicBool::new(false));
             signal_hook::flag::register(signal, Arc::clone(&flag))?;
@@ -162,9 +170,9 @@ impl Signals {
     }
 }
 
-/// Catches the signals that ask the program to end, but for the ignored ones.
-fn catch_deadly(ignored: u64, deadly: &Arc<AtomicUsize>, wake: &UnixStream) -> io::Result<()> {
-    for signal in CAUGHT.into_iter().filter(|&signal| !contains(ignored, signal)) {
+/// Catches signals that ask the program to end, but for the ignored ones.
+fn catch_deadly(signals: &[i32], ignored: u64, deadly: &Arc<AtomicUsize>, wake: &UnixStream) -> io::Result<()> {
+    for &signal in signals.iter().filter(|&&signal| !contains(ignored, signal)) {
         // The flag before the pipe: who is woken must find it set.
         signal_hook::flag::register_usize(signal, Arc::clone(deadly), signal as usize)?;
         signal_hook::low_level::pipe::register(signal, wake.try_clone()?)?;
@@ -197,7 +205,9 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
     };
     // Before the signals are caught: nobody else would hear of them.
     thread::Builder::new().name("signals".to_owned()).spawn(wait)?;
-    catch_deadly(ignored(), &deadly, &write)
+    let ignored = ignored();
+    catch_deadly(&CAUGHT, ignored, &deadly, &write)?;
+    catch_deadly(&CAUGHT_BEFORE_DEATH, ignored, &deadly, &write)
 }
 
 /// Holds off from all threads what is not caught, and has one thread take it: SIGTSTP goes into the channel, any other
@@ -343,14 +353,12 @@ impl Waker {
 
 /// Dies as if the signal had been neither caught nor held off, so that the parent process sees it.
 pub fn die_of(signal: i32) {
-    // If even that fails, the caller goes on to exit.
-    if CAUGHT.contains(&signal) {
-        let _ = signal_hook::low_level::emulate_default_handler(signal);
-    } else {
-        // Of all that is let through, what is pending for the thread itself comes first.
-        let _ = signal_hook::low_level::raise(signal);
-        let _ = held_off().thread_unblock();
-    }
+    // Does not return if the signal is caught, or one that it knows to be deadly.
+    let _ = signal_hook::low_level::emulate_default_handler(signal);
+    // Of all that is let through, what is pending for the thread itself comes first. If even that fails, the caller goes
+    // on to exit.
+    let _ = signal_hook::low_level::raise(signal);
+    let _ = held_off().thread_unblock();
 }
 
 /// Has writes beyond the limit on the size of files (`ulimit -f`) fail with an error, instead of SIGXFSZ ending the

@@ -63,9 +63,25 @@ fn a_full_disk_leaves_the_old_file_or_none() {
     }
 }
 
+/// Signals that end a program which does not catch them.
+const DEADLY: [Signal; 12] = [
+    Signal::INT,
+    Signal::TERM,
+    Signal::HUP,
+    Signal::QUIT,
+    Signal::USR1,
+    Signal::USR2,
+    Signal::ALARM,
+    Signal::VTALARM,
+    Signal::PROF,
+    Signal::XCPU,
+    Signal::SYS,
+    Signal::TRAP,
+];
+
 /// A child ignores what its parent ignores, as after `cargo test &`; what the parent catches, it heeds.
 fn heed_signals() {
-    for deadly in [Signal::INT, Signal::QUIT, Signal::TERM, Signal::HUP] {
+    for deadly in DEADLY {
         let dies = Arc::new(AtomicBool::new(true));
         signal_hook::flag::register_conditional_default(deadly.as_raw(), dies).expect("signals can be caught");
     }
@@ -100,7 +116,7 @@ fn signal(child: &Child, signal: Signal) {
 #[test]
 fn a_signal_leaves_the_old_film_or_none() {
     for name in ["x.cast", "x.gif"] {
-        for (deadly, old) in [(Signal::INT, true), (Signal::TERM, true), (Signal::HUP, false), (Signal::QUIT, true)] {
+        for (deadly, old) in DEADLY.into_iter().zip([true, true, false].into_iter().cycle()) {
             let folder = Folder::new();
             if old {
                 folder.write(name, "the old one");
