@@ -204,26 +204,24 @@ fn any_quality_is_exact_at_rest() {
     }
 }
 
-/// The same walk, frame for frame the same time: what nobody sees is not sent.
+/// What nobody sees is not sent. Frames are counted by the queries that end them: on a loaded machine the test does not
+/// see each of them on the screen.
 #[test]
 fn an_equal_picture_takes_fewer_bytes_while_it_moves() {
     let [exact, equal] = ["exact", "equal"].map(|quality| {
         let mut session = looking(termtrace().arg("--quality").arg(quality));
         session.wait_for_rest();
-        let before = session.seen().bytes().len();
+        let (bytes, frames) = (session.seen().bytes().len(), session.replies());
         session.send(b"ia");
-        let mut eyes = std::collections::HashSet::new();
         // Half of the glide, whose end is 1.79 to the left: what was left for later is not sent yet.
         session.wait_for("half of the glide", SOON, |seen| {
             let text = seen.screen().text().concat();
-            let eye = text.rsplit_once("eye").map(|(_, eye)| eye.trim_start().to_owned());
-            let x = eye.as_ref().and_then(|eye| eye.split_whitespace().next()?.parse::<f32>().ok());
-            eyes.insert(eye);
+            let x = text.rsplit_once("eye").and_then(|(_, eye)| eye.split_whitespace().next()?.parse::<f32>().ok());
             x.is_some_and(|x| x < -0.9)
         });
-        let bytes = session.seen().bytes().len() - before;
+        let per_frame = (session.seen().bytes().len() - bytes) / (session.replies() - frames);
         leave(&mut session);
-        bytes / eyes.len()
+        per_frame
     });
     assert!(equal * 3 < exact * 2, "{equal} bytes a frame against {exact}");
 }
