@@ -1,98 +1,26 @@
 //! The live view: how it is wanted, how it is run, how it ended. `live` is the loop.
 
 use crate::camera::Camera;
-use crate::capabilities::Hints;
-use crate::control::{Bindings, Pace};
-use crate::encode::{Order, Quality};
-use crate::render::Sampling;
+use crate::memory::OutOfMemory;
 use crate::scene::Scene;
 use crate::terminal::{self, Signals, Terminal};
-use crate::view::View;
+pub use crate::viewer::{MAX_PIXELS, Options};
 use std::convert::Infallible;
-use std::path::PathBuf;
 use std::{fmt, io};
 
-mod effort;
-mod dialog;
 mod exporting;
-mod explain;
-mod extent;
-mod eye;
-mod help;
 mod keeping;
-mod legend;
 mod live;
-mod mark;
 mod loading;
-mod panels;
 mod renderer;
 mod scenes;
-mod screen;
-mod shown;
 mod source;
-mod strip;
 mod watching;
 
-pub use extent::MAX_PIXELS;
 use live::Live;
 use renderer::Renderer;
 use scenes::Scenes;
 pub use source::Source;
-
-/// How the user wants the live view: made by [`Options::new`], then changed.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Options {
-    /// What is wanted and known of the terminal before it is asked.
-    pub hints: Hints,
-    /// In which order changed cells are sent; `None`: row by row, which takes the least time, and by colour, which takes
-    /// the fewest bytes, while the link is slow.
-    pub order: Option<Order>,
-    /// How near a moving picture is to the wanted one; `None`: exact, and equal while the link is slow.
-    pub quality: Option<Quality>,
-    /// The most bytes a second that are sent in the mean; `None`: as many as the link takes.
-    pub max_rate: Option<u32>,
-    /// The most frames a second; `None`: 60. A number above zero.
-    pub max_frames: Option<f32>,
-    /// How finely pictures are traced; `None`: in motion as finely as the time allows, and at rest to the end
-    /// ([`Sampling::BEST`]).
-    pub sampling: Option<Sampling>,
-    /// How many threads trace; `None`: as many as there are cores.
-    pub threads: Option<usize>,
-    /// How fast keys move and turn the view.
-    pub pace: Pace,
-    /// Whether each press of a key moves one step at once, and nothing glides or moves by itself.
-    pub reduced_motion: bool,
-    /// The folder that the user may have the picture written into; `None`: he may not.
-    pub exports: Option<PathBuf>,
-    /// What is said in the lowest row until the first key.
-    pub welcome: Option<String>,
-    /// What of the scene is shown at first.
-    pub view: View,
-    /// What the keys do.
-    pub bindings: Bindings,
-}
-
-impl Options {
-    /// For a terminal of which that is known, on a link that does not compress; the rest as terminal and machine say.
-    pub fn new(hints: Hints) -> Self {
-        Self {
-            hints,
-            order: None,
-            quality: None,
-            max_rate: None,
-            max_frames: None,
-            sampling: None,
-            threads: None,
-            pace: Pace::default(),
-            reduced_motion: false,
-            exports: None,
-            welcome: None,
-            view: View::Shaded,
-            bindings: Bindings::default(),
-        }
-    }
-}
 
 /// How the live view ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,6 +94,12 @@ impl<E> From<io::Error> for Error<E> {
     }
 }
 
+impl<E> From<OutOfMemory> for Error<E> {
+    fn from(error: OutOfMemory) -> Self {
+        Self::Terminal(error.into())
+    }
+}
+
 impl<E: fmt::Display> fmt::Display for Error<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -190,18 +124,18 @@ fn view<E: fmt::Display + Send + 'static>(
     if let Some(signal) = signals.deadly() {
         return Ok(killed(signal));
     }
-    let mut terminal = match Terminal::take(signals) {
+    let terminal = match Terminal::take(signals) {
         Ok(terminal) => terminal,
         // Perhaps while it waited to be brought to the foreground.
         Err(error) => return signals.deadly().map(killed).ok_or(Error::Terminal(error)),
     };
-    let mut live = Live::new(options, terminal.window()?, scenes.named())?;
-    let ended = live.run(&mut terminal, &mut renderer, &mut scenes, signals);
+    let mut live = Live::new(terminal, options, scenes.named())?;
+    let ended = live.run(&mut renderer, &mut scenes, signals);
     let ending = ended.or_else(|error| match error {
         // When the terminal vanishes, the system says so by a signal too.
         Error::Terminal(error) => signals.deadly().map(Ending::Signal).ok_or(Error::Terminal(error)),
         fault @ Error::Scene(_) => Err(fault),
     })?;
-    let heard = terminal.give_back();
+    let heard = live.give_back();
     Ok(Outcome { ending, moved: live.moved(), heard })
 }

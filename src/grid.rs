@@ -3,6 +3,7 @@
 //! It stands between the picture and the bytes: [`cell`](crate::cell) makes it from pixels, [`overlay`](crate::overlay)
 //! lays text over it, [`encode`](crate::encode) and [`export`](crate::export) write it out.
 
+use crate::capabilities::CellShape;
 use crate::color::Srgb8;
 use ratatui::style::Modifier;
 use std::fmt;
@@ -27,6 +28,17 @@ impl Size {
     pub const fn cell_count(self) -> usize {
         self.columns as usize * self.rows as usize
     }
+}
+
+/// A terminal's window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// In cells.
+    pub size: Size,
+    /// The shape of a cell, as far as the window's size in pixels tells it.
+    pub cell: CellShape,
+    /// A cell's width and height in pixels, where they are known.
+    pub cell_pixels: Option<(u16, u16)>,
 }
 
 /// A colour that a cell can have.

@@ -73,8 +73,9 @@
 //! - [`protocol`]: modes and queries -> bytes; replies -> what is still outstanding
 //! - [`pace`]: what may be in flight, and when
 //! - [`control`]: keys, mouse + camera -> camera
+//! - `viewer`: one person's view: bytes, scenes, frames and time in; bytes and frames to be traced out
 //! - [`terminal`]: the one owner of the terminal
-//! - [`app`]: the loop, and the panels
+//! - [`app`]: a viewer on the terminal
 //!
 //! # Laws
 //!
@@ -90,7 +91,7 @@
 //! 5. Only [`terminal`] touches the operating system's terminal and signals, and it is the one owner of what is turned
 //!    on. Everything above bytes runs without a terminal. The feature `test-hooks`, which this crate's tests turn on for
 //!    themselves (a dev-dependency of the crate on itself), lets them say where it is to fail; no other build has it.
-//!    [`input`], [`protocol`], [`pace`] and [`control`] know no file, thread or clock: they are told the time.
+//!    [`input`], [`protocol`], [`pace`], [`control`] and `viewer` know no file, thread or clock: they are told the time.
 //! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no
 //!    timer runs.
 //! 7. The library neither prints nor exits, and installs nothing by itself.
@@ -149,6 +150,7 @@ pub mod input;
 pub mod protocol;
 pub mod pace;
 pub mod control;
+mod viewer;
 pub mod terminal;
 pub mod app;
 

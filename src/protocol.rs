@@ -1,5 +1,5 @@
-//! What a terminal is told and asked, without a terminal: the modes that are switched on, the queries, and the replies
-//! that are outstanding. Pure: bytes and replies in, bytes out, and the time is told.
+//! What a terminal is told and asked, without a terminal: the modes that are switched on, the queries, what it sends, and
+//! the replies that are outstanding. Pure: bytes and replies in, bytes out, and the time is told.
 //!
 //! ```
 //! use std::time::Duration;
@@ -25,8 +25,10 @@ mod modes;
 mod outstanding;
 mod query;
 mod questions;
+mod receiver;
 
 pub use modes::{Mode, Modes};
 pub use outstanding::Outstanding;
 pub use query::{FENCE, Tag};
 pub use questions::Questions;
+pub use receiver::Receiver;

@@ -10,6 +10,9 @@
 
 use crate::capabilities::{self, CellShape};
 use crate::grid::Size;
+pub use crate::grid::Window;
+use crate::input::Input;
+use crate::protocol::{Mode, Receiver};
 use base64::Engine;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fd::{AsFd, BorrowedFd};
@@ -22,8 +25,8 @@ mod modes;
 mod output;
 mod panics;
 mod rehearsal;
+mod replies;
 mod signals;
-mod unanswered;
 
 use modes::Modes;
 pub use output::stderr_is_read;
@@ -33,14 +36,12 @@ pub use panics::{hold_panic_messages, take_panic_messages};
 pub use rehearsal::rehearse;
 pub(crate) use rehearsal::{reach, reach_beside, rest, take_worker_panic};
 pub use signals::{Signals, Stopped, Waker, before_death, die_of, fail_large_writes, without_signals};
-use unanswered::Unanswered;
 
 /// A terminal in raw mode with the alternate screen, to be read, written and asked for its size.
 pub struct Terminal {
     keys: File,
     output: Output,
     modes: Modes,
-    unanswered: Unanswered,
 }
 
 /// What woke [`Terminal::wait`].
@@ -52,17 +53,6 @@ pub struct Woken {
     pub wake: bool,
 }
 
-/// A window's size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
-    /// In cells.
-    pub size: Size,
-    /// What its size in pixels tells.
-    pub cell: CellShape,
-    /// A cell's width and height in pixels, where the system knows them.
-    pub cell_pixels: Option<(u16, u16)>,
-}
-
 impl Terminal {
     /// Takes the terminal over: the picture goes to standard output; keys come from standard input, or from the
     /// controlling terminal where standard input is something else. In the background it waits to be in the foreground.
@@ -71,7 +61,7 @@ impl Terminal {
     /// If either is not a terminal, or cannot be set up; it is then as it was.
     pub fn take(signals: &Signals) -> io::Result<Self> {
         let output = Output::open()?;
-        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::default(), unanswered: Unanswered::new() };
+        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::default() };
         terminal.take_again(signals)?;
         Ok(terminal)
     }
@@ -100,36 +90,22 @@ impl Terminal {
         Ok(Window { size, cell, cell_pixels })
     }
 
-    /// Sends a frame or questions, in one write where the terminal takes them whole. What it does not take at once goes
-    /// out while [`wait`](Self::wait) waits.
-    ///
-    /// Bytes that end with [`FENCE`](crate::protocol::FENCE) or the query of a [`Tag`](crate::protocol::Tag) are answered. Giving the terminal back waits for the answer, for as long as it does
-    /// for the last bytes to be taken, so that the shell is not sent it.
+    /// Sends a frame or queries, in one write where the terminal takes them whole. What it does not take at once goes
+    /// out while [`wait`](Self::wait) waits. The caller tells its [`Receiver`] of queries among them.
     ///
     /// # Errors
     /// If the terminal is gone.
     pub fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.unanswered.send(bytes);
         self.output.send(bytes)
     }
 
-    /// Has the keyboard told as the kitty protocol does, until the terminal is given back: every key as a sequence, with
-    /// its release. For a terminal that knows the protocol. It is asked whether it now does so, and answers with
-    /// [`Reply::KeyboardFlags`](crate::input::Reply::KeyboardFlags). Asked for again, nothing is sent.
+    /// Switches a mode on that not every terminal knows, until the terminal is given back. A mode that is on stays on, and
+    /// nothing is sent.
     ///
     /// # Errors
     /// If the terminal is gone.
-    pub fn push_keyboard(&mut self) -> io::Result<()> {
-        self.modes.push_keyboard(&mut self.output)
-    }
-
-    /// Has places of the mouse told in pixels from now on, until the terminal is given back. For a terminal that knows mode
-    /// 1016. Asked for again, nothing is sent.
-    ///
-    /// # Errors
-    /// If the terminal is gone.
-    pub fn count_pixels(&mut self) -> io::Result<()> {
-        self.modes.count_pixels(&mut self.output)
+    pub fn switch_on(&mut self, mode: Mode) -> io::Result<()> {
+        self.modes.switch_on(mode, &mut self.output)
     }
 
     /// Gives the user's clipboard a text, where the terminal lets programs do that (OSC 52).
@@ -141,28 +117,26 @@ impl Terminal {
         self.output.send(format!("\x1b]52;c;{encoded}\x1b\\").as_bytes())
     }
 
-    /// Whether answers may be on their way.
-    pub fn awaits_answers(&self) -> bool {
-        self.unanswered.patience().is_some()
-    }
-
     /// Whether the terminal has not taken the last frame yet.
     pub fn is_sending(&self) -> bool {
         self.output.is_pending()
     }
 
-    /// Gives the terminal back, as dropping it does. Whether it took all that was sent: one that has stopped reading is
-    /// left after a second, and is not to be written to any more.
-    pub fn give_back(&mut self) -> bool {
-        self.modes.give_back(&self.keys, &mut self.output, &mut self.unanswered, None)
+    /// Gives the terminal back, as dropping it does, and waits for the replies that are outstanding, for as long as it does
+    /// for the last bytes to be taken, so that the shell is not sent them. Whether it took all that was sent: one that has
+    /// stopped reading is left after a second, and is not to be written to any more.
+    pub fn give_back(&mut self, receiver: &mut Receiver, now: Duration) -> bool {
+        let is_taken = self.modes.give_back(&self.keys, &mut self.output, Some((&mut *receiver, now)), None);
+        receiver.forget();
+        is_taken
     }
 
     /// Gives the terminal back to whoever had it while the program was stopped without a word; returns what was typed
-    /// meanwhile, with the replies up to the last one. What is typed from then on stays to be read: no shell is to be
-    /// spared it.
-    pub fn hand_over(&mut self) -> Vec<u8> {
+    /// meanwhile. What is typed from then on stays to be read: no shell is to be spared it.
+    pub fn hand_over(&mut self, receiver: &mut Receiver, now: Duration) -> Vec<Input> {
         let mut typed = Vec::new();
-        self.modes.give_back(&self.keys, &mut self.output, &mut self.unanswered, Some(&mut typed));
+        self.modes.give_back(&self.keys, &mut self.output, Some((&mut *receiver, now)), Some(&mut typed));
+        receiver.forget_replies();
         typed
     }
 
@@ -174,7 +148,6 @@ impl Terminal {
         loop {
             match self.keys.read(buffer) {
                 Ok(count) => {
-                    self.unanswered.hear(&buffer[..count]);
                     rehearsal::count_read(count);
                     return Ok(&buffer[..count]);
                 }
@@ -214,8 +187,9 @@ impl Terminal {
 }
 
 impl Drop for Terminal {
+    /// Gives the terminal back without waiting for replies: who knows of any has given it back before.
     fn drop(&mut self) {
-        self.give_back();
+        self.modes.give_back(&self.keys, &mut self.output, None, None);
     }
 }
 

@@ -1,11 +1,11 @@
 //! The picture that is shown -> a file's contents, and a file of a new name.
 
-use super::renderer::Frame;
 use crate::capabilities::{Capabilities, CellMode, Colors, Glyphs};
 use crate::cell;
 use crate::export::{self, Format};
 use crate::grid::Size;
 use crate::output_file::OutputFile;
+use crate::viewer::Frame;
 use std::io::{self, Write};
 use std::path::Path;
 

@@ -21,14 +21,15 @@ impl Asked {
         Some(Needed::now(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
     }
 
-    pub(super) fn file(&self) -> &Path {
-        self.file.path()
+    /// What the file is called, without its folder.
+    pub(super) fn file_name(&self) -> String {
+        self.file.path().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 
     /// He says yes. The file is replaced as a whole, with all of its other text as it was; one that has changed since he
     /// was asked is left alone.
     pub(super) fn write(&self) -> io::Result<()> {
-        let path = self.file();
+        let path = self.file.path();
         let text = fs::read_to_string(path)?;
         let written = with_view(&text, &self.camera).ok_or_else(|| io::Error::other("this is no scene file"))?;
         let mut file = OutputFile::create(path)?;

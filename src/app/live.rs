@@ -1,53 +1,24 @@
-//! The loop: input, render, present, rest.
+//! The loop: one viewer on the terminal.
 //!
-//! It sleeps until a key, a signal or a finished frame wakes it. A frame is rendered only when something changed, by a
-//! thread of its own unless it takes next to no time, so that keys and signals are heard while it is traced; the newest
-//! picture wins: what changes in the meantime is in the next frame, and nothing is queued. When nothing changes any more,
-//! the picture is refined to its end, which the next change of the view cuts short.
-//!
-//! A scene that takes long to come is waited for here too: its progress is shown, then a sketch of it.
+//! It sleeps until a key, a signal, a finished frame or the time wakes it, tells the viewer what happened, and does what
+//! the viewer decides. Frames are traced by a thread of their own unless they take next to no time, so that keys and
+//! signals are heard meanwhile; so are scenes read.
 
-use super::effort::Effort;
-use super::extent;
-use super::eye::{Eye, FRAME};
-use super::renderer::{Frame, Job, Renderer};
-use super::scenes::Scenes;
-use super::screen::Screen;
-use super::shown::Shown;
+use super::exporting;
+use super::keeping::Asked;
+use super::loading::News;
+use super::renderer::Renderer;
+use super::scenes::{Heard, Scenes};
 use super::source::Named;
 use super::{Ending, Error, Options};
 use crate::camera::Camera;
-use crate::capabilities::{Capabilities, Findings};
-use crate::cell;
-use crate::control::Pointer;
-use crate::framebuffer::Resolution;
-use crate::grid::Size;
-use crate::input::{Input, Parser};
-use crate::pace::Link;
-use crate::protocol::Questions;
-use crate::render::Sampling;
-use crate::terminal::{self, Signals, Stopped, Terminal, Window};
+use crate::export::Format;
+use crate::terminal::{self, Signals, Stopped, Terminal};
+use crate::viewer::{Ask, Busy, FRAME, Step, Viewer};
+use std::panic::resume_unwind;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use std::{fmt, io};
-
-mod events;
-mod files;
-mod lighting;
-mod explaining;
-mod moving;
-mod pointing;
-mod views;
-mod looked_at;
-
-use events::Next;
-use lighting::Lights;
-use looked_at::LookedAt;
-use pointing::Grasped;
-
-/// For how long the first picture is held back to be refined before it is shown. Up to there it is shown once, whole; a
-/// longer wait is felt. With 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, of which 9 went into
-/// refinement.
-const FIRST_REFINEMENT: Duration = Duration::from_millis(4);
 
 /// The loop's time: a frame's worth at the start, so that whatever is pressed then may have begun a frame ago.
 struct Clock {
@@ -60,349 +31,226 @@ impl Clock {
     }
 }
 
-/// The state of the live view.
+/// A viewer on a terminal, which is given back when this is dropped.
 pub(super) struct Live {
-    options: Options,
-    eye: Eye,
-    shown: Shown,
-    window: Window,
-    capabilities: Capabilities,
-    questions: Questions,
-    parser: Parser,
-    pointer: Pointer,
-    /// What the mouse has taken hold of.
-    grasped: Grasped,
-    /// When the last bytes came from the terminal, or were waited for in vain.
-    read: Duration,
-    screen: Screen,
-    link: Link,
-    effort: Effort,
+    viewer: Viewer,
+    terminal: Terminal,
     clock: Clock,
-    /// What the picture is of.
-    looked_at: LookedAt,
-    lights: Lights,
-    /// What is to be given to the user's clipboard.
-    to_copy: Option<String>,
-    /// How many scenes further on the user wants to be.
-    scenes_on: isize,
-    /// Whether the picture on the screen is of another camera or size than the wanted one.
-    stale: bool,
-    /// The last time a frame of a new view was begun,
-    begun: Option<Duration>,
-    /// and whether more was moving then.
-    begun_in_motion: bool,
+    /// What the scenes are called.
+    named: Vec<Named>,
+    exports: Option<PathBuf>,
+    /// The view that the user was last asked about.
+    proposed: Option<Asked>,
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        self.give_back();
+    }
 }
 
 impl Live {
     /// Shows nothing yet.
     ///
     /// # Errors
-    /// If there is not enough memory for that window.
-    pub(super) fn new(options: Options, window: Window, scenes: Vec<Named>) -> io::Result<Self> {
-        let questions = Questions::needed(&options.hints);
-        let link = Link::new(options.max_rate, options.max_frames, questions.is_open());
-        let capabilities = Findings::new(&options.hints, window.cell, questions.answers()).capabilities();
-        let mut live = Self {
-            eye: Eye::new(options.pace, options.reduced_motion),
-            shown: Shown::one(options.view),
-            window,
-            capabilities,
-            questions,
-            parser: Parser::new(),
-            pointer: Pointer::default(),
-            grasped: Grasped::View,
-            read: Duration::ZERO,
-            screen: Screen::new(&capabilities, options.order, options.quality, options.bindings.clone()),
-            link,
-            effort: Effort::new(options.sampling),
-            options,
-            clock: Clock { start: Instant::now() },
-            looked_at: LookedAt::new(scenes),
-            lights: Lights::default(),
-            to_copy: None,
-            scenes_on: 0,
-            stale: true,
-            begun: None,
-            begun_in_motion: false,
-        };
-        if let Some(welcome) = live.options.welcome.take() {
-            live.screen.say(welcome);
-        }
-        live.resize(window)?;
-        Ok(live)
+    /// If the terminal is gone, or there is not enough memory for its window.
+    pub(super) fn new(terminal: Terminal, options: Options, named: Vec<Named>) -> io::Result<Self> {
+        let exports = options.exports.clone();
+        let viewer = Viewer::new(options, terminal.window()?)?;
+        Ok(Self { viewer, terminal, clock: Clock { start: Instant::now() }, named, exports, proposed: None })
     }
 
     /// Where the user has moved the camera, if he has.
     pub(super) fn moved(&self) -> Option<Camera> {
-        self.eye.moved()
+        self.viewer.moved()
+    }
+
+    /// Gives the terminal back; whether it took all that was sent.
+    pub(super) fn give_back(&mut self) -> bool {
+        self.terminal.give_back(self.viewer.receiver(), self.clock.now())
     }
 
     /// Asks the terminal what it is, and goes on until the user leaves.
     pub(super) fn run<E: fmt::Display + Send + 'static>(
         &mut self,
-        terminal: &mut Terminal,
         renderer: &mut Renderer,
         scenes: &mut Scenes<E>,
         signals: &mut Signals,
     ) -> Result<Ending, Error<E>> {
-        terminal.send(self.questions.bytes())?;
+        self.terminal.send(&self.viewer.questions(self.clock.now()))?;
         loop {
             while let Some(heard) = scenes.next()? {
-                self.take_news(heard, renderer).map_err(Error::Scene)?;
+                self.take_news(heard).map_err(Error::Scene)?;
             }
-            self.stale |= self.eye.go_on(self.now());
-            if self.stale {
-                renderer.give_up_refining();
-            }
-            self.present(terminal, renderer)?;
-            // Nothing is rendered that cannot be sent.
-            let idle = !renderer.is_busy() && !terminal.is_sending();
-            if idle && self.now() >= self.next_frame() {
-                self.begin(terminal, renderer)?;
-            }
+            let until = self.act(renderer)?;
             // That takes a while: the first picture does not wait for it.
-            if self.screen.has_shown()
-                && !terminal.is_sending()
+            if self.viewer.has_shown()
+                && !self.terminal.is_sending()
                 && let Some(problem) = scenes.watch()?
             {
-                self.screen.say(format!("changes of the scene's files will not be seen: {problem}"));
+                self.viewer.say(format!("changes of the scene's files will not be seen: {problem}"));
+                continue;
             }
-            self.panic_if_asked(renderer);
-            let mut timeout = self.timeout(terminal, renderer);
-            if timeout.is_none() && !renderer.is_working() && !terminal.is_sending() {
-                timeout = terminal::rest()?;
-            }
-            let woken = terminal.wait(signals.wake_pipe(), timeout)?;
-            if woken.wake {
-                signals.drain();
-            }
-            let mut next = self.next(woken.keys, terminal, signals)?;
-            while let Next::Suspend(stop) = next {
-                next = self.suspend(terminal, signals, stop)?;
-            }
+            renderer.panic_if_asked();
+            self.wait(until, renderer, signals)?;
+            let leaves = self.carry_out_asks(scenes, signals)?;
             if let Some(signal) = signals.deadly() {
                 return Ok(Ending::Signal(signal));
             }
-            if next == Next::Leave {
+            if leaves {
                 return Ok(Ending::Left);
-            }
-            if let Some(text) = self.to_copy.take() {
-                terminal.copy(&text)?;
-            }
-            match std::mem::take(&mut self.scenes_on) {
-                0 => {}
-                steps => scenes.go(steps)?,
             }
             if signals.take_resized() {
                 terminal::reach("resize")?;
-                self.resize(terminal.window()?)?;
+                self.viewer.resize(self.terminal.window()?)?;
             }
-            if self.knows_keyboard() {
-                terminal.push_keyboard()?;
-            }
-            if self.mouse_pixels().is_some() {
-                terminal.count_pixels()?;
+            for mode in self.viewer.modes() {
+                self.terminal.switch_on(mode)?;
             }
             while let Some(frame) = renderer.finished() {
-                self.take_frame(frame);
+                self.viewer.take_frame(frame);
             }
         }
     }
 
-    fn now(&self) -> Duration {
-        self.clock.now()
+    /// Does what there is to do now; until when there is nothing else.
+    fn act(&mut self, renderer: &mut Renderer) -> io::Result<Option<Duration>> {
+        loop {
+            let busy = Busy { sending: self.terminal.is_sending(), tracing: renderer.tracing() };
+            match self.viewer.step(busy, self.clock.now()) {
+                Step::Wait(until) => return Ok(until),
+                Step::GiveUp => renderer.give_up_refining(),
+                Step::Draw => {
+                    let mut bytes = Vec::new();
+                    self.viewer.draw(self.clock.now(), &mut bytes);
+                    self.viewer.end_frame(&mut bytes, self.clock.now());
+                    self.terminal.send(&bytes)?;
+                }
+                Step::Trace(probe, job) => {
+                    self.terminal.send(&probe)?;
+                    if job.refines {
+                        terminal::reach("refinement")?;
+                    }
+                    if let Some(frame) = renderer.begin(job) {
+                        self.viewer.take_frame(frame);
+                    }
+                }
+            }
+        }
     }
 
-    fn resolution(&self) -> Resolution {
-        cell::resolution(self.capabilities.cell_mode, self.size(), self.capabilities.cell_aspect)
+    /// Sleeps until something happens, or until that time; then hears what has come from the terminal, unless a signal
+    /// wants it stopped: that is left to be read with its last replies.
+    fn wait(&mut self, until: Option<Duration>, renderer: &Renderer, signals: &mut Signals) -> io::Result<()> {
+        let mut timeout = until.map(|until| until.saturating_sub(self.clock.now()));
+        if timeout.is_none() && renderer.tracing().is_none() && !self.terminal.is_sending() {
+            timeout = terminal::rest()?;
+        }
+        let woken = self.terminal.wait(signals.wake_pipe(), timeout)?;
+        if woken.wake {
+            signals.drain();
+        }
+        if signals.take_stop() {
+            return self.suspend(Some(Stopped::Process), signals);
+        }
+        if signals.take_continued() {
+            // Stopped unasked, and whoever had the terminal since then left it as he liked.
+            return self.suspend(None, signals);
+        }
+        let mut buffer = [0; 4096];
+        let bytes = if woken.keys { self.terminal.read(&mut buffer)? } else { &[] };
+        if woken.keys && bytes.is_empty() {
+            return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
+        }
+        Ok(self.viewer.hear(bytes, self.clock.now())?)
     }
 
-    /// How much of the window is the picture's, from its upper left corner on.
-    fn size(&self) -> Size {
-        extent::covered(self.window.size, self.capabilities.cell_mode)
+    /// Does what the viewer asks for; whether the user leaves.
+    fn carry_out_asks<E: Send + 'static>(&mut self, scenes: &mut Scenes<E>, signals: &mut Signals) -> io::Result<bool> {
+        while let Some(ask) = self.viewer.ask() {
+            match ask {
+                Ask::Leave => return Ok(true),
+                Ask::Suspend => self.suspend(Some(Stopped::Group), signals)?,
+                Ask::GoOn(steps) => scenes.go(steps)?,
+                Ask::Copy(text) => self.terminal.copy(&text)?,
+                Ask::Export(format) => {
+                    let said = self.export(format).map_or_else(
+                        |error| format!("it could not be written: {error}"),
+                        |name| format!("written: {name}"),
+                    );
+                    self.viewer.say(said);
+                }
+                Ask::ProposeView(camera) => self.propose(camera),
+                Ask::KeepView => {
+                    let said = match self.proposed.take().map_or(Ok(()), |asked| asked.write()) {
+                        Ok(()) => "written into the scene's views".to_owned(),
+                        Err(error) => format!("the scene's file is as it was: {error}"),
+                    };
+                    self.viewer.say(said);
+                }
+            }
+        }
+        Ok(false)
     }
 
-    fn resize(&mut self, window: Window) -> io::Result<()> {
-        self.window = window;
-        self.learn()?;
-        extent::check(self.size(), self.capabilities.cell_mode)?;
-        // The terminal has moved what it shows to wherever it thought right.
-        self.redraw();
-        self.effort.forget_last();
-        self.stale = true;
+    /// What the scene is called that is shown.
+    fn shown(&self) -> Option<&Named> {
+        self.named.get(self.viewer.shown_scene()?)
+    }
+
+    /// Writes the picture that is there into a new file; its name.
+    fn export(&self, format: Format) -> io::Result<String> {
+        let nothing = || io::Error::other("there is nothing to write, or nowhere");
+        let (frame, folder) = self.viewer.frame().zip(self.exports.as_deref()).ok_or_else(nothing)?;
+        let stem = exporting::stem(self.shown().map_or("scene", |scene| &scene.name));
+        exporting::write_new(folder, &stem, format, &exporting::contents(format, frame, self.viewer.capabilities())?)
+    }
+
+    /// Has the user asked whether that camera is to be written into the scene's file, where it stands in one.
+    fn propose(&mut self, camera: Camera) {
+        let file = self.shown().and_then(|scene| scene.file.as_deref());
+        self.proposed = file.and_then(|file| Asked::new(file, camera));
+        match &self.proposed {
+            Some(asked) => self.viewer.ask_keep(asked.file_name()),
+            None => self.viewer.say("this scene stands in no scene file"),
+        }
+    }
+
+    /// What there is of a scene is shown. What is wrong with it is the error where there is nothing to see.
+    fn take_news<E: fmt::Display>(&mut self, Heard { of, news, is_slow }: Heard<E>) -> Result<(), E> {
+        let orbits = self.named.get(of).is_some_and(|scene| scene.orbited);
+        match news {
+            News::Progress(progress) if is_slow => self.viewer.show_progress(progress),
+            News::Progress(_) | News::Needs(_) => {}
+            News::Sketch(sketch) => self.viewer.show_sketch(sketch, of, orbits),
+            News::Scene(scene) => self.viewer.show(scene, of, orbits),
+            News::Fault(fault) if self.viewer.shown_scene().is_none() => return Err(fault),
+            News::Fault(fault) => self.viewer.show_fault(&fault.to_string()),
+            News::Panic(panic) => resume_unwind(panic),
+        }
         Ok(())
-    }
-
-    /// The terminal may show anything: all is drawn anew, and what the picture does not cover is emptied.
-    fn redraw(&mut self) {
-        let (size, window) = (self.size(), self.window.size);
-        self.screen.redraw(self.capabilities.halves_meet, size != window);
-        if size != window {
-            let [size, window] = [size, window].map(|Size { columns, rows }| format!("{columns}x{rows}"));
-            self.screen.say(format!("the picture covers {size} of the window's {window} cells"));
-        }
-    }
-
-    /// Goes by what is known of the terminal now.
-    fn learn(&mut self) -> io::Result<()> {
-        let (before, size) = (self.resolution(), self.size());
-        let findings = Findings::new(&self.options.hints, self.window.cell, self.questions.answers());
-        let capabilities = findings.capabilities();
-        if capabilities != self.capabilities {
-            self.capabilities = capabilities;
-            self.screen.set_capabilities(&capabilities);
-            self.stale |= self.resolution() != before;
-            extent::check(self.size(), self.capabilities.cell_mode)?;
-        }
-        if self.size() != size {
-            self.redraw();
-        }
-        Ok(())
-    }
-
-    /// The earliest time for the next frame, and for the next look at what moves.
-    fn next_frame(&self) -> Duration {
-        if self.perfects_first() {
-            return Duration::ZERO;
-        }
-        let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.link.frame_time());
-        let next = if self.stale { next(self.begun) } else { next(self.eye.moved_until()).max(next(self.begun)) };
-        next.max(self.link.free_at(self.now()))
-    }
-
-    /// The earliest time at which the screen has bytes to send, if nothing else happens. What would make a picture better
-    /// waits while one of a newer view is on its way.
-    fn next_bytes(&self, renderer: &Renderer) -> Option<Duration> {
-        if self.perfects_first() {
-            return None;
-        }
-        let lasts = !self.stale && !renderer.is_busy_with_new_view();
-        self.screen.due(self.size(), lasts).map(|due| due.max(self.link.free_at(self.now())))
-    }
-
-    /// Whether the first picture is not shown yet because its end is near: to show it twice would take longer.
-    fn perfects_first(&self) -> bool {
-        let is_near = !self.screen.has_shown() && !self.stale && self.effort.ends_within(FIRST_REFINEMENT);
-        is_near && self.next_step().is_some()
-    }
-
-    /// Begins a frame of the new view if there is one, else the next step of the last one, if there is one.
-    fn begin(&mut self, terminal: &mut Terminal, renderer: &mut Renderer) -> io::Result<()> {
-        let Some(camera) = self.eye.camera() else { return Ok(()) };
-        if let Some(scene) = self.lights.take_changed() {
-            renderer.light(scene);
-        }
-        let job = if self.stale {
-            terminal.send(&self.link.probe(self.now()))?;
-            self.stale = false;
-            self.begun = Some(self.now());
-            // On a slow link the next frame begins when an answer comes: all the time that it takes is the link's.
-            let sampling = self.effort.of_new_view(self.begun_in_motion && !self.link.is_slow());
-            self.begun_in_motion = self.is_in_motion();
-            self.job(camera, sampling)
-        } else if let Some(sampling) = self.next_step() {
-            terminal::reach("refinement")?;
-            Job { refines: true, ..self.job(camera, sampling) }
-        } else {
-            return Ok(());
-        };
-        if let Some(frame) = renderer.begin(job) {
-            self.take_frame(frame);
-        }
-        Ok(())
-    }
-
-    fn take_frame(&mut self, frame: Frame) {
-        if !frame.refines {
-            self.effort.took(frame.sampling, frame.trace, self.link.frame_time());
-        }
-        self.screen.take_frame(frame, self.is_in_motion().then(|| self.now()));
-    }
-
-    /// Whether the next frame is likely to be of another view, too.
-    fn is_in_motion(&self) -> bool {
-        self.eye.is_moving() || self.pointer.holds()
-    }
-
-    fn job(&self, camera: Camera, sampling: Sampling) -> Job {
-        let (shown, sampling) = (self.shown, self.shown.sampling(sampling));
-        Job { camera, resolution: self.resolution(), sampling, shown, refines: false, test_panic: false }
-    }
-
-    /// The next step of the frame that is on the screen.
-    fn next_step(&self) -> Option<Sampling> {
-        // Refining a sketch would take the time that the scene needs.
-        let frame = self.screen.frame().filter(|_| !self.screen.awaits_scene())?;
-        let next = self.shown.sampling(self.effort.of_next_step(frame.sampling)?);
-        (next != frame.sampling).then_some(next)
-    }
-
-    /// How long there is nothing to do if nobody wakes us: for ever when nothing moves and the picture is done.
-    fn timeout(&self, terminal: &Terminal, renderer: &Renderer) -> Option<Duration> {
-        let moves = self.stale || self.eye.is_moving();
-        let lacks = moves && !renderer.is_busy_with_new_view() || !renderer.is_busy() && self.next_step().is_some();
-        let frame = lacks.then(|| self.next_frame());
-        let sent = [frame, self.next_bytes(renderer)].into_iter().filter(|_| !terminal.is_sending());
-        let next = sent.chain([self.escape_due(terminal)]).flatten().min()?;
-        Some(next.saturating_sub(self.now()))
     }
 
     /// Gives the terminal back, stops if that is wanted, and takes the terminal again: at its size of then, and with all
     /// drawn anew. With a signal to end, it stays given back. What was typed is not thrown away where no shell was asked
-    /// for: returns what it asks for.
-    fn suspend(&mut self, terminal: &mut Terminal, signals: &mut Signals, stop: Option<Stopped>) -> io::Result<Next> {
-        let now = self.now();
-        self.stale |= self.eye.stand_still(now) | self.eye.set_hears_releases(false, now);
-        self.pointer.let_go();
-        self.link.forget();
+    /// for.
+    fn suspend(&mut self, stop: Option<Stopped>, signals: &mut Signals) -> io::Result<()> {
+        let now = self.clock.now();
+        self.viewer.lose_terminal(now);
         let mut typed = Vec::new();
         if let Some(who) = stop {
-            terminal.give_back();
-            self.parser = Parser::new();
+            self.terminal.give_back(self.viewer.receiver(), now);
             signals.stop(who);
         } else {
-            self.parser.feed(&terminal.hand_over(), &mut typed);
-            self.parser.set_keys_are_sequences(false);
-            // Of replies it is the last that was waited for: what was asked is asked again.
-            typed.retain(|input| !matches!(input, Input::Reply(_)));
+            typed = self.terminal.hand_over(self.viewer.receiver(), now);
         }
         if signals.deadly().is_some() {
-            return Ok(Next::Stay);
+            return Ok(());
         }
-        terminal.take_again(signals)?;
+        self.terminal.take_again(signals)?;
         // What was on its way then is lost.
-        if self.questions.is_open() {
-            terminal.send(self.questions.bytes())?;
-        }
-        self.resize(terminal.window()?)?;
-        self.take_inputs(&typed)
-    }
-
-    fn panic_if_asked(&self, renderer: &mut Renderer) {
-        if let Some(camera) = self.eye.camera()
-            && terminal::take_worker_panic()
-        {
-            renderer.begin(Job { test_panic: true, ..self.job(camera, Sampling::Coarse) });
-        }
-    }
-
-    /// Brings the screen up to date: nothing is written if it is, or while the terminal is behind.
-    fn present(&mut self, terminal: &mut Terminal, renderer: &Renderer) -> io::Result<()> {
-        let now = self.now();
-        if terminal.is_sending() || self.next_bytes(renderer).is_none_or(|due| now < due) {
-            return Ok(());
-        }
-        let size = self.size();
-        let limit = self.link.limit(Screen::usual_bytes(size), now);
-        let bytes = self.screen.bytes(size, now, limit);
-        if bytes.is_empty() {
-            return Ok(());
-        }
-        // Cells and bytes took their time: it is not the link's.
-        let now = self.clock.now();
-        // Also at rest: a frame's own round trip is longer than the link's, which its rate is judged by.
-        terminal.send(&self.link.probe(now))?;
-        self.link.send(bytes, now);
-        terminal.send(bytes)
+        self.terminal.send(&self.viewer.questions(self.clock.now()))?;
+        self.viewer.resize(self.terminal.window()?)?;
+        Ok(self.viewer.hear_typed(typed, self.clock.now())?)
     }
 }

@@ -1,15 +1,15 @@
 //! The thread that traces, so that the loop never waits for a frame. One that takes less time than to wake the thread
 //! and to be woken by it is no wait: the loop traces it by itself.
 
-use super::shown::Shown;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::progress::{Cancellation, Cancelled};
 use crate::render::{Cost, Crew, Refining, Sampling};
 use crate::scene::Scene;
-use crate::terminal::Waker;
-use crate::tone::{Picture, tone};
+use crate::terminal::{self, Waker};
+use crate::tone::tone;
 use crate::view::{self, Seen, View};
+use crate::viewer::{Frame, Job, MIDDLE, Shot, Tracing};
 use rayon::ThreadPoolBuilder;
 use std::any::Any;
 use std::collections::VecDeque;
@@ -21,89 +21,6 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// A frame that is wanted.
-pub(super) struct Job {
-    pub(super) camera: Camera,
-    pub(super) resolution: Resolution,
-    pub(super) sampling: Sampling,
-    pub(super) shown: Shown,
-    /// The view is that of the last frame, which is gone on with if it can be. It may be given up.
-    pub(super) refines: bool,
-    /// Panic instead of tracing, because a test asks for it.
-    pub(super) test_panic: bool,
-}
-
-/// A frame that is done.
-pub(super) struct Frame {
-    /// What is seen,
-    pub(super) scene: Arc<Scene>,
-    /// and from where.
-    pub(super) camera: Camera,
-    pub(super) resolution: Resolution,
-    pub(super) picture: Picture,
-    /// The pictures that it is made of, as far as they can be put together in another way.
-    pub(super) parts: Vec<Picture>,
-    pub(super) sampling: Sampling,
-    pub(super) shown: Shown,
-    /// What the colours mean, from left to right; nothing where they are light.
-    pub(super) legends: Vec<String>,
-    /// Whether it shows the same as the one before, only better.
-    pub(super) refines: bool,
-    /// What it took, beside the frame that it refines.
-    pub(super) cost: Cost,
-    /// How long that took on the clock.
-    pub(super) trace: Duration,
-}
-
-impl Frame {
-    /// Returns what `see` sees of each part.
-    fn of(
-        scene: &Arc<Scene>,
-        job: &Job,
-        mut see: impl FnMut(View, Resolution) -> Result<Seen, Cancelled>,
-    ) -> Result<Self, Cancelled> {
-        let start = Instant::now();
-        let &Job { camera, resolution, sampling, shown, refines, .. } = job;
-        let mut cost = Cost::default();
-        let mut parts = Vec::new();
-        for (view, resolution) in shown.parts(resolution) {
-            let seen = see(view, resolution)?;
-            cost += seen.cost;
-            parts.push(seen.picture);
-        }
-        let joined = shown.joined(&parts, MIDDLE).or_else(|| parts.pop());
-        let picture = joined.expect("at least one view is shown");
-        if !shown.is_wipe() {
-            parts.clear();
-        }
-        let legends = shown.legends(scene, &camera);
-        let (scene, trace) = (Arc::clone(scene), start.elapsed());
-        Ok(Self { scene, camera, resolution, picture, parts, sampling, shown, legends, refines, cost, trace })
-    }
-
-    /// Of two views side by side, each is a picture of its own: how large the one is that has this pixel, and which of its
-    /// pixels it is. (That of the line between them is the last of the left one.)
-    pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
-        match *self.shown.parts(self.resolution) {
-            [(_, left), (_, right)] if left.width < self.resolution.width => match x.checked_sub(left.width + 1) {
-                Some(x) if x < right.width => (right, [x, y]),
-                _ => (left, [x.min(left.width - 1), y]),
-            },
-            _ => (self.resolution, [x, y]),
-        }
-    }
-
-    /// Moves the line between two views, if there is one, to that share of the width.
-    pub(super) fn wipe(&mut self, share: f32) {
-        if let Some(picture) = self.shown.joined(&self.parts, share) {
-            self.picture = picture;
-        }
-    }
-}
-
-/// Where the line between two views is at first.
-pub(super) const MIDDLE: f32 = 0.5;
-
 /// The thread's result: a frame unless it was cancelled, or what it panicked with.
 type Traced = Result<Result<Frame, Cancelled>, Box<dyn Any + Send>>;
 
@@ -112,15 +29,13 @@ const SMALL: Duration = Duration::from_micros(1500);
 
 /// Our side of the thread.
 pub(super) struct Renderer {
-    /// What frames are of; `None` as long as there is nothing to see.
-    scene: Option<Arc<Scene>>,
     jobs: Option<Sender<Order>>,
     frames: Receiver<Traced>,
     thread: Option<JoinHandle<()>>,
     /// In the order in which they will be done.
     in_work: VecDeque<InWork>,
     /// How many seconds a pixel of the last frame of one sample took, all threads together, and what it showed.
-    seconds_per_pixel: Option<(Shown, f64)>,
+    seconds_per_pixel: Option<(Shot, f64)>,
 }
 
 /// What is known here of a job.
@@ -154,7 +69,7 @@ impl Renderer {
             };
             let _ = begun.send(Ok(()));
             for order in wanted {
-                let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| tracer.trace(&order))));
+                let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| order(&mut tracer))));
                 // Nobody listens any more: the loop has ended.
                 let heard = done.send(traced).is_ok();
                 waker.wake();
@@ -165,51 +80,47 @@ impl Renderer {
         })?;
         started.recv().map_err(io::Error::other)??;
         let in_work = VecDeque::new();
-        Ok(Self { scene: None, jobs: Some(jobs), frames, thread: Some(thread), in_work, seconds_per_pixel: None })
+        Ok(Self { jobs: Some(jobs), frames, thread: Some(thread), in_work, seconds_per_pixel: None })
     }
 
-    /// From now on frames are of that scene.
-    pub(super) fn show(&mut self, scene: Arc<Scene>) {
-        self.scene = Some(scene);
-        self.seconds_per_pixel = None;
-    }
-
-    /// From now on frames are of the same scene in another light: they take about as long.
-    pub(super) fn light(&mut self, scene: Arc<Scene>) {
-        self.scene = Some(scene);
-    }
-
-    /// Whether no frame can be begun: one is on its way, or there is no scene yet.
-    pub(super) fn is_busy(&self) -> bool {
-        self.scene.is_none() || self.is_working()
-    }
-
-    /// Whether a frame that is wanted is on its way.
-    pub(super) fn is_working(&self) -> bool {
-        self.in_work.iter().any(InWork::is_wanted)
-    }
-
-    /// Whether no frame of a new view can be begun: one is on its way, or there is no scene yet.
-    pub(super) fn is_busy_with_new_view(&self) -> bool {
-        self.scene.is_none() || self.in_work.iter().any(|work| work.is_wanted() && !work.refines)
+    /// What is being traced and still wanted.
+    pub(super) fn tracing(&self) -> Option<Tracing> {
+        let wanted = self.in_work.iter().filter(|work| work.is_wanted());
+        let tracing = wanted.map(|work| if work.refines { Tracing::Refinement } else { Tracing::NewView });
+        tracing.min_by_key(|&tracing| tracing == Tracing::Refinement)
     }
 
     /// Begins a frame, or traces it at once where that takes next to no time.
     pub(super) fn begin(&mut self, job: Job) -> Option<Frame> {
-        let scene = Arc::clone(self.scene.as_ref()?);
         if self.is_small(&job) {
             // The same light as of one sample at most, without what is kept to go on: that is little to trace again.
             let one = Sampling::Each(NonZeroU32::MIN);
-            let see = |view, part| view::seen(view, Crew::Alone, &scene, &job.camera, part, one);
-            return Frame::of(&scene, &job, see).ok().map(|frame| self.noted(frame));
+            let see = |view, part| view::seen(view, Crew::Alone, &job.scene, &job.shot.camera, part, one);
+            return frame_of(&job, see).ok().map(|frame| self.noted(frame));
         }
         let work = InWork { refines: job.refines, token: Cancellation::default() };
+        let token = work.token.clone();
+        self.order(work, move |tracer| tracer.trace(&job, &token));
+        None
+    }
+
+    fn order(&mut self, work: InWork, order: impl FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send + 'static) {
         if let Some(jobs) = &self.jobs
-            && jobs.send(Order { scene, job, token: work.token.clone() }).is_ok()
+            && jobs.send(Box::new(order)).is_ok()
         {
             self.in_work.push_back(work);
         }
-        None
+    }
+
+    /// Panics in one of the threads that trace, if a test asks for it.
+    pub(super) fn panic_if_asked(&mut self) {
+        if terminal::take_worker_panic() {
+            let work = InWork { refines: false, token: Cancellation::default() };
+            self.order(work, |_| {
+                rayon::join(|| {}, || panic!("a test asked for a panic in a worker"));
+                Err(Cancelled)
+            });
+        }
     }
 
     /// The view has changed: what refines the last one is given up at once.
@@ -238,17 +149,19 @@ impl Renderer {
 
     /// Whether a frame will take next to no time, going by the last of one sample.
     fn is_small(&self, job: &Job) -> bool {
-        let Resolution { width, height, .. } = job.resolution;
+        let Resolution { width, height, .. } = job.shot.resolution;
         let pixels = f64::from(width) * f64::from(height);
-        let is_known = has_one_sample(job.sampling) && !job.refines && !job.test_panic;
-        let is_short = |(shown, seconds)| shown == job.shown && seconds * pixels < SMALL.as_secs_f64();
-        is_known && self.seconds_per_pixel.is_some_and(is_short)
+        let is_short = |(shot, seconds): (Shot, f64)| {
+            let is_alike = (shot.scene, shot.shown) == (job.shot.scene, job.shot.shown);
+            is_alike && seconds * pixels < SMALL.as_secs_f64()
+        };
+        has_one_sample(job.sampling) && !job.refines && self.seconds_per_pixel.is_some_and(is_short)
     }
 
     fn noted(&mut self, frame: Frame) -> Frame {
         if has_one_sample(frame.sampling) && !frame.refines {
             let seconds = frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64;
-            self.seconds_per_pixel = Some((frame.shown, seconds));
+            self.seconds_per_pixel = Some((frame.shot, seconds));
         }
         frame
     }
@@ -268,10 +181,26 @@ impl Drop for Renderer {
 }
 
 /// What the thread is sent.
-struct Order {
-    scene: Arc<Scene>,
-    job: Job,
-    token: Cancellation,
+type Order = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>;
+
+/// Returns what `see` sees of each part of a frame.
+fn frame_of(job: &Job, mut see: impl FnMut(View, Resolution) -> Result<Seen, Cancelled>) -> Result<Frame, Cancelled> {
+    let start = Instant::now();
+    let Job { scene, shot, sampling, refines } = job.clone();
+    let mut cost = Cost::default();
+    let mut parts = Vec::new();
+    for (view, resolution) in shot.shown.parts(shot.resolution) {
+        let seen = see(view, resolution)?;
+        cost += seen.cost;
+        parts.push(seen.picture);
+    }
+    let joined = shot.shown.joined(&parts, MIDDLE).or_else(|| parts.pop());
+    let picture = joined.expect("at least one view is shown");
+    if !shot.shown.is_wipe() {
+        parts.clear();
+    }
+    let legends = shot.shown.legends(&scene, &shot.camera);
+    Ok(Frame { scene, shot, picture, parts, sampling, legends, refines, cost, trace: start.elapsed() })
 }
 
 /// The thread's side.
@@ -289,44 +218,44 @@ struct Kept {
 }
 
 impl Kept {
-    fn new(Order { scene, job, .. }: &Order, resolution: Resolution) -> Self {
-        let picture = Refining::new(&job.camera, resolution);
-        Self { scene: Arc::clone(scene), view: (job.camera, resolution), picture }
+    fn new(Job { scene, shot, .. }: &Job, resolution: Resolution) -> Self {
+        let picture = Refining::new(&shot.camera, resolution);
+        Self { scene: Arc::clone(scene), view: (shot.camera, resolution), picture }
     }
 
-    fn is_of(&self, Order { scene, job, .. }: &Order, resolution: Resolution) -> bool {
-        Arc::ptr_eq(&self.scene, scene) && self.view == (job.camera, resolution)
+    fn is_of(&self, Job { scene, shot, .. }: &Job, resolution: Resolution) -> bool {
+        Arc::ptr_eq(&self.scene, scene) && self.view == (shot.camera, resolution)
     }
 }
 
 impl Tracer {
-    fn trace(&mut self, order: &Order) -> Result<Frame, Cancelled> {
-        if cfg!(feature = "test-hooks") && order.job.test_panic {
-            panic_in_a_worker();
-        }
+    fn trace(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
         // The last frame may have been traced by the loop, or be of other pictures.
         let mut kept = self.kept.take();
-        Frame::of(&order.scene, &order.job, |view, resolution| {
+        frame_of(job, |view, resolution| {
             let last = if view.refines() { kept.take() } else { None };
-            let last = last.filter(|kept| order.job.refines && kept.is_of(order, resolution));
-            self.seen(order, view, resolution, last)
+            let last = last.filter(|kept| job.refines && kept.is_of(job, resolution));
+            self.seen(job, token, view, resolution, last)
         })
     }
 
     /// One of a frame's pictures; the light of the scene is gone on with where that can be.
     fn seen(
         &mut self,
-        order: &Order,
+        job: &Job,
+        token: &Cancellation,
         view: View,
         resolution: Resolution,
         kept: Option<Kept>,
     ) -> Result<Seen, Cancelled> {
-        let Order { scene, job, token } = order;
+        let Job { scene, shot, .. } = job;
         let samples = match job.sampling {
             Sampling::UpTo(samples) if view.refines() => samples,
-            sampling => return view::seen(view, Crew::Cancellable(token), scene, &job.camera, resolution, sampling),
+            sampling => {
+                return view::seen(view, Crew::Cancellable(token), scene, &shot.camera, resolution, sampling);
+            }
         };
-        let mut kept = kept.unwrap_or_else(|| Kept::new(order, resolution));
+        let mut kept = kept.unwrap_or_else(|| Kept::new(job, resolution));
         let cost = kept.picture.refine_or_cancel(token, scene, samples)?;
         let light = self.kept.insert(kept).picture.framebuffer();
         Ok(Seen { picture: tone(&light, scene), cost })
@@ -338,16 +267,14 @@ fn has_one_sample(sampling: Sampling) -> bool {
     matches!(sampling, Sampling::Each(NonZeroU32::MIN) | Sampling::UpTo(NonZeroU32::MIN))
 }
 
-fn panic_in_a_worker() {
-    rayon::join(|| {}, || panic!("a test asked for a panic in a worker"));
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::camera::{Pose, ViewRectangle};
     use crate::render::{Crew, render_by};
     use crate::terminal::Signals;
+    use crate::tone::Picture;
+    use crate::viewer::Shown;
     use glam::Vec3;
 
     fn three_spheres() -> Scene {
@@ -355,17 +282,19 @@ mod tests {
         Scene::from_ron("three_spheres.ron", text).expect("the scene is fine")
     }
 
+    fn shot(camera: Camera, resolution: Resolution) -> Shot {
+        Shot { scene: 1, lights: 0, camera, resolution, shown: Shown::default() }
+    }
+
     fn frame(refines: bool) -> Frame {
         let pose = Pose { eye: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y };
         let rectangle = ViewRectangle::from_vertical_fov(1.0).expect("an angle");
         Frame {
             scene: Arc::new(three_spheres()),
-            camera: Camera::new(pose, rectangle).expect("a pose"),
-            resolution: Resolution::square(0, 0),
+            shot: shot(Camera::new(pose, rectangle).expect("a pose"), Resolution::square(0, 0)),
             picture: Picture { width: 0, height: 0, pixels: Vec::new() },
             parts: Vec::new(),
             sampling: Sampling::BEST,
-            shown: Shown::default(),
             legends: Vec::new(),
             refines,
             cost: Cost::default(),
@@ -379,38 +308,34 @@ mod tests {
         let (done, frames) = channel();
         let work = |refines| InWork { refines, token: Cancellation::default() };
         let mut renderer = Renderer {
-            scene: Some(Arc::new(three_spheres())),
             jobs: None,
             frames,
             thread: None,
             in_work: [work(true), work(false)].into(),
             seconds_per_pixel: None,
         };
-        assert!(renderer.is_busy_with_new_view());
+        assert_eq!(renderer.tracing(), Some(Tracing::NewView));
         let _ = done.send(Ok(Ok(frame(true))));
         renderer.give_up_refining();
         assert!(renderer.finished().is_none());
-        assert!(renderer.is_busy());
+        assert!(renderer.tracing().is_some());
         let _ = done.send(Ok(Ok(frame(false))));
         assert!(renderer.finished().is_some_and(|frame| !frame.refines));
-        assert!(!renderer.is_busy());
+        assert_eq!(renderer.tracing(), None);
     }
 
     /// The loop traces what its last frames were small for, and the same picture as the thread does.
     #[test]
     fn small_frames_are_done_at_once() {
-        let scene = three_spheres();
+        let scene = Arc::new(three_spheres());
         let camera = scene.camera;
         let waker = Signals::catch().and_then(|signals| signals.waker()).expect("pipes can be made");
         let mut renderer = Renderer::start(Some(2), waker).expect("threads can be started");
-        renderer.show(scene.into());
         let job = |side| Job {
-            camera,
-            resolution: Resolution::square(side, side),
+            scene: Arc::clone(&scene),
+            shot: shot(camera, Resolution::square(side, side)),
             sampling: Sampling::UpTo(NonZeroU32::MIN),
-            shown: Shown::default(),
             refines: false,
-            test_panic: false,
         };
         assert!(renderer.begin(job(8)).is_none(), "nothing is known of the first");
         let by_the_thread = wait_for(&mut renderer);
@@ -429,8 +354,8 @@ mod tests {
         let shown = tone(&best.framebuffer, &scene);
         let mut tracer = Tracer::default();
         let mut trace_of = |scene: &Arc<Scene>, camera, sampling, refines| {
-            let job = Job { camera, resolution, sampling, shown: Shown::default(), refines, test_panic: false };
-            tracer.trace(&Order { scene: Arc::clone(scene), job, token: Cancellation::default() }).expect("a frame")
+            let job = Job { scene: Arc::clone(scene), shot: shot(camera, resolution), sampling, refines };
+            tracer.trace(&job, &Cancellation::default()).expect("a frame")
         };
         let mut trace = |camera, sampling, refines| trace_of(&scene, camera, sampling, refines);
         let one = Sampling::UpTo(NonZeroU32::MIN);

@@ -10,8 +10,8 @@ use report::{Known, Talk};
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 use termtrace::capabilities::{Asking, CellShape, Findings};
-use termtrace::input::{Input, Parser};
-use termtrace::protocol::Questions;
+use termtrace::input::Input;
+use termtrace::protocol::{Questions, Receiver};
 use termtrace::terminal::{Signals, Terminal, die_of};
 
 #[derive(Args)]
@@ -55,38 +55,58 @@ fn talk(questions: &mut Questions, cell: &mut CellShape) -> io::Result<Talk> {
             die_of(signal);
         }
     })?;
-    *cell = terminal.window()?.cell;
-    terminal.send(questions.bytes())?;
+    let mut receiver = Receiver::default();
     let asked = Instant::now();
-    let mut parser = Parser::new();
+    let talk = terminal.window().and_then(|window| {
+        *cell = window.cell;
+        terminal.send(questions.bytes())?;
+        receiver.sent(questions.bytes(), Duration::ZERO);
+        await_replies(&mut terminal, &mut receiver, &mut signals, questions, asked)
+    });
+    terminal.give_back(&mut receiver, asked.elapsed());
+    if let Some(signal) = signals.deadly() {
+        die_of(signal);
+    }
+    talk
+}
+
+/// Waits for the last reply, for a signal to end, or until the terminal has had its time.
+fn await_replies(
+    terminal: &mut Terminal,
+    receiver: &mut Receiver,
+    signals: &mut Signals,
+    questions: &mut Questions,
+    asked: Instant,
+) -> io::Result<Talk> {
     while questions.is_open() {
         let Some(left) = PATIENCE.checked_sub(asked.elapsed()) else { return Ok(Talk::Silence) };
         let woken = terminal.wait(signals.wake_pipe(), Some(left))?;
         if woken.wake {
             signals.drain();
         }
-        if let Some(signal) = signals.deadly() {
-            drop(terminal);
-            die_of(signal);
+        if signals.deadly().is_some() {
             return Ok(Talk::Silence);
         }
         if woken.keys {
-            take_replies(&mut terminal, &mut parser, questions)?;
+            take_replies(terminal, receiver, questions, asked.elapsed())?;
         }
     }
     Ok(Talk::Answered(asked.elapsed()))
 }
 
 /// Keys are nobody's here, and are thrown away.
-fn take_replies(terminal: &mut Terminal, parser: &mut Parser, questions: &mut Questions) -> io::Result<()> {
+fn take_replies(
+    terminal: &mut Terminal,
+    receiver: &mut Receiver,
+    questions: &mut Questions,
+    now: Duration,
+) -> io::Result<()> {
     let mut buffer = [0; 4096];
     let bytes = terminal.read(&mut buffer)?;
     if bytes.is_empty() {
         return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
     }
-    let mut inputs = Vec::new();
-    parser.feed(bytes, &mut inputs);
-    for input in inputs {
+    for input in receiver.hear(bytes, now) {
         if let Input::Reply(reply) = input {
             questions.take(&reply);
         }

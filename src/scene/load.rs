@@ -108,7 +108,8 @@ fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
     if is_mesh(&bytes) {
         return around_mesh(path, &bytes, watcher);
     }
-    memory::check(bytes.len() * PEAK).map_err(|error| LoadError::CannotRead { path: path.to_owned(), error })?;
+    memory::check(bytes.len() * PEAK)
+        .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error: error.into() })?;
     Ok(draft(&name, text_from(&name, &bytes)?, watcher)?)
 }
 

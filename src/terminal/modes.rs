@@ -1,9 +1,10 @@
 //! What is turned on: raw mode, then the modes of the screen, mouse and keyboard; turned off the other way round.
 
 use super::output::Output;
-use super::unanswered::{Unanswered, is_in_background};
+use super::replies::{await_last, is_in_background};
 use super::{Signals, panics, rehearsal, signals};
-use crate::protocol::{self, FENCE, Mode};
+use crate::input::Input;
+use crate::protocol::{self, FENCE, Mode, Receiver};
 use rustix::termios::{self, Action, OptionalActions, QueueSelector, Termios};
 use std::fs::File;
 use std::io;
@@ -21,8 +22,8 @@ pub(super) struct Modes {
 const PATIENCE: Duration = Duration::from_secs(1);
 
 impl Modes {
-    /// Raw mode, the alternate screen, no cursor, pastes in brackets, word of the focus and of the mouse. What is about to be turned on is
-    /// listed first: half done is undone too.
+    /// Raw mode, the alternate screen, no cursor, pastes in brackets, word of the focus and of the mouse. What is about to
+    /// be turned on is listed first: half done is undone too.
     pub(super) fn turn_on(&mut self, keys: &File, output: &mut Output, signals: &Signals) -> io::Result<()> {
         wait_for_foreground(keys, signals)?;
         let before = termios::tcgetattr(keys)?;
@@ -40,36 +41,27 @@ impl Modes {
         rehearsal::reach("all modes")
     }
 
-    /// Places of the mouse in pixels, once.
-    pub(super) fn count_pixels(&mut self, output: &mut Output) -> io::Result<()> {
-        self.switch_on(Mode::MousePixels, output).map(|_| ())
-    }
-
-    /// The kitty keyboard protocol, once, with the query for its flags.
-    pub(super) fn push_keyboard(&mut self, output: &mut Output) -> io::Result<()> {
-        if self.switch_on(Mode::Keyboard, output)? { rehearsal::reach("keyboard") } else { Ok(()) }
-    }
-
-    /// Returns whether the mode was off.
-    fn switch_on(&mut self, mode: Mode, output: &mut Output) -> io::Result<bool> {
+    /// Switches a mode on that is off.
+    pub(super) fn switch_on(&mut self, mode: Mode, output: &mut Output) -> io::Result<()> {
         let mut bytes = Vec::new();
         self.on.switch_on(mode, &mut bytes);
-        if !bytes.is_empty() {
-            output.send(&bytes)?;
+        if bytes.is_empty() {
+            return Ok(());
         }
-        Ok(!bytes.is_empty())
+        output.send(&bytes)?;
+        if mode == Mode::Keyboard { rehearsal::reach("keyboard") } else { Ok(()) }
     }
 
     /// Turns everything off, newest first. What still waits of a picture is dropped, between two of its sequences, so that
-    /// nothing is torn. What fails is passed over: the rest must be undone all the same. Replies that are on their way are
-    /// waited for. Keys are thrown away, unless they are to go to `typed`. Whether the terminal took it all; asked again,
-    /// it did.
+    /// nothing is torn. What fails is passed over: the rest must be undone all the same. Replies that the receiver knows to
+    /// be on their way are waited for. Keys are thrown away, unless they are to go to `typed`. Whether the terminal took it
+    /// all; asked again, it did.
     pub(super) fn give_back(
         &mut self,
         keys: &File,
         output: &mut Output,
-        unanswered: &mut Unanswered,
-        mut typed: Option<&mut Vec<u8>>,
+        mut receiver: Option<(&mut Receiver, Duration)>,
+        mut typed: Option<&mut Vec<Input>>,
     ) -> bool {
         output.drop_picture();
         // It tells of releases until it has heard that it no longer should, and q is let go of about then. Its answer
@@ -81,13 +73,15 @@ impl Modes {
         let Some(before) = self.before.take() else { return true };
         if asks {
             output.put(FENCE);
-            unanswered.send(FENCE);
+            if let Some((receiver, now)) = &mut receiver {
+                receiver.sent(FENCE, *now);
+            }
         }
         let deadline = Instant::now() + PATIENCE;
         let heard = output.finish(deadline);
         // A terminal that has stopped reading does not answer either.
-        if heard {
-            let read = unanswered.drain(keys, deadline);
+        if let Some((receiver, now)) = receiver.filter(|_| heard) {
+            let read = await_last(keys, receiver, now, deadline);
             if let Some(typed) = &mut typed {
                 typed.extend(read);
             }

@@ -1,0 +1,52 @@
+//! The replies that are outstanding when a terminal is given back.
+
+use super::output::timespec;
+use crate::input::Input;
+use crate::protocol::Receiver;
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::{process, termios};
+use std::fs::File;
+use std::io::Read;
+use std::time::{Duration, Instant};
+
+/// Reads what comes up to the last reply that is outstanding at `now`, at most until the deadline, so that none is left
+/// for the shell. It gets those that come later. Returns what was read.
+pub(super) fn await_last(keys: &File, receiver: &mut Receiver, now: Duration, deadline: Instant) -> Vec<Input> {
+    let mut inputs = Vec::new();
+    if !is_in_background(keys) {
+        read_up_to_last(keys, receiver, now, deadline, &mut inputs);
+    }
+    inputs
+}
+
+fn read_up_to_last(
+    mut keys: &File,
+    receiver: &mut Receiver,
+    now: Duration,
+    deadline: Instant,
+    inputs: &mut Vec<Input>,
+) {
+    let start = Instant::now();
+    let mut buffer = [0; 4096];
+    while let Some(patience) = receiver.patience(now + start.elapsed()) {
+        let left = deadline.saturating_duration_since(Instant::now()).min(patience);
+        if left.is_zero() {
+            return;
+        }
+        match poll(&mut [PollFd::new(&keys, PollFlags::IN)], Some(&timespec(left))) {
+            Ok(0) | Err(rustix::io::Errno::INTR) => continue,
+            Ok(_) => {}
+            Err(_) => return,
+        }
+        match keys.read(&mut buffer) {
+            Ok(count) if count > 0 => inputs.extend(receiver.hear(&buffer[..count], now + start.elapsed())),
+            // It is gone.
+            _ => return,
+        }
+    }
+}
+
+/// Whether the terminal is another job's now: reading it would stop us.
+pub(super) fn is_in_background(keys: &File) -> bool {
+    termios::tcgetpgrp(keys).is_ok_and(|foreground| foreground != process::getpgrp())
+}

@@ -1,0 +1,39 @@
+//! What leaves the view: the camera as text, the picture as a file, a view into the scene's file. The driver writes.
+
+use super::dialog::{Answer, Dialog};
+use super::{Ask, Viewer};
+use crate::control::Command;
+
+impl Viewer {
+    /// The camera, as a line for a scene file, is to be copied.
+    pub(super) fn copy_camera(&mut self) {
+        if let Some(camera) = self.eye.camera() {
+            self.asks.push_back(Ask::Copy(format!("{},", camera.to_ron())));
+            self.say("camera copied, where OSC 52 is allowed; on leaving it is printed, too");
+        }
+    }
+
+    /// Asks what the picture is to be written as, where there is a folder for it.
+    pub(super) fn ask_export(&mut self) {
+        if self.options.exports.is_some() && self.screen.frame().is_some() {
+            self.screen.open(Dialog::Export);
+        }
+    }
+
+    /// Asks whether the proposed camera is to be written into the scene's file of that name.
+    pub(crate) fn ask_keep(&mut self, file: String) {
+        self.screen.open(Dialog::Keep(file));
+    }
+
+    /// Takes what a key means as the answer if something has been asked; whether it has.
+    pub(super) fn take_answer(&mut self, meant: Option<Command>) -> bool {
+        let Some(dialog) = self.screen.close::<Dialog>() else { return false };
+        match dialog.answer(meant) {
+            Answer::Export(format) => self.asks.push_back(Ask::Export(format)),
+            Answer::Keep => self.asks.push_back(Ask::KeepView),
+            Answer::Save(number) => self.save_view(number),
+            Answer::Nothing => {}
+        }
+        true
+    }
+}

@@ -1,0 +1,132 @@
+//! What the user is asked: a question, and the keys that answer it.
+
+use super::layers::{Canvas, Layer, Level};
+use super::look::Look;
+use crate::control::{Binding, Bindings, Command, Mode};
+use crate::export::Format;
+use crate::text::visible;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Margin, Rect};
+use ratatui::text::Line;
+use ratatui::widgets::{Block, Clear, Paragraph, Widget};
+use unicode_width::UnicodeWidthStr;
+
+/// A question; until it is answered, keys are answers.
+pub(super) enum Dialog {
+    /// What the picture is to be written as.
+    Export,
+    /// Whether a view is to be written into the scene's file, which is called so.
+    Keep(String),
+    /// By which number the view is to be saved.
+    Save,
+}
+
+/// What is to be done.
+pub(super) enum Answer {
+    Save(u8),
+    Export(Format),
+    Keep,
+    /// Nothing: he leaves the question.
+    Nothing,
+}
+
+impl Layer for Dialog {
+    fn level(&self) -> Level {
+        Level::Question
+    }
+
+    fn mode(&self, _screen: Rect) -> Option<Mode> {
+        Some(self.keys_are_for())
+    }
+
+    fn takes_all_keys(&self) -> bool {
+        true
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        let bindings = canvas.bindings;
+        if canvas.has_room() {
+            let area = self.area(bindings, canvas.screen());
+            canvas.lay(area, |look, area, buffer| self.paint(bindings, look, area, buffer));
+        } else {
+            canvas.write_line(&self.line(bindings), canvas.foot(0));
+        }
+    }
+}
+
+impl Dialog {
+    /// While it is open keys mean this, and nothing else.
+    fn keys_are_for(&self) -> Mode {
+        match self {
+            Self::Export => Mode::Export,
+            Self::Keep(_) => Mode::Keep,
+            // The key that will come back to it.
+            Self::Save => Mode::Always,
+        }
+    }
+
+    /// What a key answers that means this. Any that is not offered leaves the question.
+    pub(super) fn answer(self, meant: Option<Command>) -> Answer {
+        match (self, meant) {
+            (Self::Export, Some(Command::Write(format))) => Answer::Export(format),
+            (Self::Keep(_), Some(Command::Yes)) => Answer::Keep,
+            (Self::Save, Some(Command::View(number))) => Answer::Save(number),
+            _ => Answer::Nothing,
+        }
+    }
+
+    fn title(&self) -> &'static str {
+        match self {
+            Self::Export => " write the picture as ",
+            Self::Keep(_) => " write this view into the scene's file? ",
+            Self::Save => " save this view as ",
+        }
+    }
+
+    /// The keys that answer it.
+    fn answers<'b>(&self, bindings: &'b Bindings) -> impl Iterator<Item = &'b Binding> {
+        let saves = matches!(self, Self::Save);
+        bindings.of(self.keys_are_for()).filter(move |row| !saves || matches!(row.command, Command::View(_)))
+    }
+
+    fn lines(&self, bindings: &Bindings) -> Vec<String> {
+        let name = match self {
+            Self::Export => None,
+            Self::Keep(name) => Some(visible(name)),
+            Self::Save => return vec![self.keys(bindings)],
+        };
+        let answers: Vec<_> = self.answers(bindings).map(|row| (row.label(), row.command.does())).collect();
+        let width = answers.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
+        name.into_iter().chain(answers.iter().map(|(label, does)| format!("{label:width$}  {does}"))).collect()
+    }
+
+    fn keys(&self, bindings: &Bindings) -> String {
+        self.answers(bindings).map(Binding::label).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The question in a line, for where there is no room for more: the keys that answer it, and as few words as will do.
+    fn line(&self, bindings: &Bindings) -> String {
+        let word = match self {
+            Self::Export => "write",
+            Self::Keep(_) => "keep?",
+            Self::Save => "as",
+        };
+        format!("{word} {}", self.keys(bindings))
+    }
+
+    /// In the lower left corner, above the lowest row: most of the picture can be seen.
+    fn area(&self, bindings: &Bindings, screen: Rect) -> Rect {
+        let lines = self.lines(bindings);
+        let text = lines.iter().map(|line| line.width() + 4).max().unwrap_or(0);
+        let width = (text.max(self.title().width() + 2) as u16).min(screen.width);
+        let height = (lines.len() as u16 + 2).min(screen.height);
+        Rect { x: screen.x, y: (screen.bottom() - height).saturating_sub(1), width, height }
+    }
+
+    fn paint(&self, bindings: &Bindings, look: Look, area: Rect, buffer: &mut Buffer) {
+        Clear.render(area, buffer);
+        Block::bordered().border_set(look.border()).title(self.title()).style(look.style()).render(area, buffer);
+        let lines: Vec<_> = self.lines(bindings).into_iter().map(Line::from).collect();
+        Paragraph::new(lines).style(look.style()).render(area.inner(Margin::new(2, 1)), buffer);
+    }
+}

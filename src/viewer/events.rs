@@ -1,0 +1,179 @@
+//! What comes from the terminal: keys, the mouse, replies.
+
+use super::dialog::Dialog;
+use super::explain::Explaining;
+use super::help::HelpPanel;
+use super::moving::ZOOM;
+use super::note::Note;
+use super::status::StatusLine;
+use super::{Ask, Viewer, pointing};
+use crate::control::Command;
+use crate::input::{Input, Reply};
+use crate::memory::OutOfMemory;
+use crate::view::View;
+use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
+use std::time::Duration;
+
+/// The flags of the kitty keyboard protocol without which keys are taken as a plain terminal tells of them: no ambiguity
+/// (1), releases (2), every key as a sequence (8).
+const KEYBOARD: u16 = 1 | 2 | 8;
+
+impl Viewer {
+    /// These bytes have come from the terminal; without any, time has passed.
+    ///
+    /// # Errors
+    /// If there is not enough memory for pictures of the size that the terminal turns out to have.
+    pub(crate) fn hear(&mut self, bytes: &[u8], now: Duration) -> Result<(), OutOfMemory> {
+        let inputs = self.receiver.hear(bytes, now);
+        self.take_inputs(&inputs, now)
+    }
+
+    /// The terminal is somebody else's from now on: nothing is held, and nothing that was asked will be answered.
+    pub(crate) fn lose_terminal(&mut self, now: Duration) {
+        self.now = now;
+        self.eye.stand_still(now);
+        self.eye.set_hears_releases(false, now);
+        self.hand.let_go();
+        self.pacing.forget_replies();
+    }
+
+    /// What was typed while the terminal was somebody else's is heard; of replies it was the last that was waited for, and
+    /// what was asked is asked again.
+    ///
+    /// # Errors
+    /// As for [`hear`](Self::hear).
+    pub(crate) fn hear_typed(&mut self, mut typed: Vec<Input>, now: Duration) -> Result<(), OutOfMemory> {
+        self.receiver.set_keys_are_sequences(false);
+        typed.retain(|input| !matches!(input, Input::Reply(_)));
+        self.take_inputs(&typed, now)
+    }
+
+    /// What comes after a request to leave or to stop is not heard.
+    fn take_inputs(&mut self, inputs: &[Input], now: Duration) -> Result<(), OutOfMemory> {
+        self.now = now;
+        for (at, input) in inputs.iter().enumerate() {
+            match input {
+                input if pointing::is_outdated(input, inputs.get(at + 1)) => {}
+                Input::Event(Event::Mouse(event)) => self.take_mouse(*event),
+                Input::Event(Event::Key(key)) => self.take_key(key),
+                // Nobody says when the keys held now are let go.
+                Input::Event(Event::FocusLost) => {
+                    self.hand.let_go();
+                    self.eye.let_go(now);
+                }
+                Input::Reply(reply) => self.take_reply(reply)?,
+                Input::Event(_) => {}
+            }
+            if matches!(self.asks.back(), Some(Ask::Leave | Ask::Suspend)) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Replies to the questions change things all at once, when the last is there.
+    fn take_reply(&mut self, reply: &Reply) -> Result<(), OutOfMemory> {
+        if let &Reply::KeyboardFlags(flags) = reply {
+            self.take_keyboard(flags);
+        }
+        let (size, capabilities) = (self.size(), *self.display.capabilities());
+        match reply {
+            // Terminals answer in order: first the questions of the start, then what ends each frame.
+            Reply::DeviceAttributes(_) if !self.display.questions().is_open() => self.pacing.take_reply(self.now),
+            &Reply::Mode { mode, .. } if self.pacing.take_mode(mode, self.now) => drop(self.display.close_questions()),
+            reply => drop(self.display.take_reply(reply)),
+        }
+        self.heed_capabilities(&capabilities)?;
+        if self.size() != size {
+            self.redraw();
+        }
+        Ok(())
+    }
+
+    /// The terminal says which flags of the kitty keyboard protocol are on.
+    fn take_keyboard(&mut self, flags: u16) {
+        let hears_releases = self.display.knows_keyboard() && flags & KEYBOARD == KEYBOARD;
+        self.eye.set_hears_releases(hears_releases, self.now);
+        self.receiver.set_keys_are_sequences(hears_releases);
+    }
+
+    fn take_key(&mut self, key: &KeyEvent) {
+        let is_press = key.kind == KeyEventKind::Press;
+        if is_press {
+            self.screen.close::<Note>();
+        }
+        let meant = self.bindings().command(&self.screen.modes(self.size()), key);
+        // A question takes all keys but those with Ctrl, which may leave, unless they answer it.
+        let is_for_all = key.modifiers.contains(KeyModifiers::CONTROL);
+        let answer = meant.map(|(command, _)| command).filter(|command| command.answers() || !is_for_all);
+        if is_press && (answer.is_some() || !is_for_all) && self.take_answer(answer) {
+            return;
+        }
+        self.eye.take_key(key, meant, self.now);
+        if let Some((command, more)) = meant
+            && (is_press || key.kind == KeyEventKind::Repeat && command.repeats())
+        {
+            self.obey(command, more);
+        }
+    }
+
+    /// Does at once what is asked for; with Shift, more of it. What goes on while a key is held is the eye's.
+    pub(super) fn obey(&mut self, command: Command, more: bool) {
+        match command {
+            Command::Quit => self.asks.push_back(Ask::Leave),
+            Command::Suspend => self.asks.push_back(Ask::Suspend),
+            Command::ChangeMode => self.change_mode(),
+            Command::Frame => self.frame_everything(),
+            Command::Narrower => self.zoom(1.0 / ZOOM),
+            Command::Wider => self.zoom(ZOOM),
+            Command::Turntable => self.toggle_turntable(),
+            Command::View(number) => self.go_to_view(number),
+            Command::SaveView => self.screen.open(Dialog::Save),
+            Command::Reset => self.eye.reset(self.now),
+            Command::NextScene => self.asks.push_back(Ask::GoOn(1)),
+            Command::LastScene => self.asks.push_back(Ask::GoOn(-1)),
+            Command::CopyCamera => self.copy_camera(),
+            Command::Export => self.ask_export(),
+            Command::KeepView => self.asks.extend(self.eye.camera().map(Ask::ProposeView)),
+            Command::Status => self.toggle_status(),
+            Command::Help => self.screen.turn_help(&self.options.bindings, self.display.size()),
+            Command::Close => self.close_topmost(),
+            Command::Light => self.take_light(),
+            Command::MoveLight(toward) => self.step_light(toward, more),
+            Command::LightFarther => self.wheel_light(1.0),
+            Command::LightNearer => self.wheel_light(-1.0),
+            Command::LightBack => self.put_light_back(),
+            Command::NextView => self.shown.go_on(View::next),
+            Command::LastView => self.shown.go_on(View::back),
+            Command::Compare => self.shown.compare(),
+            Command::Wipe(side) => self.move_wipe(side),
+            Command::Explain => self.screen.toggle_explaining(),
+            Command::Point(toward) => self.point(toward, more),
+            Command::ScrollUp => self.scroll(-1),
+            Command::ScrollDown => self.scroll(1),
+            Command::Redraw => self.redraw(),
+            // The eye has heard of it; or it is an answer, and nothing was asked.
+            Command::Move(_)
+            | Command::Look(_)
+            | Command::Around(_)
+            | Command::Nearer
+            | Command::Farther
+            | Command::Write(_)
+            | Command::Yes
+            | Command::No => {}
+        }
+    }
+
+    fn toggle_status(&mut self) {
+        if self.screen.close::<StatusLine>().is_none() {
+            self.screen.open(StatusLine);
+        }
+    }
+
+    /// Closes the help, or else lets go of a light, or else closes the explanation.
+    fn close_topmost(&mut self) {
+        if self.screen.close::<HelpPanel>().is_none() && !self.leave_light() {
+            self.screen.close::<Explaining>();
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! The explanation of a pixel: a cursor on the picture, and a panel beside it.
+//!
+//! It is worked out when a frame comes or the cursor moves, and then drawn as often as the screen is.
+
+mod inset;
+mod place;
+
+use super::frame::Frame;
+use super::help;
+use super::layers::{Canvas, Layer, Level};
+use super::look::{self, Look};
+use crate::capabilities::CellMode;
+use crate::control::{Command, Mode};
+use crate::explain::{Explanation, cell, explain};
+use crate::framebuffer::Resolution;
+use crate::overlay;
+use crate::render::Sampling;
+use inset::Inset;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Margin, Rect};
+use ratatui::text::Line;
+use ratatui::widgets::{Block, Clear, Paragraph, Widget};
+
+use place::{marks, panel_area};
+
+/// The pixel that is explained, and what there is to say of it.
+pub(super) struct Explaining {
+    /// Its place on the screen,
+    pixel: [u32; 2],
+    /// which has so many.
+    resolution: Resolution,
+    explanation: Explanation,
+    inset: Inset,
+    /// How the frame differs from the explanation: more rays.
+    notes: Vec<String>,
+    /// The first line that is seen.
+    scrolled: usize,
+}
+
+impl Layer for Explaining {
+    fn level(&self) -> Level {
+        Level::Side
+    }
+
+    fn mode(&self, screen: Rect) -> Option<Mode> {
+        look::has_room(screen).then_some(Mode::Explain)
+    }
+
+    /// The frame may be of another view, or of another size.
+    fn take_frame(&mut self, frame: &Frame) {
+        let (old, new) = (self.resolution, frame.resolution());
+        if frame.refines && old == new {
+            self.notes = notes(frame, self.pixel, &self.explanation);
+            return;
+        }
+        let [x, y] = self.pixel;
+        let scaled = |at: u32, old: u32, new: u32| (u64::from(at) * u64::from(new) / u64::from(old.max(1))) as u32;
+        self.put(frame, [scaled(x, old.width, new.width), scaled(y, old.height, new.height)]);
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        if !canvas.has_room() {
+            return;
+        }
+        let (screen, mode) = (canvas.screen(), canvas.cell_mode);
+        // The panel leaves the lowest row to others, and what the status line takes besides.
+        let above = Rect { height: screen.height - canvas.status_rows.saturating_sub(1), ..screen };
+        let scroll = help::keys(canvas.bindings, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
+        let scroll = scroll.unwrap_or_default();
+        canvas.lay(panel_area(above, self.cell(mode)), |look, panel, buffer| {
+            self.paint(&scroll, look, mode, panel, buffer);
+        });
+        for mark in marks(self, canvas.look(), mode, screen) {
+            overlay::lay_over(canvas.grid, &mark);
+        }
+    }
+}
+
+impl Explaining {
+    /// The pixel in the middle of the frame; none if it has none.
+    pub(super) fn new(frame: &Frame) -> Option<Self> {
+        let Resolution { width, height, .. } = frame.resolution();
+        (width > 0 && height > 0).then(|| Self::of(frame, [width / 2, height / 2], 0))
+    }
+
+    fn of(frame: &Frame, pixel: [u32; 2], scrolled: usize) -> Self {
+        let (resolution, part) = frame.part_at(pixel);
+        let explanation = explain(&frame.scene, frame.camera(), resolution, part);
+        let inset = Inset::of(&frame.scene, frame.camera(), &explanation);
+        Self {
+            pixel,
+            resolution: frame.resolution(),
+            inset,
+            notes: notes(frame, pixel, &explanation),
+            explanation,
+            scrolled,
+        }
+    }
+
+    /// The cursor goes so many pixels to the right and down.
+    pub(super) fn step(&mut self, frame: &Frame, [right, down]: [i32; 2]) {
+        let [x, y] = self.pixel;
+        self.put(frame, [x.saturating_add_signed(right), y.saturating_add_signed(down)]);
+    }
+
+    /// The cursor goes to that pixel, or the last one before the picture's end.
+    pub(super) fn put(&mut self, frame: &Frame, [x, y]: [u32; 2]) {
+        let Resolution { width, height, .. } = frame.resolution();
+        if width > 0 && height > 0 {
+            *self = Self::of(frame, [x.min(width - 1), y.min(height - 1)], self.scrolled);
+        }
+    }
+
+    /// Shows later lines, or with a negative number earlier ones.
+    pub(super) fn scroll(&mut self, by: isize) {
+        self.scrolled = self.scrolled.saturating_add_signed(by);
+    }
+
+    /// The cell in which the pixel is.
+    fn cell(&self, mode: CellMode) -> [u16; 2] {
+        let ((across, down), [x, y]) = (mode.pixels_per_cell(), self.pixel);
+        [(x / across) as u16, (y / down) as u16]
+    }
+
+    /// Which of its cell's rows of pixels it is in, of how many.
+    fn row_in_cell(&self, mode: CellMode) -> (u32, u32) {
+        let (_, down) = mode.pixels_per_cell();
+        (self.pixel[1] % down, down)
+    }
+
+    fn lines(&self, mode: CellMode) -> Vec<String> {
+        let mut lines = self.explanation.lines();
+        lines.push(cell(self.pixel, mode));
+        lines.extend(self.notes.iter().cloned());
+        lines
+    }
+
+    /// Draws the panel: the text, which these keys scroll, and the view from the side below it.
+    fn paint(&mut self, scroll: &str, look: Look, mode: CellMode, area: Rect, buffer: &mut Buffer) {
+        let lines = self.lines(mode);
+        let inside = area.inner(Margin::new(2, 1));
+        let [text, inset] = place::split(inside, lines.len() as u16);
+        self.scrolled = self.scrolled.min(lines.len().saturating_sub(text.height.into()));
+        let last = lines.len().min(self.scrolled + usize::from(text.height));
+        Clear.render(area, buffer);
+        let mut block = Block::bordered().border_set(look.border()).style(look.style()).title(" explain ");
+        if usize::from(text.height) < lines.len() {
+            let first = self.scrolled + 1;
+            block = block.title_bottom(format!(" {first}-{last} of {}: {scroll} ", lines.len()));
+        }
+        block.render(area, buffer);
+        let seen: Vec<_> = lines.into_iter().skip(self.scrolled).map(Line::from).collect();
+        Paragraph::new(seen).style(look.style()).render(text, buffer);
+        self.inset.draw(look, mode, self.resolution, inset, buffer);
+    }
+}
+
+/// What the frame has at the pixel where that is not the explanation's.
+fn notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explanation) -> Vec<String> {
+    // Other views are of the same ray, and have their legend.
+    if !frame.legends.is_empty() {
+        return Vec::new();
+    }
+    let samples = match frame.sampling {
+        Sampling::Coarse => return vec!["shown with one ray for 2x2 pixels".to_owned()],
+        Sampling::Each(samples) => format!("this is the first of {samples} rays"),
+        Sampling::UpTo(samples) => format!("this is the first of up to {samples} rays"),
+    };
+    let at = y as usize * frame.picture.width as usize + x as usize;
+    match frame.picture.pixels.get(at) {
+        Some(&shown) if shown != explanation.bytes => {
+            vec![samples, format!("their mean is {} {} {}", shown.r, shown.g, shown.b)]
+        }
+        _ => Vec::new(),
+    }
+}

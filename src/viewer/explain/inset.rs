@@ -1,0 +1,121 @@
+//! The view from the side, as the lecture draws it: the eye, the view rectangle, the ray and what it meets.
+
+use crate::camera::{Basis, Camera};
+use crate::capabilities::{CellMode, Colors, Glyphs};
+use crate::explain::Explanation;
+use crate::framebuffer::Resolution;
+use crate::scene::Scene;
+use crate::shape::Part;
+use crate::viewer::look::Look;
+use glam::{Vec2, Vec3};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Style};
+use ratatui::symbols::Marker;
+use ratatui::text::Line as Text;
+use ratatui::widgets::Widget;
+use ratatui::widgets::canvas::{Canvas, Circle, Line};
+
+/// What is drawn, in the plane of the view and the vertical: along -w and v from the eye.
+pub(super) struct Inset {
+    /// The ends of the view rectangle.
+    rectangle: [Vec2; 2],
+    /// Where the ray goes through it.
+    q: Vec2,
+    /// Where the ray ends: what it meets, or far away.
+    end: Vec2,
+    /// Whether it meets anything there.
+    is_met: bool,
+    /// The sphere that it meets.
+    ball: Option<(Vec2, f32)>,
+    /// From there to the lights, and whether they are seen.
+    lights: Vec<(Vec2, bool)>,
+}
+
+/// How far a ray is drawn that meets nothing, in distances of the eye from the target.
+const FAR: f32 = 1.5;
+
+/// The view rectangle is drawn so far from the eye, in parts of the ray: as only the ratios of its distance and its sides
+/// count, it may be drawn wherever it is seen well.
+const NEAR: f32 = 0.3;
+
+impl Inset {
+    pub(super) fn of(scene: &Scene, camera: &Camera, explanation: &Explanation) -> Self {
+        let (Basis { v, w, .. }, eye) = (camera.basis(), explanation.ray.origin);
+        let from_side = |point: Vec3| Vec2::new((eye - point).dot(w), (point - eye).dot(v));
+        let seen = explanation.seen.as_ref();
+        let pose = camera.pose();
+        let t = seen.map_or_else(|| FAR * pose.eye.distance(pose.target), |seen| seen.hit.t);
+        let rays = camera.eye_rays(explanation.resolution.aspect_ratio());
+        let near = NEAR * t;
+        let ball = seen.and_then(|seen| match seen.hit.surface(scene) {
+            Part::Sphere(sphere) => Some((from_side(sphere.center()), sphere.radius())),
+            Part::Plane(_) | Part::Triangle(_) | Part::Facet(_) => None,
+        });
+        let lights = seen.map_or(Vec::new(), |seen| {
+            let ends = scene.lights.iter().map(|light| from_side(light.position));
+            ends.zip(&seen.lights).map(|(end, lit)| (end, lit.faces() && lit.blocker.is_none())).collect()
+        });
+        Self {
+            rectangle: [0.0, 1.0].map(|qv| from_side(rays.through(explanation.q.x, qv).at(near))),
+            q: from_side(explanation.ray.at(near)),
+            end: from_side(explanation.ray.at(t)),
+            is_met: seen.is_some(),
+            ball,
+            lights,
+        }
+    }
+
+    /// Draws it, all in one scale.
+    pub(super) fn draw(&self, look: Look, mode: CellMode, resolution: Resolution, area: Rect, buffer: &mut Buffer) {
+        if area.is_empty() {
+            return;
+        }
+        let (across, down) = mode.pixels_per_cell();
+        let cell_aspect = resolution.pixel_aspect * down as f32 / across as f32;
+        let [x, y] = self.bounds(f32::from(area.width), f32::from(area.height) * cell_aspect);
+        let marker = match mode.glyphs {
+            Glyphs::Half => Marker::Braille,
+            Glyphs::Shape | Glyphs::Ramp => Marker::Custom('*'),
+        };
+        let ink = |color: Color| if mode.colors == Colors::None { Color::Reset } else { color };
+        let line = |from: Vec2, to: Vec2, color: Color| {
+            let [from, to] = [from, to].map(Vec2::as_dvec2);
+            Line::new(from.x, from.y, to.x, to.y, ink(color))
+        };
+        let style = look.style();
+        let canvas = Canvas::default().marker(marker).x_bounds(x).y_bounds(y).paint(|canvas| {
+            if let Some((center, radius)) = self.ball {
+                let center = center.as_dvec2();
+                canvas.draw(&Circle::new(center.x, center.y, radius.into(), ink(Color::LightRed)));
+            }
+            for &(light, is_seen) in &self.lights {
+                canvas.draw(&line(self.end, light, if is_seen { Color::LightYellow } else { Color::DarkGray }));
+            }
+            canvas.layer();
+            canvas.draw(&line(self.rectangle[0], self.rectangle[1], Color::LightBlue));
+            canvas.draw(&line(Vec2::ZERO, self.end, Color::LightGreen));
+            canvas.layer();
+            let letter = |text: &'static str| Text::styled(text, Style::new().patch(style));
+            for (at, name) in [(Vec2::ZERO, "o"), (self.q, "q"), (self.end, if self.is_met { "p" } else { "" })] {
+                canvas.print(at.x.into(), at.y.into(), letter(name));
+            }
+        });
+        canvas.render(area, buffer);
+        buffer.set_style(area, Style { fg: None, ..style });
+    }
+
+    /// What part of the plane is drawn in so much room: all but spheres and lights, in the middle, and some more.
+    fn bounds(&self, width: f32, height: f32) -> [[f64; 2]; 2] {
+        let points = [Vec2::ZERO, self.rectangle[0], self.rectangle[1], self.end];
+        let min = points.into_iter().reduce(Vec2::min).unwrap_or_default();
+        let max = points.into_iter().reduce(Vec2::max).unwrap_or_default();
+        let (size, middle) = (max - min, 0.5 * (min + max));
+        let scale = 1.15 * (size.x / width).max(size.y / height).max(f32::MIN_POSITIVE);
+        let around = |middle: f32, room: f32| {
+            let half = 0.5 * scale * room;
+            [f64::from(middle - half), f64::from(middle + half)]
+        };
+        [around(middle.x, width), around(middle.y, height)]
+    }
+}

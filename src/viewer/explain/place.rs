@@ -1,0 +1,101 @@
+//! Where the explanation's cursor and panel are: never on the pixel that they explain.
+
+use super::Explaining;
+use crate::capabilities::{CellMode, Glyphs};
+use crate::explain::WIDTH;
+use crate::viewer::look::Look;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+/// How wide the panel is, with its border and a blank at each side.
+const PANEL: u16 = WIDTH as u16 + 4;
+
+/// The rows at the foot of the screen that are for others.
+const FOOT: u16 = 2;
+
+/// Of the inside of the panel, the least height of the inset, and the most.
+const INSET: [u16; 2] = [6, 16];
+
+/// Where the panel is: on the side of the screen where the cell is not.
+pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
+    let (middle, height) = (screen.width / 2, screen.height.saturating_sub(FOOT));
+    // The cursor's mark beside the cell has a column, too.
+    if middle > PANEL {
+        let x = if column < middle { screen.width - PANEL } else { 0 };
+        return Rect::new(x, 0, PANEL, height);
+    }
+    // Too narrow for that: above or below.
+    let (half, width) = (screen.height / 2, PANEL.min(screen.width));
+    let x = (screen.width - width) / 2;
+    if row < half { Rect::new(x, half + 1, width, height - half - 1) } else { Rect::new(x, 0, width, half - 1) }
+}
+
+/// The place of the text in the panel, which has so many lines, and that of the inset below it, which is empty where there
+/// is no room for it.
+pub(super) fn split(inside: Rect, lines: u16) -> [Rect; 2] {
+    let [least, most] = INSET;
+    let inset = if inside.height < 2 * least { 0 } else { inside.height.saturating_sub(lines + 1).clamp(least, most) };
+    let text = Rect { height: inside.height - inset - u16::from(inset > 0), ..inside };
+    [text, Rect { y: inside.bottom() - inset, height: inset, ..inside }]
+}
+
+/// The cursor: marks beside the cell, above and below it, with nothing on the cell itself.
+pub(super) fn marks(explaining: &Explaining, look: Look, mode: CellMode, screen: Rect) -> Vec<Buffer> {
+    let [column, row] = explaining.cell(mode);
+    let [beside, above] = match (mode.glyphs, explaining.row_in_cell(mode)) {
+        (Glyphs::Half, (0, _)) => [["▀", "▀"], ["│", "│"]],
+        (Glyphs::Half, _) => [["▄", "▄"], ["│", "│"]],
+        _ => [[">", "<"], ["v", "^"]],
+    };
+    let mut marks = Vec::new();
+    let mut mark = |x: Option<u16>, y: Option<u16>, symbol: &str| {
+        if let (Some(x), Some(y)) = (x, y)
+            && screen.contains((x, y).into())
+        {
+            let mut buffer = Buffer::empty(Rect::new(x, y, 1, 1));
+            buffer.set_string(x, y, symbol, look.mark());
+            marks.push(buffer);
+        }
+    };
+    mark(column.checked_sub(1), Some(row), beside[0]);
+    mark(column.checked_add(1), Some(row), beside[1]);
+    mark(Some(column), row.checked_sub(1), above[0]);
+    mark(Some(column), row.checked_add(1), above[1]);
+    marks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The cell and the marks around it are beside the panel, wherever it is, and the panel is on the screen.
+    #[test]
+    fn the_panel_is_never_on_the_cursor() {
+        for (columns, rows) in [(40, 12), (41, 13), (79, 24), (80, 24), (81, 25), (200, 60), (65_535, 12), (40, 65_535)]
+        {
+            let screen = Rect::new(0, 0, columns, rows);
+            let columns =
+                (0..columns).step_by(usize::from(columns / 40)).chain([columns / 2 - 1, columns / 2, columns - 1]);
+            for column in columns {
+                for row in (0..rows).step_by(usize::from(rows / 12)).chain([rows / 2 - 1, rows / 2, rows - 1]) {
+                    let panel = panel_area(screen, [column, row]);
+                    let around = Rect::new(column.saturating_sub(1), row, 3, 1);
+                    assert!(
+                        !panel.intersects(around) && panel.union(screen) == screen,
+                        "{screen} {column} {row} {panel}"
+                    );
+                    assert!(panel.height >= 3 && panel.width >= 39, "{screen} {panel}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_inset_is_as_high_as_the_text_lets_it() {
+        let heights = |inside, lines| split(Rect::new(2, 1, 35, inside), lines).map(|area| area.height);
+        assert_eq!(heights(20, 40), [13, 6]);
+        assert_eq!(heights(56, 30), [39, 16]);
+        assert_eq!(heights(44, 30), [30, 13]);
+        assert_eq!(heights(6, 40), [6, 0]);
+    }
+}

@@ -1,0 +1,29 @@
+//! Commands while a pixel is explained.
+
+use super::Viewer;
+use crate::control::Toward;
+
+/// With Shift the cursor goes so many pixels at once.
+const FASTER: i32 = 8;
+
+/// How many lines a page of the panel goes on.
+const PAGE: isize = 10;
+
+impl Viewer {
+    /// The cursor goes by a pixel, or more.
+    pub(super) fn point(&mut self, toward: Toward, more: bool) {
+        let pixels = if more { FASTER } else { 1 };
+        let step = match toward {
+            Toward::Left => [-pixels, 0],
+            Toward::Right => [pixels, 0],
+            Toward::Up => [0, -pixels],
+            Toward::Down => [0, pixels],
+        };
+        self.screen.explain(|explaining, frame| explaining.step(frame, step));
+    }
+
+    /// So many pages on in what is said of the pixel.
+    pub(super) fn scroll(&mut self, pages: isize) {
+        self.screen.explain(|explaining, _| explaining.scroll(pages * PAGE));
+    }
+}

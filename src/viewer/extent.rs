@@ -1,0 +1,66 @@
+//! How much of a window the picture covers: all of it, unless that would take more memory than a picture is worth.
+
+use crate::capabilities::CellMode;
+use crate::grid::Size;
+use crate::memory::{self, OutOfMemory};
+
+/// The most pixels of a live picture: 1,048,576 cells of half blocks or of the ramp, 262,144 of shapes. Of a window with
+/// more cells the picture covers the upper left part, in the window's shape, and the rest stays empty.
+///
+/// So many take 490 MB at the peak, and twice as many 770 MB (in all colours, with a wipe or on a slow link). Windows of
+/// real terminals have less than a tenth of that: a 4K screen has 100,000 cells of 8 by 10 pixels.
+pub const MAX_PIXELS: u32 = 1 << 21;
+
+/// Returns what the picture covers of a window, counted from its upper left corner.
+pub(super) fn covered(window: Size, mode: CellMode) -> Size {
+    let (across, down) = mode.pixels_per_cell();
+    let (most, cells) = ((MAX_PIXELS / (across * down)) as usize, window.cell_count());
+    if cells <= most {
+        return window;
+    }
+    let scale = (most as f64 / cells as f64).sqrt();
+    let scaled = |side: u16| (f64::from(side) * scale) as u16;
+    Size::new(scaled(window.columns), scaled(window.rows))
+}
+
+/// What a picture, its cells and its bytes take at the peak for each pixel: 232 bytes were measured.
+const BYTES_PER_PIXEL: usize = 256;
+
+/// Finds out whether there is the memory to show pictures of that size.
+///
+/// # Errors
+/// If there is not.
+pub(super) fn check(size: Size, mode: CellMode) -> Result<(), OutOfMemory> {
+    let (across, down) = mode.pixels_per_cell();
+    let pixels = size.cell_count() * (across * down) as usize;
+    let Size { columns, rows } = size;
+    memory::check(pixels * BYTES_PER_PIXEL)
+        .map_err(|error| error.when(format!("for a picture of {columns}x{rows} cells")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capabilities::{Colors, Glyphs};
+
+    #[test]
+    fn a_picture_covers_windows_of_real_size() {
+        for (columns, rows) in [(1, 1), (80, 24), (1920, 500), (65_535, 1), (1, 65_535), (65_535, 16), (1024, 1024)] {
+            let size = Size::new(columns, rows);
+            assert_eq!(covered(size, CellMode::HALF_BLOCK), size);
+        }
+    }
+
+    #[test]
+    fn of_a_larger_window_it_covers_a_part_of_the_same_shape() {
+        let shapes = CellMode { glyphs: Glyphs::Shape, colors: Colors::None };
+        for (mode, most) in [(CellMode::HALF_BLOCK, 1 << 20), (CellMode::RAMP, 1 << 20), (shapes, 1 << 18)] {
+            for (columns, rows) in [(65_535, 65_535), (10_000, 5000), (65_535, 33), (40, 65_535), (1024, 1025)] {
+                let size = covered(Size::new(columns, rows), mode);
+                assert!(size.cell_count() <= most && size.cell_count() > most * 9 / 10, "{size:?}");
+                let skew = f64::from(size.columns) * f64::from(rows) / (f64::from(size.rows) * f64::from(columns));
+                assert!((0.9..1.1).contains(&skew), "{size:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,233 @@
+//! What lies over the picture: a stack of layers, each drawn from its own state.
+//!
+//! A new panel is one file with a type that implements [`Layer`], and one line where something opens it.
+
+use super::frame::Frame;
+use super::look::{self, Look};
+use crate::capabilities::CellMode;
+use crate::control::{Bindings, Mode};
+use crate::grid::Grid;
+use crate::overlay;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use std::any::Any;
+use std::time::Duration;
+
+/// Where a layer lies, from the lowest to the topmost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Level {
+    /// On a thing in the picture.
+    Mark,
+    /// Beside what it speaks of.
+    Side,
+    /// In the middle of the lower half.
+    Middle,
+    /// In the lowest rows, from the lowest up.
+    Status,
+    Legend,
+    Fault,
+    /// In the lowest row until the next key.
+    Note,
+    /// What has to be answered.
+    Question,
+    Help,
+}
+
+/// Something that lies over the picture.
+pub(super) trait Layer: Any {
+    fn level(&self) -> Level;
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>);
+
+    /// What keys are for while it is open, on that screen.
+    fn mode(&self, _screen: Rect) -> Option<Mode> {
+        None
+    }
+
+    /// Whether it takes all keys.
+    fn takes_all_keys(&self) -> bool {
+        false
+    }
+
+    /// The picture has another frame.
+    fn take_frame(&mut self, _frame: &Frame) {}
+}
+
+/// All that lie over the picture, from the lowest to the topmost; one of each type.
+#[derive(Default)]
+pub(super) struct Layers {
+    stack: Vec<Box<dyn Layer>>,
+}
+
+impl Layers {
+    /// Opens a layer, in the place of the one of its type.
+    pub(super) fn open<L: Layer>(&mut self, layer: L) {
+        self.close::<L>();
+        let at = self.stack.partition_point(|below| below.level() <= layer.level());
+        self.stack.insert(at, Box::new(layer));
+    }
+
+    /// Closes the layer of that type, and returns it.
+    pub(super) fn close<L: Layer>(&mut self) -> Option<L> {
+        let at = self.stack.iter().position(|layer| is::<L>(layer.as_ref()))?;
+        let layer: Box<dyn Any> = self.stack.remove(at);
+        layer.downcast().ok().map(|layer| *layer)
+    }
+
+    /// The layer of that type.
+    pub(super) fn get<L: Layer>(&self) -> Option<&L> {
+        self.stack.iter().find_map(|layer| (layer.as_ref() as &dyn Any).downcast_ref())
+    }
+
+    /// The layer of that type, to be changed.
+    pub(super) fn get_mut<L: Layer>(&mut self) -> Option<&mut L> {
+        self.stack.iter_mut().find_map(|layer| (layer.as_mut() as &mut dyn Any).downcast_mut())
+    }
+
+    /// What keys are for on that screen, the topmost first, with this below all layers.
+    pub(super) fn modes(&self, screen: Rect, moving: Mode) -> Vec<Mode> {
+        if let Some(question) = self.stack.iter().find(|layer| layer.takes_all_keys()) {
+            return question.mode(screen).into_iter().chain([Mode::Always]).collect();
+        }
+        // What is nearest to the things of the picture is nearest at hand.
+        let layers = self.stack.iter().filter_map(|layer| layer.mode(screen));
+        layers.chain([moving, Mode::Always]).collect()
+    }
+
+    /// The picture has another frame.
+    pub(super) fn take_frame(&mut self, frame: &Frame) {
+        for layer in &mut self.stack {
+            layer.take_frame(frame);
+        }
+    }
+
+    pub(super) fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        for layer in &mut self.stack {
+            layer.draw(canvas);
+        }
+    }
+}
+
+fn is<L: Layer>(layer: &dyn Layer) -> bool {
+    (layer as &dyn Any).is::<L>()
+}
+
+/// The cells to draw on, and what layers are drawn from besides their own state.
+pub(super) struct Canvas<'a> {
+    pub(super) grid: &'a mut Grid,
+    pub(super) cell_mode: CellMode,
+    pub(super) bindings: &'a Bindings,
+    /// What keys are for, the topmost first.
+    pub(super) modes: &'a [Mode],
+    pub(super) frame: Option<&'a Frame>,
+    pub(super) figures: Figures,
+    /// How many rows at the foot the status line takes.
+    pub(super) status_rows: u16,
+}
+
+/// Figures of the frames that were shown.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Figures {
+    /// How long cells and bytes of the last one took.
+    pub(super) encode: Duration,
+    /// Frames shown per second, while something moves.
+    pub(super) frames_per_second: Option<f32>,
+    /// The rate of the link if it is slow, in bytes per second.
+    pub(super) slow: Option<f64>,
+}
+
+impl Canvas<'_> {
+    /// All cells.
+    pub(super) fn screen(&self) -> Rect {
+        look::area(self.grid.size())
+    }
+
+    pub(super) fn look(&self) -> Look {
+        Look::of(self.cell_mode)
+    }
+
+    /// Whether panels may lie over the picture.
+    pub(super) fn has_room(&self) -> bool {
+        look::has_room(self.screen())
+    }
+
+    /// The lowest row with that many others below it.
+    pub(super) fn foot(&self, below: u16) -> Rect {
+        look::foot(self.screen(), below)
+    }
+
+    /// Draws on these cells.
+    pub(super) fn lay(&mut self, area: Rect, draw: impl FnOnce(Look, Rect, &mut Buffer)) {
+        let mut buffer = Buffer::empty(area);
+        draw(self.look(), area, &mut buffer);
+        overlay::lay_over(self.grid, &buffer);
+    }
+
+    /// Writes text on a row of its own.
+    pub(super) fn write_line(&mut self, text: &str, row: Rect) {
+        self.lay(row, |look, area, buffer| look::draw_line(text, look, area, buffer));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Size;
+
+    /// A panel that only this test has: all that it takes is this type, and the line that opens it.
+    struct Letter<const LETTER: char>(Level);
+
+    impl<const LETTER: char> Layer for Letter<LETTER> {
+        fn level(&self) -> Level {
+            self.0
+        }
+
+        fn mode(&self, _: Rect) -> Option<Mode> {
+            (LETTER == 'L').then_some(Mode::Light)
+        }
+
+        fn takes_all_keys(&self) -> bool {
+            LETTER == '?'
+        }
+
+        fn draw(&mut self, canvas: &mut Canvas<'_>) {
+            canvas.write_line(&LETTER.to_string(), canvas.foot(0));
+        }
+    }
+
+    fn topmost(layers: &mut Layers) -> String {
+        let mut grid = Grid::new(Size::new(1, 1));
+        let (bindings, figures) = (Bindings::default(), Figures::default());
+        let mode = CellMode::HALF_BLOCK;
+        layers.draw(&mut Canvas {
+            grid: &mut grid,
+            cell_mode: mode,
+            bindings: &bindings,
+            modes: &[],
+            frame: None,
+            figures,
+            status_rows: 0,
+        });
+        crate::export::text(&grid).trim().to_owned()
+    }
+
+    #[test]
+    fn layers_are_drawn_by_their_level_whenever_they_were_opened() {
+        let mut layers = Layers::default();
+        layers.open(Letter::<'h'>(Level::Help));
+        layers.open(Letter::<'m'>(Level::Mark));
+        assert_eq!(topmost(&mut layers), "h");
+        assert!(layers.close::<Letter<'h'>>().is_some() && layers.close::<Letter<'h'>>().is_none());
+        assert_eq!(topmost(&mut layers), "m");
+        assert!(layers.get::<Letter<'m'>>().is_some() && layers.get::<Letter<'h'>>().is_none());
+    }
+
+    #[test]
+    fn a_question_takes_all_keys_and_others_lie_over_movement() {
+        let (screen, mut layers) = (Rect::new(0, 0, 80, 24), Layers::default());
+        layers.open(Letter::<'L'>(Level::Mark));
+        assert_eq!(layers.modes(screen, Mode::Fly), [Mode::Light, Mode::Fly, Mode::Always]);
+        layers.open(Letter::<'?'>(Level::Question));
+        assert_eq!(layers.modes(screen, Mode::Fly), [Mode::Always]);
+    }
+}

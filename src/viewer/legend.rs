@@ -1,0 +1,53 @@
+//! What the colours of a view mean: a line at the foot of the picture, under each of two.
+
+use super::layers::{Canvas, Layer, Level};
+use super::look::Look;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::{Paragraph, Widget};
+
+/// The legends of the frame that is shown.
+pub(super) struct Legends;
+
+impl Layer for Legends {
+    fn level(&self) -> Level {
+        Level::Legend
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        let legends = canvas.frame.filter(|_| canvas.has_room()).map_or(&[][..], |frame| &frame.legends);
+        for (text, area) in shared(legends, canvas.foot(canvas.status_rows)) {
+            canvas.lay(area, |look, area, buffer| draw(text, look, area, buffer));
+        }
+    }
+}
+
+/// Each text with its place in the line, as wide as it is: the picture goes on beside it.
+fn shared(texts: &[String], line: Rect) -> impl Iterator<Item = (&str, Rect)> {
+    let count = texts.len().max(1) as u16;
+    (0..).zip(texts).map(move |(at, text)| {
+        let room = line.width / count;
+        let width = (text.len() as u16).saturating_add(2).min(room);
+        (text.as_str(), Rect { x: line.x + (line.width * at).div_ceil(count), width, ..line })
+    })
+}
+
+pub(super) fn draw(text: &str, look: Look, area: Rect, buffer: &mut Buffer) {
+    Paragraph::new(format!(" {text} ")).style(look.style()).render(area, buffer);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::viewer::look::foot;
+
+    #[test]
+    fn each_view_has_its_legend_below_it() {
+        let screen = Rect::new(0, 0, 81, 24);
+        let texts = ["shaded".to_owned(), "depth: white 0, grey 6.41, black far".to_owned()];
+        let places: Vec<_> = shared(&texts, foot(screen, 0)).map(|(_, area)| area).collect();
+        assert_eq!(places, [Rect::new(0, 23, 8, 1), Rect::new(41, 23, 38, 1)]);
+        assert_eq!(foot(screen, 1).y, 22, "above the status line");
+        assert_eq!(shared(&texts[1..], Rect::new(0, 5, 20, 1)).next(), Some((&*texts[1], Rect::new(0, 5, 20, 1))));
+    }
+}

@@ -1,0 +1,107 @@
+//! Commands for the light that is held.
+
+use super::Viewer;
+use super::lights::Lights;
+use super::mark::LightMark;
+use crate::camera::Camera;
+use crate::control::{self, Command, Toward};
+use crate::light::PointLight;
+use glam::{Vec2, Vec3};
+
+/// A press moves a light by so much of the picture's height,
+const STEP: f32 = 1.0 / 32.0;
+/// and with Shift so many times as far.
+const FASTER: f32 = 4.0;
+
+impl Viewer {
+    /// Takes hold of the light that is nearest to the pointer on the screen; of the next one, if one is held.
+    pub(super) fn take_light(&mut self) {
+        let (camera, aspect_ratio) = (self.eye.camera(), self.part().aspect_ratio());
+        let pointer = self.hand.at().unwrap_or(Vec2::splat(0.5));
+        let nearest = |lights: &[PointLight]| nearest(lights, &camera?, pointer, aspect_ratio);
+        let taken = self.gallery.lights_mut().and_then(|lights| {
+            let light = lights.take_next(nearest)?;
+            Some((light, lights.all().len(), lights.held()))
+        });
+        let Some((light, count, at)) = taken else {
+            self.say("this scene has no light that could be moved");
+            return;
+        };
+        let is_seen = |camera: Camera| at.is_some_and(|at| control::place_of(&camera, at, 1.0).is_some());
+        let behind = if camera.is_some_and(is_seen) { "" } else { ", behind the eye" };
+        self.mark_light();
+        let hint = self.hint(Command::Help, "shows its keys");
+        self.say(format!("light {} of {count}{behind}: drag it{hint}", light + 1));
+    }
+
+    /// Marks the light that is held, where it is.
+    pub(super) fn mark_light(&mut self) {
+        self.screen.set(self.held_light().map(LightMark));
+    }
+
+    fn held_light(&self) -> Option<Vec3> {
+        self.gallery.lights()?.held()
+    }
+
+    /// Lets go of it; whether there was one.
+    pub(super) fn leave_light(&mut self) -> bool {
+        let was_held = self.gallery.lights_mut().is_some_and(Lights::let_go);
+        self.mark_light();
+        was_held
+    }
+
+    pub(super) fn holds_light(&self) -> bool {
+        self.held_light().is_some()
+    }
+
+    /// The light goes one step as the screen has it.
+    pub(super) fn step_light(&mut self, toward: Toward, more: bool) {
+        let (across, down) = match toward {
+            Toward::Left => (-1.0, 0.0),
+            Toward::Right => (1.0, 0.0),
+            Toward::Up => (0.0, -1.0),
+            Toward::Down => (0.0, 1.0),
+        };
+        let step = if more { FASTER * STEP } else { STEP };
+        self.drag_light(step * Vec2::new(across / self.part().aspect_ratio(), down));
+    }
+
+    /// The light goes so far to the right and down, in parts of the picture's width and height.
+    pub(super) fn drag_light(&mut self, by: Vec2) {
+        let aspect_ratio = self.part().aspect_ratio();
+        self.move_light(|camera, from| control::point_dragged(camera, from, by, aspect_ratio));
+    }
+
+    /// The light goes away from the eye.
+    pub(super) fn wheel_light(&mut self, notches: f32) {
+        self.move_light(|camera, from| control::point_wheeled(camera, from, notches));
+    }
+
+    /// The light goes back to where the scene has it.
+    pub(super) fn put_light_back(&mut self) {
+        if let Some(lights) = self.gallery.lights_mut()
+            && let Some(home) = lights.home()
+        {
+            lights.move_held(home);
+        }
+    }
+
+    fn move_light(&mut self, to: impl FnOnce(&Camera, Vec3) -> Vec3) {
+        if let Some(camera) = self.eye.camera()
+            && let Some(lights) = self.gallery.lights_mut()
+            && let Some(from) = lights.held()
+        {
+            lights.move_held(to(&camera, from));
+        }
+    }
+}
+
+/// The light in front of the eye that is nearest to the pointer on the screen, or any if there is none in front of it.
+fn nearest(lights: &[PointLight], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
+    let away = |light: &PointLight| {
+        let place = control::place_of(camera, light.position, aspect_ratio);
+        place.map_or(f32::INFINITY, |place| ((place - pointer) * Vec2::new(aspect_ratio, 1.0)).length())
+    };
+    let lights = lights.iter().map(away).enumerate();
+    lights.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(light, _)| light)
+}

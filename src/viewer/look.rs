@@ -1,0 +1,104 @@
+//! How what lies over the picture looks, and where there is room for it.
+
+use crate::capabilities::{CellMode, Colors, Glyphs};
+use crate::grid::Size;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::symbols::border;
+use ratatui::widgets::{Paragraph, Widget};
+
+/// Colours and border of panels. Where the picture has neither colour nor block characters, nor have they.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    style: Style,
+    /// How marks on the picture are written.
+    mark: Style,
+    border: border::Set<'static>,
+    /// What is done of something, and what is not.
+    bar: [char; 2],
+}
+
+impl Look {
+    pub(super) fn of(cell_mode: CellMode) -> Self {
+        let style = match cell_mode.colors {
+            Colors::Truecolor => Style::new().fg(Color::Rgb(0xe6, 0xe6, 0xe6)).bg(Color::Rgb(0x18, 0x1c, 0x24)),
+            Colors::Indexed256 => Style::new().fg(Color::Indexed(254)).bg(Color::Indexed(234)),
+            Colors::Indexed16(_) => Style::new().fg(Color::White).bg(Color::Black),
+            Colors::None => Style::new(),
+        };
+        let (border, bar) = match cell_mode.glyphs {
+            Glyphs::Half => (border::ROUNDED, ['█', '░']),
+            Glyphs::Shape | Glyphs::Ramp => (ASCII_BORDER, ['#', '.']),
+        };
+        let mark = match cell_mode.colors {
+            Colors::None => style.add_modifier(Modifier::BOLD),
+            _ => style.fg(Color::LightYellow),
+        };
+        Self { style, mark, border, bar }
+    }
+
+    /// The characters of a bar for what is done of something, and for what is not.
+    pub(super) fn bar(self) -> [char; 2] {
+        self.bar
+    }
+
+    pub(super) fn border(self) -> border::Set<'static> {
+        self.border
+    }
+
+    /// How marks on the picture are written.
+    pub(super) fn mark(self) -> Style {
+        self.mark
+    }
+
+    /// How text is written.
+    pub(super) fn style(self) -> Style {
+        self.style
+    }
+}
+
+const ASCII_BORDER: border::Set<'static> = border::Set {
+    top_left: "+",
+    top_right: "+",
+    bottom_left: "+",
+    bottom_right: "+",
+    vertical_left: "|",
+    vertical_right: "|",
+    horizontal_top: "-",
+    horizontal_bottom: "-",
+};
+
+/// The least screen on which panels lie over the picture.
+pub(super) const LEAST: (u16, u16) = (40, 12);
+
+/// The whole screen.
+pub(super) fn area(size: Size) -> Rect {
+    Rect::new(0, 0, size.columns, size.rows)
+}
+
+/// Whether panels may lie over the picture: on a smaller screen they would hide what they speak of.
+pub(super) fn has_room(screen: Rect) -> bool {
+    screen.width >= LEAST.0 && screen.height >= LEAST.1
+}
+
+/// The lowest row of the screen with so many below it.
+pub(super) fn foot(screen: Rect, below: u16) -> Rect {
+    Rect { y: screen.bottom().saturating_sub(1 + below), height: screen.height.min(1), ..screen }
+}
+
+/// Text on a row of its own.
+pub(super) fn draw_line(text: &str, look: Look, area: Rect, buffer: &mut Buffer) {
+    Paragraph::new(text).style(look.style).render(area, buffer);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_screens_have_no_room() {
+        let fits = |columns, rows| has_room(Rect::new(0, 0, columns, rows));
+        assert!(fits(40, 12) && !fits(39, 24) && !fits(80, 11));
+    }
+}

@@ -1,0 +1,140 @@
+//! What the mouse does: with the view, with the line between two views, with the cursor of an explanation.
+
+use super::Viewer;
+use super::hand::Grasped;
+use super::note::Note;
+use crate::control::{self, Command, Gesture, Grip, Mode};
+use crate::hit::closest_hit;
+use crate::input::Input;
+use crossterm::event::{Event, MouseEvent, MouseEventKind};
+use glam::{Vec2, Vec3};
+
+/// Who takes hold so many columns beside a line takes hold of the line.
+const NEAR: f32 = 2.0;
+
+/// Of ways of the mouse that are heard at once, and lead on from each other, the last one tells all.
+pub(super) fn is_outdated(input: &Input, next: Option<&Input>) -> bool {
+    let way = |input: &Input| match input {
+        Input::Event(Event::Mouse(MouseEvent { kind: kind @ MouseEventKind::Drag(_), .. })) => Some(*kind),
+        _ => None,
+    };
+    way(input).is_some() && way(input) == next.and_then(way)
+}
+
+impl Viewer {
+    /// Does what the mouse asks for. While something is asked, keys answer.
+    pub(super) fn take_mouse(&mut self, event: MouseEvent) {
+        let at = self.place(event);
+        let modes = self.screen.modes(self.size());
+        let Some(gesture) = self.hand.take(event, at, self.now).filter(|_| modes.contains(&self.eye.mode())) else {
+            return;
+        };
+        match gesture {
+            Gesture::Press { at, grip } => {
+                self.screen.close::<Note>();
+                self.hand.grasp(self.under(at, grip, &modes));
+                self.drag(at, at, grip);
+            }
+            Gesture::Drag { from, to, grip } => self.drag(from, to, grip),
+            Gesture::Release => {}
+            Gesture::DoubleClick if self.hand.grasped() == Grasped::View => self.obey(Command::Frame, false),
+            Gesture::DoubleClick => self.drag(at, at, Grip::Turn),
+            Gesture::Wheel { at, notches } => self.wheel(at, notches),
+        }
+    }
+
+    /// The event's place as a part of the screen's width and height: that of the middle of its cell, or of its pixel.
+    fn place(&self, event: MouseEvent) -> Vec2 {
+        let (width, height) = self.display.mouse_pixels().unwrap_or((1, 1));
+        let size = self.size();
+        let screen = Vec2::new(f32::from(width) * f32::from(size.columns), f32::from(height) * f32::from(size.rows));
+        let at = Vec2::new(f32::from(event.column), f32::from(event.row)) + 0.5;
+        (at / screen).clamp(Vec2::ZERO, Vec2::ONE)
+    }
+
+    /// What is there to take hold of.
+    fn under(&self, at: Vec2, grip: Grip, modes: &[Mode]) -> Grasped {
+        let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.size().columns);
+        match grip {
+            Grip::Turn if self.shown.is_wipe() && beside <= NEAR => Grasped::Line,
+            Grip::Turn if modes.contains(&Mode::Light) => Grasped::Light,
+            Grip::Turn if modes.contains(&Mode::Explain) => Grasped::Cursor,
+            _ => Grasped::View,
+        }
+    }
+
+    fn drag(&mut self, from: Vec2, to: Vec2, grip: Grip) {
+        match self.hand.grasped() {
+            Grasped::Line => self.wipe_to(to.x),
+            Grasped::Cursor => {
+                let pixel = self.pixel(to);
+                self.screen.explain(|explaining, frame| explaining.put(frame, pixel));
+            }
+            Grasped::Light => self.drag_light(self.part_of(to - from)),
+            Grasped::View if from == to => {}
+            Grasped::View => {
+                let (by, aspect_ratio) = (self.part_of(to - from), self.part().aspect_ratio());
+                let mode = self.eye.mode();
+                let drag = |camera: &_, _| control::dragged(camera, mode, grip, by, aspect_ratio);
+                self.eye.change(self.now, drag);
+            }
+        }
+    }
+
+    fn wheel(&mut self, at: Vec2, notches: f32) {
+        if self.holds_light() {
+            self.wheel_light(notches);
+            return;
+        }
+        let Some(point) = self.point_under(at) else { return };
+        let mode = self.eye.mode();
+        let wheel = |camera: &_, size| control::wheeled(camera, mode, point, notches, size);
+        self.eye.change(self.now, wheel);
+    }
+
+    /// A way on the screen, in parts of one picture's width and height.
+    fn part_of(&self, way: Vec2) -> Vec2 {
+        way * Vec2::new(self.resolution().width as f32 / self.part().width as f32, 1.0)
+    }
+
+    /// The pixel of the picture that is there.
+    fn pixel(&self, at: Vec2) -> [u32; 2] {
+        let resolution = self.resolution();
+        [(at.x * resolution.width as f32) as u32, (at.y * resolution.height as f32) as u32]
+    }
+
+    /// The point of the scene that is seen there; where there is nothing, one as far away as the target.
+    fn point_under(&self, at: Vec2) -> Option<Vec3> {
+        let (frame, camera) = (self.screen.frame()?, self.eye.camera()?);
+        let (part, [x, y]) = frame.part_at(self.pixel(at));
+        let share = |at: u32, of: u32| (at as f32 + 0.5) / of.max(1) as f32;
+        let rays = camera.eye_rays(part.aspect_ratio());
+        let ray = rays.through(share(x, part.width), 1.0 - share(y, part.height));
+        let pose = camera.pose();
+        // Along -w, t is the depth.
+        let t = closest_hit(&frame.scene, &ray).map_or(pose.eye.distance(pose.target), |hit| hit.t);
+        Some(ray.at(t))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crossterm::event::{KeyCode, KeyModifiers, MouseButton};
+
+    #[test]
+    fn of_ways_that_lead_on_the_last_one_counts() {
+        let mouse = |kind, column| {
+            Input::Event(Event::Mouse(MouseEvent { kind, column, row: 0, modifiers: KeyModifiers::NONE }))
+        };
+        let (left, right) = (MouseEventKind::Drag(MouseButton::Left), MouseEventKind::Drag(MouseButton::Right));
+        let way = mouse(left, 1);
+        assert!(is_outdated(&way, Some(&mouse(left, 2))));
+        let key = Input::Event(Event::Key(KeyCode::Char('w').into()));
+        let (up, wheel) = (mouse(MouseEventKind::Up(MouseButton::Left), 2), mouse(MouseEventKind::ScrollUp, 2));
+        for next in [None, Some(&up), Some(&mouse(right, 2)), Some(&wheel), Some(&key)] {
+            assert!(!is_outdated(&way, next), "{next:?}");
+        }
+        assert!(!is_outdated(&wheel, Some(&wheel)) && !is_outdated(&key, Some(&key)), "each of them counts");
+    }
+}

@@ -1,0 +1,124 @@
+//! How far the scene is that is on its way.
+
+use super::layers::{Canvas, Layer, Level};
+use super::look::Look;
+use crate::progress::{Progress, Work};
+use crate::text::visible;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Margin, Rect};
+use ratatui::text::Line;
+use ratatui::widgets::{Block, Clear, Paragraph, Widget};
+use std::path::Path;
+use unicode_width::UnicodeWidthStr;
+
+/// A panel with the work and how much of it is done.
+pub(super) struct ProgressPanel(pub(super) Progress);
+
+impl Layer for ProgressPanel {
+    fn level(&self) -> Level {
+        Level::Middle
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        canvas.lay(area(canvas.screen()), |look, area, buffer| draw(&self.0, look, area, buffer));
+    }
+}
+
+/// The panel that says how far the scene is takes so much where there is room.
+const PROGRESS_WIDTH: u16 = 46;
+const PROGRESS_HEIGHT: u16 = 4;
+
+/// Above the lowest row, in the middle.
+fn area(screen: Rect) -> Rect {
+    let (width, height) = (PROGRESS_WIDTH.min(screen.width), PROGRESS_HEIGHT.min(screen.height));
+    let y = (screen.height - height).saturating_sub(1);
+    Rect::new((screen.width - width) / 2, y, width, height)
+}
+
+fn draw(progress: &Progress, look: Look, area: Rect, buffer: &mut Buffer) {
+    Clear.render(area, buffer);
+    Block::bordered().border_set(look.border()).style(look.style()).render(area, buffer);
+    let inside = area.inner(Margin::new(2, 1));
+    let lines = [what_is_done(&progress.work, look, inside.width.into()), bar(progress, look, inside.width.into())];
+    Paragraph::new(lines.map(Line::from).to_vec()).style(look.style()).render(inside, buffer);
+}
+
+/// The work and, where there is room for a part of it, the file's name: its end tells more than its beginning.
+fn what_is_done(work: &Work, look: Look, width: usize) -> String {
+    let (verb, name) = match work {
+        Work::Reading(name) => ("reading", name),
+        Work::Parsing(name) => ("parsing", name),
+        Work::Building => return "building".to_owned(),
+    };
+    let room = width.saturating_sub(verb.len() + 1);
+    let name = Path::new(name).file_name().map_or_else(|| name.into(), |name| name.to_string_lossy());
+    let is_shown = |c: char| c.is_ascii() || !look.bar()[0].is_ascii();
+    let mut name: String = visible(&name).chars().map(|c| if is_shown(c) { c } else { '?' }).collect();
+    while name.width() > room {
+        name.remove(0);
+    }
+    format!("{verb} {name}")
+}
+
+/// A bar as wide as there is room, and the share in per cent; nothing where nobody knows it.
+fn bar(progress: &Progress, look: Look, width: usize) -> String {
+    if progress.total == 0 {
+        return String::new();
+    }
+    let share = (progress.done as f64 / progress.total as f64).min(1.0);
+    let per_cent = format!(" {:3.0} %", (100.0 * share).floor());
+    let room = width.saturating_sub(per_cent.len());
+    let filled = (share * room as f64) as usize;
+    let [done, open] = look.bar();
+    (0..room).map(|at| if at < filled { done } else { open }).chain(per_cent.chars()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capabilities::{CellMode, Glyphs};
+
+    /// The panel's rows on a screen of that size.
+    fn panel(progress: &Progress, cell_mode: CellMode, columns: u16, rows: u16) -> Vec<String> {
+        let place = area(Rect::new(0, 0, columns, rows));
+        assert!(place.right() <= columns && place.bottom() <= rows);
+        let mut buffer = Buffer::empty(place);
+        draw(progress, Look::of(cell_mode), place, &mut buffer);
+        let row = |y| (place.left()..place.right()).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+        (place.top()..place.bottom()).map(row).collect()
+    }
+
+    fn parsing(name: &str, done: usize, total: usize) -> Progress {
+        Progress { work: Work::Parsing(name.to_owned()), done, total }
+    }
+
+    #[test]
+    fn the_panel_says_what_is_done_and_how_far() {
+        let half = CellMode::HALF_BLOCK;
+        let rows = panel(&parsing("meshes/dragon.ply", 25, 100), half, 20, 5);
+        assert_eq!(
+            rows,
+            ["╭──────────────────╮", "│ parsing agon.ply │", "│ ██░░░░░░░░  25 % │", "╰──────────────────╯"]
+        );
+        let rows = panel(&parsing("a\u{1b}b.ply", 100, 100), half, 80, 24);
+        assert_eq!(rows[1], format!("│ {:42} │", "parsing a\u{fffd}b.ply"));
+        assert_eq!(rows[2], format!("│ {} 100 % │", "█".repeat(36)));
+        let building = Progress { work: Work::Building, done: 999, total: 1000 };
+        let ascii = CellMode { glyphs: Glyphs::Ramp, ..half };
+        assert_eq!(panel(&parsing("é.ply", 0, 1), ascii, 80, 24)[1], format!("| {:42} |", "parsing ?.ply"));
+        let rows = panel(&building, ascii, 80, 24);
+        assert_eq!([&*rows[0], &*rows[2]], [format!("+{}+", "-".repeat(44)), format!("| {}.  99 % |", "#".repeat(35))]);
+    }
+
+    /// No bar where nobody knows how much there is; and no screen is too small.
+    #[test]
+    fn the_panel_goes_with_any_file_and_screen() {
+        let unknown = parsing("x.glb", 0, 0);
+        assert_eq!(panel(&unknown, CellMode::HALF_BLOCK, 20, 5)[2], format!("│ {:16} │", ""));
+        for (columns, rows) in [(1, 1), (3, 2), (5, 3), (9, 9), (1, 24)] {
+            for progress in [&unknown, &parsing(&"x".repeat(300), 1, 3), &parsing("", 7, 3)] {
+                panel(progress, CellMode::HALF_BLOCK, columns, rows);
+            }
+        }
+    }
+}

@@ -1,0 +1,377 @@
+//! The last frame with the layers over it, and the bytes that bring the terminal there.
+
+use super::explain::Explaining;
+use super::frame::Frame;
+use super::help::HelpPanel;
+use super::layers::{Canvas, Figures, Layer, Layers};
+use super::legend::Legends;
+use super::look;
+use super::progress::ProgressPanel;
+use super::shown::MIDDLE;
+use super::status::StatusLine;
+use super::tracked::Tracked;
+use crate::capabilities::{Capabilities, Colors};
+use crate::cell::{self, Painter};
+use crate::control::{Bindings, Mode};
+use crate::encode::{Allowance, Encoder, Order, Quality};
+use crate::grid::{Grid, Size};
+use crate::pace::Limit;
+use std::time::Duration;
+
+/// How long the terminal is left alone before more is sent that nobody waits for: colours become exact in a few steps, of
+/// which tmux throws none away.
+const BREATH: Duration = Duration::from_millis(33);
+
+/// What a frame in which all moves takes for each cell, about.
+const BYTES_PER_CELL: usize = 8;
+
+/// Erases the whole window (ED 2), which leaves many terminals with the colour that the pen has;
+const ERASE: &[u8] = b"\x1b[2J";
+/// the same with the pen laid down before, in the terminal's own colours.
+const RESET_ERASE: &[u8] = b"\x1b[m\x1b[2J";
+
+/// What the user sees, and what the terminal shows.
+pub(super) struct Screen {
+    content: Tracked<Content>,
+    painter: Painter,
+    encoder: Encoder,
+    order: Option<Order>,
+    quality: Option<Quality>,
+    /// Whether the next bytes erase the whole window first.
+    erases: bool,
+    /// When the last bytes were drawn, if any were.
+    drawn: Option<Duration>,
+    rate: FrameRate,
+    /// How long cells and bytes of the last frame took.
+    encode: Duration,
+}
+
+/// What the user sees.
+struct Content {
+    frame: Option<Frame>,
+    /// Where the line between two views is, as a share of the width.
+    wipe: f32,
+    /// How the eye moves.
+    moving: Mode,
+    layers: Layers,
+}
+
+impl Content {
+    /// What keys are for on a screen of that size, the topmost first.
+    fn modes(&self, size: Size) -> Vec<Mode> {
+        self.layers.modes(look::area(size), self.moving)
+    }
+}
+
+impl Screen {
+    pub(super) fn new(capabilities: &Capabilities, order: Option<Order>, quality: Option<Quality>) -> Self {
+        let mut layers = Layers::default();
+        layers.open(Legends);
+        Self {
+            content: Tracked::new(Content { frame: None, wipe: MIDDLE, moving: Mode::Fly, layers }),
+            painter: painter(capabilities),
+            encoder: encoder(Encoder::new(), capabilities),
+            order,
+            quality,
+            erases: false,
+            drawn: None,
+            rate: FrameRate::default(),
+            encode: Duration::ZERO,
+        }
+    }
+
+    /// What a frame in which all moves takes, about.
+    pub(super) fn usual_bytes(size: Size) -> usize {
+        BYTES_PER_CELL * size.cell_count()
+    }
+
+    /// More is known of the terminal than before.
+    pub(super) fn set_capabilities(&mut self, capabilities: &Capabilities) {
+        let mode = self.painter.mode();
+        self.painter = painter(capabilities);
+        self.encoder = encoder(std::mem::take(&mut self.encoder), capabilities);
+        self.content.touch();
+        if mode != self.painter.mode() {
+            self.encoder.forget();
+        }
+        self.encoder.set_upper_half(capabilities.halves_meet);
+    }
+
+    /// A frame, and the time while something moves.
+    pub(super) fn take_frame(&mut self, mut frame: Frame, moving: Option<Duration>) {
+        let content = &mut *self.content;
+        frame.wipe(content.wipe);
+        content.layers.take_frame(&frame);
+        content.frame = Some(frame);
+        self.rate.count(moving);
+    }
+
+    /// Moves the line between two views to that share of the width.
+    pub(super) fn wipe_to(&mut self, share: f32) {
+        let content = &mut *self.content;
+        content.wipe = share.clamp(0.0, 1.0);
+        if let Some(frame) = &mut content.frame {
+            frame.wipe(content.wipe);
+        }
+    }
+
+    /// Where that line is.
+    pub(super) fn wipe(&self) -> f32 {
+        self.content.wipe
+    }
+
+    /// Opens a layer, in the place of the one of its type.
+    pub(super) fn open<L: Layer>(&mut self, layer: L) {
+        self.content.layers.open(layer);
+    }
+
+    /// Closes the layer of that type, if one is open, and returns it.
+    pub(super) fn close<L: Layer>(&mut self) -> Option<L> {
+        self.get::<L>()?;
+        self.content.layers.close()
+    }
+
+    /// Closes the layer of that type when something else is shown than now.
+    pub(super) fn close_later<L: Layer>(&mut self) {
+        self.content.quietly().layers.close::<L>();
+    }
+
+    /// The layer of that type, if one is open.
+    pub(super) fn get<L: Layer>(&self) -> Option<&L> {
+        self.content.layers.get()
+    }
+
+    /// Opens that layer where it is not open as it is; without one, closes the layer of its type.
+    pub(super) fn set<L: Layer + PartialEq>(&mut self, layer: Option<L>) {
+        match layer {
+            Some(layer) if self.get() == Some(&layer) => {}
+            Some(layer) => self.open(layer),
+            None => drop(self.close::<L>()),
+        }
+    }
+
+    /// The last frame.
+    pub(super) fn frame(&self) -> Option<&Frame> {
+        self.content.frame.as_ref()
+    }
+
+    /// Whether anything was shown yet.
+    pub(super) fn has_shown(&self) -> bool {
+        self.drawn.is_some()
+    }
+
+    /// Opens the help, turns to its next page, or closes it after the last.
+    pub(super) fn turn_help(&mut self, bindings: &Bindings, size: Size) {
+        let page = match self.close::<HelpPanel>() {
+            None => Some(HelpPanel::FIRST),
+            Some(page) => page.next(bindings, &self.modes(size), look::area(size)),
+        };
+        if let Some(page) = page {
+            self.open(page);
+        }
+    }
+
+    /// What keys are for on a screen of that size, the topmost first.
+    pub(super) fn modes(&self, size: Size) -> Vec<Mode> {
+        self.content.modes(size)
+    }
+
+    /// The eye flies, or goes around something.
+    pub(super) fn set_moving(&mut self, moving: Mode) {
+        if self.content.moving != moving {
+            self.content.moving = moving;
+        }
+    }
+
+    /// A pixel is explained, or none any more.
+    pub(super) fn toggle_explaining(&mut self) {
+        if self.close::<Explaining>().is_none()
+            && let Some(explaining) = self.frame().and_then(Explaining::new)
+        {
+            self.open(explaining);
+        }
+    }
+
+    /// Another pixel is explained, or more is said of it.
+    pub(super) fn explain(&mut self, change: impl FnOnce(&mut Explaining, &Frame)) {
+        if self.get::<Explaining>().is_none() {
+            return;
+        }
+        let Content { frame, layers, .. } = &mut *self.content;
+        if let (Some(explaining), Some(frame)) = (layers.get_mut(), frame) {
+            change(explaining, frame);
+        }
+    }
+
+    /// The terminal may show anything: the next bytes draw everything, with either half block if both meet in one line.
+    /// They erase the whole window before, if the picture covers only a part of it.
+    pub(super) fn redraw(&mut self, halves_meet: bool, covers_a_part: bool) {
+        self.encoder.forget();
+        self.erases = covers_a_part;
+        self.encoder.set_upper_half(halves_meet);
+        self.content.touch();
+    }
+
+    /// Whether something else is to be shown than is, as far as that can be shown.
+    pub(super) fn is_changed(&self, size: Size) -> bool {
+        self.content.is_changed() && self.can_show(size)
+    }
+
+    /// When what is shown can be made better, if it can be.
+    pub(super) fn improvable_at(&self, size: Size) -> Option<Duration> {
+        let due = self.encoder.due().filter(|_| self.can_show(size))?;
+        Some(self.drawn.map_or(due, |drawn| due.max(drawn + BREATH)))
+    }
+
+    /// Whether the scene is still on its way: what is seen is a sketch of it at best.
+    pub(super) fn awaits_scene(&self) -> bool {
+        self.get::<ProgressPanel>().is_some()
+    }
+
+    /// Whether there is a frame of that size, or none at all while a scene is waited for: there is black then, for panels to
+    /// lie on.
+    fn can_show(&self, size: Size) -> bool {
+        let Some(frame) = self.frame() else { return self.awaits_scene() };
+        let wanted = cell::resolution(self.painter.mode(), size, 1.0);
+        (frame.picture.width, frame.picture.height) == (wanted.width, wanted.height)
+    }
+
+    /// Appends the bytes that bring the terminal from what it shows to what it should.
+    pub(super) fn draw(
+        &mut self,
+        size: Size,
+        bindings: &Bindings,
+        limit: Option<Limit>,
+        now: Duration,
+        bytes: &mut Vec<u8>,
+    ) {
+        let slow = limit.and_then(|limit| limit.rate);
+        let figures = Figures { encode: self.encode, frames_per_second: self.rate.frames_per_second, slow };
+        let cell_mode = self.painter.mode();
+        self.content.settle();
+        let content = self.content.quietly();
+        let mut grid = match &content.frame {
+            Some(frame) => self.painter.grid(&frame.picture),
+            None => Grid::new(size),
+        };
+        let area = look::area(grid.size());
+        let status_rows = content.layers.get::<StatusLine>().map_or(0, |_| StatusLine::rows(area));
+        let modes = content.modes(grid.size());
+        content.layers.draw(&mut Canvas {
+            grid: &mut grid,
+            cell_mode,
+            bindings,
+            modes: &modes,
+            frame: content.frame.as_ref(),
+            figures,
+            status_rows,
+        });
+        let (usual, order) =
+            if limit.is_some() { (Quality::Equal, Order::Color) } else { (Quality::Exact, Order::Raster) };
+        self.encoder.set_order(self.order.unwrap_or(order));
+        if std::mem::take(&mut self.erases) {
+            bytes.extend_from_slice(if cell_mode.colors == Colors::None { ERASE } else { RESET_ERASE });
+        }
+        let most_bytes = limit.map(|limit| limit.most_bytes);
+        let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, most_bytes };
+        self.encoder.encode_within(&grid, allowance, bytes);
+        self.drawn = Some(now);
+    }
+
+    /// To make and encode the cells took so long.
+    pub(super) fn took(&mut self, encode: Duration) {
+        self.encode = encode;
+    }
+}
+
+fn painter(capabilities: &Capabilities) -> Painter {
+    Painter::new(capabilities.cell_mode).with_light_background(capabilities.light_background)
+}
+
+fn encoder(encoder: Encoder, capabilities: &Capabilities) -> Encoder {
+    let has_colors = capabilities.cell_mode.colors != Colors::None;
+    encoder.with_colors(has_colors).with_synchronized_output(capabilities.synchronized_output)
+}
+
+/// How many frames are shown per second while something moves.
+#[derive(Default)]
+struct FrameRate {
+    last: Option<Duration>,
+    frames_per_second: Option<f32>,
+}
+
+impl FrameRate {
+    /// A frame is shown while something moves, or, without a time, at rest. A pause ends the count: frames of before it
+    /// say nothing of those after.
+    fn count(&mut self, moving: Option<Duration>) {
+        let between = self.last.zip(moving).map(|(last, now)| now.saturating_sub(last));
+        self.last = moving;
+        self.frames_per_second =
+            between.filter(|&between| between < PAUSE && between > Duration::ZERO).map(|between| {
+                let now = 1.0 / between.as_secs_f32();
+                // A mean over about eight frames, so that the figure can be read.
+                self.frames_per_second.map_or(now, |mean| mean + (now - mean) / 8.0)
+            });
+    }
+}
+
+/// Frames further apart than this are not one movement.
+const PAUSE: Duration = Duration::from_millis(500);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capabilities::CellMode;
+    use crate::export;
+    use crate::render::{Cost, Sampling};
+    use crate::scene::Scene;
+    use crate::tone::tone;
+    use crate::viewer::frame::Shot;
+    use crate::viewer::shown::Shown;
+    use std::num::NonZeroU32;
+
+    /// By colour while the link is slow, row by row otherwise, unless one of them is asked for.
+    #[test]
+    fn the_order_is_the_links() {
+        let text = include_str!("../../scenes/three_spheres.ron");
+        let scene = Scene::from_ron("three_spheres.ron", text).expect("the scene is fine");
+        let capabilities = Capabilities {
+            cell_mode: CellMode::HALF_BLOCK,
+            cell_aspect: 2.0,
+            halves_meet: false,
+            light_background: false,
+            synchronized_output: false,
+        };
+        let size = Size::new(40, 12);
+        let resolution = cell::resolution(capabilities.cell_mode, size, 2.0);
+        let light = crate::render::render(&scene, &scene.camera, resolution, NonZeroU32::MIN);
+        let frame = || Frame {
+            scene: scene.clone().into(),
+            shot: Shot { scene: 0, lights: 0, camera: scene.camera, resolution, shown: Shown::default() },
+            picture: tone(&light, &scene),
+            parts: Vec::new(),
+            legends: Vec::new(),
+            cost: Cost::default(),
+            sampling: Sampling::Each(NonZeroU32::MIN),
+            refines: false,
+            trace: Duration::ZERO,
+        };
+        let grid = export::frame_grid(&scene, capabilities.cell_mode, size, 2.0);
+        let slow = Some(Limit { rate: Some(1e5), most_bytes: usize::MAX });
+        let exact = Some(Quality::Exact);
+        for (asked, link, order) in [
+            (None, None, Order::Raster),
+            (None, slow, Order::Color),
+            (Some(Order::Color), None, Order::Color),
+            (Some(Order::Raster), slow, Order::Raster),
+        ] {
+            let mut screen = Screen::new(&capabilities, asked, exact);
+            screen.take_frame(frame(), None);
+            let mut wanted = Vec::new();
+            Encoder::new().with_order(order).encode(&grid, &mut wanted);
+            let mut bytes = Vec::new();
+            screen.draw(size, &Bindings::default(), link, Duration::ZERO, &mut bytes);
+            assert!(bytes == wanted, "{asked:?} {link:?}");
+        }
+    }
+}

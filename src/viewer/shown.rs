@@ -1,0 +1,227 @@
+//! What of the scene is on the screen: one view, or two to compare.
+
+use crate::camera::Camera;
+use crate::color::Srgb8;
+use crate::framebuffer::Resolution;
+use crate::render::Sampling;
+use crate::scene::Scene;
+use crate::tone::Picture;
+use crate::view::View;
+use std::num::NonZeroU32;
+
+/// Where the line between two views is at first.
+pub(crate) const MIDDLE: f32 = 0.5;
+
+/// One view, or two.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Shown {
+    /// What is seen; of two, what is seen on the left.
+    view: View,
+    /// What is compared with it.
+    other: Option<Other>,
+}
+
+/// What is seen on the right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Other {
+    view: View,
+    split: Split,
+}
+
+/// How two views share the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Split {
+    /// Each is a picture of its own.
+    Beside,
+    /// They are one picture, with a line between them that can be moved.
+    Wipe,
+}
+
+impl Shown {
+    /// That view alone.
+    pub(super) fn one(view: View) -> Self {
+        Self { view, other: None }
+    }
+
+    /// Goes on to the next view, of two the right one: never to that on the left.
+    pub(super) fn go_on(&mut self, step: fn(View) -> View) {
+        match &mut self.other {
+            None => self.view = step(self.view),
+            Some(other) => {
+                let next = step(other.view);
+                other.view = if next == self.view { step(next) } else { next };
+            }
+        }
+    }
+
+    /// Side by side with the next view; a wipe between the two; the left one alone again.
+    pub(super) fn compare(&mut self) {
+        self.other = match self.other {
+            None => Some(Other { view: self.view.next(), split: Split::Beside }),
+            Some(Other { view, split: Split::Beside }) => Some(Other { view, split: Split::Wipe }),
+            Some(Other { split: Split::Wipe, .. }) => None,
+        };
+    }
+
+    /// Whether there is a line to be moved.
+    pub(crate) fn is_wipe(self) -> bool {
+        matches!(self.other, Some(Other { split: Split::Wipe, .. }))
+    }
+
+    /// What is seen, from left to right.
+    pub(super) fn views(self) -> impl Iterator<Item = View> {
+        [Some(self.view), self.other.map(|other| other.view)].into_iter().flatten()
+    }
+
+    /// The pictures that make up one of that resolution.
+    pub(crate) fn parts(self, whole: Resolution) -> Vec<(View, Resolution)> {
+        match self.other {
+            Some(Other { split: Split::Beside, .. }) => self.views().zip(halves(whole)).collect(),
+            _ => self.views().map(|view| (view, whole)).collect(),
+        }
+    }
+
+    /// What the colours mean, from left to right; nothing where there is but light.
+    pub(crate) fn legends(self, scene: &Scene, camera: &Camera) -> Vec<String> {
+        if self == Self::default() {
+            return Vec::new();
+        }
+        self.views().map(|view| view.legend(scene, camera)).collect()
+    }
+
+    /// How finely it is traced where so much is wanted.
+    pub(super) fn sampling(self, wanted: Sampling) -> Sampling {
+        if wanted == Sampling::Coarse || self.views().any(View::refines) {
+            return wanted;
+        }
+        Sampling::UpTo(NonZeroU32::MIN)
+    }
+
+    /// One picture of two parts, with the line of a wipe at that share of the width.
+    pub(crate) fn joined(self, parts: &[Picture], wipe: f32) -> Option<Picture> {
+        match (self.other?.split, parts) {
+            (Split::Beside, [left, right]) => Some(beside(left, right)),
+            (Split::Wipe, [left, right]) => Some(wiped(left, right, wipe)),
+            _ => None,
+        }
+    }
+}
+
+/// Between two pictures.
+const LINE: Srgb8 = Srgb8::new(255, 208, 64);
+
+/// What the two sides of a line get of a picture's columns. One that is too narrow has no line, and no right side.
+fn halves(whole: Resolution) -> [Resolution; 2] {
+    let left = if whole.width < 3 { whole.width } else { (whole.width - 1) / 2 };
+    [left, whole.width.saturating_sub(left + 1)].map(|width| Resolution { width, ..whole })
+}
+
+fn beside(left: &Picture, right: &Picture) -> Picture {
+    if right.width == 0 {
+        return left.clone();
+    }
+    let rows = left.pixels.chunks(left.width as usize).zip(right.pixels.chunks(right.width as usize));
+    let pixels = rows.flat_map(|(left, right)| [left, &[LINE], right].concat()).collect();
+    Picture { width: left.width + 1 + right.width, height: left.height, pixels }
+}
+
+fn wiped(left: &Picture, right: &Picture, wipe: f32) -> Picture {
+    let width = left.width as usize;
+    let line = ((wipe * width as f32) as usize).min(width.saturating_sub(1));
+    let mut picture = right.clone();
+    for (row, of_left) in picture.pixels.chunks_mut(width.max(1)).zip(left.pixels.chunks(width.max(1))) {
+        row[..line].copy_from_slice(&of_left[..line]);
+        row[line] = LINE;
+    }
+    picture
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(view: View, other: View, split: Split) -> Shown {
+        Shown { view, other: Some(Other { view: other, split }) }
+    }
+
+    #[test]
+    fn views_go_round_and_the_right_one_alone_of_two() {
+        let mut seen = Shown::default();
+        for view in View::ALL.into_iter().cycle().skip(1).take(View::ALL.len()) {
+            seen.go_on(View::next);
+            assert_eq!(seen, Shown::one(view));
+        }
+        let mut two = shown(View::Lambert, View::Shaded, Split::Beside);
+        two.go_on(View::next);
+        assert_eq!(two, shown(View::Lambert, View::Depth, Split::Beside), "not what is on the left");
+        two.go_on(View::back);
+        assert_eq!(two, shown(View::Lambert, View::Shaded, Split::Beside));
+    }
+
+    #[test]
+    fn two_views_are_beside_each_other_then_wiped_then_one() {
+        let mut seen = Shown::one(View::Depth);
+        seen.compare();
+        assert_eq!(seen, shown(View::Depth, View::Normal, Split::Beside));
+        seen.compare();
+        assert!(seen.is_wipe());
+        seen.compare();
+        assert_eq!(seen, Shown::one(View::Depth));
+    }
+
+    /// Side by side they have no more pixels than one; a wipe has all of both.
+    #[test]
+    fn two_pictures_are_as_much_work_as_one_or_two() {
+        let whole = Resolution { width: 80, height: 4, pixel_aspect: 0.5 };
+        let parts = shown(View::Shaded, View::Depth, Split::Beside).parts(whole);
+        let widths: Vec<_> = parts.iter().map(|(_, part)| part.width).collect();
+        assert_eq!(widths, [39, 40]);
+        assert!(parts.iter().all(|(_, part)| part.height == 4 && part.pixel_aspect == 0.5));
+        let parts = shown(View::Shaded, View::Depth, Split::Wipe).parts(whole);
+        assert_eq!(parts, [(View::Shaded, whole), (View::Depth, whole)]);
+    }
+
+    /// No more than one ray a pixel where there is no light.
+    #[test]
+    fn light_alone_is_refined() {
+        let one = Sampling::UpTo(NonZeroU32::MIN);
+        assert_eq!(Shown::default().sampling(Sampling::BEST), Sampling::BEST);
+        assert_eq!(Shown::one(View::Depth).sampling(Sampling::BEST), one);
+        assert_eq!(Shown::one(View::Depth).sampling(Sampling::Coarse), Sampling::Coarse);
+        assert_eq!(shown(View::Depth, View::Shaded, Split::Wipe).sampling(Sampling::BEST), Sampling::BEST);
+        assert_eq!(shown(View::Depth, View::Object, Split::Beside).sampling(Sampling::BEST), one);
+    }
+
+    fn flat(width: u32, band: u8) -> Picture {
+        Picture { width, height: 2, pixels: vec![Srgb8::new(band, band, band); 2 * width as usize] }
+    }
+
+    /// The rows as text: a number for each picture, a bar for the line.
+    fn rows(picture: &Picture) -> Vec<String> {
+        let text = |pixel: &Srgb8| if *pixel == LINE { '|' } else { char::from(b'0' + pixel.r) };
+        picture.pixels.chunks(picture.width as usize).map(|row| row.iter().map(text).collect()).collect()
+    }
+
+    #[test]
+    fn a_line_parts_two_pictures() {
+        let beside = shown(View::Shaded, View::Depth, Split::Beside);
+        assert_eq!(rows(&beside.joined(&[flat(3, 1), flat(4, 2)], 0.5).expect("two")), ["111|2222"; 2]);
+        let wipe = shown(View::Shaded, View::Depth, Split::Wipe);
+        for (share, row) in [(0.0, "|222"), (0.5, "11|2"), (0.9, "111|"), (1.0, "111|")] {
+            assert_eq!(rows(&wipe.joined(&[flat(4, 1), flat(4, 2)], share).expect("two")), [row; 2]);
+        }
+    }
+
+    #[test]
+    fn no_screen_is_too_narrow() {
+        for width in 1..5 {
+            let whole = Resolution::square(width, 2);
+            for split in [Split::Beside, Split::Wipe] {
+                let seen = shown(View::Shaded, View::Depth, split);
+                let parts: Vec<_> = seen.parts(whole).iter().map(|(_, part)| flat(part.width, 1)).collect();
+                let joined = seen.joined(&parts, 0.5).expect("two");
+                assert_eq!((joined.width, joined.pixels.len()), (width, 2 * width as usize));
+            }
+        }
+    }
+}

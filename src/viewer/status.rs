@@ -1,0 +1,109 @@
+//! The status line: figures of the last frame, and below them the keys that matter.
+
+use super::help;
+use super::layers::{Canvas, Figures, Layer, Level};
+use super::look;
+use crate::grid::Size;
+use crate::render::Sampling;
+use glam::Vec3;
+use ratatui::layout::Rect;
+use std::time::Duration;
+
+/// The lowest row or two.
+pub(super) struct StatusLine;
+
+impl StatusLine {
+    /// How many rows at the foot it takes: below its figures stand the keys, where there is room for panels.
+    pub(super) fn rows(screen: Rect) -> u16 {
+        1 + u16::from(look::has_room(screen))
+    }
+}
+
+impl Layer for StatusLine {
+    fn level(&self) -> Level {
+        Level::Status
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        let Some(frame) = canvas.frame else { return };
+        let Figures { encode, frames_per_second: shown, slow } = canvas.figures;
+        let status = Status {
+            cells: canvas.grid.size(),
+            sampling: frame.sampling,
+            trace: frame.trace,
+            encode,
+            shown,
+            rays: frame.cost.rays,
+            slow,
+            eye: frame.camera().pose().eye,
+        };
+        if canvas.status_rows > 1 {
+            let keys = help::line(canvas.bindings, canvas.modes, canvas.screen().width.into());
+            canvas.write_line(&keys, canvas.foot(1));
+        }
+        canvas.write_line(&status.text(), canvas.foot(0));
+    }
+}
+
+/// What the status line says.
+struct Status {
+    cells: Size,
+    sampling: Sampling,
+    /// How long tracing took.
+    trace: Duration,
+    /// How long cells and bytes took.
+    encode: Duration,
+    /// Frames shown per second, while something moves.
+    shown: Option<f32>,
+    rays: u64,
+    /// The rate of the link if it is slow, in bytes per second.
+    slow: Option<f64>,
+    eye: Vec3,
+}
+
+impl Status {
+    fn text(&self) -> String {
+        let Self { cells, eye, .. } = self;
+        let shown = self.shown.map_or_else(|| "-".to_owned(), |fps| format!("{fps:.0}"));
+        // What holds the frames up.
+        let stages = match self.slow {
+            Some(rate) => format!("slow link {}B/s", short(rate)),
+            None => {
+                format!("trace {} encode {}", short(per_second(1.0, self.trace)), short(per_second(1.0, self.encode)))
+            }
+        };
+        format!(
+            " {}x{}x{}  {} rays/s  {stages} shown {shown} fps  eye {:.2} {:.2} {:.2}",
+            cells.columns,
+            cells.rows,
+            samples(self.sampling),
+            short(per_second(self.rays as f64, self.trace)),
+            eye.x,
+            eye.y,
+            eye.z,
+        )
+    }
+}
+
+/// How many samples a pixel has, at most.
+fn samples(sampling: Sampling) -> String {
+    match sampling {
+        Sampling::Coarse => "1/4".to_owned(),
+        Sampling::Each(samples) | Sampling::UpTo(samples) => samples.to_string(),
+    }
+}
+
+fn per_second(count: f64, time: Duration) -> f64 {
+    count / time.as_secs_f64().max(1e-9)
+}
+
+/// Two or three digits and a letter: 812, 3.9k, 12M.
+fn short(value: f64) -> String {
+    let (value, unit) = match value {
+        v if v >= 1e9 => (v / 1e9, "G"),
+        v if v >= 1e6 => (v / 1e6, "M"),
+        v if v >= 1e3 => (v / 1e3, "k"),
+        v => (v, ""),
+    };
+    if value >= 10.0 { format!("{value:.0}{unit}") } else { format!("{value:.1}{unit}") }
+}

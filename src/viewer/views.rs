@@ -1,0 +1,22 @@
+//! Commands for the line between two views.
+
+use super::Viewer;
+use crate::control::Side;
+
+/// A press moves the line by so much of the width.
+const STEP: f32 = 1.0 / 32.0;
+
+impl Viewer {
+    /// Moves the line between two views, if there is one: nothing is traced for it.
+    pub(super) fn move_wipe(&mut self, side: Side) {
+        let step = if side == Side::Left { -STEP } else { STEP };
+        self.wipe_to(self.screen.wipe() + step);
+    }
+
+    /// Moves that line to a share of the width.
+    pub(super) fn wipe_to(&mut self, share: f32) {
+        if self.shown.is_wipe() {
+            self.screen.wipe_to(share);
+        }
+    }
+}
