@@ -4,6 +4,9 @@ use crate::camera::Camera;
 use crate::memory::OutOfMemory;
 use crate::scene::Scene;
 use crate::terminal::{self, Signals, Terminal};
+/// For the fuzz target: no build that is not a test has it.
+#[cfg(feature = "test-hooks")]
+pub use crate::viewer::tell as tell_viewer;
 pub use crate::viewer::{MAX_PIXELS, Options};
 use std::convert::Infallible;
 use std::{fmt, io};

@@ -53,6 +53,8 @@ mod schedule;
 mod screen;
 mod shown;
 mod status;
+#[cfg(any(test, feature = "test-hooks"))]
+mod story;
 mod tracked;
 mod views;
 
@@ -72,6 +74,8 @@ use schedule::{Action, Facts, Picture, decide};
 pub(crate) use schedule::{Busy, Tracing};
 use screen::Screen;
 pub(crate) use shown::{MIDDLE, Shown};
+#[cfg(feature = "test-hooks")]
+pub use story::tell;
 
 /// For how long the first picture is held back to be refined before it is shown. Up to there it is shown once, whole; a
 /// longer wait is felt. With 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, of which 9 went into

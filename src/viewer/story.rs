@@ -1,0 +1,301 @@
+//! A viewer driven by any story: bytes, sizes, frames and time in any order, with the rules that hold after each event.
+//! For the tests below, and for the fuzz target.
+
+use super::{Busy, Frame, Job, MIDDLE, Options, Step, Tracing, Viewer};
+use crate::capabilities::{CellShape, Hints};
+use crate::color::Srgb8;
+use crate::encode::Quality;
+use crate::framebuffer::Resolution;
+use crate::grid::{Size, Window};
+use crate::protocol::{FENCE, Modes};
+use crate::render::Cost;
+use crate::scene::Scene;
+use crate::tone::Picture;
+use std::sync::LazyLock;
+use std::time::Duration;
+
+/// The most steps before there is nothing more to do at one time: to give a refinement up, to draw, and to begin a frame.
+const MOST_STEPS: usize = 3;
+
+/// The most wake-ups between the last event and the end of all work. A lossy picture becomes exact in a few steps, and a
+/// glide of 60 frames a second ends in less than a second.
+const MOST_WAKES: usize = 400;
+
+/// The most bytes of a frame, for each cell and besides: all attributes and both colours of a cell, with its place.
+const MOST_BYTES: [usize; 2] = [120, 4096];
+
+/// Tells a viewer a story that these bytes are taken for, the last of them for its options, and checks the rules:
+///
+/// - no frame is drawn or begun while bytes are being sent, and none is begun while another is traced;
+/// - whatever happens, there is soon nothing to do at that time, and the next wake-up is later;
+/// - a frame has a bounded size;
+/// - when nothing happens any more, there is soon no wake-up;
+/// - all modes that are wanted are in one list, and are switched off.
+///
+/// # Panics
+/// If a rule is broken.
+pub fn tell(story: &[u8]) {
+    let (&wishes, events) = story.split_last().unwrap_or((&0, &[]));
+    let mut driver = Driver::new(wishes);
+    let mut bytes = events.iter().copied();
+    while let Some(event) = bytes.next() {
+        driver.take(event, &mut bytes);
+        driver.act();
+    }
+    driver.come_to_rest();
+    driver.give_back();
+}
+
+static SCENES: LazyLock<[Scene; 2]> = LazyLock::new(|| {
+    let read = |text| Scene::from_ron("story", text).expect("the scene is fine");
+    [read(include_str!("../../scenes/three_spheres.ron")), read("(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")]
+});
+
+struct Driver {
+    viewer: Viewer,
+    now: Duration,
+    modes: Modes,
+    job: Option<Job>,
+    is_sending: bool,
+    /// What was sent since the terminal last replied.
+    sent: Vec<u8>,
+    frames: u8,
+}
+
+impl Driver {
+    fn new(wishes: u8) -> Self {
+        let wants = |bit: u8| wishes & 1 << bit != 0;
+        let term = if wants(0) { "linux" } else { "xterm-256color" };
+        let variable = |name: &str| (name == "TERM").then(|| term.to_owned());
+        let mut options = Options::new(Hints::gather(&variable, &|_| None));
+        options.quality = wants(1).then_some(Quality::Equal);
+        options.max_rate = wants(2).then_some(40_000);
+        options.reduced_motion = wants(3);
+        let viewer = Viewer::new(options, window(Size::new(20, 8))).expect("this takes little memory");
+        let mut driver = Self {
+            viewer,
+            now: Duration::from_millis(20),
+            modes: Modes::default(),
+            job: None,
+            is_sending: false,
+            sent: Vec::new(),
+            frames: 0,
+        };
+        let questions = driver.viewer.questions(driver.now);
+        driver.send(&questions);
+        driver.is_sending = false;
+        driver
+    }
+
+    fn take(&mut self, event: u8, more: &mut impl Iterator<Item = u8>) {
+        let mut next = || more.next().unwrap_or(0);
+        match event % 9 {
+            0 => {
+                let bytes: Vec<u8> = (0..next() % 24).map(|_| next()).collect();
+                self.hear(&bytes);
+            }
+            1 => {
+                let size = Size::new(u16::from(next() % 70) + 1, u16::from(next() % 30) + 1);
+                self.viewer.resize(window(size)).expect("this takes little memory");
+            }
+            2 => self.now += Duration::from_millis(u64::from(next())),
+            3 => self.finish_job(next()),
+            4 => self.is_sending = false,
+            5 => self.reply(),
+            6 => {
+                let of = usize::from(next() % 3);
+                let scene = SCENES[of % 2].clone();
+                if next() % 2 == 0 {
+                    self.viewer.show(scene, of, of == 1);
+                } else {
+                    self.viewer.show_sketch(scene, of, false);
+                }
+            }
+            7 => {
+                self.viewer.lose_terminal(self.now);
+                self.viewer.receiver().forget();
+                let questions = self.viewer.questions(self.now);
+                self.send(&questions);
+                self.viewer.hear_typed(Vec::new(), self.now).expect("nothing is learnt");
+            }
+            _ => match next() % 3 {
+                0 => self.viewer.show_fault("x.ron:1:1: a fault\n  1 | (\n    | ^\nx.ron:2:1: another"),
+                1 => self.viewer.ask_keep("x.ron".to_owned()),
+                _ => self.viewer.say("a note"),
+            },
+        }
+    }
+
+    fn hear(&mut self, bytes: &[u8]) {
+        self.viewer.hear(bytes, self.now).expect("this takes little memory");
+        while self.viewer.ask().is_some() {}
+        for mode in self.viewer.modes() {
+            self.modes.switch_on(mode, &mut self.sent);
+        }
+    }
+
+    /// The terminal replies to all that it was asked.
+    fn reply(&mut self) {
+        let mut replies = Vec::new();
+        for (at, _) in self.sent.iter().enumerate().filter(|(_, byte)| **byte == 0x1b) {
+            let rest = &self.sent[at..];
+            if rest.starts_with(FENCE) {
+                replies.extend_from_slice(b"\x1b[?62c");
+            } else if let Some(number) = rest.strip_prefix(b"\x1b[?").and_then(mode_asked_for) {
+                replies.extend([b"\x1b[?", number, b";0$y"].concat());
+            } else if rest.starts_with(b"\x1b[?u") {
+                replies.extend_from_slice(b"\x1b[?15u");
+            }
+        }
+        self.sent.clear();
+        self.hear(&replies);
+    }
+
+    fn finish_job(&mut self, milliseconds: u8) {
+        let Some(Job { scene, shot, sampling, refines }) = self.job.take() else { return };
+        self.frames = self.frames.wrapping_add(1);
+        let parts: Vec<_> = shot.shown.parts(shot.resolution).into_iter().map(|(_, part)| self.flat(part)).collect();
+        let picture = shot.shown.joined(&parts, MIDDLE).unwrap_or_else(|| self.flat(shot.resolution));
+        let legends = shot.shown.legends(&scene, &shot.camera);
+        let (cost, trace) = (Cost::default(), Duration::from_millis(milliseconds.into()));
+        let parts = if shot.shown.is_wipe() { parts } else { Vec::new() };
+        self.viewer.take_frame(Frame { scene, shot, picture, parts, sampling, legends, refines, cost, trace });
+    }
+
+    /// A picture that differs from the one before.
+    fn flat(&self, resolution: Resolution) -> Picture {
+        let Resolution { width, height, .. } = resolution;
+        let pixel = |at: u32| Srgb8::new(self.frames, at as u8, 7);
+        Picture { width, height, pixels: (0..width * height).map(pixel).collect() }
+    }
+
+    /// Does what there is to do now; when there is more.
+    fn act(&mut self) -> Option<Duration> {
+        for _ in 0..=MOST_STEPS {
+            let tracing = self.job.as_ref().map(|job| if job.refines { Tracing::Refinement } else { Tracing::NewView });
+            match self.viewer.step(Busy { sending: self.is_sending, tracing }, self.now) {
+                Step::Wait(until) if until.is_none_or(|until| until > self.now) => return until,
+                // The rest of an escape sequence is overdue.
+                Step::Wait(_) => self.hear(&[]),
+                Step::GiveUp => {
+                    assert!(self.job.take().is_some_and(|job| job.refines), "only a refinement is given up");
+                }
+                Step::Draw => {
+                    assert!(!self.is_sending, "a frame is drawn that cannot be sent");
+                    self.draw();
+                }
+                Step::Trace(probe, job) => {
+                    assert!(
+                        !self.is_sending && self.job.is_none(),
+                        "a frame is begun that cannot be sent, or a second"
+                    );
+                    self.send(&probe);
+                    self.is_sending = false;
+                    self.job = Some(job);
+                }
+            }
+        }
+        panic!("there is always more to do at {:?}", self.now)
+    }
+
+    fn draw(&mut self) {
+        let mut bytes = Vec::new();
+        self.viewer.draw(self.now, &mut bytes);
+        self.viewer.end_frame(&mut bytes, self.now);
+        let cells = self.viewer.size().cell_count();
+        assert!(bytes.len() <= MOST_BYTES[0] * cells + MOST_BYTES[1], "{} bytes for {cells} cells", bytes.len());
+        self.send(&bytes);
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.sent.extend_from_slice(bytes);
+        self.is_sending = !bytes.is_empty();
+    }
+
+    /// Nobody does anything any more, and the terminal takes and answers everything: soon there is nothing to do.
+    fn come_to_rest(&mut self) {
+        self.viewer.lose_terminal(self.now);
+        for _ in 0..MOST_WAKES {
+            self.finish_job(1);
+            self.is_sending = false;
+            self.reply();
+            match self.act() {
+                None if self.job.is_none() && !self.is_sending => return,
+                None => {}
+                Some(until) => {
+                    self.now = until;
+                    self.hear(&[]);
+                }
+            }
+        }
+        panic!("it does not come to rest: next at {:?}, now {:?}", self.act(), self.now);
+    }
+
+    /// What was switched on is switched off.
+    fn give_back(mut self) {
+        let mut off = Vec::new();
+        self.modes.switch_all_off(&mut off);
+        for mode in self.viewer.modes() {
+            let (mut modes, mut bytes) = (Modes::default(), Vec::new());
+            modes.switch_on(mode, &mut Vec::new());
+            modes.switch_all_off(&mut bytes);
+            assert!(off.windows(bytes.len()).any(|part| part == bytes), "{mode:?} stays on");
+        }
+    }
+}
+
+/// The digits of a query for a mode (DECRQM), from its number on.
+fn mode_asked_for(query: &[u8]) -> Option<&[u8]> {
+    let (digits, rest) = query.split_at(query.iter().position(|byte| !byte.is_ascii_digit())?);
+    rest.starts_with(b"$p").then_some(digits)
+}
+
+fn window(size: Size) -> Window {
+    Window { size, cell: CellShape::default(), cell_pixels: Some((10, 20)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
+
+        #[test]
+        fn the_rules_hold_in_any_story(story in vec(any::<u8>(), 0..300)) {
+            tell(&story);
+        }
+
+        /// Keys that mean something, in a scene that is there.
+        #[test]
+        fn the_rules_hold_whatever_keys_are_pressed(
+            keys in vec((prop::sample::select(&b"wasdqezxhjklfogtvVcnNpPimLr?1[]<>\t\x1b 5"[..]), 0_u8..9, any::<u8>()), 0..60),
+        ) {
+            let shown = [6, 0, 0, 3, 1, 5, 4];
+            let pressed = keys.into_iter().flat_map(|(key, event, more)| [0, 1, key, event, more, 3, 2, 4]);
+            tell(&shown.into_iter().chain(pressed).collect::<Vec<_>>());
+        }
+    }
+
+    /// What a story tells is what happens: a scene is drawn once its frame is done, and again when it moves.
+    #[test]
+    fn a_scene_is_drawn_and_moves() {
+        let mut driver = Driver::new(0);
+        driver.viewer.show(SCENES[0].clone(), 0, false);
+        driver.act();
+        assert!(driver.job.is_some() && !driver.viewer.has_shown());
+        driver.finish_job(5);
+        driver.act();
+        assert!(driver.viewer.has_shown());
+        driver.come_to_rest();
+        let home = driver.viewer.moved();
+        driver.hear(b"w");
+        driver.now += Duration::from_millis(100);
+        driver.act();
+        assert!(home.is_none() && driver.viewer.moved().is_some(), "{home:?}");
+        assert!(driver.job.is_some());
+        driver.come_to_rest();
+    }
+}
