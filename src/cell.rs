@@ -64,18 +64,27 @@ impl Painter {
     /// # Panics
     /// If the picture needs more than 65,535 columns or rows.
     pub fn grid(&mut self, picture: &Picture) -> Grid {
+        let mut grid = Grid::new(Size::new(0, 0));
+        self.paint(picture, &mut grid);
+        grid
+    }
+
+    /// Makes a grid the one that [`grid`](Self::grid) returns, in the memory that it has.
+    ///
+    /// # Panics
+    /// If the picture needs more than 65,535 columns or rows.
+    pub fn paint(&mut self, picture: &Picture, grid: &mut Grid) {
         let pixels_per_cell = self.mode.pixels_per_cell();
-        let mut grid = Grid::new(size_in_cells(picture, pixels_per_cell));
+        grid.clear(size_in_cells(picture, pixels_per_cell));
         if self.mode.colors == Colors::None {
             let negative = self.light_background.then(|| negative(picture));
-            self.fill(&mut grid, negative.as_ref().unwrap_or(picture));
+            self.fill(grid, negative.as_ref().unwrap_or(picture));
         } else if self.mode.glyphs == Glyphs::Half {
-            self.fill(&mut grid, picture);
+            self.fill(grid, picture);
         } else {
-            self.fill(&mut grid, &tint::brightness(picture));
-            tint::fill(&mut grid, picture, pixels_per_cell, &mut self.inks);
+            self.fill(grid, &tint::brightness(picture));
+            tint::fill(grid, picture, pixels_per_cell, &mut self.inks);
         }
-        grid
     }
 
     fn fill(&mut self, grid: &mut Grid, picture: &Picture) {

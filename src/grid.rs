@@ -135,6 +135,13 @@ impl Grid {
         Self { size, cells: vec![Cell::BLANK; size.cell_count()] }
     }
 
+    /// Makes all of it blank, at that size.
+    pub fn clear(&mut self, size: Size) {
+        self.size = size;
+        self.cells.clear();
+        self.cells.resize(size.cell_count(), Cell::BLANK);
+    }
+
     /// All foreign: of a screen of which nothing is known, or on which nothing is wanted.
     pub fn foreign(size: Size) -> Self {
         Self { size, cells: vec![Cell::FOREIGN; size.cell_count()] }

@@ -36,6 +36,8 @@ pub(super) struct Live {
     viewer: Viewer,
     terminal: Terminal,
     clock: Clock,
+    /// Those of the last frame; kept, because to let a buffer grow takes a tenth of the time from a key to its frame.
+    bytes: Vec<u8>,
     /// What the scenes are called.
     named: Vec<Named>,
     exports: Option<PathBuf>,
@@ -57,7 +59,8 @@ impl Live {
     pub(super) fn new(terminal: Terminal, options: Options, named: Vec<Named>) -> io::Result<Self> {
         let exports = options.exports.clone();
         let viewer = Viewer::new(options, terminal.window()?)?;
-        Ok(Self { viewer, terminal, clock: Clock { start: Instant::now() }, named, exports, proposed: None })
+        let clock = Clock { start: Instant::now() };
+        Ok(Self { viewer, terminal, clock, bytes: Vec::new(), named, exports, proposed: None })
     }
 
     /// Where the user has moved the camera, if he has.
@@ -121,10 +124,10 @@ impl Live {
                 Step::Wait(until) => return Ok(until),
                 Step::GiveUp => renderer.give_up_refining(),
                 Step::Draw => {
-                    let mut bytes = Vec::new();
-                    self.viewer.draw(self.clock.now(), &mut bytes);
-                    self.viewer.end_frame(&mut bytes, self.clock.now());
-                    self.terminal.send(&bytes)?;
+                    self.bytes.clear();
+                    self.viewer.draw(self.clock.now(), &mut self.bytes);
+                    self.viewer.end_frame(&mut self.bytes, self.clock.now());
+                    self.terminal.send(&self.bytes)?;
                 }
                 Step::Trace(probe, job) => {
                     self.terminal.send(&probe)?;

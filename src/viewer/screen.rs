@@ -35,6 +35,8 @@ pub(super) struct Screen {
     content: Tracked<Content>,
     painter: Painter,
     encoder: Encoder,
+    /// What the terminal is to show. Kept, because its memory takes longer to get than to fill.
+    grid: Grid,
     order: Option<Order>,
     quality: Option<Quality>,
     /// Whether the next bytes erase the whole window first.
@@ -71,6 +73,7 @@ impl Screen {
             content: Tracked::new(Content { frame: None, wipe: MIDDLE, moving: Mode::Fly, layers }),
             painter: painter(capabilities),
             encoder: encoder(Encoder::new(), capabilities),
+            grid: Grid::new(Size::new(0, 0)),
             order,
             quality,
             erases: false,
@@ -250,15 +253,16 @@ impl Screen {
         let cell_mode = self.painter.mode();
         self.content.settle();
         let content = self.content.quietly();
-        let mut grid = match &content.frame {
-            Some(frame) => self.painter.grid(&frame.picture),
-            None => Grid::new(size),
-        };
+        let grid = &mut self.grid;
+        match &content.frame {
+            Some(frame) => self.painter.paint(&frame.picture, grid),
+            None => grid.clear(size),
+        }
         let area = look::area(grid.size());
         let status_rows = content.layers.get::<StatusLine>().map_or(0, |_| StatusLine::rows(area));
         let modes = content.modes(grid.size());
         content.layers.draw(&mut Canvas {
-            grid: &mut grid,
+            grid: &mut *grid,
             cell_mode,
             bindings,
             modes: &modes,
@@ -274,7 +278,7 @@ impl Screen {
         }
         let most_bytes = limit.map(|limit| limit.most_bytes);
         let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, most_bytes };
-        self.encoder.encode_within(&grid, allowance, bytes);
+        self.encoder.encode_within(grid, allowance, bytes);
         self.drawn = Some(now);
     }
 
