@@ -14,6 +14,8 @@ pub(crate) struct Watched {
     screens: Screens,
     /// The last wanted grid. (A blank of text looks like one of the picture.)
     last: Option<Grid>,
+    /// Whether the encoder knows what the screens show: if not, it has to draw all of the picture, whatever the limit.
+    is_known: bool,
     /// How long the pieces are in which the terminals read, one after another and then from the first again.
     pieces: Vec<usize>,
 }
@@ -34,6 +36,7 @@ impl Watched {
             clusters,
             screens: Screens::disturbed(size, clusters),
             last: None,
+            is_known: false,
             pieces: vec![usize::MAX],
         }
     }
@@ -49,11 +52,13 @@ impl Watched {
         if self.last.as_ref().is_some_and(|last| last.size() == size) {
             self.encoder.forget();
         }
+        self.is_known = false;
         self.screens.resize(size);
     }
 
     /// Something else has written on the screen, and the encoder has been told so.
     pub(crate) fn disturb(&mut self, size: Size) {
+        self.is_known = false;
         self.screens = Screens::disturbed(size, self.clusters);
         self.encoder.forget();
     }
@@ -65,6 +70,7 @@ impl Watched {
         self.encoder.encode(wanted, &mut bytes);
         self.screens.feed_in(&self.pieces, &bytes);
         self.last = Some(wanted.clone());
+        self.is_known = true;
         self.assert_exact(wanted);
         let mut more = Vec::new();
         self.encoder.encode(wanted, &mut more);
@@ -99,14 +105,15 @@ impl Watched {
             _ => assert_within(caps, &seen, wanted),
         }
         self.last = Some(wanted.clone());
+        self.is_known = true;
         self.assert_due(&seen, wanted, allowance);
         bytes.len()
     }
 
-    /// What the screen shows of a picture, and something else where it shows text.
+    /// What the screen is known to show of a picture, and something else where it shows text.
     fn pictures_shown(&self) -> Vec<Cell> {
         let last = self.last.iter().flat_map(Grid::cells).map(|cell| halves(cell).is_some());
-        let is_picture = last.chain(std::iter::repeat(true));
+        let is_picture = last.chain(std::iter::repeat(true)).map(|is| is && self.is_known);
         self.screens
             .shown()
             .iter()
