@@ -14,8 +14,9 @@ use crate::tone::Picture;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-/// The most steps before there is nothing more to do at one time: to give a refinement up, to draw, and to begin a frame.
-const MOST_STEPS: usize = 3;
+/// The most steps before there is nothing more to do at one time: to give a refinement up, to draw, to begin a frame, to
+/// take a lone Escape for the key, and to draw what comes of that.
+const MOST_STEPS: usize = 5;
 
 /// The most wake-ups between the last event and the end of all work. A lossy picture becomes exact in a few steps, and a
 /// glide of 60 frames a second ends in less than a second.
