@@ -195,11 +195,11 @@ struct LookArgs {
 }
 
 impl LookArgs {
-    /// The scene as it is to be looked at, not built yet, while somebody waits for it; `None` if he has gone.
-    fn draft(&self, origin: &Origin, watcher: &Watcher<'_>) -> Result<Option<Draft>, Failure> {
-        let Some(draft) = origin.draft(watcher)? else { return Ok(None) };
+    /// The scene as it is to be looked at, not built yet, until the watcher cancels it.
+    fn draft(&self, origin: &Origin, watcher: &Watcher<'_>) -> Result<Draft, Failure> {
+        let draft = origin.draft(watcher)?;
         let camera = self.camera(draft.camera()).map_err(usage)?;
-        Ok(Some(draft.with_camera(camera)))
+        Ok(draft.with_camera(camera))
     }
 
     fn camera(&self, camera: &Camera) -> Result<Camera, CameraError> {

@@ -42,7 +42,7 @@ pub use texture::{Texture, TexturePlacement};
 use crate::color::LinearRgb;
 use crate::memory;
 use crate::named_file::{self, Accepted};
-use crate::progress::{Meter, Watcher};
+use crate::progress::{Meter, Unfinished, Watcher};
 use error::Fault;
 use glam::{Mat3, Vec2, Vec3};
 use kind::Kind;
@@ -145,7 +145,7 @@ impl MeshFile {
         bytes: &[u8],
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     ) -> Result<Self, MeshError> {
-        Self::parse(name, bytes, open, &Watcher::patient())
+        Self::parse(name, bytes, open, &Watcher::patient()).map_err(Unfinished::failure)
     }
 
     fn parse(
@@ -153,7 +153,7 @@ impl MeshFile {
         bytes: &[u8],
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
         watcher: &Watcher<'_>,
-    ) -> Result<Self, MeshError> {
+    ) -> Result<Self, Unfinished<MeshError>> {
         read(name, bytes, &mut Neighbours::new(name, open), watcher).map_err(|fault| fault.into_error(name, bytes))
     }
 
@@ -172,28 +172,35 @@ impl MeshFile {
     /// # Errors
     /// If the file cannot be read, or as [`MeshFile::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, MeshError> {
-        Self::read_whole(path, Accepted::FilesAndPipes, &Watcher::patient())
+        Self::load_or_cancel(path, &Watcher::patient()).map_err(Unfinished::failure)
     }
 
-    /// [`load`](Self::load), while somebody waits for it; `None` if he has gone.
+    /// [`load`](Self::load), until the watcher cancels it.
     ///
     /// # Errors
-    /// As [`MeshFile::load`].
-    pub fn load_watched(path: &Path, watcher: &Watcher<'_>) -> Result<Option<Self>, MeshError> {
-        let mesh = Self::read_whole(path, Accepted::FilesAndPipes, watcher);
-        // Whatever came of it then.
-        if watcher.is_gone() { Ok(None) } else { mesh.map(Some) }
+    /// As [`MeshFile::load`], and if the watcher cancels it.
+    pub fn load_or_cancel(path: &Path, watcher: &Watcher<'_>) -> Result<Self, Unfinished<MeshError>> {
+        Self::read_whole(path, Accepted::FilesAndPipes, watcher)
     }
 
-    /// A fault too if he has gone: nobody will hear of it.
-    pub(crate) fn read_whole(path: &Path, accepted: Accepted, watcher: &Watcher<'_>) -> Result<Self, MeshError> {
-        let bytes = named_file::read(path, accepted, |_| MAX_BYTES, watcher)
-            .map_err(|error| MeshError::of_file(&path.to_string_lossy(), &named_file::reason(&error)))?;
+    /// The mesh in that file, if it is of an accepted kind.
+    pub(crate) fn read_whole(
+        path: &Path,
+        accepted: Accepted,
+        watcher: &Watcher<'_>,
+    ) -> Result<Self, Unfinished<MeshError>> {
+        let read = named_file::read(path, accepted, |_| MAX_BYTES, watcher);
+        if watcher.is_gone() {
+            return Err(Unfinished::Cancelled);
+        }
+        let bytes = read.map_err(|error| {
+            Unfinished::Failed(MeshError::of_file(&path.to_string_lossy(), &named_file::reason(&error)))
+        })?;
         Self::of_file(path, &bytes, watcher)
     }
 
     /// The mesh in the file at that path, of which these are the bytes. The files that it names are read from beside it.
-    pub(crate) fn of_file(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Self, MeshError> {
+    pub(crate) fn of_file(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Self, Unfinished<MeshError>> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut open = |relative: &Path| {
             let path = folder.join(relative);

@@ -108,6 +108,53 @@ impl fmt::Display for Cancelled {
 
 impl std::error::Error for Cancelled {}
 
+/// Why work that may be cancelled, and may fail, has no result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unfinished<E> {
+    /// It was given up because its token was cancelled.
+    Cancelled,
+    /// It failed.
+    Failed(E),
+}
+
+impl<E> Unfinished<E> {
+    /// Converts the failure, if it is one.
+    pub fn map<F>(self, convert: impl FnOnce(E) -> F) -> Unfinished<F> {
+        match self {
+            Self::Cancelled => Unfinished::Cancelled,
+            Self::Failed(error) => Unfinished::Failed(convert(error)),
+        }
+    }
+
+    /// Returns the failure of work that nothing could cancel.
+    ///
+    /// # Panics
+    /// If it was cancelled.
+    pub(crate) fn failure(self) -> E {
+        match self {
+            Self::Cancelled => panic!("work was cancelled that has no token"),
+            Self::Failed(error) => error,
+        }
+    }
+}
+
+impl<E> From<Cancelled> for Unfinished<E> {
+    fn from(Cancelled: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+impl<E: fmt::Display> fmt::Display for Unfinished<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cancelled => Cancelled.fmt(f),
+            Self::Failed(error) => error.fmt(f),
+        }
+    }
+}
+
+impl<E: fmt::Debug + fmt::Display> std::error::Error for Unfinished<E> {}
+
 /// A parser's position in its file, reported to a [`Watcher`] every [`STRIDE`] bytes.
 pub(crate) struct Meter<'a> {
     watcher: &'a Watcher<'a>,

@@ -18,7 +18,7 @@ mod whole;
 pub use fault::{Fault, Faults, Report, SceneError, line_and_column};
 pub(crate) use fault::{clipped, quoted};
 pub use parser::parse;
-pub(crate) use whole::read_watched;
+pub(crate) use whole::read_or_cancel;
 pub use whole::{read, text_from};
 
 /// The bytes of the text that something was written in: from `start` up to, and without, `end`.

@@ -247,12 +247,12 @@ fn load<'p, E: Send>(
     let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
     teller.tell(News::Needs(needed));
     match read {
-        Ok(Some(draft)) => match pool() {
+        // Whatever came of it: it was cancelled.
+        _ if cancellation.is_cancelled() => {}
+        Ok(draft) => match pool() {
             Some(pool) => pool.install(|| build(draft, &watcher, teller)),
             None => build(draft, &watcher, teller),
         },
-        // It was cancelled.
-        Ok(None) => {}
         Err(fault) => teller.tell(News::Fault(fault)),
     }
 }
@@ -280,7 +280,7 @@ mod tests {
         Loader::start(None, waker).expect("a thread can be started")
     }
 
-    fn draft(watcher: &Watcher<'_>) -> Option<Draft> {
+    fn draft(watcher: &Watcher<'_>) -> Draft {
         let text = b"(camera: (eye: (0, 0, 5), target: (0, 0, 0)))";
         Draft::from_bytes("x", text, watcher).expect("the scene is fine")
     }

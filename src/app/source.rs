@@ -24,16 +24,16 @@ pub(super) struct Named {
     pub(super) orbited: bool,
 }
 
-type Read<E> = dyn Fn(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + Sync;
+type Read<E> = dyn Fn(&Watcher<'_>) -> Result<Draft, E> + Send + Sync;
 
 impl<E> Source<E> {
-    /// The scene that `read` gives, under a name that a person knows it by. `read` gives nothing only when its watcher has
-    /// gone. It should return soon after that, because one scene is read at a time, and the next one waits for it; only a
-    /// `read` that has told its watcher of a pipe may wait for ever. What it tells its watcher to [need](Watcher::needs) is
-    /// watched: as files change, the scene is read again.
+    /// The scene that `read` gives, under a name that a person knows it by. `read` should return soon after its watcher has
+    /// [gone](Watcher::is_gone), with whatever result, because one scene is read at a time, and the next one waits for it;
+    /// only a `read` that has told its watcher of a pipe may wait for ever. What it tells its watcher to
+    /// [need](Watcher::needs) is watched: as files change, the scene is read again.
     pub fn new(
         name: impl Into<String>,
-        read: impl Fn(&Watcher<'_>) -> Result<Option<Draft>, E> + Send + Sync + 'static,
+        read: impl Fn(&Watcher<'_>) -> Result<Draft, E> + Send + Sync + 'static,
     ) -> Self {
         Self { named: Named { name: name.into(), file: None, orbited: false }, read: Arc::new(read) }
     }
@@ -56,7 +56,7 @@ impl<E> Source<E> {
     ///
     /// # Errors
     /// What is wrong with the scene.
-    pub fn read(&self, watcher: &Watcher<'_>) -> Result<Option<Draft>, E> {
+    pub fn read(&self, watcher: &Watcher<'_>) -> Result<Draft, E> {
         (self.read)(watcher)
     }
 }

@@ -3,7 +3,7 @@
 use super::{Failure, near, read_stdin, usage};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use termtrace::progress::Watcher;
+use termtrace::progress::{Unfinished, Watcher};
 use termtrace::scene::{Draft, LoadError, Scene};
 
 /// The scene that is shown when none is named.
@@ -28,12 +28,11 @@ impl Origin {
 
     /// The scene as it was written.
     pub(super) fn load(&self) -> Result<Scene, Failure> {
-        let draft = self.draft(&Watcher::patient())?;
-        draft.map(Draft::finish).ok_or_else(|| Failure::runtime(self, "nobody waits for it"))
+        self.draft(&Watcher::patient()).map(Draft::finish)
     }
 
-    /// The scene, not built yet, while somebody waits for it; `None` if he has gone.
-    pub(super) fn draft(&self, watcher: &Watcher<'_>) -> Result<Option<Draft>, Failure> {
+    /// The scene, not built yet, until the watcher cancels it.
+    pub(super) fn draft(&self, watcher: &Watcher<'_>) -> Result<Draft, Failure> {
         match self {
             Self::File(path) => Draft::load(path, watcher).map_err(|error| not_loaded(path, &error)),
             Self::Stdin(text) => Draft::from_bytes("standard input", text, watcher).map_err(usage),
@@ -53,7 +52,7 @@ impl fmt::Display for Origin {
 }
 
 /// With what may have been meant by the name of a file that is not there.
-fn not_loaded(path: &Path, error: &LoadError) -> Failure {
+fn not_loaded(path: &Path, error: &Unfinished<LoadError>) -> Failure {
     let meant = if path.exists() { None } else { near::scene(path) };
     Failure::Usage(match meant {
         Some(meant) => format!("{error}; did you mean {}?", meant.display()),

@@ -1,6 +1,6 @@
 //! Why a file is no mesh, and how a person is told: one line with the place in it.
 
-use crate::progress::Cancelled;
+use crate::progress::{Cancelled, Unfinished};
 use crate::scene_text::clipped;
 use crate::text::visible;
 use std::fmt;
@@ -73,7 +73,7 @@ impl fmt::Display for MeshError {
 
 impl std::error::Error for MeshError {}
 
-/// A fault on its way up to where the file's name is known. In a box, because a result of eight bytes keeps the
+/// A fault, or that there is none to be found, on its way up to where the file's name is known. In a box, because a result of eight bytes keeps the
 /// reading of numbers fast.
 #[derive(Debug)]
 pub(super) struct Fault(Box<Cause>);
@@ -86,6 +86,8 @@ enum Cause {
     },
     /// In another file, whose name is known.
     Elsewhere(MeshError),
+    /// There is none: the work was given up.
+    Cancelled,
 }
 
 /// A place as readers know it: by the bytes before it.
@@ -116,8 +118,8 @@ impl Fault {
     }
 
     /// The error of the file with these bytes.
-    pub(super) fn into_error(self, name: &str, bytes: &[u8]) -> MeshError {
-        match *self.0 {
+    pub(super) fn into_error(self, name: &str, bytes: &[u8]) -> Unfinished<MeshError> {
+        Unfinished::Failed(match *self.0 {
             Cause::Here { place: FaultPlace::File, message } => MeshError::of_file(name, &message),
             Cause::Here { place: FaultPlace::Byte(byte), message } => MeshError::at(name, Place::Byte(byte), &message),
             Cause::Here { place: FaultPlace::Text(at), message } => {
@@ -125,7 +127,8 @@ impl Fault {
                 MeshError::at(name, Place::Text { line, column }, &message)
             }
             Cause::Elsewhere(error) => error,
-        }
+            Cause::Cancelled => return Unfinished::Cancelled,
+        })
     }
 }
 
@@ -135,11 +138,19 @@ impl From<MeshError> for Fault {
     }
 }
 
+impl From<Unfinished<MeshError>> for Fault {
+    fn from(unfinished: Unfinished<MeshError>) -> Self {
+        match unfinished {
+            Unfinished::Cancelled => Cancelled.into(),
+            Unfinished::Failed(error) => error.into(),
+        }
+    }
+}
+
 impl From<Cancelled> for Fault {
-    /// A fault that is never shown: whoever reads the file asks the watcher before the result.
     #[cold]
-    fn from(cancelled: Cancelled) -> Self {
-        Self::of_file(cancelled.to_string())
+    fn from(Cancelled: Cancelled) -> Self {
+        Self(Box::new(Cause::Cancelled))
     }
 }
 

@@ -13,7 +13,7 @@ use crate::color::{LinearRgb, Srgb8};
 use crate::light::{Falloff, PointLight};
 use crate::material::Material;
 use crate::mesh_file::MeshFile;
-use crate::progress::Watcher;
+use crate::progress::{Unfinished, Watcher};
 use crate::scene_file::{
     MaterialUse, SceneFile, Spanned, WrittenBackground, WrittenColor, WrittenFalloff, WrittenLight, WrittenMaterial,
     WrittenNumber, WrittenObject, WrittenShape, WrittenToneCurve, WrittenVector, color_named,
@@ -70,7 +70,7 @@ const LARGEST_EXPOSURE: f64 = 1e6;
 /// Where meshes come from.
 pub(super) trait Meshes {
     /// The mesh of that path, as the scene's file has it, or what is wrong with it.
-    fn mesh(&mut self, path: &str) -> Result<MeshFile, String>;
+    fn mesh(&mut self, path: &str) -> Result<MeshFile, Unfinished<String>>;
 }
 
 struct Checker<'f> {
@@ -230,7 +230,8 @@ impl Checker<'_> {
                 let path = path.as_ref()?;
                 let mesh = match meshes.mesh(&path.value) {
                     Ok(mesh) => mesh,
-                    Err(message) => return self.fault(path.span, || message),
+                    Err(Unfinished::Cancelled) => return None,
+                    Err(Unfinished::Failed(message)) => return self.fault(path.span, || message),
                 };
                 let (scale, turn, translation) = placed?;
                 match mesh.transformed(scale, turn, translation) {

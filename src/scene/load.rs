@@ -6,9 +6,9 @@ use crate::camera_path::CameraPath;
 use crate::memory;
 use crate::mesh_file::{self, MeshError, MeshFile};
 use crate::named_file::{self, Accepted};
-use crate::progress::Watcher;
+use crate::progress::{Unfinished, Watcher};
 use crate::scene_file::{PathFile, SceneFile};
-use crate::scene_text::{MAX_BYTES, SceneError, read, read_watched, text_from};
+use crate::scene_text::{MAX_BYTES, SceneError, read, read_or_cancel, text_from};
 use crate::text::visible;
 use std::collections::HashMap;
 use std::fmt;
@@ -39,7 +39,7 @@ impl Scene {
     /// The first fault of the syntax; if there is none, all others: unknown and missing fields, wrong types, and values
     /// that make no picture.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
-        draft(name, text, &Watcher::patient()).map(Draft::finish)
+        draft(name, text, &Watcher::patient()).map(Draft::finish).map_err(Unfinished::failure)
     }
 
     /// The scene that the bytes describe, which should be UTF-8 text.
@@ -72,34 +72,30 @@ impl Scene {
     /// # Errors
     /// If the file cannot be read, or as [`Scene::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, LoadError> {
-        load(path, &Watcher::patient()).map(Draft::finish)
+        load(path, &Watcher::patient()).map(Draft::finish).map_err(Unfinished::failure)
     }
 }
 
 impl Draft {
-    /// [`Scene::from_bytes`] without building, while somebody waits for it; `None` if he has gone.
+    /// [`Scene::from_bytes`] without building, until the watcher cancels it.
     ///
     /// # Errors
-    /// As [`Scene::from_bytes`].
-    pub fn from_bytes(name: &str, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Option<Self>, SceneError> {
-        unless_gone(watcher, text_from(name, bytes).and_then(|text| draft(name, text, watcher)))
+    /// As [`Scene::from_bytes`], and if the watcher cancels it.
+    pub fn from_bytes(name: &str, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Self, Unfinished<SceneError>> {
+        draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, watcher)
     }
 
-    /// [`Scene::load`] without building, while somebody waits for it; `None` if he has gone.
+    /// [`Scene::load`] without building, until the watcher cancels it.
     ///
     /// # Errors
-    /// As [`Scene::load`].
-    pub fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Option<Self>, LoadError> {
-        unless_gone(watcher, load(path, watcher))
+    /// As [`Scene::load`], and if the watcher cancels it.
+    pub fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Self, Unfinished<LoadError>> {
+        // A file may have been opened for nothing: a pipe that is waited for fails when the watcher has gone.
+        load(path, watcher).map_err(|unfinished| if watcher.is_gone() { Unfinished::Cancelled } else { unfinished })
     }
 }
 
-/// Whatever came of it, if nobody waits for it any more.
-fn unless_gone<T, E>(watcher: &Watcher<'_>, done: Result<T, E>) -> Result<Option<T>, E> {
-    if watcher.is_gone() { Ok(None) } else { done.map(Some) }
-}
-
-fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
+fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, Unfinished<LoadError>> {
     let name = path.to_string_lossy();
     watcher.needs(path);
     let is_mesh = |bytes: &[u8]| mesh_file::is_mesh(&name, bytes);
@@ -110,12 +106,13 @@ fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
     }
     memory::check(bytes.len() * PEAK)
         .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error: error.into() })?;
-    Ok(draft(&name, text_from(&name, &bytes)?, watcher)?)
+    let text = text_from(&name, &bytes).map_err(LoadError::Scene)?;
+    draft(&name, text, watcher).map_err(|unfinished| unfinished.map(LoadError::Scene))
 }
 
-fn draft(name: &str, text: &str, watcher: &Watcher<'_>) -> Result<Draft, SceneError> {
+fn draft(name: &str, text: &str, watcher: &Watcher<'_>) -> Result<Draft, Unfinished<SceneError>> {
     let mut meshes = Meshes::beside(Path::new(name), watcher);
-    read_watched(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", watcher, |root, faults| {
+    read_or_cancel(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", watcher, |root, faults| {
         let file = SceneFile::read(&root, watcher, faults);
         drop(root);
         checked::check(&file, &mut meshes, watcher, faults)
@@ -220,15 +217,21 @@ impl From<MeshError> for LoadError {
     }
 }
 
+impl From<LoadError> for Unfinished<LoadError> {
+    fn from(error: LoadError) -> Self {
+        Self::Failed(error)
+    }
+}
+
 impl From<SceneError> for LoadError {
     fn from(error: SceneError) -> Self {
         Self::Scene(error)
     }
 }
 
-fn around_mesh(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
-    let mesh = MeshFile::of_file(path, bytes, watcher)?;
-    Draft::of_mesh(mesh).ok_or_else(|| LoadError::Unseen { path: path.to_owned() })
+fn around_mesh(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Draft, Unfinished<LoadError>> {
+    let mesh = MeshFile::of_file(path, bytes, watcher).map_err(|unfinished| unfinished.map(LoadError::Mesh))?;
+    Draft::of_mesh(mesh).ok_or_else(|| LoadError::Unseen { path: path.to_owned() }.into())
 }
 
 /// The meshes that a scene names, each read once.
@@ -245,13 +248,14 @@ impl<'w> Meshes<'w> {
 }
 
 impl checked::Meshes for Meshes<'_> {
-    fn mesh(&mut self, path: &str) -> Result<MeshFile, String> {
+    fn mesh(&mut self, path: &str) -> Result<MeshFile, Unfinished<String>> {
         let path = self.folder.join(path);
         if let Some(mesh) = self.read.get(&path) {
             return Ok(mesh.clone());
         }
         self.watcher.needs(&path);
-        let mesh = MeshFile::read_whole(&path, Accepted::Files, self.watcher).map_err(|error| error.to_string())?;
+        let mesh = MeshFile::read_whole(&path, Accepted::Files, self.watcher);
+        let mesh = mesh.map_err(|unfinished| unfinished.map(|error| error.to_string()))?;
         self.read.insert(path, mesh.clone());
         Ok(mesh)
     }

@@ -1,7 +1,7 @@
 //! Faults, and how a person is shown them: all at once, in the order of the text, as compilers do.
 
 use super::Span;
-use crate::progress::Cancelled;
+use crate::progress::Unfinished;
 use crate::text::{visible, visible_char};
 use std::fmt;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
@@ -15,10 +15,9 @@ pub struct Fault {
     pub span: Span,
 }
 
-impl From<Cancelled> for Fault {
-    /// A fault that is never shown: whoever reads the text asks the watcher before the result.
-    fn from(cancelled: Cancelled) -> Self {
-        Self { message: cancelled.to_string(), span: Span::at(0) }
+impl From<Fault> for Unfinished<Fault> {
+    fn from(fault: Fault) -> Self {
+        Self::Failed(fault)
     }
 }
 

@@ -3,25 +3,25 @@
 use super::fault::{clipped, line_and_column, quoted};
 use super::tokens::{Token, Tokens};
 use super::{Body, Fault, Field, Group, MAX_DEPTH, Name, Node, Span, Value};
-use crate::progress::{Meter, Watcher};
+use crate::progress::{Meter, Unfinished, Watcher};
 
 /// The one value that the text holds, or its first fault.
 ///
 /// # Errors
 /// Where the text is not RON.
 pub fn parse(text: &str) -> Result<Node<'_>, Fault> {
-    parse_metered(text, Meter::new(&Watcher::patient(), "", text.len()))
+    parse_or_cancel(text, Meter::new(&Watcher::patient(), "", text.len())).map_err(Unfinished::failure)
 }
 
-/// [`parse`], reporting to a watcher; a fault, too, if the watcher has gone.
-pub(super) fn parse_metered<'a>(text: &'a str, meter: Meter<'_>) -> Result<Node<'a>, Fault> {
+/// [`parse`], until the meter's watcher cancels it.
+pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<Node<'a>> {
     let mut tokens = Tokens::new(text);
     tokens.skip_attributes()?;
     let (next, span) = tokens.next()?;
     let mut parser = Parser { text, tokens, next, span, previous_end: 0, open: Vec::new(), misaligned: None, meter };
     if parser.next == Token::End {
         let message = "there is nothing here but comments or white space".to_owned();
-        return Err(Fault { message, span: Span::at(text.len()) });
+        return Err(Fault { message, span: Span::at(text.len()) }.into());
     }
     let root = parser.value()?;
     match parser.next {
@@ -45,7 +45,7 @@ struct Parser<'a, 'm> {
     misaligned: Option<(char, Span)>,
 }
 
-type Parsed<T> = Result<T, Fault>;
+type Parsed<T> = Result<T, Unfinished<Fault>>;
 
 impl<'a> Parser<'a, '_> {
     fn advance(&mut self) -> Parsed<Token<'a>> {
@@ -245,8 +245,8 @@ impl<'a> Parser<'a, '_> {
 
     // What to say -----------------------------------------------------------------------------------------------------
 
-    fn here(&self, message: String) -> Fault {
-        Fault { message, span: self.span }
+    fn here(&self, message: String) -> Unfinished<Fault> {
+        Fault { message, span: self.span }.into()
     }
 
     fn found(&self) -> String {
@@ -271,40 +271,40 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    fn no_colon(&self, name: Name<'_>) -> Fault {
+    fn no_colon(&self, name: Name<'_>) -> Unfinished<Fault> {
         let word = quoted_word(name.text);
         match (&self.next, self.open.last()) {
             (Token::Other('='), _) => self.here(format!("expected `:` after {word}, found `=`")),
-            (Token::Open(_), Some(&(bracket, opened))) => Fault {
-                message: format!(
+            (Token::Open(_), Some(&(bracket, opened))) => {
+                let message = format!(
                     "expected a field, found {word}; is a `{}` missing before it, for the `{bracket}` at {}?",
                     closing(bracket),
                     self.place(opened),
-                ),
-                span: name.span,
-            },
+                );
+                Fault { message, span: name.span }.into()
+            }
             _ => self.here(format!("expected `:` after {word}, found {}", self.found())),
         }
     }
 
     /// Something else stands where a comma or the closing bracket should.
-    fn not_closed(&self, bracket: char, opened: Span) -> Fault {
+    fn not_closed(&self, bracket: char, opened: Span) -> Unfinished<Fault> {
         let right = closing(bracket);
         match self.next {
             Token::End => {
                 let (bracket, span) = self.misaligned.unwrap_or((bracket, opened));
                 let message = format!("this `{bracket}` is never closed by a `{}`", closing(bracket));
-                Fault { message, span }
+                Fault { message, span }.into()
             }
             Token::Close(wrong) => {
                 let opened = self.place(opened);
                 self.here(format!("expected `{right}`, found `{wrong}`; the `{bracket}` at {opened} is still open"))
             }
             Token::Other(other) => self.here(format!("expected `,` or `{right}`, found `{other}`")),
-            _ => Fault {
-                message: format!("expected `,` or `{right}` before {}", self.found()),
-                span: Span::at(self.previous_end as usize),
-            },
+            _ => {
+                let message = format!("expected `,` or `{right}` before {}", self.found());
+                Fault { message, span: Span::at(self.previous_end as usize) }.into()
+            }
         }
     }
 

@@ -1,8 +1,8 @@
 //! A whole file's bytes -> text -> its tree -> whatever is made of that; what is no text is told as well as what is no RON.
 
-use super::parser::parse_metered;
+use super::parser::parse_or_cancel;
 use super::{Fault, Faults, MAX_BYTES, Node, SceneError, Span};
-use crate::progress::{Meter, Watcher};
+use crate::progress::{Meter, Unfinished, Watcher};
 
 /// What the text describes: the first fault of its syntax, or all that `check` finds. An empty text is told what the
 /// `smallest` could be. The name is the file's, for messages only.
@@ -15,28 +15,35 @@ pub fn read<T>(
     smallest: &str,
     check: impl FnOnce(&Node<'_>, &mut Faults) -> Option<T>,
 ) -> Result<T, SceneError> {
-    read_watched(name, text, smallest, &Watcher::patient(), |root, faults| check(&root, faults))
+    let check = |root: Node<'_>, faults: &mut Faults| check(&root, faults);
+    read_or_cancel(name, text, smallest, &Watcher::patient(), check).map_err(Unfinished::failure)
 }
 
-/// [`read`] for a watcher, which is told of progress. `check` owns the tree, so that it can free it before it is done: of
-/// a scene of 400,000 spheres the peak is 394 MB instead of 462.
+/// [`read`], until the watcher cancels it, which is told of progress. `check` owns the tree, so that it can free it before
+/// it is done: of a scene of 400,000 spheres the peak is 394 MB instead of 462. Once the watcher has cancelled, its result
+/// does not count.
 ///
 /// # Errors
-/// As [`read`]; any error if the watcher has gone.
-pub(crate) fn read_watched<'a, T>(
+/// As [`read`], and if the watcher cancels it.
+pub(crate) fn read_or_cancel<'a, T>(
     name: &str,
     text: &'a str,
     smallest: &str,
     watcher: &Watcher<'_>,
     check: impl FnOnce(Node<'a>, &mut Faults) -> Option<T>,
-) -> Result<T, SceneError> {
+) -> Result<T, Unfinished<SceneError>> {
     let root = check_size(text.len())
         .and_then(|()| not_empty(text, smallest))
         .and_then(|()| no_nul(text.as_bytes()))
-        .and_then(|()| parse_metered(text, Meter::new(watcher, name, text.len())))
-        .map_err(|fault| SceneError::new(name, text, fault))?;
+        .map_err(Unfinished::Failed)
+        .and_then(|()| parse_or_cancel(text, Meter::new(watcher, name, text.len())))
+        .map_err(|unfinished| unfinished.map(|fault| SceneError::new(name, text, fault)))?;
     let mut faults = Faults::default();
-    check(root, &mut faults).ok_or_else(|| SceneError::new(name, text, faults))
+    let checked = check(root, &mut faults);
+    if watcher.is_gone() {
+        return Err(Unfinished::Cancelled);
+    }
+    checked.ok_or_else(|| Unfinished::Failed(SceneError::new(name, text, faults)))
 }
 
 /// The bytes as text, if they are that.

@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use termtrace::color::Srgb8;
 use termtrace::framebuffer::Resolution;
 use termtrace::mesh_file::MeshFile;
-use termtrace::progress::{Cancellation, Progress, Watcher, Work};
+use termtrace::progress::{Cancellation, Progress, Unfinished, Watcher, Work};
 use termtrace::render::render;
 use termtrace::scene::{Draft, Scene};
 use termtrace::scene_file::SceneFile;
@@ -34,6 +34,16 @@ fn heard<T>(most: usize, work: impl FnOnce(&Watcher<'_>) -> T) -> (Vec<Progress>
     (heard.into_inner().expect("nobody panics"), done)
 }
 
+/// The result, or `None` if the work was cancelled.
+#[track_caller]
+fn unless_cancelled<T, E: std::fmt::Debug>(done: Result<T, Unfinished<E>>) -> Option<T> {
+    match done {
+        Ok(done) => Some(done),
+        Err(Unfinished::Cancelled) => None,
+        Err(Unfinished::Failed(error)) => panic!("{error:?}"),
+    }
+}
+
 /// In every format: how far it is is told from beginning to end, and after any report it can be given up.
 #[test]
 fn reading_is_watched_and_can_be_given_up() {
@@ -43,7 +53,7 @@ fn reading_is_watched_and_can_be_given_up() {
         let path = folder.path().join(writer.name);
         let size = written(&mesh, writer.name).len();
         fs::write(&path, written(&mesh, writer.name)).expect("a file can be written");
-        let load = |watcher: &Watcher<'_>| MeshFile::load_watched(&path, watcher).expect("it is a mesh");
+        let load = |watcher: &Watcher<'_>| unless_cancelled(MeshFile::load_or_cancel(&path, watcher));
         let (reports, read) = heard(usize::MAX, load);
         assert_eq!(read, Some(MeshFile::load(&path).expect("it is a mesh")), "{}", writer.name);
         assert_steps(&reports, &Work::Reading(path.to_string_lossy().into()), 1 << 20, size);
@@ -79,7 +89,7 @@ fn a_scenes_meshes_are_watched() {
     let scene = folder.path().join("scene.ron");
     let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Mesh(path: "ball.stl")])"#;
     fs::write(&scene, text).expect("a file can be written");
-    let load = |watcher: &Watcher<'_>| Draft::load(&scene, watcher).expect("it is a scene");
+    let load = |watcher: &Watcher<'_>| unless_cancelled(Draft::load(&scene, watcher));
     let (reports, draft) = heard(usize::MAX, load);
     assert!(draft.map(Draft::finish) == Some(Scene::load(&scene).expect("it is a scene")), "the same scene");
     assert!(reports.iter().any(|report| matches!(&report.work, Work::Parsing(name) if name.ends_with("ball.stl"))));
@@ -97,7 +107,7 @@ fn balls(count: usize) -> String {
 #[test]
 fn a_scenes_text_is_watched_and_can_be_given_up() {
     let text = balls(30_000);
-    let load = |watcher: &Watcher<'_>| Draft::from_bytes("x.ron", text.as_bytes(), watcher).expect("it is a scene");
+    let load = |watcher: &Watcher<'_>| unless_cancelled(Draft::from_bytes("x.ron", text.as_bytes(), watcher));
     let (reports, draft) = heard(usize::MAX, load);
     assert!(draft.is_some_and(|draft| draft.finish().objects().len() == 30_000));
     assert_steps(&reports, &Work::Parsing("x.ron".to_owned()), 256 << 10, text.len());
@@ -127,7 +137,7 @@ fn a_scenes_objects_are_given_up() {
     };
     let watcher = Watcher::new(&hear).with_needs(&hear_need).cancelled_by(&cancelled);
     let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Mesh(path: "a.obj"), Mesh(path: "b.obj")])"#;
-    assert!(matches!(Draft::from_bytes("x.ron", text.as_bytes(), &watcher), Ok(None)));
+    assert!(matches!(Draft::from_bytes("x.ron", text.as_bytes(), &watcher), Err(Unfinished::Cancelled)));
     assert_eq!(needed.into_inner().expect("nobody panics"), 1, "meshes");
 }
 
