@@ -4,6 +4,7 @@ use crate::camera::Camera;
 use crate::memory::OutOfMemory;
 use crate::scene::Scene;
 use crate::terminal::{self, Signals, Terminal};
+use crate::text::Notice;
 /// For the fuzz target: no build that is not a test has it.
 #[cfg(feature = "test-hooks")]
 pub use crate::viewer::tell as tell_viewer;
@@ -64,8 +65,8 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
 /// shows how far it is, then a sketch to look around in, and can be left at any time. The terminal is as it was when this
 /// returns, and also when it panics; a first scene that is wrong at once never touches it.
 ///
-/// A scene is read again when one of its files changes. What is wrong with it then is told, and with any but the first;
-/// the picture stays as it was.
+/// A scene is read again when one of its files changes. What is wrong with it then is told as a [`Notice`], and with any
+/// but the first; the picture stays as it was.
 ///
 /// # Errors
 /// If there is no source or no terminal, or that goes away, or there is not enough memory for its window; or what is wrong
@@ -73,7 +74,7 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
 ///
 /// # Panics
 /// With the payload of a thread that panicked while tracing, or while reading or building a scene.
-pub fn open<E: fmt::Display + Send + 'static>(
+pub fn open<E: Into<Notice> + Send + 'static>(
     sources: Vec<Source<E>>,
     options: Options,
     signals: &mut Signals,
@@ -114,7 +115,7 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
 
 impl<E: fmt::Debug + fmt::Display> std::error::Error for Error<E> {}
 
-fn view<E: fmt::Display + Send + 'static>(
+fn view<E: Into<Notice> + Send + 'static>(
     mut scenes: Scenes<E>,
     options: Options,
     signals: &mut Signals,

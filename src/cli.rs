@@ -32,14 +32,17 @@ use std::process::ExitCode;
 use termtrace::camera::{Camera, CameraError, Pose};
 use termtrace::progress::Watcher;
 use termtrace::scene::{Draft, Scene};
-use termtrace::text::visible_lines;
+use termtrace::scene_text::SceneError;
+use termtrace::text::{Notice, visible_lines};
 
 /// Why a command ends without having done what was asked.
 enum Failure {
     /// It could not be done: exit code 1.
     Runtime(String),
-    /// The command line or the scene is wrong: exit code 2.
+    /// The command line or a file is wrong: exit code 2.
     Usage(String),
+    /// The scene is wrong: exit code 2.
+    Scene(SceneError),
     /// All is said already, but for the exit code.
     Said(u8),
 }
@@ -60,7 +63,17 @@ impl Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Runtime(message) | Self::Usage(message) => f.write_str(message),
+            Self::Scene(error) => error.fmt(f),
             Self::Said(_) => Ok(()),
+        }
+    }
+}
+
+impl From<Failure> for Notice {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Scene(error) => error.notice(),
+            failure => failure.to_string().into(),
         }
     }
 }
@@ -267,6 +280,7 @@ pub(crate) fn main() -> ExitCode {
         Err(Failure::Said(code)) => ExitCode::from(code),
         Err(Failure::Runtime(message)) => complain(&message, 1),
         Err(Failure::Usage(message)) => complain(&message, 2),
+        Err(Failure::Scene(error)) => complain(&error.to_string(), 2),
     }
 }
 

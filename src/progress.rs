@@ -1,5 +1,6 @@
 //! Progress reports on work that takes a while, and the token by which it is cancelled.
 
+use crate::text::Notice;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -13,7 +14,7 @@ pub struct Progress {
     pub work: Work,
     /// How much of it is done: bytes of a file, boxes of a tree.
     pub done: usize,
-    /// How much there is to do; 0 where nobody knows.
+    /// How much there is to do; 0 where that is not known.
     pub total: usize,
 }
 
@@ -28,7 +29,7 @@ pub enum Work {
     Building,
 }
 
-/// Who waits for work: he is told how far it has come, now and then and from any thread, and may go.
+/// A receiver of progress reports, which come now and then and from any thread, and by which the work can be cancelled.
 pub struct Watcher<'w> {
     hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
     hear_need: Option<&'w (dyn Fn(&Path) + Sync)>,
@@ -36,22 +37,22 @@ pub struct Watcher<'w> {
 }
 
 impl<'w> Watcher<'w> {
-    /// One that hears of progress by this function, and has gone when it answers `Break`.
+    /// Reports progress to this function, and cancels the work when it answers `Break`.
     pub fn new(hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
         Self { hear, hear_need: None, cancellation: Cancellation::default() }
     }
 
-    /// And that hears of each file by that function, before it is opened.
+    /// Reports each file to that function, too, before it is opened.
     pub fn with_needs(self, hear_need: &'w (dyn Fn(&Path) + Sync)) -> Self {
         Self { hear_need: Some(hear_need), ..self }
     }
 
-    /// And that has also gone once this token is cancelled.
+    /// Cancels the work also when this token is cancelled.
     pub fn cancelled_by(self, cancellation: &Cancellation) -> Self {
         Self { cancellation: cancellation.clone(), ..self }
     }
 
-    /// One that waits however long it takes.
+    /// A watcher that hears nothing and cancels nothing.
     pub fn patient() -> Watcher<'static> {
         Watcher::new(&|_| ControlFlow::Continue(()))
     }
@@ -67,14 +68,14 @@ impl<'w> Watcher<'w> {
         if self.is_gone() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Tells him that the work needs that file, which may not be there.
+    /// Reports a file that the work needs, which may not be there.
     pub fn needs(&self, file: &Path) {
         if let Some(hear) = self.hear_need {
             hear(file);
         }
     }
 
-    /// Whether he has gone.
+    /// Returns whether the work is to be given up.
     pub fn is_gone(&self) -> bool {
         self.cancellation.is_cancelled()
     }
@@ -134,6 +135,15 @@ impl<E> Unfinished<E> {
         match self {
             Self::Cancelled => panic!("work was cancelled that has no token"),
             Self::Failed(error) => error,
+        }
+    }
+}
+
+impl<E: Into<Notice>> From<Unfinished<E>> for Notice {
+    fn from(unfinished: Unfinished<E>) -> Self {
+        match unfinished {
+            Unfinished::Cancelled => Cancelled.to_string().into(),
+            Unfinished::Failed(error) => error.into(),
         }
     }
 }

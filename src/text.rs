@@ -1,8 +1,10 @@
 //! Text for messages: printable, whatever comes from outside (names, arguments, files, environment variables); lists in
-//! prose; the word that was probably meant.
+//! prose; the word that was probably meant; an error in parts.
 
+mod notice;
 mod words;
 
+pub use notice::Notice;
 pub use words::{closest, listed};
 
 /// Returns what stands for a character in a message: itself, unless it moves the cursor, starts an escape sequence, turns

@@ -19,6 +19,7 @@ use crate::progress::Progress;
 use crate::protocol::{Mode, Receiver};
 use crate::render::Sampling;
 use crate::scene::Scene;
+use crate::text::Notice;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
@@ -232,9 +233,9 @@ impl Viewer {
     }
 
     /// The scene that was asked for will not come: what is wrong with it.
-    pub(crate) fn show_fault(&mut self, error: &str) {
+    pub(crate) fn show_fault(&mut self, fault: Notice) {
         self.screen.close_later::<ProgressPanel>();
-        self.screen.open(Fault::new(error));
+        self.screen.open(Fault(fault));
     }
 
     /// Says something in the lowest row until the next key.

@@ -14,11 +14,12 @@ use super::{Ending, Error, Options};
 use crate::camera::Camera;
 use crate::export::Format;
 use crate::terminal::{self, Signals, Stopped, Terminal};
+use crate::text::Notice;
 use crate::viewer::{Ask, Busy, FRAME, Step, Viewer};
+use std::io;
 use std::panic::resume_unwind;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use std::{fmt, io};
 
 /// The loop's time: a frame's worth at the start, so that whatever is pressed then may have begun a frame ago.
 struct Clock {
@@ -74,7 +75,7 @@ impl Live {
     }
 
     /// Asks the terminal what it is, and goes on until the user leaves.
-    pub(super) fn run<E: fmt::Display + Send + 'static>(
+    pub(super) fn run<E: Into<Notice> + Send + 'static>(
         &mut self,
         renderer: &mut Renderer,
         scenes: &mut Scenes<E>,
@@ -220,7 +221,7 @@ impl Live {
     }
 
     /// What there is of a scene is shown. What is wrong with it is the error where there is nothing to see.
-    fn take_news<E: fmt::Display>(&mut self, Heard { of, news, is_slow }: Heard<E>) -> Result<(), E> {
+    fn take_news<E: Into<Notice>>(&mut self, Heard { of, news, is_slow }: Heard<E>) -> Result<(), E> {
         let orbits = self.named.get(of).is_some_and(|scene| scene.orbited);
         match news {
             News::Progress(progress) if is_slow => self.viewer.show_progress(progress),
@@ -228,7 +229,7 @@ impl Live {
             News::Sketch(sketch) => self.viewer.show_sketch(sketch, of, orbits),
             News::Scene(scene) => self.viewer.show(scene, of, orbits),
             News::Fault(fault) if self.viewer.shown_scene().is_none() => return Err(fault),
-            News::Fault(fault) => self.viewer.show_fault(&fault.to_string()),
+            News::Fault(fault) => self.viewer.show_fault(fault.into()),
             News::Panic(panic) => resume_unwind(panic),
         }
         Ok(())

@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use termtrace::progress::{Unfinished, Watcher};
 use termtrace::scene::{Draft, LoadError, Scene};
+use termtrace::scene_text::SceneError;
 
 /// The scene that is shown when none is named.
 const BUILT_IN: &str = include_str!("../../scenes/three_spheres.ron");
@@ -34,9 +35,9 @@ impl Origin {
     /// The scene, not built yet, until the watcher cancels it.
     pub(super) fn draft(&self, watcher: &Watcher<'_>) -> Result<Draft, Failure> {
         match self {
-            Self::File(path) => Draft::load(path, watcher).map_err(|error| not_loaded(path, &error)),
-            Self::Stdin(text) => Draft::from_bytes("standard input", text, watcher).map_err(usage),
-            Self::BuiltIn => Draft::from_bytes("built-in scene", BUILT_IN.as_bytes(), watcher).map_err(usage),
+            Self::File(path) => Draft::load(path, watcher).map_err(|error| not_loaded(path, error)),
+            Self::Stdin(text) => Draft::from_bytes("standard input", text, watcher).map_err(wrong),
+            Self::BuiltIn => Draft::from_bytes("built-in scene", BUILT_IN.as_bytes(), watcher).map_err(wrong),
         }
     }
 }
@@ -51,8 +52,18 @@ impl fmt::Display for Origin {
     }
 }
 
+fn wrong(unfinished: Unfinished<SceneError>) -> Failure {
+    match unfinished {
+        Unfinished::Failed(error) => Failure::Scene(error),
+        Unfinished::Cancelled => usage(unfinished),
+    }
+}
+
 /// With what may have been meant by the name of a file that is not there.
-fn not_loaded(path: &Path, error: &Unfinished<LoadError>) -> Failure {
+fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
+    if let Unfinished::Failed(LoadError::Scene(error)) = error {
+        return Failure::Scene(error);
+    }
     let meant = if path.exists() { None } else { near::scene(path) };
     Failure::Usage(match meant {
         Some(meant) => format!("{error}; did you mean {}?", meant.display()),

@@ -9,7 +9,7 @@ use crate::named_file::{self, Accepted};
 use crate::progress::{Unfinished, Watcher};
 use crate::scene_file::{PathFile, SceneFile};
 use crate::scene_text::{MAX_BYTES, SceneError, read, read_or_cancel, text_from};
-use crate::text::visible;
+use crate::text::{Notice, visible};
 use std::collections::HashMap;
 use std::fmt;
 use std::io;
@@ -214,6 +214,15 @@ impl std::error::Error for LoadError {
 impl From<MeshError> for LoadError {
     fn from(error: MeshError) -> Self {
         Self::Mesh(error)
+    }
+}
+
+impl From<LoadError> for Notice {
+    fn from(error: LoadError) -> Self {
+        match error {
+            LoadError::Scene(error) => error.notice(),
+            error => error.to_string().into(),
+        }
     }
 }
 

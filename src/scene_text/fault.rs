@@ -2,7 +2,7 @@
 
 use super::Span;
 use crate::progress::Unfinished;
-use crate::text::{visible, visible_char};
+use crate::text::{Notice, visible, visible_char};
 use std::fmt;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
@@ -86,6 +86,23 @@ pub struct Report {
     pub caret_width: usize,
 }
 
+impl Report {
+    /// What is wrong, after the file's name and the place in it.
+    fn message_in(&self, name: &str) -> String {
+        let Self { line, column, message, .. } = self;
+        format!("{name}:{line}:{column}: {message}")
+    }
+
+    /// The line of the text with its number, and carets below it; `None` if no line is worth showing.
+    fn excerpt(&self) -> Option<[String; 2]> {
+        let Self { line, source, caret, caret_width, .. } = self;
+        let number = line.to_string();
+        let margin = " ".repeat(number.len());
+        let below = format!("  {margin} | {:caret$}{}", "", "^".repeat(*caret_width));
+        (!source.is_empty()).then(|| [format!("  {number} | {source}"), below])
+    }
+}
+
 impl SceneError {
     const PRINTED: usize = 50;
 
@@ -103,6 +120,13 @@ impl SceneError {
         &self.reports
     }
 
+    /// The first fault, in parts.
+    pub fn notice(&self) -> Notice {
+        let has_more = self.count() > 1;
+        let Some(first) = self.reports.first() else { return Notice { has_more, ..Notice::default() } };
+        Notice { message: first.message_in(&self.name), excerpt: first.excerpt(), has_more }
+    }
+
     /// How many faults there are.
     pub fn count(&self) -> usize {
         self.reports.len() + self.more
@@ -112,14 +136,10 @@ impl SceneError {
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, report) in self.reports.iter().take(Self::PRINTED).enumerate() {
-            let Report { line, column, message, .. } = report;
             let end = if i == 0 { "" } else { "\n" };
-            write!(f, "{end}{}:{line}:{column}: {message}", self.name)?;
-            if !report.source.is_empty() {
-                let number = line.to_string();
-                write!(f, "\n  {number} | {}", report.source)?;
-                write!(f, "\n  {:1$} | ", "", number.len())?;
-                write!(f, "{:1$}{2}", "", report.caret, "^".repeat(report.caret_width))?;
+            write!(f, "{end}{}", report.message_in(&self.name))?;
+            for line in report.excerpt().iter().flatten() {
+                write!(f, "\n{line}")?;
             }
         }
         match self.count().saturating_sub(Self::PRINTED) {

@@ -2,7 +2,7 @@
 
 use super::layers::{Canvas, Layer, Level};
 use super::look::Look;
-use crate::text::visible;
+use crate::text::Notice;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -12,14 +12,8 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 /// A fault takes so many rows at most, and a third of the screen.
 const MOST_ROWS: u16 = 8;
 
-/// Faults of a scene: the first one is shown, with its line of the file and a caret.
-pub(super) struct Fault {
-    message: String,
-    /// The line of the file, and the one with the caret below it.
-    excerpt: Option<[String; 2]>,
-    /// How many lines tell of other faults.
-    has_more: bool,
-}
+/// The first fault of a scene, with its line of the file and a caret.
+pub(super) struct Fault(pub(super) Notice);
 
 impl Layer for Fault {
     fn level(&self) -> Level {
@@ -36,24 +30,16 @@ impl Layer for Fault {
 }
 
 impl Fault {
-    /// As an error tells it.
-    pub(super) fn new(error: &str) -> Self {
-        let mut lines = error.lines().map(visible).peekable();
-        let message = lines.next().unwrap_or_default();
-        let excerpt = lines.next_if(|line| line.starts_with(' ')).and_then(|line| Some([line, lines.next()?]));
-        Self { message, excerpt, has_more: lines.next().is_some() }
-    }
-
     /// What fits into that many columns.
     fn lines(&self, width: usize) -> Vec<String> {
-        let mut lines = wrapped(&self.message, width);
-        if let Some(excerpt) = &self.excerpt {
+        let mut lines = wrapped(&self.0.message, width);
+        if let Some(excerpt) = &self.0.excerpt {
             let [_, caret] = excerpt;
             // So far to the left that the caret can be seen.
             let cut = caret.width().saturating_sub(width).min(caret.find('^').unwrap_or(0));
             lines.extend(excerpt.iter().map(|line| part(line, cut, width)));
         }
-        if self.has_more {
+        if self.0.has_more {
             lines.push("more is wrong: termtrace check tells all".chars().take(width).collect());
         }
         lines
@@ -115,18 +101,29 @@ fn part(text: &str, from: usize, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene_text::{Faults, SceneError, Span};
 
-    const ERROR: &str = "my.ron:3:35: unknown field \"radus\"; did you mean \"radius\"?
-  3 |         Sphere(center: (0, 1, 0), radus: 1),
-    |                                   ^^^^^
-my.ron:9:1: another";
+    const TEXT: &str = "(\n  radus: 1)";
+
+    fn fault() -> Fault {
+        let faults = ["unknown field \"radus\"; did you mean \"radius\"?", "another"].map(str::to_owned);
+        let mut found = Faults::default();
+        for (message, span) in faults.into_iter().zip([Span { start: 4, end: 9 }, Span { start: 11, end: 12 }]) {
+            found.add(span, || message);
+        }
+        Fault(SceneError::new("my.ron", TEXT, found).notice())
+    }
 
     #[test]
     fn a_fault_fits_any_width() {
-        let fault = Fault::new(ERROR);
-        let wide = fault.lines(78);
-        assert_eq!(wide[..3], *ERROR.lines().take(3).collect::<Vec<_>>());
-        assert_eq!(wide[3..], ["more is wrong: termtrace check tells all"]);
+        let fault = fault();
+        let wide = [
+            "my.ron:2:3: unknown field \"radus\"; did you mean \"radius\"?",
+            "  2 |   radus: 1)",
+            "    |   ^^^^^",
+            "more is wrong: termtrace check tells all",
+        ];
+        assert_eq!(fault.lines(78), wide);
         for width in 1..100 {
             let lines = fault.lines(width);
             assert!(lines.iter().all(|line| line.trim_end().width() <= width), "{width}: {lines:?}");
@@ -140,7 +137,8 @@ my.ron:9:1: another";
 
     #[test]
     fn errors_of_one_line_have_no_excerpt() {
-        assert_eq!(Fault::new("x.ron: there is no such file").lines(40), ["x.ron: there is no such file"]);
-        assert_eq!(Fault::new("").lines(40), [""]);
+        let lines = |message: &str| Fault(message.to_owned().into()).lines(40);
+        assert_eq!(lines("x.ron: there is no such file"), ["x.ron: there is no such file"]);
+        assert_eq!(lines(""), [""]);
     }
 }

@@ -10,6 +10,7 @@ use crate::grid::{Size, Window};
 use crate::protocol::{FENCE, Modes};
 use crate::render::Cost;
 use crate::scene::Scene;
+use crate::text::Notice;
 use crate::tone::Picture;
 use std::sync::LazyLock;
 use std::time::Duration;
@@ -120,7 +121,11 @@ impl Driver {
                 self.viewer.hear_typed(Vec::new(), self.now).expect("nothing is learnt");
             }
             _ => match next() % 3 {
-                0 => self.viewer.show_fault("x.ron:1:1: a fault\n  1 | (\n    | ^\nx.ron:2:1: another"),
+                0 => self.viewer.show_fault(Notice {
+                    message: "x.ron:1:1: a fault".to_owned(),
+                    excerpt: Some(["  1 | (", "    | ^"].map(str::to_owned)),
+                    has_more: true,
+                }),
                 1 => self.viewer.ask_keep("x.ron".to_owned()),
                 _ => self.viewer.say("a note"),
             },
