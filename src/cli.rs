@@ -316,7 +316,8 @@ fn print_error(text: &str) {
 /// What the system says went wrong, without its number.
 fn reason(error: &io::Error) -> String {
     let text = error.to_string();
-    text.split(" (os error").next().unwrap_or(&text).to_owned()
+    let number = error.raw_os_error().map(|number| format!(" (os error {number})"));
+    number.and_then(|number| text.strip_suffix(&number)).unwrap_or(&text).to_owned()
 }
 
 /// Says what the threads said when they panicked, and ends as a panic does.

@@ -1,5 +1,6 @@
 //! What the picture's cells are made of: the flags of the commands that show cells.
 
+use super::settings::defaults;
 use clap::{Args, ValueEnum};
 use termtrace::capabilities::{CellMode, ColorChoice, Colors, GlyphChoice, Glyphs, Hints, terminfo_colors};
 
@@ -20,11 +21,9 @@ What stands in the cells (--glyphs):
 
 #[derive(Args)]
 pub(super) struct CellArgs {
-    /// Which colours the picture may have [default: auto]
-    #[arg(long, value_name = "WHICH")]
+    #[arg(long, help = defaults::help("color", "Which colours the picture may have"), value_name = "WHICH")]
     color: Option<Color>,
-    /// What its cells are made of [default: auto]
-    #[arg(long, value_name = "KIND")]
+    #[arg(long, help = defaults::help("glyphs", "What its cells are made of"), value_name = "KIND")]
     glyphs: Option<Kind>,
 }
 

@@ -1,5 +1,6 @@
 //! How the encoder turns grids into bytes: the flags of every command that sends frames.
 
+use super::settings::defaults;
 use clap::{Args, ValueEnum};
 use termtrace::encode;
 
@@ -37,13 +38,9 @@ pub(super) struct OrderArgs {
 /// What may be lost on the way.
 #[derive(Args)]
 pub(super) struct LossArgs {
-    /// How near a moving picture is to the right one; it decides bytes, not rays [default: exact; live, on a slow link,
-    /// equal]
-    #[arg(long, value_name = "QUALITY")]
+    #[arg(long, help = defaults::help("quality", "How near a moving picture is to the right one; it decides bytes, not rays"), value_name = "QUALITY")]
     quality: Option<Quality>,
-    /// The most bytes per second in the mean, such as 50k or 2M; what is most wrong is sent first [default: as many as
-    /// the link takes]
-    #[arg(long, value_name = "BYTES", value_parser = parse_rate)]
+    #[arg(long, help = defaults::help("max_rate", "The most bytes per second in the mean, such as 50k or 2M; what is most wrong is sent first"), value_name = "BYTES", value_parser = parse_rate)]
     max_rate: Option<u32>,
 }
 

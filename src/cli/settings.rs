@@ -4,6 +4,7 @@
 //! underscores that in the file, and whatever is written there is read as the flag is. What comes first holds: flag,
 //! environment, file, default.
 
+pub(super) mod defaults;
 mod entries;
 pub(super) mod files;
 pub(super) mod keys;
@@ -35,8 +36,7 @@ binds keys. termtrace config says what holds, who says so, and where the files a
 pub(super) struct TerminalArgs {
     #[command(flatten)]
     pub(super) cells: CellArgs,
-    /// A cell's height over its width [default: as the terminal says, or 2]
-    #[arg(long, value_name = "A", value_parser = parse_cell_aspect)]
+    #[arg(long, help = defaults::help("cell_aspect", "A cell's height over its width"), value_name = "A", value_parser = parse_cell_aspect)]
     pub(super) cell_aspect: Option<f32>,
 }
 
@@ -54,23 +54,17 @@ pub(super) struct SettingArgs {
     pub(super) terminal: TerminalArgs,
     #[command(flatten)]
     pub(super) view: ViewArgs,
-    /// Rays per pixel, also in motion, or `best`: 1, and up to 64 where there are edges [default: as many as the time
-    /// allows, at rest best]
-    #[arg(long, value_name = "N|best", value_parser = parse_samples)]
+    #[arg(long, help = defaults::help("samples", "Rays per pixel, also in motion, or `best`: 1, and up to 64 where there are edges"), value_name = "N|best", value_parser = parse_samples)]
     pub(super) samples: Option<Sampling>,
     #[command(flatten)]
     pub(super) loss: LossArgs,
-    /// The most frames per second [default: 60]
-    #[arg(long, value_name = "N", value_parser = parse_fps)]
+    #[arg(long, help = defaults::help("fps", "The most frames per second"), value_name = "N", value_parser = parse_fps)]
     pub(super) fps: Option<f32>,
-    /// How fast keys move the eye: a factor from 0.1 to 10 [default: 1]
-    #[arg(long, value_name = "N", value_parser = parse_speed)]
+    #[arg(long, help = defaults::help("move_speed", "How fast keys move the eye: a factor from 0.1 to 10"), value_name = "N", value_parser = parse_speed)]
     move_speed: Option<f32>,
-    /// How fast keys turn the view: a factor from 0.1 to 10 [default: 1]
-    #[arg(long, value_name = "N", value_parser = parse_speed)]
+    #[arg(long, help = defaults::help("turn_speed", "How fast keys turn the view: a factor from 0.1 to 10"), value_name = "N", value_parser = parse_speed)]
     turn_speed: Option<f32>,
-    /// Each press of a key moves one step at once; nothing glides or moves by itself [default: false]
-    #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    #[arg(long, help = defaults::help("reduced_motion", "Each press of a key moves one step at once; nothing glides or moves by itself"), value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     #[arg(hide_possible_values = true)]
     reduced_motion: Option<bool>,
 }
@@ -152,7 +146,7 @@ impl Settings {
                 let said = by_flag(setting, given)
                     .or_else(|| by_environment(setting))
                     .or_else(|| by_file(setting, &entries, file.as_ref()?))
-                    .unwrap_or_else(|| (default_of(setting), SaidBy::Nobody));
+                    .unwrap_or_else(|| (defaults::of(setting.get_id().as_str()).to_owned(), SaidBy::Nobody));
                 Held { name: setting.get_id().to_string(), value: said.0, said_by: said.1 }
             })
             .collect();
@@ -207,13 +201,6 @@ fn by_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<Said> {
     Some((entry.text.clone(), SaidBy::File(file.path.clone(), entry.line)))
 }
 
-/// As the help says it.
-fn default_of(setting: &Arg) -> String {
-    let help = setting.get_help().map(ToString::to_string).unwrap_or_default();
-    let default = help.split_once("[default: ").and_then(|(_, rest)| rest.split_once(']'));
-    default.map_or_else(String::new, |(default, _)| default.to_owned())
-}
-
 fn flag(setting: &Arg) -> String {
     format!("--{}", setting.get_long().unwrap_or_default())
 }
@@ -238,11 +225,13 @@ fn check(command: &Command, setting: &Arg, text: &str) -> Result<(), String> {
 mod tests {
     use super::*;
 
-    /// What `termtrace config` says where nobody has said anything.
+    /// What `termtrace config` says where nothing is said of a setting.
     #[test]
     fn the_help_of_every_setting_says_its_default() {
         for setting in command().get_arguments() {
-            assert_ne!(default_of(setting), "", "{setting}");
+            let default = defaults::of(setting.get_id().as_str());
+            let help = setting.get_help().map(ToString::to_string).unwrap_or_default();
+            assert!(help.ends_with(&format!("[default: {default}]")), "{setting}: {help}");
         }
     }
 }

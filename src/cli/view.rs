@@ -1,5 +1,6 @@
 //! What of the scene is shown: the flag of the commands that make pictures.
 
+use super::settings::defaults;
 use super::{Done, Failure};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -22,8 +23,7 @@ What is shown (--view); all but the first trace one ray for each pixel:
 
 #[derive(Args)]
 pub(super) struct ViewArgs {
-    /// What of the scene is shown [default: shaded]
-    #[arg(long, value_name = "VIEW", value_parser = view_parser(), hide_possible_values = true)]
+    #[arg(long, help = defaults::help("view", "What of the scene is shown"), value_name = "VIEW", value_parser = view_parser(), hide_possible_values = true)]
     view: Option<View>,
 }
 

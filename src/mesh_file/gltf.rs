@@ -101,9 +101,9 @@ fn check_count(json: &[u8]) -> Result<(), Fault> {
 fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], at: usize) -> Fault {
     let line_start = text.split_inclusive(|&byte| byte == b'\n').take(error.line().saturating_sub(1)).map(<[u8]>::len);
     let place = json.len() - text.len() + line_start.sum::<usize>() + error.column().saturating_sub(1);
-    let full = error.to_string();
-    let message = full.split(" at line ").next().unwrap_or(&full);
-    let message = format!("this is not JSON: {message}");
+    // serde_json ends its message with the place, which is told in another way here.
+    let (full, told) = (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
+    let message = format!("this is not JSON: {}", full.strip_suffix(&told).unwrap_or(&full));
     if at == 0 { Fault::in_text(place, message) } else { Fault::at_byte(at + place, message) }
 }
 
