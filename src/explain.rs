@@ -110,7 +110,7 @@ impl Lit {
 pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u32; 2]) -> Explanation {
     let steps = trace_pixel(scene, camera, resolution, pixel);
     let mut listener = Listener::default();
-    hit::closest_hit_watched(scene, &steps.ray, &mut listener);
+    hit::closest_hit_witnessed(scene, &steps.ray, &mut listener);
     let one = Framebuffer { resolution: Resolution::square(1, 1), pixels: vec![steps.light] };
     Explanation {
         resolution,
@@ -145,7 +145,7 @@ fn lit(scene: &Scene, light: &PointLight, point: &SurfacePoint) -> Lit {
     let incidence = shade::incidence_on_either_side(light, point);
     let ray = shade::shadow_ray(light, point);
     let blocker = (scene.shadows && 0.0 < incidence.cosine)
-        .then(|| hit::any_hit_watched(scene, &ray, TO_THE_LIGHT, &mut Listener::default()))
+        .then(|| hit::any_hit_witnessed(scene, &ray, TO_THE_LIGHT, &mut Listener::default()))
         .flatten();
     Lit { incidence, blocker: blocker.map(|hit| (Name::of(scene, hit.object, hit.part), hit.t)) }
 }

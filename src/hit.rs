@@ -145,15 +145,15 @@ pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
     met == [1]
 }
 
-/// [`closest_hit`] with somebody who is told what the ray is tested against.
-pub fn closest_hit_watched(scene: &Scene, ray: &Ray, witness: &mut impl Witness) -> Option<Hit> {
+/// [`closest_hit`], with a witness of what the ray is tested against.
+pub fn closest_hit_witnessed(scene: &Scene, ray: &Ray, witness: &mut impl Witness) -> Option<Hit> {
     let (t, place) = simd::run(Watched::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, witness });
     let PartId { object, part } = scene.parts().id(place?);
     Some(Hit { t, object, part })
 }
 
-/// [`any_hit`] with somebody who is told what the ray is tested against; what it met, which need not be the closest.
-pub fn any_hit_watched(scene: &Scene, ray: &Ray, within: Interval, witness: &mut impl Witness) -> Option<Hit> {
+/// [`any_hit`], with a witness of what the ray is tested against. Returns what it met, which need not be the closest.
+pub fn any_hit_witnessed(scene: &Scene, ray: &Ray, within: Interval, witness: &mut impl Witness) -> Option<Hit> {
     let (_, place) = simd::run(Watched::<_, ANY> { scene, ray, within, witness });
     let PartId { object, part } = scene.parts().id(place?);
     let t = scene.objects()[object as usize].shape.part(part).closest_crossing(&Probe::new(*ray), within)?;

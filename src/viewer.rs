@@ -159,6 +159,10 @@ impl Viewer {
         Ok(viewer)
     }
 
+    fn set_time(&mut self, now: Duration) {
+        self.now = now;
+    }
+
     /// What the terminal is to be asked, at the start and whenever it has been somebody else's.
     pub(crate) fn questions(&mut self, now: Duration) -> Vec<u8> {
         let questions = self.display.questions();
@@ -252,7 +256,7 @@ impl Viewer {
 
     /// The next thing to do.
     pub(crate) fn step(&mut self, busy: Busy, now: Duration) -> Step {
-        self.now = now;
+        self.set_time(now);
         self.eye.go_on(now);
         self.screen.set_moving(self.eye.mode());
         self.mark_light();
@@ -334,7 +338,7 @@ impl Viewer {
     /// Appends the bytes that bring the screen up to date. [`end_frame`](Self::end_frame) is to be called with what it
     /// appended.
     pub(crate) fn draw(&mut self, now: Duration, bytes: &mut Vec<u8>) {
-        self.now = now;
+        self.set_time(now);
         let size = self.display.size();
         let limit = self.pacing.limit(Screen::usual_bytes(size), now);
         self.screen.draw(size, &self.options.bindings, limit, now, bytes);

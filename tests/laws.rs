@@ -282,6 +282,47 @@ fn what_needs_no_terminal_knows_no_system_and_no_clock() {
     assert_eq!(impure_words("std::thread::spawn(f); std::time::SystemTime::now()"), ["thread", "SystemTime"]);
 }
 
+/// The modules in which each piece of state has one owner. (`pace` has a second file for the timeouts of a link.)
+const OWNED: [&str; 5] = ["input", "protocol", "control", "viewer", "app"];
+
+/// No field is assigned but in the file that defines its type: there alone it is to be read how a state changes.
+#[test]
+fn a_field_is_assigned_in_the_file_of_its_type() {
+    let files = library_files();
+    for (path, text) in files.iter().filter(|(path, _)| OWNED.contains(&&*stage(path))) {
+        let code = code(text);
+        let foreign = foreign_assignments(&code);
+        assert!(foreign.is_empty(), "{} assigns {foreign:?}", path.display());
+    }
+    let own =
+        "struct A {\n    b: u8,\n}\nimpl A {\n    fn f(&mut self) {\n        self.b = 1;\n        self.c.b |= 2;\n";
+    assert_eq!(foreign_assignments(own), [""; 0]);
+    let foreign = "impl A {\n    fn f(&mut self, b: u8) {\n        self.b = 1;\n        self.c.d |= self.e == 2;\n";
+    assert_eq!(foreign_assignments(foreign), ["self.b", "self.c.d"]);
+}
+
+/// The fields of `self`, or of what it has, that code assigns and no type in it has.
+fn foreign_assignments(code: &str) -> Vec<&str> {
+    let is_name = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_');
+    let (mut fields, mut in_struct) = (BTreeSet::new(), false);
+    for line in code.lines() {
+        if line.contains("struct ") && line.ends_with('{') {
+            in_struct = true;
+        } else if line == "}" {
+            in_struct = false;
+        }
+        let name = line.split_once(": ").and_then(|(name, _)| name.rsplit(' ').next());
+        fields.extend(name.filter(|name| in_struct && is_name(name)));
+    }
+    let assigned = code.lines().filter_map(|line| {
+        let (place, value) = line.trim_start().split_once(' ')?;
+        let operator = value.split(' ').next()?;
+        let assigns = operator.ends_with('=') && !["==", "!=", "<=", ">="].contains(&operator);
+        (assigns && place.starts_with("self.") && place.split('.').all(is_name)).then_some(place)
+    });
+    assigned.filter(|place| !place.rsplit('.').next().is_some_and(|field| fields.contains(field))).collect()
+}
+
 /// What code names of the operating system and its clocks.
 fn impure_words(code: &str) -> Vec<&'static str> {
     let of_std = names_after(code, "std::");

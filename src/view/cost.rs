@@ -1,6 +1,6 @@
 //! What the rays of a pixel are tested against, each by itself: the eye ray, and the shadow rays from where it ends.
 
-use crate::hit::{Test, Witness, any_hit_watched, closest_hit_watched};
+use crate::hit::{Test, Witness, any_hit_witnessed, closest_hit_witnessed};
 use crate::render::Sight;
 use crate::scene::Scene;
 use crate::shade::{self, TO_THE_LIGHT};
@@ -21,10 +21,10 @@ impl Witness for Count {
 
 pub(super) fn tests(scene: &Scene, sight: &Sight) -> u32 {
     let mut count = Count::default();
-    closest_hit_watched(scene, &sight.ray, &mut count);
+    closest_hit_witnessed(scene, &sight.ray, &mut count);
     if let Some(surface) = sight.surface(scene).filter(|_| scene.shadows) {
         for light in scene.lights.iter().filter(|light| shade::incidence(light, &surface).is_some()) {
-            any_hit_watched(scene, &shade::shadow_ray(light, &surface), TO_THE_LIGHT, &mut count);
+            any_hit_witnessed(scene, &shade::shadow_ray(light, &surface), TO_THE_LIGHT, &mut count);
         }
     }
     count.0

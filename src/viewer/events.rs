@@ -30,7 +30,7 @@ impl Viewer {
 
     /// The terminal is somebody else's from now on: nothing is held, and nothing that was asked will be answered.
     pub(crate) fn lose_terminal(&mut self, now: Duration) {
-        self.now = now;
+        self.set_time(now);
         self.eye.stand_still(now);
         self.eye.set_hears_releases(false, now);
         self.hand.let_go();
@@ -50,7 +50,7 @@ impl Viewer {
 
     /// What comes after a request to leave or to stop is not heard.
     fn take_inputs(&mut self, inputs: &[Input], now: Duration) -> Result<(), OutOfMemory> {
-        self.now = now;
+        self.set_time(now);
         for (at, input) in inputs.iter().enumerate() {
             match input {
                 input if pointing::is_outdated(input, inputs.get(at + 1)) => {}

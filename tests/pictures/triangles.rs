@@ -12,7 +12,7 @@ use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::Resolution;
 use termtrace::hit::{
-    Hit, Kernel, Test, Witness, any_hit, any_hit_watched, any_hits, closest_hit, closest_hit_watched, closest_hits,
+    Hit, Kernel, Test, Witness, any_hit, any_hit_witnessed, any_hits, closest_hit, closest_hit_witnessed, closest_hits,
 };
 use termtrace::lanes::Eight;
 use termtrace::lanes::{ALL, LANES, set_bits};
@@ -351,7 +351,7 @@ proptest! {
     fn a_witness_changes_nothing_and_knows_all(shapes in prop::collection::vec(shape(), 1..40), ray in ray()) {
         let scene = scene(shapes);
         let mut witness = Listener::default();
-        let hit = closest_hit_watched(&scene, &ray, &mut witness);
+        let hit = closest_hit_witnessed(&scene, &ray, &mut witness);
         prop_assert_eq!(hit, closest_hit(&scene, &ray));
         prop_assert!(witness.is_right(&scene, &ray, 0.0, hit), "{:?} {:?}", witness.tests, hit);
         let closest = witness.tests.iter().filter_map(|test| test.t).fold(f32::INFINITY, f32::min);
@@ -361,7 +361,7 @@ proptest! {
         prop_assert!(parts <= 16 || witness.boxes > 0 || witness.tests.len() == parts as usize);
         for within in [TO_THE_LIGHT, Interval { min: 0.3, max: 0.7 }, Interval { min: -1.0, max: 0.5 }] {
             let mut witness = Listener::default();
-            let met = any_hit_watched(&scene, &ray, within, &mut witness);
+            let met = any_hit_witnessed(&scene, &ray, within, &mut witness);
             prop_assert_eq!(met.is_some(), any_hit(&scene, &ray, within));
             prop_assert!(met.is_none_or(|hit| within.contains(hit.t)));
             prop_assert!(witness.is_right(&scene, &ray, within.min, met), "{:?} {:?}", witness.tests, met);
