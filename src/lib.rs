@@ -93,7 +93,8 @@
 //!    themselves (a dev-dependency of the crate on itself), lets them say where it is to fail; no other build has it.
 //!    [`input`], [`protocol`], [`pace`], [`control`] and `viewer` know no file, thread or clock: they are told the time.
 //! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no
-//!    timer runs.
+//!    timer runs. *When* to trace, refine, draw and wait is decided by one function of one snapshot of facts
+//!    (`viewer::schedule`). Each piece of state has one owner: no field is assigned but in the file that defines its type.
 //! 7. The library neither prints nor exits, and installs nothing by itself.
 //! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over arrays of its rays, in which
 //!    eight rays stand side by side all the way ([`EightRays`](ray::EightRays)), each with a bit for whether it is asked
@@ -106,7 +107,17 @@
 //! tested against, and a new surface is one file under `shape/` and a variant of each; scene files then need its fields in
 //! [`scene_file`] and their check in [`scene`]. No RON library but in the tests: see [`scene_text`]. No fixed epsilon: see
 //! [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin). No order of the tree that could show: see
-//! [`Bounds::crossed`](bounds::Bounds::crossed).
+//! [`Bounds::crossed`](bounds::Bounds::crossed). No flag says that a picture is out of date: the shot that is wanted is
+//! compared with the one that was begun. No list of panels: a panel is a layer of the viewer, one file with a type that
+//! implements `viewer::layers::Layer`, and the line that opens it.
+//!
+//! # One key press
+//!
+//! `app::live` reads the terminal's bytes -> `viewer::events`: the receiver of [`protocol`] cuts them into inputs
+//! ([`input`]), the bindings of [`control`] into a command, and that moves the eye (`viewer::eye`) -> `viewer::schedule`
+//! decides that a frame is to be traced -> `app::renderer` traces it ([`render`]) -> the frame comes to `viewer::screen`,
+//! and the schedule decides that it is to be drawn: cells ([`cell`]), layers over them, bytes ([`encode`]) ->
+//! [`terminal`].
 
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
 compile_error!("termtrace runs on Linux and macOS: it talks to the terminal through POSIX termios, poll and signals");
