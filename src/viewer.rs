@@ -163,7 +163,7 @@ impl Viewer {
         self.now = now;
     }
 
-    /// What the terminal is to be asked, at the start and whenever it has been somebody else's.
+    /// Returns the queries for the terminal: to be sent at the start, and whenever another program has had the terminal.
     pub(crate) fn questions(&mut self, now: Duration) -> Vec<u8> {
         let questions = self.display.questions();
         let bytes = if questions.is_open() { questions.bytes().to_vec() } else { Vec::new() };
@@ -388,7 +388,7 @@ impl Viewer {
         self.display.capabilities()
     }
 
-    /// Where the user has moved the camera, if he has.
+    /// The camera, if the user has moved it.
     pub(crate) fn moved(&self) -> Option<Camera> {
         self.eye.moved()
     }

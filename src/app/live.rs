@@ -64,7 +64,7 @@ impl Live {
         Ok(Self { viewer, terminal, clock, bytes: Vec::new(), named, exports, proposed: None })
     }
 
-    /// Where the user has moved the camera, if he has.
+    /// The camera, if the user has moved it.
     pub(super) fn moved(&self) -> Option<Camera> {
         self.viewer.moved()
     }
@@ -158,7 +158,7 @@ impl Live {
             return self.suspend(Some(Stopped::Process), signals);
         }
         if signals.take_continued() {
-            // Stopped unasked, and whoever had the terminal since then left it as he liked.
+            // Stopped unasked, and another program may have left the terminal in any state.
             return self.suspend(None, signals);
         }
         let mut buffer = [0; 4096];

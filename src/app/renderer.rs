@@ -70,7 +70,7 @@ impl Renderer {
             let _ = begun.send(Ok(()));
             for order in wanted {
                 let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| order(&mut tracer))));
-                // Nobody listens any more: the loop has ended.
+                // The loop may have ended.
                 let heard = done.send(traced).is_ok();
                 waker.wake();
                 if !heard {

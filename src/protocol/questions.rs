@@ -1,7 +1,7 @@
 //! What a terminal is asked at the start, all at once, and what becomes of its replies.
 //!
 //! The batch ends with the question that every terminal answers (DA1). Terminals answer in order: when that answer is
-//! here, no other of the batch will come. Nobody waits for it.
+//! here, no other of the batch will come. Nothing waits for it.
 
 use crate::capabilities::{Answers, Asking, Hints, TEST_COLOR};
 use crate::input::Reply;
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!((answers.block_width, answers.synchronized_output), (Some(1), Some(true)));
         assert_eq!((answers.kitty_keyboard, answers.cell_pixels), (Some(true), Some((10, 20))));
         assert_eq!((answers.truecolor, answers.light_background()), (Some(true), Some(true)));
-        // Forged, or an answer to somebody else.
+        // Forged, or an answer to another program.
         assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));
         assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
         assert_eq!(questions.answers(), &answers);

@@ -18,16 +18,16 @@ const fn up_to(samples: u32) -> Sampling {
 const ONE: usize = 1;
 /// The most of a picture in motion.
 const MOST: usize = 3;
-/// So many times as long as the level before it takes each level, until more is known: coarse pixels are four in one;
+/// How many times as long each level takes as the one before it, until more is known: coarse pixels are four in one;
 /// then only the edges are traced again.
 const GROWTH: [f64; MOST + 1] = [1.0, 4.0, 2.0, 3.0];
 /// So much of a frame's time is for tracing.
 const SHARE: f64 = 0.75;
 /// So much of that may be expected of a finer level: between this and all of it nothing changes.
 const ROOM: f64 = 0.8;
-/// So many frames in a row have to have room for a finer level before it is tried.
+/// How many frames in a row have to have room for a finer level before it is tried.
 const ROOMY: u32 = 8;
-/// So many have to be late before a coarser one is: one may be so by chance, if it is not very late.
+/// How many have to be late before a coarser one is: one may be so by chance, if it is not very late.
 const LATE: u32 = 2;
 
 /// How finely the next picture is traced.
@@ -38,7 +38,7 @@ pub(super) struct Effort {
     level: usize,
     /// The level of the last picture, and its time in seconds.
     last: Option<(usize, f64)>,
-    /// So many times as long as the level before it takes each.
+    /// How many times as long each level takes as the one before it.
     growth: [f64; MOST + 1],
     /// How many pictures in a row left room for a finer level.
     roomy: u32,
@@ -52,7 +52,7 @@ impl Effort {
         Self { forced, level: ONE, last: None, growth: GROWTH, roomy: 0, late: 0 }
     }
 
-    /// For a picture of a new view: in the midst of a motion, or after a rest, when whoever pressed the key waits for it.
+    /// For a picture of a new view: in the midst of a motion, or after a rest, when the user waits for it.
     pub(super) fn of_new_view(&self, in_motion: bool) -> Sampling {
         let level = if in_motion { self.level } else { self.level.min(ONE) };
         self.forced.unwrap_or(LEVELS[level])

@@ -28,7 +28,7 @@ impl Viewer {
         self.take_inputs(&inputs, now)
     }
 
-    /// The terminal is somebody else's from now on: nothing is held, and nothing that was asked will be answered.
+    /// Another program has the terminal from now on: nothing is held, and no outstanding query will be answered.
     pub(crate) fn lose_terminal(&mut self, now: Duration) {
         self.set_time(now);
         self.eye.stand_still(now);
@@ -37,8 +37,8 @@ impl Viewer {
         self.pacing.forget_replies();
     }
 
-    /// What was typed while the terminal was somebody else's is heard; of replies it was the last that was waited for, and
-    /// what was asked is asked again.
+    /// Hears what was typed while another program had the terminal. Replies among it are dropped: what was asked is asked
+    /// again.
     ///
     /// # Errors
     /// As for [`hear`](Self::hear).
@@ -56,7 +56,7 @@ impl Viewer {
                 input if pointing::is_outdated(input, inputs.get(at + 1)) => {}
                 Input::Event(Event::Mouse(event)) => self.take_mouse(*event),
                 Input::Event(Event::Key(key)) => self.take_key(key),
-                // Nobody says when the keys held now are let go.
+                // No event will tell when the keys held now are let go.
                 Input::Event(Event::FocusLost) => {
                     self.hand.let_go();
                     self.eye.let_go(now);

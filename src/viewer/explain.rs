@@ -25,9 +25,9 @@ use place::{marks, panel_area};
 
 /// The pixel that is explained, and what there is to say of it.
 pub(super) struct Explaining {
-    /// Its place on the screen,
+    /// Its place on the screen.
     pixel: [u32; 2],
-    /// which has so many.
+    /// How many pixels the screen has.
     resolution: Resolution,
     explanation: Explanation,
     inset: Inset,
@@ -97,7 +97,7 @@ impl Explaining {
         }
     }
 
-    /// The cursor goes so many pixels to the right and down.
+    /// Moves the cursor by these numbers of pixels to the right and down.
     pub(super) fn step(&mut self, frame: &Frame, [right, down]: [i32; 2]) {
         let [x, y] = self.pixel;
         self.put(frame, [x.saturating_add_signed(right), y.saturating_add_signed(down)]);

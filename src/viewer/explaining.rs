@@ -3,7 +3,7 @@
 use super::Viewer;
 use crate::control::Toward;
 
-/// With Shift the cursor goes so many pixels at once.
+/// How many pixels the cursor goes at once with Shift.
 const FASTER: i32 = 8;
 
 /// How many lines a page of the panel goes on.
@@ -22,7 +22,7 @@ impl Viewer {
         self.screen.explain(|explaining, frame| explaining.step(frame, step));
     }
 
-    /// So many pages on in what is said of the pixel.
+    /// Scrolls the explanation by pages.
     pub(super) fn scroll(&mut self, pages: isize) {
         self.screen.explain(|explaining, _| explaining.scroll(pages * PAGE));
     }

@@ -7,7 +7,7 @@ use crate::memory::{self, OutOfMemory};
 /// The most pixels of a live picture: 1,048,576 cells of half blocks or of the ramp, 262,144 of shapes. Of a window with
 /// more cells the picture covers the upper left part, in the window's shape, and the rest stays empty.
 ///
-/// So many take 490 MB at the peak, and twice as many 770 MB (in all colours, with a wipe or on a slow link). Windows of
+/// A picture of this size takes 490 MB at the peak, and one of twice the size 770 MB (in all colours, with a wipe or on a slow link). Windows of
 /// real terminals have less than a tenth of that: a 4K screen has 100,000 cells of 8 by 10 pixels.
 pub const MAX_PIXELS: u32 = 1 << 21;
 

@@ -9,7 +9,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph, Widget};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// A fault takes so many rows at most, and a third of the screen.
+/// The most rows that a fault takes; nor does it take more than a third of the screen.
 const MOST_ROWS: u16 = 8;
 
 /// The first fault of a scene, with its line of the file and a caret.
@@ -65,7 +65,7 @@ fn inner(width: u16) -> usize {
     usize::from(width.saturating_sub(2)).max(1)
 }
 
-/// In lines of at most so many columns, between words where there are some.
+/// The text in lines of at most that many columns, broken between words where there are some.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_inclusive([' ', '/']) {
@@ -87,7 +87,7 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The columns from that one on, at most so many.
+/// The columns from that one on, at most that many.
 fn part(text: &str, from: usize, width: usize) -> String {
     let mut column = 0;
     let within = text.chars().filter(|c| {

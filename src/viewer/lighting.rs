@@ -8,9 +8,9 @@ use crate::control::{self, Command, Toward};
 use crate::light::PointLight;
 use glam::{Vec2, Vec3};
 
-/// A press moves a light by so much of the picture's height,
+/// How far a press moves a light, in parts of the picture's height.
 const STEP: f32 = 1.0 / 32.0;
-/// and with Shift so many times as far.
+/// How many times as far it does with Shift.
 const FASTER: f32 = 4.0;
 
 impl Viewer {

@@ -82,7 +82,7 @@ pub(super) fn has_room(screen: Rect) -> bool {
     screen.width >= LEAST.0 && screen.height >= LEAST.1
 }
 
-/// The lowest row of the screen with so many below it.
+/// The lowest row of the screen with that many below it.
 pub(super) fn foot(screen: Rect, below: u16) -> Rect {
     Rect { y: screen.bottom().saturating_sub(1 + below), height: screen.height.min(1), ..screen }
 }

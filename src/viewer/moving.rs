@@ -7,7 +7,7 @@ use crate::hit::closest_hit;
 use crate::ray::Ray;
 use glam::Vec3;
 
-/// A press makes the view rectangle so many times as large.
+/// How many times as large a press makes the view rectangle.
 pub(super) const ZOOM: f32 = 1.1;
 
 impl Viewer {

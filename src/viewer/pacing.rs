@@ -100,7 +100,7 @@ impl Pacing {
         self.link.answer_mode(mode, now)
     }
 
-    /// What was asked will not be answered: the terminal was somebody else's in between.
+    /// What was asked will not be answered: another program had the terminal in between.
     pub(super) fn forget_replies(&mut self) {
         self.link.forget();
     }

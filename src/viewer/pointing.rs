@@ -9,7 +9,7 @@ use crate::input::Input;
 use crossterm::event::{Event, MouseEvent, MouseEventKind};
 use glam::{Vec2, Vec3};
 
-/// Who takes hold so many columns beside a line takes hold of the line.
+/// A press this many columns beside the line between two views takes hold of the line.
 const NEAR: f32 = 2.0;
 
 /// Of ways of the mouse that are heard at once, and lead on from each other, the last one tells all.

@@ -60,7 +60,7 @@ fn what_is_done(work: &Work, look: Look, width: usize) -> String {
     format!("{verb} {name}")
 }
 
-/// A bar as wide as there is room, and the share in per cent; nothing where nobody knows it.
+/// A bar as wide as there is room, and the share in per cent; nothing where it is not known.
 fn bar(progress: &Progress, look: Look, width: usize) -> String {
     if progress.total == 0 {
         return String::new();
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!([&*rows[0], &*rows[2]], [format!("+{}+", "-".repeat(44)), format!("| {}.  99 % |", "#".repeat(35))]);
     }
 
-    /// No bar where nobody knows how much there is; and no screen is too small.
+    /// No bar where the total is not known; and no screen is too small.
     #[test]
     fn the_panel_goes_with_any_file_and_screen() {
         let unknown = parsing("x.glb", 0, 0);

@@ -73,7 +73,7 @@ pub(super) enum Action {
 
 /// Decides what is to be done at a time, up to which the eye has been moved if it moves.
 ///
-/// Never returns a time that has passed: whoever waits for it would turn in circles.
+/// Never returns a time that has passed: a driver would not sleep.
 pub(super) fn decide(facts: &Facts, now: Duration) -> Action {
     let Facts { busy, picture, .. } = *facts;
     if picture == Picture::Stale && busy.tracing == Some(Tracing::Refinement) {

@@ -18,7 +18,7 @@ use crate::grid::{Grid, Size};
 use crate::pace::Limit;
 use std::time::Duration;
 
-/// How long the terminal is left alone before more is sent that nobody waits for: colours become exact in a few steps, of
+/// How long the terminal is left alone before more is sent that is not waited for: colours become exact in a few steps, of
 /// which tmux throws none away.
 const BREATH: Duration = Duration::from_millis(33);
 

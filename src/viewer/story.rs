@@ -218,7 +218,7 @@ impl Driver {
         self.is_sending = !bytes.is_empty();
     }
 
-    /// Nobody does anything any more, and the terminal takes and answers everything: soon there is nothing to do.
+    /// No event comes any more, and the terminal takes and answers everything: soon there is nothing to do.
     fn come_to_rest(&mut self) {
         self.viewer.lose_terminal(self.now);
         for _ in 0..MOST_WAKES {

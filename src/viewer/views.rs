@@ -3,7 +3,7 @@
 use super::Viewer;
 use crate::control::Side;
 
-/// A press moves the line by so much of the width.
+/// How far a press moves the line, in parts of the width.
 const STEP: f32 = 1.0 / 32.0;
 
 impl Viewer {

@@ -30,7 +30,7 @@ pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
     if row < half { Rect::new(x, half + 1, width, height - half - 1) } else { Rect::new(x, 0, width, half - 1) }
 }
 
-/// The place of the text in the panel, which has so many lines, and that of the inset below it, which is empty where there
+/// The place of the text in the panel, which has that many lines, and that of the inset below it, which is empty where there
 /// is no room for it.
 pub(super) fn split(inside: Rect, lines: u16) -> [Rect; 2] {
     let [least, most] = INSET;
