@@ -40,17 +40,15 @@
 //! assert!(link.free_at(ms(4)) <= ms(4));
 //! ```
 
-use crate::protocol::{FENCE, Tag};
 use std::time::Duration;
 
 mod blind;
 mod estimates;
 mod ledger;
-mod timeouts;
+mod replies;
 
-use blind::Blind;
-use estimates::{Busy, Rate, Rates, RoundTrip};
-use ledger::{InFlight, Ledger, Matched, Query, Trust};
+use estimates::Rate;
+use replies::{Replies, State};
 
 /// A link is slow that cannot bring so many screens a second.
 const SMOOTH: f64 = 16.0;
@@ -61,76 +59,26 @@ const FRAMES_PER_SECOND: f64 = 36.0;
 const LEAST_BYTES: usize = 200;
 /// So much of the rate is used: the rest is what an estimate may be too high by.
 const SHARE: f64 = 0.86;
+/// What is taken for the time of bytes whose time cannot be told.
+const LONGEST: Duration = Duration::from_secs(1);
 /// So late may bytes be sent without losing their share.
 const CREDIT: Duration = Duration::from_millis(20);
 /// Frames are at least this far apart.
 const FRAME: Duration = Duration::from_micros(16_667);
 /// And so far where the terminal answers nothing.
 const SILENT_FRAME: Duration = Duration::from_micros(33_334);
-/// How much later than expected a reply of a slow link is when the link must have become slower.
-const LATE: Duration = Duration::from_millis(50);
-/// How far apart queries alone are, while frames are sent.
-const PROBE: Duration = Duration::from_secs(1);
-/// After so many bytes a rate is relied on that was never found to be the link's limit: four frames.
-const TRUSTED: f64 = 60_000.0;
-/// What is taken for the time of bytes whose time cannot be told.
-const LONGEST: Duration = Duration::from_secs(1);
 
 /// A link, and what is known of it.
 pub struct Link {
     max_rate: Option<f64>,
     frame: Duration,
-    state: State,
-    ledger: Ledger,
-    tagging: Tagging,
-    /// Whether the second reply to a query of both kinds is to come.
-    echo: bool,
-    /// When a reply last came, if one ever did.
-    heard: Option<Duration>,
-    /// How many times in a row a timeout may have been too short.
-    backoff: u32,
-    probed: Option<Duration>,
-    round_trip: RoundTrip,
-    rates: Rates,
-    busy: Busy,
-    /// How many bytes are known to have arrived since the terminal was silent (slow start).
-    delivered: f64,
-    slow: bool,
+    replies: Replies,
     /// How much of its share of the rate the last frame took.
     fill: f64,
-    blind: Blind,
     /// When all that was sent is through, at the rate that is kept.
     free_at: Duration,
     /// The same without credit.
     drained_at: Duration,
-}
-
-/// What is known of the terminal's replies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
-    /// The terminal is not to be asked: it might print the query.
-    Unasked,
-    /// No reply has come yet, and none is late.
-    Unheard,
-    /// Replies come when they should.
-    Steady,
-    /// A reply is late: a frame at a time. When the terminal is taken for silent.
-    Recovering { until: Duration },
-    /// Which replies belong to which queries is not known: none is asked until no more replies come. When the last came.
-    Settling { heard: Duration },
-    /// The terminal is taken for one that does not reply.
-    Silent,
-}
-
-/// Whether the terminal repeats the number of a mode that does not exist.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Tagging {
-    /// It has reported no mode at all, and might print the query.
-    Unknown,
-    /// It reports modes; this one is asked for when in doubt.
-    Possible,
-    /// It does.
-    Known,
 }
 
 /// What a frame may take on a link that is slow, or of unknown rate.
@@ -148,28 +96,32 @@ impl Link {
         Self {
             max_rate: max_rate.map(f64::from),
             frame: max_frames.map_or(FRAME, |fps| FRAME.max(Duration::from_secs_f32(1.0 / fps))),
-            state: if may_ask { State::Unheard } else { State::Unasked },
-            ledger: Ledger::default(),
-            tagging: Tagging::Unknown,
-            echo: false,
-            heard: None,
-            backoff: 0,
-            probed: None,
-            round_trip: RoundTrip::default(),
-            rates: Rates::default(),
-            busy: Busy::default(),
-            delivered: 0.0,
-            slow: false,
+            replies: Replies::new(may_ask),
             fill: 0.0,
-            blind: Blind::default(),
             free_at: Duration::ZERO,
             drained_at: Duration::ZERO,
         }
     }
 
+    /// The terminal has answered DA1.
+    pub fn answer(&mut self, now: Duration) {
+        self.replies.answer(now);
+    }
+
+    /// The terminal has reported a mode. Whether it is the reply to a query in flight: one that comes twice, or too late,
+    /// or that something else has asked for is none.
+    pub fn answer_mode(&mut self, mode: u16, now: Duration) -> bool {
+        self.replies.answer_mode(mode, now)
+    }
+
+    /// What was asked will not be answered: another program had the terminal in between.
+    pub fn forget(&mut self) {
+        self.replies.forget();
+    }
+
     /// How far apart frames are at least.
     pub fn frame_time(&self) -> Duration {
-        if self.answers() { self.frame } else { self.frame.max(SILENT_FRAME) }
+        if self.replies.answers() { self.frame } else { self.frame.max(SILENT_FRAME) }
     }
 
     /// How many frames a second there are on a slow link.
@@ -182,25 +134,25 @@ impl Link {
         rate.bytes_per_second / self.frames_per_second()
     }
 
-    fn answers(&self) -> bool {
-        !matches!(self.state, State::Unasked | State::Silent)
-    }
-
     /// When the next bytes may be sent, if nothing is heard until then.
     pub fn free_at(&self, now: Duration) -> Duration {
         // A query alone is to wait behind nothing.
-        let free_at = if self.is_probe_due(now) { self.drained_at } else { self.free_at };
+        let free_at = if self.replies.is_probe_due(now) { self.drained_at } else { self.free_at };
         free_at.max(self.has_room_at(now))
     }
 
     /// When there is room for another frame, if nothing is heard until then.
     fn has_room_at(&self, now: Duration) -> Duration {
-        match self.state {
-            State::Settling { .. } if self.is_blind() => self.blind.opens_at(true),
+        match self.replies.state {
+            State::Settling { .. } if self.replies.is_blind() => self.replies.blind.opens_at(true),
             State::Unasked | State::Silent | State::Settling { .. } => Duration::ZERO,
             State::Recovering { until } => {
-                let opens_at = if self.is_blind() { self.blind.opens_at(self.heard.is_some()) } else { Duration::ZERO };
-                opens_at.max(self.times_out_at().unwrap_or_default()).min(until)
+                let opens_at = if self.replies.is_blind() {
+                    self.replies.blind.opens_at(self.replies.heard.is_some())
+                } else {
+                    Duration::ZERO
+                };
+                opens_at.max(self.replies.times_out_at().unwrap_or_default()).min(until)
             }
             State::Unheard | State::Steady => self.window_opens_at(now),
         }
@@ -208,13 +160,13 @@ impl Link {
 
     /// When the congestion window has room for another frame, if nothing is heard until then.
     fn window_opens_at(&self, now: Duration) -> Duration {
-        let Some(times_out_at) = self.times_out_at() else { return Duration::ZERO };
-        if self.is_late(now) {
+        let Some(times_out_at) = self.replies.times_out_at() else { return Duration::ZERO };
+        if self.replies.is_late(now) {
             times_out_at
-        } else if self.ledger.in_flight() <= self.window() {
+        } else if self.replies.ledger.in_flight() <= self.window() {
             Duration::ZERO
         } else if self.has_room_beside_largest() {
-            self.passed_at()
+            self.replies.passed_at()
         } else {
             times_out_at
         }
@@ -223,160 +175,79 @@ impl Link {
     /// What a frame that is sent now may take, if it may not take as much as it likes, on a link for screens of so many
     /// bytes.
     pub fn limit(&mut self, screen: usize, now: Duration) -> Option<Limit> {
-        self.look_at_clock(now);
-        let blind = self.is_blind().then(|| Limit { rate: None, most_bytes: self.blind.most_bytes() });
+        self.replies.look_at_clock(now);
+        let blind = self.replies.is_blind().then(|| Limit { rate: None, most_bytes: self.replies.blind.most_bytes() });
         self.slow(screen).or(blind)
-    }
-
-    /// Whether what is sent now is sent without knowing how much the link takes.
-    fn is_blind(&self) -> bool {
-        matches!(self.state, State::Recovering { .. } | State::Settling { .. }) && !self.knows_rate()
-    }
-
-    /// Whether the rate may be relied on: a rate that was never reached is, when enough has arrived at it.
-    fn knows_rate(&self) -> bool {
-        self.rates.best().is_some_and(|rate| rate.is_limit || self.delivered >= TRUSTED)
-    }
-
-    /// Whether a reply of a slow link is late: the link is slower than it seemed, and what is sent before it is known
-    /// how much would only wait.
-    fn is_late(&self, now: Duration) -> bool {
-        self.slow && self.ledger.oldest().is_some_and(|oldest| now > self.due(oldest) + LATE)
-    }
-
-    /// When the reply to the oldest query in flight should come.
-    fn due(&self, oldest: &InFlight) -> Duration {
-        self.passes(self.busy.until(), oldest) + self.round_trip.expected()
     }
 
     /// Whether no more than the rate times the round trip is in flight beside one large frame: one that was sent at a higher
     /// rate. The next one need not wait until its answer has come all the way back.
     fn has_room_beside_largest(&self) -> bool {
-        let Some(rate) = self.rates.best().filter(|_| self.slow) else { return false };
-        let largest = self.ledger.live().map(|query| query.bytes as f64).fold(0.0, f64::max);
-        self.ledger.in_flight() - largest + self.fill * self.share(rate) <= self.bandwidth_delay_product(rate)
-    }
-
-    /// When the link has passed on all that is in flight, as far as the replies tell.
-    fn passed_at(&self) -> Duration {
-        self.ledger.live().fold(self.busy.until(), |free_at, query| self.passes(free_at, query))
-    }
-
-    /// When the link, if it is free then, has passed on what ends with a query.
-    fn passes(&self, free_at: Duration, query: &InFlight) -> Duration {
-        free_at.max(query.sent) + self.takes(query.bytes)
-    }
-
-    /// How long the link takes over so many bytes; no time if its rate is not known.
-    fn takes(&self, bytes: usize) -> Duration {
-        let rate = self.rates.best().map_or(f64::INFINITY, |rate| rate.bytes_per_second);
-        Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(LONGEST)
+        let Some(rate) = self.replies.rates.best().filter(|_| self.is_slow()) else { return false };
+        let largest = self.replies.ledger.live().map(|query| query.bytes as f64).fold(0.0, f64::max);
+        self.replies.ledger.in_flight() - largest + self.fill * self.share(rate) <= self.bandwidth_delay_product(rate)
     }
 
     /// Whether the link is slow for screens of so many bytes, and what a frame may take then.
     pub fn slow(&mut self, screen: usize) -> Option<Limit> {
         let limit = self.max_rate.unwrap_or(f64::INFINITY);
-        let measured = self.rates.best();
+        let measured = self.replies.rates.best();
         let smooth = screen as f64 * SMOOTH;
         let rate = measured.map_or(f64::INFINITY, |rate| rate.bytes_per_second).min(limit);
         // Slow as soon as a screen does not fit, and fast when two do: in between it stays what it was.
         let is_sure = limit < smooth || measured.is_some_and(|rate| rate.is_limit);
-        self.slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.slow;
+        let slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.is_slow();
+        self.replies.set_slow(slow);
         let most_bytes = LEAST_BYTES.max((rate / self.frames_per_second()) as usize);
-        self.slow.then_some(Limit { rate: Some(rate), most_bytes })
+        slow.then_some(Limit { rate: Some(rate), most_bytes })
     }
 
     /// Whether it was slow when that was last asked.
     pub fn is_slow(&self) -> bool {
-        self.slow
+        self.replies.is_slow()
     }
 
     /// Puts a query behind the bytes of a frame that is sent now.
     pub fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
-        self.look_at_clock(now);
-        let asks = match self.state {
-            State::Unheard | State::Steady | State::Recovering { .. } => true,
-            // The next one only when the last is given up.
-            State::Silent => self.ledger.oldest().is_none(),
-            State::Unasked | State::Settling { .. } => false,
-        };
-        if asks {
-            self.ask(frame, true, now);
+        self.replies.look_at_clock(now);
+        if self.replies.asks() {
+            self.replies.ask(frame, true, now);
         }
-        if self.is_blind() {
-            self.blind.spend(frame.len(), now);
-        }
-        self.fill = self.rates.best().map_or(0.0, |rate| frame.len() as f64 / self.share(rate));
+        self.replies.spend(frame.len(), now);
+        self.fill = self.replies.rates.best().map_or(0.0, |rate| frame.len() as f64 / self.share(rate));
         self.count(frame.len(), now);
     }
 
     /// A query without a frame, if it is time for one, or nothing: its round trip is the link's own, whatever the rate.
     pub fn probe(&mut self, now: Duration) -> Vec<u8> {
-        self.look_at_clock(now);
+        self.replies.look_at_clock(now);
         let mut bytes = Vec::new();
-        if self.is_probe_due(now) {
-            self.probed = Some(now);
-            self.ask(&mut bytes, false, now);
+        if self.replies.is_probe_due(now) {
+            self.replies.probe(&mut bytes, now);
             self.count(bytes.len(), now);
         }
         bytes
     }
 
-    fn is_probe_due(&self, now: Duration) -> bool {
-        let asks = matches!(self.state, State::Unheard | State::Steady);
-        asks && self.probed.is_none_or(|last| now >= last + PROBE)
-    }
-
-    /// Puts a query behind bytes that are sent now, and takes note of it, with how many they are if they are a frame.
-    fn ask(&mut self, bytes: &mut Vec<u8>, is_frame: bool, now: Duration) {
-        let query = self.query();
-        if let Query::Tagged(tag) | Query::Both(tag) = query {
-            bytes.extend_from_slice(&tag.query());
-        }
-        if let Query::Counted | Query::Both(_) = query {
-            bytes.extend_from_slice(FENCE);
-        }
-        self.ledger.ask(query, if is_frame { bytes.len() } else { 0 }, now);
-    }
-
-    /// The next query. In doubt it is of both kinds: another terminal may have taken the place of the one that was there.
-    fn query(&mut self) -> Query {
-        let doubts = matches!(self.state, State::Recovering { .. } | State::Silent);
-        match self.tagging {
-            Tagging::Known if self.state != State::Silent => Query::Tagged(self.ledger.next_tag()),
-            Tagging::Possible | Tagging::Known if doubts => Query::Both(self.ledger.next_tag()),
-            _ => Query::Counted,
-        }
-    }
-
-    /// What was asked will not be answered: the terminal was somebody else's in between.
-    pub fn forget(&mut self) {
-        self.ledger.clear();
-        self.echo = false;
-        if matches!(self.state, State::Recovering { .. } | State::Settling { .. }) {
-            self.state = State::Steady;
-        }
-    }
-
     /// The congestion window: how much may be in flight before another frame.
     fn window(&self) -> f64 {
-        let Some(rate) = self.rates.best() else { return 0.0 };
+        let Some(rate) = self.replies.rates.best() else { return 0.0 };
         // What a frame leaves of its share others may use.
-        let spare = if self.slow { ((1.0 - self.fill) * self.share(rate)).max(0.0) } else { 0.0 };
+        let spare = if self.is_slow() { ((1.0 - self.fill) * self.share(rate)).max(0.0) } else { 0.0 };
         // The first replies may be misleading, if one of them is lost or comes twice: the window at most doubles with each
         // round trip, as in TCP's slow start.
-        (self.bandwidth_delay_product(rate) + spare).min(self.delivered)
+        (self.bandwidth_delay_product(rate) + spare).min(self.replies.delivered)
     }
 
     /// How much is on the way there and back, of what waits nowhere.
     fn bandwidth_delay_product(&self, rate: Rate) -> f64 {
-        rate.bytes_per_second * self.round_trip.shortest().as_secs_f64()
+        rate.bytes_per_second * self.replies.round_trip.shortest().as_secs_f64()
     }
 
     fn count(&mut self, bytes: usize, now: Duration) {
-        let measured = self.rates.best().filter(|rate| rate.is_limit || self.slow);
+        let measured = self.replies.rates.best().filter(|rate| rate.is_limit || self.is_slow());
         // Without replies nobody would notice that it was thought too high.
-        let share = if matches!(self.state, State::Settling { .. }) { SHARE / 2.0 } else { SHARE };
+        let share = if matches!(self.replies.state, State::Settling { .. }) { SHARE / 2.0 } else { SHARE };
         let measured = measured.map_or(f64::INFINITY, |rate| share * rate.bytes_per_second);
         let rate = measured.min(self.max_rate.unwrap_or(f64::INFINITY));
         let takes = Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(LONGEST);

@@ -282,8 +282,8 @@ fn what_needs_no_terminal_knows_no_system_and_no_clock() {
     assert_eq!(impure_words("std::thread::spawn(f); std::time::SystemTime::now()"), ["thread", "SystemTime"]);
 }
 
-/// The modules in which each piece of state has one owner. (`pace` has a second file for the timeouts of a link.)
-const OWNED: [&str; 5] = ["input", "protocol", "control", "viewer", "app"];
+/// The modules in which each piece of state has one owner.
+const OWNED: [&str; 6] = ["input", "protocol", "pace", "control", "viewer", "app"];
 
 /// No field is assigned but in the file that defines its type: there alone it is to be read how a state changes.
 #[test]

@@ -1,7 +1,9 @@
 //! A terminal that loses, doubles, garbles and delays replies, on a virtual clock.
 
+use super::replies::Tagging;
 use super::tests::ms;
 use super::*;
+use crate::protocol::FENCE;
 use std::collections::VecDeque;
 
 /// What happens to a reply.
@@ -112,7 +114,7 @@ impl World {
                     Reply::Attributes => self.link.answer(now),
                     Reply::Mode(mode) => drop(self.link.answer_mode(mode, now)),
                 }
-                if self.link.round_trip.is_known() {
+                if self.link.replies.round_trip.is_known() {
                     self.first_reply.get_or_insert(now);
                 }
             }
@@ -225,7 +227,7 @@ fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
     each_fault(ms(250), |tags, fault, at| {
         let mut world = World { wanted: 800, start: ms(3), round_trip: ms(1), ..World::new(tags, fault, at) };
         world.run(ms(5_000));
-        let limit = world.link.rates.best().filter(|rate| rate.is_limit);
+        let limit = world.link.replies.rates.best().filter(|rate| rate.is_limit);
         assert_eq!(limit, None, "with numbers: {tags}, {fault:?} at {at}");
         world.worst_key(world.first_reply.unwrap_or(ms(2_000)), ms(5_500))
     });
@@ -279,7 +281,7 @@ fn a_terminal_that_replies_again_gets_all_frames_again() {
             let since = world.now.saturating_sub(ms(1_000));
             let frames = world.frames.iter().filter(|frame| frame.0 >= since).count();
             assert!(frames >= 55, "tags {tags}, held {late} ms: {frames} frames a second");
-            assert_eq!(world.link.state, State::Steady);
+            assert_eq!(world.link.replies.state, State::Steady);
         }
     }
 }
@@ -287,19 +289,19 @@ fn a_terminal_that_replies_again_gets_all_frames_again() {
 #[test]
 fn a_lost_reply_is_known_as_soon_as_the_next_one_comes() {
     let mut link = Link::new(None, None, true);
-    link.tagging = Tagging::Known;
+    link.replies.tagging = Tagging::Known;
     for at in [0, 10, 20] {
         link.send(&mut b"frame".to_vec(), ms(at));
     }
-    assert_eq!(link.ledger.live().count(), 3);
+    assert_eq!(link.replies.ledger.live().count(), 3);
     assert!(link.answer_mode(202, ms(12)));
-    assert_eq!(link.ledger.live().count(), 1);
+    assert_eq!(link.replies.ledger.live().count(), 1);
     // Late, foreign, and of a mode that exists.
     for mode in [201, 202, 700, 2026] {
         assert!(!link.answer_mode(mode, ms(13)));
     }
     assert!(link.answer_mode(203, ms(22)));
-    assert_eq!((link.ledger.live().count(), link.state), (0, State::Steady));
+    assert_eq!((link.replies.ledger.live().count(), link.replies.state), (0, State::Steady));
 }
 
 /// As after a detach, when another terminal takes the place of the first.
@@ -309,7 +311,7 @@ fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
     world.run(ms(2_000));
     world.tags = false;
     world.run(ms(8_000));
-    assert_eq!(world.link.tagging, Tagging::Possible);
+    assert_eq!(world.link.replies.tagging, Tagging::Possible);
     let since = world.now.saturating_sub(ms(1_000));
     assert!(world.frames.iter().filter(|frame| frame.0 >= since).count() >= 55);
 }

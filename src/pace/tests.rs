@@ -1,6 +1,7 @@
 //! The link against a simulated one: a rate, a round trip, and a terminal that answers or not.
 
 use super::*;
+use crate::protocol::FENCE;
 use std::collections::VecDeque;
 
 pub(super) const SCREEN: usize = 80 * 24 * 8;
@@ -280,7 +281,7 @@ fn a_terminal_that_never_answers_gets_thirty_frames_a_second() {
     let [fps, _] = world.throughput(world.ago(2_000), world.now);
     assert!((28.0..=30.1).contains(&fps), "{fps} fps");
     assert_eq!(world.link.slow(SCREEN), None);
-    assert!(world.link.ledger.live().count() <= 8, "nobody waits for many answers");
+    assert!(world.link.replies.ledger.live().count() <= 8, "nobody waits for many answers");
     // It has been slow to start with.
     world.answers = true;
     world.run(ms(2_000));
@@ -371,7 +372,7 @@ fn a_shorter_way_is_noticed() {
             world.run(ms(190));
             world.rest(ms(30));
         }
-        let shortest = world.link.round_trip.shortest();
+        let shortest = world.link.replies.round_trip.shortest();
         assert!(shortest <= ms(round_trip + 30), "{shortest:?} of {round_trip} ms");
         assert_eq!(world.link.slow(SCREEN).is_some(), rate < 1e6, "{rate} B/s, {round_trip} ms");
     }

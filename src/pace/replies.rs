@@ -1,6 +1,10 @@
 //! What the replies say, and what follows when they do not come.
 
-use super::{Blind, FRAME, Link, Matched, Query, State, Tag, Tagging, Trust};
+use super::blind::Blind;
+use super::estimates::{Busy, Rates, RoundTrip};
+use super::ledger::{InFlight, Ledger, Matched, Query, Trust};
+use super::{FRAME, LONGEST};
+use crate::protocol::{FENCE, Tag};
 use std::time::Duration;
 
 /// How much later than expected a reply may come before a frame is sent without it. A local terminal replies within some
@@ -33,9 +37,193 @@ const AT_ONCE: Duration = Duration::from_millis(10);
 /// A reply that comes so late is of a terminal that stood still, and no round trip.
 const STOOD_STILL: Duration = Duration::from_secs(1);
 
-impl Link {
+/// How much later than expected a reply of a slow link is when the link must have become slower.
+const LATE: Duration = Duration::from_millis(50);
+/// How far apart queries alone are, while frames are sent.
+const PROBE: Duration = Duration::from_secs(1);
+/// After so many bytes a rate is relied on that was never found to be the link's limit: four frames.
+const TRUSTED: f64 = 60_000.0;
+
+/// What was asked, what the replies tell of the link, and what follows when they do not come.
+pub(super) struct Replies {
+    pub(super) state: State,
+    pub(super) ledger: Ledger,
+    pub(super) tagging: Tagging,
+    /// Whether the second reply to a query of both kinds is to come.
+    echo: bool,
+    /// When a reply last came, if one ever did.
+    pub(super) heard: Option<Duration>,
+    /// How many times in a row a timeout may have been too short.
+    backoff: u32,
+    /// When a query was last sent without a frame.
+    probed: Option<Duration>,
+    pub(super) round_trip: RoundTrip,
+    pub(super) rates: Rates,
+    busy: Busy,
+    /// How many bytes are known to have arrived since the terminal was silent (slow start).
+    pub(super) delivered: f64,
+    /// Whether the link was slow when that was last found out.
+    slow: bool,
+    pub(super) blind: Blind,
+}
+
+/// What is known of the terminal's replies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum State {
+    /// The terminal is not to be asked: it might print the query.
+    Unasked,
+    /// No reply has come yet, and none is late.
+    Unheard,
+    /// Replies come when they should.
+    Steady,
+    /// A reply is late: a frame at a time. When the terminal is taken for silent.
+    Recovering { until: Duration },
+    /// Which replies belong to which queries is not known: none is asked until no more replies come. When the last came.
+    Settling { heard: Duration },
+    /// The terminal is taken for one that does not reply.
+    Silent,
+}
+
+/// Whether the terminal repeats the number of a mode that does not exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tagging {
+    /// It has reported no mode at all, and might print the query.
+    Unknown,
+    /// It reports modes; this one is asked for when in doubt.
+    Possible,
+    /// It does.
+    Known,
+}
+
+impl Replies {
+    pub(super) fn new(may_ask: bool) -> Self {
+        Self {
+            state: if may_ask { State::Unheard } else { State::Unasked },
+            ledger: Ledger::default(),
+            tagging: Tagging::Unknown,
+            echo: false,
+            heard: None,
+            backoff: 0,
+            probed: None,
+            round_trip: RoundTrip::default(),
+            rates: Rates::default(),
+            busy: Busy::default(),
+            delivered: 0.0,
+            slow: false,
+            blind: Blind::default(),
+        }
+    }
+
+    pub(super) fn is_slow(&self) -> bool {
+        self.slow
+    }
+
+    pub(super) fn set_slow(&mut self, slow: bool) {
+        self.slow = slow;
+    }
+
+    /// Puts a query behind nothing: its round trip is the link's own.
+    pub(super) fn probe(&mut self, bytes: &mut Vec<u8>, now: Duration) {
+        self.probed = Some(now);
+        self.ask(bytes, false, now);
+    }
+
+    /// Whether a frame that is sent now ends with a query.
+    pub(super) fn asks(&self) -> bool {
+        match self.state {
+            State::Unheard | State::Steady | State::Recovering { .. } => true,
+            // The next one only when the last is given up.
+            State::Silent => self.ledger.oldest().is_none(),
+            State::Unasked | State::Settling { .. } => false,
+        }
+    }
+
+    /// Notes bytes that are sent, if that is done without knowing how much the link takes.
+    pub(super) fn spend(&mut self, bytes: usize, now: Duration) {
+        if self.is_blind() {
+            self.blind.spend(bytes, now);
+        }
+    }
+
+    pub(super) fn answers(&self) -> bool {
+        !matches!(self.state, State::Unasked | State::Silent)
+    }
+
+    /// Whether what is sent now is sent without knowing how much the link takes.
+    pub(super) fn is_blind(&self) -> bool {
+        matches!(self.state, State::Recovering { .. } | State::Settling { .. }) && !self.knows_rate()
+    }
+
+    /// Whether the rate may be relied on: a rate that was never reached is, when enough has arrived at it.
+    pub(super) fn knows_rate(&self) -> bool {
+        self.rates.best().is_some_and(|rate| rate.is_limit || self.delivered >= TRUSTED)
+    }
+
+    /// Whether a reply of a slow link is late: the link is slower than it seemed, and what is sent before it is known
+    /// how much would only wait.
+    pub(super) fn is_late(&self, now: Duration) -> bool {
+        self.slow && self.ledger.oldest().is_some_and(|oldest| now > self.due(oldest) + LATE)
+    }
+
+    /// When the reply to the oldest query in flight should come.
+    pub(super) fn due(&self, oldest: &InFlight) -> Duration {
+        self.passes(self.busy.until(), oldest) + self.round_trip.expected()
+    }
+
+    /// When the link has passed on all that is in flight, as far as the replies tell.
+    pub(super) fn passed_at(&self) -> Duration {
+        self.ledger.live().fold(self.busy.until(), |free_at, query| self.passes(free_at, query))
+    }
+
+    /// When the link, if it is free then, has passed on what ends with a query.
+    pub(super) fn passes(&self, free_at: Duration, query: &InFlight) -> Duration {
+        free_at.max(query.sent) + self.takes(query.bytes)
+    }
+
+    /// How long the link takes over so many bytes; no time if its rate is not known.
+    pub(super) fn takes(&self, bytes: usize) -> Duration {
+        let rate = self.rates.best().map_or(f64::INFINITY, |rate| rate.bytes_per_second);
+        Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(LONGEST)
+    }
+
+    pub(super) fn is_probe_due(&self, now: Duration) -> bool {
+        let asks = matches!(self.state, State::Unheard | State::Steady);
+        asks && self.probed.is_none_or(|last| now >= last + PROBE)
+    }
+
+    /// Puts a query behind bytes that are sent now, and takes note of it, with how many they are if they are a frame.
+    pub(super) fn ask(&mut self, bytes: &mut Vec<u8>, is_frame: bool, now: Duration) {
+        let query = self.query();
+        if let Query::Tagged(tag) | Query::Both(tag) = query {
+            bytes.extend_from_slice(&tag.query());
+        }
+        if let Query::Counted | Query::Both(_) = query {
+            bytes.extend_from_slice(FENCE);
+        }
+        self.ledger.ask(query, if is_frame { bytes.len() } else { 0 }, now);
+    }
+
+    /// The next query. In doubt it is of both kinds: another terminal may have taken the place of the one that was there.
+    pub(super) fn query(&mut self) -> Query {
+        let doubts = matches!(self.state, State::Recovering { .. } | State::Silent);
+        match self.tagging {
+            Tagging::Known if self.state != State::Silent => Query::Tagged(self.ledger.next_tag()),
+            Tagging::Possible | Tagging::Known if doubts => Query::Both(self.ledger.next_tag()),
+            _ => Query::Counted,
+        }
+    }
+
+    /// What was asked will not be answered: another program had the terminal in between.
+    pub(super) fn forget(&mut self) {
+        self.ledger.clear();
+        self.echo = false;
+        if matches!(self.state, State::Recovering { .. } | State::Settling { .. }) {
+            self.state = State::Steady;
+        }
+    }
+
     /// The terminal has answered DA1.
-    pub fn answer(&mut self, now: Duration) {
+    pub(super) fn answer(&mut self, now: Duration) {
         if let State::Settling { heard } = &mut self.state {
             *heard = now;
         }
@@ -78,7 +266,7 @@ impl Link {
 
     /// The terminal has reported a mode. Whether it is the reply to a query in flight: one that comes twice, or too late,
     /// or that something else has asked for is none.
-    pub fn answer_mode(&mut self, mode: u16, now: Duration) -> bool {
+    pub(super) fn answer_mode(&mut self, mode: u16, now: Duration) -> bool {
         if self.tagging == Tagging::Unknown {
             self.tagging = Tagging::Possible;
         }
@@ -147,7 +335,7 @@ impl Link {
         // Frames are close together on a slow link, so that what is known of the last is known of all.
         let (sent, bytes) = if self.slow { matched.run } else { (matched.sent, matched.bytes) };
         let passed = now.saturating_sub(self.round_trip.shortest());
-        let is_late = self.slow && passed > self.busy.until().max(sent) + self.takes(bytes) + super::LATE;
+        let is_late = self.slow && passed > self.busy.until().max(sent) + self.takes(bytes) + LATE;
         let (bytes, service) = self.busy.take(sent, bytes, passed);
         self.rates.take(bytes, service, is_late, now);
     }
