@@ -111,6 +111,23 @@
 //! compared with the one that was begun. No list of panels: a panel is a layer of the viewer, one file with a type that
 //! implements `viewer::layers::Layer`, and the line that opens it.
 //!
+//! # One eye ray
+//!
+//! [`render`] goes over a picture tile by tile, for [`view`] or `app::renderer`. `render::tiles` makes a tile's eye rays
+//! (by [`camera`]) -> [`hit`] finds the closest hits: among the objects that stand alone, then in the trees of the
+//! [`scene`] (`scene::parts`, over [`bvh`]), whose leaves are parts of [`shape`]s -> [`shade`] works out the points that
+//! were met (`shade::points`), sends shadow rays ([`hit`] again), adds up what arrives from the [`light`]s and has the
+//! [`material`] reflect it -> `render::tiles` puts that into the [`framebuffer`] -> [`tone`] -> [`cell`] -> [`encode`] or
+//! [`export`].
+//!
+//! # One scene with a typo
+//!
+//! `scene::load` has the bytes read ([`named_file`]) -> [`scene_text`] makes a tree of them, in which every node has its
+//! place -> [`scene_file`] reads the fields; a name that it does not know is a fault there, with the word that was meant
+//! ([`text`]) -> `scene::checked` is silent about what is missing only because of that -> `scene_text::fault` puts all
+//! faults in order, each with its line and carets -> the error goes back to who loaded the scene: the command line prints
+//! it, and the live view shows the first fault of it (`viewer::fault`).
+//!
 //! # One key press
 //!
 //! `app::live` reads the terminal's bytes -> `viewer::events`: the receiver of [`protocol`] cuts them into inputs
