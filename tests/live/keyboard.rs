@@ -1,7 +1,7 @@
 //! Keys on a terminal that knows the kitty keyboard protocol, and what becomes of them when it does not answer in time,
 //! is left, or never knew it.
 
-use crate::pty::{SOON, Seen, Session, Size, Start};
+use crate::pty::{Deadline, SOON, Seen, Session, Size, Start};
 use rustix::process::Signal;
 use std::time::{Duration, Instant};
 use termtrace::control::GLIDE;
@@ -56,11 +56,11 @@ fn tap(session: &Session, key: char) {
 /// Waits until nothing has been sent for a while. (A stop throws input away, which `wait_for_rest` would wait for.)
 #[track_caller]
 fn rest_after_stop(session: &mut Session) {
-    let deadline = Instant::now() + SOON;
+    let mut deadline = Deadline::after(SOON);
     let mut before = session.seen().bytes().len();
     while session.sees(Duration::from_millis(200), |seen| seen.bytes().len() != before) {
         before = session.seen().bytes().len();
-        assert!(Instant::now() < deadline, "it never comes to rest");
+        assert!(!deadline.has_passed(), "it never comes to rest");
     }
 }
 

@@ -13,6 +13,7 @@
 // Each test target that says `mod pty;` uses a part of it.
 #![allow(dead_code, unused_imports)]
 
+mod deadline;
 mod modes;
 mod output;
 mod phases;
@@ -45,6 +46,7 @@ use rustix::{
     termios::{Termios, Winsize},
 };
 
+pub(crate) use deadline::Deadline;
 pub(crate) use modes::Modes;
 use output::Output;
 pub(crate) use phases::{Answer, Phases};
@@ -427,9 +429,9 @@ impl Session {
     /// Waits until the child has read all that was typed.
     #[track_caller]
     pub(crate) fn wait_until_read(&mut self) {
-        let deadline = Instant::now() + SOON;
+        let mut deadline = Deadline::after(SOON);
         while rustix::io::ioctl_fionread(&self.slave_side).expect("a terminal counts what was typed") > 0 {
-            assert!(Instant::now() < deadline, "what was typed is not read");
+            assert!(!deadline.has_passed(), "what was typed is not read");
             self.output.wait_for_more(Instant::now() + LOOK);
         }
     }
@@ -494,7 +496,7 @@ impl Session {
     /// bytes are thrown away that this would wait for.)
     #[track_caller]
     pub(crate) fn wait_for_rest(&mut self) {
-        let deadline = Instant::now() + SOON;
+        let mut deadline = Deadline::after(SOON);
         loop {
             self.pump();
             let typed = self.typed.get();
@@ -502,26 +504,27 @@ impl Session {
             if rest.is_after(typed) && self.has_nothing_under_way(typed) {
                 return;
             }
-            assert!(Instant::now() < deadline, "it does not come to rest: {}", self.seen.describe());
+            assert!(!deadline.has_passed(), "it does not come to rest: {}", self.seen.describe());
             self.output.wait_for_more(Instant::now() + LOOK);
         }
     }
 
     /// Waits until what came out fulfils a condition; whether it did so in time.
     pub(crate) fn sees(&mut self, limit: Duration, mut wanted: impl FnMut(&Seen) -> bool) -> bool {
-        let deadline = Instant::now() + limit;
+        let mut deadline = Deadline::after(limit);
         loop {
             self.pump();
             if wanted(&self.seen) {
                 return true;
             }
             // A child that always has more to say must not keep us beyond the deadline.
-            if Instant::now() >= deadline {
+            if deadline.has_passed() {
                 // What came between the last look and the deadline counts.
                 self.pump();
                 return wanted(&self.seen);
             }
-            self.output.wait_for_more(self.replies.next_due().map_or(deadline, |due| due.min(deadline)));
+            let next = deadline.next_look();
+            self.output.wait_for_more(self.replies.next_due().map_or(next, |due| due.min(next)));
         }
     }
 
@@ -545,7 +548,7 @@ impl Session {
     /// wait for what the shell says.
     #[track_caller]
     pub(crate) fn wait_stopped(&mut self, limit: Duration) -> i32 {
-        let deadline = Instant::now() + limit;
+        let mut deadline = Deadline::after(limit);
         loop {
             let options = WaitIdOptions::STOPPED | WaitIdOptions::NOHANG;
             let stopped =
@@ -553,7 +556,7 @@ impl Session {
             if let Some(signal) = stopped.and_then(|status| status.stopping_signal()) {
                 return signal;
             }
-            assert!(Instant::now() < deadline, "not stopped within {limit:?}");
+            assert!(!deadline.has_passed(), "not stopped within {limit:?}");
             self.output.wait_for_more(Instant::now() + LOOK);
             self.pump();
         }
@@ -562,9 +565,9 @@ impl Session {
     /// Waits until the child has exited, and no longer.
     #[track_caller]
     pub(crate) fn wait_until_gone(&mut self, limit: Duration) {
-        let deadline = Instant::now() + limit;
+        let mut deadline = Deadline::after(limit);
         while self.look_for_exit().is_none() {
-            assert!(Instant::now() < deadline, "still running after {limit:?}");
+            assert!(!deadline.has_passed(), "still running after {limit:?}");
             self.output.wait_for_more(Instant::now() + LOOK);
             self.pump();
         }
@@ -573,7 +576,7 @@ impl Session {
     /// Waits until the child has exited, and for the last of its output.
     #[track_caller]
     pub(crate) fn wait_exit(&mut self, limit: Duration) -> ExitStatus {
-        let deadline = Instant::now() + limit;
+        let mut deadline = Deadline::after(limit);
         loop {
             if let Some(status) = self.status {
                 return status;
@@ -585,7 +588,7 @@ impl Session {
                 self.status = status;
                 continue;
             }
-            if Instant::now() >= deadline {
+            if deadline.has_passed() {
                 self.pump();
                 panic!("still running after {limit:?}: {}", self.seen.describe());
             }

@@ -4,13 +4,13 @@ use std::{
     io::{BufRead, BufReader, Write},
     os::unix::net::{UnixListener, UnixStream},
     path::PathBuf,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use rustix::event::{PollFd, PollFlags, poll};
 use tempfile::TempDir;
 
-use super::{SOON, Seen, Session, rest::bytes_read};
+use super::{Deadline, SOON, Seen, Session, rest::bytes_read};
 
 /// What is to happen where the child is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,11 +64,11 @@ impl Phases {
     /// The same, while its terminal is read, and answers.
     #[track_caller]
     pub(crate) fn wait_for_on(&mut self, phase: &str, session: &mut Session) {
-        let deadline = Instant::now() + SOON;
+        let mut deadline = Deadline::after(SOON);
         loop {
             while !self.is_told() {
                 session.seen();
-                assert!(Instant::now() < deadline, "the child does not reach {phase:?}");
+                assert!(!deadline.has_passed(), "the child does not reach {phase:?}");
             }
             if self.next() == phase {
                 return;
@@ -85,9 +85,9 @@ impl Phases {
         limit: Duration,
         mut done: impl FnMut(&Seen) -> bool,
     ) -> usize {
-        let deadline = Instant::now() + limit;
+        let mut deadline = Deadline::after(limit);
         let mut count = 0;
-        while !done(session.seen()) && Instant::now() < deadline {
+        while !done(session.seen()) && !deadline.has_passed() {
             if self.is_told() {
                 count += usize::from(self.next() == phase);
                 self.send(Answer::GoOn);
@@ -99,7 +99,7 @@ impl Phases {
     /// The same until the child rests, having read all that was typed: nothing more happens by itself then.
     #[track_caller]
     pub(crate) fn count_until_rest(&mut self, phase: &str, session: &mut Session) -> usize {
-        let deadline = Instant::now() + SOON;
+        let mut deadline = Deadline::after(SOON);
         let mut count = 0;
         loop {
             session.seen();
@@ -110,7 +110,7 @@ impl Phases {
             if self.rested.is_some_and(|read| session.has_nothing_under_way(read)) {
                 return count;
             }
-            assert!(Instant::now() < deadline, "the child does not come to rest");
+            assert!(!deadline.has_passed(), "the child does not come to rest");
         }
     }
 
@@ -143,6 +143,10 @@ impl Phases {
 
     #[track_caller]
     fn next(&mut self) -> String {
+        let mut deadline = Deadline::after(SOON);
+        while !self.is_told() {
+            assert!(!deadline.has_passed(), "the child reaches no phase");
+        }
         let child = match &mut self.child {
             Some(child) => child,
             none => none.insert(accept(&self.listener)),
@@ -155,11 +159,7 @@ impl Phases {
     }
 }
 
-#[track_caller]
 fn accept(listener: &UnixListener) -> BufReader<UnixStream> {
-    let soon = SOON.try_into().expect("it is soon");
-    let ready = poll(&mut [PollFd::new(listener, PollFlags::IN)], Some(&soon));
-    assert!(matches!(ready, Ok(1..)), "the child does not say where it is");
     let (child, _) = listener.accept().expect("the child connects");
     child.set_read_timeout(Some(SOON)).expect("a socket has timeouts");
     BufReader::new(child)
