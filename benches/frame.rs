@@ -28,14 +28,14 @@ fn picture(scene: &Scene, camera: &Camera, size: Size) -> Picture {
 
 /// Frames of a turn around the target, 1.5 degrees apart.
 fn turn(scene: &Scene, size: Size, frames: usize) -> Vec<Grid> {
-    let Pose { eye, target, up } = scene.camera.pose();
+    let Pose { eye, target, up } = scene.camera().pose();
     let (sin, cos) = libm::sincosf(1.5_f32.to_radians());
     let mut arm = eye - target;
     (0..frames)
         .map(|_| {
             arm = Vec3::new(cos * arm.x + sin * arm.z, arm.y, cos * arm.z - sin * arm.x);
             let camera =
-                scene.camera.with_pose(Pose { eye: target + arm, target, up }).expect("a pose all the way round");
+                scene.camera().with_pose(Pose { eye: target + arm, target, up }).expect("a pose all the way round");
             cell::grid_from_picture(CellMode::HALF_BLOCK, &picture(scene, &camera, size))
         })
         .collect()
@@ -48,7 +48,7 @@ fn trace(criterion: &mut Criterion) {
         for size in SIZES {
             let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0);
             group.bench_with_input(BenchmarkId::new(name, format!("{size:?}")), &resolution, |bencher, &resolution| {
-                bencher.iter(|| render(black_box(&scene), &scene.camera, resolution, NonZeroU32::MIN));
+                bencher.iter(|| render(black_box(&scene), scene.camera(), resolution, NonZeroU32::MIN));
             });
         }
     }
@@ -56,7 +56,7 @@ fn trace(criterion: &mut Criterion) {
 
 fn light_to_cells(criterion: &mut Criterion) {
     let scene = scene("three_spheres.ron");
-    let light = render(&scene, &scene.camera, cell::resolution(CellMode::HALF_BLOCK, SIZES[1], 2.0), NonZeroU32::MIN);
+    let light = render(&scene, scene.camera(), cell::resolution(CellMode::HALF_BLOCK, SIZES[1], 2.0), NonZeroU32::MIN);
     criterion.bench_function("tone", |bencher| bencher.iter(|| tone(black_box(&light), &scene)));
     for (name, glyphs, colors) in [
         ("half blocks in truecolor", Glyphs::Half, Colors::Truecolor),
@@ -68,7 +68,7 @@ fn light_to_cells(criterion: &mut Criterion) {
     ] {
         let mode = CellMode { glyphs, colors };
         let resolution = cell::resolution(mode, SIZES[1], 2.0);
-        let picture = tone(&render(&scene, &scene.camera, resolution, NonZeroU32::MIN), &scene);
+        let picture = tone(&render(&scene, scene.camera(), resolution, NonZeroU32::MIN), &scene);
         let mut painter = Painter::new(mode);
         criterion.bench_function(&format!("cells: {name}"), |bencher| {
             bencher.iter(|| painter.grid(black_box(&picture)));

@@ -18,16 +18,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(0.7)?)?;
 
     let floor = Object::new(Plane::new(Vec3::ZERO, Vec3::Y), Material::DEFAULT);
-    let mut scene = Scene::new(camera, (0..9).map(ball).chain([floor]).collect());
-    scene.ambient = LinearRgb::grey(0.05);
-    scene.lights.push(PointLight {
+    let light = PointLight {
         position: Vec3::new(3.0, 6.0, 4.0),
         intensity: LinearRgb::grey(45.0),
         falloff: Falloff::InverseSquare,
-    });
+    };
+    let scene = Scene::new(camera, (0..9).map(ball).chain([floor]).collect())
+        .with_ambient(LinearRgb::grey(0.05))
+        .with_lights(vec![light]);
 
     let resolution = cell::resolution(CellMode::HALF_BLOCK, Size::new(80, 24), USUAL_CELL_ASPECT);
-    let picture = tone(&render(&scene, &scene.camera, resolution, NonZeroU32::MIN), &scene);
+    let picture = tone(&render(&scene, scene.camera(), resolution, NonZeroU32::MIN), &scene);
     io::stdout().write_all(&export::ansi(&cell::grid_from_picture(CellMode::HALF_BLOCK, &picture)))?;
     Ok(())
 }

@@ -58,7 +58,7 @@ impl CameraPath {
     /// use termtrace::{camera_path::CameraPath, scene::Scene};
     ///
     /// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 1, 5), target: (0, 0, 0)))")?;
-    /// let path = CameraPath::orbit(scene.camera, 8.0);
+    /// let path = CameraPath::orbit(*scene.camera(), 8.0);
     /// let quarter = path.camera_at(2.0).unwrap().pose().eye;
     /// assert!(quarter.abs_diff_eq(glam::Vec3::new(5.0, 1.0, 0.0), 1e-6));
     /// # Ok::<(), termtrace::scene_text::SceneError>(())

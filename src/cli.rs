@@ -176,9 +176,9 @@ impl SceneArgs {
 
     /// The scene, with the camera that the command line wants.
     fn load(&self) -> Result<Scene, Failure> {
-        let mut scene = Origin::of(&self.scene)?.load()?;
-        scene.camera = self.look.camera(&scene.camera).map_err(usage)?;
-        Ok(scene)
+        let scene = Origin::of(&self.scene)?.load()?;
+        let camera = self.look.camera(scene.camera()).map_err(usage)?;
+        Ok(scene.with_camera(camera))
     }
 
     /// Does something on the threads that the command line wants.

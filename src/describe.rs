@@ -48,7 +48,7 @@ impl Told<'_> {
         format!(
             "{name}: {} and {}, seen from {} towards {}; the view is {} degrees high.\n",
             counted(self.scene.objects().len(), "object"),
-            counted(self.scene.lights.len(), "light"),
+            counted(self.scene.lights().len(), "light"),
             points(eye),
             points(target),
             number(degrees)
@@ -185,10 +185,10 @@ impl Told<'_> {
         if share == 0 {
             return String::new();
         }
-        let colors = match self.scene.background {
-            Background::Color(light) => color(light * self.scene.exposure).to_owned(),
+        let colors = match self.scene.background() {
+            Background::Color(light) => color(light * self.scene.exposure()).to_owned(),
             Background::Gradient { bottom, top } => {
-                let [bottom, top] = [bottom, top].map(|light| color(light * self.scene.exposure));
+                let [bottom, top] = [bottom, top].map(|light| color(light * self.scene.exposure()));
                 format!("{bottom} below and {top} above")
             }
         };
@@ -198,7 +198,7 @@ impl Told<'_> {
     /// The lights, the strongest first.
     fn lights(&self) -> String {
         let target = self.camera.pose().target;
-        let mut lights: Vec<_> = self.scene.lights.iter().collect();
+        let mut lights: Vec<_> = self.scene.lights().iter().collect();
         let strength = |light: &PointLight| {
             light.intensity.luminance()
                 / match light.falloff {
@@ -221,10 +221,10 @@ impl Told<'_> {
         if lights.len() > MOST {
             let _ = writeln!(text, "- and {} more", lights.len() - MOST);
         }
-        if self.scene.ambient.luminance() > 0.0 {
+        if self.scene.ambient().luminance() > 0.0 {
             text += "A little light comes from everywhere.\n";
         }
-        if !self.scene.shadows && !lights.is_empty() {
+        if !self.scene.shadows() && !lights.is_empty() {
             text += "Nothing casts a shadow.\n";
         }
         text

@@ -121,8 +121,8 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
         tested: listener.tested(scene, &steps.ray),
         seen: steps.hit.map(|hit| seen(scene, &steps, hit)),
         light: steps.light,
-        exposure: scene.exposure,
-        tone_curve: scene.tone_curve,
+        exposure: scene.exposure(),
+        tone_curve: scene.tone_curve(),
         shown: shown(steps.light, scene),
         bytes: tone(&one, scene).pixels[0],
     }
@@ -134,8 +134,8 @@ fn seen(scene: &Scene, steps: &Steps, hit: Hit) -> Seen {
         hit,
         name: Name::of(scene, hit.object, hit.part),
         point,
-        ambient: scene.ambient,
-        lights: scene.lights.iter().map(|light| lit(scene, light, &point)).collect(),
+        ambient: scene.ambient(),
+        lights: scene.lights().iter().map(|light| lit(scene, light, &point)).collect(),
         arriving: steps.arriving,
         reflectance: steps.reflectance,
     }
@@ -144,7 +144,7 @@ fn seen(scene: &Scene, steps: &Steps, hit: Hit) -> Seen {
 fn lit(scene: &Scene, light: &PointLight, point: &SurfacePoint) -> Lit {
     let incidence = shade::incidence_on_either_side(light, point);
     let ray = shade::shadow_ray(light, point);
-    let blocker = (scene.shadows && 0.0 < incidence.cosine)
+    let blocker = (scene.shadows() && 0.0 < incidence.cosine)
         .then(|| hit::any_hit_witnessed(scene, &ray, TO_THE_LIGHT, &mut Listener::default()))
         .flatten();
     Lit { incidence, blocker: blocker.map(|hit| (Name::of(scene, hit.object, hit.part), hit.t)) }

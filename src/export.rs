@@ -72,7 +72,7 @@ pub fn text_frame(scene: &Scene, size: Size) -> String {
 /// The scene's own view as the cells of a screen of that size and cell aspect, one ray through each pixel's centre.
 pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f32) -> Grid {
     let resolution = cell::resolution(cell_mode, size, cell_aspect);
-    let picture = tone(&render(scene, &scene.camera, resolution, NonZeroU32::MIN), scene);
+    let picture = tone(&render(scene, scene.camera(), resolution, NonZeroU32::MIN), scene);
     cell::grid_from_picture(cell_mode, &picture)
 }
 

@@ -3,10 +3,11 @@
 //! Both are asked for many rays at a time, so that the way in which they are traced together is this stage's choice. None
 //! of the ways shows in what is found.
 
+use crate::accel::{Accelerator, PartId};
 use crate::bvh::{GROUPS, Queue, Stack};
 use crate::lanes::{Answers, Eight, LANES, Lanes, set_bits};
 use crate::ray::{EightRays, Interval, Probe, Ray, Rays};
-use crate::scene::{PartId, Parts, Scene};
+use crate::scene::Scene;
 use crate::shape::{Part, Surface};
 use crate::simd::{self, Work};
 use alone::Alone;
@@ -105,7 +106,7 @@ impl EightHits {
     /// In another scene than that it was found in; or if there are not so many.
     pub fn hit(&self, scene: &Scene, lane: usize) -> Option<Hit> {
         (self.met >> lane & 1 == 1).then(|| {
-            let PartId { object, part } = scene.parts().id(self.place(lane));
+            let PartId { object, part } = scene.accelerator().id(self.place(lane));
             Hit { t: self.t.0[lane], object, part }
         })
     }
@@ -114,20 +115,20 @@ impl EightHits {
 /// The closest hit of each ray that is asked about, on its half line; of two at the same t, what comes first in the scene.
 pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mut Vec<EightHits>) {
     hits.clear();
-    let parts = scene.parts();
+    let accel = scene.accelerator();
     match kernel {
-        Kernel::Scalar => closest_alone::<Eight>(parts, rays, &mut Queue::default(), hits),
-        _ => simd::run(ClosestHits { kernel, parts, rays, hits }),
+        Kernel::Scalar => closest_alone::<Eight>(accel, rays, &mut Queue::default(), hits),
+        _ => simd::run(ClosestHits { kernel, accel, rays, hits }),
     }
 }
 
 /// Which of the rays that are asked about meet anything inside the interval: a bit for each.
 pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Interval, met: &mut Vec<u32>) {
     met.clear();
-    let parts = scene.parts();
+    let accel = scene.accelerator();
     match kernel {
-        Kernel::Scalar => any_alone::<Eight>(parts, rays, within, &mut Queue::default(), met),
-        _ => simd::run(AnyHits { kernel, parts, rays, within, met }),
+        Kernel::Scalar => any_alone::<Eight>(accel, rays, within, &mut Queue::default(), met),
+        _ => simd::run(AnyHits { kernel, accel, rays, within, met }),
     }
 }
 
@@ -148,14 +149,14 @@ pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
 /// [`closest_hit`], with a witness of what the ray is tested against.
 pub fn closest_hit_witnessed(scene: &Scene, ray: &Ray, witness: &mut impl Witness) -> Option<Hit> {
     let (t, place) = simd::run(Watched::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, witness });
-    let PartId { object, part } = scene.parts().id(place?);
+    let PartId { object, part } = scene.accelerator().id(place?);
     Some(Hit { t, object, part })
 }
 
 /// [`any_hit`], with a witness of what the ray is tested against. Returns what it met, which need not be the closest.
 pub fn any_hit_witnessed(scene: &Scene, ray: &Ray, within: Interval, witness: &mut impl Witness) -> Option<Hit> {
     let (_, place) = simd::run(Watched::<_, ANY> { scene, ray, within, witness });
-    let PartId { object, part } = scene.parts().id(place?);
+    let PartId { object, part } = scene.accelerator().id(place?);
     let t = scene.objects()[object as usize].shape.part(part).closest_crossing(&Probe::new(*ray), within)?;
     Some(Hit { t, object, part })
 }
@@ -174,8 +175,8 @@ impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
         let Self { scene, ray, within, witness } = self;
-        let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), scene.parts().has_triangles());
-        let mut ray = Alone::<N, ANY, _>::watched(scene.parts(), &rays, 0, within, witness);
+        let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), scene.accelerator().has_triangles());
+        let mut ray = Alone::<N, ANY, _>::watched(scene.accelerator(), &rays, 0, within, witness);
         ray.trace(&mut Queue::default());
         ray.found()
     }
@@ -197,7 +198,7 @@ const ANY: bool = true;
 
 struct ClosestHits<'w> {
     kernel: Kernel,
-    parts: &'w Parts,
+    accel: &'w Accelerator,
     rays: &'w [EightRays],
     hits: &'w mut Vec<EightHits>,
 }
@@ -207,9 +208,9 @@ impl Work for ClosestHits<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) {
-        let Self { kernel, parts, rays, hits } = self;
+        let Self { kernel, accel, rays, hits } = self;
         let mut stacks = Stacks::default();
-        let mut packet = Together::<N, CLOSEST>::new(kernel, parts, Interval::IN_FRONT);
+        let mut packet = Together::<N, CLOSEST>::new(kernel, accel, Interval::IN_FRONT);
         let mut together = true;
         for rays in rays.chunks(GROUPS) {
             if together && kernel.is_together(rays.len()) {
@@ -218,21 +219,21 @@ impl Work for ClosestHits<'_> {
                 together = !packet.fell_apart();
                 continue;
             }
-            closest_alone::<N>(parts, rays, &mut stacks.alone, hits);
+            closest_alone::<N>(accel, rays, &mut stacks.alone, hits);
         }
     }
 }
 
 /// The same one by one.
 #[inline(always)]
-fn closest_alone<N: Lanes>(parts: &Parts, rays: &[EightRays], queue: &mut Queue, hits: &mut Vec<EightHits>) {
+fn closest_alone<N: Lanes>(accel: &Accelerator, rays: &[EightRays], queue: &mut Queue, hits: &mut Vec<EightHits>) {
     for rays in rays {
         let nothing = Eight([f32::from_bits(EightHits::NOTHING); LANES]);
         let mut hit = EightHits { met: 0, t: Eight::ZERO, places: nothing };
         // What tests have in common is reckoned for all eight at once.
-        let eight = Rays::load(rays, parts.has_triangles());
+        let eight = Rays::load(rays, accel.has_triangles());
         for lane in set_bits(rays.asked) {
-            let mut ray = Alone::<N, CLOSEST>::new(parts, &eight, lane, Interval::IN_FRONT);
+            let mut ray = Alone::<N, CLOSEST>::new(accel, &eight, lane, Interval::IN_FRONT);
             ray.trace(queue);
             if let (t, Some(place)) = ray.found() {
                 hit.met |= 1 << lane;
@@ -245,7 +246,7 @@ fn closest_alone<N: Lanes>(parts: &Parts, rays: &[EightRays], queue: &mut Queue,
 
 struct AnyHits<'w> {
     kernel: Kernel,
-    parts: &'w Parts,
+    accel: &'w Accelerator,
     rays: &'w [EightRays],
     within: Interval,
     met: &'w mut Vec<u32>,
@@ -256,9 +257,9 @@ impl Work for AnyHits<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) {
-        let Self { kernel, parts, rays, within, met } = self;
+        let Self { kernel, accel, rays, within, met } = self;
         let mut stacks = Stacks::default();
-        let mut packet = Together::<N, ANY>::new(kernel, parts, within);
+        let mut packet = Together::<N, ANY>::new(kernel, accel, within);
         // A packet knows of nothing behind the origins.
         let mut together = within.min >= 0.0;
         for rays in rays.chunks(GROUPS) {
@@ -268,19 +269,25 @@ impl Work for AnyHits<'_> {
                 together = !packet.fell_apart();
                 continue;
             }
-            any_alone::<N>(parts, rays, within, &mut stacks.alone, met);
+            any_alone::<N>(accel, rays, within, &mut stacks.alone, met);
         }
     }
 }
 
 /// The same one by one.
 #[inline(always)]
-fn any_alone<N: Lanes>(parts: &Parts, rays: &[EightRays], within: Interval, queue: &mut Queue, met: &mut Vec<u32>) {
+fn any_alone<N: Lanes>(
+    accel: &Accelerator,
+    rays: &[EightRays],
+    within: Interval,
+    queue: &mut Queue,
+    met: &mut Vec<u32>,
+) {
     for rays in rays {
         let mut of_group = 0;
-        let eight = Rays::load(rays, parts.has_triangles());
+        let eight = Rays::load(rays, accel.has_triangles());
         for lane in set_bits(rays.asked) {
-            let mut ray = Alone::<N, ANY>::new(parts, &eight, lane, within);
+            let mut ray = Alone::<N, ANY>::new(accel, &eight, lane, within);
             ray.trace(queue);
             of_group |= u32::from(ray.found().1.is_some()) << lane;
         }

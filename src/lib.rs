@@ -12,11 +12,14 @@
 //!     lights: [Point(position: (3, 4, 5), intensity: 40)],
 //!     objects: [Sphere(center: (0, 1, 0), radius: 1, material: Diffuse("#e04030"))],
 //! )"##)?;
-//! let light = render(&scene, &scene.camera, Resolution::square(80, 48), NonZeroU32::MIN);
+//! let light = render(&scene, scene.camera(), Resolution::square(80, 48), NonZeroU32::MIN);
 //! let picture = tone(&light, &scene);
 //! assert_eq!(picture.pixels.len(), 80 * 48);
 //! # Ok::<(), termtrace::scene_text::SceneError>(())
 //! ```
+//!
+//! A library user meets [`Scene`](scene::Scene): all that was checked, together with the trees that rays go through. Loading
+//! one, or building one in code, builds the trees once; copies share them, and no function that takes a scene builds any.
 //!
 //! # The route
 //!
@@ -43,6 +46,7 @@
 //! What is drawn, checked once, in radians, linear light and unit vectors:
 //! - [`bvh`]: which of many boxes a ray may meet
 //! - [`shape`]: surfaces f(p) = 0, where a ray crosses them, their normals
+//! - `accel`: the trees over all shapes of a scene, built once
 //! - [`material`]: diffuse reflectance
 //! - [`light`]: point lights
 //! - [`camera`]: eye, target, up, field of view -> basis u, v, w -> eye rays
@@ -114,8 +118,8 @@
 //! # One eye ray
 //!
 //! [`render`] goes over a picture tile by tile, for [`view`] or `app::renderer`. `render::tiles` makes a tile's eye rays
-//! (by [`camera`]) -> [`hit`] finds the closest hits: among the objects that stand alone, then in the trees of the
-//! [`scene`] (`scene::parts`, over [`bvh`]), whose leaves are parts of [`shape`]s -> [`shade`] works out the points that
+//! (by [`camera`]) -> [`hit`] finds the closest hits: among the objects that stand alone, then in the trees
+//! (`accel`, over [`bvh`]), whose leaves are parts of [`shape`]s -> [`shade`] works out the points that
 //! were met (`shade::points`), sends shadow rays ([`hit`] again), adds up what arrives from the [`light`]s and has the
 //! [`material`] reflect it -> `render::tiles` puts that into the [`framebuffer`] -> [`tone`] -> [`cell`] -> [`encode`] or
 //! [`export`].
@@ -154,6 +158,7 @@ pub mod scene_file;
 pub mod mesh_file;
 pub mod bvh;
 pub mod shape;
+mod accel;
 pub mod material;
 pub mod light;
 pub mod camera;

@@ -276,7 +276,7 @@ impl Refining {
 
     /// The next passes.
     fn trace_more(&mut self, crew: Crew<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
-        let white = 1.0 / scene.exposure;
+        let white = 1.0 / scene.exposure();
         let runs: Vec<_> = passes.map(|pass| (pass, Runs::of(PASSES[pass].clone()))).collect();
         let Self { tiles, first, watched, .. } = self;
         let (tiles, first) = (&*tiles, &*first);

@@ -1,13 +1,12 @@
-//! What is drawn, checked: a [`Scene`] cannot be wrong.
+//! What is drawn, checked, with the trees over it: a [`Scene`] cannot be wrong, and rays can be sent into it.
 //!
 //! All units are fixed here: world units, radians, linear light, unit vectors. [`Scene::load`] and [`Scene::from_ron`]
-//! are the only way from what was written to what is drawn.
+//! are the only way from what was written to what is drawn. A [`Draft`] is checked and has no trees yet.
 
 mod checked;
 mod draft;
 mod load;
 mod of_mesh;
-mod parts;
 mod written_camera;
 mod written_view;
 
@@ -15,47 +14,51 @@ pub use draft::Draft;
 pub use load::LoadError;
 pub use written_view::with_view;
 
+use crate::accel::Accelerator;
 use crate::bounds::Bounds;
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::light::PointLight;
 use crate::material::Material;
 use crate::shape::Shape;
-pub(crate) use parts::{Grove, PartId, PartIds, Parts};
 use std::sync::Arc;
 
-/// Everything that a picture depends on, besides its size. A copy costs little, however large it is.
+/// Everything that a picture depends on, besides its size: what was checked, and the trees that rays go through.
+///
+/// Both are built once and never change; copies share them. A scene with other lights, or another camera, shares the trees.
+///
+/// ```
+/// use termtrace::{color::LinearRgb, scene::Scene};
+///
+/// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")?;
+/// let brighter = scene.clone().with_ambient(LinearRgb::grey(0.5)).with_exposure(2.0);
+/// assert_eq!((scene.exposure(), brighter.exposure()), (1.0, 2.0));
+/// # Ok::<(), termtrace::scene_text::SceneError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Where the scene wants to be looked at from.
-    pub camera: Camera,
-    /// Other views of it that are worth a look, in the order of the scene file.
-    pub views: Vec<Camera>,
-    /// The light that comes from where nothing is.
-    pub background: Background,
-    /// Light that arrives at every point from everywhere alike, besides that of the lights.
-    pub ambient: LinearRgb,
-    /// The point sources.
-    pub lights: Vec<PointLight>,
-    /// Whether objects keep light from each other; without, this is the lecture's bare version.
-    pub shadows: bool,
-    /// What all light is multiplied by before it is shown; greater than 0.
-    pub exposure: f32,
-    /// How light beyond the screen's range is brought into it.
-    pub tone_curve: ToneCurve,
-    // Shared by copies, so that one with other lights costs little.
-    objects: Arc<[Object]>,
-    parts: Arc<Parts>,
+    checked: Arc<Checked>,
+    accelerator: Arc<Accelerator>,
 }
 
-impl Scene {
-    /// These objects seen by that camera: no light and no other views yet, a black background, shadows, exposure 1 and no tone curve.
-    pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
-        Draft::new(Self::unbuilt(camera, objects)).finish()
-    }
+/// What was checked. Its fields are assigned by the `with_` methods of [`Scene`] and [`Draft`] only.
+#[derive(Clone, Debug, PartialEq)]
+struct Checked {
+    camera: Camera,
+    views: Vec<Camera>,
+    background: Background,
+    ambient: LinearRgb,
+    lights: Vec<PointLight>,
+    shadows: bool,
+    exposure: f32,
+    tone_curve: ToneCurve,
+    /// Shared, so that a copy with other lights costs little.
+    objects: Arc<[Object]>,
+}
 
-    /// The same without its parts.
-    fn unbuilt(camera: Camera, objects: Vec<Object>) -> Self {
+impl Checked {
+    /// These objects seen by that camera, as [`Scene::new`] has them.
+    fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Self {
             camera,
             views: Vec::new(),
@@ -66,28 +69,128 @@ impl Scene {
             exposure: 1.0,
             tone_curve: ToneCurve::None,
             objects: objects.into(),
-            parts: Arc::default(),
         }
     }
 
-    /// The objects, in the order of the scene file.
+    fn shapes(&self) -> impl Iterator<Item = &Shape> {
+        self.objects.iter().map(|object| &object.shape)
+    }
+}
+
+impl Scene {
+    /// These objects seen by that camera: no light and no other views yet, a black background, shadows, exposure 1 and no tone curve.
+    pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
+        Draft::new(Checked::new(camera, objects)).finish()
+    }
+
+    /// Returns where the scene wants to be looked at from.
+    pub fn camera(&self) -> &Camera {
+        &self.checked.camera
+    }
+
+    /// Returns other views of the scene that are worth a look, in the order of the scene file.
+    pub fn views(&self) -> &[Camera] {
+        &self.checked.views
+    }
+
+    /// Returns the light that comes along rays that meet no object.
+    pub fn background(&self) -> Background {
+        self.checked.background
+    }
+
+    /// Returns the light that arrives at every point from everywhere alike, besides that of the lights.
+    pub fn ambient(&self) -> LinearRgb {
+        self.checked.ambient
+    }
+
+    /// Returns the point sources.
+    pub fn lights(&self) -> &[PointLight] {
+        &self.checked.lights
+    }
+
+    /// Returns whether objects keep light from each other; without, this is the lecture's bare version.
+    pub fn shadows(&self) -> bool {
+        self.checked.shadows
+    }
+
+    /// Returns what all light is multiplied by before it is shown; greater than 0.
+    pub fn exposure(&self) -> f32 {
+        self.checked.exposure
+    }
+
+    /// Returns how light beyond the screen's range is brought into it.
+    pub fn tone_curve(&self) -> ToneCurve {
+        self.checked.tone_curve
+    }
+
+    /// Returns the objects, in the order of the scene file.
     pub fn objects(&self) -> &[Object] {
-        &self.objects
+        &self.checked.objects
     }
 
-    /// The smallest box around all objects that have an end; nothing if there are none.
+    /// Returns the smallest box around all objects that have an end; nothing if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
-        self.parts.bounds
+        self.accelerator.bounds()
     }
 
-    /// How much memory the tree over the parts of all objects takes, in bytes.
+    /// Returns how much memory the trees over the parts of all objects take, in bytes.
     pub fn tree_bytes(&self) -> usize {
-        self.parts.bytes()
+        self.accelerator.bytes()
     }
 
-    /// The parts of all objects, in a tree.
-    pub(crate) fn parts(&self) -> &Parts {
-        &self.parts
+    /// Returns what the scene's rays are tested against.
+    pub(crate) fn accelerator(&self) -> &Accelerator {
+        &self.accelerator
+    }
+
+    /// Returns the scene looked at from somewhere else.
+    pub fn with_camera(self, camera: Camera) -> Self {
+        self.with(|checked| checked.camera = camera)
+    }
+
+    /// Returns the scene with other [views](Self::views).
+    pub fn with_views(self, views: Vec<Camera>) -> Self {
+        self.with(|checked| checked.views = views)
+    }
+
+    /// Returns the scene before another [background](Self::background).
+    pub fn with_background(self, background: Background) -> Self {
+        self.with(|checked| checked.background = background)
+    }
+
+    /// Returns the scene in other [ambient light](Self::ambient).
+    pub fn with_ambient(self, ambient: LinearRgb) -> Self {
+        self.with(|checked| checked.ambient = ambient)
+    }
+
+    /// Returns the scene under other [lights](Self::lights).
+    pub fn with_lights(self, lights: Vec<PointLight>) -> Self {
+        self.with(|checked| checked.lights = lights)
+    }
+
+    /// Returns the scene with or without [shadows](Self::shadows).
+    pub fn with_shadows(self, shadows: bool) -> Self {
+        self.with(|checked| checked.shadows = shadows)
+    }
+
+    /// Returns the scene at another [exposure](Self::exposure).
+    pub fn with_exposure(self, exposure: f32) -> Self {
+        self.with(|checked| checked.exposure = exposure)
+    }
+
+    /// Returns the scene with another [tone curve](Self::tone_curve).
+    pub fn with_tone_curve(self, tone_curve: ToneCurve) -> Self {
+        self.with(|checked| checked.tone_curve = tone_curve)
+    }
+
+    /// Returns whether both are copies of one scene, which nothing has changed since.
+    pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.checked, &other.checked) && Arc::ptr_eq(&self.accelerator, &other.accelerator)
+    }
+
+    fn with(mut self, change: impl FnOnce(&mut Checked)) -> Self {
+        change(Arc::make_mut(&mut self.checked));
+        self
     }
 }
 

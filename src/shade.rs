@@ -60,12 +60,12 @@ pub fn arriving_light(
     shadows: &mut ShadowRays,
     arriving: &mut Vec<EightArriving>,
 ) -> u64 {
-    let LinearRgb { r, g, b } = scene.ambient;
+    let LinearRgb { r, g, b } = scene.ambient();
     let ambient = [r, g, b].map(|band| Eight([band; LANES]));
     let mut shadow_rays = 0;
     arriving.clear();
     arriving.resize(points.len(), EightArriving { light: ambient, lit_by: [0; LANES] });
-    for (number, light) in scene.lights.iter().enumerate() {
+    for (number, light) in scene.lights().iter().enumerate() {
         simd::run(Aim { light, points, shadows });
         shadow_rays += shadows.trace(scene);
         simd::run(Arrive { number, shadows, arriving });
@@ -100,7 +100,7 @@ impl Work for Aim<'_> {
 impl ShadowRays {
     /// Finds out which rays meet an object before the light. Returns how many of them were traced.
     fn trace(&mut self, scene: &Scene) -> u64 {
-        if scene.shadows {
+        if scene.shadows() {
             hit::any_hits(Kernel::Auto, scene, &self.rays, TO_THE_LIGHT, &mut self.blocked);
             count(&self.rays)
         } else {
@@ -332,7 +332,7 @@ pub const TO_THE_LIGHT: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 }
 #[inline(always)]
 fn backgrounds<N: Number>(scene: &Scene, direction: Vector<N>) -> [N; 3] {
     let bands = |LinearRgb { r, g, b }: LinearRgb| [N::splat(r), N::splat(g), N::splat(b)];
-    match scene.background {
+    match scene.background() {
         Background::Color(color) => bands(color),
         Background::Gradient { bottom, top } => {
             let up = direction.y * (N::splat(1.0) / direction.dot(direction).sqrt());

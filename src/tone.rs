@@ -37,7 +37,7 @@ const ALONE: usize = 1 << 16;
 
 /// The light as `scene` wants it shown: exposed, then after the tone curve. 1 is white, and so is more.
 pub fn shown(light: LinearRgb, scene: &Scene) -> LinearRgb {
-    bend(scene.tone_curve, light * scene.exposure)
+    bend(scene.tone_curve(), light * scene.exposure())
 }
 
 /// The light after the tone curve.

@@ -124,7 +124,7 @@ impl View {
             Self::Depth => format!("white 0, grey {}, black far", maps::short(distance(camera))),
             Self::Normal => "red x, green y, blue z".to_owned(),
             Self::Object => format!("{} colours", scene.objects().len()),
-            Self::Shadow => format!("white lit by {}, dark by 0", scene.lights.len()),
+            Self::Shadow => format!("white lit by {}, dark by 0", scene.lights().len()),
             Self::Cost => "blue 1, green 16, red 256 tests".to_owned(),
             Self::Facing => "blue front, red back".to_owned(),
             Self::Contrast => "lines between objects".to_owned(),
@@ -186,7 +186,7 @@ fn all_seen(
         }
         View::Object => of_surfaces(&|sight| sight.hit.map_or(NOTHING, |hit| maps::object(hit.object))),
         View::Shadow => painted(Reach::Lights, &|sight| match sight.hit {
-            Some(_) => maps::share(sight.lit_by.count_ones(), scene.lights.len().min(32) as u32),
+            Some(_) => maps::share(sight.lit_by.count_ones(), scene.lights().len().min(32) as u32),
             None => NOTHING,
         }),
         View::Cost => of_surfaces(&|sight| maps::heat(cost::tests(scene, sight))),
@@ -208,7 +208,7 @@ fn shaded(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: Resolution
 fn lambert(scene: &Scene, sight: &Sight) -> Srgb8 {
     let Some(surface) = sight.surface(scene) else { return NOTHING };
     let cosine = |light| shade::incidence(light, &surface).map_or(0.0, |incidence| incidence.cosine);
-    Srgb8::from_linear(LinearRgb::grey(scene.lights.iter().map(cosine).sum()))
+    Srgb8::from_linear(LinearRgb::grey(scene.lights().iter().map(cosine).sum()))
 }
 
 /// From the eye to the target.

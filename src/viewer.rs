@@ -21,7 +21,6 @@ use crate::render::Sampling;
 use crate::scene::Scene;
 use crate::text::Notice;
 use std::collections::VecDeque;
-use std::sync::Arc;
 use std::time::Duration;
 
 mod asking;
@@ -226,14 +225,14 @@ impl Viewer {
     }
 
     fn open(&mut self, scene: Scene, of: usize, orbits: bool) {
-        let (scene, before) = (Arc::new(scene), self.gallery.shown());
-        if let Some(view) = self.gallery.show(Arc::clone(&scene), of, orbits) {
+        let (before, written) = (self.gallery.shown(), scene.views().to_vec());
+        if let Some(view) = self.gallery.show(scene, of, orbits) {
             let left = self.eye.open(view);
             if let Some((before, left)) = before.zip(left).filter(|(before, _)| *before != of) {
                 self.gallery.leave(before, left);
             }
         }
-        self.eye.set_written(&scene.views);
+        self.eye.set_written(written);
     }
 
     /// The scene that was asked for will not come: what is wrong with it.
@@ -311,8 +310,8 @@ impl Viewer {
     }
 
     /// The scene that is shown, with the lights where they are.
-    fn scene(&self) -> Option<Arc<Scene>> {
-        self.gallery.lights().map(|lights| Arc::clone(lights.scene()))
+    fn scene(&self) -> Option<Scene> {
+        self.gallery.lights().map(|lights| lights.scene().clone())
     }
 
     /// What the picture is to show, if there is anything to see.

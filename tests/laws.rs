@@ -24,13 +24,22 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The library's files: everything in `src` but the binary's.
+/// The library's files: everything in `src` but the binary's, and files that are compiled for tests only.
 fn library_files() -> Vec<(PathBuf, String)> {
     let binary = |path: &Path| {
         let first = path.strip_prefix(root().join("src")).expect("below src").iter().next().expect("a name");
         ["main.rs", "cli.rs", "cli"].iter().any(|name| first == *name)
     };
-    rust_files(&root().join("src")).into_iter().filter(|(path, _)| !binary(path)).collect()
+    let files: Vec<_> = rust_files(&root().join("src")).into_iter().filter(|(path, _)| !binary(path)).collect();
+    let tests: Vec<_> = files.iter().flat_map(|(path, text)| test_files(path, text)).collect();
+    files.into_iter().filter(|(path, _)| !tests.contains(path)).collect()
+}
+
+/// The files of the modules that this one has for tests only.
+fn test_files(path: &Path, text: &str) -> Vec<PathBuf> {
+    let pairs = text.lines().zip(text.lines().skip(1)).filter(|(attribute, _)| *attribute == "#[cfg(test)]");
+    let names = pairs.filter_map(|(_, module)| module.strip_prefix("mod ")?.strip_suffix(';'));
+    names.map(|name| path.with_extension("").join(name).with_extension("rs")).collect()
 }
 
 /// The modules of `lib.rs` in their order.
@@ -171,7 +180,16 @@ fn the_root_holds_the_route_and_nothing_else() {
     assert_eq!(stages, route);
     let lib = code(&fs::read_to_string(root().join("src/lib.rs")).expect("lib.rs is there"));
     for line in lib.lines().filter(|line| !line.trim().is_empty()) {
-        let expected = ["pub mod ", "mod viewer;", "#[cfg(not(any(target_os", "compile_error!(", "#![", "    \"", ");"];
+        let expected = [
+            "pub mod ",
+            "mod accel;",
+            "mod viewer;",
+            "#[cfg(not(any(target_os",
+            "compile_error!(",
+            "#![",
+            "    \"",
+            ");",
+        ];
         assert!(expected.iter().any(|start| line.starts_with(start)), "lib.rs says more than its modules: {line}");
     }
 }
@@ -234,6 +252,8 @@ fn ways_back_are_found() {
     assert!(found("color.rs", "#[cfg(test)]\nmod tests { }\nuse crate::shape;"));
     assert!(!found("scene.rs", "use crate::{color::Srgb8, shape::{self, Shape}};"));
     assert!(!found("shape/plane.rs", "use super::Surface;"));
+    let shape = root().join("src/shape.rs");
+    assert_eq!(test_files(&shape, "mod a;\n#[cfg(test)]\nmod b;\nmod c;"), [root().join("src/shape/b.rs")]);
     assert!(!found(
         "shape.rs",
         "/// See [`crate::scene`].\n#[cfg(test)]\nmod tests {\n    use crate::scene::Scene;\n}"

@@ -27,7 +27,7 @@ fn every_scene_and_path_in_it_loads() {
         let read = if text.contains("fps:") || text.contains("fly:") {
             continue;
         } else if text.contains("keyframes:") {
-            CameraPath::from_ron("README.md", text, &any.camera).map(|_| ())
+            CameraPath::from_ron("README.md", text, any.camera()).map(|_| ())
         } else {
             Scene::from_ron("README.md", text).map(|_| ())
         };

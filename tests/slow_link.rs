@@ -209,9 +209,10 @@ const SPHERES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres
 fn spheres(scene: &Scene, eye: Option<[f64; 3]>) -> Grid {
     let mut scene = scene.clone();
     if let Some(eye) = eye {
-        let Pose { eye: home, target, up } = scene.camera.pose();
+        let Pose { eye: home, target, up } = scene.camera().pose();
         let eye = Vec3::from(eye.map(|x| x as f32));
-        scene.camera = scene.camera.with_pose(Pose { eye, target: target + (eye - home), up }).expect("a pose");
+        scene = scene
+            .with_camera(scene.camera().with_pose(Pose { eye, target: target + (eye - home), up }).expect("a pose"));
     }
     pty::picture(&scene, CellMode::HALF_BLOCK, Size::new(80, 24), 2.0)
 }

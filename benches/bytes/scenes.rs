@@ -173,7 +173,7 @@ impl Sequence {
         let phase = k as f32 / FRAMES as f32;
         let scene = self.scene(phase);
         let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0);
-        tone(&render(&scene, &scene.camera, resolution, NonZeroU32::MIN), &scene)
+        tone(&render(&scene, scene.camera(), resolution, NonZeroU32::MIN), &scene)
     }
 
     fn scene(&self, phase: f32) -> Scene {
@@ -182,9 +182,9 @@ impl Sequence {
         let sky =
             Background::Gradient { bottom: LinearRgb::new(0.9, 0.95, 1.0), top: LinearRgb::new(0.25, 0.45, 0.85) };
         let mut scene = Scene::new(self.camera(phase, sin, cos), objects);
-        scene.background = sky;
-        scene.ambient = LinearRgb::grey(self.ambient);
-        scene.lights = vec![self.light(sin, cos)];
+        scene = scene.with_background(sky);
+        scene = scene.with_ambient(LinearRgb::grey(self.ambient));
+        scene = scene.with_lights(vec![self.light(sin, cos)]);
         scene
     }
 

@@ -51,7 +51,7 @@ mod tests {
     const TEXT: &str = "( // mine\n    camera: (eye: (0, 0, 5), target: (0, 0, 0)),\n)\n";
 
     fn camera() -> Camera {
-        Scene::from_ron("x", &TEXT.replace('5', "7")).expect("a scene").camera
+        *Scene::from_ron("x", &TEXT.replace('5', "7")).expect("a scene").camera()
     }
 
     #[test]

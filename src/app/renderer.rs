@@ -16,7 +16,6 @@ use std::collections::VecDeque;
 use std::io;
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -212,7 +211,7 @@ struct Tracer {
 
 /// A picture that is gone on with where it is of the wanted scene and view.
 struct Kept {
-    scene: Arc<Scene>,
+    scene: Scene,
     view: (Camera, Resolution),
     picture: Refining,
 }
@@ -220,11 +219,11 @@ struct Kept {
 impl Kept {
     fn new(Job { scene, shot, .. }: &Job, resolution: Resolution) -> Self {
         let picture = Refining::new(&shot.camera, resolution);
-        Self { scene: Arc::clone(scene), view: (shot.camera, resolution), picture }
+        Self { scene: scene.clone(), view: (shot.camera, resolution), picture }
     }
 
     fn is_of(&self, Job { scene, shot, .. }: &Job, resolution: Resolution) -> bool {
-        Arc::ptr_eq(&self.scene, scene) && self.view == (shot.camera, resolution)
+        self.scene.is_copy_of(scene) && self.view == (shot.camera, resolution)
     }
 }
 
@@ -290,7 +289,7 @@ mod tests {
         let pose = Pose { eye: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y };
         let rectangle = ViewRectangle::from_vertical_fov(1.0).expect("an angle");
         Frame {
-            scene: Arc::new(three_spheres()),
+            scene: three_spheres(),
             shot: shot(Camera::new(pose, rectangle).expect("a pose"), Resolution::square(0, 0)),
             picture: Picture { width: 0, height: 0, pixels: Vec::new() },
             parts: Vec::new(),
@@ -327,12 +326,12 @@ mod tests {
     /// The loop traces what its last frames were small for, and the same picture as the thread does.
     #[test]
     fn small_frames_are_done_at_once() {
-        let scene = Arc::new(three_spheres());
-        let camera = scene.camera;
+        let scene = three_spheres();
+        let camera = *scene.camera();
         let waker = Signals::catch().and_then(|signals| signals.waker()).expect("pipes can be made");
         let mut renderer = Renderer::start(Some(2), waker).expect("threads can be started");
         let job = |side| Job {
-            scene: Arc::clone(&scene),
+            scene: scene.clone(),
             shot: shot(camera, Resolution::square(side, side)),
             sampling: Sampling::UpTo(NonZeroU32::MIN),
             refines: false,
@@ -348,13 +347,13 @@ mod tests {
     /// What was traced already is not traced again; what is of another view is.
     #[test]
     fn a_picture_is_gone_on_with_where_it_was_left() {
-        let scene = Arc::new(three_spheres());
-        let (camera, resolution) = (scene.camera, Resolution::square(40, 24));
+        let scene = three_spheres();
+        let (camera, resolution) = (*scene.camera(), Resolution::square(40, 24));
         let best = render_by(Crew::Pool, &scene, &camera, resolution, Sampling::BEST).expect("it has no token");
         let shown = tone(&best.framebuffer, &scene);
         let mut tracer = Tracer::default();
-        let mut trace_of = |scene: &Arc<Scene>, camera, sampling, refines| {
-            let job = Job { scene: Arc::clone(scene), shot: shot(camera, resolution), sampling, refines };
+        let mut trace_of = |scene: &Scene, camera, sampling, refines| {
+            let job = Job { scene: scene.clone(), shot: shot(camera, resolution), sampling, refines };
             tracer.trace(&job, &Cancellation::default()).expect("a frame")
         };
         let mut trace = |camera, sampling, refines| trace_of(&scene, camera, sampling, refines);
@@ -371,7 +370,7 @@ mod tests {
         assert!(anew.picture == shown && anew.cost.rays == best.cost.rays);
         // And of another scene: that of a sketch is not gone on with.
         trace(camera, one, false);
-        let anew = trace_of(&Arc::new(three_spheres()), camera, Sampling::BEST, true);
+        let anew = trace_of(&three_spheres(), camera, Sampling::BEST, true);
         assert!(anew.picture == shown && anew.cost.rays == best.cost.rays);
     }
 

@@ -83,14 +83,14 @@ impl Way {
 impl BenchArgs {
     /// The scene, and its name.
     fn scene(&self) -> Result<(String, Scene), Failure> {
-        let (name, mut scene) = if let Some(path) = &self.scene {
+        let (name, scene) = if let Some(path) = &self.scene {
             (visible(&path.display().to_string()), Origin::of(path)?.load()?)
         } else {
             let generated = self.generated.unwrap_or(Generated::Three);
             (format!("{generated:?}").to_lowercase(), generated.scene().map_err(usage)?)
         };
-        scene.shadows &= !self.no_shadow;
-        Ok((name, scene))
+        let shadows = scene.shadows() && !self.no_shadow;
+        Ok((name, scene.with_shadows(shadows)))
     }
 
     fn resolution(&self) -> Result<Resolution, Failure> {
@@ -118,7 +118,7 @@ pub(super) fn run(args: &BenchArgs) -> Done {
 fn tree(name: &str, scene: &Scene) -> String {
     let objects = scene.objects().to_vec();
     let start = Instant::now();
-    let again = Scene::new(scene.camera, objects);
+    let again = Scene::new(*scene.camera(), objects);
     let built = start.elapsed();
     format!("{name}: built in {:.3} s, {} bytes\n", built.as_secs_f64(), again.tree_bytes())
 }
@@ -134,10 +134,10 @@ struct Round {
 impl Round {
     fn of(kernel: Kernel, scene: &Scene, resolution: Resolution, samples: NonZeroU32) -> Self {
         let start = Instant::now();
-        let counts = count(kernel, scene, &scene.camera, resolution, samples);
+        let counts = count(kernel, scene, scene.camera(), resolution, samples);
         let trace = start.elapsed();
         let start = Instant::now();
-        let light = render(scene, &scene.camera, resolution, samples);
+        let light = render(scene, scene.camera(), resolution, samples);
         std::hint::black_box(tone(&light, scene));
         Self { counts, trace, frame: start.elapsed(), hash: light.hash() }
     }

@@ -21,7 +21,7 @@ pub(super) fn run(args: &CheckArgs) -> Done {
     let scene = args.scene.load()?;
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");
-    let lights = count(scene.lights.len(), "light");
+    let lights = count(scene.lights().len(), "light");
     let path = args.scene.path().display().to_string();
     write_stdout(format!("{}: fine ({objects}, {lights})\n", visible(&path)).as_bytes())
 }

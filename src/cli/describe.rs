@@ -34,6 +34,6 @@ pub(super) fn run(args: &DescribeArgs) -> Done {
     let resolution = Resolution::square(width, height);
     let scene = args.scene.load()?;
     let name = visible(&args.scene.path().display().to_string());
-    let text = args.scene.on_threads(|| describe(&name, &scene, &scene.camera, resolution))?;
+    let text = args.scene.on_threads(|| describe(&name, &scene, scene.camera(), resolution))?;
     write_stdout(text.as_bytes())
 }

@@ -39,7 +39,7 @@ pub(super) fn run(args: &ExplainArgs) -> Done {
         return Err(usage(format!("there is no pixel {x},{y} in a frame of {width}x{height} pixels")));
     }
     let scene = args.scene.load()?;
-    let explanation = explain(&scene, &scene.camera, resolution, args.pixel);
+    let explanation = explain(&scene, scene.camera(), resolution, args.pixel);
     let lines = explanation.lines().into_iter().chain([cell(args.pixel, mode)]);
     write_stdout(lines.map(|line| line + "\n").collect::<String>().as_bytes())
 }

@@ -116,7 +116,7 @@ impl FrameArgs {
         let samples = self.picture.samples();
         let view = self.view.view();
         let picture =
-            self.scene.on_threads(|| termtrace::view::picture(view, &scene, &scene.camera, resolution, samples))?;
+            self.scene.on_threads(|| termtrace::view::picture(view, &scene, scene.camera(), resolution, samples))?;
         if format == Format::Png {
             let png = export::png(&picture, resolution.pixel_aspect, self.picture.scale());
             return png.map_err(|error| Failure::runtime("PNG", error));

@@ -99,14 +99,15 @@ fn print(args: &LiveArgs) -> Done {
             return Err(Failure::Usage(message));
         }
     };
-    let mut scene = origin.load()?;
-    scene.camera = args.look.camera(&scene.camera).map_err(usage)?;
+    let scene = origin.load()?;
+    let camera = args.look.camera(scene.camera()).map_err(usage)?;
+    let scene = scene.with_camera(camera);
     let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = settings.terminal.cells.in_file(Colors::None);
     let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect);
     let sampling = settings.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
     let view = settings.view.view();
-    let picture = on_threads(args.look.threads, || view::picture(view, &scene, &scene.camera, resolution, sampling))?;
+    let picture = on_threads(args.look.threads, || view::picture(view, &scene, scene.camera(), resolution, sampling))?;
     let grid = cell::grid_from_picture(cell_mode, &picture);
     write_stdout(&match cell_mode.colors {
         Colors::None => export::text(&grid).into_bytes(),

@@ -105,7 +105,7 @@ impl RecordArgs {
         let resolution = self.picture.resolution(CellMode::HALF_BLOCK)?;
         self.check_flags(&format, resolution)?;
         let scene = self.scene.load()?;
-        let cameras = self.cameras(&scene.camera)?;
+        let cameras = self.cameras(scene.camera())?;
         Ok(Film { scene, cameras, resolution, format })
     }
 

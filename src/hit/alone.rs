@@ -1,16 +1,16 @@
 //! A ray by itself, against eight boxes or parts at a time.
 
 use super::witness::{Nobody, Test, Witness};
+use crate::accel::{Accelerator, PartId, Tree};
 use crate::bvh::{Child, LeafVisitor, Prefetch, Queue};
 use crate::lanes::{Answers, Eight, Lanes, Work, set_bits};
 use crate::ray::{Interval, Rays};
-use crate::scene::{Grove, PartId, Parts};
 use crate::shape::{Crossable, SideBySide};
 use std::ops::ControlFlow;
 
 /// A ray, and what it has met.
 pub(super) struct Alone<'p, N: Lanes, const ANY: bool, W = Nobody> {
-    parts: &'p Parts,
+    accel: &'p Accelerator,
     /// It is one of these.
     rays: &'p Rays<N>,
     lane: usize,
@@ -23,15 +23,21 @@ pub(super) struct Alone<'p, N: Lanes, const ANY: bool, W = Nobody> {
 
 impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
     #[inline(always)]
-    pub(super) fn new(parts: &'p Parts, rays: &'p Rays<N>, lane: usize, within: Interval) -> Self {
-        Self::watched(parts, rays, lane, within, Nobody)
+    pub(super) fn new(accel: &'p Accelerator, rays: &'p Rays<N>, lane: usize, within: Interval) -> Self {
+        Self::watched(accel, rays, lane, within, Nobody)
     }
 }
 
 impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     #[inline(always)]
-    pub(super) fn watched(parts: &'p Parts, rays: &'p Rays<N>, lane: usize, within: Interval, witness: W) -> Self {
-        Self { parts, rays, lane, within, place: None, witness }
+    pub(super) fn watched(
+        accel: &'p Accelerator,
+        rays: &'p Rays<N>,
+        lane: usize,
+        within: Interval,
+        witness: W,
+    ) -> Self {
+        Self { accel, rays, lane, within, place: None, witness }
     }
 
     /// A ray that has met this already.
@@ -49,8 +55,8 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     /// Searches through everything.
     #[inline(always)]
     pub(super) fn trace(&mut self, queue: &mut Queue) {
-        let parts = self.parts;
-        for (place, (id, plane)) in (0..).zip(&parts.planes) {
+        let accel = self.accel;
+        for (place, (id, plane)) in (0..).zip(&accel.planes) {
             let crossing = plane
                 .first_crossing(self.rays, N::splat(self.within.min))
                 .and_then(|(crosses, t)| (crosses.bits() >> self.lane & 1 == 1).then(|| t.lane(self.lane)));
@@ -61,35 +67,35 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
                 self.meet(t, place);
             }
         }
-        self.trace_grove(&parts.balls, queue);
-        self.trace_grove(&parts.triangles, queue);
+        self.trace_tree(&accel.balls, queue);
+        self.trace_tree(&accel.triangles, queue);
     }
 
     #[inline(always)]
-    fn trace_grove<S: SideBySide>(&mut self, grove: &Grove<S>, queue: &mut Queue) {
-        match grove.bvh.root() {
-            Some(root) if grove.has_tree() => self.trace_from(root, grove, queue),
+    fn trace_tree<S: SideBySide>(&mut self, tree: &Tree<S>, queue: &mut Queue) {
+        match tree.bvh.root() {
+            Some(root) if tree.has_tree() => self.trace_from(root, tree, queue),
             // The only leaf: what a tree takes to begin with would be most of the time.
-            Some(_) if !(ANY && self.place.is_some()) => self.test(&self.rays.splat_lane(self.lane), 0, grove),
+            Some(_) if !(ANY && self.place.is_some()) => self.test(&self.rays.splat_lane(self.lane), 0, tree),
             _ => {}
         }
     }
 
     /// Searches through a part of a tree.
     #[inline(always)]
-    pub(super) fn trace_from<S: SideBySide>(&mut self, from: Child, grove: &Grove<S>, queue: &mut Queue) {
+    pub(super) fn trace_from<S: SideBySide>(&mut self, from: Child, tree: &Tree<S>, queue: &mut Queue) {
         if ANY && self.place.is_some() {
             return;
         }
-        N::apart(Search { ray: self, from, grove, queue });
+        N::apart(Search { ray: self, from, tree, queue });
     }
 
     #[inline(always)]
-    fn test<S: SideBySide>(&mut self, rays: &Rays<N>, leaf: usize, grove: &Grove<S>) {
-        let shapes = grove.leaves[leaf].load::<N>();
+    fn test<S: SideBySide>(&mut self, rays: &Rays<N>, leaf: usize, tree: &Tree<S>) {
+        let shapes = tree.leaves[leaf].load::<N>();
         let crossing = shapes.first_crossing(rays, N::splat(self.within.min));
         if W::IS_THERE {
-            self.tell(grove.parts(leaf), crossing);
+            self.tell(tree.parts(leaf), crossing);
         }
         let Some((crosses, t)) = crossing else { return };
         let met = (crosses & t.le(N::splat(self.within.max))).bits();
@@ -98,7 +104,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
         }
         let t = t.store();
         for lane in set_bits(met) {
-            self.meet(t.0[lane], grove.place(leaf, lane));
+            self.meet(t.0[lane], tree.place(leaf, lane));
         }
     }
 
@@ -113,7 +119,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     /// Something at t.
     #[inline(always)]
     fn meet(&mut self, t: f32, place: u32) {
-        let is_first = |other: u32| self.parts.id(place) < self.parts.id(other);
+        let is_first = |other: u32| self.accel.id(place) < self.accel.id(other);
         if t < self.within.max || t == self.within.max && self.place.is_none_or(is_first) {
             self.place = Some(place);
             if !ANY {
@@ -127,7 +133,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
 struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     ray: &'a mut Alone<'p, N, ANY, W>,
     from: Child,
-    grove: &'a Grove<S>,
+    tree: &'a Tree<S>,
     queue: &'a mut Queue,
 }
 
@@ -137,34 +143,34 @@ impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> Work for Search<'_, '
     /// The numbers are those that the ray has.
     #[inline(always)]
     fn run<Same: Lanes>(self) {
-        let Self { ray, from, grove, queue } = self;
+        let Self { ray, from, tree, queue } = self;
         let (rays, within) = (ray.rays.splat_lane(ray.lane), ray.within);
-        let mut there = InGrove { ray, rays: &rays, grove };
+        let mut there = InTree { ray, rays: &rays, tree };
         if within.min >= 0.0 {
-            grove.bvh.visit(from, &rays, within, queue, &mut there);
+            tree.bvh.visit(from, &rays, within, queue, &mut there);
         } else {
             // The tree knows of nothing behind an origin; that is asked for too rarely for one that does.
-            let _ = (0..grove.leaves.len()).try_for_each(|leaf| there.visit(leaf).map_continue(|_| ()));
+            let _ = (0..tree.leaves.len()).try_for_each(|leaf| there.visit(leaf).map_continue(|_| ()));
         }
     }
 }
 
 /// A ray in a tree.
-struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool, W> {
+struct InTree<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     ray: &'a mut Alone<'p, N, ANY, W>,
     /// The same in every place.
     rays: &'a Rays<N>,
-    grove: &'a Grove<S>,
+    tree: &'a Tree<S>,
 }
 
-impl<N: Lanes, S, const ANY: bool, W> Prefetch for InGrove<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S, const ANY: bool, W> Prefetch for InTree<'_, '_, N, S, ANY, W> {
     #[inline(always)]
     fn prefetch(&self, leaf: usize) {
-        self.grove.prefetch(leaf);
+        self.tree.prefetch(leaf);
     }
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> LeafVisitor for InGrove<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> LeafVisitor for InTree<'_, '_, N, S, ANY, W> {
     #[inline(always)]
     fn boxes(&mut self) {
         self.ray.witness.boxes();
@@ -172,7 +178,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> LeafVisitor for InGro
 
     #[inline(always)]
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
-        self.ray.test(self.rays, leaf, self.grove);
+        self.ray.test(self.rays, leaf, self.tree);
         if ANY && self.ray.place.is_some() {
             ControlFlow::Break(())
         } else {

@@ -1,19 +1,19 @@
 //! Up to 64 rays, eight at a time.
 
 use super::{Stacks, alone::Alone};
+use crate::accel::{Accelerator, Tree};
 use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Prefetch, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector, set_bits};
 use crate::ray::{EightRays, Interval, Pencil, Rays};
-use crate::scene::{Grove, Parts};
 use crate::shape::{Crossable, SideBySide};
 use std::ops::Range;
 
 /// Rays in groups of eight, and what they have met.
 pub(super) struct Together<'p, N: Lanes, const ANY: bool> {
     kernel: Kernel,
-    parts: &'p Parts,
+    accel: &'p Accelerator,
     rays: &'p [EightRays],
     groups: [Rays<N>; GROUPS],
     within: Interval,
@@ -56,11 +56,11 @@ fn place_as_number(place: u32) -> f32 {
 impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
     /// No rays yet. A packet is some kilobytes: it stays where it is, and takes one lot of rays after the other.
     #[inline(always)]
-    pub(super) fn new(kernel: Kernel, parts: &'p Parts, within: Interval) -> Self {
+    pub(super) fn new(kernel: Kernel, accel: &'p Accelerator, within: Interval) -> Self {
         let zeros = EightRays { origin: Vector::ZERO, direction: Vector::ZERO, asked: 0 };
         Self {
             kernel,
-            parts,
+            accel,
             rays: &[],
             groups: [Rays::load(&zeros, false); GROUPS],
             within,
@@ -86,8 +86,8 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
         (self.rays, self.alone, self.leaves) = (rays, 0, 0);
         // Who is not asked about does not widen the packet.
         let Some(one) = rays.iter().find(|rays| rays.asked != 0) else { return self.reset(0..GROUPS) };
-        let parts = self.parts;
-        let (has_trees, has_triangles) = (parts.has_trees(), parts.has_triangles());
+        let accel = self.accel;
+        let (has_trees, has_triangles) = (accel.has_trees(), accel.has_triangles());
         for (group, of_group) in rays.iter().enumerate() {
             let asked = of_group.asked;
             let rays = Rays::load(if asked == 0 { one } else { of_group }, has_triangles);
@@ -104,8 +104,8 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
                 self.groups[group] = self.groups[0];
             }
             let mut packet = None;
-            self.trace_grove(&parts.balls, &mut packet, stacks);
-            self.trace_grove(&parts.triangles, &mut packet, stacks);
+            self.trace_tree(&accel.balls, &mut packet, stacks);
+            self.trace_tree(&accel.triangles, &mut packet, stacks);
         }
     }
 
@@ -138,23 +138,23 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
     }
 
     #[inline(always)]
-    fn trace_grove<S: SideBySide>(&mut self, grove: &'p Grove<S>, packet: &mut Option<Packet<N>>, stacks: &mut Stacks) {
-        if grove.has_tree() && self.reach.greatest() >= self.within.min {
+    fn trace_tree<S: SideBySide>(&mut self, tree: &'p Tree<S>, packet: &mut Option<Packet<N>>, stacks: &mut Stacks) {
+        if tree.has_tree() && self.reach.greatest() >= self.within.min {
             let packet = match packet {
                 Some(packet) => packet,
                 None => packet.insert(Packet::of(&self.groups)),
             };
             let Stacks { together, alone } = stacks;
             let groups = self.rays.len();
-            let mut in_grove = InGrove { rays: self, grove, packet, pencil: Sought::NotYet, queue: alone };
-            match grove.bvh.root() {
-                Some(root) if in_grove.rays.kernel == Kernel::Auto && packet.is_scattered() => {
+            let mut in_tree = InTree { rays: self, tree, packet, pencil: Sought::NotYet, queue: alone };
+            match tree.bvh.root() {
+                Some(root) if in_tree.rays.kernel == Kernel::Auto && packet.is_scattered() => {
                     for group in 0..groups {
-                        let waiting = !in_grove.rays.t[group].le(N::splat(DONE));
-                        in_grove.rays_alone(root, group, waiting.bits());
+                        let waiting = !in_tree.rays.t[group].le(N::splat(DONE));
+                        in_tree.rays_alone(root, group, waiting.bits());
                     }
                 }
-                _ => grove.bvh.visit_together(packet, together, &mut in_grove),
+                _ => tree.bvh.visit_together(packet, together, &mut in_tree),
             }
         }
     }
@@ -162,14 +162,14 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
     /// Has a group meet all that no tree leaves out: planes, and kinds of which there are but a few.
     #[inline(always)]
     fn test_few(&self, rays: &Rays<N>, asked: u32) -> Met<N, ANY> {
-        let (parts, min) = (self.parts, N::splat(self.within.min));
+        let (accel, min) = (self.accel, N::splat(self.within.min));
         let t = N::select(N::answers(asked), N::splat(self.within.max), N::splat(DONE));
         let mut met = Met { t, place: N::splat(place_as_number(NOTHING)) };
-        for (place, (_, plane)) in (0..).zip(&parts.planes) {
-            met.take(place, plane.first_crossing(rays, min), parts);
+        for (place, (_, plane)) in (0..).zip(&accel.planes) {
+            met.take(place, plane.first_crossing(rays, min), accel);
         }
-        met.test_few(&parts.balls, rays, min, parts);
-        met.test_few(&parts.triangles, rays, min, parts);
+        met.test_few(&accel.balls, rays, min, accel);
+        met.test_few(&accel.triangles, rays, min, accel);
         met
     }
 
@@ -177,7 +177,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
     fn test<C: Crossable<N>>(&mut self, group: usize, shape: &C, place: u32, rough: N) {
         let mut met = Met::<N, ANY> { t: self.t[group], place: self.place[group] };
         let (rays, min) = (&self.groups[group], N::splat(self.within.min));
-        if met.take(place, shape.first_crossing_in_pencil(rays, min, rough), self.parts) {
+        if met.take(place, shape.first_crossing_in_pencil(rays, min, rough), self.accel) {
             self.set(group, met);
         }
     }
@@ -199,17 +199,17 @@ struct Met<N, const ANY: bool> {
 impl<N: Lanes, const ANY: bool> Met<N, ANY> {
     /// Tests all of which there are but a few.
     #[inline(always)]
-    fn test_few<S: SideBySide>(&mut self, grove: &Grove<S>, rays: &Rays<N>, min: N, parts: &Parts) {
-        let Some(leaf) = grove.leaves.first() else { return };
-        for lane in 0..grove.few {
+    fn test_few<S: SideBySide>(&mut self, tree: &Tree<S>, rays: &Rays<N>, min: N, accel: &Accelerator) {
+        let Some(leaf) = tree.leaves.first() else { return };
+        for lane in 0..tree.few {
             let shape = leaf.splat(lane);
-            self.take(grove.place(0, lane), shape.first_crossing(rays, min), parts);
+            self.take(tree.place(0, lane), shape.first_crossing(rays, min), accel);
         }
     }
 
     /// Takes a part where it is met; answers whether it is.
     #[inline(always)]
-    fn take(&mut self, place: u32, crossing: Option<(N::Mask, N)>, parts: &Parts) -> bool {
+    fn take(&mut self, place: u32, crossing: Option<(N::Mask, N)>, accel: &Accelerator) -> bool {
         let Some((crosses, t)) = crossing else { return false };
         if ANY {
             return self.meet(crosses & t.le(self.t), N::splat(DONE), place);
@@ -217,7 +217,7 @@ impl<N: Lanes, const ANY: bool> Met<N, ANY> {
         let is_as_close = crosses & t.same(self.t);
         let mut is_closest = crosses & t.lt(self.t);
         if is_as_close.any() {
-            let first = comes_before(parts, place, &self.place.store());
+            let first = comes_before(accel, place, &self.place.store());
             is_closest = is_closest | (is_as_close & N::answers(first));
         }
         self.meet(is_closest, t, place)
@@ -236,15 +236,15 @@ impl<N: Lanes, const ANY: bool> Met<N, ANY> {
 
 /// Which of the others it stands before in the scene: a bit for each.
 #[cold]
-fn comes_before(parts: &Parts, place: u32, others: &Eight) -> u32 {
-    let is_first = |other: u32| other == NOTHING || parts.id(place) < parts.id(other);
+fn comes_before(accel: &Accelerator, place: u32, others: &Eight) -> u32 {
+    let is_first = |other: u32| other == NOTHING || accel.id(place) < accel.id(other);
     others.0.iter().rev().fold(0, |first, other| first << 1 | u32::from(is_first(other.to_bits())))
 }
 
 /// A packet in a tree.
-struct InGrove<'a, 'p, N: Lanes, S, const ANY: bool> {
+struct InTree<'a, 'p, N: Lanes, S, const ANY: bool> {
     rays: &'a mut Together<'p, N, ANY>,
-    grove: &'p Grove<S>,
+    tree: &'p Tree<S>,
     packet: &'a Packet<N>,
     pencil: Sought<N>,
     queue: &'a mut Queue,
@@ -258,14 +258,14 @@ enum Sought<N: Lanes> {
     Found(Pencil<N>),
 }
 
-impl<N: Lanes, S, const ANY: bool> Prefetch for InGrove<'_, '_, N, S, ANY> {
+impl<N: Lanes, S, const ANY: bool> Prefetch for InTree<'_, '_, N, S, ANY> {
     #[inline(always)]
     fn prefetch(&self, leaf: usize) {
-        self.grove.prefetch(leaf);
+        self.tree.prefetch(leaf);
     }
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N, S, ANY> {
+impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, ANY> {
     const NEAREST_FIRST: bool = !ANY;
 
     #[inline(always)]
@@ -285,7 +285,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
 
     #[inline(always)]
     fn leaf(&mut self, leaf: usize) {
-        let shapes = &self.grove.leaves[leaf];
+        let shapes = &self.tree.leaves[leaf];
         let min = N::splat(self.rays.within.min);
         let boxes = shapes.load::<N>().boxes();
         let [enters, leaves] = self.packet.crossed(boxes);
@@ -320,7 +320,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
             let (lane, group) =
                 (pairs.trailing_zeros() as usize / GROUPS % LANES, pairs.trailing_zeros() as usize % GROUPS);
             pairs &= pairs.wrapping_sub(1);
-            self.rays.test(group, &shapes.splat(lane), self.grove.place(leaf, lane), N::splat(rough.0[lane]));
+            self.rays.test(group, &shapes.splat(lane), self.tree.place(leaf, lane), N::splat(rough.0[lane]));
         }
     }
 
@@ -355,7 +355,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InGrove<'_, '_, N,
     }
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
+impl<N: Lanes, S: SideBySide, const ANY: bool> InTree<'_, '_, N, S, ANY> {
     /// Finds the pencil if it was not asked for before.
     #[inline(always)]
     fn seek_pencil(&mut self) {
@@ -386,9 +386,9 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> InGrove<'_, '_, N, S, ANY> {
         for lane in set_bits(rays) {
             let within = Interval { min: self.rays.within.min, max: t.0[lane] };
             let known = place.0[lane].to_bits();
-            let ray = Alone::<N, ANY>::new(self.rays.parts, &self.rays.groups[group], lane, within);
+            let ray = Alone::<N, ANY>::new(self.rays.accel, &self.rays.groups[group], lane, within);
             let mut ray = ray.going_on((known != NOTHING).then_some(known));
-            ray.trace_from(from, self.grove, self.queue);
+            ray.trace_from(from, self.tree, self.queue);
             if let (met, Some(found)) = ray.found() {
                 t.0[lane] = if ANY { DONE } else { met };
                 place.0[lane] = place_as_number(found);

@@ -1,6 +1,6 @@
 //! Who watches a ray on its way: nobody, usually, and that costs nothing.
 
-use crate::scene::PartId;
+use crate::accel::PartId;
 
 /// Who is told what a ray is tested against, by the same code that traces pictures.
 pub trait Witness {

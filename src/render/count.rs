@@ -88,10 +88,10 @@ impl Buffers {
             let depths = Eight::select(Eight::answers(hits.met), hits.t, Eight::ZERO);
             counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
         }
-        if scene.shadows {
+        if scene.shadows() {
             shade::surface_points(scene, rays, hits, points);
         }
-        for light in scene.lights.iter().filter(|_| scene.shadows) {
+        for light in scene.lights().iter().filter(|_| scene.shadows()) {
             shade::shadow_rays(light, points, shadow_rays);
             hit::any_hits(kernel, scene, shadow_rays, TO_THE_LIGHT, blocked);
             let (traced, blocked) = (shade::count(shadow_rays), blocked.iter().map(|met| u64::from(met.count_ones())));

@@ -8,7 +8,7 @@ pub(super) mod path;
 
 pub(super) use camera::radians;
 
-use super::{Background, Draft, Object, Scene, ToneCurve};
+use super::{Background, Checked, Draft, Object, ToneCurve};
 use crate::color::{LinearRgb, Srgb8};
 use crate::light::{Falloff, PointLight};
 use crate::material::Material;
@@ -48,7 +48,7 @@ pub(super) fn check(
         Some(WrittenToneCurve::Reinhard) => ToneCurve::Reinhard,
         Some(WrittenToneCurve::Filmic) => ToneCurve::Filmic,
     };
-    Some(Draft::new(Scene {
+    Some(Draft::new(Checked {
         views,
         background: background.unwrap_or(Background::Color(LinearRgb::BLACK)),
         ambient: ambient.unwrap_or(LinearRgb::BLACK),
@@ -56,7 +56,7 @@ pub(super) fn check(
         shadows: file.shadows.unwrap_or(true),
         exposure: exposure.unwrap_or(1.0),
         tone_curve,
-        ..Scene::unbuilt(camera?, objects)
+        ..Checked::new(camera?, objects)
     }))
 }
 

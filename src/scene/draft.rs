@@ -1,16 +1,17 @@
 //! A scene on its way: read and checked, but not built.
 
-use super::{Object, Parts, Scene};
+use super::{Checked, Object, Scene};
+use crate::accel::Accelerator;
 use crate::camera::Camera;
 use crate::progress::{Cancelled, Watcher};
 use crate::shape::{Mesh, Shape};
+use std::sync::Arc;
 
 /// A scene of which all is known, and which no ray can be sent into yet: for that it is
 /// [built](Self::build_or_cancel). In the meantime a [sketch](Self::sketch) can be looked at.
 #[derive(Clone, Debug)]
 pub struct Draft {
-    /// Without parts.
-    scene: Scene,
+    checked: Arc<Checked>,
 }
 
 /// Of so many triangles and more the scene is sketched: fewer are built as quickly.
@@ -20,26 +21,25 @@ const MANY: u32 = 1 << 17;
 const DETAILS: f32 = 64.0;
 
 impl Draft {
-    /// Of that scene, whose parts are left out.
-    pub(super) fn new(scene: Scene) -> Self {
-        Self { scene }
+    pub(super) fn new(checked: Checked) -> Self {
+        Self { checked: checked.into() }
     }
 
     /// Where the scene wants to be looked at from.
     pub fn camera(&self) -> &Camera {
-        &self.scene.camera
+        &self.checked.camera
     }
 
     /// The same scene, looked at from somewhere else.
     pub fn with_camera(mut self, camera: Camera) -> Self {
-        self.scene.camera = camera;
+        Arc::make_mut(&mut self.checked).camera = camera;
         self
     }
 
     /// The scene with coarse meshes, which take a moment to build: something to look at until the scene itself is there.
     /// `None` if it will be there as soon.
     pub fn sketch(&self) -> Option<Scene> {
-        let meshes = || self.scene.objects.iter().filter_map(|object| mesh_of(&object.shape));
+        let meshes = || self.checked.objects.iter().filter_map(|object| mesh_of(&object.shape));
         if meshes().map(Mesh::triangle_count).fold(0, u32::saturating_add) < MANY {
             return None;
         }
@@ -48,8 +48,8 @@ impl Draft {
             Some(mesh) => mesh.file().coarse(details as u32).map(|mesh| Object::new(Mesh::from(mesh), object.material)),
             None => Some(object.clone()),
         };
-        let objects: Vec<_> = self.scene.objects.iter().filter_map(sketched).collect();
-        Some(Scene { parts: Parts::of(&objects).into(), objects: objects.into(), ..self.scene.clone() })
+        let objects: Vec<_> = self.checked.objects.iter().filter_map(sketched).collect();
+        Some(Self::new(Checked { objects: objects.into(), ..Checked::clone(&self.checked) }).finish())
     }
 
     /// The scene, built on all threads of the current rayon pool, until the watcher cancels it.
@@ -57,14 +57,14 @@ impl Draft {
     /// # Errors
     /// [`Cancelled`], if the watcher cancels it.
     pub fn build_or_cancel(self, watcher: &Watcher<'_>) -> Result<Scene, Cancelled> {
-        let parts = Parts::of_or_cancel(&self.scene.objects, watcher)?.into();
-        Ok(Scene { parts, ..self.scene })
+        let accelerator = Accelerator::new_or_cancel(self.checked.shapes(), watcher)?.into();
+        Ok(Scene { checked: self.checked, accelerator })
     }
 
     /// The scene, however long it takes.
     pub fn finish(self) -> Scene {
-        let parts = Parts::of(&self.scene.objects).into();
-        Scene { parts, ..self.scene }
+        let accelerator = Accelerator::new(self.checked.shapes()).into();
+        Scene { checked: self.checked, accelerator }
     }
 }
 

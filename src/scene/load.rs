@@ -131,7 +131,7 @@ impl CameraPath {
     ///     (time: 0, eye: (0, 0, 5), target: (0, 0, 0)),
     ///     (time: 2, eye: (4, 1, 5), target: (0, 0, 0), vertical_fov: 30),
     /// ])";
-    /// let path = CameraPath::from_ron("flight.ron", text, &scene.camera)?;
+    /// let path = CameraPath::from_ron("flight.ron", text, scene.camera())?;
     /// assert_eq!(path.camera_at(1.0).unwrap().pose().eye, glam::Vec3::new(2.0, 0.5, 5.0));
     /// # Ok::<(), termtrace::scene_text::SceneError>(())
     /// ```

@@ -1,6 +1,6 @@
 //! A scene around a mesh that comes without one.
 
-use super::{Background, Draft, Object, Scene};
+use super::{Background, Checked, Draft, Object, Scene};
 use crate::bounds::Bounds;
 use crate::camera::{Camera, Pose, ViewRectangle};
 use crate::color::{LinearRgb, Srgb8};
@@ -45,7 +45,7 @@ impl Draft {
         let floor = Plane::new(Vec3::new(middle.x, bounds.min.y, middle.z), Vec3::Y);
         let objects =
             vec![Object::new(Mesh::from(mesh), Material::Own), Object::new(floor, Material::Diffuse(grey(0xb0)))];
-        Some(Self::new(Scene {
+        Some(Self::new(Checked {
             background: Background::Gradient {
                 bottom: grey(0x90),
                 top: LinearRgb::from_srgb8(Srgb8::new(0x87, 0xa6, 0xcc)),
@@ -55,7 +55,7 @@ impl Draft {
                 light(middle + radius * Vec3::new(-2.5, 4.0, 3.0), 0.85),
                 light(middle + radius * Vec3::new(4.0, 2.0, 2.0), 0.2),
             ],
-            ..Scene::unbuilt(camera(&bounds, middle)?, objects)
+            ..Checked::new(camera(&bounds, middle)?, objects)
         }))
     }
 }

@@ -13,7 +13,7 @@ impl Camera {
     ///
     /// let line = "camera: (eye: (0, 1.5, 6), target: (0, 0.7, 0), up: (0, 1, 0), vertical_fov: 40)";
     /// let scene = Scene::from_ron("x.ron", &format!("({line})"))?;
-    /// assert_eq!(scene.camera.to_ron(), line);
+    /// assert_eq!(scene.camera().to_ron(), line);
     /// # Ok::<(), termtrace::scene_text::SceneError>(())
     /// ```
     pub fn to_ron(&self) -> String {
@@ -98,7 +98,7 @@ mod tests {
 
     fn read_back(camera: &Camera) -> Camera {
         let text = format!("({})", camera.to_ron());
-        Scene::from_ron("camera", &text).unwrap().camera
+        *Scene::from_ron("camera", &text).unwrap().camera()
     }
 
     #[test]
@@ -113,7 +113,7 @@ mod tests {
         ] {
             let line = format!("camera: (eye: (0.1, -3e-20, 4), target: (1000000, 0, 0), up: (0, 0.3, 0), {lens})");
             let scene = Scene::from_ron("x", &format!("({line})")).unwrap();
-            assert_eq!(scene.camera.to_ron(), line);
+            assert_eq!(scene.camera().to_ron(), line);
         }
     }
 

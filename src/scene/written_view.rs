@@ -11,7 +11,7 @@ use crate::scene_text::{Body, Faults, Field, Node, Value, parse};
 /// use termtrace::scene::{Scene, with_view};
 ///
 /// let text = "(\n    // From in front.\n    camera: (eye: (0, 0, 5), target: (0, 0, 0)),\n)\n";
-/// let camera = Scene::from_ron("x.ron", &text.replace("0, 0, 5", "3, 1, 2"))?.camera;
+/// let camera = *Scene::from_ron("x.ron", &text.replace("0, 0, 5", "3, 1, 2"))?.camera();
 /// assert_eq!(with_view(text, &camera).unwrap(), "(
 ///     // From in front.
 ///     camera: (eye: (0, 0, 5), target: (0, 0, 0)),
@@ -167,15 +167,15 @@ mod tests {
 
     /// What becomes of `text`, with `+` for the new view's text.
     fn added(text: &str) -> String {
-        let camera = Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera;
+        let camera = *Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera();
         let text = text
             .replace('C', "camera: (eye: (0, 0, 5), target: (0, 0, 0))")
             .replace('V', "(eye: (0, 1, 5), target: (0, 0, 0))");
         let before = Scene::from_ron("x", &text).expect("a scene");
         let written = with_view(&text, &camera).expect("it is a scene");
         let scene = Scene::from_ron("x", &written).expect("it still is");
-        assert_eq!(scene.views.split_last(), Some((&camera, &before.views[..])), "{written}");
-        assert_eq!(Scene { views: before.views.clone(), ..scene }, before);
+        assert_eq!(scene.views().split_last(), Some((&camera, before.views())), "{written}");
+        assert_eq!(scene.with_views(before.views().to_vec()), before);
         let short = written.replace("camera: (eye: (0, 0, 5), target: (0, 0, 0))", "C").replace(VIEW, "+");
         short.replace("(eye: (0, 1, 5), target: (0, 0, 0))", "V")
     }
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn what_is_no_scene_is_left_alone() {
-        let camera = Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera;
+        let camera = *Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera();
         for text in ["", "(", "5", "()", "(1, 2)", "(keyframes: [])", "(camera: 5, views: 5)", "(views: None)"] {
             assert_eq!(with_view(text, &camera), None, "{text}");
         }

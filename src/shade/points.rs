@@ -1,9 +1,10 @@
 //! Hits -> the surfaces there, eight at a time.
 
+use crate::accel::{Accelerator, PartId, PartIds, Tree};
 use crate::hit::EightHits;
 use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
-use crate::scene::{Grove, PartId, PartIds, Parts, Scene};
+use crate::scene::Scene;
 use crate::shape::{AtCrossing, Part, Points, SideBySide};
 use crate::simd::{self, Work};
 use glam::Vec2;
@@ -69,8 +70,8 @@ impl Work for SurfacePoints<'_> {
         for ((rays, hits), at) in rays.iter().zip(hits).zip(points) {
             at.met = hits.met;
             if at.met != 0 {
-                of_hits::<N>(scene.parts(), rays, hits, at);
-                if scene.parts().has_smooth {
+                of_hits::<N>(scene.accelerator(), rays, hits, at);
+                if scene.accelerator().has_smooth {
                     smooth(scene, at);
                 }
             }
@@ -79,21 +80,21 @@ impl Work for SurfacePoints<'_> {
 }
 
 #[inline(always)]
-fn of_hits<N: Lanes>(parts: &Parts, rays: &EightRays, hits: &EightHits, at: &mut EightPoints) {
+fn of_hits<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &EightHits, at: &mut EightPoints) {
     let mut points = Points::<N>::nowhere();
     let mut ids = PartIds::<N>::splat(PartId { object: 0, part: 0 });
     let mut left = at.met;
     while left != 0 {
         let place = hits.place(left.trailing_zeros() as usize % LANES);
         // A plane is by itself; those that stand in trees are looked at together.
-        let (lanes, whose, found) = if place < parts.balls.first {
-            let (id, plane) = &parts.planes[place as usize];
+        let (lanes, whose, found) = if place < accel.balls.first {
+            let (id, plane) = &accel.planes[place as usize];
             let found = plane.points_at(&Rays::<N>::load(rays, false), N::load(&hits.t));
             (hits.at::<N>(place), PartIds::splat(*id), found)
-        } else if place < parts.triangles.first {
-            in_grove(&parts.balls, rays, hits, hits.between(parts.balls.first, parts.triangles.first))
+        } else if place < accel.triangles.first {
+            in_tree(&accel.balls, rays, hits, hits.between(accel.balls.first, accel.triangles.first))
         } else {
-            in_grove(&parts.triangles, rays, hits, hits.between(parts.triangles.first, EightHits::NOTHING))
+            in_tree(&accel.triangles, rays, hits, hits.between(accel.triangles.first, EightHits::NOTHING))
         };
         if lanes == ALL {
             (points, ids) = (found, whose);
@@ -113,8 +114,8 @@ fn of_hits<N: Lanes>(parts: &Parts, rays: &EightRays, hits: &EightHits, at: &mut
 
 /// What these of the rays have met in a tree: who, whose, and what.
 #[inline(always)]
-fn in_grove<N: Lanes, S: SideBySide>(
-    grove: &Grove<S>,
+fn in_tree<N: Lanes, S: SideBySide>(
+    tree: &Tree<S>,
     rays: &EightRays,
     hits: &EightHits,
     lanes: u32,
@@ -123,12 +124,12 @@ fn in_grove<N: Lanes, S: SideBySide>(
     let place_of_first = |left: u32| hits.place(left.trailing_zeros() as usize % LANES);
     // Most often all stand in one leaf. Who has met nothing here is given whatever it has, and that is not looked at.
     let first = place_of_first(lanes);
-    let (leaf, ids) = grove.leaf(first);
+    let (leaf, ids) = tree.leaf(first);
     let (mut shapes, mut whose) = (leaf.pick(in_leaf), ids.pick(in_leaf));
     let mut left = lanes & !leaves.has_bits(first / LANES as u32).bits();
     while left != 0 {
         let place = place_of_first(left);
-        let ((leaf, ids), are_here) = (grove.leaf(place), leaves.has_bits(place / LANES as u32));
+        let ((leaf, ids), are_here) = (tree.leaf(place), leaves.has_bits(place / LANES as u32));
         shapes = S::select(are_here, leaf.pick(in_leaf), shapes);
         whose = PartIds::select(are_here, ids.pick(in_leaf), whose);
         left &= !are_here.bits();

@@ -22,8 +22,8 @@ impl Witness for Count {
 pub(super) fn tests(scene: &Scene, sight: &Sight) -> u32 {
     let mut count = Count::default();
     closest_hit_witnessed(scene, &sight.ray, &mut count);
-    if let Some(surface) = sight.surface(scene).filter(|_| scene.shadows) {
-        for light in scene.lights.iter().filter(|light| shade::incidence(light, &surface).is_some()) {
+    if let Some(surface) = sight.surface(scene).filter(|_| scene.shadows()) {
+        for light in scene.lights().iter().filter(|light| shade::incidence(light, &surface).is_some()) {
             any_hit_witnessed(scene, &shade::shadow_ray(light, &surface), TO_THE_LIGHT, &mut count);
         }
     }

@@ -41,13 +41,13 @@ pub(super) struct View {
 impl View {
     /// As the scene wants to be looked at.
     pub(super) fn of(scene: &Scene, orbits: bool) -> Self {
-        let home = scene.camera;
+        let home = *scene.camera();
         Self {
             home,
             camera: home,
             speed: control::speed(&home),
             orbits,
-            written: scene.views.clone(),
+            written: scene.views().to_vec(),
             saved: [None; 9],
         }
     }
@@ -75,9 +75,9 @@ impl Eye {
     }
 
     /// The scene's file has other views now.
-    pub(super) fn set_written(&mut self, views: &[Camera]) {
+    pub(super) fn set_written(&mut self, views: Vec<Camera>) {
         if let Some(view) = &mut self.view {
-            view.written = views.to_vec();
+            view.written = views;
         }
     }
 

@@ -6,7 +6,6 @@ use crate::framebuffer::Resolution;
 use crate::render::{Cost, Sampling};
 use crate::scene::Scene;
 use crate::tone::Picture;
-use std::sync::Arc;
 use std::time::Duration;
 
 /// What a frame is to show: of two that are equal, the pictures are equal.
@@ -32,7 +31,7 @@ impl Shot {
 /// A frame that is to be traced.
 #[derive(Clone)]
 pub(crate) struct Job {
-    pub(crate) scene: Arc<Scene>,
+    pub(crate) scene: Scene,
     pub(crate) shot: Shot,
     pub(crate) sampling: Sampling,
     /// The shot is that of the last frame, which is gone on with if it can be. The job may be given up.
@@ -41,7 +40,7 @@ pub(crate) struct Job {
 
 /// A frame that is done.
 pub(crate) struct Frame {
-    pub(crate) scene: Arc<Scene>,
+    pub(crate) scene: Scene,
     pub(crate) shot: Shot,
     pub(crate) picture: Picture,
     /// The pictures that it is made of, as far as they can be put together in another way.

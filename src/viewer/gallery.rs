@@ -5,7 +5,6 @@ use super::lights::Lights;
 use crate::camera::Camera;
 use crate::scene::Scene;
 use std::collections::HashMap;
-use std::sync::Arc;
 
 /// The scene that is shown, and what is kept of others.
 #[derive(Default)]
@@ -29,8 +28,8 @@ struct Now {
 impl Gallery {
     /// Shows a scene. Returns how it is looked at, unless that is as the one before, which wanted to be looked at in the
     /// same way: as when it was left, if it wants to be looked at as it did then; else as it wants.
-    pub(super) fn show(&mut self, scene: Arc<Scene>, of: usize, orbits: bool) -> Option<View> {
-        let home = scene.camera;
+    pub(super) fn show(&mut self, scene: Scene, of: usize, orbits: bool) -> Option<View> {
+        let home = *scene.camera();
         let before = self.now.as_ref().map(|now| (now.of, now.home));
         let view = (before != Some((of, home))).then(|| {
             let left = self.left.remove(&of).filter(|left| left.home() == home);

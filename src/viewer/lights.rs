@@ -3,12 +3,11 @@
 use crate::light::PointLight;
 use crate::scene::Scene;
 use glam::Vec3;
-use std::sync::Arc;
 
 /// The lights of the scene that is shown.
 pub(super) struct Lights {
     /// With the lights where they are.
-    scene: Arc<Scene>,
+    scene: Scene,
     /// As the scene's file has them.
     written: Vec<PointLight>,
     /// Which one the user has taken hold of.
@@ -19,17 +18,17 @@ pub(super) struct Lights {
 
 impl Lights {
     /// As the scene has them.
-    pub(super) fn of(scene: Arc<Scene>) -> Self {
-        Self { written: scene.lights.clone(), scene, held: None, moves: 0 }
+    pub(super) fn of(scene: Scene) -> Self {
+        Self { written: scene.lights().to_vec(), scene, held: None, moves: 0 }
     }
 
     /// The scene, with the lights where they are.
-    pub(super) fn scene(&self) -> &Arc<Scene> {
+    pub(super) fn scene(&self) -> &Scene {
         &self.scene
     }
 
     pub(super) fn all(&self) -> &[PointLight] {
-        &self.scene.lights
+        self.scene.lights()
     }
 
     /// How many times one was moved.
@@ -62,7 +61,9 @@ impl Lights {
     /// Moves the one that is held, if there is one, to a place that is finite.
     pub(super) fn move_held(&mut self, to: Vec3) {
         if let Some(held) = self.held.filter(|_| to.is_finite()) {
-            Arc::make_mut(&mut self.scene).lights[held].position = to;
+            let mut lights = self.all().to_vec();
+            lights[held].position = to;
+            self.scene = self.scene.clone().with_lights(lights);
             self.moves += 1;
         }
     }

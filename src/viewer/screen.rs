@@ -348,10 +348,10 @@ mod tests {
         };
         let size = Size::new(40, 12);
         let resolution = cell::resolution(capabilities.cell_mode, size, 2.0);
-        let light = crate::render::render(&scene, &scene.camera, resolution, NonZeroU32::MIN);
+        let light = crate::render::render(&scene, scene.camera(), resolution, NonZeroU32::MIN);
         let frame = || Frame {
-            scene: scene.clone().into(),
-            shot: Shot { scene: 0, lights: 0, camera: scene.camera, resolution, shown: Shown::default() },
+            scene: scene.clone(),
+            shot: Shot { scene: 0, lights: 0, camera: *scene.camera(), resolution, shown: Shown::default() },
             picture: tone(&light, &scene),
             parts: Vec::new(),
             legends: Vec::new(),

@@ -26,13 +26,13 @@ fn it_times_what_frame_shows() {
         let resolution = Resolution::square(60, 40);
         let one = NonZeroU32::MIN;
         let scene = Scene::load(&scene).expect("a shipped scene is fine");
-        let light = render(&scene, &scene.camera, resolution, one);
+        let light = render(&scene, scene.camera(), resolution, one);
         let png = export::png(&tone(&light, &scene), 1.0, 1).expect("a PNG");
         assert!(
             folder.run(&format!("frame {path} --pixels 60x40 --cell-aspect 2 --format png")).done() == png,
             "{path}"
         );
-        let eye_rays = scene.camera.eye_rays(resolution.aspect_ratio());
+        let eye_rays = scene.camera().eye_rays(resolution.aspect_ratio());
         let places = (0..40).flat_map(|y| (0..60).map(move |x| ((x as f32 + 0.5) / 60.0, (y as f32 + 0.5) / 40.0)));
         let hits: Vec<_> = places.filter_map(|(x, y)| closest_hit(&scene, &eye_rays.through(x, y))).collect();
         let depths: f64 = hits.iter().map(|hit| f64::from(hit.t)).sum();
@@ -47,7 +47,7 @@ fn it_times_what_frame_shows() {
             let said: f64 = round["depths"].parse().expect("a number");
             assert!((said - depths).abs() <= 1e-3 + 1e-9 * depths, "{path}: {depths} are {said}");
             let rays: usize = round["rays"].parse().expect("a number");
-            let shadow_rays = if scene.shadows { hits.len() * scene.lights.len() } else { 0 };
+            let shadow_rays = if scene.shadows() { hits.len() * scene.lights().len() } else { 0 };
             assert_eq!(rays, 60 * 40 + shadow_rays, "{path}: {text}");
         }
     }

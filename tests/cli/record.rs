@@ -128,13 +128,13 @@ fn a_cast_shows_each_frame_of_the_orbit() {
         ),
     ] {
         let cast = folder.run(&format!("record ball.ron {flags}")).done();
-        let cameras = CameraPath::orbit(scene.camera, seconds).cameras(frames, fps).expect("a path");
-        assert_eq!(cameras[0], scene.camera, "it begins with the scene's own view");
+        let cameras = CameraPath::orbit(*scene.camera(), seconds).cameras(frames, fps).expect("a path");
+        assert_eq!(cameras[0], *scene.camera(), "it begins with the scene's own view");
         assert_ne!(cameras[frames - 1].pose().eye, cameras[0].pose().eye, "and does not end with it");
         assert_shows(&cast, fps, resolution, &cameras);
     }
     let cast = folder.run("record ball.ron --seconds 1e-9 --size 9x4").done();
-    assert_shows(&cast, 30, Resolution::square(9, 8), &[scene.camera]);
+    assert_shows(&cast, 30, Resolution::square(9, 8), &[*scene.camera()]);
 }
 
 /// How far two screens are apart: the largest distance of two halves in OKLab.
@@ -153,7 +153,7 @@ fn a_cast_of_less_quality_is_near_and_becomes_exact() {
     let folder = Folder::new();
     folder.write("flight.ron", FLIGHT);
     let scene = ball();
-    let path = CameraPath::from_ron("flight.ron", FLIGHT, &scene.camera).expect("the path is fine");
+    let path = CameraPath::from_ron("flight.ron", FLIGHT, scene.camera()).expect("the path is fine");
     let cameras = path.cameras(36, 20).expect("a path");
     let wanted = |camera| {
         halves_wanted(&grid_from_picture(CellMode::HALF_BLOCK, &picture(&scene, camera, Resolution::square(80, 48))))
@@ -212,7 +212,7 @@ fn a_cast_keeps_to_its_rate() {
 fn a_cast_shows_each_frame_of_a_path() {
     let folder = Folder::new();
     folder.write("flight.ron", FLIGHT);
-    let path = CameraPath::from_ron("flight.ron", FLIGHT, &ball().camera).expect("the path is fine");
+    let path = CameraPath::from_ron("flight.ron", FLIGHT, ball().camera()).expect("the path is fine");
     let resolution = Resolution::square(40, 20);
     for (flags, frames) in [("", 15), (" --seconds 0.3", 6), (" --seconds 1", 20)] {
         let cast = folder.run(&format!("record ball.ron --path flight.ron --size 40x10 --fps 20{flags}")).done();
@@ -224,8 +224,8 @@ fn a_cast_shows_each_frame_of_a_path() {
     // What a keyframe does not say is the scene's, or the command line's.
     let flags = "--size 40x10 --fps 20 --path flight.ron --seconds 0.05";
     let narrow = folder.run(&format!("record ball.ron {flags} --fov 20 --up 1,1,0")).done();
-    let lens = ball().camera.rectangle().with_vertical_fov(20_f32.to_radians()).expect("an angle");
-    let pose = termtrace::camera::Pose { up: glam::Vec3::new(1.0, 1.0, 0.0), ..ball().camera.pose() };
+    let lens = ball().camera().rectangle().with_vertical_fov(20_f32.to_radians()).expect("an angle");
+    let pose = termtrace::camera::Pose { up: glam::Vec3::new(1.0, 1.0, 0.0), ..ball().camera().pose() };
     assert_shows(&narrow, 20, resolution, &[Camera::new(pose, lens).expect("a camera")]);
 }
 
@@ -330,7 +330,7 @@ fn a_gif_shows_each_frame() {
     folder.run("record ball.ron --seconds 0.2 --scale 3 -o x.gif").done();
     let bytes = folder.read("x.gif");
     let (_, frames) = gif_frames(&bytes);
-    let cameras = CameraPath::orbit(scene.camera, 0.2).cameras(6, 30).expect("a path");
+    let cameras = CameraPath::orbit(*scene.camera(), 0.2).cameras(6, 30).expect("a path");
     assert_eq!(frames.len(), 6);
     for (frame, camera) in frames.iter().zip(&cameras) {
         let picture = picture(&scene, camera, Resolution::square(80, 48));
@@ -383,7 +383,7 @@ fn pngs_are_numbered_frames() {
     let folder = Folder::new();
     folder.run("record ball.ron --seconds 0.1 --size 30x10 --scale 2 -o f-%04d.png").done();
     assert!(folder.read("f-0001.png") == folder.frame("ball.ron --size 30x10 --scale 2 --format png"));
-    let cameras = CameraPath::orbit(ball().camera, 0.1).cameras(3, 30).expect("a path");
+    let cameras = CameraPath::orbit(*ball().camera(), 0.1).cameras(3, 30).expect("a path");
     for (number, camera) in (1..=3).zip(cameras) {
         let picture = picture(&ball(), &camera, Resolution::square(30, 20));
         let wanted = termtrace::export::png(&picture, 1.0, 2).expect("a PNG");

@@ -21,7 +21,7 @@ const KINDS: [Kind; 2] = [
         at_least: 14,
         read: |name, bytes| {
             let scene = Scene::from_ron("scene", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))").unwrap();
-            CameraPath::from_bytes(name, bytes, &scene.camera).map(|_| ())
+            CameraPath::from_bytes(name, bytes, scene.camera()).map(|_| ())
         },
     },
 ];

@@ -28,18 +28,18 @@ fn srgb(r: u8, g: u8, b: u8) -> LinearRgb {
 fn only_the_camera_must_be_given() {
     let scene = scene("");
     let pose = Pose { eye: Vec3::new(0.0, 1.0, 5.0), target: Vec3::new(0.0, 1.0, 0.0), up: Vec3::Y };
-    assert_eq!(scene.camera.pose(), pose);
+    assert_eq!(scene.camera().pose(), pose);
     let quarter = ViewRectangle::from_vertical_fov(std::f32::consts::FRAC_PI_4).unwrap();
-    assert_eq!(scene.camera.rectangle(), quarter);
-    assert_eq!(scene, Scene::new(scene.camera, Vec::new()));
+    assert_eq!(scene.camera().rectangle(), quarter);
+    assert_eq!(scene, Scene::new(*scene.camera(), Vec::new()));
 }
 
 #[test]
 fn the_view_rectangle_has_two_forms() {
-    let by_angle = camera("vertical_fov: 90, aspect_ratio: 1.5, shift: (0.25, -1)").camera.rectangle();
+    let by_angle = camera("vertical_fov: 90, aspect_ratio: 1.5, shift: (0.25, -1)").camera().rectangle();
     assert!((by_angle.height() - 2.0).abs() < 1e-6 && (by_angle.width().unwrap() - 3.0).abs() < 1e-6);
     assert_eq!(by_angle.shift(), Vec2::new(0.25, -1.0));
-    let by_length = camera("focal_length: 24, width: 36, height: 24").camera.rectangle();
+    let by_length = camera("focal_length: 24, width: 36, height: 24").camera().rectangle();
     assert_eq!((by_length.width(), by_length.height()), (Some(1.5), 1.0));
 }
 
@@ -55,9 +55,9 @@ fn a_color_has_many_forms() {
         ("Some(0x2)", LinearRgb::grey(2.0)),
     ] {
         let scene = scene(&format!("background: {written}, ambient: {written}"));
-        assert_eq!((scene.background, scene.ambient), (Background::Color(light), light), "{written}");
+        assert_eq!((scene.background(), scene.ambient()), (Background::Color(light), light), "{written}");
     }
-    let gradient = scene("background: Gradient(bottom: 0, top: \"white\")").background;
+    let gradient = scene("background: Gradient(bottom: 0, top: \"white\")").background();
     let (bottom, top) = (LinearRgb::BLACK, LinearRgb::grey(1.0));
     assert_eq!(gradient, Background::Gradient { bottom, top });
 }
@@ -75,10 +75,10 @@ fn views_go_by_the_camera() {
     let scene = Scene::from_ron("views.ron", text).unwrap();
     let [eye, target] = [Vec3::new(1.0, 0.0, 5.0), Vec3::Y];
     let up = Vec3::new(1.0, 2.0, 0.0);
-    let like_it = scene.camera.with_pose(Pose { eye, target, up }).unwrap();
+    let like_it = scene.camera().with_pose(Pose { eye, target, up }).unwrap();
     let quarter = ViewRectangle::from_vertical_fov(std::f32::consts::FRAC_PI_2).unwrap();
     let other = Camera::new(Pose { eye, target, up: Vec3::Z }, quarter).unwrap();
-    assert_eq!(scene.views, [like_it, other]);
+    assert_eq!(scene.views(), [like_it, other]);
 }
 
 /// As the live view writes them.
@@ -88,7 +88,7 @@ fn a_camera_can_be_written_as_a_view() {
     let view =
         "(eye: (1, 0, 5), target: (0, 1, 0), up: (0, 1, 0), focal_length: 1, width: 1.5, height: 1, shift: (0, 0.5))";
     let scene = Scene::from_ron("views.ron", &format!("({line}, views: [{view}])")).unwrap();
-    assert_eq!(scene.views[0].to_ron(), format!("camera: {view}"));
+    assert_eq!(scene.views()[0].to_ron(), format!("camera: {view}"));
 }
 
 #[test]
@@ -96,7 +96,8 @@ fn lights_multiply_color_by_intensity() {
     let lights = scene(
         "lights: (Point(position: (1, 2, 3)), Point(position: [1, 2, 3], color: (1, 0.5, 0), intensity: 4, falloff: None))",
     )
-    .lights;
+    .lights()
+    .to_vec();
     let position = Vec3::new(1.0, 2.0, 3.0);
     let light = |intensity, falloff| PointLight { position, intensity, falloff };
     let expected =
@@ -129,7 +130,7 @@ fn objects_and_their_materials() {
 #[test]
 fn how_the_light_is_shown() {
     let scene = scene("shadows: false, exposure: 2, tone_curve: Reinhard");
-    assert_eq!((scene.shadows, scene.exposure, scene.tone_curve), (false, 2.0, ToneCurve::Reinhard));
+    assert_eq!((scene.shadows(), scene.exposure(), scene.tone_curve()), (false, 2.0, ToneCurve::Reinhard));
 }
 
 fn corners(scene: &Scene) -> Vec<[Vec3; 3]> {
@@ -195,9 +196,9 @@ fn meshes_bring_their_colours() {
             &format!("(camera: (eye: (0.5, 0.5, 3), target: (0.5, 0.5, 0), vertical_fov: 1), ambient: 1, objects: [Mesh({fields})])"),
         )
         .unwrap_or_else(|error| panic!("{error}"));
-        scene.shadows = false;
+        scene = scene.with_shadows(false);
         let resolution = termtrace::framebuffer::Resolution::square(1, 1);
-        termtrace::render::render(&scene, &scene.camera, resolution, std::num::NonZeroU32::MIN).pixel(0, 0)
+        termtrace::render::render(&scene, scene.camera(), resolution, std::num::NonZeroU32::MIN).pixel(0, 0)
     };
     let coloured = light("path: \"tests/meshes/square.ply\"");
     assert!(coloured != LinearRgb::grey(0.8) && coloured != LinearRgb::BLACK, "{coloured:?}");
@@ -214,8 +215,8 @@ fn meshes_bring_their_colours() {
 fn a_mesh_alone_is_a_scene() {
     let scene = Scene::load(Path::new("scenes/teapot.obj")).unwrap_or_else(|error| panic!("{error}"));
     let resolution = termtrace::framebuffer::Resolution::square(80, 48);
-    let picture = termtrace::render::render(&scene, &scene.camera, resolution, std::num::NonZeroU32::MIN);
-    let rays = scene.camera.eye_rays(resolution.aspect_ratio());
+    let picture = termtrace::render::render(&scene, scene.camera(), resolution, std::num::NonZeroU32::MIN);
+    let rays = scene.camera().eye_rays(resolution.aspect_ratio());
     let object = |x: u32, y: u32| {
         let ray = rays.through((x as f32 + 0.5) / 80.0, 1.0 - (y as f32 + 0.5) / 48.0);
         termtrace::hit::closest_hit(&scene, &ray).map(|hit| hit.object)
@@ -258,7 +259,7 @@ fn the_outermost_values_make_a_picture() {
     let scene = Scene::from_ron("x.ron", text).unwrap_or_else(|error| panic!("{error}"));
     let resolution = termtrace::framebuffer::Resolution::square(16, 8);
     let one = std::num::NonZeroU32::MIN;
-    let frame = termtrace::render::render(&scene, &scene.camera, resolution, one);
+    let frame = termtrace::render::render(&scene, scene.camera(), resolution, one);
     assert_eq!(termtrace::tone::tone(&frame, &scene).pixels.len(), 128);
 }
 

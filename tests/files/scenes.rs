@@ -29,7 +29,7 @@ fn every_path_through_a_scene_gives_a_picture_at_every_time() {
     let mut count = 0;
     for entry in std::fs::read_dir(scenes.join("paths")).unwrap() {
         let file = entry.unwrap().path();
-        let path = CameraPath::load(&file, &scene.camera).unwrap_or_else(|error| panic!("{error}"));
+        let path = CameraPath::load(&file, scene.camera()).unwrap_or_else(|error| panic!("{error}"));
         let frames = (120.0 * path.seconds()) as usize;
         let cameras = path.cameras(frames, 120).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
         assert!(cameras.len() >= 120, "{}", file.display());

@@ -41,7 +41,7 @@ fn explains(screen: &Screen, size: Size, pixel: [u32; 2]) -> bool {
         f32::from(size.cell.1) / f32::from(size.cell.0),
     );
     let scene = scene();
-    let lines = explain(&scene, &scene.camera, resolution, pixel).lines();
+    let lines = explain(&scene, scene.camera(), resolution, pixel).lines();
     lines[..12].iter().zip(&screen.text()[1..]).all(|(line, row)| row.contains(line.as_str()))
 }
 

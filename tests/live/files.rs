@@ -134,9 +134,9 @@ fn a_view_is_written_into_the_scene_after_a_yes() {
     session.send(b"y");
     session.wait_for_text("written into the scene's views");
     let scene = Scene::load(&folder.path().join("ball.ron")).expect("it is a scene");
-    assert_eq!(scene.views.len(), 1);
-    assert_eq!(scene.views[0].pose().eye, glam::Vec3::new(2.0, 1.0, 4.0));
-    assert_eq!(Some(read(&folder, "ball.ron")), with_view(TEXT, &scene.views[0]));
+    assert_eq!(scene.views().len(), 1);
+    assert_eq!(scene.views()[0].pose().eye, glam::Vec3::new(2.0, 1.0, 4.0));
+    assert_eq!(Some(read(&folder, "ball.ron")), with_view(TEXT, &scene.views()[0]));
     leave(&mut session);
 }
 
@@ -160,7 +160,7 @@ fn the_camera_is_copied() {
     let mut session = looking(&folder);
     session.send(b"y");
     session.wait_for_text("camera copied");
-    let line = format!("{},", Scene::from_ron("x", TEXT).expect("a scene").camera.to_ron());
+    let line = format!("{},", Scene::from_ron("x", TEXT).expect("a scene").camera().to_ron());
     let encoded = base64(line.as_bytes());
     assert!(session.seen().has(format!("\x1b]52;c;{encoded}\x1b\\").as_bytes()));
     leave(&mut session);

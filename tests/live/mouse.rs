@@ -36,7 +36,7 @@ fn after(scene: &str, reports: &str) -> Camera {
     let mut session = looking(scene, &[]);
     session.send(reports.as_bytes());
     session.wait_for_rest();
-    camera(&mut session).unwrap_or_else(|| load(scene).camera)
+    camera(&mut session).unwrap_or_else(|| *load(scene).camera())
 }
 
 #[track_caller]
@@ -47,7 +47,7 @@ fn assert_near(found: Vec3, wanted: Vec3) {
 /// Across the height of the picture it is half a round: 24 columns are as long as that.
 #[test]
 fn the_left_button_goes_around_a_mesh() {
-    let start = load(TEAPOT).camera.pose();
+    let start = load(TEAPOT).camera().pose();
     let way = start.eye - start.target;
     for (to, steps) in [([32, 6], -10.0), ([8, 6], 10.0), ([20, 6], 0.0)] {
         let pose = after(TEAPOT, &drag(LEFT, [20, 6], to)).pose();
@@ -60,7 +60,7 @@ fn the_left_button_goes_around_a_mesh() {
 
 #[test]
 fn the_left_button_looks_around_in_flight() {
-    let start = load(BALL).camera.pose();
+    let start = load(BALL).camera().pose();
     let found = after(BALL, &drag(LEFT, [20, 6], [24, 6]));
     assert_eq!(found.pose().eye, start.eye);
     // What was in the middle has gone with the pointer.
@@ -72,7 +72,7 @@ fn the_left_button_looks_around_in_flight() {
 fn the_other_buttons_and_shift_shift_the_picture() {
     for button in [RIGHT, MIDDLE, LEFT + SHIFT] {
         for scene in [TEAPOT, BALL] {
-            let start = load(scene).camera;
+            let start = *load(scene).camera();
             let found = after(scene, &drag(button, [10, 3], [14, 6]));
             let at = place_of(&found, start.pose().target, ASPECT_RATIO).expect("it is in front of the eye");
             assert!(at.abs_diff_eq(Vec2::new(0.6, 0.75), 1e-4), "{button} {at}");
@@ -83,7 +83,7 @@ fn the_other_buttons_and_shift_shift_the_picture() {
 
 #[test]
 fn the_wheel_comes_nearer_to_what_is_under_the_pointer() {
-    let start = load(BALL).camera;
+    let start = *load(BALL).camera();
     // In the middle it is the ball, which is four away.
     let two = report(WHEEL_UP, [20, 6], 'M').repeat(2);
     let nearer = after(BALL, &two).pose();
@@ -111,7 +111,7 @@ fn a_double_click_shows_everything() {
     let scene = load(TEAPOT);
     let bounds = scene.bounds().expect("there is a mesh");
     let moved = report(WHEEL_UP, [3, 3], 'M').repeat(4) + &click([20, 6]);
-    let wanted = framing(&scene.camera, &bounds, ASPECT_RATIO).pose();
+    let wanted = framing(scene.camera(), &bounds, ASPECT_RATIO).pose();
     let found = after(TEAPOT, &(moved.clone() + &click([20, 6]))).pose();
     assert_near(found.eye, wanted.eye);
     assert_near(found.target, wanted.target);
@@ -126,7 +126,7 @@ fn a_pointer_that_runs_ahead_is_caught_up_with_at_once() {
         |row: u16| (0..40).chain((0..40).rev()).map(move |column| report(LEFT + WAY, [column, row], 'M'));
     let ways: String = (0..40).flat_map(|_| there_and_back(6)).collect();
     let reports = report(LEFT, [20, 6], 'M') + &ways + &report(LEFT + WAY, [32, 6], 'M') + &report(LEFT, [32, 6], 'm');
-    let start = load(TEAPOT).camera.pose();
+    let start = load(TEAPOT).camera().pose();
     let pose = after(TEAPOT, &reports).pose();
     assert_near(pose.eye, start.target + turned(start.eye - start.target, -10.0));
 }
@@ -186,7 +186,7 @@ fn places_may_be_told_in_pixels() {
     session.wait_for_rest();
     session.send(drag(LEFT, [205, 130], [325, 130]).as_bytes());
     session.wait_for_rest();
-    let start = load(TEAPOT).camera.pose();
+    let start = load(TEAPOT).camera().pose();
     let pose = camera(&mut session).expect("it was moved").pose();
     assert_near(pose.eye, start.target + turned(start.eye - start.target, -10.0));
 }

@@ -30,7 +30,7 @@ pub(crate) fn camera(session: &mut Session) -> Option<Camera> {
     session.assert_clean();
     let said = String::from_utf8_lossy(&session.seen().bytes()[before..]).into_owned();
     let line = said.lines().find_map(|line| Some(&line[line.find("camera:")?..]))?;
-    Some(Scene::from_ron("printed", &format!("({line})")).expect("a line for a scene file").camera)
+    Some(*Scene::from_ron("printed", &format!("({line})")).expect("a line for a scene file").camera())
 }
 
 /// Where these keys lead, each of which is one step.
@@ -38,7 +38,7 @@ fn after(scene: &str, keys: &[u8]) -> Camera {
     let mut session = looking(scene, &["--reduced-motion"]);
     session.send(keys);
     session.wait_for_rest();
-    camera(&mut session).unwrap_or_else(|| load(scene).camera)
+    camera(&mut session).unwrap_or_else(|| *load(scene).camera())
 }
 
 /// A step is nine degrees.
@@ -49,7 +49,7 @@ pub(crate) fn turned(v: Vec3, steps: f32) -> Vec3 {
 
 #[test]
 fn a_mesh_given_by_name_is_gone_around() {
-    let Pose { eye, target, .. } = load(TEAPOT).camera.pose();
+    let Pose { eye, target, .. } = load(TEAPOT).camera().pose();
     for (keys, steps) in [(&b"\x1b[D\x1b[Dh"[..], -3.0), (b"\x1b[Cll", 3.0), (b"L", 4.0)] {
         let pose = after(TEAPOT, keys).pose();
         let wanted = target + turned(eye - target, steps);
@@ -60,13 +60,13 @@ fn a_mesh_given_by_name_is_gone_around() {
     assert!(higher.y > eye.y && (higher.distance(target) / eye.distance(target) - 1.0).abs() < 1e-4);
     let nearer = after(TEAPOT, b"ww").pose();
     assert!((nearer.eye.distance(target) / eye.distance(target) - libm::expf(-0.4)).abs() < 1e-4);
-    assert_eq!(after(TEAPOT, b"wsr"), load(TEAPOT).camera);
+    assert_eq!(after(TEAPOT, b"wsr"), *load(TEAPOT).camera());
 }
 
 /// With Tab the eye goes around what is in the middle, and flies again.
 #[test]
 fn a_scene_is_flown_through_until_tab() {
-    let start = load(BALL).camera.pose();
+    let start = load(BALL).camera().pose();
     let flown = after(BALL, b"h").pose();
     assert_eq!(flown.eye, start.eye, "it looks around");
     let pose = after(BALL, b"\thh").pose();
@@ -84,7 +84,7 @@ fn f_shows_everything() {
     let bounds = scene.bounds().expect("there is a ball");
     let found = after(BALL, b"wwwf");
     // 40x24 square pixels.
-    let wanted = framing(&scene.camera, &bounds, 40.0 / 24.0).pose();
+    let wanted = framing(scene.camera(), &bounds, 40.0 / 24.0).pose();
     assert!(found.pose().eye.abs_diff_eq(wanted.eye, 1e-3) && found.pose().target.abs_diff_eq(wanted.target, 1e-3));
 }
 
@@ -97,7 +97,7 @@ fn brackets_change_the_field_of_view_and_tell_it() {
     session.wait_for_text("field of view: 37.8 degrees");
     let camera = camera(&mut session).expect("it was changed");
     assert!((camera.rectangle().vertical_fov().to_degrees() - 37.8).abs() < 0.1);
-    assert_eq!(camera.pose(), load(BALL).camera.pose());
+    assert_eq!(camera.pose(), load(BALL).camera().pose());
 }
 
 /// It turns until something else moves the eye, and then all is still.
@@ -143,13 +143,13 @@ fn digits_go_to_the_views_of_the_scene_and_to_saved_ones() {
     std::fs::write(&file, text).expect("written");
     let file = file.to_str().expect("a plain name");
     let scene = load(file);
-    assert_eq!(after(file, b"1"), scene.views[0]);
-    assert_eq!(after(file, b"1r2"), scene.views[1]);
+    assert_eq!(after(file, b"1"), scene.views()[0]);
+    assert_eq!(after(file, b"1r2"), scene.views()[1]);
     // Saved over, and only for this session; by the number that follows.
     let moved = after(file, b"2w");
     assert_eq!(after(file, b"2wm1r1"), moved);
     assert_eq!(after(file, b"2wm9rr9"), moved);
-    assert_eq!(after(file, b"2wmx1"), scene.views[0], "x is no number, and explains nothing");
+    assert_eq!(after(file, b"2wmx1"), scene.views()[0], "x is no number, and explains nothing");
     let mut session = looking(file, &[]);
     session.send(b"m");
     session.wait_for_text("save this view as");

@@ -36,7 +36,7 @@ fn scene() -> Scene {
 fn whole(view: View) -> Picture {
     let scene = scene();
     let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size(), 2.0);
-    view::picture(view, &scene, &scene.camera, resolution, Sampling::BEST)
+    view::picture(view, &scene, scene.camera(), resolution, Sampling::BEST)
 }
 
 fn grid_size() -> termtrace::grid::Size {
@@ -71,7 +71,7 @@ fn v_and_b_go_through_the_views_and_say_what_their_colours_mean() {
     let scene = scene();
     for view in View::ALL.into_iter().skip(1) {
         session.send(b"v");
-        let legend = view.legend(&scene, &scene.camera);
+        let legend = view.legend(&scene, scene.camera());
         wait_for(&mut session, view.name(), &whole(view), |last| last.contains(&legend));
     }
     session.send(b"v");
@@ -103,7 +103,7 @@ fn two_views_are_compared() {
     let scene = scene();
     let half = |width, view| {
         let resolution = Resolution::square(width, u32::from(SIZE.rows) * 2);
-        view::picture(view, &scene, &scene.camera, resolution, Sampling::BEST)
+        view::picture(view, &scene, scene.camera(), resolution, Sampling::BEST)
     };
     let legends = |last: &str| {
         let right: String = last.chars().skip(30).collect();
@@ -148,7 +148,7 @@ fn small_screens_have_no_legend() {
     let scene = scene();
     let grid_size = termtrace::grid::Size::new(size.columns, size.rows);
     let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size, 2.0);
-    let normals = view::picture(View::Normal, &scene, &scene.camera, resolution, Sampling::BEST);
+    let normals = view::picture(View::Normal, &scene, scene.camera(), resolution, Sampling::BEST);
     let wanted = cell::grid_from_picture(CellMode::HALF_BLOCK, &normals);
     session.wait_for("the normals and nothing else", SOON, |seen| shows(seen.screen(), &wanted));
 }

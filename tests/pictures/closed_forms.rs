@@ -44,12 +44,12 @@ fn floor() -> Object {
 
 fn lit(camera: Camera, objects: Vec<Object>, lights: Vec<PointLight>) -> Scene {
     let mut scene = Scene::new(camera, objects);
-    scene.lights = lights;
+    scene = scene.with_lights(lights);
     scene
 }
 
 fn picture(scene: &Scene, width: u32, height: u32) -> Framebuffer {
-    render(scene, &scene.camera, Resolution::square(width, height), NonZeroU32::MIN)
+    render(scene, scene.camera(), Resolution::square(width, height), NonZeroU32::MIN)
 }
 
 /// What arrives along the middle of the view.
@@ -126,7 +126,7 @@ fn inside_of_a_sphere_with_the_light_in_its_middle() {
 #[test]
 fn ambient_light_is_reflected_by_its_share() {
     let mut scene = Scene::new(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()]);
-    scene.ambient = LinearRgb::grey(0.3);
+    scene = scene.with_ambient(LinearRgb::grey(0.3));
     assert_close(seen(&scene), 0.15);
 }
 
@@ -151,7 +151,7 @@ fn silhouette_of_a_sphere() {
     // half heights. The area is compared, which is right to a fraction of a pixel.
     let (radius, distance) = (1.0_f64, 5.0_f64);
     let mut scene = Scene::new(camera([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()]);
-    scene.ambient = LinearRgb::grey(1.0);
+    scene = scene.with_ambient(LinearRgb::grey(1.0));
     let frame = picture(&scene, 800, 600);
     let covered = frame.pixels.iter().filter(|pixel| pixel.g > 0.0).count() as f64;
     let tan = radius / (distance * distance - radius * radius).sqrt();
@@ -168,10 +168,10 @@ fn silhouette_of_a_sphere() {
 #[test]
 fn a_sphere_is_as_wide_as_high_with_pixels_of_any_shape() {
     let mut scene = Scene::new(camera([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()]);
-    scene.ambient = LinearRgb::grey(1.0);
+    scene = scene.with_ambient(LinearRgb::grey(1.0));
     for pixel_aspect in [0.5_f32, 0.95, 1.0, 1.1, 2.0] {
         let resolution = Resolution { width: 400, height: 300, pixel_aspect };
-        let frame = render(&scene, &scene.camera, resolution, NonZeroU32::MIN);
+        let frame = render(&scene, scene.camera(), resolution, NonZeroU32::MIN);
         let wide = (0..400).filter(|&x| frame.pixel(x, 150).g > 0.0).count() as f32;
         let high = (0..300).filter(|&y| frame.pixel(200, y).g > 0.0).count() as f32 * pixel_aspect;
         assert!((wide - high).abs() <= 2.0 * pixel_aspect.max(1.0), "{wide} by {high} at {pixel_aspect}");
@@ -184,7 +184,7 @@ fn row_of_the_horizon() {
     for down in [-10.0_f64, -3.0, 0.0, 4.0, 12.0] {
         let target = [0.0, 5.0 - tan_of_degrees(down) as f32, -1.0];
         let mut scene = Scene::new(camera([0.0, 5.0, 0.0], target, 50.0), vec![floor()]);
-        scene.ambient = LinearRgb::grey(1.0);
+        scene = scene.with_ambient(LinearRgb::grey(1.0));
         let frame = picture(&scene, 3, 1000);
         let sky_rows = (0..1000).take_while(|&y| frame.pixel(1, y).g == 0.0).count() as f64;
         let expected = 500.0 * (1.0 - tan_of_degrees(down) / tan_of_degrees(25.0));
@@ -208,7 +208,7 @@ fn shadow_of_a_sphere_on_a_plane() {
         );
         assert_eq!(seen(&scene) == 0.0, dark, "at {r} of {edge}");
         // Without shadows the light goes through.
-        scene.shadows = false;
+        scene = scene.with_shadows(false);
         assert!(seen(&scene) > 0.0);
     }
 }
@@ -231,7 +231,7 @@ fn light_from_behind_is_nothing_also_where_nothing_casts_a_shadow() {
     // Without shadows the surface itself is not in the way: max(0, n.l) alone makes it dark.
     for (eye, object) in [([0.0, -2.0, 2.0], floor()), ([0.0, 0.0, -4.0], unit_sphere())] {
         let mut scene = lit(camera(eye, [0.0, 0.0, 0.0], 40.0), vec![object], vec![light([0.0, 3.0, 4.0], 9.0)]);
-        scene.shadows = false;
+        scene = scene.with_shadows(false);
         assert_eq!(seen(&scene), 0.0);
     }
 }
@@ -241,7 +241,7 @@ fn ambient_light_arrives_once_however_many_lights_there_are() {
     // One light lights (0.5 * 9 / 9), the other is behind the floor: 0.5 * (0.2 + 1 + 0).
     let lights = vec![light([0.0, 3.0, 0.0], 9.0), light([0.0, -3.0, 0.0], 9.0)];
     let mut scene = lit(camera([0.0, 2.0, 2.0], [0.0, 0.0, 0.0], 40.0), vec![floor()], lights);
-    scene.ambient = LinearRgb::grey(0.2);
+    scene = scene.with_ambient(LinearRgb::grey(0.2));
     assert_close(seen(&scene), 0.6);
 }
 
@@ -265,7 +265,7 @@ fn of_two_surfaces_in_one_place_the_first_is_seen() {
     let ball = |grey| Object::new(Sphere::new(Vec3::ZERO, 1.0), Material::Diffuse(LinearRgb::grey(grey)));
     for (first, second) in [(0.2, 0.7), (0.7, 0.2)] {
         let mut scene = Scene::new(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![ball(first), ball(second)]);
-        scene.ambient = LinearRgb::grey(1.0);
+        scene = scene.with_ambient(LinearRgb::grey(1.0));
         for pixel in picture(&scene, 21, 21).pixels.iter().filter(|pixel| pixel.g > 0.0) {
             assert_close(pixel.g.into(), f64::from(first));
         }
@@ -289,7 +289,7 @@ fn gradient_of_the_background() {
     let (bottom, top) = (LinearRgb::new(0.1, 0.2, 0.3), LinearRgb::new(0.9, 0.6, 0.4));
     for target in [[0.0, 1.0, 0.1], [1.0, 0.0, 0.0], [3.0, 4.0, 0.0], [0.0, -4.0, 3.0]] {
         let mut scene = Scene::new(camera([0.0, 0.0, 0.0], target, 40.0), vec![]);
-        scene.background = Background::Gradient { bottom, top };
+        scene = scene.with_background(Background::Gradient { bottom, top });
         let [x, y, z] = target.map(f64::from);
         let part = 0.5 * (y / (x * x + y * y + z * z).sqrt()) + 0.5;
         assert_close(seen(&scene), 0.2 + 0.4 * part);
@@ -305,7 +305,7 @@ fn squares_of_a_checker() {
         [(1.5, -1.5, 0.9), (2.9, -0.1, 0.9), (3.1, -0.1, 0.1), (0.9, -1.5, 0.1), (0.9, -2.1, 0.9), (2.0, 0.1, 0.1)]
     {
         let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], 1.0), vec![board.clone()]);
-        scene.ambient = LinearRgb::grey(1.0);
+        scene = scene.with_ambient(LinearRgb::grey(1.0));
         assert_close(seen(&scene), expected);
     }
 }
@@ -321,7 +321,7 @@ fn edges_of_a_checker() {
     let four = share(0.02) * share(-0.03) + share(-0.02) * share(0.03);
     for (x, z, of_a) in [(0.0, 1.0, 0.5), (2.02, 1.0, share(0.02)), (1.98, 1.0, share(-0.02)), (2.02, 1.97, four)] {
         let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], 10.0), vec![board.clone()]);
-        scene.ambient = LinearRgb::grey(1.0);
+        scene = scene.with_ambient(LinearRgb::grey(1.0));
         assert_close(seen(&scene), 0.1 + 0.8 * of_a);
     }
 }
@@ -409,7 +409,7 @@ fn an_off_centre_rectangle_moves_the_picture_and_nothing_else() {
     let shifted = straight.with_rectangle(straight.rectangle().with_shift(Vec2::new(0.0, 0.25)).unwrap());
     let sphere = |camera| {
         let mut scene = Scene::new(camera, vec![unit_sphere()]);
-        scene.ambient = LinearRgb::grey(1.0);
+        scene = scene.with_ambient(LinearRgb::grey(1.0));
         picture(&scene, 200, 200)
     };
     let (straight, shifted) = (sphere(straight), sphere(shifted));
@@ -425,28 +425,28 @@ fn light_becomes_srgb_by_its_own_curve() {
     // 12.92 x below the toe, 1.055 x^(1/2.4) - 0.055 above, rounded: worked out by hand for these.
     let mut scene = Scene::new(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![]);
     for (linear, code) in [(0.0, 0), (0.002, 7), (0.18, 118), (0.5, 188), (0.9, 243), (1.0, 255), (4.0, 255)] {
-        scene.background = Background::Color(LinearRgb::grey(linear));
+        scene = scene.with_background(Background::Color(LinearRgb::grey(linear)));
         let shown = tone(&picture(&scene, 1, 1), &scene).pixels[0];
         assert_eq!(shown.r, code, "{linear}");
     }
     // Exposure multiplies; Reinhard's curve makes 1 a half.
-    scene.background = Background::Color(LinearRgb::grey(0.25));
-    scene.exposure = 2.0;
+    scene = scene.with_background(Background::Color(LinearRgb::grey(0.25)));
+    scene = scene.with_exposure(2.0);
     assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 188);
-    scene.exposure = 4.0;
-    scene.tone_curve = ToneCurve::Reinhard;
+    scene = scene.with_exposure(4.0);
+    scene = scene.with_tone_curve(ToneCurve::Reinhard);
     assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 188);
     // Of a colour, the luminance is bent, and the hue stays: Y of (1, 0.5, 0) is 0.5702, and 1 / 1.5702 = 0.63686.
-    scene.background = Background::Color(LinearRgb::new(0.25, 0.125, 0.0));
+    scene = scene.with_background(Background::Color(LinearRgb::new(0.25, 0.125, 0.0)));
     let orange = tone(&picture(&scene, 1, 1), &scene).pixels[0];
     assert_eq!([orange.r, orange.g, orange.b], [209, 153, 0]);
-    scene.background = Background::Color(LinearRgb::grey(0.25));
-    scene.tone_curve = ToneCurve::Filmic;
+    scene = scene.with_background(Background::Color(LinearRgb::grey(0.25)));
+    scene = scene.with_tone_curve(ToneCurve::Filmic);
     // (2.51 + 0.03) / (2.43 + 0.59 + 0.14) = 0.80380, which is encoded as 0.90824.
     assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 232);
     // No light is too bright to be white.
     for curve in [ToneCurve::None, ToneCurve::Reinhard, ToneCurve::Filmic] {
-        (scene.tone_curve, scene.background) = (curve, Background::Color(LinearRgb::grey(1e30)));
+        scene = scene.with_tone_curve(curve).with_background(Background::Color(LinearRgb::grey(1e30)));
         assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 255, "{curve:?}");
     }
 }

@@ -8,7 +8,7 @@ use termtrace::scene::Scene;
 const PICTURE: Resolution = Resolution::square(160, 96);
 
 fn told(scene: &Scene) -> String {
-    describe("scene", scene, &scene.camera, PICTURE)
+    describe("scene", scene, scene.camera(), PICTURE)
 }
 
 fn told_of(text: &str) -> String {

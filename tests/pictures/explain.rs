@@ -20,7 +20,7 @@ fn shipped_scenes() -> Vec<(PathBuf, Scene)> {
 const SIZE: Resolution = Resolution { width: 60, height: 34, pixel_aspect: 1.25 };
 
 fn picture(scene: &Scene) -> Picture {
-    tone(&render(scene, &scene.camera, SIZE, NonZeroU32::MIN), scene)
+    tone(&render(scene, scene.camera(), SIZE, NonZeroU32::MIN), scene)
 }
 
 fn pixels() -> impl Iterator<Item = [u32; 2]> {
@@ -40,7 +40,7 @@ fn adds_up(scene: &Scene, explanation: &Explanation) {
         assert_eq!(sum * seen.reflectance, *light, "{explanation:?}");
     }
     assert_eq!(explanation.shown, termtrace::tone::shown(*light, scene));
-    let through = scene.camera.eye_rays(SIZE.aspect_ratio()).through(explanation.q.x, explanation.q.y);
+    let through = scene.camera().eye_rays(SIZE.aspect_ratio()).through(explanation.q.x, explanation.q.y);
     assert_eq!(explanation.ray, through);
 }
 
@@ -51,7 +51,7 @@ fn every_pixel_of_every_scene_is_explained() {
     for (path, scene) in scenes {
         let picture = picture(&scene);
         for (at, pixel) in pixels().enumerate() {
-            let explanation = explain(&scene, &scene.camera, SIZE, pixel);
+            let explanation = explain(&scene, scene.camera(), SIZE, pixel);
             assert_eq!(explanation.bytes, picture.pixels[at], "{} {pixel:?}", path.display());
             adds_up(&scene, &explanation);
         }
@@ -62,10 +62,10 @@ fn every_pixel_of_every_scene_is_explained() {
 fn exposure_and_curve_are_the_frames() {
     let (_, mut scene) = shipped_scenes().swap_remove(0);
     for (exposure, tone_curve) in [(3.0, ToneCurve::None), (0.5, ToneCurve::Reinhard), (2.0, ToneCurve::Filmic)] {
-        (scene.exposure, scene.tone_curve) = (exposure, tone_curve);
+        scene = scene.with_exposure(exposure).with_tone_curve(tone_curve);
         let picture = picture(&scene);
         for (at, pixel) in pixels().enumerate().step_by(7) {
-            let explanation = explain(&scene, &scene.camera, SIZE, pixel);
+            let explanation = explain(&scene, scene.camera(), SIZE, pixel);
             assert_eq!(explanation.bytes, picture.pixels[at], "{tone_curve:?} {pixel:?}");
             adds_up(&scene, &explanation);
         }
@@ -77,7 +77,7 @@ fn exposure_and_curve_are_the_frames() {
 fn equations_and_lines_say_the_same_as_the_picture() {
     for (path, scene) in shipped_scenes() {
         for pixel in pixels().step_by(5) {
-            let explanation = explain(&scene, &scene.camera, SIZE, pixel);
+            let explanation = explain(&scene, scene.camera(), SIZE, pixel);
             for tested in &explanation.tested {
                 let roots = match tested.equation {
                     Equation::Sphere { roots, .. } => roots.map_or(vec![], Vec::from),
@@ -111,7 +111,7 @@ fn who_is_in_the_way_is_named() {
         )",
     )
     .expect("a scene");
-    let all: Vec<_> = pixels().map(|pixel| explain(&scene, &scene.camera, SIZE, pixel)).collect();
+    let all: Vec<_> = pixels().map(|pixel| explain(&scene, scene.camera(), SIZE, pixel)).collect();
     let says = |words: &str| all.iter().filter(|it| it.lines().join("\n").contains(words)).count();
     assert!(says("in the shadow of\n  #2 sphere") > 5, "the ball's shadow on the floor");
     assert!(says("faces away") > 5, "the ball's lower half");

@@ -56,10 +56,10 @@ fn every_frame_has_the_same_bits_everywhere() {
         for (width, height, samples) in FRAMES {
             let frame = format!("{name} {width}x{height} {samples}");
             let samples = NonZeroU32::new(samples).expect("at least one");
-            let hash = || render(&scene, &scene.camera, Resolution::square(width, height), samples).hash();
+            let hash = || render(&scene, scene.camera(), Resolution::square(width, height), samples).hash();
             let hashes = pools.each_ref().map(|(threads, pool)| (*threads, pool.install(hash)));
             let [(_, first), ..] = hashes;
-            let alone = render_by(Crew::Alone, &scene, &scene.camera, Resolution::square(width, height), samples);
+            let alone = render_by(Crew::Alone, &scene, scene.camera(), Resolution::square(width, height), samples);
             assert_eq!(alone.expect("nobody cancels it").framebuffer.hash(), hashes[0].1, "{frame}: without a pool");
             for (threads, hash) in hashes {
                 assert_eq!(hash, first, "{frame}: {threads} threads give other bits than one");

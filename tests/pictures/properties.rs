@@ -85,14 +85,13 @@ fn objects() -> impl Strategy<Value = Vec<Object>> {
 fn scene() -> impl Strategy<Value = Scene> {
     (camera(), objects(), prop::collection::vec((point(8.0), 0.0_f32..50.0), 0..3)).prop_map(
         |(camera, objects, lights)| {
-            let mut scene = Scene::new(camera, objects);
             let light =
                 |(position, i)| PointLight { position, intensity: LinearRgb::grey(i), falloff: Falloff::InverseSquare };
-            scene.lights = lights.into_iter().map(light).collect();
-            scene.ambient = LinearRgb::grey(0.1);
-            scene.background =
-                Background::Gradient { bottom: LinearRgb::grey(0.2), top: LinearRgb::new(0.3, 0.5, 0.9) };
-            scene
+            let (bottom, top) = (LinearRgb::grey(0.2), LinearRgb::new(0.3, 0.5, 0.9));
+            Scene::new(camera, objects)
+                .with_lights(lights.into_iter().map(light).collect())
+                .with_ambient(LinearRgb::grey(0.1))
+                .with_background(Background::Gradient { bottom, top })
         },
     )
 }
@@ -279,8 +278,8 @@ proptest! {
 
     #[test]
     fn turning_up_by_180_degrees_turns_the_picture_by_180_degrees(scene in scene()) {
-        let pose = scene.camera.pose();
-        let straight = scene.camera.with_rectangle(scene.camera.rectangle().with_shift(Vec2::ZERO).unwrap());
+        let pose = scene.camera().pose();
+        let straight = scene.camera().with_rectangle(scene.camera().rectangle().with_shift(Vec2::ZERO).unwrap());
         let turned = straight.with_pose(Pose { up: -pose.up, ..pose }).unwrap();
         let (a, b) = (picture(&scene, &straight, 24, 16), picture(&scene, &turned, 24, 16));
         let differ = a.pixels.iter().zip(b.pixels.iter().rev()).filter(|(a, b)| (a.g - b.g).abs() > 1e-3 * (1.0 + a.g)).count();
@@ -291,20 +290,19 @@ proptest! {
     #[test]
     fn scaling_the_world_by_a_power_of_two_leaves_every_bit(scene in scene(), k in -10_i32..=10) {
         let s = f32::from_bits(((127 + k) as u32) << 23);
-        let pose = scene.camera.pose();
-        let camera = scene.camera.with_pose(Pose { eye: pose.eye * s, target: pose.target * s, up: pose.up }).unwrap();
+        let pose = scene.camera().pose();
+        let camera = scene.camera().with_pose(Pose { eye: pose.eye * s, target: pose.target * s, up: pose.up }).unwrap();
         let objects = scene.objects().iter().map(|object| Object::new(scaled(&object.shape, s), object.material)).collect();
-        let mut large = Scene::new(camera, objects);
-        (large.ambient, large.background) = (scene.ambient, scene.background);
-        large.lights = scene.lights.iter().map(|l| PointLight { position: l.position * s, intensity: l.intensity * (s * s), falloff: l.falloff }).collect();
-        prop_assert_eq!(picture(&scene, &scene.camera, 24, 16).hash(), picture(&large, &camera, 24, 16).hash());
+        let lights = scene.lights().iter().map(|l| PointLight { position: l.position * s, intensity: l.intensity * (s * s), falloff: l.falloff }).collect();
+        let large = Scene::new(camera, objects).with_ambient(scene.ambient()).with_background(scene.background()).with_lights(lights);
+        prop_assert_eq!(picture(&scene, scene.camera(), 24, 16).hash(), picture(&large, &camera, 24, 16).hash());
     }
 
     #[test]
     fn the_number_of_threads_does_not_show(scene in scene()) {
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| picture(&scene, &scene.camera, 50, 37).hash())
+            pool.install(|| picture(&scene, scene.camera(), 50, 37).hash())
         };
         prop_assert_eq!(on(1), on(2));
         prop_assert_eq!(on(1), on(7));
@@ -312,7 +310,7 @@ proptest! {
 
     #[test]
     fn every_pixel_is_a_number(scene in scene()) {
-        prop_assert!(picture(&scene, &scene.camera, 40, 30).pixels.iter().all(|pixel| pixel.is_finite()));
+        prop_assert!(picture(&scene, scene.camera(), 40, 30).pixels.iter().all(|pixel| pixel.is_finite()));
     }
 }
 

@@ -40,9 +40,9 @@ fn psnr(scene: &Scene, a: &Framebuffer, b: &Framebuffer) -> f64 {
 #[test]
 fn the_steps_of_a_refinement_do_not_show() {
     for (path, scene) in shipped() {
-        let at_once = render(&scene, &scene.camera, SIZE, Sampling::BEST).hash();
+        let at_once = render(&scene, scene.camera(), SIZE, Sampling::BEST).hash();
         for steps in [&[1, 4, 16, 64][..], &[4, 64], &[1, 2, 3, 17, 63, 64], &[16, 16, 64, 64]] {
-            let mut picture = Refining::new(&scene.camera, SIZE);
+            let mut picture = Refining::new(scene.camera(), SIZE);
             for &step in steps {
                 picture.refine_or_cancel(&Cancellation::default(), &scene, samples(step)).unwrap();
             }
@@ -57,7 +57,7 @@ fn the_steps_of_a_refinement_do_not_show() {
 fn zero_has_no_sign() {
     let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), background: (-0.0, -0.0, -0.0))";
     let dark = Scene::from_ron("dark.ron", text).expect("the scene is fine");
-    let hash = |sampling: Sampling| render(&dark, &dark.camera, SIZE, sampling).hash();
+    let hash = |sampling: Sampling| render(&dark, dark.camera(), SIZE, sampling).hash();
     let [each, at_most] = [Sampling::Each, Sampling::UpTo].map(|sampling| hash(sampling(NonZeroU32::MIN)));
     assert_eq!(each, at_most);
 }
@@ -66,7 +66,7 @@ fn zero_has_no_sign() {
 #[test]
 fn samples_go_where_the_edges_are() {
     for (path, scene) in shipped() {
-        let traced = |sampling| render_by(Crew::Pool, &scene, &scene.camera, SIZE, sampling).unwrap();
+        let traced = |sampling| render_by(Crew::Pool, &scene, scene.camera(), SIZE, sampling).unwrap();
         let (all, best, one) =
             (traced(Sampling::Each(samples(64))), traced(Sampling::BEST), traced(Sampling::Each(NonZeroU32::MIN)));
         let [near, far] = [&best, &one].map(|it| psnr(&scene, &it.framebuffer, &all.framebuffer));
@@ -83,13 +83,13 @@ fn samples_go_where_the_edges_are() {
 fn one_sample_at_most_is_one_sample() {
     for (path, scene) in shipped() {
         for size in [SIZE, Resolution::square(81, 45), Resolution::square(70, 33), Resolution::square(3, 2)] {
-            let one = render(&scene, &scene.camera, size, NonZeroU32::MIN);
+            let one = render(&scene, scene.camera(), size, NonZeroU32::MIN);
             for most in [1, 2, 3] {
-                let at_most = render(&scene, &scene.camera, size, Sampling::UpTo(samples(most)));
+                let at_most = render(&scene, scene.camera(), size, Sampling::UpTo(samples(most)));
                 assert_eq!(at_most.hash(), one.hash(), "{} {size:?}, {most} at most", path.display());
             }
         }
-        let [one, four] = [1, 4].map(|most| render(&scene, &scene.camera, SIZE, Sampling::UpTo(samples(most))));
+        let [one, four] = [1, 4].map(|most| render(&scene, scene.camera(), SIZE, Sampling::UpTo(samples(most))));
         assert_ne!(four.hash(), one.hash(), "{}", path.display());
     }
 }
@@ -99,7 +99,7 @@ fn threads_do_not_show_in_a_refined_picture() {
     let (_, scene) = shipped().next().expect("there are scenes");
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| render(&scene, &scene.camera, Resolution::square(83, 45), Sampling::BEST).hash())
+        pool.install(|| render(&scene, scene.camera(), Resolution::square(83, 45), Sampling::BEST).hash())
     };
     assert_eq!(on(1), on(2));
     assert_eq!(on(1), on(7));
@@ -110,14 +110,14 @@ fn threads_do_not_show_in_a_refined_picture() {
 fn a_coarse_picture_is_made_of_blocks() {
     for (path, scene) in shipped() {
         let resolution = Resolution::square(81, 47);
-        let coarse = render_by(Crew::Pool, &scene, &scene.camera, resolution, Sampling::Coarse).unwrap();
+        let coarse = render_by(Crew::Pool, &scene, scene.camera(), resolution, Sampling::Coarse).unwrap();
         for y in 0..47 {
             for x in 0..81 {
                 let block = coarse.framebuffer.pixel(x / 2 * 2, y / 2 * 2);
                 assert_eq!(coarse.framebuffer.pixel(x, y), block, "{} ({x}, {y})", path.display());
             }
         }
-        let fine = render_by(Crew::Pool, &scene, &scene.camera, resolution, NonZeroU32::MIN).unwrap();
+        let fine = render_by(Crew::Pool, &scene, scene.camera(), resolution, NonZeroU32::MIN).unwrap();
         assert!(coarse.cost.rays * 3 < fine.cost.rays, "{}", path.display());
         assert!(psnr(&scene, &coarse.framebuffer, &fine.framebuffer) > 14.0, "{}", path.display());
     }
@@ -126,11 +126,11 @@ fn a_coarse_picture_is_made_of_blocks() {
 #[test]
 fn a_refinement_can_be_given_up() {
     let (_, scene) = shipped().next().expect("there are scenes");
-    let mut picture = Refining::new(&scene.camera, SIZE);
+    let mut picture = Refining::new(scene.camera(), SIZE);
     let token = Cancellation::default();
     token.cancel();
     assert_eq!(picture.refine_or_cancel(&token, &scene, samples(64)), Err(Cancelled));
-    let cancelled = render_by(Crew::Cancellable(&token), &scene, &scene.camera, SIZE, Sampling::BEST);
+    let cancelled = render_by(Crew::Cancellable(&token), &scene, scene.camera(), SIZE, Sampling::BEST);
     assert_eq!(cancelled, Err(Cancelled));
 }
 
@@ -140,7 +140,7 @@ fn floor(size: f32) -> Scene {
     let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
     let material = Material::Checker { a: LinearRgb::grey(0.9), b: LinearRgb::grey(0.1), size };
     let mut scene = Scene::new(camera, vec![Object::new(Plane::new(Vec3::ZERO, Vec3::Y), material)]);
-    scene.ambient = LinearRgb::grey(1.0);
+    scene = scene.with_ambient(LinearRgb::grey(1.0));
     scene
 }
 
@@ -148,7 +148,7 @@ fn floor(size: f32) -> Scene {
 #[test]
 fn far_checkers_are_grey() {
     let scene = floor(0.02);
-    let light = render(&scene, &scene.camera, SIZE, NonZeroU32::MIN);
+    let light = render(&scene, scene.camera(), SIZE, NonZeroU32::MIN);
     let rows = |y: u32| (0..80).map(move |x| (x, y)).collect::<Vec<_>>();
     let floor_from = (0..48).find(|&y| light.pixel(0, y) != LinearRgb::BLACK).expect("there is a floor");
     for y in floor_from + 1..floor_from + 8 {
@@ -165,8 +165,8 @@ fn a_filtered_pattern_is_near_the_truth() {
     for size in [0.3, 1.0] {
         let scene = floor(size);
         let truth = truth(&scene, size);
-        let one = psnr(&scene, &render(&scene, &scene.camera, SIZE, NonZeroU32::MIN), &truth);
-        let best = psnr(&scene, &render(&scene, &scene.camera, SIZE, Sampling::BEST), &truth);
+        let one = psnr(&scene, &render(&scene, scene.camera(), SIZE, NonZeroU32::MIN), &truth);
+        let best = psnr(&scene, &render(&scene, scene.camera(), SIZE, Sampling::BEST), &truth);
         println!("squares of {size}: one ray {one:.1} dB, best {best:.1} dB");
         assert!(one > 22.0, "one ray of squares of {size}: {one} dB");
         assert!(best > 30.0, "squares of {size}: {best} dB");
@@ -175,7 +175,7 @@ fn a_filtered_pattern_is_near_the_truth() {
 
 /// The lecture's formula for the plane, and the colour of the square, 32 times 32 times in each pixel.
 fn truth(scene: &Scene, size: f32) -> Framebuffer {
-    let eye_rays = scene.camera.eye_rays(SIZE.aspect_ratio());
+    let eye_rays = scene.camera().eye_rays(SIZE.aspect_ratio());
     let shade = |x: f32, y: f32| {
         let ray = eye_rays.through(x / 80.0, (48.0 - y) / 48.0);
         let t = -ray.origin.y / ray.direction.y;

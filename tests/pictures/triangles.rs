@@ -386,9 +386,8 @@ proptest! {
     fn the_tree_does_not_show(shapes in prop::collection::vec(shape(), 1..40), hidden in prop::collection::vec(anywhere(), 1..40)) {
         let light = PointLight { position: Vec3::new(3.0, 6.0, 5.0), intensity: LinearRgb::grey(40.0), falloff: Falloff::InverseSquare };
         let picture = |shapes: Vec<Shape>| {
-            let mut scene = scene(shapes);
-            scene.lights.push(light);
-            render(&scene, &scene.camera, Resolution::square(24, 16), NonZeroU32::MIN).hash()
+            let scene = scene(shapes).with_lights(vec![light]);
+            render(&scene, scene.camera(), Resolution::square(24, 16), NonZeroU32::MIN).hash()
         };
         let behind = hidden.iter().map(|&place| Sphere::new(place * 3.0 + Vec3::Z * 40.0, 1.0).into());
         let more: Vec<Shape> = shapes.iter().cloned().chain(behind).collect();

@@ -47,10 +47,10 @@ fn every_view_looks_as_its_golden() {
     let scene = scene("three_spheres");
     let resolution = Resolution::square(60, 40);
     for view in View::ALL {
-        let seen = picture(view, &scene, &scene.camera, resolution, ONE);
+        let seen = picture(view, &scene, scene.camera(), resolution, ONE);
         let text = export::text(&cell::grid_from_picture(CellMode::RAMP, &seen));
         let framed =
-            format!("{}\n|{}|", view.legend(&scene, &scene.camera), text.trim_end_matches('\n').replace('\n', "|\n|"));
+            format!("{}\n|{}|", view.legend(&scene, scene.camera()), text.trim_end_matches('\n').replace('\n', "|\n|"));
         settings().bind(|| insta::assert_snapshot!(view.name(), framed));
     }
 }
@@ -67,11 +67,11 @@ fn every_view_has_the_same_bytes_everywhere() {
             let made = |threads| {
                 let pool =
                     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
-                hash(&pool.install(|| picture(view, &scene, &scene.camera, resolution, ONE)))
+                hash(&pool.install(|| picture(view, &scene, scene.camera(), resolution, ONE)))
             };
             let [one, two, seven] = [1, 2, 7].map(made);
             let alone =
-                seen(view, Crew::Alone, &scene, &scene.camera, resolution, ONE.into()).expect("it has no token");
+                seen(view, Crew::Alone, &scene, scene.camera(), resolution, ONE.into()).expect("it has no token");
             assert!(one == two && one == seven && one == hash(&alone.picture), "{name} {view:?}");
             assert!(!found.contains(&one), "{name} {view:?} looks as another view");
             found.push(one);
@@ -86,7 +86,7 @@ fn every_view_has_the_same_bytes_everywhere() {
 fn a_coarse_view_is_of_larger_pixels() {
     let scene = scene("three_spheres");
     for view in View::ALL {
-        let coarse = picture(view, &scene, &scene.camera, Resolution::square(41, 23), Sampling::Coarse);
+        let coarse = picture(view, &scene, scene.camera(), Resolution::square(41, 23), Sampling::Coarse);
         let at = |x: usize, y: usize| coarse.pixels[y * 41 + x];
         let is_alike = |x, y| at(x, y) == at(x & !1, y & !1);
         let lines = usize::from(view == View::Contrast) * 41 * 23;
@@ -101,12 +101,12 @@ fn views_say_what_is_there() {
     for name in ["three_spheres", "inside_sphere", "teapots", "bare"] {
         let scene = scene(name);
         let resolution = Resolution::square(32, 20);
-        let views = View::ALL.map(|view| picture(view, &scene, &scene.camera, resolution, ONE));
+        let views = View::ALL.map(|view| picture(view, &scene, scene.camera(), resolution, ONE));
         let shown =
             |view: View, at: usize| views[View::ALL.iter().position(|&v| v == view).expect("a view")].pixels[at];
-        let light = tone(&render(&scene, &scene.camera, resolution, ONE), &scene);
+        let light = tone(&render(&scene, scene.camera(), resolution, ONE), &scene);
         for at in 0..32 * 20 {
-            let ray = eye_ray(&scene.camera, resolution, at);
+            let ray = eye_ray(scene.camera(), resolution, at);
             assert_eq!(shown(View::Shaded, at), light.pixels[at]);
             let Some(hit) = closest_hit(&scene, &ray) else {
                 for view in [View::Lambert, View::Depth, View::Normal, View::Object, View::Shadow, View::Facing] {
@@ -116,9 +116,9 @@ fn views_say_what_is_there() {
             };
             let surface = hit.surface(&scene).at_crossing(&ray, hit.t);
             let arriving = |light| shade::incidence(light, &surface);
-            let lambert: f32 = scene.lights.iter().filter_map(arriving).map(|light| light.cosine).sum();
+            let lambert: f32 = scene.lights().iter().filter_map(arriving).map(|light| light.cosine).sum();
             assert_eq!(shown(View::Lambert, at), Srgb8::from_linear(LinearRgb::grey(lambert)), "{name} {at}");
-            let pose = scene.camera.pose();
+            let pose = scene.camera().pose();
             let part = hit.t / pose.eye.distance(pose.target);
             let depth = (255.0 / (1.0 + part * part)).round() as u8;
             assert!(shown(View::Depth, at).r.abs_diff(depth) <= 1, "{name} {at}");
@@ -128,11 +128,11 @@ fn views_say_what_is_there() {
             let is_front = surface.side == Side::Front;
             assert_eq!(shown(View::Facing, at).b > 128, is_front, "{name} {at}");
             let in_the_way = |light| {
-                scene.shadows
+                scene.shadows()
                     && termtrace::hit::any_hit(&scene, &shade::shadow_ray(light, &surface), shade::TO_THE_LIGHT)
             };
-            let lit = scene.lights.iter().filter(|light| arriving(light).is_some() && !in_the_way(light)).count();
-            let share = 0.22 + 0.78 * lit as f32 / scene.lights.len() as f32;
+            let lit = scene.lights().iter().filter(|light| arriving(light).is_some() && !in_the_way(light)).count();
+            let share = 0.22 + 0.78 * lit as f32 / scene.lights().len() as f32;
             assert!(
                 shown(View::Shadow, at).r.abs_diff((255.0 * share).round() as u8) <= 1,
                 "{name} {at}: lit by {lit}"
@@ -154,7 +154,7 @@ fn eye_ray(camera: &Camera, resolution: Resolution, at: usize) -> termtrace::ray
 fn the_cost_is_what_rays_are_tested_against() {
     let scene = scene("three_spheres");
     let resolution = Resolution::square(40, 30);
-    let picture = picture(View::Cost, &scene, &scene.camera, resolution, ONE);
+    let picture = picture(View::Cost, &scene, scene.camera(), resolution, ONE);
     let mut kinds: Vec<_> = picture.pixels.clone();
     kinds.sort();
     kinds.dedup();
@@ -166,9 +166,8 @@ fn the_cost_is_what_rays_are_tested_against() {
     assert_eq!(at(39, 0), sky);
     assert!(at(20, 15) != sky && at(20, 29) != sky);
     // Without shadows no ray goes on.
-    let mut bare = scene.clone();
-    bare.shadows = false;
-    let bare = view::picture(View::Cost, &bare, &bare.camera, resolution, ONE);
+    let bare = scene.clone().with_shadows(false);
+    let bare = view::picture(View::Cost, &bare, bare.camera(), resolution, ONE);
     assert!(bare.pixels.iter().all(|&pixel| pixel == sky), "each eye ray meets the same tests");
 }
 
@@ -178,7 +177,7 @@ fn legends_are_short() {
     for name in ["three_spheres", "many_spheres", "teapots"] {
         let scene = scene(name);
         for view in View::ALL {
-            let legend = view.legend(&scene, &scene.camera);
+            let legend = view.legend(&scene, scene.camera());
             assert!(legend.is_ascii() && legend.len() <= 38 && legend.starts_with(view.name()), "{legend}");
         }
     }

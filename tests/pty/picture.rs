@@ -16,7 +16,7 @@ pub(crate) fn picture(scene: &Scene, mode: CellMode, size: Size, aspect: f32) ->
 /// The same with other samples.
 pub(crate) fn picture_with(sampling: Sampling, scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {
     let resolution = cell::resolution(mode, size, aspect);
-    let framebuffer = render(scene, &scene.camera, resolution, sampling);
+    let framebuffer = render(scene, scene.camera(), resolution, sampling);
     cell::grid_from_picture(mode, &tone(&framebuffer, scene))
 }
 

@@ -15,7 +15,7 @@ pub(crate) fn scene(bytes: &[u8]) {
 /// A path with a camera at any time, or faults that can be shown.
 pub(crate) fn camera_path(bytes: &[u8]) {
     let scene = Scene::from_ron("x", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))").expect("a scene");
-    match CameraPath::from_bytes("path.ron", bytes, &scene.camera) {
+    match CameraPath::from_bytes("path.ron", bytes, scene.camera()) {
         Ok(path) => {
             assert!(path.seconds().is_finite());
             for share in [-1.0, 0.0, 0.3, 1.0, 2.0] {

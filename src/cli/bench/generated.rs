@@ -29,9 +29,8 @@ impl Generated {
             intensity: LinearRgb::grey(50.0),
             falloff: Falloff::InverseSquare,
         };
-        let mut scene = Scene::new(camera()?, self.shapes().into_iter().map(grey).collect());
-        scene.lights.push(light);
-        Ok(scene)
+        let objects = self.shapes().into_iter().map(grey).collect();
+        Ok(Scene::new(camera()?, objects).with_lights(vec![light]))
     }
 
     fn shapes(self) -> Vec<Shape> {

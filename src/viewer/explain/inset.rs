@@ -53,7 +53,7 @@ impl Inset {
             Part::Plane(_) | Part::Triangle(_) | Part::Facet(_) => None,
         });
         let lights = seen.map_or(Vec::new(), |seen| {
-            let ends = scene.lights.iter().map(|light| from_side(light.position));
+            let ends = scene.lights().iter().map(|light| from_side(light.position));
             ends.zip(&seen.lights).map(|(end, lit)| (end, lit.faces() && lit.blocker.is_none())).collect()
         });
         Self {

@@ -1,6 +1,8 @@
-//! The parts of all objects, by their kinds: those with bounds in trees, the others apart.
+//! What a scene's rays are tested against: the parts of all its shapes, in trees where they have bounds.
+//!
+//! An [`Accelerator`] is built once, from shapes alone, and shared by all copies of a scene: lights, materials and cameras
+//! change without it.
 
-use super::Object;
 use crate::bounds::Bounds;
 use crate::bvh::Bvh;
 use crate::lanes::{Answers, Eight, LANES, Lanes};
@@ -10,7 +12,11 @@ use crate::simd;
 use rayon::prelude::*;
 use std::array::from_fn;
 use std::convert::Infallible;
+use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+#[cfg(test)]
+mod builds;
 
 /// A part of an object. They are ordered as they stand in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -78,23 +84,22 @@ impl<N: Lanes> PartIds<N> {
     }
 }
 
-/// What a ray is tested against. Each part has a place: first the planes', then those of the trees, each leaf's eight from
-/// a multiple of eight on.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Parts {
+/// The parts of some shapes. Each part has a place: first the planes', then those of the trees, each leaf's eight from a
+/// multiple of eight on.
+#[derive(Clone, Default, PartialEq)]
+pub(crate) struct Accelerator {
     /// Those that have no end.
     pub(crate) planes: Vec<(PartId, Plane)>,
-    pub(crate) balls: Grove<Balls<Eight>>,
-    pub(crate) triangles: Grove<Corners<Eight>>,
+    pub(crate) balls: Tree<Balls<Eight>>,
+    pub(crate) triangles: Tree<Corners<Eight>>,
     /// Whether any triangles stand for a smooth surface.
     pub(crate) has_smooth: bool,
-    /// Around all that stand in the trees; nothing if there are none.
-    pub(super) bounds: Option<Bounds>,
+    bounds: Option<Bounds>,
 }
 
 /// Parts of one kind, and a tree over them.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Grove<S> {
+#[derive(Clone, PartialEq)]
+pub(crate) struct Tree<S> {
     pub(crate) bvh: Bvh,
     /// What is in each leaf: up to eight parts.
     pub(crate) leaves: Vec<S>,
@@ -107,27 +112,38 @@ pub(crate) struct Grove<S> {
     pub(crate) few: usize,
 }
 
-impl<S> Default for Grove<S> {
+impl<S> Default for Tree<S> {
     fn default() -> Self {
         Self { bvh: Bvh::default(), leaves: Vec::new(), ids: Vec::new(), first: 0, few: 0 }
     }
 }
 
-impl Parts {
-    pub(super) fn of(objects: &[Object]) -> Self {
-        let Ok(parts) = Self::reporting(objects, &|_| Ok::<_, Infallible>(()));
-        parts
+impl Accelerator {
+    /// Builds the trees over these shapes.
+    pub(crate) fn new<'s>(shapes: impl Iterator<Item = &'s Shape>) -> Self {
+        let Ok(built) = Self::reporting(shapes, &|_| Ok::<_, Infallible>(()));
+        built
     }
 
-    /// [`of`](Self::of), until the watcher cancels it.
-    pub(super) fn of_or_cancel(objects: &[Object], watcher: &Watcher<'_>) -> Result<Self, Cancelled> {
-        Self::reporting(objects, &|progress| watcher.tell(progress))
+    /// [`new`](Self::new), until the watcher cancels it.
+    pub(crate) fn new_or_cancel<'s>(
+        shapes: impl Iterator<Item = &'s Shape>,
+        watcher: &Watcher<'_>,
+    ) -> Result<Self, Cancelled> {
+        Self::reporting(shapes, &|progress| watcher.tell(progress))
     }
 
-    fn reporting<E: Send>(objects: &[Object], report: &(dyn Fn(Progress) -> Result<(), E> + Sync)) -> Result<Self, E> {
+    fn reporting<'s, E: Send>(
+        shapes: impl Iterator<Item = &'s Shape>,
+        report: &(dyn Fn(Progress) -> Result<(), E> + Sync),
+    ) -> Result<Self, E> {
+        #[cfg(test)]
+        builds::count();
         let mut planes = Vec::new();
         let (mut balls, mut triangles) = (Listed::default(), Listed::default());
-        for (object, Object { shape, .. }) in (0..).zip(objects) {
+        let mut has_smooth = false;
+        for (object, shape) in (0..).zip(shapes) {
+            has_smooth |= matches!(shape, Shape::Mesh(mesh) if mesh.is_smooth());
             for part in 0..shape.part_count() {
                 let id = PartId { object, part };
                 match shape.part(part) {
@@ -145,14 +161,18 @@ impl Parts {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             report(Progress { work: Work::Building, done, total })
         };
-        let balls = balls.planted((planes.len() as u32).next_multiple_of(LANES as u32), &report_more)?;
-        let triangles = triangles.planted(balls.first + (balls.leaves.len() * LANES) as u32, &report_more)?;
-        let has_smooth = objects.iter().any(|object| matches!(&object.shape, Shape::Mesh(mesh) if mesh.is_smooth()));
+        let balls = balls.build((planes.len() as u32).next_multiple_of(LANES as u32), &report_more)?;
+        let triangles = triangles.build(balls.first + (balls.leaves.len() * LANES) as u32, &report_more)?;
         Ok(Self { planes, balls, triangles, has_smooth, bounds })
     }
 
+    /// The smallest box around all that stand in the trees; nothing if there are none.
+    pub(crate) fn bounds(&self) -> Option<Bounds> {
+        self.bounds
+    }
+
     /// How much memory it takes, in bytes.
-    pub(super) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.planes[..]) + self.balls.bytes() + self.triangles.bytes()
     }
 
@@ -181,7 +201,17 @@ impl Parts {
     }
 }
 
-impl<S> Grove<S> {
+/// In short: a tree has as many lines as the scene has parts.
+impl fmt::Debug for Accelerator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Accelerator")
+            .field("bounds", &self.bounds)
+            .field("bytes", &self.bytes())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<S> Tree<S> {
     fn bytes(&self) -> usize {
         self.bvh.bytes() + size_of_val(&self.leaves[..]) + size_of_val(&self.ids[..])
     }
@@ -251,11 +281,11 @@ impl<T: Surface + Copy + Sync> Listed<T> {
         }
     }
 
-    fn planted<S: SideBySide<Shape = T> + Send, E: Send>(
+    fn build<S: SideBySide<Shape = T> + Send, E: Send>(
         self,
         first: u32,
         report: &(dyn Fn(usize) -> Result<(), E> + Sync),
-    ) -> Result<Grove<S>, E> {
+    ) -> Result<Tree<S>, E> {
         let (bvh, places) = Bvh::new_or_cancel(&self.boxes, report)?;
         let leaf = |leaf: usize| {
             let numbers = places.boxes(leaf);
@@ -270,6 +300,6 @@ impl<T: Surface + Copy + Sync> Listed<T> {
         } else {
             (0..places.count()).into_par_iter().map(leaf).unzip_into_vecs(&mut leaves, &mut ids);
         }
-        Ok(Grove { bvh, leaves, ids, first, few })
+        Ok(Tree { bvh, leaves, ids, first, few })
     }
 }

@@ -1,0 +1,85 @@
+//! Counts how often trees are built, for the test that no picture builds one.
+
+use crate::camera::Pose;
+use crate::color::LinearRgb;
+use crate::framebuffer::Resolution;
+use crate::grid::Size;
+use crate::hit::{self, Kernel};
+use crate::progress::Watcher;
+use crate::ray::{Interval, Ray};
+use crate::render::{self, Refining, Sampling};
+use crate::scene::{Draft, Scene};
+use crate::view::View;
+use crate::{describe, explain, export, tone, view};
+use glam::Vec3;
+use std::cell::Cell;
+use std::num::NonZeroU32;
+
+thread_local! {
+    static BUILDS: Cell<u32> = const { Cell::new(0) };
+}
+
+/// Counts a build on this thread.
+pub(super) fn count() {
+    BUILDS.set(BUILDS.get() + 1);
+}
+
+const SPHERES: &str = r#"(
+    camera: (eye: (0, 1, 6), target: (0, 1, 0)),
+    lights: [Point(position: (3, 4, 5), intensity: 40)],
+    objects: [
+        Sphere(center: (0, 1, 0), radius: 1, material: Diffuse("tomato")),
+        Plane(point: (0, 0, 0), normal: (0, 1, 0), material: Checker(a: "white", b: "black", size: 1)),
+        Triangle(corners: [(0, 0, 0), (2, 0, 0), (0, 2, 0)], material: Diffuse("blue")),
+    ],
+)"#;
+
+/// Returns how many trees the work builds on the threads of a pool of its own.
+fn builds(work: impl FnOnce() + Send) -> u32 {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads can be started");
+    pool.install(work);
+    pool.broadcast(|_| BUILDS.get()).into_iter().sum()
+}
+
+#[test]
+fn a_scene_is_built_once_whichever_way_it_is_made() {
+    assert_eq!(builds(|| drop(Scene::from_ron("x", SPHERES).expect("a scene"))), 1);
+    let draft = || Draft::from_bytes("x", SPHERES.as_bytes(), &Watcher::patient()).expect("a scene");
+    assert_eq!(builds(|| drop(draft())), 0);
+    assert_eq!(builds(|| drop(draft().finish())), 1);
+}
+
+#[test]
+fn no_picture_builds_a_tree() {
+    let scene = &Scene::from_ron("x", SPHERES).expect("a scene");
+    let (camera, resolution) = (scene.camera(), Resolution::square(40, 24));
+    let built = builds(|| {
+        let light = render::render(scene, camera, resolution, Sampling::BEST);
+        tone::tone(&light, scene);
+        Refining::new(camera, resolution);
+        render::count(Kernel::Auto, scene, camera, resolution, NonZeroU32::MIN);
+        render::trace_pixel(scene, camera, resolution, [20, 12]);
+        for map in View::ALL {
+            view::picture(map, scene, camera, resolution, Sampling::BEST);
+        }
+        describe::describe("x", scene, camera, resolution);
+        explain::explain(scene, camera, resolution, [20, 12]);
+        export::text_frame(scene, Size::new(40, 12));
+        let ray = Ray { origin: Vec3::new(0.0, 1.0, 6.0), direction: Vec3::NEG_Z };
+        hit::closest_hit(scene, &ray);
+        hit::any_hit(scene, &ray, Interval::IN_FRONT);
+    });
+    assert_eq!(built, 0);
+}
+
+#[test]
+fn a_scene_with_another_camera_or_light_keeps_its_trees() {
+    let scene = &Scene::from_ron("x", SPHERES).expect("a scene");
+    let built = builds(|| {
+        let pose = Pose { eye: Vec3::X * 9.0, ..scene.camera().pose() };
+        let other = scene.clone().with_camera(scene.camera().with_pose(pose).expect("a pose"));
+        let other = other.with_lights(Vec::new()).with_ambient(LinearRgb::grey(1.0)).with_exposure(2.0);
+        assert!(std::ptr::eq(other.accelerator(), scene.accelerator()));
+    });
+    assert_eq!(built, 0);
+}
