@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::bvh::Bvh;
 use crate::lanes::{Answers, Eight, LANES, Lanes};
 use crate::progress::{Cancelled, Progress, Watcher, Work};
-use crate::shape::{Balls, Corners, Part, Plane, Shape, SideBySide, Surface};
+use crate::shape::{Endless, Part, Shape, SideBySide, Surface, surfaces};
 use crate::simd;
 use rayon::prelude::*;
 use std::array::from_fn;
@@ -84,17 +84,137 @@ impl<N: Lanes> PartIds<N> {
     }
 }
 
-/// The parts of some shapes. Each part has a place: first the planes', then those of the trees, each leaf's eight from a
-/// multiple of eight on.
-#[derive(Clone, Default, PartialEq)]
-pub(crate) struct Accelerator {
-    /// Those that have no end.
-    pub(crate) planes: Vec<(PartId, Plane)>,
-    pub(crate) balls: Tree<Balls<Eight>>,
-    pub(crate) triangles: Tree<Corners<Eight>>,
-    /// Whether any triangles stand for a smooth surface.
-    pub(crate) has_smooth: bool,
-    bounds: Option<Bounds>,
+/// Makes the accelerator from the table of [`surfaces`](crate::shape).
+macro_rules! accelerator {
+    (
+        endless { $($(#[$on_list:meta])* $list:ident: $endless:ident, $_:literal;)* }
+        bounded { $($(#[$on_tree:meta])* $tree:ident: $bounded:ident as $leaf:ty, $__:literal;)* }
+    ) => {
+        /// The parts of some shapes. Each part has a place: first those of the lists, then those of the trees, each leaf's
+        /// eight from a multiple of eight on.
+        #[derive(Clone, Default, PartialEq)]
+        pub(crate) struct Accelerator {
+            $($(#[$on_list])* $list: List<crate::shape::$endless>,)*
+            $($(#[$on_tree])* $tree: Tree<$leaf>,)*
+            /// Whether any triangles stand for a smooth surface.
+            pub(crate) has_smooth: bool,
+            bounds: Option<Bounds>,
+        }
+
+        impl Accelerator {
+            /// Passes through all parts: the lists first, then the trees, each in the order of the table.
+            #[inline(always)]
+            pub(crate) fn visit<'a>(&'a self, visitor: &mut impl Visitor<'a>) {
+                $($(#[$on_list])* visitor.list(&self.$list);)*
+                $($(#[$on_tree])* visitor.tree(&self.$tree);)*
+            }
+
+            /// Whether anything stands in a tree.
+            #[inline(always)]
+            pub(crate) fn has_trees(&self) -> bool {
+                let mut has_trees = false;
+                $($(#[$on_tree])* { has_trees |= self.$tree.has_tree(); })*
+                has_trees
+            }
+
+            /// Whether rays need their [shear](crate::ray::Rays::shear).
+            #[inline(always)]
+            pub(crate) fn needs_shear(&self) -> bool {
+                let mut needs_shear = false;
+                $($(#[$on_tree])* {
+                    needs_shear |= <$leaf as SideBySide>::NEED_SHEAR && !self.$tree.leaves.is_empty();
+                })*
+                needs_shear
+            }
+        }
+
+        /// The parts of some shapes by their kinds, in the order of the scene.
+        #[derive(Default)]
+        struct Listed {
+            $($(#[$on_list])* $list: Vec<(PartId, crate::shape::$endless)>,)*
+            $($(#[$on_tree])* $tree: Bounded<crate::shape::$bounded>,)*
+        }
+
+        impl Listed {
+            fn push(&mut self, id: PartId, part: Part<'_>) {
+                match part {
+                    $($(#[$on_list])* Part::$endless(surface) => self.$list.push((id, *surface)),)*
+                    $($(#[$on_tree])* Part::$bounded(surface) => self.$tree.push(id, *surface),)*
+                    Part::Facet(facet) => self.triangles.push(id, *facet.triangle()),
+                }
+            }
+
+            /// The boxes of all that have any.
+            fn boxes(&self) -> impl Iterator<Item = &Bounds> {
+                [$($(#[$on_tree])* &self.$tree.boxes[..],)*].into_iter().flatten()
+            }
+
+            fn build<E: Send>(self, report: &(dyn Fn(usize) -> Result<(), E> + Sync)) -> Result<Accelerator, E> {
+                let bounds = self.boxes().copied().reduce(|all, next| all.union(&next));
+                let (mut built, mut end) = (Accelerator { bounds, ..Accelerator::default() }, 0);
+                $($(#[$on_list])* {
+                    built.$list = List { first: end, parts: self.$list };
+                    end = built.$list.end();
+                })*
+                end = end.next_multiple_of(LANES as u32);
+                $($(#[$on_tree])* {
+                    built.$tree = self.$tree.build(end, report)?;
+                    end = built.$tree.end();
+                })*
+                Ok(built)
+            }
+        }
+    };
+}
+
+surfaces! { accelerator }
+
+/// What passes through all parts.
+pub(crate) trait Visitor<'a> {
+    /// Takes those of one kind that have no end.
+    fn list<S: Endless>(&mut self, list: &'a List<S>);
+
+    /// Takes those of one kind that stand in a tree.
+    fn tree<S: SideBySide>(&mut self, tree: &'a Tree<S>);
+}
+
+/// Parts of one kind that have no end.
+#[derive(Clone, PartialEq)]
+pub(crate) struct List<S> {
+    parts: Vec<(PartId, S)>,
+    /// The place of the first of them.
+    first: u32,
+}
+
+impl<S> Default for List<S> {
+    fn default() -> Self {
+        Self { parts: Vec::new(), first: 0 }
+    }
+}
+
+impl<S> List<S> {
+    /// The places behind those of all parts.
+    fn end(&self) -> u32 {
+        self.first + self.parts.len() as u32
+    }
+
+    /// Returns whether that place is in the list.
+    #[inline(always)]
+    pub(crate) fn holds(&self, place: u32) -> bool {
+        (self.first..self.end()).contains(&place)
+    }
+
+    /// The part of that place.
+    #[inline(always)]
+    pub(crate) fn part(&self, place: u32) -> &(PartId, S) {
+        &self.parts[(place - self.first) as usize]
+    }
+
+    /// All parts with their places.
+    #[inline(always)]
+    pub(crate) fn parts(&self) -> impl Iterator<Item = (u32, &(PartId, S))> {
+        (self.first..).zip(&self.parts)
+    }
 }
 
 /// Parts of one kind, and a tree over them.
@@ -139,31 +259,19 @@ impl Accelerator {
     ) -> Result<Self, E> {
         #[cfg(test)]
         builds::count();
-        let mut planes = Vec::new();
-        let (mut balls, mut triangles) = (Listed::default(), Listed::default());
-        let mut has_smooth = false;
+        let (mut listed, mut has_smooth) = (Listed::default(), false);
         for (object, shape) in (0..).zip(shapes) {
             has_smooth |= matches!(shape, Shape::Mesh(mesh) if mesh.is_smooth());
             for part in 0..shape.part_count() {
-                let id = PartId { object, part };
-                match shape.part(part) {
-                    Part::Plane(plane) => planes.push((id, *plane)),
-                    Part::Sphere(sphere) => balls.push(id, *sphere),
-                    Part::Triangle(triangle) => triangles.push(id, *triangle),
-                    Part::Facet(facet) => triangles.push(id, *facet.triangle()),
-                }
+                listed.push(PartId { object, part }, shape.part(part));
             }
         }
-        let boxes = || balls.boxes.iter().chain(&triangles.boxes);
-        let bounds = boxes().next().map(|first| boxes().fold(*first, |all, next| all.union(next)));
-        let (done, total) = (AtomicUsize::new(0), balls.boxes.len() + triangles.boxes.len());
+        let (done, total) = (AtomicUsize::new(0), listed.boxes().count());
         let report_more = |more| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             report(Progress { work: Work::Building, done, total })
         };
-        let balls = balls.build((planes.len() as u32).next_multiple_of(LANES as u32), &report_more)?;
-        let triangles = triangles.build(balls.first + (balls.leaves.len() * LANES) as u32, &report_more)?;
-        Ok(Self { planes, balls, triangles, has_smooth, bounds })
+        Ok(Self { has_smooth, ..listed.build(&report_more)? })
     }
 
     /// The smallest box around all that stand in the trees; nothing if there are none.
@@ -173,31 +281,43 @@ impl Accelerator {
 
     /// How much memory it takes, in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        size_of_val(&self.planes[..]) + self.balls.bytes() + self.triangles.bytes()
+        struct Sum(usize);
+        impl<'a> Visitor<'a> for Sum {
+            fn list<S: Endless>(&mut self, list: &'a List<S>) {
+                self.0 += size_of_val(&list.parts[..]);
+            }
+
+            fn tree<S: SideBySide>(&mut self, tree: &'a Tree<S>) {
+                self.0 += tree.bytes();
+            }
+        }
+        let mut sum = Sum(0);
+        self.visit(&mut sum);
+        sum.0
     }
 
-    /// Whether anything stands in a tree.
-    #[inline(always)]
-    pub(crate) fn has_trees(&self) -> bool {
-        self.balls.has_tree() || self.triangles.has_tree()
-    }
-
-    /// Whether there are triangles.
-    #[inline(always)]
-    pub(crate) fn has_triangles(&self) -> bool {
-        !self.triangles.leaves.is_empty()
-    }
-
-    /// Which part has that place.
+    /// Which part has that place; the first of all if none has.
     #[inline(always)]
     pub(crate) fn id(&self, place: u32) -> PartId {
-        if place >= self.triangles.first {
-            self.triangles.id(place)
-        } else if place >= self.balls.first {
-            self.balls.id(place)
-        } else {
-            self.planes[place as usize].0
+        struct Find(u32, PartId);
+        impl<'a> Visitor<'a> for Find {
+            #[inline(always)]
+            fn list<S: Endless>(&mut self, list: &'a List<S>) {
+                if list.holds(self.0) {
+                    self.1 = list.part(self.0).0;
+                }
+            }
+
+            #[inline(always)]
+            fn tree<S: SideBySide>(&mut self, tree: &'a Tree<S>) {
+                if tree.holds(self.0) {
+                    self.1 = tree.id(self.0);
+                }
+            }
         }
+        let mut find = Find(place, PartId { object: 0, part: 0 });
+        self.visit(&mut find);
+        find.1
     }
 }
 
@@ -220,6 +340,18 @@ impl<S> Tree<S> {
     #[inline(always)]
     pub(crate) fn place(&self, leaf: usize, lane: usize) -> u32 {
         self.first + (leaf * LANES + lane) as u32
+    }
+
+    /// The place behind those of the last leaf.
+    #[inline(always)]
+    pub(crate) fn end(&self) -> u32 {
+        self.first + (self.leaves.len() * LANES) as u32
+    }
+
+    /// Returns whether that place is in one of the leaves.
+    #[inline(always)]
+    pub(crate) fn holds(&self, place: u32) -> bool {
+        (self.first..self.end()).contains(&place)
     }
 
     /// Whether its tree leaves anything out.
@@ -259,20 +391,20 @@ impl<S> Tree<S> {
 /// Fewer leaves are not worth starting threads for.
 const FEW: usize = 1024;
 
-/// Parts of one kind in the order of the scene.
-struct Listed<T> {
+/// Parts of one kind that have bounds, in the order of the scene.
+struct Bounded<T> {
     ids: Vec<PartId>,
     shapes: Vec<T>,
     boxes: Vec<Bounds>,
 }
 
-impl<T> Default for Listed<T> {
+impl<T> Default for Bounded<T> {
     fn default() -> Self {
         Self { ids: Vec::new(), shapes: Vec::new(), boxes: Vec::new() }
     }
 }
 
-impl<T: Surface + Copy + Sync> Listed<T> {
+impl<T: Surface + Copy + Sync> Bounded<T> {
     fn push(&mut self, id: PartId, shape: T) {
         if let Some(bounds) = shape.bounds() {
             self.ids.push(id);

@@ -175,7 +175,7 @@ impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
         let Self { scene, ray, within, witness } = self;
-        let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), scene.accelerator().has_triangles());
+        let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), scene.accelerator().needs_shear());
         let mut ray = Alone::<N, ANY, _>::watched(scene.accelerator(), &rays, 0, within, witness);
         ray.trace(&mut Queue::default());
         ray.found()
@@ -231,7 +231,7 @@ fn closest_alone<N: Lanes>(accel: &Accelerator, rays: &[EightRays], queue: &mut 
         let nothing = Eight([f32::from_bits(EightHits::NOTHING); LANES]);
         let mut hit = EightHits { met: 0, t: Eight::ZERO, places: nothing };
         // What tests have in common is reckoned for all eight at once.
-        let eight = Rays::load(rays, accel.has_triangles());
+        let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.asked) {
             let mut ray = Alone::<N, CLOSEST>::new(accel, &eight, lane, Interval::IN_FRONT);
             ray.trace(queue);
@@ -285,7 +285,7 @@ fn any_alone<N: Lanes>(
 ) {
     for rays in rays {
         let mut of_group = 0;
-        let eight = Rays::load(rays, accel.has_triangles());
+        let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.asked) {
             let mut ray = Alone::<N, ANY>::new(accel, &eight, lane, within);
             ray.trace(queue);

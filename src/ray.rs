@@ -64,11 +64,11 @@ impl<N: Number> Rays<N> {
 }
 
 impl<N: Lanes> Rays<N> {
-    /// Of eight. What only triangles ask for is left out where there are none.
+    /// Of eight. The shear is left out where no surface asks for it.
     #[inline(always)]
-    pub fn load(rays: &EightRays, has_triangles: bool) -> Self {
+    pub fn load(rays: &EightRays, needs_shear: bool) -> Self {
         let direction = rays.direction.load();
-        let shear = if has_triangles { Shear::of(direction) } else { Shear::none() };
+        let shear = if needs_shear { Shear::of(direction) } else { Shear::none() };
         Self { shear, ..Self::unsheared(rays.origin.load(), direction) }
     }
 

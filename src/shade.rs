@@ -17,7 +17,7 @@ use crate::light::{Falloff, PointLight};
 use crate::material::Material;
 use crate::ray::{EightRays, Interval, Ray};
 use crate::scene::{Background, Object, Scene};
-use crate::shape::{Shape, SurfacePoint};
+use crate::shape::SurfacePoint;
 use crate::simd::{self, Work};
 use glam::Vec3;
 
@@ -251,12 +251,8 @@ impl Reflect<'_> {
             }
             (material, shape) => {
                 let uv = [N::load(&points.uv[0]), N::load(&points.uv[1])];
-                let mut footprint = [N::splat(0.0); 2];
-                if let Shape::Plane(plane) = shape {
-                    let direction = self.rays[at].direction.load();
-                    footprint = plane.footprint(direction, N::load(&self.hits[at].t), self.steps);
-                }
-                material.reflectance(uv, footprint)
+                let direction = self.rays[at].direction.load();
+                material.reflectance(uv, shape.footprint(direction, N::load(&self.hits[at].t), self.steps))
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Surfaces: where a ray crosses them, and what they are like at that point.
 //!
 //! The lecture's way: a surface is given implicitly by f(x) = 0, and putting the ray's x = p + t d into it leaves one
-//! equation in t. Each surface solves its own in a file of its own under `shape/`. To add one, write that file and give
-//! [`Shape`] its variant here; for scene files, [`scene_file`](crate::scene_file) reads its fields and
-//! [`scene`](crate::scene) checks them.
+//! equation in t. Each surface solves its own in a file of its own under `shape/`. To add one, write that file, with an
+//! implementation of [`Surface`], and give it a line in the table `surfaces` here. It is then tested [`OneByOne`]; where
+//! that is too slow, a type that is [`SideBySide`] takes the place of that.
 //!
 //! This module knows nothing of materials and light.
 
@@ -15,11 +15,13 @@ use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
 pub mod mesh;
+pub mod one_by_one;
 pub mod plane;
 pub mod sphere;
 pub mod triangle;
 
 pub use mesh::{Facet, Mesh};
+pub use one_by_one::OneByOne;
 pub use plane::Plane;
 pub use sphere::{Balls, Sphere};
 pub use triangle::{Corners, Edges, Triangle};
@@ -37,6 +39,13 @@ pub trait Surface {
 
     /// The surface at the crossing `t` that [`closest_crossing`](Self::closest_crossing) found for this ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint;
+
+    /// How far [`uv`](SurfacePoint::uv) reaches in a pixel: from the crossing at `t` of a ray in that direction to those of
+    /// its neighbours, whose directions differ by these steps. Zero where the surface has no coordinates.
+    #[inline(always)]
+    fn footprint<N: Number>(&self, _direction: Vector<N>, _t: N, _steps: [Vec3; 2]) -> [N; 2] {
+        [N::splat(0.0); 2]
+    }
 }
 
 /// A surface's formula for one ray and one of its kind, for several rays, or for several of its kind: a number stands for
@@ -122,13 +131,25 @@ impl Points<f32> {
     }
 }
 
+/// A surface without an end: it stands in no tree.
+pub trait Endless: Surface + Copy {
+    /// What has its formula.
+    type Of<N: Lanes>: Crossable<N> + AtCrossing<N>;
+
+    /// The same in every place, for several rays.
+    fn splat<N: Lanes>(&self) -> Self::Of<N>;
+}
+
 /// Eight surfaces of one kind, side by side in memory.
 pub trait SideBySide: Copy {
     /// One of them.
-    type Shape: Copy;
+    type Shape: Surface + Copy + Sync;
 
     /// What has their formula.
-    type Of<N: Number>: Crossable<N> + AtCrossing<N>;
+    type Of<N: Lanes>: Crossable<N> + AtCrossing<N>;
+
+    /// Whether their formula asks for the [shear](Rays::shear) of rays.
+    const NEED_SHEAR: bool = false;
 
     /// Of eight or fewer.
     fn of(shapes: &[Self::Shape]) -> Self;
@@ -137,13 +158,13 @@ pub trait SideBySide: Copy {
     fn load<N: Lanes>(&self) -> Self::Of<N>;
 
     /// One of them, the same in every place, for several rays.
-    fn splat<N: Number>(&self, lane: usize) -> Self::Of<N>;
+    fn splat<N: Lanes>(&self, lane: usize) -> Self::Of<N>;
 
     /// One of them in each place, for several rays, as [`Lanes::pick`] has it.
     fn pick<N: Lanes>(&self, lanes: N) -> Self::Of<N>;
 
     /// `yes` where the answer was yes, else `no`.
-    fn select<N: Number>(answer: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;
+    fn select<N: Lanes>(answer: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;
 
     /// Whether they have [`edges`](Self::edges).
     const HAVE_EDGES: bool = false;
@@ -196,42 +217,113 @@ pub enum Side {
 /// computes from them; 32 of these units are clear of both (the property tests count false shadows at all scales).
 const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 
-/// Any of the surfaces.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// All points at one distance from a centre.
-    Sphere(Sphere),
-    /// All points whose difference to a given one is perpendicular to the normal.
-    Plane(Plane),
-    /// What lies between three points.
-    Triangle(Triangle),
-    /// Many triangles.
-    Mesh(Arc<Mesh>),
+/// Hands the table of all surfaces to a macro: one line each, with the name of what the accelerator has of them, the type,
+/// eight of them side by side in memory, and what they are.
+macro_rules! surfaces {
+    ($with:ident) => {
+        $with! {
+            endless {
+                planes: Plane, "All points whose difference to a given one is perpendicular to the normal.";
+            }
+            bounded {
+                spheres: Sphere as $crate::shape::Balls<$crate::lanes::Eight>, "All points at one distance from a centre.";
+                triangles: Triangle as $crate::shape::Corners<$crate::lanes::Eight>, "What lies between three points.";
+            }
+        }
+    };
 }
 
-impl Shape {
-    /// How many parts it has, each of which is a surface: one, but for meshes.
-    pub fn part_count(&self) -> u32 {
-        match self {
-            Self::Sphere(_) | Self::Plane(_) | Self::Triangle(_) => 1,
-            Self::Mesh(mesh) => mesh.triangle_count(),
-        }
-    }
+pub(crate) use surfaces;
 
-    /// One of its parts.
-    ///
-    /// # Panics
-    /// If a mesh has fewer.
-    #[inline]
-    pub fn part(&self, part: u32) -> Part<'_> {
-        match self {
-            Self::Sphere(sphere) => Part::Sphere(sphere),
-            Self::Plane(plane) => Part::Plane(plane),
-            Self::Triangle(triangle) => Part::Triangle(triangle),
-            Self::Mesh(mesh) => Part::Facet(mesh.facet(part)),
+/// Makes [`Shape`] and [`Part`] from the table of surfaces.
+macro_rules! shapes {
+    (
+        endless { $($(#[$on_endless:meta])* $list:ident: $endless:ident, $of_endless:literal;)* }
+        bounded { $($(#[$on_bounded:meta])* $tree:ident: $bounded:ident as $leaf:ty, $of_bounded:literal;)* }
+    ) => {
+        shapes! { $([$(#[$on_endless])*] $endless, $of_endless;)* $([$(#[$on_bounded])*] $bounded, $of_bounded;)* }
+    };
+    ($([$($on:tt)*] $surface:ident, $of:literal;)*) => {
+        /// Any of the surfaces, or a mesh.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Shape {
+            $(#[doc = $of] $($on)* $surface($surface),)*
+            /// Many triangles.
+            Mesh(Arc<Mesh>),
         }
-    }
+
+        impl Shape {
+            /// How many parts it has, each of which is a surface: one, but for meshes.
+            pub fn part_count(&self) -> u32 {
+                match self {
+                    Self::Mesh(mesh) => mesh.triangle_count(),
+                    _ => 1,
+                }
+            }
+
+            /// One of its parts.
+            ///
+            /// # Panics
+            /// If a mesh has fewer.
+            #[inline]
+            pub fn part(&self, part: u32) -> Part<'_> {
+                match self {
+                    $($($on)* Self::$surface(surface) => Part::$surface(surface),)*
+                    Self::Mesh(mesh) => Part::Facet(mesh.facet(part)),
+                }
+            }
+
+            /// [`Surface::footprint`]; that of a mesh is zero.
+            #[inline(always)]
+            pub fn footprint<N: Number>(&self, direction: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
+                match self {
+                    $($($on)* Self::$surface(surface) => surface.footprint(direction, t, steps),)*
+                    Self::Mesh(_) => [N::splat(0.0); 2],
+                }
+            }
+        }
+
+        $($($on)* impl From<$surface> for Shape {
+            fn from(surface: $surface) -> Self {
+                Self::$surface(surface)
+            }
+        })*
+
+        /// What a ray is tested against: a surface, or a triangle of a mesh. It hands every question on.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Part<'s> {
+            $(#[doc = $of] $($on)* $surface(&'s $surface),)*
+            /// A triangle of a mesh.
+            Facet(Facet<'s>),
+        }
+
+        impl Surface for Part<'_> {
+            fn bounds(&self) -> Option<Bounds> {
+                match self {
+                    $($($on)* Self::$surface(surface) => surface.bounds(),)*
+                    Self::Facet(facet) => facet.bounds(),
+                }
+            }
+
+            #[inline]
+            fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
+                match self {
+                    $($($on)* Self::$surface(surface) => surface.closest_crossing(probe, within),)*
+                    Self::Facet(facet) => facet.closest_crossing(probe, within),
+                }
+            }
+
+            fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
+                match self {
+                    $($($on)* Self::$surface(surface) => surface.at_crossing(ray, t),)*
+                    Self::Facet(facet) => facet.at_crossing(ray, t),
+                }
+            }
+        }
+    };
 }
+
+surfaces! { shapes }
 
 impl From<Mesh> for Shape {
     fn from(mesh: Mesh) -> Self {
@@ -245,62 +337,7 @@ impl Part<'_> {
     pub fn own_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         match self {
             Self::Facet(facet) => facet.reflectance(uv),
-            Self::Sphere(_) | Self::Plane(_) | Self::Triangle(_) => None,
+            _ => None,
         }
     }
 }
-
-/// A part of a shape, which is a surface; a variant for each, which hands every question on to it.
-macro_rules! parts {
-    ($($(#[$doc:meta])* $name:ident($surface:ty),)*) => {
-        /// What a ray is tested against.
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub enum Part<'s> {
-            $($(#[$doc])* $name($surface),)*
-        }
-
-        impl Surface for Part<'_> {
-            fn bounds(&self) -> Option<Bounds> {
-                match self {
-                    $(Self::$name(surface) => surface.bounds(),)*
-                }
-            }
-
-            #[inline]
-            fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-                match self {
-                    $(Self::$name(surface) => surface.closest_crossing(probe, within),)*
-                }
-            }
-
-            fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-                match self {
-                    $(Self::$name(surface) => surface.at_crossing(ray, t),)*
-                }
-            }
-        }
-    };
-}
-
-parts! {
-    /// A whole sphere.
-    Sphere(&'s Sphere),
-    /// A whole plane.
-    Plane(&'s Plane),
-    /// A triangle by itself.
-    Triangle(&'s Triangle),
-    /// A triangle of a mesh.
-    Facet(Facet<'s>),
-}
-
-macro_rules! shape_from {
-    ($($surface:ident)*) => {
-        $(impl From<$surface> for Shape {
-            fn from(surface: $surface) -> Self {
-                Self::$surface(surface)
-            }
-        })*
-    };
-}
-
-shape_from! { Sphere Plane Triangle }

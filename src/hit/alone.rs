@@ -1,11 +1,11 @@
 //! A ray by itself, against eight boxes or parts at a time.
 
 use super::witness::{Nobody, Test, Witness};
-use crate::accel::{Accelerator, PartId, Tree};
+use crate::accel::{Accelerator, List, PartId, Tree, Visitor};
 use crate::bvh::{Child, LeafVisitor, Prefetch, Queue};
 use crate::lanes::{Answers, Eight, Lanes, Work, set_bits};
 use crate::ray::{Interval, Rays};
-use crate::shape::{Crossable, SideBySide};
+use crate::shape::{Crossable, Endless, SideBySide};
 use std::ops::ControlFlow;
 
 /// A ray, and what it has met.
@@ -55,9 +55,14 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
     /// Searches through everything.
     #[inline(always)]
     pub(super) fn trace(&mut self, queue: &mut Queue) {
-        let accel = self.accel;
-        for (place, (id, plane)) in (0..).zip(&accel.planes) {
-            let crossing = plane
+        self.accel.visit(&mut Everything { ray: self, queue });
+    }
+
+    #[inline(always)]
+    fn trace_list<S: Endless>(&mut self, list: &List<S>) {
+        for (place, (id, surface)) in list.parts() {
+            let crossing = surface
+                .splat()
                 .first_crossing(self.rays, N::splat(self.within.min))
                 .and_then(|(crosses, t)| (crosses.bits() >> self.lane & 1 == 1).then(|| t.lane(self.lane)));
             if W::IS_THERE {
@@ -67,8 +72,6 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
                 self.meet(t, place);
             }
         }
-        self.trace_tree(&accel.balls, queue);
-        self.trace_tree(&accel.triangles, queue);
     }
 
     #[inline(always)]
@@ -126,6 +129,24 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
                 self.within.max = t;
             }
         }
+    }
+}
+
+/// A ray's way through all parts.
+struct Everything<'a, 'p, N: Lanes, const ANY: bool, W> {
+    ray: &'a mut Alone<'p, N, ANY, W>,
+    queue: &'a mut Queue,
+}
+
+impl<'p, N: Lanes, const ANY: bool, W: Witness> Visitor<'p> for Everything<'_, 'p, N, ANY, W> {
+    #[inline(always)]
+    fn list<S: Endless>(&mut self, list: &'p List<S>) {
+        self.ray.trace_list(list);
+    }
+
+    #[inline(always)]
+    fn tree<S: SideBySide>(&mut self, tree: &'p Tree<S>) {
+        self.ray.trace_tree(tree, self.queue);
     }
 }
 

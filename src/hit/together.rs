@@ -1,13 +1,13 @@
 //! Up to 64 rays, eight at a time.
 
 use super::{Stacks, alone::Alone};
-use crate::accel::{Accelerator, Tree};
+use crate::accel::{self, Accelerator, List, Tree};
 use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Prefetch, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
 use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector, set_bits};
 use crate::ray::{EightRays, Interval, Pencil, Rays};
-use crate::shape::{Crossable, SideBySide};
+use crate::shape::{Crossable, Endless, SideBySide};
 use std::ops::Range;
 
 /// Rays in groups of eight, and what they have met.
@@ -87,10 +87,10 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
         // Who is not asked about does not widen the packet.
         let Some(one) = rays.iter().find(|rays| rays.asked != 0) else { return self.reset(0..GROUPS) };
         let accel = self.accel;
-        let (has_trees, has_triangles) = (accel.has_trees(), accel.has_triangles());
+        let (has_trees, needs_shear) = (accel.has_trees(), accel.needs_shear());
         for (group, of_group) in rays.iter().enumerate() {
             let asked = of_group.asked;
-            let rays = Rays::load(if asked == 0 { one } else { of_group }, has_triangles);
+            let rays = Rays::load(if asked == 0 { one } else { of_group }, needs_shear);
             let met = self.test_few(&rays, asked);
             (self.t[group], self.place[group]) = (met.t, met.place);
             if has_trees {
@@ -103,9 +103,7 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
             for group in rays.len()..GROUPS {
                 self.groups[group] = self.groups[0];
             }
-            let mut packet = None;
-            self.trace_tree(&accel.balls, &mut packet, stacks);
-            self.trace_tree(&accel.triangles, &mut packet, stacks);
+            accel.visit(&mut Trees { rays: self, packet: None, stacks });
         }
     }
 
@@ -162,14 +160,10 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
     /// Has a group meet all that no tree leaves out: planes, and kinds of which there are but a few.
     #[inline(always)]
     fn test_few(&self, rays: &Rays<N>, asked: u32) -> Met<N, ANY> {
-        let (accel, min) = (self.accel, N::splat(self.within.min));
+        let accel = self.accel;
         let t = N::select(N::answers(asked), N::splat(self.within.max), N::splat(DONE));
         let mut met = Met { t, place: N::splat(place_as_number(NOTHING)) };
-        for (place, (_, plane)) in (0..).zip(&accel.planes) {
-            met.take(place, plane.first_crossing(rays, min), accel);
-        }
-        met.test_few(&accel.balls, rays, min, accel);
-        met.test_few(&accel.triangles, rays, min, accel);
+        accel.visit(&mut Few { met: &mut met, rays, min: N::splat(self.within.min), accel });
         met
     }
 
@@ -231,6 +225,45 @@ impl<N: Lanes, const ANY: bool> Met<N, ANY> {
             self.place = N::select(is_met, N::splat(place_as_number(place)), self.place);
         }
         is_any
+    }
+}
+
+/// A packet's way through all trees.
+struct Trees<'a, 'p, N: Lanes, const ANY: bool> {
+    rays: &'a mut Together<'p, N, ANY>,
+    packet: Option<Packet<N>>,
+    stacks: &'a mut Stacks,
+}
+
+impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Trees<'_, 'p, N, ANY> {
+    #[inline(always)]
+    fn list<S: Endless>(&mut self, _: &'p List<S>) {}
+
+    #[inline(always)]
+    fn tree<S: SideBySide>(&mut self, tree: &'p Tree<S>) {
+        self.rays.trace_tree(tree, &mut self.packet, self.stacks);
+    }
+}
+
+/// A group's way through all that no tree leaves out.
+struct Few<'a, N: Lanes, const ANY: bool> {
+    met: &'a mut Met<N, ANY>,
+    rays: &'a Rays<N>,
+    min: N,
+    accel: &'a Accelerator,
+}
+
+impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Few<'_, N, ANY> {
+    #[inline(always)]
+    fn list<S: Endless>(&mut self, list: &'p List<S>) {
+        for (place, (_, surface)) in list.parts() {
+            self.met.take(place, surface.splat().first_crossing(self.rays, self.min), self.accel);
+        }
+    }
+
+    #[inline(always)]
+    fn tree<S: SideBySide>(&mut self, tree: &'p Tree<S>) {
+        self.met.test_few(tree, self.rays, self.min, self.accel);
     }
 }
 

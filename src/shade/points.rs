@@ -1,11 +1,11 @@
 //! Hits -> the surfaces there, eight at a time.
 
-use crate::accel::{Accelerator, PartId, PartIds, Tree};
+use crate::accel::{Accelerator, List, PartId, PartIds, Tree, Visitor};
 use crate::hit::EightHits;
 use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
 use crate::scene::Scene;
-use crate::shape::{AtCrossing, Part, Points, SideBySide};
+use crate::shape::{AtCrossing, Endless, Part, Points, SideBySide};
 use crate::simd::{self, Work};
 use glam::Vec2;
 
@@ -86,16 +86,9 @@ fn of_hits<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &EightHits, at
     let mut left = at.met;
     while left != 0 {
         let place = hits.place(left.trailing_zeros() as usize % LANES);
-        // A plane is by itself; those that stand in trees are looked at together.
-        let (lanes, whose, found) = if place < accel.balls.first {
-            let (id, plane) = &accel.planes[place as usize];
-            let found = plane.points_at(&Rays::<N>::load(rays, false), N::load(&hits.t));
-            (hits.at::<N>(place), PartIds::splat(*id), found)
-        } else if place < accel.triangles.first {
-            in_tree(&accel.balls, rays, hits, hits.between(accel.balls.first, accel.triangles.first))
-        } else {
-            in_tree(&accel.triangles, rays, hits, hits.between(accel.triangles.first, EightHits::NOTHING))
-        };
+        let mut at_place = AtPlace { place, rays, hits, found: (0, ids, points) };
+        accel.visit(&mut at_place);
+        let (lanes, whose, found) = at_place.found;
         if lanes == ALL {
             (points, ids) = (found, whose);
         } else {
@@ -110,6 +103,34 @@ fn of_hits<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &EightHits, at
     at.normal = at.facing;
     at.clearance = points.clearance.store();
     at.uv = [points.uv[0].store(), points.uv[1].store()];
+}
+
+/// The surfaces that eight rays have met where one place is: a part without an end is looked at by itself; those of one
+/// tree are looked at together.
+struct AtPlace<'h, N: Lanes> {
+    place: u32,
+    rays: &'h EightRays,
+    hits: &'h EightHits,
+    /// Of which rays, a bit for each; whose; and what.
+    found: (u32, PartIds<N>, Points<N>),
+}
+
+impl<'a, N: Lanes> Visitor<'a> for AtPlace<'_, N> {
+    #[inline(always)]
+    fn list<S: Endless>(&mut self, list: &'a List<S>) {
+        if list.holds(self.place) {
+            let (id, surface) = list.part(self.place);
+            let found = surface.splat().points_at(&Rays::<N>::load(self.rays, false), N::load(&self.hits.t));
+            self.found = (self.hits.at::<N>(self.place), PartIds::splat(*id), found);
+        }
+    }
+
+    #[inline(always)]
+    fn tree<S: SideBySide>(&mut self, tree: &'a Tree<S>) {
+        if tree.holds(self.place) {
+            self.found = in_tree(tree, self.rays, self.hits, self.hits.between(tree.first, tree.end()));
+        }
+    }
 }
 
 /// What these of the rays have met in a tree: who, whose, and what.
@@ -134,7 +155,7 @@ fn in_tree<N: Lanes, S: SideBySide>(
         whose = PartIds::select(are_here, ids.pick(in_leaf), whose);
         left &= !are_here.bits();
     }
-    (lanes, whose, shapes.points_at(&Rays::load(rays, true), N::load(&hits.t)))
+    (lanes, whose, shapes.points_at(&Rays::load(rays, S::NEED_SHEAR), N::load(&hits.t)))
 }
 
 /// Goes over to the smooth surfaces that triangles stand for.

@@ -1,8 +1,8 @@
 //! Ray-plane intersection (lecture, "Ray intersection").
 
-use super::{AtCrossing, Crossable, Points, Surface, SurfacePoint};
+use super::{AtCrossing, Crossable, Endless, Points, Surface, SurfacePoint};
 use crate::bounds::Bounds;
-use crate::lanes::{Number, Vector};
+use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::Vec3;
 
@@ -47,24 +47,6 @@ impl Plane {
     }
 }
 
-impl Plane {
-    /// How far [`uv`](SurfacePoint::uv) reaches in a pixel: from the crossing of this ray to those of its neighbours, whose
-    /// directions differ by these steps. A neighbour's ray p + t (d + e) reaches the plane where t changes by
-    /// -t e.n / d.n, to first order (Igehy, Tracing Ray Differentials, 1999).
-    #[inline(always)]
-    pub fn footprint<N: Number>(&self, d: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
-        let (normal, u, v) = (Vector::splat(self.normal), Vector::splat(self.u), Vector::splat(self.v));
-        let [mut along_u, mut along_v] = [N::splat(0.0); 2];
-        for step in steps {
-            let e = Vector::splat(step);
-            let moved = (e - d * (e.dot(normal) / d.dot(normal))) * t;
-            along_u = along_u + moved.dot(u).abs();
-            along_v = along_v + moved.dot(v).abs();
-        }
-        [along_u, along_v]
-    }
-}
-
 /// The x axis laid into the plane; where that is (nearly) the normal itself, the z axis.
 fn pattern_axis(normal: Vec3) -> Vec3 {
     let axis = if normal.x.abs() < 0.9 { Vec3::X } else { Vec3::Z };
@@ -98,6 +80,30 @@ impl Surface for Plane {
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
         AtCrossing::points_at(self, &Probe::new(*ray).rays, t).point()
+    }
+
+    /// A neighbour's ray p + t (d + e) reaches the plane where t changes by -t e.n / d.n, to first order (Igehy, Tracing Ray
+    /// Differentials, 1999).
+    #[inline(always)]
+    fn footprint<N: Number>(&self, d: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
+        let (normal, u, v) = (Vector::splat(self.normal), Vector::splat(self.u), Vector::splat(self.v));
+        let [mut along_u, mut along_v] = [N::splat(0.0); 2];
+        for step in steps {
+            let e = Vector::splat(step);
+            let moved = (e - d * (e.dot(normal) / d.dot(normal))) * t;
+            along_u = along_u + moved.dot(u).abs();
+            along_v = along_v + moved.dot(v).abs();
+        }
+        [along_u, along_v]
+    }
+}
+
+impl Endless for Plane {
+    type Of<N: Lanes> = Self;
+
+    #[inline(always)]
+    fn splat<N: Lanes>(&self) -> Self {
+        *self
     }
 }
 

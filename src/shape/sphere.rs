@@ -129,7 +129,7 @@ impl<N: Number> AtCrossing<N> for Balls<N> {
 
 impl SideBySide for Balls<Eight> {
     type Shape = Sphere;
-    type Of<N: Number> = Balls<N>;
+    type Of<N: Lanes> = Balls<N>;
 
     fn of(shapes: &[Sphere]) -> Self {
         let sphere = |lane: usize| shapes.get(lane).copied().unwrap_or(NOWHERE);
@@ -145,7 +145,7 @@ impl SideBySide for Balls<Eight> {
     }
 
     #[inline(always)]
-    fn splat<N: Number>(&self, lane: usize) -> Balls<N> {
+    fn splat<N: Lanes>(&self, lane: usize) -> Balls<N> {
         Balls { center: Vector::splat(self.center.of_lane(lane)), radius: N::splat(self.radius.0[lane]) }
     }
 
@@ -156,7 +156,7 @@ impl SideBySide for Balls<Eight> {
     }
 
     #[inline(always)]
-    fn select<N: Number>(answer: N::Mask, yes: Balls<N>, no: Balls<N>) -> Balls<N> {
+    fn select<N: Lanes>(answer: N::Mask, yes: Balls<N>, no: Balls<N>) -> Balls<N> {
         Balls {
             center: Vector::select(answer, yes.center, no.center),
             radius: N::select(answer, yes.radius, no.radius),

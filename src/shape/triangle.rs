@@ -202,7 +202,9 @@ impl<N: Number> Crossable<N> for Corners<N> {
 
 impl SideBySide for Corners<Eight> {
     type Shape = Triangle;
-    type Of<N: Number> = Corners<N>;
+    type Of<N: Lanes> = Corners<N>;
+
+    const NEED_SHEAR: bool = true;
 
     const HAVE_EDGES: bool = true;
 
@@ -222,7 +224,7 @@ impl SideBySide for Corners<Eight> {
     }
 
     #[inline(always)]
-    fn splat<N: Number>(&self, lane: usize) -> Corners<N> {
+    fn splat<N: Lanes>(&self, lane: usize) -> Corners<N> {
         let [a, b, c] = &self.0;
         Corners([Vector::splat(a.of_lane(lane)), Vector::splat(b.of_lane(lane)), Vector::splat(c.of_lane(lane))])
     }
@@ -234,7 +236,7 @@ impl SideBySide for Corners<Eight> {
     }
 
     #[inline(always)]
-    fn select<N: Number>(answer: N::Mask, Corners([a, b, c]): Corners<N>, Corners(no): Corners<N>) -> Corners<N> {
+    fn select<N: Lanes>(answer: N::Mask, Corners([a, b, c]): Corners<N>, Corners(no): Corners<N>) -> Corners<N> {
         let of_two = |yes, no| Vector::select(answer, yes, no);
         Corners([of_two(a, no[0]), of_two(b, no[1]), of_two(c, no[2])])
     }

@@ -1,0 +1,97 @@
+//! Eight surfaces of any kind, tested one after the other.
+
+use super::{AtCrossing, Crossable, Points, Side, SideBySide, Surface};
+use crate::lanes::{Answers, Eight, LANES, Lanes, Vector};
+use crate::ray::{Interval, Probe, Ray, Rays};
+use glam::Vec3;
+use std::array::from_fn;
+
+/// Eight surfaces whose formula is written for one ray and one surface only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OneByOne<S>([Option<S>; LANES]);
+
+impl<S: Surface + Copy + Sync> SideBySide for OneByOne<S> {
+    type Shape = S;
+    type Of<N: Lanes> = Self;
+
+    fn of(shapes: &[S]) -> Self {
+        Self(from_fn(|lane| shapes.get(lane).copied()))
+    }
+
+    #[inline(always)]
+    fn load<N: Lanes>(&self) -> Self {
+        *self
+    }
+
+    #[inline(always)]
+    fn splat<N: Lanes>(&self, lane: usize) -> Self {
+        Self([self.0[lane]; LANES])
+    }
+
+    #[inline(always)]
+    fn pick<N: Lanes>(&self, lanes: N) -> Self {
+        let lanes = lanes.store();
+        Self(from_fn(|lane| self.0[lanes.0[lane].to_bits() as usize % LANES]))
+    }
+
+    #[inline(always)]
+    fn select<N: Lanes>(answer: N::Mask, yes: Self, no: Self) -> Self {
+        let bits = answer.bits();
+        Self(from_fn(|lane| if bits >> lane & 1 == 1 { yes.0[lane] } else { no.0[lane] }))
+    }
+}
+
+impl<S: Surface, N: Lanes> Crossable<N> for OneByOne<S> {
+    fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
+        let (min, mut crosses, mut t) = (min.store(), 0, Eight::ZERO);
+        for (lane, surface) in self.0.iter().enumerate() {
+            let within = Interval { min: min.0[lane], max: f32::MAX };
+            let probe = Probe::new(ray_of(rays, lane));
+            if let Some(crossing) = surface.as_ref().and_then(|surface| surface.closest_crossing(&probe, within)) {
+                crosses |= 1 << lane;
+                t.0[lane] = crossing;
+            }
+        }
+        (crosses != 0).then(|| (N::answers(crosses), N::load(&t)))
+    }
+
+    fn boxes(&self) -> [Vector<N>; 2] {
+        let bounds = |lane: usize| self.0[lane].as_ref().and_then(Surface::bounds);
+        // From beyond all to before all: no ray meets it.
+        let min = from_fn(|lane| bounds(lane).map_or(Vec3::INFINITY, |bounds| bounds.min));
+        let max = from_fn(|lane| bounds(lane).map_or(Vec3::NEG_INFINITY, |bounds| bounds.max));
+        [Vector::of(min).load(), Vector::of(max).load()]
+    }
+}
+
+impl<S: Surface, N: Lanes> AtCrossing<N> for OneByOne<S> {
+    fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
+        let t = t.store();
+        let points = from_fn::<_, LANES, _>(|lane| {
+            let surface = self.0[lane].as_ref()?;
+            Some(surface.at_crossing(&ray_of(rays, lane), t.0[lane]))
+        });
+        let (mut position, mut facing) = (Vector::ZERO, Vector::ZERO);
+        let (mut is_front, mut clearance, mut uv) = (0, Eight::ZERO, [Eight::ZERO; 2]);
+        for (lane, point) in points.iter().enumerate() {
+            let Some(point) = point else { continue };
+            position.put(lane, point.position);
+            facing.put(lane, point.facing);
+            is_front |= u32::from(point.side == Side::Front) << lane;
+            clearance.0[lane] = point.clearance;
+            (uv[0].0[lane], uv[1].0[lane]) = (point.uv.x, point.uv.y);
+        }
+        Points {
+            position: position.load(),
+            facing: facing.load(),
+            is_front: N::answers(is_front),
+            clearance: N::load(&clearance),
+            uv: [N::load(&uv[0]), N::load(&uv[1])],
+        }
+    }
+}
+
+/// One of the rays.
+fn ray_of<N: Lanes>(rays: &Rays<N>, lane: usize) -> Ray {
+    Ray { origin: rays.origin.store().of_lane(lane), direction: rays.direction.store().of_lane(lane) }
+}
