@@ -10,6 +10,7 @@ use inks::Inks;
 mod blue_noise;
 mod half;
 mod inks;
+mod pair;
 mod palette;
 mod ramp;
 mod shape;
@@ -107,11 +108,4 @@ fn size_in_cells(picture: &Picture, (across, down): (u32, u32)) -> Size {
 fn negative(picture: &Picture) -> Picture {
     let turned = |pixel: &Srgb8| Srgb8::new(255 - pixel.r, 255 - pixel.g, 255 - pixel.b);
     Picture { pixels: picture.pixels.iter().map(turned).collect(), ..*picture }
-}
-
-/// The two pixels of a cell, upper and lower; there is no lower one below the picture's edge.
-fn pixel_pair(picture: &Picture, column: u16, row: u16) -> (Srgb8, Option<Srgb8>) {
-    let width = picture.width as usize;
-    let upper = usize::from(row) * 2 * width + usize::from(column);
-    (picture.pixels[upper], picture.pixels.get(upper + width).copied())
 }

@@ -22,6 +22,7 @@ use crate::grid::{Cell, Glyph, Grid, Size};
 
 mod backend;
 mod by_color;
+mod columns;
 mod halves;
 mod lossy;
 mod moves;
@@ -37,7 +38,6 @@ pub(crate) use pen::Pen;
 use std::io::{self, Write};
 use std::time::Duration;
 use stillness::Stillness;
-use unicode_width::UnicodeWidthChar;
 
 /// The order in which cells are sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -320,7 +320,7 @@ fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
     let mut safe_from = 0;
     let mut column = 0;
     while column < wanted.len() {
-        let end = column + columns(&wanted[column..]);
+        let end = column + columns::first(&wanted[column..]);
         let (shown, wanted) = (&mut shown[column..end], &wanted[column..end]);
         let is_ours = !matches!(wanted[0].glyph, Glyph::Covered | Glyph::Foreign);
         if is_ours && (column < safe_from || shown != wanted) {
@@ -330,25 +330,10 @@ fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
             if !looks_alike || column < safe_from {
                 write(column as u16);
                 if let Glyph::Cluster(text) = &wanted[0].glyph {
-                    safe_from = safe_from.max(column + columns_apart(text));
+                    safe_from = safe_from.max(column + columns::apart(text));
                 }
             }
         }
         column = end;
     }
-}
-
-/// How many columns the first of these cells takes: its own, and those that it covers.
-fn columns(cells: &[Cell]) -> usize {
-    1 + cells.iter().skip(1).take_while(|cell| cell.glyph == Glyph::Covered).count()
-}
-
-/// How many columns a cluster takes at most: each of its characters on its own, and no mark without a column.
-fn columns_apart(text: &str) -> usize {
-    text.chars().map(|c| c.width().unwrap_or(0).max(1)).sum()
-}
-
-/// How many columns are written with the one at that place.
-fn width(grid: &Grid, column: u16, row: u16) -> u16 {
-    columns(grid.row_from(column, row)) as u16
 }

@@ -83,7 +83,8 @@
 //!
 //! # Laws
 //!
-//! 1. A module uses only what stands above it here (`tests/laws.rs` reads the imports).
+//! 1. A module uses only what stands above it here. Within a module the files of one folder form no cycle, and between a
+//!    file and those in its folder only types go one of the ways (`tests/laws.rs` reads the imports).
 //! 2. Written, then checked: [`scene_file`] holds what the author wrote and where; [`scene`] converts it once into a
 //!    value that cannot be wrong. Units and colour spaces change there and nowhere else.
 //! 3. The value between two layers has a name: [`Scene`](scene::Scene), [`Camera`](camera::Camera),
@@ -109,7 +110,8 @@
 //!
 //! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, its [`Part`](shape::Part)s are what rays are
 //! tested against, and a new surface is one file under `shape/` and a variant of each; scene files then need its fields in
-//! [`scene_file`] and their check in [`scene`]. No RON library but in the tests: see [`scene_text`]. No fixed epsilon: see
+//! [`scene_file`] and their check in [`scene`]. No crate reads scenes or meshes:
+//! [`scene_text`] and [`mesh_file`] say which were tried, and at which file each failed. No fixed epsilon: see
 //! [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin). No order of the tree that could show: see
 //! [`Bounds::crossed`](bounds::Bounds::crossed). No flag says that a picture is out of date: the shot that is wanted is
 //! compared with the one that was begun. No list of panels: a panel is a layer of the viewer, one file with a type that

@@ -8,15 +8,16 @@ use crate::camera::{Camera, Pose};
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
 use crate::progress::Cancelled;
-use crate::render::{Cost, Crew, Reach, Sampling, Sight, all_sights, render_all};
+use crate::render::{Cost, Crew, Reach, Sampling, Sight, all_sights};
 use crate::scene::Scene;
 use crate::shade;
 use crate::shape::Side;
-use crate::tone::{Picture, tone};
+use crate::tone::Picture;
 
 mod contrast;
 mod cost;
 mod maps;
+mod shaded;
 
 /// What of a scene is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -175,7 +176,7 @@ fn all_seen(
     };
     let of_surfaces = |paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| painted(Reach::Surfaces, paint);
     match view {
-        View::Shaded => shaded(crew, scene, camera, resolution, sampling),
+        View::Shaded => shaded::seen(crew, scene, camera, resolution, sampling),
         View::Lambert => of_surfaces(&|sight| lambert(scene, sight)),
         View::Depth => {
             let middle = distance(camera);
@@ -197,11 +198,6 @@ fn all_seen(
         }),
         View::Contrast => contrast::seen(crew, scene, camera, resolution, sampling),
     }
-}
-
-fn shaded(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: Resolution, sampling: Sampling) -> Seen {
-    let rendered = render_all(crew, scene, camera, resolution, sampling);
-    Seen { picture: tone(&rendered.framebuffer, scene), cost: rendered.cost }
 }
 
 /// The lecture's n.l of all lights, as light.

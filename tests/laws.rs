@@ -235,6 +235,82 @@ fn cycles_of_siblings_are_found() {
     assert_eq!(found(&[(a, "use super::b;"), ("encode/d/b.rs", "use super::a;"), (b, "")]), 0);
 }
 
+/// Parents and children that both name more than types of each other, as (parent's file, child's name): then neither can
+/// be understood before the other. A child may use the types of its parent, or the parent those of the child.
+fn knots(files: &[(PathBuf, String)]) -> Vec<String> {
+    let codes: BTreeMap<_, _> = files.iter().map(|(path, text)| (path.as_path(), code(text))).collect();
+    let children = codes.iter().filter_map(|(&path, code)| {
+        let parent = path.parent()?.with_extension("rs");
+        Some((codes.get_key_value(parent.as_path())?, path.file_stem()?.to_str()?, code))
+    });
+    let knotted = children.filter_map(|((parent, of_parent), child, of_child)| {
+        let up = names_after(of_child, "super::").into_iter().any(|name| !is_type(&name) && defines(of_parent, &name));
+        let (exports, body) = exports(of_parent);
+        let inside = format!("{child}::");
+        let exported = names_after(&exports, &inside);
+        let used = |name: &String| body.split(|c: char| !is_part_of_name(c)).any(|word| word == name);
+        let mut down = names_after(&body, &inside);
+        down.extend(exported.into_iter().filter(used));
+        (up && down.iter().any(|name| !is_type(name))).then(|| format!("{} and its {child}", parent.display()))
+    });
+    knotted.collect()
+}
+
+fn is_part_of_name(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// Whether a name is written as those of types are.
+fn is_type(name: &str) -> bool {
+    name.starts_with(char::is_uppercase) && (name.len() == 1 || name.contains(char::is_lowercase))
+}
+
+/// Whether code has an item of that name that is no type and no module.
+fn defines(code: &str, name: &str) -> bool {
+    ["fn ", "const ", "static ", "macro_rules! "].iter().any(|kind| {
+        let item = format!("{kind}{name}");
+        let mut ends = code.match_indices(&item).map(|(at, found)| at + found.len());
+        ends.any(|end| !code[end..].starts_with(is_part_of_name))
+    })
+}
+
+/// The re-exports of a file, and all the rest.
+fn exports(code: &str) -> (String, String) {
+    let (mut exports, mut rest, mut in_export) = (String::new(), String::new(), false);
+    for line in code.lines() {
+        in_export |= line.starts_with("pub") && line.contains(" use ");
+        let to = if in_export { &mut exports } else { &mut rest };
+        to.push_str(line);
+        to.push('\n');
+        in_export &= !line.ends_with(';');
+    }
+    (exports, rest)
+}
+
+#[test]
+fn between_parent_and_child_only_types_go_one_of_the_ways() {
+    let knots = knots(&rust_files(&root().join("src")));
+    assert!(knots.is_empty(), "{}", knots.join("\n"));
+}
+
+/// The test above can fail.
+#[test]
+fn knots_of_parent_and_child_are_found() {
+    let found = |parent: &str, child: &str| {
+        let files = [("cell.rs", parent), ("cell/half.rs", child)];
+        knots(&files.map(|(file, text)| (root().join("src").join(file), text.to_owned()))).len()
+    };
+    let parent = "mod half;\nfn f() { half::fill() }\nfn g() {}\nconst GAP: u8 = 1;\nstruct Pair;";
+    assert_eq!(found(parent, "use super::g;"), 1);
+    assert_eq!(found(parent, "use super::{Pair, GAP};"), 1);
+    assert_eq!(found(parent, "fn fill() { super::g() }"), 1);
+    assert_eq!(found("pub use half::fill;\nfn f() { fill() }\nfn g() {}", "use super::g;"), 1);
+    assert_eq!(found("pub use half::fill;\nfn g() {}", "use super::g;"), 0);
+    assert_eq!(found(parent, "use super::Pair;"), 0);
+    assert_eq!(found("mod half;\nfn f() -> half::Half {}\nfn g() {}", "use super::g;"), 0);
+    assert_eq!(found(parent, "#[cfg(test)]\nmod tests {\n    use super::g;\n}"), 0);
+}
+
 /// The test above can fail: planted ways back are found, and what only looks like one is not.
 #[test]
 fn ways_back_are_found() {

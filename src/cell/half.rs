@@ -1,8 +1,8 @@
 //! Half blocks: each half of a cell is a pixel.
 
 use super::inks::Inks;
+use super::pair;
 use super::palette::Palette;
-use super::pixel_pair;
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
 
@@ -15,7 +15,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, inks: &mut Inks) {
     }
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
-            let (upper, lower) = pixel_pair(picture, column, row);
+            let (upper, lower) = pair::pixels(picture, column, row);
             let (x, y) = (usize::from(column), 2 * usize::from(row));
             let upper = inks.ink(upper, x, y);
             let lower = lower.map(|lower| inks.ink(lower, x, y + 1));
@@ -32,7 +32,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, inks: &mut Inks) {
 fn fill_own(grid: &mut Grid, picture: &Picture, palette: &mut Palette) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
-            let (upper, lower) = pixel_pair(picture, column, row);
+            let (upper, lower) = pair::pixels(picture, column, row);
             let (x, y) = (usize::from(column), 2 * usize::from(row));
             let upper = palette.index(upper, x, y) > 0;
             let lower = lower.is_some_and(|lower| palette.index(lower, x, y + 1) > 0);

@@ -1,6 +1,6 @@
 //! The ASCII ramp: a plain character by lightness, for terminals without colour and for text that people compare.
 
-use super::pixel_pair;
+use super::pair;
 use crate::color::{LinearRgb, Srgb8};
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
@@ -13,7 +13,7 @@ pub const RAMP: &[u8; 10] = b" .:-=+*#%@";
 pub(super) fn fill(grid: &mut Grid, picture: &Picture) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
-            let (upper, lower) = pixel_pair(picture, column, row);
+            let (upper, lower) = pair::pixels(picture, column, row);
             let luminance = lower.map_or(luminance(upper), |lower| 0.5 * (luminance(upper) + luminance(lower)));
             *grid.cell_mut(column, row) = Cell::new(glyph(luminance), Ink::Default, Ink::Default);
         }

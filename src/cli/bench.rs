@@ -2,8 +2,10 @@
 
 mod generated;
 
+use super::origin::Origin;
+use super::outcome::{Done, Failure, usage, write_stdout};
 use super::picture::{fits, parse_size};
-use super::{Done, Failure, Origin, on_threads, usage, write_stdout};
+use super::scene_args::on_threads;
 use clap::{Args, ValueEnum};
 use generated::Generated;
 use std::fmt::Write;

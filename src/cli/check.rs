@@ -1,6 +1,7 @@
 //! `termtrace check`: what is wrong with a scene file.
 
-use super::{Done, SceneArgs, write_stdout};
+use super::outcome::{Done, write_stdout};
+use super::scene_args::SceneArgs;
 use clap::Args;
 use termtrace::text::visible;
 

@@ -1,6 +1,7 @@
 //! `termtrace completions` and `termtrace man`: what a system wants to know of the command line.
 
-use super::{Cli, Done, Failure, reason, write_stdout};
+use super::Cli;
+use super::outcome::{Done, Failure, reason, write_stdout};
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 use termtrace::text::closest;

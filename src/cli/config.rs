@@ -1,8 +1,8 @@
 //! `termtrace config`: every setting, what holds, and who says so; and the keys.
 
+use super::outcome::{Done, write_stdout};
 use super::settings::files::path_of;
 use super::settings::{Held, SettingArgs, Settings, keys};
-use super::{Done, write_stdout};
 use clap::{ArgMatches, Args};
 use std::fmt::Write;
 use termtrace::text::visible_lines;

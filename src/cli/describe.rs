@@ -1,7 +1,8 @@
 //! `termtrace describe`: what a picture shows, as text for those who cannot see it.
 
+use super::outcome::{Done, write_stdout};
 use super::picture::{fits, parse_size};
-use super::{Done, SceneArgs, write_stdout};
+use super::scene_args::SceneArgs;
 use clap::Args;
 use termtrace::describe::describe;
 use termtrace::framebuffer::Resolution;

@@ -3,8 +3,8 @@
 mod card;
 mod report;
 
+use super::outcome::{Done, Failure, reason, write_stdout};
 use super::settings::{Settings, TerminalArgs};
-use super::{Done, Failure, reason, write_stdout};
 use clap::{ArgMatches, Args};
 use report::{Known, Talk};
 use std::io::{self, IsTerminal};

@@ -1,7 +1,8 @@
 //! `termtrace explain`: all that a pixel of a frame comes from.
 
+use super::outcome::{Done, usage, write_stdout};
 use super::picture::SizeArgs;
-use super::{Done, SceneArgs, usage, write_stdout};
+use super::scene_args::SceneArgs;
 use clap::Args;
 use termtrace::capabilities::CellMode;
 use termtrace::explain::{cell, explain};

@@ -3,9 +3,11 @@
 mod golden;
 
 use super::cells::{self, CellArgs};
+use super::outcome::{Done, Failure, write_stdout};
+use super::outputs;
 use super::picture::PictureArgs;
+use super::scene_args::SceneArgs;
 use super::view::{self, ViewArgs};
-use super::{Done, Failure, SceneArgs, outputs, write_stdout};
 use clap::{Args, ValueEnum};
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};

@@ -1,9 +1,12 @@
 //! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
 
+use super::Cli;
 use super::completions::{command_near, no_command};
 use super::encoding::OrderArgs;
+use super::origin::Origin;
+use super::outcome::{Done, Failure, complain_of_panic, reason, say, usage, write_stdout};
+use super::scene_args::{LookArgs, on_threads};
 use super::settings::{SettingArgs, Settings, keys};
-use super::{Cli, Done, Failure, LookArgs, Origin, complain_of_panic, on_threads, reason, say, usage, write_stdout};
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, CommandFactory};
 use std::io::{self, IsTerminal};

@@ -1,7 +1,9 @@
 //! Where a scene comes from, and what is said if it does not.
 
-use super::{Failure, near, read_stdin, usage};
+use super::near;
+use super::outcome::{Failure, reason, usage};
 use std::fmt;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use termtrace::progress::{Unfinished, Watcher};
 use termtrace::scene::{Draft, LoadError, Scene};
@@ -69,4 +71,12 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
         Some(meant) => format!("{error}; did you mean {}?", meant.display()),
         None => error.to_string(),
     })
+}
+
+/// All of it, up to one byte more than a scene may have.
+fn read_stdin() -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let limit = termtrace::scene_text::MAX_BYTES as u64 + 1;
+    let read = io::stdin().lock().take(limit).read_to_end(&mut bytes);
+    read.map(|_| bytes).map_err(|error| Failure::runtime("standard input", reason(&error)))
 }

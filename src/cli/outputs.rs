@@ -1,6 +1,6 @@
 //! The files that a command writes. A signal that ends the program removes the one that is not finished.
 
-use super::{Done, Failure, reason};
+use super::outcome::{Done, Failure, reason};
 use std::fs::File;
 use std::io::{self, Stdout, Write};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! How large frames are, and how finely traced: the flags of `frame` and `record`.
 
-use super::{Done, Failure};
+use super::outcome::{Done, Failure};
 use clap::Args;
 use std::num::NonZeroU32;
 use termtrace::capabilities::{CellMode, USUAL_CELL_ASPECT};

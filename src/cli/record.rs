@@ -4,10 +4,11 @@ mod numbered;
 mod progress;
 
 use super::encoding::{self, EncodingArgs};
+use super::outcome::{Done, Failure, reason};
 use super::outputs::{Output, Outputs};
 use super::picture::{PictureArgs, fits};
+use super::scene_args::SceneArgs;
 use super::view::{self, ViewArgs};
-use super::{Done, Failure, SceneArgs, reason};
 use clap::Args;
 use numbered::Numbered;
 use std::io::{self, BufWriter, IsTerminal};

@@ -8,13 +8,13 @@ pub(super) mod defaults;
 mod entries;
 pub(super) mod files;
 pub(super) mod keys;
+mod values;
 
 use super::cells::CellArgs;
 use super::encoding::LossArgs;
+use super::outcome::{Done, Failure, usage};
 use super::picture::{parse_cell_aspect, parse_samples};
 use super::view::ViewArgs;
-use super::{Done, Failure, usage};
-use clap::builder::PossibleValue;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use entries::Entry;
@@ -23,7 +23,6 @@ use std::path::PathBuf;
 use termtrace::capabilities::Hints;
 use termtrace::control::Pace;
 use termtrace::render::Sampling;
-use termtrace::text::closest;
 
 /// Stands below the options in the help.
 pub(super) const EXPLAINED: &str = "\
@@ -153,11 +152,11 @@ impl Settings {
         let mut words = Vec::new();
         for (setting, held) in command.get_arguments().zip(&held) {
             if let SaidBy::Variable(name) = &held.said_by {
-                check(&command, setting, &held.value)
+                values::check(&command, setting, &held.value)
                     .map_err(|wrong| Failure::Usage(format!("{name}=\"{}\": {wrong}", held.value)))?;
             }
             if !matches!(held.said_by, SaidBy::Nobody) {
-                words.push(word(setting, &held.value));
+                words.push(values::word(setting, &held.value));
             }
         }
         let args = command.try_get_matches_from(words).and_then(|found| SettingArgs::from_arg_matches(&found));
@@ -182,7 +181,7 @@ fn by_flag(setting: &Arg, given: &ArgMatches) -> Option<Said> {
     // A command need not have all of the flags.
     let text = given.try_get_raw(id).ok()??.next()?.to_string_lossy().into_owned();
     let is_given = given.value_source(id) == Some(ValueSource::CommandLine);
-    is_given.then_some((text, SaidBy::Flag(flag(setting))))
+    is_given.then_some((text, SaidBy::Flag(values::flag(setting))))
 }
 
 /// By its own variable, or, for colours, by those that all programs heed.
@@ -199,26 +198,6 @@ fn by_environment(setting: &Arg) -> Option<Said> {
 fn by_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<Said> {
     let entry = entries.iter().find(|entry| setting.get_id() == entry.name.as_str())?;
     Some((entry.text.clone(), SaidBy::File(file.path.clone(), entry.line)))
-}
-
-fn flag(setting: &Arg) -> String {
-    format!("--{}", setting.get_long().unwrap_or_default())
-}
-
-fn word(setting: &Arg, text: &str) -> String {
-    format!("{}={text}", flag(setting))
-}
-
-/// What is wrong with this as the setting's value, if anything is.
-fn check(command: &Command, setting: &Arg, text: &str) -> Result<(), String> {
-    let Err(error) = command.clone().try_get_matches_from([word(setting, text)]) else { return Ok(()) };
-    if let Some(wrong) = std::error::Error::source(&error) {
-        return Err(wrong.to_string());
-    }
-    let values = setting.get_possible_values();
-    let known: Vec<_> = values.iter().map(PossibleValue::get_name).collect();
-    let meant = closest(text, known.iter().copied()).map(|meant| format!("; did you mean {meant}?"));
-    Err(format!("expected one of {}{}", known.join(", "), meant.unwrap_or_default()))
 }
 
 #[cfg(test)]

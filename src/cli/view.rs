@@ -1,7 +1,7 @@
 //! What of the scene is shown: the flag of the commands that make pictures.
 
+use super::outcome::{Done, Failure};
 use super::settings::defaults;
-use super::{Done, Failure};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::num::NonZeroU32;

@@ -4,6 +4,7 @@
 //! which one is cheaper depends on the pen, which depends on how the cell before was written. So the whole sequence is
 //! decided at once: for each cell the cheapest way to have written everything up to it in either form (Viterbi 1967).
 
+use super::columns;
 use super::moves::{Move, Place, cheapest};
 use super::pen::{Pen, is_plain_space, write_char, write_glyph};
 use crate::grid::{Cell, Glyph, Grid, Ink};
@@ -63,8 +64,8 @@ pub(super) fn write(
 fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
     let Place { column, row } = stroke.place;
     let glyph = &wanted.cell(column, row).glyph;
-    if matches!(glyph, Glyph::Cluster(_)) && super::width(wanted, column, row) > 1 {
-        bytes.extend(std::iter::repeat_n(b' ', super::width(wanted, column, row).into()));
+    if matches!(glyph, Glyph::Cluster(_)) && columns::at(wanted, column, row) > 1 {
+        bytes.extend(std::iter::repeat_n(b' ', columns::at(wanted, column, row).into()));
         Move::To(stroke.place).write(bytes);
     }
     match stroke.form {
@@ -229,6 +230,6 @@ pub(super) fn after(wanted: &Grid, place: Place) -> Option<Place> {
     if matches!(wanted.cell(place.column, place.row).glyph, Glyph::Cluster(_)) {
         return None;
     }
-    let column = place.column + super::width(wanted, place.column, place.row);
+    let column = place.column + columns::at(wanted, place.column, place.row);
     (column < wanted.size().columns).then_some(Place { column, ..place })
 }

@@ -2,7 +2,8 @@
 
 use super::attribute::Attribute;
 use super::error::Fault;
-use super::{MAX_TRIANGLES, MeshFile, MeshMaterial};
+use super::limits::MAX_TRIANGLES;
+use super::{MeshFile, MeshMaterial};
 use crate::color::LinearRgb;
 use glam::{DVec3, Vec2, Vec3};
 

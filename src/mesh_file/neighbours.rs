@@ -1,7 +1,7 @@
 //! The files that a mesh names.
 
-use super::MAX_BYTES;
 use super::error::shown;
+use super::limits::MAX_BYTES;
 use crate::named_file;
 use std::io;
 use std::path::{Component, Path, PathBuf};

@@ -4,8 +4,9 @@
 use super::MeshFile;
 use super::builder::{Builder, Triangle, too_many};
 use super::error::{Fault, shown};
+use super::limits::MAX_TRIANGLES;
+use super::polygon;
 use super::text::Text;
-use super::{MAX_TRIANGLES, polygon};
 use crate::progress::Meter;
 use glam::Vec3;
 

@@ -1,6 +1,6 @@
 //! Pictures on meshes: PNG and JPEG.
 
-use super::MAX_TEXELS;
+use super::limits::MAX_TEXELS;
 use crate::color::{LinearRgb, Srgb8};
 use glam::{Vec2, Vec3};
 use std::fmt;

@@ -20,7 +20,7 @@ const MIDDLE: f32 = 0.184;
 
 pub(super) fn seen(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: Resolution, sampling: Sampling) -> Seen {
     let sampling = if sampling == Sampling::Coarse { sampling } else { Sampling::Each(NonZeroU32::MIN) };
-    let light = shaded(crew, scene, camera, resolution, sampling);
+    let light = shaded::seen(crew, scene, camera, resolution, sampling);
     // Counted from 1; 0: none.
     let objects = all_sights(crew, scene, camera, resolution, sampling, Reach::Surfaces, |sight| {
         sight.hit.map_or(0, |hit| hit.object + 1)

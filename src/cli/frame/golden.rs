@@ -1,7 +1,7 @@
 //! `frame --check`: is the frame the one in the file, and if not, where do they differ?
 
 use super::Format;
-use crate::cli::{Done, Failure, write_stdout};
+use crate::cli::outcome::{Done, Failure, write_stdout};
 use similar::TextDiff;
 use std::fmt::Write;
 use std::io;

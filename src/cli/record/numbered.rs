@@ -1,6 +1,6 @@
 //! Names of files that are numbered from 1: `frame-%04d.png`.
 
-use crate::cli::Failure;
+use crate::cli::outcome::Failure;
 use std::path::{Path, PathBuf};
 
 /// What stands before and after the number, and with how many digits it is written at least.

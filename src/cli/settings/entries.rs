@@ -1,7 +1,7 @@
 //! `config.ron` -> what it says of each setting, as the flag would say it.
 
-use super::check;
 use super::files::UserFile;
+use super::values::check;
 use clap::Command;
 use termtrace::scene_text::{self, Faults, Field, Name, SceneError, Value, line_and_column};
 use termtrace::text::closest;

@@ -1,7 +1,7 @@
 //! The user's own keys.
 
 use super::files::UserFile;
-use crate::cli::{Failure, usage};
+use crate::cli::outcome::{Failure, usage};
 use termtrace::control::Bindings;
 
 /// The built-in bindings, changed as `keys.ron` says, unless the user wants none of his files.
