@@ -10,11 +10,12 @@ use crate::ray::{EightRays, Interval, Probe, Ray, Rays};
 use crate::scene::Scene;
 use crate::shape::{Part, Surface};
 use crate::simd::{self, Work};
-use alone::Alone;
-use together::Together;
+use packet::PacketRays;
+use single::SingleRay;
 
-mod alone;
-mod together;
+mod packet;
+mod single;
+mod split;
 mod witness;
 
 pub use witness::{Test, Witness};
@@ -117,7 +118,7 @@ pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mu
     hits.clear();
     let accel = scene.accelerator();
     match kernel {
-        Kernel::Scalar => closest_alone::<Eight>(accel, rays, &mut Queue::default(), hits),
+        Kernel::Scalar => closest_single::<Eight>(accel, rays, &mut Queue::default(), hits),
         _ => simd::run(ClosestHits { kernel, accel, rays, hits }),
     }
 }
@@ -127,7 +128,7 @@ pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Inter
     met.clear();
     let accel = scene.accelerator();
     match kernel {
-        Kernel::Scalar => any_alone::<Eight>(accel, rays, within, &mut Queue::default(), met),
+        Kernel::Scalar => any_single::<Eight>(accel, rays, within, &mut Queue::default(), met),
         _ => simd::run(AnyHits { kernel, accel, rays, within, met }),
     }
 }
@@ -176,7 +177,7 @@ impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
     fn run<N: Lanes>(self) -> Self::Output {
         let Self { scene, ray, within, witness } = self;
         let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), scene.accelerator().needs_shear());
-        let mut ray = Alone::<N, ANY, _>::watched(scene.accelerator(), &rays, 0, within, witness);
+        let mut ray = SingleRay::<N, ANY, _>::watched(scene.accelerator(), &rays, 0, within, witness);
         ray.trace(&mut Queue::default());
         ray.found()
     }
@@ -210,30 +211,30 @@ impl Work for ClosestHits<'_> {
     fn run<N: Lanes>(self) {
         let Self { kernel, accel, rays, hits } = self;
         let mut stacks = Stacks::default();
-        let mut packet = Together::<N, CLOSEST>::new(kernel, accel, Interval::IN_FRONT);
+        let mut packet = PacketRays::<N, CLOSEST>::new(kernel, accel, Interval::IN_FRONT);
         let mut together = true;
         for rays in rays.chunks(GROUPS) {
             if together && kernel.is_together(rays.len()) {
                 packet.trace(rays, &mut stacks);
                 packet.tell_hits(hits);
-                together = !packet.fell_apart();
+                together = !packet.was_useless();
                 continue;
             }
-            closest_alone::<N>(accel, rays, &mut stacks.alone, hits);
+            closest_single::<N>(accel, rays, &mut stacks.single, hits);
         }
     }
 }
 
 /// The same one by one.
 #[inline(always)]
-fn closest_alone<N: Lanes>(accel: &Accelerator, rays: &[EightRays], queue: &mut Queue, hits: &mut Vec<EightHits>) {
+fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], queue: &mut Queue, hits: &mut Vec<EightHits>) {
     for rays in rays {
         let nothing = Eight([f32::from_bits(EightHits::NOTHING); LANES]);
         let mut hit = EightHits { met: 0, t: Eight::ZERO, places: nothing };
         // What tests have in common is reckoned for all eight at once.
         let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.asked) {
-            let mut ray = Alone::<N, CLOSEST>::new(accel, &eight, lane, Interval::IN_FRONT);
+            let mut ray = SingleRay::<N, CLOSEST>::new(accel, &eight, lane, Interval::IN_FRONT);
             ray.trace(queue);
             if let (t, Some(place)) = ray.found() {
                 hit.met |= 1 << lane;
@@ -259,24 +260,24 @@ impl Work for AnyHits<'_> {
     fn run<N: Lanes>(self) {
         let Self { kernel, accel, rays, within, met } = self;
         let mut stacks = Stacks::default();
-        let mut packet = Together::<N, ANY>::new(kernel, accel, within);
+        let mut packet = PacketRays::<N, ANY>::new(kernel, accel, within);
         // A packet knows of nothing behind the origins.
         let mut together = within.min >= 0.0;
         for rays in rays.chunks(GROUPS) {
             if together && kernel.is_together(rays.len()) {
                 packet.trace(rays, &mut stacks);
                 packet.tell_met(met);
-                together = !packet.fell_apart();
+                together = !packet.was_useless();
                 continue;
             }
-            any_alone::<N>(accel, rays, within, &mut stacks.alone, met);
+            any_single::<N>(accel, rays, within, &mut stacks.single, met);
         }
     }
 }
 
 /// The same one by one.
 #[inline(always)]
-fn any_alone<N: Lanes>(
+fn any_single<N: Lanes>(
     accel: &Accelerator,
     rays: &[EightRays],
     within: Interval,
@@ -287,7 +288,7 @@ fn any_alone<N: Lanes>(
         let mut of_group = 0;
         let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.asked) {
-            let mut ray = Alone::<N, ANY>::new(accel, &eight, lane, within);
+            let mut ray = SingleRay::<N, ANY>::new(accel, &eight, lane, within);
             ray.trace(queue);
             of_group |= u32::from(ray.found().1.is_some()) << lane;
         }
@@ -298,6 +299,6 @@ fn any_alone<N: Lanes>(
 /// Space for what is still to be visited.
 #[derive(Default)]
 struct Stacks {
-    together: Stack,
-    alone: Queue,
+    packet: Stack,
+    single: Queue,
 }

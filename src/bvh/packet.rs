@@ -1,4 +1,4 @@
-//! Many rays on their way through the tree together.
+//! Packets: many rays on their way through the tree together.
 //!
 //! A packet knows between what its rays' origins and inverse directions lie, and reckons with these intervals as
 //! [`Bounds::crossed`](crate::bounds::Bounds::crossed) does with one ray: as each step of that is monotone, in IEEE
@@ -163,15 +163,18 @@ pub trait Visitor<N>: Prefetch {
     /// Tests what is in a leaf.
     fn leaf(&mut self, leaf: usize);
 
-    /// A node of these groups, a bit for each, is reached: goes on with its rays one by one, if that is cheaper, and
-    /// answers whether it did. The box is that around the node.
-    fn alone(&mut self, from: Child, one: [Vector<N>; 2], groups: u32) -> bool;
+    /// Returns the mask of rays of each group that go on as single rays from a node that these groups may meet, a bit for
+    /// each, or nothing if the packet goes on. The box is that around the node.
+    fn split(&self, one: [Vector<N>; 2], groups: u32) -> Option<[u32; GROUPS]>;
+
+    /// Traces single rays of these groups from a node on.
+    fn trace_singles(&mut self, from: Child, rays: [u32; GROUPS], groups: u32);
 }
 
 impl Bvh {
     /// Visits the leaves that a packet meets.
     #[inline(always)]
-    pub fn visit_together<N: Lanes, V: Visitor<N>>(
+    pub fn visit_packet<N: Lanes, V: Visitor<N>>(
         &self,
         packet: &Packet<N>,
         Stack(waiting): &mut Stack,
@@ -193,7 +196,8 @@ impl Bvh {
                 let one = self.nodes[place as usize / LANES].one(place as usize % LANES);
                 let [enters, leaves] = packet.crossed_by_groups(one);
                 let groups = enters.max(min).le(leaves.min(visitor.reach())).bits();
-                if visitor.alone(child, one, groups) {
+                if let Some(rays) = visitor.split(one, groups) {
+                    visitor.trace_singles(child, rays, groups);
                     continue;
                 }
             }

@@ -1,6 +1,7 @@
 //! Up to 64 rays, eight at a time.
 
-use super::{Stacks, alone::Alone};
+use super::single::SingleRay;
+use super::{Stacks, split};
 use crate::accel::{self, Accelerator, List, Tree};
 use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Prefetch, Queue, Visitor};
@@ -11,7 +12,7 @@ use crate::shape::{Crossable, Endless, SideBySide};
 use std::ops::Range;
 
 /// Rays in groups of eight, and what they have met.
-pub(super) struct Together<'p, N: Lanes, const ANY: bool> {
+pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     kernel: Kernel,
     accel: &'p Accelerator,
     rays: &'p [EightRays],
@@ -23,27 +24,14 @@ pub(super) struct Together<'p, N: Lanes, const ANY: bool> {
     place: [N; GROUPS],
     /// The greatest t of each group.
     reach: Eight,
-    /// How many of these rays have gone on by themselves, each as often as it has.
-    alone: u32,
-    /// How many leaves they have met together.
+    /// How often one of the rays has left the packet at a node.
+    left: u32,
+    /// How many leaves the packet has met.
     leaves: u32,
 }
 
 /// No part's place.
 const NOTHING: u32 = EightHits::NOTHING;
-
-/// If no more rays than these meet a node, they go on by themselves;
-const SOME: u32 = 6;
-
-/// or if no more than these of each group do.
-const A_FEW: u32 = 2;
-
-/// If more groups than these may meet it, one of them stands for the others first: most often all go on together, and
-/// to count them one by one takes longer than the node itself.
-const MANY: u32 = 5;
-
-/// So many leaves for a packet are next to nothing.
-const HARDLY_ANY: u32 = 6;
 
 /// Nothing is met so early.
 const DONE: f32 = f32::NEG_INFINITY;
@@ -53,7 +41,7 @@ fn place_as_number(place: u32) -> f32 {
     f32::from_bits(place)
 }
 
-impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
+impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     /// No rays yet. A packet is some kilobytes: it stays where it is, and takes one lot of rays after the other.
     #[inline(always)]
     pub(super) fn new(kernel: Kernel, accel: &'p Accelerator, within: Interval) -> Self {
@@ -67,23 +55,23 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
             t: [N::splat(DONE); GROUPS],
             place: [N::splat(place_as_number(NOTHING)); GROUPS],
             reach: Eight([DONE; LANES]),
-            alone: 0,
+            left: 0,
             leaves: 0,
         }
     }
 
-    /// Whether the last rays had better been traced one by one from the start: that is what became of them, and hardly a
-    /// leaf was met before. Those of the packets that follow are likely to do the same.
+    /// Whether the last rays had better been traced one by one from the start. Those of the packets that follow are likely
+    /// to do the same.
     #[inline(always)]
-    pub(super) fn fell_apart(&self) -> bool {
-        let asked: u32 = self.rays.iter().map(|rays| rays.asked.count_ones()).sum();
-        self.leaves <= HARDLY_ANY && self.alone > asked
+    pub(super) fn was_useless(&self) -> bool {
+        let active = self.rays.iter().map(|rays| rays.asked.count_ones()).sum();
+        split::is_useless(self.leaves, self.left, active)
     }
 
     /// Takes these rays, at most as many as a packet has, and finds what they meet.
     #[inline(always)]
     pub(super) fn trace(&mut self, rays: &'p [EightRays], stacks: &mut Stacks) {
-        (self.rays, self.alone, self.leaves) = (rays, 0, 0);
+        (self.rays, self.left, self.leaves) = (rays, 0, 0);
         // Who is not asked about does not widen the packet.
         let Some(one) = rays.iter().find(|rays| rays.asked != 0) else { return self.reset(0..GROUPS) };
         let accel = self.accel;
@@ -142,17 +130,17 @@ impl<'p, N: Lanes, const ANY: bool> Together<'p, N, ANY> {
                 Some(packet) => packet,
                 None => packet.insert(Packet::of(&self.groups)),
             };
-            let Stacks { together, alone } = stacks;
+            let Stacks { packet: stack, single: queue } = stacks;
             let groups = self.rays.len();
-            let mut in_tree = InTree { rays: self, tree, packet, pencil: Sought::NotYet, queue: alone };
+            let mut in_tree = InTree { rays: self, tree, packet, pencil: Sought::NotYet, queue };
             match tree.bvh.root() {
                 Some(root) if in_tree.rays.kernel == Kernel::Auto && packet.is_scattered() => {
                     for group in 0..groups {
                         let waiting = !in_tree.rays.t[group].le(N::splat(DONE));
-                        in_tree.rays_alone(root, group, waiting.bits());
+                        in_tree.trace_singles_of(root, group, waiting.bits());
                     }
                 }
-                _ => tree.bvh.visit_together(packet, together, &mut in_tree),
+                _ => tree.bvh.visit_packet(packet, stack, &mut in_tree),
             }
         }
     }
@@ -230,7 +218,7 @@ impl<N: Lanes, const ANY: bool> Met<N, ANY> {
 
 /// A packet's way through all trees.
 struct Trees<'a, 'p, N: Lanes, const ANY: bool> {
-    rays: &'a mut Together<'p, N, ANY>,
+    rays: &'a mut PacketRays<'p, N, ANY>,
     packet: Option<Packet<N>>,
     stacks: &'a mut Stacks,
 }
@@ -276,7 +264,7 @@ fn comes_before(accel: &Accelerator, place: u32, others: &Eight) -> u32 {
 
 /// A packet in a tree.
 struct InTree<'a, 'p, N: Lanes, S, const ANY: bool> {
-    rays: &'a mut Together<'p, N, ANY>,
+    rays: &'a mut PacketRays<'p, N, ANY>,
     tree: &'p Tree<S>,
     packet: &'a Packet<N>,
     pencil: Sought<N>,
@@ -358,33 +346,32 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
     }
 
     #[inline(always)]
-    fn alone(&mut self, from: Child, one: [Vector<N>; 2], groups: u32) -> bool {
+    fn split(&self, one: [Vector<N>; 2], groups: u32) -> Option<[u32; GROUPS]> {
         if self.rays.kernel == Kernel::Packet {
-            return groups == 0;
+            return (groups == 0).then_some([0; GROUPS]);
         }
-        let count = groups.count_ones();
-        let limit = SOME.max(count * A_FEW);
-        // Of so many there is one in the middle.
-        let middle = 3 + (groups >> 3).trailing_zeros() as usize;
-        if !ANY && count > MANY {
-            return false;
-        }
-        if count > MANY && self.met_by(one, middle).count_ones() * count > limit {
-            return false;
-        }
-        let mut of_group = [0; GROUPS];
-        let mut rays = 0;
+        split::at_node::<ANY>(groups, &AtNode { rays: self.rays, one })
+    }
+
+    #[inline(always)]
+    fn trace_singles(&mut self, from: Child, rays: [u32; GROUPS], groups: u32) {
         for group in set_bits(groups) {
-            of_group[group] = self.met_by(one, group);
-            rays += of_group[group].count_ones();
+            self.trace_singles_of(from, group, rays[group]);
         }
-        if rays > limit {
-            return false;
-        }
-        for group in set_bits(groups) {
-            self.rays_alone(from, group, of_group[group]);
-        }
-        true
+    }
+}
+
+/// A packet before a box.
+struct AtNode<'a, 'p, N: Lanes, const ANY: bool> {
+    rays: &'a PacketRays<'p, N, ANY>,
+    one: [Vector<N>; 2],
+}
+
+impl<N: Lanes, const ANY: bool> split::AtNode for AtNode<'_, '_, N, ANY> {
+    #[inline(always)]
+    fn met_by(&self, group: usize) -> u32 {
+        let [enters, leaves] = crossed(self.one, &self.rays.groups[group]);
+        enters.max(N::splat(self.rays.within.min)).le(leaves.min(self.rays.t[group])).bits()
     }
 }
 
@@ -401,25 +388,18 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> InTree<'_, '_, N, S, ANY> {
         }
     }
 
-    /// Which rays of a group meet the box, a bit for each.
-    #[inline(always)]
-    fn met_by(&self, one: [Vector<N>; 2], group: usize) -> u32 {
-        let [enters, leaves] = crossed(one, &self.rays.groups[group]);
-        enters.max(N::splat(self.rays.within.min)).le(leaves.min(self.rays.t[group])).bits()
-    }
-
     /// Goes on with these rays of a group, a bit for each.
     #[inline(always)]
-    fn rays_alone(&mut self, from: Child, group: usize, rays: u32) {
+    fn trace_singles_of(&mut self, from: Child, group: usize, rays: u32) {
         if rays == 0 {
             return;
         }
-        self.rays.alone += rays.count_ones();
+        self.rays.left += rays.count_ones();
         let (mut t, mut place) = (self.rays.t[group].store(), self.rays.place[group].store());
         for lane in set_bits(rays) {
             let within = Interval { min: self.rays.within.min, max: t.0[lane] };
             let known = place.0[lane].to_bits();
-            let ray = Alone::<N, ANY>::new(self.rays.accel, &self.rays.groups[group], lane, within);
+            let ray = SingleRay::<N, ANY>::new(self.rays.accel, &self.rays.groups[group], lane, within);
             let mut ray = ray.going_on((known != NOTHING).then_some(known));
             ray.trace_from(from, self.tree, self.queue);
             if let (met, Some(found)) = ray.found() {

@@ -9,7 +9,7 @@ use crate::shape::{Crossable, Endless, SideBySide};
 use std::ops::ControlFlow;
 
 /// A ray, and what it has met.
-pub(super) struct Alone<'p, N: Lanes, const ANY: bool, W = Nobody> {
+pub(super) struct SingleRay<'p, N: Lanes, const ANY: bool, W = Nobody> {
     accel: &'p Accelerator,
     /// It is one of these.
     rays: &'p Rays<N>,
@@ -21,14 +21,14 @@ pub(super) struct Alone<'p, N: Lanes, const ANY: bool, W = Nobody> {
     witness: W,
 }
 
-impl<'p, N: Lanes, const ANY: bool> Alone<'p, N, ANY> {
+impl<'p, N: Lanes, const ANY: bool> SingleRay<'p, N, ANY> {
     #[inline(always)]
     pub(super) fn new(accel: &'p Accelerator, rays: &'p Rays<N>, lane: usize, within: Interval) -> Self {
         Self::watched(accel, rays, lane, within, Nobody)
     }
 }
 
-impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
+impl<'p, N: Lanes, const ANY: bool, W: Witness> SingleRay<'p, N, ANY, W> {
     #[inline(always)]
     pub(super) fn watched(
         accel: &'p Accelerator,
@@ -134,7 +134,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Alone<'p, N, ANY, W> {
 
 /// A ray's way through all parts.
 struct Everything<'a, 'p, N: Lanes, const ANY: bool, W> {
-    ray: &'a mut Alone<'p, N, ANY, W>,
+    ray: &'a mut SingleRay<'p, N, ANY, W>,
     queue: &'a mut Queue,
 }
 
@@ -152,7 +152,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> Visitor<'p> for Everything<'_, '
 
 /// A ray's way through a part of a tree.
 struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
-    ray: &'a mut Alone<'p, N, ANY, W>,
+    ray: &'a mut SingleRay<'p, N, ANY, W>,
     from: Child,
     tree: &'a Tree<S>,
     queue: &'a mut Queue,
@@ -178,7 +178,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> Work for Search<'_, '
 
 /// A ray in a tree.
 struct InTree<'a, 'p, N: Lanes, S, const ANY: bool, W> {
-    ray: &'a mut Alone<'p, N, ANY, W>,
+    ray: &'a mut SingleRay<'p, N, ANY, W>,
     /// The same in every place.
     rays: &'a Rays<N>,
     tree: &'a Tree<S>,
