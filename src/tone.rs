@@ -19,9 +19,10 @@ pub struct Picture {
 /// The framebuffer as `scene` wants its light shown.
 pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     let Resolution { width, height, .. } = framebuffer.resolution;
+    let (curve, exposure) = (scene.tone_curve(), scene.exposure());
     let mut pixels = vec![Srgb8::new(0, 0, 0); framebuffer.pixels.len()];
     let show = |(pixels, lights): (&mut [Srgb8], &[LinearRgb])| {
-        let shown = Srgb8::all_from_linear(lights.iter().map(|&light| shown(light, scene)));
+        let shown = Srgb8::all_from_linear(lights.iter().map(|&light| bend(curve, light * exposure)));
         pixels.iter_mut().zip(shown).for_each(|(pixel, shown)| *pixel = shown);
     };
     if pixels.len() <= ALONE {
