@@ -1,19 +1,19 @@
 //! Scene + camera -> text, for those who cannot see the picture: what is where in it, what hides what, and where the
 //! light comes from.
 
-use crate::bounds::Bounds;
 use crate::camera::{Camera, Pose};
 use crate::framebuffer::Resolution;
 use crate::light::{Falloff, PointLight};
 use crate::material::Material;
 use crate::scene::{Background, Scene};
-use crate::shape::{Part, Shape, Surface};
+use crate::shape::Shape;
 use crate::text::listed;
+use crate::text::number;
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use survey::{Covered, Survey};
-use words::{color, distance, number, percent, place, points};
+use words::{color, distance, percent, place, points};
 
 mod survey;
 mod words;
@@ -93,28 +93,17 @@ impl Told<'_> {
             Material::Diffuse(reflectance) => color(reflectance).to_owned(),
             Material::Own => color(part.mean_reflectance()).to_owned(),
         };
-        match &scene.shape {
-            Shape::Sphere(sphere) => format!("a {color} sphere of radius {}", number(sphere.radius())),
-            Shape::Plane(_) => format!("an endless {color} plane"),
-            Shape::Triangle(triangle) => format!("a {color} triangle, {}", sides(Bounds::of(triangle.corners()))),
-            Shape::Mesh(mesh) => {
-                let count = mesh.triangle_count();
-                format!(
-                    "a {color} mesh of {count} triangles, {}",
-                    sides(Bounds::of(mesh.file().positions().iter().copied()))
-                )
-            }
-        }
+        scene.shape.described(&color)
     }
 
-    /// What it stands before and behind; planes are behind everything.
+    /// What it stands before and behind; what has no end is behind everything.
     fn hides(&self, object: u32) -> String {
-        let is_plane = |object: &u32| matches!(self.scene.objects()[*object as usize].shape, Shape::Plane(_));
-        if is_plane(&object) {
+        let is_endless = |object: &u32| self.scene.objects()[*object as usize].shape.bounds().is_none();
+        if is_endless(&object) {
             return String::new();
         }
         let list = |objects: Vec<u32>| {
-            let objects: Vec<_> = objects.into_iter().filter(|other| !is_plane(other)).collect();
+            let objects: Vec<_> = objects.into_iter().filter(|other| !is_endless(other)).collect();
             (!objects.is_empty()).then(|| numbers(&objects))
         };
         let before = list(self.survey.behind(object)).map(|others| format!("; in front of {others}"));
@@ -125,12 +114,8 @@ impl Told<'_> {
 
     /// Whether the eye is inside it.
     fn around(&self, object: u32) -> &'static str {
-        match &self.scene.objects()[object as usize].shape {
-            Shape::Sphere(sphere) if sphere.center().distance(self.camera.pose().eye) < sphere.radius() => {
-                "; the eye is inside it"
-            }
-            _ => "",
-        }
+        let shape = &self.scene.objects()[object as usize].shape;
+        if shape.encloses(self.camera.pose().eye) { "; the eye is inside it" } else { "" }
     }
 
     /// What is not in the picture, and why.
@@ -253,12 +238,7 @@ impl Told<'_> {
     fn kinds(&self, objects: impl Iterator<Item = u32>) -> String {
         let mut counts = BTreeMap::new();
         for object in objects {
-            let kind = match self.scene.objects()[object as usize].shape {
-                Shape::Sphere(_) => "sphere",
-                Shape::Plane(_) => "plane",
-                Shape::Triangle(_) => "triangle",
-                Shape::Mesh(_) => "mesh",
-            };
+            let kind = self.scene.objects()[object as usize].shape.kind();
             *counts.entry(kind).or_insert(0) += 1;
         }
         let counts: Vec<_> = counts.into_iter().map(|(kind, count)| counted(count, kind)).collect();
@@ -268,19 +248,8 @@ impl Told<'_> {
 
 /// Its middle; nothing of what has no end.
 fn middle(shape: &Shape) -> Option<Vec3> {
-    let bounds = match shape {
-        Shape::Mesh(mesh) => Some(Bounds::of(mesh.file().positions().iter().copied())),
-        shape => match shape.part(0) {
-            part @ (Part::Sphere(_) | Part::Triangle(_)) => part.bounds(),
-            Part::Plane(_) | Part::Facet(_) => None,
-        },
-    };
-    bounds.map(|bounds| 0.5 * (bounds.min + bounds.max))
-}
-
-fn sides(bounds: Bounds) -> String {
-    let Vec3 { x, y, z } = bounds.extent();
-    format!("{} by {} by {} in x, y and z", number(x), number(y), number(z))
+    let bounds = shape.bounds()?;
+    Some(0.5 * (bounds.min + bounds.max))
 }
 
 fn counted(count: usize, what: &str) -> String {

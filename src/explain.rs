@@ -3,10 +3,9 @@
 //! What is said of the pixel was done for it by the functions that make the picture: its ray, what that was tested
 //! against, the point that it met, the lights, the sum. Beside it stand the lecture's formulas, as [`Equation`]s.
 
-mod equation;
 mod text;
 
-pub use equation::Equation;
+pub use crate::shape::{Equation, Step};
 pub use text::{Name, WIDTH, cell};
 
 use crate::camera::Camera;
@@ -52,7 +51,7 @@ pub struct Explanation {
 }
 
 /// A surface that the ray was tested against.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Tested {
     /// What it is called.
     pub name: Name,
@@ -174,7 +173,7 @@ impl Listener {
         let t = |test: &Test| test.t.unwrap_or(f32::INFINITY);
         tests.sort_by(|a, b| t(a).total_cmp(&t(b)).then(order(a).cmp(&order(b))));
         let tested = |Test { object, part, t }| {
-            let equation = Equation::of(&scene.objects()[object as usize].shape.part(part), ray);
+            let equation = scene.objects()[object as usize].shape.part(part).equation(ray);
             Tested { name: Name::of(scene, object, part), t, equation }
         };
         tests.into_iter().map(tested).collect()

@@ -109,8 +109,10 @@
 //! # What is not here
 //!
 //! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, its [`Part`](shape::Part)s are what rays are
-//! tested against, and a new surface is one file under `shape/` and a variant of each; scene files then need its fields in
-//! [`scene_file`] and their check in [`scene`]. No crate reads scenes or meshes:
+//! tested against. A new surface is one file under `shape/`, where it implements [`Surface`](shape::Surface) and
+//! [`Described`](shape::Described), and one line in the table of `shape`, from which the enums, the lists and trees of `accel`,
+//! and its descriptions and explanations are made (`shape::cube` is such a surface, for tests); scene files then need its
+//! fields in [`scene_file`] and their check in [`scene`]. No crate reads scenes or meshes:
 //! [`scene_text`] and [`mesh_file`] say which were tried, and at which file each failed. No fixed epsilon: see
 //! [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin). No order of the tree that could show: see
 //! [`Bounds::crossed`](bounds::Bounds::crossed). No flag says that a picture is out of date: the shot that is wanted is

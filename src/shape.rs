@@ -14,12 +14,20 @@ use crate::ray::{Interval, Pencil, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
+#[cfg(test)]
+pub mod cube;
+pub mod described;
+pub mod equation;
 pub mod mesh;
 pub mod one_by_one;
 pub mod plane;
 pub mod sphere;
 pub mod triangle;
 
+#[cfg(test)]
+pub use cube::Cube;
+pub use described::Described;
+pub use equation::{Equation, Step};
 pub use mesh::{Facet, Mesh};
 pub use one_by_one::OneByOne;
 pub use plane::Plane;
@@ -228,6 +236,8 @@ macro_rules! surfaces {
             bounded {
                 spheres: Sphere as $crate::shape::Balls<$crate::lanes::Eight>, "All points at one distance from a centre.";
                 triangles: Triangle as $crate::shape::Corners<$crate::lanes::Eight>, "What lies between three points.";
+                #[cfg(test)]
+                cubes: Cube as $crate::shape::OneByOne<$crate::shape::Cube>, "All points at one distance from a centre, along the axis along which they are farthest.";
             }
         }
     };

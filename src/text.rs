@@ -5,6 +5,7 @@ mod notice;
 mod words;
 
 pub use notice::Notice;
+pub(crate) use words::number;
 pub use words::{closest, listed};
 
 /// Returns what stands for a character in a message: itself, unless it moves the cursor, starts an escape sequence, turns

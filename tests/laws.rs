@@ -38,7 +38,8 @@ fn library_files() -> Vec<(PathBuf, String)> {
 /// The files of the modules that this one has for tests only.
 fn test_files(path: &Path, text: &str) -> Vec<PathBuf> {
     let pairs = text.lines().zip(text.lines().skip(1)).filter(|(attribute, _)| *attribute == "#[cfg(test)]");
-    let names = pairs.filter_map(|(_, module)| module.strip_prefix("mod ")?.strip_suffix(';'));
+    let names =
+        pairs.filter_map(|(_, module)| module.trim_start_matches("pub ").strip_prefix("mod ")?.strip_suffix(';'));
     names.map(|name| path.with_extension("").join(name).with_extension("rs")).collect()
 }
 

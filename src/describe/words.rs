@@ -2,6 +2,7 @@
 
 use super::survey::Inside;
 use crate::color::{LinearRgb, Oklab, Srgb8};
+use crate::text::number;
 use glam::Vec3;
 
 /// Colours that have a name of their own in everyday language, light and dark.
@@ -51,19 +52,6 @@ pub(super) fn color(light: LinearRgb) -> &'static str {
     };
     let nearest = COLORS.into_iter().min_by(|a, b| away(a.1).total_cmp(&away(b.1)));
     nearest.map_or("", |(name, _)| name)
-}
-
-/// Three digits, without noughts at the end.
-pub(super) fn number(value: f32) -> String {
-    let digits = match value.abs() {
-        v if v >= 100.0 => 0,
-        v if v >= 10.0 => 1,
-        v if v >= 0.1 || v == 0.0 => 2,
-        _ => return format!("{value:.1e}"),
-    };
-    let text = format!("{value:.digits$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 pub(super) fn points(point: Vec3) -> String {

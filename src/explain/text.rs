@@ -1,6 +1,6 @@
 //! An explanation as text: short lines in the lecture's symbols, for a panel or a page.
 
-use super::{Equation, Explanation, Lit, Seen, Tested};
+use super::{Equation, Explanation, Lit, Seen, Step, Tested};
 use crate::capabilities::CellMode;
 use crate::color::LinearRgb;
 use crate::scene::{Scene, ToneCurve};
@@ -22,11 +22,9 @@ pub struct Name {
 
 impl Name {
     pub(super) fn of(scene: &Scene, object: u32, part: u32) -> Self {
-        let (kind, face) = match scene.objects()[object as usize].shape {
-            Shape::Sphere(_) => ("sphere", None),
-            Shape::Plane(_) => ("plane", None),
-            Shape::Triangle(_) => ("triangle", None),
+        let (kind, face) = match &scene.objects()[object as usize].shape {
             Shape::Mesh(_) => ("face", Some(part + 1)),
+            shape => (shape.kind(), None),
         };
         Self { object: object + 1, kind, face }
     }
@@ -121,44 +119,30 @@ pub fn cell([x, y]: [u32; 2], mode: CellMode) -> String {
 }
 
 /// The t of a tested surface, as the picture has it and then as the equation has the rest.
-fn crossings(tested: &Tested) -> String {
-    let own = |other: f64| number(tested.t.unwrap_or(other as f32));
-    match tested.equation {
-        Equation::Sphere { roots: None, .. } => "  no root".to_owned(),
-        Equation::Sphere { roots: Some([first, second]), .. } => match tested.t {
-            // From inside, the first root is behind the eye.
-            Some(t) if first < 0.0 => format!("{}{}", number(first as f32), number(t)),
-            _ => format!("{}{}", own(first), number(second as f32)),
-        },
-        Equation::Plane { t: None, .. } | Equation::Triangle { t: None, .. } => "  parallel".to_owned(),
-        Equation::Plane { t: Some(t), .. } => own(t),
-        Equation::Triangle { t: Some(t), shares } => {
-            let is_outside = tested.t.is_none() && shares.iter().any(|&share| share < 0.0);
-            format!("{}{}", own(t), if is_outside { "  outside" } else { "" })
-        }
+fn crossings(Tested { t, equation, .. }: &Tested) -> String {
+    let Equation { roots, without_root, is_outside, .. } = equation;
+    if roots.is_empty() {
+        return format!("  {without_root}");
     }
+    let mut shown: Vec<_> = roots.iter().map(|&root| root as f32).collect();
+    if let Some(t) = *t {
+        // From inside, the first root is behind the eye.
+        let own = roots.iter().position(|&root| root >= 0.0).unwrap_or(roots.len() - 1);
+        shown[own] = t;
+    }
+    let outside = if t.is_none() && *is_outside { "  outside" } else { "" };
+    shown.into_iter().map(number).collect::<String>() + outside
 }
 
 fn add_equation(equation: &Equation, lines: &mut Vec<String>) {
-    let line = |what: &str, value: f64| format!("  {what:<20}{}", number(value as f32));
-    match *equation {
-        Equation::Sphere { a, b, c, roots } => {
-            lines.extend([line("a = d.d", a), line("b = 2 (o-c).d", b), line("c = (o-c).(o-c)-rr", c)]);
-            let [t0, t1] = roots.unwrap_or_default().map(|root| number(root as f32));
-            lines.push("  t = (-b +- sqrt(bb - 4ac)) / 2a".to_owned());
-            lines.push(format!("    = {t0} or {t1}"));
+    lines.extend(equation.steps.iter().map(|step| match step {
+        Step::Value(what, value) => format!("  {what:<20}{}", number(*value as f32)),
+        Step::Text(text) => format!("  {text}"),
+        Step::Values(before, between, values) => {
+            let values: Vec<_> = values.iter().map(|&value| number(value as f32)).collect();
+            format!("  {before}{}", values.join(between))
         }
-        Equation::Plane { numerator, denominator, t } => {
-            lines.extend([line("(a-o).n", numerator), line("d.n", denominator)]);
-            lines.push(line("t = (a-o).n / d.n", t.unwrap_or_default()));
-        }
-        Equation::Triangle { t, shares } => {
-            lines.push(line("t = (a-o).n / d.n", t.unwrap_or_default()));
-            let [a, b, c] = shares.map(|share| number(share as f32));
-            lines.push("  shares of its corners".to_owned());
-            lines.push(format!("      {a}{b}{c}"));
-        }
-    }
+    }));
 }
 
 fn add_light(at: usize, lit: &Lit, lines: &mut Vec<String>) {

@@ -1,6 +1,7 @@
 //! Ray-plane intersection (lecture, "Ray intersection").
 
-use super::{AtCrossing, Crossable, Endless, Points, Surface, SurfacePoint};
+use super::equation::quotient;
+use super::{AtCrossing, Crossable, Described, Endless, Equation, Points, Step, Surface, SurfacePoint};
 use crate::bounds::Bounds;
 use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
@@ -116,5 +117,44 @@ impl<N: Number> AtCrossing<N> for Plane {
         let from_point = position - point;
         let uv = [from_point.dot(Vector::splat(self.u)), from_point.dot(Vector::splat(self.v))];
         Points::seen_by(rays, position, normal, position.largest() + point.largest(), uv)
+    }
+}
+
+impl Described for Plane {
+    const KIND: &'static str = "plane";
+
+    fn described(&self, color: &str) -> String {
+        format!("an endless {color} plane")
+    }
+
+    /// t = (a - o).n / d.n, for a point a of the plane.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let (a, n) = (self.point.as_dvec3(), self.normal.as_dvec3());
+        let (above, below) = ((a - o).dot(n), d.dot(n));
+        let t = quotient(above, below);
+        let steps = vec![
+            Step::Value("(a-o).n", above),
+            Step::Value("d.n", below),
+            Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
+        ];
+        Equation { steps, roots: t.into_iter().collect(), without_root: "parallel", is_outside: false }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn t_is_where_the_lecture_has_it() {
+        let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::new(0.0, 0.0, -2.0) };
+        let equation = |normal| Plane::new(Vec3::new(1.0, 2.0, 1.0), normal).equation(&ray);
+        let values = |normal| {
+            let value = |step| if let Step::Value(_, value) = step { value } else { f64::NAN };
+            equation(normal).steps.into_iter().map(value).collect::<Vec<_>>()
+        };
+        assert_eq!((values(Vec3::Z), equation(Vec3::Z).roots), (vec![-4.0, -2.0, 2.0], vec![2.0]));
+        assert_eq!((values(Vec3::X), equation(Vec3::X).roots), (vec![1.0, 0.0, 0.0], vec![]));
     }
 }

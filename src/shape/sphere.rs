@@ -1,9 +1,10 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
-use super::{AtCrossing, Crossable, Points, SideBySide, Surface, SurfacePoint};
+use super::{AtCrossing, Crossable, Described, Equation, Points, SideBySide, Step, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
+use crate::text::number;
 use glam::Vec3;
 use std::array::from_fn;
 
@@ -180,5 +181,63 @@ impl Surface for Sphere {
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
         self.ball().points_at(&Probe::new(*ray).rays, t).point()
+    }
+}
+
+impl Described for Sphere {
+    const KIND: &'static str = "sphere";
+
+    fn described(&self, color: &str) -> String {
+        format!("a {color} sphere of radius {}", number(self.radius))
+    }
+
+    /// a t^2 + b t + c = 0.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let (d, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - self.center.as_dvec3());
+        let radius = f64::from(self.radius);
+        let (a, b, c) = (d.dot(d), 2.0 * from_center.dot(d), from_center.dot(from_center) - radius * radius);
+        let under_root = b * b - 4.0 * a * c;
+        let root = |sign: f64| (-b + sign * under_root.sqrt()) / (2.0 * a);
+        let roots = if under_root >= 0.0 { vec![root(-1.0), root(1.0)] } else { Vec::new() };
+        let steps = vec![
+            Step::Value("a = d.d", a),
+            Step::Value("b = 2 (o-c).d", b),
+            Step::Value("c = (o-c).(o-c)-rr", c),
+            Step::Text("t = (-b +- sqrt(bb - 4ac)) / 2a"),
+            Step::Values("  = ", " or ", roots.clone()),
+        ];
+        Equation { steps, roots, without_root: "no root", is_outside: false }
+    }
+
+    fn encloses(&self, point: Vec3) -> bool {
+        self.center.distance(point) < self.radius
+    }
+
+    fn circle(&self) -> Option<(Vec3, f32)> {
+        Some((self.center, self.radius))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quadratic_is_the_lectures() {
+        let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::new(0.0, 0.0, -2.0) };
+        let equation = |x| Sphere::new(Vec3::new(x, 0.0, 0.0), 1.0).equation(&ray);
+        let steps = |c, roots: &[f64]| {
+            [
+                Step::Value("a = d.d", 4.0),
+                Step::Value("b = 2 (o-c).d", -20.0),
+                Step::Value("c = (o-c).(o-c)-rr", c),
+                Step::Text("t = (-b +- sqrt(bb - 4ac)) / 2a"),
+                Step::Values("  = ", " or ", roots.to_vec()),
+            ]
+        };
+        // 4 t^2 - 20 t + 24 = 0 has the roots 2 and 3.
+        assert_eq!(equation(0.0).steps, steps(24.0, &[2.0, 3.0]));
+        assert_eq!(equation(0.0).roots, [2.0, 3.0]);
+        assert_eq!((equation(3.0).steps, equation(3.0).roots), (steps(33.0, &[]).to_vec(), vec![]));
     }
 }

@@ -1,6 +1,8 @@
 //! Ray-triangle intersection, without gaps between triangles that share an edge.
 
-use super::{AtCrossing, Crossable, Points, SideBySide, Surface, SurfacePoint};
+use super::described::sides;
+use super::equation::quotient;
+use super::{AtCrossing, Crossable, Described, Equation, Points, SideBySide, Step, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Pencil, Probe, Ray, Rays, nearest_in, sheared_exactly};
@@ -304,5 +306,56 @@ impl Surface for Triangle {
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
         AtCrossing::points_at(&self.single(), &Probe::new(*ray).rays, t).point()
+    }
+}
+
+impl Described for Triangle {
+    const KIND: &'static str = "triangle";
+
+    fn described(&self, color: &str) -> String {
+        format!("a {color} triangle, {}", sides(&Bounds::of(self.corners)))
+    }
+
+    /// That of its plane. The point there is the corners' mean by some shares, one of which is less than 0 if the point is
+    /// outside.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let [a, b, c] = self.corners.map(Vec3::as_dvec3);
+        let n = (b - a).cross(c - a);
+        let t = quotient((a - o).dot(n), d.dot(n));
+        let p = o + d * t.unwrap_or(0.0);
+        // Twice the area of the triangle that p makes with each edge, in parts of the whole.
+        let share = |from: DVec3, to: DVec3| quotient((to - from).cross(p - from).dot(n), n.dot(n)).unwrap_or(0.0);
+        let shares = vec![share(b, c), share(c, a), share(a, b)];
+        Equation {
+            is_outside: shares.iter().any(|&share| share < 0.0),
+            steps: vec![
+                Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
+                Step::Text("shares of its corners"),
+                Step::Values("    ", "", shares),
+            ],
+            roots: t.into_iter().collect(),
+            without_root: "parallel",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shares_tell_where_the_plane_is_crossed() {
+        let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::new(0.0, 0.0, -2.0) };
+        let told = |corners| {
+            let Equation { steps, roots, is_outside, .. } = Triangle::new(corners).equation(&ray);
+            let Some(Step::Values(_, _, shares)) = steps.last().cloned() else { panic!("{steps:?}") };
+            (shares, roots, is_outside)
+        };
+        let at = |x: f32| [Vec3::new(x - 1.0, -1.0, 1.0), Vec3::new(x + 3.0, -1.0, 1.0), Vec3::new(x - 1.0, 3.0, 1.0)];
+        assert_eq!(told(at(0.0)), (vec![0.5, 0.25, 0.25], vec![2.0], false));
+        assert_eq!(told(at(2.0)), (vec![1.0, -0.25, 0.25], vec![2.0], true));
+        let flat = [Vec3::ZERO, Vec3::ONE, Vec3::splat(2.0)];
+        assert_eq!(told(flat), (vec![0.0; 3], vec![], false));
     }
 }

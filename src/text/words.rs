@@ -43,6 +43,19 @@ fn distance(written: &str, known: &str) -> Option<usize> {
     (distance <= allowed || is_part).then_some(distance)
 }
 
+/// Returns a number in prose: three digits, without noughts at the end.
+pub(crate) fn number(value: f32) -> String {
+    let digits = match value.abs() {
+        v if v >= 100.0 => 0,
+        v if v >= 10.0 => 1,
+        v if v >= 0.1 || v == 0.0 => 2,
+        _ => return format!("{value:.1e}"),
+    };
+    let text = format!("{value:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

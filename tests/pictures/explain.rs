@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use termtrace::color::LinearRgb;
-use termtrace::explain::{Equation, Explanation, WIDTH, explain};
+use termtrace::explain::{Explanation, WIDTH, explain};
 use termtrace::framebuffer::Resolution;
 use termtrace::render::render;
 use termtrace::scene::{Scene, ToneCurve};
@@ -79,10 +79,7 @@ fn equations_and_lines_say_the_same_as_the_picture() {
         for pixel in pixels().step_by(5) {
             let explanation = explain(&scene, scene.camera(), SIZE, pixel);
             for tested in &explanation.tested {
-                let roots = match tested.equation {
-                    Equation::Sphere { roots, .. } => roots.map_or(vec![], Vec::from),
-                    Equation::Plane { t, .. } | Equation::Triangle { t, .. } => t.into_iter().collect(),
-                };
+                let roots = &tested.equation.roots;
                 let is_close = |root: &f64, t: f32| (root - f64::from(t)).abs() < 2e-3 * f64::from(t).max(1.0);
                 let agrees = tested.t.is_none_or(|t| roots.iter().any(|root| is_close(root, t)));
                 assert!(agrees, "{} {pixel:?}: {tested:?}", path.display());

@@ -5,7 +5,6 @@ use crate::capabilities::{CellMode, Colors, Glyphs};
 use crate::explain::Explanation;
 use crate::framebuffer::Resolution;
 use crate::scene::Scene;
-use crate::shape::Part;
 use crate::viewer::look::Look;
 use glam::{Vec2, Vec3};
 use ratatui::buffer::Buffer;
@@ -48,10 +47,8 @@ impl Inset {
         let t = seen.map_or_else(|| FAR * pose.eye.distance(pose.target), |seen| seen.hit.t);
         let rays = camera.eye_rays(explanation.resolution.aspect_ratio());
         let near = NEAR * t;
-        let ball = seen.and_then(|seen| match seen.hit.surface(scene) {
-            Part::Sphere(sphere) => Some((from_side(sphere.center()), sphere.radius())),
-            Part::Plane(_) | Part::Triangle(_) | Part::Facet(_) => None,
-        });
+        let ball = seen.and_then(|seen| seen.hit.surface(scene).circle());
+        let ball = ball.map(|(center, radius)| (from_side(center), radius));
         let lights = seen.map_or(Vec::new(), |seen| {
             let ends = scene.lights().iter().map(|light| from_side(light.position));
             ends.zip(&seen.lights).map(|(end, lit)| (end, lit.faces() && lit.blocker.is_none())).collect()

@@ -1,0 +1,161 @@
+//! Ray-cube intersection: for tests, a surface that is one file, and one line in the table of surfaces.
+
+use super::{Described, Equation, Points, Step, Surface, SurfacePoint};
+use crate::bounds::{Bounds, crossed};
+use crate::lanes::Vector;
+use crate::ray::{Interval, Probe, Ray};
+use crate::text::number;
+use glam::Vec3;
+
+/// All points x with max |x - c| - h = 0, the faces perpendicular to the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cube {
+    center: Vec3,
+    half_side: f32,
+}
+
+impl Cube {
+    /// The cube about `center` with sides of twice `half_side`.
+    pub fn new(center: Vec3, half_side: f32) -> Self {
+        Self { center, half_side }
+    }
+}
+
+impl Surface for Cube {
+    fn bounds(&self) -> Option<Bounds> {
+        Some(Bounds { min: self.center - self.half_side, max: self.center + self.half_side })
+    }
+
+    /// The box is its own bounds.
+    fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
+        let Bounds { min, max } = self.bounds()?;
+        let [enters, leaves] = crossed([Vector::splat(min), Vector::splat(max)], &probe.rays);
+        let t = if within.min <= enters { enters } else { leaves };
+        (enters <= leaves && within.contains(t)).then_some(t)
+    }
+
+    fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
+        let outward = ray.at(t) - self.center;
+        let axis = (0..3).fold(0, |axis, next| if outward[axis].abs() < outward[next].abs() { next } else { axis });
+        let mut normal = Vec3::ZERO;
+        normal[axis] = outward[axis].signum();
+        let mut position = ray.at(t);
+        position[axis] = self.center[axis] + normal[axis] * self.half_side;
+        let size = self.center.abs().max_element() + self.half_side;
+        let (position, normal) = (Vector::splat(position), Vector::splat(normal));
+        Points::seen_by(&Probe::new(*ray).rays, position, normal, size, [0.0; 2]).point()
+    }
+}
+
+impl Described for Cube {
+    const KIND: &'static str = "cube";
+
+    fn described(&self, color: &str) -> String {
+        format!("a {color} cube with sides of {}", number(2.0 * self.half_side))
+    }
+
+    /// Those of the planes of its faces between which the line is inside all the others.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let (c, h) = (self.center.as_dvec3(), f64::from(self.half_side));
+        let (one, other) = ((c - h - o) / d, (c + h - o) / d);
+        let (enters, leaves) = (one.min(other).max_element(), one.max(other).min_element());
+        let roots = if enters <= leaves { vec![enters, leaves] } else { Vec::new() };
+        Equation {
+            steps: vec![Step::Values("t = ", " or ", roots.clone())],
+            roots,
+            without_root: "no root",
+            is_outside: false,
+        }
+    }
+
+    fn encloses(&self, point: Vec3) -> bool {
+        (point - self.center).abs().max_element() < self.half_side
+    }
+}
+
+mod tests {
+    use super::*;
+    use crate::camera::{Camera, Pose, ViewRectangle};
+    use crate::color::LinearRgb;
+    use crate::describe::describe;
+    use crate::explain::explain;
+    use crate::framebuffer::Resolution;
+    use crate::hit::{self, Kernel};
+    use crate::light::{Falloff, PointLight};
+    use crate::material::Material;
+    use crate::ray::EightRays;
+    use crate::render::{Sampling, render};
+    use crate::scene::{Object, Scene};
+    use crate::shape::Shape;
+
+    fn ray(y: f32) -> Ray {
+        Ray { origin: Vec3::new(0.0, y, 10.0), direction: Vec3::new(0.0, 0.0, -1.0) }
+    }
+
+    /// That number of cubes of half side 1 along the x axis, three apart.
+    fn scene(count: u32) -> Scene {
+        let pose = Pose { eye: Vec3::new(0.0, 0.0, 10.0), target: Vec3::ZERO, up: Vec3::Y };
+        let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(0.8).expect("an angle")).expect("a pose");
+        let cube = |at: u32| Cube::new(Vec3::X * 3.0 * at as f32, 1.0);
+        let light = PointLight {
+            position: Vec3::new(0.0, 0.0, 3.0),
+            intensity: LinearRgb::grey(8.0),
+            falloff: Falloff::InverseSquare,
+        };
+        Scene::new(camera, (0..count).map(|at| Object::new(cube(at), Material::DEFAULT)).collect())
+            .with_lights(vec![light])
+    }
+
+    #[test]
+    fn it_is_met_where_its_face_is_whatever_is_beside_it() {
+        for count in [1, 8, 9, 1000] {
+            let scene = scene(count);
+            let found = hit::closest_hit(&scene, &ray(0.5)).expect("the ray goes through the first cube");
+            assert!((found.t - 9.0).abs() < 1e-4 && found.object == 0, "{found:?} of {count}");
+            assert_eq!(hit::closest_hit(&scene, &ray(1.5)), None);
+            assert!(hit::any_hit(&scene, &ray(-0.5), Interval::IN_FRONT));
+        }
+    }
+
+    #[test]
+    fn all_kernels_see_the_same() {
+        let scene = scene(40);
+        let rays: Vec<_> = (0..640)
+            .map(|at| Ray {
+                origin: Vec3::new(0.0, 0.0, 10.0),
+                direction: Vec3::new((at % 40) as f32 * 0.1 - 1.0, (at / 40) as f32 * 0.02 - 0.16, -1.0),
+            })
+            .collect();
+        let rays: Vec<_> = rays.chunks(8).map(EightRays::of).collect();
+        let hits = |kernel| {
+            let mut hits = Vec::new();
+            hit::closest_hits(kernel, &scene, &rays, &mut hits);
+            hits.iter().flat_map(|eight| (0..8).map(|lane| eight.hit(&scene, lane))).collect::<Vec<_>>()
+        };
+        let single = hits(Kernel::Single);
+        assert!(single.iter().flatten().count() > 100, "rays meet cubes");
+        assert_eq!(hits(Kernel::Packet), single);
+        assert_eq!(hits(Kernel::Scalar), single);
+        assert_eq!(hits(Kernel::Auto), single);
+    }
+
+    /// 8 / 2^2 = 2 in the middle of the face, times the reflectance .8.
+    #[test]
+    fn its_light_is_that_of_the_closed_form() {
+        let scene = scene(1);
+        let light = render(&scene, scene.camera(), Resolution::square(41, 41), Sampling::BEST);
+        assert!((light.pixel(20, 20).g - 1.6).abs() < 1e-3, "{:?}", light.pixel(20, 20));
+    }
+
+    #[test]
+    fn it_is_described_and_explained() {
+        let (scene, resolution) = (scene(2), Resolution::square(40, 24));
+        let text = describe("cubes.ron", &scene, scene.camera(), resolution);
+        assert!(text.contains("a light grey cube with sides of 2"), "{text}");
+        let lines = explain(&scene, scene.camera(), resolution, [20, 12]).lines();
+        assert!(lines.iter().any(|line| line.starts_with("in front: #1 cube, t = ")), "{lines:#?}");
+        assert!(lines.iter().any(|line| line.starts_with("  t = ") && line.contains(" or ")), "{lines:#?}");
+        assert!(Shape::from(Cube::new(Vec3::ZERO, 1.0)).encloses(Vec3::splat(0.9)));
+    }
+}
