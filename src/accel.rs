@@ -84,18 +84,25 @@ impl<N: Lanes> PartIds<N> {
     }
 }
 
+/// Gives what follows for a list or a tree: what is kept, what is listed to build it, or nothing for the other of the two.
+macro_rules! only {
+    (list of $kept:ty) => { List<$kept> };
+    (tree of $kept:ty) => { Tree<$kept> };
+    (list from $surface:ident) => { Vec<(PartId, crate::shape::$surface)> };
+    (tree from $surface:ident) => { Bounded<crate::shape::$surface> };
+    (list in list $($then:tt)*) => { $($then)* };
+    (tree in tree $($then:tt)*) => { $($then)* };
+    ($one:ident in $other:ident $($then:tt)*) => {};
+}
+
 /// Makes the accelerator from the table of [`surfaces`](crate::shape).
 macro_rules! accelerator {
-    (
-        endless { $($(#[$on_list:meta])* $list:ident: $endless:ident, $_:literal;)* }
-        bounded { $($(#[$on_tree:meta])* $tree:ident: $bounded:ident as $leaf:ty, $__:literal;)* }
-    ) => {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         /// The parts of some shapes. Each part has a place: first those of the lists, then those of the trees, each leaf's
         /// eight from a multiple of eight on.
         #[derive(Clone, Default, PartialEq)]
         pub(crate) struct Accelerator {
-            $($(#[$on_list])* $list: List<crate::shape::$endless>,)*
-            $($(#[$on_tree])* $tree: Tree<$leaf>,)*
+            $($(#[$on])* $name: only!($group of $kept),)*
             /// Whether any triangles stand for a smooth surface.
             pub(crate) has_smooth: bool,
             bounds: Option<Bounds>,
@@ -105,15 +112,15 @@ macro_rules! accelerator {
             /// Passes through all parts: the lists first, then the trees, each in the order of the table.
             #[inline(always)]
             pub(crate) fn visit<'a>(&'a self, visitor: &mut impl Visitor<'a>) {
-                $($(#[$on_list])* visitor.list(&self.$list);)*
-                $($(#[$on_tree])* visitor.tree(&self.$tree);)*
+                $($(#[$on])* { only! { list in $group visitor.list(&self.$name); } })*
+                $($(#[$on])* { only! { tree in $group visitor.tree(&self.$name); } })*
             }
 
             /// Whether anything stands in a tree.
             #[inline(always)]
             pub(crate) fn has_trees(&self) -> bool {
                 let mut has_trees = false;
-                $($(#[$on_tree])* { has_trees |= self.$tree.has_tree(); })*
+                $($(#[$on])* { only! { tree in $group has_trees |= self.$name.has_tree(); } })*
                 has_trees
             }
 
@@ -121,9 +128,7 @@ macro_rules! accelerator {
             #[inline(always)]
             pub(crate) fn needs_shear(&self) -> bool {
                 let mut needs_shear = false;
-                $($(#[$on_tree])* {
-                    needs_shear |= <$leaf as SideBySide>::NEED_SHEAR && !self.$tree.leaves.is_empty();
-                })*
+                $($(#[$on])* { only! { tree in $group needs_shear |= self.$name.needs_shear(); } })*
                 needs_shear
             }
         }
@@ -131,36 +136,39 @@ macro_rules! accelerator {
         /// The parts of some shapes by their kinds, in the order of the scene.
         #[derive(Default)]
         struct Listed {
-            $($(#[$on_list])* $list: Vec<(PartId, crate::shape::$endless)>,)*
-            $($(#[$on_tree])* $tree: Bounded<crate::shape::$bounded>,)*
+            $($(#[$on])* $name: only!($group from $surface),)*
         }
 
         impl Listed {
             fn push(&mut self, id: PartId, part: Part<'_>) {
                 match part {
-                    $($(#[$on_list])* Part::$endless(surface) => self.$list.push((id, *surface)),)*
-                    $($(#[$on_tree])* Part::$bounded(surface) => self.$tree.push(id, *surface),)*
+                    $($(#[$on])* Part::$surface(surface) => {
+                        only! { list in $group self.$name.push((id, *surface)); }
+                        only! { tree in $group self.$name.push(id, *surface); }
+                    })*
                     Part::Facet(facet) => self.triangles.push(id, *facet.triangle()),
                 }
             }
 
             /// The boxes of all that have any.
             fn boxes(&self) -> impl Iterator<Item = &Bounds> {
-                [$($(#[$on_tree])* &self.$tree.boxes[..],)*].into_iter().flatten()
+                let mut boxes: Vec<&[Bounds]> = Vec::new();
+                $($(#[$on])* { only! { tree in $group boxes.push(&self.$name.boxes); } })*
+                boxes.into_iter().flatten()
             }
 
             fn build<E: Send>(self, report: &(dyn Fn(usize) -> Result<(), E> + Sync)) -> Result<Accelerator, E> {
                 let bounds = self.boxes().copied().reduce(|all, next| all.union(&next));
                 let (mut built, mut end) = (Accelerator { bounds, ..Accelerator::default() }, 0);
-                $($(#[$on_list])* {
-                    built.$list = List { first: end, parts: self.$list };
-                    end = built.$list.end();
-                })*
+                $($(#[$on])* { only! { list in $group
+                    built.$name = List { first: end, parts: self.$name };
+                    end = built.$name.end();
+                } })*
                 end = end.next_multiple_of(LANES as u32);
-                $($(#[$on_tree])* {
-                    built.$tree = self.$tree.build(end, report)?;
-                    end = built.$tree.end();
-                })*
+                $($(#[$on])* { only! { tree in $group
+                    built.$name = self.$name.build(end, report)?;
+                    end = built.$name.end();
+                } })*
                 Ok(built)
             }
         }
@@ -328,6 +336,14 @@ impl fmt::Debug for Accelerator {
             .field("bounds", &self.bounds)
             .field("bytes", &self.bytes())
             .finish_non_exhaustive()
+    }
+}
+
+impl<S: SideBySide> Tree<S> {
+    /// Whether there is anything in it whose formula asks for the shear of rays.
+    #[inline(always)]
+    fn needs_shear(&self) -> bool {
+        S::NEED_SHEAR && !self.leaves.is_empty()
     }
 }
 

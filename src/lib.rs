@@ -40,8 +40,8 @@
 //!
 //! What was written:
 //! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret
-//! - [`scene_file`]: what the author wrote, typed, in his own units
 //! - [`mesh_file`]: OBJ, STL, PLY or glTF -> triangles, checked
+//! - [`written`]: values as the author wrote them, with places: read from the tree, and checked
 //!
 //! What is drawn, checked once, in radians, linear light and unit vectors:
 //! - [`bvh`]: which of many boxes a ray may meet
@@ -51,6 +51,7 @@
 //! - [`light`]: point lights
 //! - [`camera`]: eye, target, up, field of view -> basis u, v, w -> eye rays
 //! - [`camera_path`]: the camera over time: an orbit, or through keyframes
+//! - [`scene_file`]: a whole file as the author wrote it, typed
 //! - [`scene`]: all of it, and the one conversion from what was written
 //!
 //! From the eye to the light:
@@ -85,8 +86,9 @@
 //!
 //! 1. A module uses only what stands above it here. Within a module the files of one folder form no cycle, and between a
 //!    file and those in its folder only types go one of the ways (`tests/laws.rs` reads the imports).
-//! 2. Written, then checked: [`scene_file`] holds what the author wrote and where; [`scene`] converts it once into a
-//!    value that cannot be wrong. Units and colour spaces change there and nowhere else.
+//! 2. Written, then checked: [`scene_file`] holds what the author wrote and where, of surfaces in the terms of [`shape`];
+//!    [`scene`] has it converted once into a value that cannot be wrong. Units and colour spaces change there and nowhere
+//!    else.
 //! 3. The value between two layers has a name: [`Scene`](scene::Scene), [`Camera`](camera::Camera),
 //!    [`Hit`](hit::Hit), [`Framebuffer`](framebuffer::Framebuffer), [`Picture`](tone::Picture), [`Grid`](grid::Grid),
 //!    bytes. Each can be made by hand in a test.
@@ -109,10 +111,10 @@
 //! # What is not here
 //!
 //! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, its [`Part`](shape::Part)s are what rays are
-//! tested against. A new surface is one file under `shape/`, where it implements [`Surface`](shape::Surface) and
-//! [`Described`](shape::Described), and one line in the table of `shape`, from which the enums, the lists and trees of `accel`,
-//! and its descriptions and explanations are made (`shape::cube` is such a surface, for tests); scene files then need its
-//! fields in [`scene_file`] and their check in [`scene`]. No crate reads scenes or meshes:
+//! tested against. A new surface is one file under `shape/`, where it implements [`Surface`](shape::Surface),
+//! [`Described`](shape::Described) and [`InSceneFile`](shape::InSceneFile), and one line in the table of `shape`, from which the
+//! enums, the lists and trees of `accel`, and what reads, describes and explains it are made (`shape::cube` is such a surface,
+//! for tests). No crate reads scenes or meshes:
 //! [`scene_text`] and [`mesh_file`] say which were tried, and at which file each failed. No fixed epsilon: see
 //! [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin). No order of the tree that could show: see
 //! [`Bounds::crossed`](bounds::Bounds::crossed). No flag says that a picture is out of date: the shot that is wanted is
@@ -131,7 +133,7 @@
 //! # One scene with a typo
 //!
 //! `scene::load` has the bytes read ([`named_file`]) -> [`scene_text`] makes a tree of them, in which every node has its
-//! place -> [`scene_file`] reads the fields; a name that it does not know is a fault there, with the word that was meant
+//! place -> [`scene_file`] and [`shape`] read the fields; a name that they do not know is a fault there, with the word that was meant
 //! ([`text`]) -> `scene::checked` is silent about what is missing only because of that -> `scene_text::fault` puts all
 //! faults in order, each with its line and carets -> the error goes back to who loaded the scene: the command line prints
 //! it, and the live view shows the first fault of it (`viewer::fault`).
@@ -158,8 +160,8 @@ pub mod memory;
 pub mod progress;
 pub mod named_file;
 pub mod scene_text;
-pub mod scene_file;
 pub mod mesh_file;
+pub mod written;
 pub mod bvh;
 pub mod shape;
 mod accel;
@@ -167,6 +169,7 @@ pub mod material;
 pub mod light;
 pub mod camera;
 pub mod camera_path;
+pub mod scene_file;
 pub mod scene;
 pub mod hit;
 pub mod shade;

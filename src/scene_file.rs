@@ -7,40 +7,16 @@
 //! What is missing or faulty is `None`, and its fault has been noted; nobody need complain a second time.
 
 mod camera;
-mod colors;
 mod objects;
 mod path;
-mod reader;
 
 pub use camera::{WrittenCamera, WrittenLens};
-pub use colors::WrittenColor;
-pub(crate) use colors::color_named;
 pub use path::{PathFile, WrittenKeyframe};
 
 use crate::progress::Watcher;
-use crate::scene_text::{Faults, Node, Span, Value};
-use reader::{Fields, Reader};
-
-/// A value and where it was written.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spanned<T> {
-    /// The value.
-    pub value: T,
-    /// Its bytes.
-    pub span: Span,
-}
-
-/// A finite number.
-pub type WrittenNumber = Spanned<f64>;
-
-/// Three finite numbers: a point or a direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WrittenVector {
-    /// x, y and z.
-    pub components: [WrittenNumber; 3],
-    /// All of it.
-    pub span: Span,
-}
+use crate::scene_text::{Faults, Node, Value};
+use crate::shape::WrittenShape;
+use crate::written::{Fields, Reader, Spanned, WrittenColor, WrittenNumber, WrittenVector};
 
 /// A whole scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -157,41 +133,6 @@ pub struct WrittenObject {
     pub shape: WrittenShape,
     /// Its material, and where; a light grey if none is given.
     pub material: Option<Spanned<MaterialUse>>,
-}
-
-/// A surface.
-#[derive(Clone, Debug, PartialEq)]
-pub enum WrittenShape {
-    /// `Sphere(center: ..., radius: ...)`
-    Sphere {
-        /// The centre.
-        center: Option<WrittenVector>,
-        /// The radius.
-        radius: Option<WrittenNumber>,
-    },
-    /// `Triangle(corners: [..., ..., ...])`
-    Triangle {
-        /// The three corners.
-        corners: Option<[WrittenVector; 3]>,
-    },
-    /// `Mesh(path: ..., scale: ..., rotate: ..., translate: ...)`
-    Mesh {
-        /// The mesh's file, seen from the scene's.
-        path: Option<Spanned<String>>,
-        /// Along each axis; 1 if none is given.
-        scale: Option<WrittenVector>,
-        /// About x, then y, then z, in degrees.
-        rotate: Option<WrittenVector>,
-        /// By so much, after scale and rotation.
-        translate: Option<WrittenVector>,
-    },
-    /// `Plane(point: ..., normal: ...)`
-    Plane {
-        /// Any of its points.
-        point: Option<WrittenVector>,
-        /// Of any length but 0.
-        normal: Option<WrittenVector>,
-    },
 }
 
 impl SceneFile {

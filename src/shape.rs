@@ -23,6 +23,7 @@ pub mod one_by_one;
 pub mod plane;
 pub mod sphere;
 pub mod triangle;
+mod written;
 
 #[cfg(test)]
 pub use cube::Cube;
@@ -33,6 +34,7 @@ pub use one_by_one::OneByOne;
 pub use plane::Plane;
 pub use sphere::{Balls, Sphere};
 pub use triangle::{Corners, Edges, Triangle};
+pub use written::{InSceneFile, Meshes, WrittenShape};
 
 /// What every surface can answer.
 pub trait Surface {
@@ -225,20 +227,16 @@ pub enum Side {
 /// computes from them; 32 of these units are clear of both (the property tests count false shadows at all scales).
 const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 
-/// Hands the table of all surfaces to a macro: one line each, with the name of what the accelerator has of them, the type,
-/// eight of them side by side in memory, and what they are.
+/// Hands the table of all surfaces to a macro, one line each: whether they stand in a `tree` or, as they have no end, in a
+/// `list`; what the accelerator calls that; the type; what is kept of eight of them, or of one without an end; what they are.
 macro_rules! surfaces {
     ($with:ident) => {
         $with! {
-            endless {
-                planes: Plane, "All points whose difference to a given one is perpendicular to the normal.";
-            }
-            bounded {
-                spheres: Sphere as $crate::shape::Balls<$crate::lanes::Eight>, "All points at one distance from a centre.";
-                triangles: Triangle as $crate::shape::Corners<$crate::lanes::Eight>, "What lies between three points.";
-                #[cfg(test)]
-                cubes: Cube as $crate::shape::OneByOne<$crate::shape::Cube>, "All points at one distance from a centre, along the axis along which they are farthest.";
-            }
+            tree spheres: Sphere as $crate::shape::Balls<$crate::lanes::Eight>, "All points at one distance from a centre.";
+            list planes: Plane as $crate::shape::Plane, "All points whose difference to a given one is perpendicular to the normal.";
+            tree triangles: Triangle as $crate::shape::Corners<$crate::lanes::Eight>, "What lies between three points.";
+            #[cfg(test)]
+            tree cubes: Cube as $crate::shape::OneByOne<$crate::shape::Cube>, "All points at one distance from a centre, along the axis along which they are farthest.";
         }
     };
 }
@@ -247,17 +245,11 @@ pub(crate) use surfaces;
 
 /// Makes [`Shape`] and [`Part`] from the table of surfaces.
 macro_rules! shapes {
-    (
-        endless { $($(#[$on_endless:meta])* $list:ident: $endless:ident, $of_endless:literal;)* }
-        bounded { $($(#[$on_bounded:meta])* $tree:ident: $bounded:ident as $leaf:ty, $of_bounded:literal;)* }
-    ) => {
-        shapes! { $([$(#[$on_endless])*] $endless, $of_endless;)* $([$(#[$on_bounded])*] $bounded, $of_bounded;)* }
-    };
-    ($([$($on:tt)*] $surface:ident, $of:literal;)*) => {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         /// Any of the surfaces, or a mesh.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Shape {
-            $(#[doc = $of] $($on)* $surface($surface),)*
+            $(#[doc = $of] $(#[$on])* $surface($surface),)*
             /// Many triangles.
             Mesh(Arc<Mesh>),
         }
@@ -278,7 +270,7 @@ macro_rules! shapes {
             #[inline]
             pub fn part(&self, part: u32) -> Part<'_> {
                 match self {
-                    $($($on)* Self::$surface(surface) => Part::$surface(surface),)*
+                    $($(#[$on])* Self::$surface(surface) => Part::$surface(surface),)*
                     Self::Mesh(mesh) => Part::Facet(mesh.facet(part)),
                 }
             }
@@ -287,13 +279,13 @@ macro_rules! shapes {
             #[inline(always)]
             pub fn footprint<N: Number>(&self, direction: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
                 match self {
-                    $($($on)* Self::$surface(surface) => surface.footprint(direction, t, steps),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.footprint(direction, t, steps),)*
                     Self::Mesh(_) => [N::splat(0.0); 2],
                 }
             }
         }
 
-        $($($on)* impl From<$surface> for Shape {
+        $($(#[$on])* impl From<$surface> for Shape {
             fn from(surface: $surface) -> Self {
                 Self::$surface(surface)
             }
@@ -302,7 +294,7 @@ macro_rules! shapes {
         /// What a ray is tested against: a surface, or a triangle of a mesh. It hands every question on.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Part<'s> {
-            $(#[doc = $of] $($on)* $surface(&'s $surface),)*
+            $(#[doc = $of] $(#[$on])* $surface(&'s $surface),)*
             /// A triangle of a mesh.
             Facet(Facet<'s>),
         }
@@ -310,7 +302,7 @@ macro_rules! shapes {
         impl Surface for Part<'_> {
             fn bounds(&self) -> Option<Bounds> {
                 match self {
-                    $($($on)* Self::$surface(surface) => surface.bounds(),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.bounds(),)*
                     Self::Facet(facet) => facet.bounds(),
                 }
             }
@@ -318,14 +310,14 @@ macro_rules! shapes {
             #[inline]
             fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
                 match self {
-                    $($($on)* Self::$surface(surface) => surface.closest_crossing(probe, within),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.closest_crossing(probe, within),)*
                     Self::Facet(facet) => facet.closest_crossing(probe, within),
                 }
             }
 
             fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
                 match self {
-                    $($($on)* Self::$surface(surface) => surface.at_crossing(ray, t),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.at_crossing(ray, t),)*
                     Self::Facet(facet) => facet.at_crossing(ray, t),
                 }
             }

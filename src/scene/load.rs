@@ -9,6 +9,7 @@ use crate::named_file::{self, Accepted};
 use crate::progress::{Unfinished, Watcher};
 use crate::scene_file::{PathFile, SceneFile};
 use crate::scene_text::{MAX_BYTES, SceneError, read, read_or_cancel, text_from};
+use crate::shape;
 use crate::text::{Notice, visible};
 use std::collections::HashMap;
 use std::fmt;
@@ -256,7 +257,7 @@ impl<'w> Meshes<'w> {
     }
 }
 
-impl checked::Meshes for Meshes<'_> {
+impl shape::Meshes for Meshes<'_> {
     fn mesh(&mut self, path: &str) -> Result<MeshFile, Unfinished<String>> {
         let path = self.folder.join(path);
         if let Some(mesh) = self.read.get(&path) {

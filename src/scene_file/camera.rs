@@ -1,9 +1,8 @@
 //! Cameras as they are written: the scene's, and other views of it.
 
-use super::reader::{Fields, Reader};
-use super::{WrittenNumber, WrittenVector};
 use crate::scene_text::{Node, Span, quoted};
 use crate::text::listed;
+use crate::written::{Fields, Reader, WrittenNumber, WrittenVector};
 
 /// The camera, or another view.
 #[derive(Clone, Copy, Debug, PartialEq)]

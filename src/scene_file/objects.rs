@@ -1,8 +1,9 @@
 //! Objects and materials as they are written.
 
-use super::reader::{Reader, description, group_of_values, values};
-use super::{MaterialUse, NamedMaterial, Spanned, WrittenMaterial, WrittenObject, WrittenShape, WrittenVector};
+use super::{MaterialUse, NamedMaterial, WrittenMaterial, WrittenObject};
 use crate::scene_text::{Body, Node, Value, quoted};
+use crate::shape::WrittenShape;
+use crate::written::{Reader, Spanned, description, group_of_values, values};
 use std::collections::HashSet;
 
 impl Reader<'_> {
@@ -13,93 +14,9 @@ impl Reader<'_> {
 
     fn object(&mut self, node: &Node<'_>) -> Option<WrittenObject> {
         const FORM: &str = "an object, such as Sphere(center: ..., radius: ...)";
-        match self.variant(node, "an object", FORM, &["Sphere", "Plane", "Triangle", "Mesh"])? {
-            "Sphere" => self.sphere(node),
-            "Plane" => self.plane(node),
-            "Triangle" => self.triangle(node),
-            _ => self.mesh(node),
-        }
-    }
-
-    fn sphere(&mut self, node: &Node<'_>) -> Option<WrittenObject> {
-        let form = "Sphere(center: ..., radius: ...)";
-        let fields = self.fields(node, "a Sphere", form, &["center", "radius", "material"])?;
-        Some(WrittenObject {
-            shape: WrittenShape::Sphere {
-                center: self.required(&fields, "center", Reader::point),
-                radius: self.required(&fields, "radius", Reader::number),
-            },
-            material: self.optional(&fields, "material", Reader::material_use),
-        })
-    }
-
-    fn plane(&mut self, node: &Node<'_>) -> Option<WrittenObject> {
-        let form = "Plane(point: ..., normal: ...)";
-        let fields = self.fields(node, "a Plane", form, &["point", "normal", "material"])?;
-        Some(WrittenObject {
-            shape: WrittenShape::Plane {
-                point: self.required(&fields, "point", Reader::point),
-                normal: self.required(&fields, "normal", Reader::direction),
-            },
-            material: self.optional(&fields, "material", Reader::material_use),
-        })
-    }
-
-    fn triangle(&mut self, node: &Node<'_>) -> Option<WrittenObject> {
-        let form = "Triangle(corners: [(x, y, z), (x, y, z), (x, y, z)])";
-        let fields = self.fields(node, "a Triangle", form, &["corners", "material"])?;
-        Some(WrittenObject {
-            shape: WrittenShape::Triangle { corners: self.required(&fields, "corners", Reader::corners) },
-            material: self.optional(&fields, "material", Reader::material_use),
-        })
-    }
-
-    fn corners(&mut self, node: &Node<'_>) -> Option<[WrittenVector; 3]> {
-        const FORM: &str = "three corners [(x, y, z), (x, y, z), (x, y, z)]";
-        let [a, b, c] = self.list(node, FORM)? else {
-            self.mismatch(node, FORM);
-            return None;
-        };
-        let corners = [a, b, c].map(|corner| self.point(corner));
-        let [Some(a), Some(b), Some(c)] = corners else { return None };
-        Some([a, b, c])
-    }
-
-    fn mesh(&mut self, node: &Node<'_>) -> Option<WrittenObject> {
-        let form = "Mesh(path: \"...\")";
-        let fields = self.fields(node, "a Mesh", form, &["path", "scale", "rotate", "translate", "material"])?;
-        Some(WrittenObject {
-            shape: WrittenShape::Mesh {
-                path: self.required(&fields, "path", Reader::path),
-                scale: self.optional(&fields, "scale", Reader::scale),
-                rotate: self.optional(&fields, "rotate", Reader::angles),
-                translate: self.optional(&fields, "translate", Reader::point),
-            },
-            material: self.optional(&fields, "material", Reader::material_use),
-        })
-    }
-
-    fn path(&mut self, node: &Node<'_>) -> Option<Spanned<String>> {
-        let Value::String(path) = &node.value else {
-            self.mismatch(node, "the path of a mesh in quotes");
-            return None;
-        };
-        Some(Spanned { value: path.to_string(), span: node.span })
-    }
-
-    /// One number for all axes, or three.
-    fn scale(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
-        if matches!(node.value, Value::Number(_)) {
-            let number = self.number(node)?;
-            return Some(WrittenVector { components: [number; 3], span: node.span });
-        }
-        let components = self.numbers(node, "a factor, or one for each axis (x, y, z)")?;
-        Some(WrittenVector { components, span: node.span })
-    }
-
-    fn angles(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
-        let components = self.numbers(node, "angles in degrees about the axes (x, y, z)")?;
-        Some(WrittenVector { components, span: node.span })
+        let name = self.variant(node, "an object", FORM, WrittenShape::NAMES)?;
+        let (shape, fields) = WrittenShape::read(name, self, node)?;
+        Some(WrittenObject { shape, material: self.optional(&fields, "material", Reader::material_use) })
     }
 
     fn material_use(&mut self, node: &Node<'_>) -> Option<Spanned<MaterialUse>> {

@@ -1,9 +1,8 @@
 //! Camera paths as they are written.
 
-use super::reader::Reader;
-use super::{WrittenNumber, WrittenVector};
 use crate::progress::Watcher;
 use crate::scene_text::{Faults, Node, Span};
+use crate::written::{Reader, WrittenNumber, WrittenVector};
 
 /// A whole file of a camera path.
 #[derive(Clone, Debug, Default, PartialEq)]

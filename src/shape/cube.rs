@@ -1,10 +1,11 @@
 //! Ray-cube intersection: for tests, a surface that is one file, and one line in the table of surfaces.
 
-use super::{Described, Equation, Points, Step, Surface, SurfacePoint};
+use super::{Described, Equation, InSceneFile, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::Vector;
 use crate::ray::{Interval, Probe, Ray};
 use crate::text::number;
+use crate::written::{Checker, Fields, Reader, WrittenNumber, WrittenVector};
 use glam::Vec3;
 
 /// All points x with max |x - c| - h = 0, the faces perpendicular to the axes.
@@ -74,6 +75,7 @@ impl Described for Cube {
     }
 }
 
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::camera::{Camera, Pose, ViewRectangle};
@@ -149,6 +151,22 @@ mod tests {
     }
 
     #[test]
+    fn it_is_read_from_a_scene_file() {
+        let scene = |object: &str| {
+            Scene::from_ron("x.ron", &format!("(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [{object}])"))
+        };
+        let shape = |object| scene(object).map(|scene| scene.objects()[0].shape.clone());
+        let cube = |half_side| Shape::from(Cube::new(Vec3::X, half_side));
+        assert_eq!(shape("Cube(center: (1, 0, 0), side: 4)").expect("it is fine"), cube(2.0));
+        assert_eq!(shape("Cube(center: (1, 0, 0))").expect("a side need not be given"), cube(0.5));
+        let message = |object| scene(object).expect_err("something is wrong").to_string();
+        assert!(message("Cube(centre: (1, 0, 0))").contains("unknown field \"centre\"; did you mean \"center\"?"));
+        assert!(message("Cube(side: 1)").contains("missing field \"center\"; a Cube needs one"));
+        assert!(message("Cube(center: (1, 0, 0), side: -1)").contains("the side must be greater than 0"));
+        assert!(message("Cub(center: (1, 0, 0))").contains("Cub is not an object; did you mean Cube?"));
+    }
+
+    #[test]
     fn it_is_described_and_explained() {
         let (scene, resolution) = (scene(2), Resolution::square(40, 24));
         let text = describe("cubes.ron", &scene, scene.camera(), resolution);
@@ -157,5 +175,35 @@ mod tests {
         assert!(lines.iter().any(|line| line.starts_with("in front: #1 cube, t = ")), "{lines:#?}");
         assert!(lines.iter().any(|line| line.starts_with("  t = ") && line.contains(" or ")), "{lines:#?}");
         assert!(Shape::from(Cube::new(Vec3::ZERO, 1.0)).encloses(Vec3::splat(0.9)));
+    }
+}
+
+/// `Cube(center: ..., side: ...)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenCube {
+    center: Option<WrittenVector>,
+    /// 1 if none is given.
+    side: Option<WrittenNumber>,
+}
+
+impl InSceneFile for Cube {
+    type Written = WrittenCube;
+
+    const NAME: &'static str = "Cube";
+    const OWNER: &'static str = "a Cube";
+    const FORM: &'static str = "Cube(center: ..., side: ...)";
+    const FIELDS: &'static [&'static str] = &["center", "side", "material"];
+
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenCube {
+        WrittenCube {
+            center: reader.required(fields, "center", Reader::point),
+            side: reader.optional(fields, "side", Reader::number),
+        }
+    }
+
+    fn check(written: &WrittenCube, checker: &mut Checker<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let center = written.center.and_then(|center| checker.point(center));
+        let side = written.side.map_or(Some(1.0), |side| checker.length("side", side));
+        Some(Self::new(center?, 0.5 * side?).into())
     }
 }

@@ -30,18 +30,12 @@ pub trait Described {
 
 /// Hands what is asked of shapes and parts on to each surface of the table.
 macro_rules! described {
-    (
-        endless { $($(#[$on_endless:meta])* $list:ident: $endless:ident, $_:literal;)* }
-        bounded { $($(#[$on_bounded:meta])* $tree:ident: $bounded:ident as $leaf:ty, $__:literal;)* }
-    ) => {
-        described! { $([$(#[$on_endless])*] $endless;)* $([$(#[$on_bounded])*] $bounded;)* }
-    };
-    ($([$($on:tt)*] $surface:ident;)*) => {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         impl Shape {
             /// What it is called: "sphere".
             pub fn kind(&self) -> &'static str {
                 match self {
-                    $($($on)* Self::$surface(_) => super::$surface::KIND,)*
+                    $($(#[$on])* Self::$surface(_) => super::$surface::KIND,)*
                     Self::Mesh(_) => "mesh",
                 }
             }
@@ -49,7 +43,7 @@ macro_rules! described {
             /// Returns what it is, in that colour: "a red sphere of radius 1".
             pub fn described(&self, color: &str) -> String {
                 match self {
-                    $($($on)* Self::$surface(surface) => surface.described(color),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.described(color),)*
                     Self::Mesh(mesh) => {
                         format!("a {color} mesh of {} triangles, {}", mesh.triangle_count(), sides(&whole(mesh)))
                     }
@@ -59,7 +53,7 @@ macro_rules! described {
             /// Returns whether the point lies inside it; a mesh need not be closed, and encloses nothing.
             pub fn encloses(&self, point: Vec3) -> bool {
                 match self {
-                    $($($on)* Self::$surface(surface) => surface.encloses(point),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.encloses(point),)*
                     Self::Mesh(_) => false,
                 }
             }
@@ -67,7 +61,7 @@ macro_rules! described {
             /// Returns the smallest box around it; nothing where it has no end.
             pub fn bounds(&self) -> Option<Bounds> {
                 match self {
-                    $($($on)* Self::$surface(surface) => surface.bounds(),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.bounds(),)*
                     Self::Mesh(mesh) => Some(whole(mesh)),
                 }
             }
@@ -77,7 +71,7 @@ macro_rules! described {
             /// Returns the lecture's equation for the ray.
             pub fn equation(&self, ray: &Ray) -> Equation {
                 match self {
-                    $($($on)* Self::$surface(surface) => surface.equation(ray),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.equation(ray),)*
                     Self::Facet(facet) => facet.triangle().equation(ray),
                 }
             }
@@ -85,7 +79,7 @@ macro_rules! described {
             /// Returns the centre and radius of the circle that it is seen as from each side, if it is.
             pub fn circle(&self) -> Option<(Vec3, f32)> {
                 match self {
-                    $($($on)* Self::$surface(surface) => surface.circle(),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.circle(),)*
                     Self::Facet(facet) => facet.triangle().circle(),
                 }
             }

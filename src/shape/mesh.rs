@@ -1,11 +1,14 @@
 //! A mesh: triangles that share their corners.
 
-use super::{Surface, SurfacePoint, Triangle};
+use super::{InSceneFile, Meshes, Shape, Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::mesh_file::MeshFile;
+use crate::progress::Unfinished;
 use crate::ray::{Interval, Probe, Ray};
-use glam::{Vec2, Vec3};
+use crate::scene_text::{Node, Value};
+use crate::written::{Checker, FARTHEST, Fields, Reader, SHORTEST, Spanned, WrittenVector};
+use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
 use std::ops::{Add, Mul};
 
 /// Many triangles, with what their file says of them: the normals of the smooth surface that they stand for, colours and
@@ -116,4 +119,137 @@ impl Facet<'_> {
 /// What lies between the corners' values at the shares of the second and the third.
 fn between<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], shares: Vec2) -> T {
     a * (1.0 - shares.x - shares.y) + b * shares.x + c * shares.y
+}
+
+/// `Mesh(path: ..., scale: ..., rotate: ..., translate: ...)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenMesh {
+    /// The mesh's file, seen from the scene's.
+    pub path: Option<Spanned<String>>,
+    /// Along each axis; 1 if none is given.
+    pub scale: Option<WrittenVector>,
+    /// About x, then y, then z, in degrees.
+    pub rotate: Option<WrittenVector>,
+    /// By so much, after scale and rotation.
+    pub translate: Option<WrittenVector>,
+}
+
+impl InSceneFile for Mesh {
+    type Written = WrittenMesh;
+
+    const NAME: &'static str = "Mesh";
+    const OWNER: &'static str = "a Mesh";
+    const FORM: &'static str = "Mesh(path: \"...\")";
+    const FIELDS: &'static [&'static str] = &["path", "scale", "rotate", "translate", "material"];
+    const BRINGS_COLORS: bool = true;
+
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenMesh {
+        WrittenMesh {
+            path: reader.required(fields, "path", path),
+            scale: reader.optional(fields, "scale", scale),
+            rotate: reader.optional(fields, "rotate", angles),
+            translate: reader.optional(fields, "translate", Reader::point),
+        }
+    }
+
+    fn check(written: &WrittenMesh, checker: &mut Checker<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
+        let placed = placement(checker, written);
+        let path = written.path.as_ref()?;
+        let mesh = match meshes.mesh(&path.value) {
+            Ok(mesh) => mesh,
+            Err(Unfinished::Cancelled) => return None,
+            Err(Unfinished::Failed(message)) => return checker.fault(path.span, || message),
+        };
+        let (scale, turn, translation) = placed?;
+        match mesh.transformed(scale, turn, translation) {
+            Some(mesh) if is_near(&mesh) => Some(Self::from(mesh).into()),
+            _ => checker.fault(path.span, || {
+                "this mesh reaches beyond ±1e9; scale it down, or light cannot be followed".to_owned()
+            }),
+        }
+    }
+}
+
+fn path(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Spanned<String>> {
+    let Value::String(path) = &node.value else {
+        reader.mismatch(node, "the path of a mesh in quotes");
+        return None;
+    };
+    Some(Spanned { value: path.to_string(), span: node.span })
+}
+
+/// One number for all axes, or three.
+fn scale(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<WrittenVector> {
+    if matches!(node.value, Value::Number(_)) {
+        let number = reader.number(node)?;
+        return Some(WrittenVector { components: [number; 3], span: node.span });
+    }
+    let components = reader.numbers(node, "a factor, or one for each axis (x, y, z)")?;
+    Some(WrittenVector { components, span: node.span })
+}
+
+fn angles(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<WrittenVector> {
+    let components = reader.numbers(node, "angles in degrees about the axes (x, y, z)")?;
+    Some(WrittenVector { components, span: node.span })
+}
+
+/// Scale, rotation and translation of a mesh.
+fn placement(
+    checker: &mut Checker<'_>,
+    &WrittenMesh { scale, rotate, translate, .. }: &WrittenMesh,
+) -> Option<(Vec3, Mat3, Vec3)> {
+    let scale = match scale {
+        Some(scale) => factors(checker, scale),
+        None => Some(Vec3::ONE),
+    };
+    let turn = match rotate {
+        Some(angles) => turn(checker, angles),
+        None => Some(Mat3::IDENTITY),
+    };
+    let translation = match translate {
+        Some(translation) => checker.point(translation),
+        None => Some(Vec3::ZERO),
+    };
+    Some((scale?, turn?, translation?))
+}
+
+/// Along no axis nothing is left of a mesh; it may be mirrored.
+fn factors(checker: &mut Checker<'_>, written: WrittenVector) -> Option<Vec3> {
+    let factors = written.components.map(|factor| factor.value);
+    match written.components.iter().find(|factor| !(SHORTEST..=FARTHEST).contains(&factor.value.abs())) {
+        Some(factor) => {
+            checker.fault(factor.span, || "a factor must lie between 1e-9 and 1e9, or be as far below 0".to_owned())
+        }
+        None => Some(DVec3::from_array(factors).as_vec3()),
+    }
+}
+
+/// About x first, then about y, then about z; counterclockwise for who looks against the axis.
+fn turn(checker: &mut Checker<'_>, written: WrittenVector) -> Option<Mat3> {
+    const MOST_TURNS: f64 = 36_000.0;
+    if let Some(angle) = written.components.iter().find(|angle| angle.value.abs() > MOST_TURNS) {
+        return checker.fault(angle.span, || "an angle must lie within ±36000 degrees".to_owned());
+    }
+    let [x, y, z] = written.components.map(|angle| cosine_and_sine(angle.value));
+    let about_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.0, x.1), DVec3::new(0.0, -x.1, x.0));
+    let about_y = DMat3::from_cols(DVec3::new(y.0, 0.0, -y.1), DVec3::Y, DVec3::new(y.1, 0.0, y.0));
+    let about_z = DMat3::from_cols(DVec3::new(z.0, z.1, 0.0), DVec3::new(-z.1, z.0, 0.0), DVec3::Z);
+    Some((about_z * about_y * about_x).as_mat3())
+}
+
+/// Of an angle in degrees; exact for quarter turns.
+fn cosine_and_sine(degrees: f64) -> (f64, f64) {
+    let quarters = libm::round(degrees / 90.0);
+    let (sine, cosine) = libm::sincos((degrees - 90.0 * quarters).to_radians());
+    match (quarters as i64).rem_euclid(4) {
+        0 => (cosine, sine),
+        1 => (-sine, cosine),
+        2 => (-cosine, -sine),
+        _ => (sine, -cosine),
+    }
+}
+
+/// Whether light can be followed to all of it.
+fn is_near(mesh: &MeshFile) -> bool {
+    mesh.positions().iter().all(|position| f64::from(position.abs().max_element()) <= FARTHEST)
 }

@@ -1,10 +1,14 @@
 //! Ray-plane intersection (lecture, "Ray intersection").
 
 use super::equation::quotient;
-use super::{AtCrossing, Crossable, Described, Endless, Equation, Points, Step, Surface, SurfacePoint};
+use super::{
+    AtCrossing, Crossable, Described, Endless, Equation, InSceneFile, Meshes, Points, Shape, Step, Surface,
+    SurfacePoint,
+};
 use crate::bounds::Bounds;
 use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
+use crate::written::{Checker, Fields, Reader, WrittenVector};
 use glam::Vec3;
 
 /// All points x with (x - a).n = 0. It has no end, and is seen from both sides.
@@ -139,6 +143,38 @@ impl Described for Plane {
             Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
         ];
         Equation { steps, roots: t.into_iter().collect(), without_root: "parallel", is_outside: false }
+    }
+}
+
+/// `Plane(point: ..., normal: ...)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenPlane {
+    /// Any of its points.
+    pub point: Option<WrittenVector>,
+    /// Of any length but 0.
+    pub normal: Option<WrittenVector>,
+}
+
+impl InSceneFile for Plane {
+    type Written = WrittenPlane;
+
+    const NAME: &'static str = "Plane";
+    const OWNER: &'static str = "a Plane";
+    const FORM: &'static str = "Plane(point: ..., normal: ...)";
+    const FIELDS: &'static [&'static str] = &["point", "normal", "material"];
+    const HAS_COORDINATES: bool = true;
+
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenPlane {
+        WrittenPlane {
+            point: reader.required(fields, "point", Reader::point),
+            normal: reader.required(fields, "normal", Reader::direction),
+        }
+    }
+
+    fn check(written: &WrittenPlane, checker: &mut Checker<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let point = written.point.and_then(|point| checker.point(point));
+        let normal = written.normal.and_then(|normal| checker.unit_vector("normal", normal));
+        Some(Self::new(point?, normal?.as_vec3()).into())
     }
 }
 

@@ -1,10 +1,14 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
-use super::{AtCrossing, Crossable, Described, Equation, Points, SideBySide, Step, Surface, SurfacePoint};
+use super::{
+    AtCrossing, Crossable, Described, Equation, InSceneFile, Meshes, Points, Shape, SideBySide, Step, Surface,
+    SurfacePoint,
+};
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
 use crate::text::number;
+use crate::written::{Checker, Fields, Reader, WrittenNumber, WrittenVector};
 use glam::Vec3;
 use std::array::from_fn;
 
@@ -215,6 +219,37 @@ impl Described for Sphere {
 
     fn circle(&self) -> Option<(Vec3, f32)> {
         Some((self.center, self.radius))
+    }
+}
+
+/// `Sphere(center: ..., radius: ...)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenSphere {
+    /// The centre.
+    pub center: Option<WrittenVector>,
+    /// The radius.
+    pub radius: Option<WrittenNumber>,
+}
+
+impl InSceneFile for Sphere {
+    type Written = WrittenSphere;
+
+    const NAME: &'static str = "Sphere";
+    const OWNER: &'static str = "a Sphere";
+    const FORM: &'static str = "Sphere(center: ..., radius: ...)";
+    const FIELDS: &'static [&'static str] = &["center", "radius", "material"];
+
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenSphere {
+        WrittenSphere {
+            center: reader.required(fields, "center", Reader::point),
+            radius: reader.required(fields, "radius", Reader::number),
+        }
+    }
+
+    fn check(written: &WrittenSphere, checker: &mut Checker<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let center = written.center.and_then(|center| checker.point(center));
+        let radius = written.radius.and_then(|radius| checker.length("radius", radius));
+        Some(Self::new(center?, radius?).into())
     }
 }
 

@@ -2,10 +2,15 @@
 
 use super::described::sides;
 use super::equation::quotient;
-use super::{AtCrossing, Crossable, Described, Equation, Points, SideBySide, Step, Surface, SurfacePoint};
+use super::{
+    AtCrossing, Crossable, Described, Equation, InSceneFile, Meshes, Points, Shape, SideBySide, Step, Surface,
+    SurfacePoint,
+};
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Pencil, Probe, Ray, Rays, nearest_in, sheared_exactly};
+use crate::scene_text::Node;
+use crate::written::{Checker, Fields, Reader, WrittenVector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
@@ -338,6 +343,42 @@ impl Described for Triangle {
             without_root: "parallel",
         }
     }
+}
+
+/// `Triangle(corners: [..., ..., ...])`
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenTriangle {
+    /// The three corners.
+    pub corners: Option<[WrittenVector; 3]>,
+}
+
+impl InSceneFile for Triangle {
+    type Written = WrittenTriangle;
+
+    const NAME: &'static str = "Triangle";
+    const OWNER: &'static str = "a Triangle";
+    const FORM: &'static str = "Triangle(corners: [(x, y, z), (x, y, z), (x, y, z)])";
+    const FIELDS: &'static [&'static str] = &["corners", "material"];
+
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenTriangle {
+        WrittenTriangle { corners: reader.required(fields, "corners", corners) }
+    }
+
+    fn check(written: &WrittenTriangle, checker: &mut Checker<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let [a, b, c] = written.corners?.map(|corner| checker.point(corner));
+        Some(Self::new([a?, b?, c?]).into())
+    }
+}
+
+fn corners(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<[WrittenVector; 3]> {
+    const FORM: &str = "three corners [(x, y, z), (x, y, z), (x, y, z)]";
+    let [a, b, c] = reader.list(node, FORM)? else {
+        reader.mismatch(node, FORM);
+        return None;
+    };
+    let corners = [a, b, c].map(|corner| reader.point(corner));
+    let [Some(a), Some(b), Some(c)] = corners else { return None };
+    Some([a, b, c])
 }
 
 #[cfg(test)]

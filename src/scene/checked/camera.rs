@@ -1,9 +1,9 @@
 //! The camera, checked: degrees become radians, and what gives no basis is turned away.
 
-use super::{Checker, SHORTEST};
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle};
-use crate::scene_file::{Spanned, WrittenCamera, WrittenLens, WrittenNumber, WrittenVector};
+use crate::scene_file::{WrittenCamera, WrittenLens};
 use crate::scene_text::Span;
+use crate::written::{Checker, SHORTEST, Spanned, WrittenNumber, WrittenVector};
 use glam::{Vec2, Vec3};
 
 /// Of the view rectangle's sides to its focal length and each other.

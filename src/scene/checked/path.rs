@@ -1,11 +1,11 @@
 //! A camera path, checked: times rise, and every keyframe is a camera.
 
-use super::Checker;
 use super::camera::Places;
 use crate::camera::{Camera, Pose};
 use crate::camera_path::{CameraPath, Keyframe};
-use crate::scene_file::{PathFile, Spanned, WrittenKeyframe, WrittenNumber};
+use crate::scene_file::{PathFile, WrittenKeyframe};
 use crate::scene_text::Faults;
+use crate::written::{Checker, Spanned, WrittenNumber};
 
 /// In seconds; more than eleven days.
 const LATEST: f64 = 1e6;

@@ -6,13 +6,13 @@ use crate::scene_text::{Body, Faults, Field, Group, Name, Node, Span, Value, cli
 use crate::text::{closest, listed};
 
 /// Reads values, and notes what is wrong with them.
-pub(super) struct Reader<'f> {
+pub struct Reader<'f> {
     faults: &'f mut Faults,
     watcher: &'f Watcher<'f>,
 }
 
 /// The fields of one group, found by name.
-pub(super) struct Fields<'n> {
+pub struct Fields<'n> {
     entries: &'n [Field<'n>],
     /// "a Sphere", for messages.
     owner: &'static str,
@@ -24,39 +24,39 @@ pub(super) struct Fields<'n> {
 
 impl<'n> Fields<'n> {
     /// The field of that name, as it stands first in the group.
-    pub(super) fn field(&self, name: &str) -> Option<&'n Field<'n>> {
+    pub(crate) fn field(&self, name: &str) -> Option<&'n Field<'n>> {
         self.entries.iter().find(|field| field.name.text == name)
     }
 
     /// Its value.
-    pub(super) fn get(&self, name: &str) -> Option<&'n Node<'n>> {
+    pub(crate) fn get(&self, name: &str) -> Option<&'n Node<'n>> {
         self.field(name).map(|field| &field.value)
     }
 
     /// Whether the author gave it, under its name or one much like it.
-    pub(super) fn is_given(&self, name: &str) -> bool {
+    pub(crate) fn is_given(&self, name: &str) -> bool {
         self.misspelt.contains(&name) || self.field(name).is_some()
     }
 }
 
 impl<'f> Reader<'f> {
-    pub(super) fn new(faults: &'f mut Faults, watcher: &'f Watcher<'f>) -> Self {
+    pub(crate) fn new(faults: &'f mut Faults, watcher: &'f Watcher<'f>) -> Self {
         Self { faults, watcher }
     }
 
-    pub(super) fn fault(&mut self, span: Span, message: impl FnOnce() -> String) {
+    pub(crate) fn fault(&mut self, span: Span, message: impl FnOnce() -> String) {
         self.faults.add(span, message);
     }
 
     /// Of another type than it should be.
-    pub(super) fn mismatch(&mut self, node: &Node<'_>, wanted: &str) {
+    pub(crate) fn mismatch(&mut self, node: &Node<'_>, wanted: &str) {
         self.fault(node.span, || format!("expected {wanted}, found {}", description(node)));
     }
 
     // Groups ------------------------------------------------------------------------------------------------------
 
     /// The node's fields, each known and given once. `form` shows how the whole is written.
-    pub(super) fn fields<'n>(
+    pub(crate) fn fields<'n>(
         &mut self,
         node: &'n Node<'n>,
         owner: &'static str,
@@ -98,7 +98,7 @@ impl<'f> Reader<'f> {
     }
 
     /// The value of a field that must be there.
-    pub(super) fn required<T>(
+    pub(crate) fn required<T>(
         &mut self,
         fields: &Fields<'_>,
         name: &str,
@@ -115,7 +115,7 @@ impl<'f> Reader<'f> {
     }
 
     /// The value of a field that need not be there; `None` says the same as leaving it out.
-    pub(super) fn optional<T>(
+    pub(crate) fn optional<T>(
         &mut self,
         fields: &Fields<'_>,
         name: &str,
@@ -129,7 +129,7 @@ impl<'f> Reader<'f> {
     }
 
     /// The same, where `None` is a value of its own.
-    pub(super) fn optional_word<T>(
+    pub(crate) fn optional_word<T>(
         &mut self,
         fields: &Fields<'_>,
         name: &str,
@@ -139,7 +139,7 @@ impl<'f> Reader<'f> {
     }
 
     /// The group's name, which is to be one of these.
-    pub(super) fn variant<'n>(
+    pub(crate) fn variant<'n>(
         &mut self,
         node: &'n Node<'n>,
         kind: &str,
@@ -162,7 +162,7 @@ impl<'f> Reader<'f> {
     }
 
     /// One of a few words.
-    pub(super) fn choice<T: Copy>(&mut self, node: &Node<'_>, kind: &str, all: &[(&'static str, T)]) -> Option<T> {
+    pub(crate) fn choice<T: Copy>(&mut self, node: &Node<'_>, kind: &str, all: &[(&'static str, T)]) -> Option<T> {
         let words: Vec<_> = all.iter().map(|&(word, _)| word).collect();
         let wanted = format!("{kind} ({})", listed(&words).replace(" and ", " or "));
         match &node.value {
@@ -182,7 +182,7 @@ impl<'f> Reader<'f> {
     }
 
     /// The values of all items that can be read; fewer once the watcher has gone.
-    pub(super) fn each<'n, T>(
+    pub(crate) fn each<'n, T>(
         &mut self,
         items: &'n [Node<'n>],
         read: impl Fn(&mut Self, &'n Node<'n>) -> Option<T>,
@@ -192,7 +192,7 @@ impl<'f> Reader<'f> {
     }
 
     /// `[...]`, or `(...)` without names.
-    pub(super) fn list<'n>(&mut self, node: &'n Node<'n>, wanted: &str) -> Option<&'n [Node<'n>]> {
+    pub(crate) fn list<'n>(&mut self, node: &'n Node<'n>, wanted: &str) -> Option<&'n [Node<'n>]> {
         if let Some(items) = values(node) {
             return Some(items);
         }
@@ -207,7 +207,7 @@ impl<'f> Reader<'f> {
 
     // Values --------------------------------------------------------------------------------------------------------
 
-    pub(super) fn boolean(&mut self, node: &Node<'_>) -> Option<bool> {
+    pub(crate) fn boolean(&mut self, node: &Node<'_>) -> Option<bool> {
         if let Value::Bool(value) = node.value {
             return Some(value);
         }
@@ -216,7 +216,7 @@ impl<'f> Reader<'f> {
     }
 
     /// A finite number.
-    pub(super) fn number(&mut self, node: &Node<'_>) -> Option<WrittenNumber> {
+    pub(crate) fn number(&mut self, node: &Node<'_>) -> Option<WrittenNumber> {
         match node.value {
             Value::Number(value) if value.is_finite() => Some(Spanned { value, span: node.span }),
             Value::Number(_) => {
@@ -230,11 +230,11 @@ impl<'f> Reader<'f> {
         }
     }
 
-    pub(super) fn point(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
+    pub(crate) fn point(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
         self.vector(node, "a point (x, y, z)")
     }
 
-    pub(super) fn direction(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
+    pub(crate) fn direction(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
         self.vector(node, "a direction (x, y, z)")
     }
 
@@ -244,7 +244,7 @@ impl<'f> Reader<'f> {
     }
 
     /// So many numbers, in parentheses or brackets.
-    pub(super) fn numbers<const N: usize>(&mut self, node: &Node<'_>, wanted: &str) -> Option<[WrittenNumber; N]> {
+    pub(crate) fn numbers<const N: usize>(&mut self, node: &Node<'_>, wanted: &str) -> Option<[WrittenNumber; N]> {
         let Some(items) = values(node).filter(|items| items.len() == N) else {
             self.mismatch(node, wanted);
             return None;
@@ -256,7 +256,7 @@ impl<'f> Reader<'f> {
 }
 
 /// The values of `[...]` or of `(...)` without names.
-pub(super) fn values<'n>(node: &'n Node<'n>) -> Option<&'n [Node<'n>]> {
+pub(crate) fn values<'n>(node: &'n Node<'n>) -> Option<&'n [Node<'n>]> {
     match &node.value {
         Value::List(items) => Some(items),
         Value::Group(group) => match &**group {
@@ -309,7 +309,7 @@ fn unknown_variant(name: Name<'_>, kind: &str, known: &[&str]) -> String {
 }
 
 /// What was found, for a message.
-pub(super) fn description(node: &Node<'_>) -> String {
+pub(crate) fn description(node: &Node<'_>) -> String {
     match &node.value {
         Value::Bool(value) => value.to_string(),
         Value::Number(_) => "a number".to_owned(),
@@ -326,7 +326,7 @@ pub(super) fn description(node: &Node<'_>) -> String {
 }
 
 /// The same for what stands in brackets.
-pub(super) fn group_of_values(items: &[Node<'_>], a_group_of: &str) -> String {
+pub(crate) fn group_of_values(items: &[Node<'_>], a_group_of: &str) -> String {
     let numbers = items.iter().all(|item| matches!(item.value, Value::Number(_)));
     match (items.len(), numbers) {
         (0, _) => "nothing in brackets".to_owned(),

@@ -31,7 +31,7 @@ impl WrittenColor {
 }
 
 impl Reader<'_> {
-    pub(super) fn color(&mut self, node: &Node<'_>) -> Option<WrittenColor> {
+    pub(crate) fn color(&mut self, node: &Node<'_>) -> Option<WrittenColor> {
         const WANTED: &str = "a colour (\"#rrggbb\", a name, (r, g, b) or a number)";
         match &node.value {
             Value::String(string) => match color_from(string) {

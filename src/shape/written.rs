@@ -1,0 +1,107 @@
+//! Surfaces as they are written in scene files, and meshes beside them.
+
+use super::{Shape, surfaces};
+use crate::mesh_file::MeshFile;
+use crate::progress::Unfinished;
+use crate::scene_text::Node;
+use crate::written::{Checker, Fields, Reader};
+use std::fmt::Debug;
+
+/// How a surface is written in a scene file.
+pub trait InSceneFile {
+    /// What the author wrote, typed.
+    type Written: Clone + Debug + PartialEq;
+
+    /// The word before its fields: "Sphere".
+    const NAME: &'static str;
+
+    /// The same after an article, for messages.
+    const OWNER: &'static str;
+
+    /// How all of it is written: "Sphere(center: ..., radius: ...)".
+    const FORM: &'static str;
+
+    /// Its fields, and last `material`, which every object has.
+    const FIELDS: &'static [&'static str];
+
+    /// Whether patterns can be laid out on it.
+    const HAS_COORDINATES: bool = false;
+
+    /// Whether it may bring colours of its own.
+    const BRINGS_COLORS: bool = false;
+
+    /// Reads its fields.
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> Self::Written;
+
+    /// Returns the shape, if nothing is wrong with it; else faults are added, or were.
+    fn check(written: &Self::Written, checker: &mut Checker<'_>, meshes: &mut dyn Meshes) -> Option<Shape>;
+}
+
+/// Where meshes come from.
+pub trait Meshes {
+    /// Returns the mesh of that path, as the scene's file has it.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    fn mesh(&mut self, path: &str) -> Result<MeshFile, Unfinished<String>>;
+}
+
+/// Makes [`WrittenShape`] from the table of surfaces.
+macro_rules! written {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
+        written! { all $($(#[$on])* $surface,)* Mesh, }
+    };
+    (all $($(#[$on:meta])* $surface:ident,)*) => {
+        /// A surface as it is written, or a mesh.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum WrittenShape {
+            $($(#[$on])* #[doc = concat!("`", stringify!($surface), "(...)`")]
+            $surface(<super::$surface as InSceneFile>::Written),)*
+        }
+
+        impl WrittenShape {
+            /// The words that name shapes.
+            pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* <super::$surface as InSceneFile>::NAME,)*];
+
+            /// Reads the fields of the shape of that name. Returns them, too, for the object's other fields.
+            pub(crate) fn read<'n>(name: &str, reader: &mut Reader<'_>, node: &'n Node<'n>) -> Option<(Self, Fields<'n>)> {
+                $($(#[$on])* if name == super::$surface::NAME {
+                    use super::$surface as Surface;
+                    let fields = reader.fields(node, Surface::OWNER, Surface::FORM, Surface::FIELDS)?;
+                    return Some((Self::$surface(Surface::read(reader, &fields)), fields));
+                })*
+                None
+            }
+
+            /// Returns the shape, if nothing is wrong with it; else faults are added, or were.
+            pub(crate) fn check(&self, checker: &mut Checker<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
+                match self {
+                    $($(#[$on])* Self::$surface(written) => super::$surface::check(written, checker, meshes),)*
+                }
+            }
+
+            /// Its name after an article, for messages.
+            pub(crate) fn owner(&self) -> &'static str {
+                match self {
+                    $($(#[$on])* Self::$surface(_) => super::$surface::OWNER,)*
+                }
+            }
+
+            /// Whether patterns can be laid out on it.
+            pub(crate) fn has_coordinates(&self) -> bool {
+                match self {
+                    $($(#[$on])* Self::$surface(_) => super::$surface::HAS_COORDINATES,)*
+                }
+            }
+
+            /// Whether it may bring colours of its own.
+            pub(crate) fn brings_colors(&self) -> bool {
+                match self {
+                    $($(#[$on])* Self::$surface(_) => super::$surface::BRINGS_COLORS,)*
+                }
+            }
+        }
+    };
+}
+
+surfaces! { written }
