@@ -1,46 +1,107 @@
 //! Grid or picture -> a file's contents: plain text, ANSI, SVG, HTML, PNG.
+//!
+//! A format is one file here, with its `mod` line, and one row of the table of [`Format`]s.
 
+mod ansi;
+mod difference;
 mod html;
+mod kind;
 mod paint;
+mod png;
 mod svg;
+#[cfg(test)]
+mod tally;
+mod text;
 
+pub use ansi::{ansi, printed};
 pub use html::html;
+pub use kind::Contents;
+pub use png::png;
 pub use svg::svg;
+pub use text::text;
 
 use crate::capabilities::{CellMode, USUAL_CELL_ASPECT};
 use crate::cell;
-use crate::encode::Pen;
-use crate::grid::{Glyph, Grid, Size};
+use crate::grid::{Grid, Size};
 use crate::render::render;
 use crate::scene::Scene;
-use crate::tone::{Picture, tone};
+use crate::tone::tone;
+use kind::Kind;
 use std::num::NonZeroU32;
 
-/// What a file with a picture can be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Its pixels: [`png()`].
-    Png,
-    /// Cells in colour, for terminals: [`ansi`].
-    Ansi,
-    /// Characters without colour: [`text`].
-    Text,
-    /// Cells as a drawing: [`svg()`].
-    Svg,
-    /// Cells as a web page: [`html()`].
-    Html,
+crate::table::table! {
+    /// What a file with a picture can be, in the order of the keys that ask for it.
+    pub enum Format: Kind {
+        /// Its pixels: [`png()`].
+        Png = png::KIND;
+        /// Cells in colour, for terminals: [`ansi()`].
+        Ansi = ansi::KIND;
+        /// Characters without colour: [`text()`].
+        Text = text::KIND;
+        /// Cells as a drawing: [`svg()`].
+        Svg = svg::KIND;
+        /// Cells as a web page: [`html()`].
+        Html = html::KIND;
+        /// Numbers of characters: a format that only tests have.
+        #[cfg(test)]
+        Tally = tally::KIND;
+    }
 }
 
 impl Format {
+    /// The word by which the command line asks for it.
+    pub const fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The format of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|format| format.name() == name)
+    }
+
+    /// What it is, for the help of the command line.
+    pub const fn help(self) -> &'static str {
+        self.row().help
+    }
+
     /// How the names of such files end, without the dot.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Png => "png",
-            Self::Ansi => "ansi",
-            Self::Text => "txt",
-            Self::Svg => "svg",
-            Self::Html => "html",
-        }
+    pub const fn ending(self) -> &'static str {
+        self.row().endings[0]
+    }
+
+    /// The format of files whose names end so, without the dot, in lower case.
+    pub fn from_ending(ending: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|format| format.row().endings.contains(&ending))
+    }
+
+    /// The letter that asks for it in the live view.
+    pub const fn key(self) -> char {
+        self.row().key
+    }
+
+    /// The name of the command that asks for it. Names stay: people's files have them.
+    pub const fn command(self) -> &'static str {
+        self.row().command
+    }
+
+    /// What the live view calls it, in a few words.
+    pub const fn title(self) -> &'static str {
+        self.row().title
+    }
+
+    /// What it is made of, and by what.
+    pub const fn contents(self) -> Contents {
+        self.row().contents
+    }
+
+    /// Whether it has pixels, not cells.
+    pub const fn has_pixels(self) -> bool {
+        matches!(self.contents(), Contents::Pixels(_))
+    }
+
+    /// How a file of it differs from the golden one of that name, in lines for a person.
+    pub fn difference(self, golden: &[u8], file: &[u8], name: &str) -> String {
+        (self.row().difference)(golden, file, name)
     }
 }
 
@@ -76,64 +137,35 @@ pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f
     cell::grid_from_picture(cell_mode, &picture)
 }
 
-/// The grid's characters without colours: one line for each row, with all its trailing spaces.
-pub fn text(grid: &Grid) -> String {
-    let mut text = String::with_capacity(grid.cells().len() + usize::from(grid.size().rows));
-    for row in grid.rows() {
-        text.extend(row.iter().map(|cell| cell.glyph.to_string()));
-        text.push('\n');
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capabilities::Colors;
+    use std::collections::HashSet;
+
+    /// That file, its `mod` line and its row are all that it took.
+    #[test]
+    fn a_format_that_only_tests_have_is_found_and_written() {
+        let format = Format::from_name("tally").expect("by its name");
+        assert_eq!(Format::from_ending("tal"), Some(format));
+        let grid = Grid::new(Size::new(3, 2));
+        let Contents::Cells { has_colors: false, write } = format.contents() else { panic!("{format:?}") };
+        let file = write(&grid, Colors::None, USUAL_CELL_ASPECT);
+        assert_eq!(String::from_utf8_lossy(&file), "  6\n");
+        assert!(format.difference(b"  5\n", &file, "golden").ends_with("-  5\n+  6\n"));
     }
-    text
-}
 
-/// The grid in colour, as lines that any program may print: no movement, and the terminal's own colours restored
-/// at the end of each line.
-pub fn ansi(grid: &Grid) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut pen = Pen::default();
-    for row in grid.rows() {
-        for cell in row.iter().filter(|cell| cell.glyph != Glyph::Covered) {
-            pen.write_cell(cell, &mut bytes);
-        }
-        pen.reset(&mut bytes);
-        bytes.push(b'\n');
-    }
-    bytes
-}
-
-/// Each pixel a square of `scale` by `scale`, marked as sRGB; pixels of another shape than square are marked too.
-///
-/// # Errors
-/// If the picture has no pixels, or too many for the format.
-pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, png::EncodingError> {
-    let mut bytes = Vec::new();
-    let mut encoder =
-        png::Encoder::new(&mut bytes, picture.width.saturating_mul(scale), picture.height.saturating_mul(scale));
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_pixel_dims(pixel_dimensions(pixel_aspect));
-    encoder.write_header()?.write_image_data(&scaled(picture, scale as usize))?;
-    Ok(bytes)
-}
-
-/// The shape of a pixel as the format says it: how many of them make up one unit each way.
-fn pixel_dimensions(pixel_aspect: f32) -> Option<png::PixelDimensions> {
-    let per_unit = 1000.0;
-    (pixel_aspect != 1.0).then(|| png::PixelDimensions {
-        xppu: (per_unit * pixel_aspect).round() as u32,
-        yppu: per_unit as u32,
-        unit: png::Unit::Unspecified,
-    })
-}
-
-fn scaled(picture: &Picture, scale: usize) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(picture.pixels.len() * scale * scale * 3);
-    for row in picture.pixels.chunks_exact(picture.width.max(1) as usize) {
-        let line: Vec<u8> = row.iter().flat_map(|p| [p.r, p.g, p.b].repeat(scale)).collect();
-        for _ in 0..scale {
-            bytes.extend_from_slice(&line);
+    #[test]
+    fn no_two_formats_share_a_name_an_ending_or_a_key() {
+        let mut seen = HashSet::new();
+        for format in Format::ALL {
+            assert!(seen.insert(format.name().to_owned() + " by name"), "{format:?}");
+            assert!(seen.insert(format.command().to_owned() + " by command"), "{format:?}");
+            assert!(seen.insert(format.key().to_string() + " by key"), "{format:?}");
+            for ending in format.row().endings {
+                assert!(seen.insert((*ending).to_owned() + " by ending"), "{format:?}");
+                assert_eq!(Format::from_ending(ending), Some(*format));
+            }
         }
     }
-    bytes
 }

@@ -27,6 +27,7 @@
 //! name.
 //!
 //! Words that all stages speak:
+//! - `table`: a type with a row for each of its values
 //! - [`color`]: linear RGB, 8-bit sRGB, and the transfer function between them
 //! - [`lanes`]: a number, or eight side by side
 //! - [`simd`]: eight numbers in one register, where the CPU has such
@@ -118,8 +119,10 @@
 //! [`scene_text`] and [`mesh_file`] say which were tried, and at which file each failed. No fixed epsilon: see
 //! [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin). No order of the tree that could show: see
 //! [`Bounds::crossed`](bounds::Bounds::crossed). No flag says that a picture is out of date: the shot that is wanted is
-//! compared with the one that was begun. No list of panels: a panel is a layer of the viewer, one file with a type that
-//! implements `viewer::layers::Layer`, and the line that opens it.
+//! compared with the one that was begun. An export format is a file under `export/` and a row of the table of
+//! [`Format`](export::Format)s: flags, keys, commands and the check against a golden file follow from them. No list of
+//! panels: a panel is a layer of the viewer, one file with a type that implements `viewer::layers::Layer`, and the line
+//! that opens it.
 //!
 //! # One eye ray
 //!
@@ -149,6 +152,7 @@
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
 compile_error!("termtrace runs on Linux and macOS: it talks to the terminal through POSIX termios, poll and signals");
 
+mod table;
 pub mod color;
 pub mod lanes;
 pub mod simd;

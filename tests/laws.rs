@@ -184,6 +184,7 @@ fn the_root_holds_the_route_and_nothing_else() {
         let expected = [
             "pub mod ",
             "mod accel;",
+            "mod table;",
             "mod viewer;",
             "#[cfg(not(any(target_os",
             "compile_error!(",

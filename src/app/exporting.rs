@@ -2,10 +2,10 @@
 
 use crate::capabilities::{Capabilities, CellMode, Colors, Glyphs};
 use crate::cell;
-use crate::export::{self, Format};
+use crate::export::{Contents, Format};
 use crate::grid::Size;
 use crate::output_file::OutputFile;
-use crate::viewer::Frame;
+use crate::tone::Picture;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -16,23 +16,24 @@ const SCALE: u32 = 8;
 const MOST_NAMES: u32 = 9999;
 
 /// What is shown without panels: as the terminal's cells show it, but in all colours where the format can have them.
-pub(super) fn contents(format: Format, frame: &Frame, capabilities: &Capabilities) -> io::Result<Vec<u8>> {
+pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabilities) -> io::Result<Vec<u8>> {
     let Capabilities { cell_mode, cell_aspect, .. } = *capabilities;
-    let grid = |mode| cell::grid_from_picture(mode, &frame.picture);
-    let in_colors = CellMode { colors: Colors::Truecolor, ..cell_mode };
-    // Half blocks without colours would not tell much. The ramp has as many pixels in a cell.
-    let glyphs = if cell_mode.glyphs == Glyphs::Half { Glyphs::Ramp } else { cell_mode.glyphs };
-    let plain = CellMode { glyphs, colors: Colors::None };
-    Ok(match format {
-        Format::Png => {
+    match format.contents() {
+        Contents::Pixels(write) => {
             let pixel_aspect = cell::resolution(cell_mode, Size::new(1, 1), cell_aspect).pixel_aspect;
-            export::png(&frame.picture, pixel_aspect, SCALE).map_err(io::Error::other)?
+            write(picture, pixel_aspect, SCALE)
         }
-        Format::Ansi => export::ansi(&grid(in_colors)),
-        Format::Text => export::text(&grid(plain)).into_bytes(),
-        Format::Svg => export::svg(&grid(in_colors), cell_aspect).into_bytes(),
-        Format::Html => export::html(&grid(in_colors), cell_aspect).into_bytes(),
-    })
+        Contents::Cells { has_colors, write } => {
+            let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { plain(cell_mode) };
+            Ok(write(&cell::grid_from_picture(mode, picture), mode.colors, cell_aspect))
+        }
+    }
+}
+
+/// The same cells without colours. Half blocks would not tell much; the ramp has as many pixels in a cell.
+fn plain(cell_mode: CellMode) -> CellMode {
+    let glyphs = if cell_mode.glyphs == Glyphs::Half { Glyphs::Ramp } else { cell_mode.glyphs };
+    CellMode { glyphs, colors: Colors::None }
 }
 
 /// Writes a file of that stem and format, or of the first one with a number that is not there yet; its name.
@@ -80,6 +81,25 @@ mod tests {
             ("été.ron", "été"),
         ] {
             assert_eq!(stem(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_is_shown_is_written_in_each_format() {
+        let pixels = vec![crate::color::Srgb8::new(255, 255, 255); 4];
+        let picture = Picture { width: 2, height: 2, pixels };
+        let capabilities = Capabilities {
+            cell_mode: CellMode::HALF_BLOCK,
+            cell_aspect: 2.0,
+            halves_meet: false,
+            light_background: false,
+            synchronized_output: false,
+        };
+        let written = |format| contents(format, &picture, &capabilities).expect("written");
+        assert_eq!(String::from_utf8_lossy(&written(Format::Text)), "@@\n");
+        assert_eq!(String::from_utf8_lossy(&written(Format::Tally)), "@ 2\n");
+        for &format in Format::ALL {
+            assert!(!written(format).is_empty(), "{format:?}");
         }
     }
 

@@ -207,7 +207,8 @@ impl Live {
         let nothing = || io::Error::other("there is nothing to write, or nowhere");
         let (frame, folder) = self.viewer.frame().zip(self.exports.as_deref()).ok_or_else(nothing)?;
         let stem = exporting::stem(self.shown().map_or("scene", |scene| &scene.name));
-        exporting::write_new(folder, &stem, format, &exporting::contents(format, frame, self.viewer.capabilities())?)
+        let contents = exporting::contents(format, &frame.picture, self.viewer.capabilities())?;
+        exporting::write_new(folder, &stem, format, &contents)
     }
 
     /// Has the user asked whether that camera is to be written into the scene's file, where it stands in one.

@@ -8,12 +8,17 @@ use super::outputs;
 use super::picture::PictureArgs;
 use super::scene_args::SceneArgs;
 use super::view::{self, ViewArgs};
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::capabilities::{CellMode, Colors};
 use termtrace::cell;
-use termtrace::export;
+use termtrace::export::{Contents, Format};
+use termtrace::text::listed;
+
+/// What is written where nothing says otherwise.
+const DEFAULT: Format = Format::Text;
 
 const FILES: &str = "\
 A frame does not depend on the terminal or the environment: auto is the ramp without colour for text, and half blocks in
@@ -41,7 +46,7 @@ pub(super) struct FrameArgs {
     #[command(flatten)]
     cells: CellArgs,
     /// What to write [default: as the file name's ending says, or text]
-    #[arg(long)]
+    #[arg(long, value_parser = format_parser())]
     format: Option<Format>,
     /// Write to a file; - is standard output [default: -]
     #[arg(short, long, value_name = "FILE", conflicts_with = "check")]
@@ -54,19 +59,16 @@ pub(super) struct FrameArgs {
     bless: bool,
 }
 
-/// What a frame can be written as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// Characters without colour
-    Text,
-    /// Cells in colour
-    Ansi,
-    /// Cells as a drawing, one rectangle per half cell
-    Svg,
-    /// Cells as a web page
-    Html,
-    /// A picture file, one pixel per half cell
-    Png,
+/// In the order of the help: the default, other formats of cells, those of pixels.
+fn formats() -> Vec<Format> {
+    let mut formats = Format::ALL.to_vec();
+    formats.sort_by_key(|&format| (format != DEFAULT, format.has_pixels()));
+    formats
+}
+
+fn format_parser() -> impl TypedValueParser<Value = Format> {
+    let values = formats().into_iter().map(|format| PossibleValue::new(format.name()).help(format.help()));
+    PossibleValuesParser::new(values).map(|name| Format::from_name(&name).unwrap_or(DEFAULT))
 }
 
 impl FrameArgs {
@@ -75,7 +77,7 @@ impl FrameArgs {
         match (self.format, self.output().or(self.check.as_deref())) {
             (Some(format), _) => Ok(format),
             (None, Some(path)) => format_by_ending(path),
-            (None, None) => Ok(Format::Text),
+            (None, None) => Ok(DEFAULT),
         }
     }
 
@@ -86,25 +88,33 @@ impl FrameArgs {
 
     /// What the frame's cells are made of; a picture file has the pixels of half blocks.
     fn cell_mode(&self, format: Format) -> CellMode {
-        match format {
-            Format::Text => self.cells.in_file(Colors::None),
-            Format::Ansi | Format::Svg | Format::Html => self.cells.in_file(Colors::Truecolor),
-            Format::Png => CellMode::HALF_BLOCK,
+        match format.contents() {
+            Contents::Pixels(_) => CellMode::HALF_BLOCK,
+            Contents::Cells { has_colors: true, .. } => self.cells.in_file(Colors::Truecolor),
+            Contents::Cells { has_colors: false, .. } => self.cells.in_file(Colors::None),
         }
     }
 
     /// Turns away what the format makes no use of.
     fn check_flags(&self, format: Format) -> Done {
-        let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
+        let wrong = |why: String| Err(Failure::Usage(why));
         self.view.check_samples(self.picture.samples())?;
-        match format {
-            Format::Png if self.cells.is_given() => wrong("--color and --glyphs are for cells; a PNG has pixels"),
-            Format::Png if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
-                wrong("a PNG would garble the terminal; name a file with -o, or pipe it")
+        let name = format.name();
+        match format.contents() {
+            Contents::Pixels(_) if self.cells.is_given() => {
+                wrong(format!("--color and --glyphs are for cells; a {} has pixels", name.to_uppercase()))
             }
-            Format::Png => Ok(()),
-            _ if self.picture.has_scale() => wrong("--scale is for PNG; frames of cells take their size from --size"),
-            Format::Text if self.cells.wants_color() => wrong("text has no colours; say --format ansi"),
+            Contents::Pixels(_) if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
+                wrong(format!("a {} would garble the terminal; name a file with -o, or pipe it", name.to_uppercase()))
+            }
+            Contents::Cells { .. } if self.picture.has_scale() => {
+                let of_pixels = formats().into_iter().filter(|format| format.has_pixels());
+                let names: Vec<_> = of_pixels.map(|format| format.name().to_uppercase()).collect();
+                wrong(format!("--scale is for {}; frames of cells take their size from --size", listed(&names)))
+            }
+            Contents::Cells { has_colors: false, .. } if self.cells.wants_color() => {
+                wrong(format!("{name} has no colours; say --format ansi"))
+            }
             _ => Ok(()),
         }
     }
@@ -119,18 +129,14 @@ impl FrameArgs {
         let view = self.view.view();
         let picture =
             self.scene.on_threads(|| termtrace::view::picture(view, &scene, scene.camera(), resolution, samples))?;
-        if format == Format::Png {
-            let png = export::png(&picture, resolution.pixel_aspect, self.picture.scale());
-            return png.map_err(|error| Failure::runtime("PNG", error));
+        match format.contents() {
+            Contents::Pixels(write) => write(&picture, resolution.pixel_aspect, self.picture.scale())
+                .map_err(|error| Failure::runtime(format.name().to_uppercase(), error)),
+            Contents::Cells { write, .. } => {
+                let grid = cell::grid_from_picture(mode, &picture);
+                Ok(write(&grid, mode.colors, self.picture.cell_aspect()))
+            }
         }
-        let grid = cell::grid_from_picture(mode, &picture);
-        let cell_aspect = self.picture.cell_aspect();
-        Ok(match format {
-            Format::Ansi if mode.colors != Colors::None => export::ansi(&grid),
-            Format::Svg => export::svg(&grid, cell_aspect).into_bytes(),
-            Format::Html => export::html(&grid, cell_aspect).into_bytes(),
-            _ => export::text(&grid).into_bytes(),
-        })
     }
 }
 
@@ -150,15 +156,17 @@ pub(super) fn run(args: &FrameArgs) -> Done {
 }
 
 fn format_by_ending(path: &Path) -> Result<Format, Failure> {
-    match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
-        Some("txt" | "text") => Ok(Format::Text),
-        Some("ans" | "ansi") => Ok(Format::Ansi),
-        Some("svg") => Ok(Format::Svg),
-        Some("html" | "htm") => Ok(Format::Html),
-        Some("png") => Ok(Format::Png),
-        _ => Err(Failure::Usage(format!(
-            "{}: the name does not end in .txt, .ansi, .svg, .html or .png; say --format text, ansi, svg, html or png",
-            path.display()
-        ))),
-    }
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    ending.and_then(|ending| Format::from_ending(&ending)).ok_or_else(|| {
+        let endings = formats().into_iter().map(|format| format!(".{}", format.ending())).collect();
+        let names = formats().into_iter().map(|format| format.name().to_owned()).collect();
+        let (endings, names) = (any_of(endings), any_of(names));
+        Failure::Usage(format!("{}: the name does not end in {endings}; say --format {names}", path.display()))
+    })
+}
+
+/// The words as alternatives: `a, b or c`.
+fn any_of(mut words: Vec<String>) -> String {
+    let last = words.pop().unwrap_or_default();
+    if words.is_empty() { last } else { format!("{} or {last}", words.join(", ")) }
 }

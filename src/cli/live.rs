@@ -112,10 +112,7 @@ fn print(args: &LiveArgs) -> Done {
     let view = settings.view.view();
     let picture = on_threads(args.look.threads, || view::picture(view, &scene, scene.camera(), resolution, sampling))?;
     let grid = cell::grid_from_picture(cell_mode, &picture);
-    write_stdout(&match cell_mode.colors {
-        Colors::None => export::text(&grid).into_bytes(),
-        _ => export::ansi(&grid),
-    })
+    write_stdout(&export::printed(&grid, cell_mode.colors))
 }
 
 /// The live view. Whatever happens in it, the terminal is given back before a word is said.

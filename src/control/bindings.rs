@@ -85,7 +85,12 @@ pub struct Bindings {
 impl Default for Bindings {
     fn default() -> Self {
         let row = |&(mode, keys, command): &Row| Binding { mode, keys: keys.to_vec(), command };
-        Self { rows: BUILT_IN.iter().map(row).collect() }
+        let write = |&format: &Format| Binding {
+            mode: Mode::Export,
+            keys: vec![letter(format.key())],
+            command: Command::Write(format),
+        };
+        Self { rows: Format::ALL.iter().map(write).chain(BUILT_IN.iter().map(row)).collect() }
     }
 }
 
@@ -102,7 +107,7 @@ const DOWN: &[Key] = &[Key::named(KeyCode::Down), letter('j')];
 const HIGHER: &[Key] = &[letter('e'), Key::named(KeyCode::PageUp)];
 const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 
-/// In the order of the help.
+/// In the order of the help. What writes a picture is bound to the keys of the [`Format`]s, before them.
 const BUILT_IN: &[Row] = &[
     (Mode::Fly, &[letter('w')], Command::Move(Direction::Forward)),
     (Mode::Fly, &[letter('s')], Command::Move(Direction::Back)),
@@ -137,11 +142,6 @@ const BUILT_IN: &[Row] = &[
     (Mode::Light, &[Key::named(KeyCode::PageUp)], Command::LightFarther),
     (Mode::Light, &[Key::named(KeyCode::PageDown)], Command::LightNearer),
     (Mode::Light, &[letter('r')], Command::LightBack),
-    (Mode::Export, &[letter('p')], Command::Write(Format::Png)),
-    (Mode::Export, &[letter('a')], Command::Write(Format::Ansi)),
-    (Mode::Export, &[letter('t')], Command::Write(Format::Text)),
-    (Mode::Export, &[letter('s')], Command::Write(Format::Svg)),
-    (Mode::Export, &[letter('h')], Command::Write(Format::Html)),
     (Mode::Export, &[Key::named(KeyCode::Esc)], Command::No),
     (Mode::Keep, &[letter('y')], Command::Yes),
     (Mode::Keep, &[letter('n'), Key::named(KeyCode::Esc)], Command::No),
@@ -314,6 +314,15 @@ mod tests {
         }
         assert_eq!(with(KeyCode::Char('w'), KeyModifiers::CONTROL), None);
         assert_eq!(with(KeyCode::Char('c'), KeyModifiers::CONTROL), Some((Command::Quit, false)));
+    }
+
+    #[test]
+    fn each_format_has_a_key_and_a_command() {
+        for &format in Format::ALL {
+            let command = Command::Write(format);
+            assert_eq!(Bindings::default().command(&[Mode::Export], &press(format.key())), Some((command, false)));
+            assert_eq!(Command::from_name(format.command()), Some(command));
+        }
     }
 
     #[test]

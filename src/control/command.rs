@@ -127,16 +127,17 @@ pub enum Side {
 }
 
 /// Writes the table below as the list of all commands and as a `match` over them: a command without a row does not
-/// compile.
+/// compile. Those that write the picture are named by the [`Format`].
 macro_rules! commands {
     ($([$($command:tt)+] $name:literal, $does:expr;)*) => {
-        /// All commands.
+        /// All commands but those that write the picture in a format.
         const COMMANDS: &[Command] = &[$($($command)+),*];
 
         /// The name where a person binds keys to the command, and what the help says of it.
         const fn words(command: Command) -> (&'static str, &'static str) {
             match command {
                 $($($command)+ => ($name, $does),)*
+                Command::Write(format) => (format.command(), format.title()),
                 // No key can mean it: views have the numbers above.
                 Command::View(_) => ("View", A_VIEW),
             }
@@ -208,11 +209,6 @@ commands! {
     [Command::Point(Toward::Down)] "PointDown", "cursor down";
     [Command::ScrollUp] "ScrollUp", "earlier lines";
     [Command::ScrollDown] "ScrollDown", "later lines";
-    [Command::Write(Format::Png)] "WritePng", "PNG picture";
-    [Command::Write(Format::Ansi)] "WriteAnsi", "ANSI text in colour";
-    [Command::Write(Format::Text)] "WriteText", "plain text";
-    [Command::Write(Format::Svg)] "WriteSvg", "SVG drawing";
-    [Command::Write(Format::Html)] "WriteHtml", "HTML page";
     [Command::Yes] "Yes", "yes";
     [Command::No] "No", "no";
 }
@@ -223,7 +219,7 @@ const A_VIEW: &str = "a saved view";
 impl Command {
     /// All of them.
     pub fn all() -> impl Iterator<Item = Self> {
-        COMMANDS.iter().copied()
+        COMMANDS.iter().copied().chain(Format::ALL.iter().copied().map(Self::Write))
     }
 
     /// The command of that name.

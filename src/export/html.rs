@@ -1,8 +1,21 @@
 //! Grid -> HTML.
 
+use super::difference;
+use super::kind::{Contents, Kind};
 use super::paint::{paths, runs};
 use crate::grid::{Grid, Size};
 use std::fmt::Write;
+
+pub(super) const KIND: Kind = Kind {
+    name: "html",
+    help: "Cells as a web page",
+    endings: &["html", "htm"],
+    key: 'h',
+    command: "WriteHtml",
+    title: "HTML page",
+    contents: Contents::Cells { has_colors: true, write: |grid, _, aspect| html(grid, aspect).into_bytes() },
+    difference: difference::by_lines,
+};
 
 /// The grid as a page by itself, of its right shape in any font: cells are as wide as the font's characters, and
 /// `cell_aspect` times as high. Characters are text that can be selected, over an SVG of all colours behind it and of

@@ -1,8 +1,21 @@
 //! Grid -> SVG.
 
+use super::difference;
+use super::kind::{Contents, Kind};
 use super::paint::{DEFAULT_TEXT, hex, paths, runs};
 use crate::grid::{Grid, Size};
 use std::fmt::Write;
+
+pub(super) const KIND: Kind = Kind {
+    name: "svg",
+    help: "Cells as a drawing, one rectangle per half cell",
+    endings: &["svg"],
+    key: 's',
+    command: "WriteSvg",
+    title: "SVG drawing",
+    contents: Contents::Cells { has_colors: true, write: |grid, _, aspect| svg(grid, aspect).into_bytes() },
+    difference: difference::by_lines,
+};
 
 /// The width of a cell.
 const WIDTH: f64 = 10.0;

@@ -18,10 +18,7 @@ const GAP: u16 = 2;
 
 pub(super) fn bytes(capabilities: &Capabilities) -> Vec<u8> {
     let grid = grid(capabilities);
-    let mut bytes = match capabilities.cell_mode.colors {
-        Colors::None => export::text(&grid).into_bytes(),
-        _ => export::ansi(&grid),
-    };
+    let mut bytes = export::printed(&grid, capabilities.cell_mode.colors);
     bytes.extend_from_slice(advice(capabilities).as_bytes());
     bytes
 }

@@ -1,0 +1,94 @@
+//! Picture -> PNG.
+
+use super::kind::{Contents, Kind};
+use crate::tone::Picture;
+use std::io;
+
+pub(super) const KIND: Kind = Kind {
+    name: "png",
+    help: "A picture file, one pixel per half cell",
+    endings: &["png"],
+    key: 'p',
+    command: "WritePng",
+    title: "PNG picture",
+    contents: Contents::Pixels(|picture, aspect, scale| png(picture, aspect, scale).map_err(io::Error::other)),
+    difference: |golden, file, _| difference(golden, file),
+};
+
+/// Each pixel a square of `scale` by `scale`, marked as sRGB; pixels of another shape than square are marked too.
+///
+/// # Errors
+/// If the picture has no pixels, or too many for the format.
+pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder =
+        png::Encoder::new(&mut bytes, picture.width.saturating_mul(scale), picture.height.saturating_mul(scale));
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_pixel_dims(pixel_dimensions(pixel_aspect));
+    encoder.write_header()?.write_image_data(&scaled(picture, scale as usize))?;
+    Ok(bytes)
+}
+
+/// The shape of a pixel as the format says it: how many of them make up one unit each way.
+fn pixel_dimensions(pixel_aspect: f32) -> Option<png::PixelDimensions> {
+    let per_unit = 1000.0;
+    (pixel_aspect != 1.0).then(|| png::PixelDimensions {
+        xppu: (per_unit * pixel_aspect).round() as u32,
+        yppu: per_unit as u32,
+        unit: png::Unit::Unspecified,
+    })
+}
+
+fn scaled(picture: &Picture, scale: usize) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(picture.pixels.len() * scale * scale * 3);
+    for row in picture.pixels.chunks_exact(picture.width.max(1) as usize) {
+        let line: Vec<u8> = row.iter().flat_map(|p| [p.r, p.g, p.b].repeat(scale)).collect();
+        for _ in 0..scale {
+            bytes.extend_from_slice(&line);
+        }
+    }
+    bytes
+}
+
+/// How many pixels differ, by how much, and the first of them.
+fn difference(golden: &[u8], frame: &[u8]) -> String {
+    let (golden, frame) = match (decoded(golden), decoded(frame)) {
+        (Ok(golden), Ok(frame)) => (golden, frame),
+        (Err(error), _) | (_, Err(error)) => return format!("the golden frame is not a PNG of 8-bit RGB: {error}\n"),
+    };
+    if (golden.width, golden.height) != (frame.width, frame.height) {
+        return format!(
+            "the golden frame has {}x{} pixels, this frame {}x{}\n",
+            golden.width, golden.height, frame.width, frame.height
+        );
+    }
+    let pixels = || golden.rgb.chunks_exact(3).zip(frame.rgb.chunks_exact(3)).enumerate();
+    let count = pixels().filter(|(_, (a, b))| a != b).count();
+    let largest = golden.rgb.iter().zip(&frame.rgb).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+    let Some((first, (a, b))) = pixels().find(|(_, (a, b))| a != b) else {
+        return "the pixels are equal; only what the files say beside them differs\n".to_owned();
+    };
+    let (x, y) = (first % golden.width, first / golden.width);
+    format!(
+        "{count} of {} pixels differ, by at most {largest} of 255\nfirst: pixel ({x}, {y}) was {a:?}, is {b:?}\n",
+        golden.width * golden.height
+    )
+}
+
+struct Decoded {
+    width: usize,
+    height: usize,
+    rgb: Vec<u8>,
+}
+
+fn decoded(bytes: &[u8]) -> Result<Decoded, String> {
+    let mut reader = png::Decoder::new(io::Cursor::new(bytes)).read_info().map_err(|error| error.to_string())?;
+    let mut rgb = vec![0; reader.output_buffer_size().ok_or("too large")?];
+    let info = reader.next_frame(&mut rgb).map_err(|error| error.to_string())?;
+    if (info.color_type, info.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {
+        return Err(format!("it has {:?} of {:?}", info.color_type, info.bit_depth));
+    }
+    Ok(Decoded { width: info.width as usize, height: info.height as usize, rgb })
+}

@@ -1,0 +1,28 @@
+//! Grid -> how often each character stands in it: a format that only tests have, to show that this file and its row in
+//! the table are all that one takes.
+
+use super::difference;
+use super::kind::{Contents, Kind};
+use crate::grid::Grid;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+pub(super) const KIND: Kind = Kind {
+    name: "tally",
+    help: "How often each character is there",
+    endings: &["tally", "tal"],
+    key: 'x',
+    command: "WriteTally",
+    title: "tally",
+    contents: Contents::Cells { has_colors: false, write: |grid, _, _| tally(grid).into_bytes() },
+    difference: difference::by_lines,
+};
+
+fn tally(grid: &Grid) -> String {
+    let mut counts: BTreeMap<String, u32> = BTreeMap::new();
+    grid.cells().iter().for_each(|cell| *counts.entry(cell.glyph.to_string()).or_default() += 1);
+    counts.iter().fold(String::new(), |mut text, (glyph, count)| {
+        let _ = writeln!(text, "{glyph} {count}");
+        text
+    })
+}

@@ -1,0 +1,26 @@
+//! Grid -> plain text.
+
+use super::difference;
+use super::kind::{Contents, Kind};
+use crate::grid::Grid;
+
+pub(super) const KIND: Kind = Kind {
+    name: "text",
+    help: "Characters without colour",
+    endings: &["txt", "text"],
+    key: 't',
+    command: "WriteText",
+    title: "plain text",
+    contents: Contents::Cells { has_colors: false, write: |grid, _, _| text(grid).into_bytes() },
+    difference: difference::by_lines,
+};
+
+/// The grid's characters without colours: one line for each row, with all its trailing spaces.
+pub fn text(grid: &Grid) -> String {
+    let mut text = String::with_capacity(grid.cells().len() + usize::from(grid.size().rows));
+    for row in grid.rows() {
+        text.extend(row.iter().map(|cell| cell.glyph.to_string()));
+        text.push('\n');
+    }
+    text
+}
