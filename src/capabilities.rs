@@ -1,15 +1,16 @@
 //! What a terminal can show: plain values, and how the environment and its own answers tell them.
 
-use crate::color::Srgb8;
-
 mod answers;
 mod detection;
 mod findings;
 mod terminfo;
 
+// What a terminal can show is said in the words of what shows it.
+pub use crate::cell::{CellMode, Colors, Glyphs};
+pub use crate::grid::CellShape;
 pub use answers::{Answers, TEST_COLOR};
 pub use detection::{Clues, Found, GlyphChoice, Source, colors, glyphs};
-pub use findings::{Asking, CellShape, Findings, Hints, VARIABLES};
+pub use findings::{Asking, Findings, Hints, VARIABLES};
 pub use terminfo::terminfo_colors;
 
 /// What the screen's cells can be made of.
@@ -25,95 +26,6 @@ pub struct Capabilities {
     pub light_background: bool,
     /// Whether it knows synchronized output: each frame is then shown at once.
     pub synchronized_output: bool,
-}
-
-/// How pixels become cells: what stands in them, and in which colours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CellMode {
-    /// What stands in a cell.
-    pub glyphs: Glyphs,
-    /// What it may be coloured with.
-    pub colors: Colors,
-}
-
-/// What stands in a cell of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Glyphs {
-    /// Half blocks: two pixels, one above the other.
-    Half,
-    /// The printable character of ASCII that has its ink where the picture has its light.
-    Shape,
-    /// A character of a fixed ramp, by lightness alone.
-    Ramp,
-}
-
-/// The colours that a cell may have, fewer before more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Colors {
-    /// The terminal's own two: nothing is said of colours at all.
-    None,
-    /// Sixteen, which look like this; users choose them.
-    Indexed16([Srgb8; 16]),
-    /// The 240 of 256 that are the same in every terminal: a cube of six levels to a band, and 24 greys.
-    Indexed256,
-    /// Any 8-bit sRGB.
-    Truecolor,
-}
-
-impl Colors {
-    /// Sixteen colours, taken to be xterm's own.
-    pub const SIXTEEN: Self = Self::Indexed16(XTERM_16);
-}
-
-/// The sixteen colours of xterm where nobody has changed them.
-const XTERM_16: [Srgb8; 16] = [
-    Srgb8::new(0, 0, 0),
-    Srgb8::new(205, 0, 0),
-    Srgb8::new(0, 205, 0),
-    Srgb8::new(205, 205, 0),
-    Srgb8::new(0, 0, 238),
-    Srgb8::new(205, 0, 205),
-    Srgb8::new(0, 205, 205),
-    Srgb8::new(229, 229, 229),
-    Srgb8::new(127, 127, 127),
-    Srgb8::new(255, 0, 0),
-    Srgb8::new(0, 255, 0),
-    Srgb8::new(255, 255, 0),
-    Srgb8::new(92, 92, 255),
-    Srgb8::new(255, 0, 255),
-    Srgb8::new(0, 255, 255),
-    Srgb8::new(255, 255, 255),
-];
-
-/// The colour of that number, of 256, in xterm: sixteen that users change, a cube of six levels to a band, and greys.
-pub(crate) fn xterm_color(index: u8) -> Srgb8 {
-    const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
-    match index {
-        0..16 => XTERM_16[usize::from(index)],
-        16..232 => {
-            let [r, g, b] = [36, 6, 1].map(|step| LEVELS[usize::from((index - 16) / step % 6)]);
-            Srgb8::new(r, g, b)
-        }
-        232.. => {
-            let grey = 8 + 10 * (index - 232);
-            Srgb8::new(grey, grey, grey)
-        }
-    }
-}
-
-impl CellMode {
-    /// Half blocks in truecolor.
-    pub const HALF_BLOCK: Self = Self { glyphs: Glyphs::Half, colors: Colors::Truecolor };
-    /// The ramp in the terminal's own colours: the text that people compare.
-    pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
-
-    /// How many pixels a cell wants, across and down.
-    pub const fn pixels_per_cell(self) -> (u32, u32) {
-        match self.glyphs {
-            Glyphs::Half | Glyphs::Ramp => (1, 2),
-            Glyphs::Shape => (2, 4),
-        }
-    }
 }
 
 /// The aspect of a cell of which nothing is known.

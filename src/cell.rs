@@ -1,22 +1,98 @@
 //! Picture -> cell grid.
+//!
+//! A kind of cells is one file here, with its `mod` line, and one row of the table of [`Glyphs`].
 
-use crate::capabilities::{CellMode, Colors, Glyphs};
 use crate::color::Srgb8;
 use crate::framebuffer::Resolution;
 use crate::grid::{Grid, Size};
 use crate::tone::Picture;
 use inks::Inks;
+use kind::{Fill, Kind};
 
 mod blue_noise;
+mod colors;
+#[cfg(test)]
+mod dots;
 mod half;
 mod inks;
+mod kind;
 mod pair;
 mod palette;
 mod ramp;
 mod shape;
 mod tint;
 
+pub use colors::Colors;
+pub(crate) use colors::xterm_color;
 pub use ramp::RAMP;
+
+/// How pixels become cells: what stands in them, and in which colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CellMode {
+    /// What stands in a cell.
+    pub glyphs: Glyphs,
+    /// What it may be coloured with.
+    pub colors: Colors,
+}
+
+crate::table::table! {
+    /// What stands in a cell of the picture.
+    pub enum Glyphs: Kind {
+        /// Half blocks: two pixels, one above the other.
+        Half = half::KIND;
+        /// The printable character of ASCII that has its ink where the picture has its light.
+        Shape = shape::KIND;
+        /// A character of a fixed ramp, by lightness alone.
+        Ramp = ramp::KIND;
+        /// A dot or none: a kind that only tests have.
+        #[cfg(test)]
+        Dots = dots::KIND;
+    }
+}
+
+impl Glyphs {
+    /// The word by which people choose them.
+    pub const fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The glyphs of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|glyphs| glyphs.name() == name)
+    }
+
+    /// What they are, for the help of the command line.
+    pub const fn help(self) -> &'static str {
+        self.row().help
+    }
+
+    /// What a report calls them, in a few words.
+    pub const fn title(self) -> &'static str {
+        self.row().title
+    }
+
+    /// Whether they are block characters: where a terminal can show these, panels have their like.
+    pub const fn has_blocks(self) -> bool {
+        self.row().has_blocks
+    }
+}
+
+impl CellMode {
+    /// Half blocks in truecolor.
+    pub const HALF_BLOCK: Self = Self { glyphs: Glyphs::Half, colors: Colors::Truecolor };
+    /// The ramp in the terminal's own colours: the text that people compare.
+    pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
+
+    /// How many pixels a cell wants, across and down.
+    pub const fn pixels_per_cell(self) -> (u32, u32) {
+        self.glyphs.row().pixels_per_cell
+    }
+
+    /// The mode in which text without colours shows the same pixels.
+    pub fn plain(self) -> Self {
+        Self { glyphs: self.glyphs.row().plain.unwrap_or(self.glyphs), colors: Colors::None }
+    }
+}
 
 /// The resolution at which to render for a screen of that size whose cells have that aspect (height / width).
 pub fn resolution(mode: CellMode, size: Size, cell_aspect: f32) -> Resolution {
@@ -77,22 +153,16 @@ impl Painter {
     pub fn paint(&mut self, picture: &Picture, grid: &mut Grid) {
         let pixels_per_cell = self.mode.pixels_per_cell();
         grid.clear(size_in_cells(picture, pixels_per_cell));
-        if self.mode.colors == Colors::None {
-            let negative = self.light_background.then(|| negative(picture));
-            self.fill(grid, negative.as_ref().unwrap_or(picture));
-        } else if self.mode.glyphs == Glyphs::Half {
-            self.fill(grid, picture);
-        } else {
-            self.fill(grid, &tint::brightness(picture));
-            tint::fill(grid, picture, pixels_per_cell, &mut self.inks);
-        }
-    }
-
-    fn fill(&mut self, grid: &mut Grid, picture: &Picture) {
-        match self.mode.glyphs {
-            Glyphs::Half => half::fill(grid, picture, &mut self.inks),
-            Glyphs::Shape => shape::fill(grid, picture),
-            Glyphs::Ramp => ramp::fill(grid, picture),
+        let has_colors = self.mode.colors != Colors::None;
+        let negative = (self.light_background && !has_colors).then(|| negative(picture));
+        let picture = negative.as_ref().unwrap_or(picture);
+        match self.mode.glyphs.row().fill {
+            Fill::Colored(fill) => fill(grid, picture, &mut self.inks),
+            Fill::Lightness(fill) if !has_colors => fill(grid, picture),
+            Fill::Lightness(fill) => {
+                fill(grid, &tint::brightness(picture));
+                tint::fill(grid, picture, pixels_per_cell, &mut self.inks);
+            }
         }
     }
 }
@@ -108,4 +178,40 @@ fn size_in_cells(picture: &Picture, (across, down): (u32, u32)) -> Size {
 fn negative(picture: &Picture) -> Picture {
     let turned = |pixel: &Srgb8| Srgb8::new(255 - pixel.r, 255 - pixel.g, 255 - pixel.b);
     Picture { pixels: picture.pixels.iter().map(turned).collect(), ..*picture }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Cell, Ink};
+    use std::collections::HashSet;
+
+    const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
+    const BLUE: Srgb8 = Srgb8::new(0, 0, 255);
+
+    /// That file, its `mod` line and its row are all that it took.
+    #[test]
+    fn a_kind_that_only_tests_have_is_found_and_painted() {
+        let glyphs = Glyphs::from_name("dots").expect("by its name");
+        let picture = Picture { width: 2, height: 1, pixels: vec![BLUE, BLACK] };
+        let mode = CellMode { glyphs, colors: Colors::Truecolor };
+        let Resolution { width, height, .. } = resolution(mode, Size::new(2, 1), 2.0);
+        assert_eq!((width, height), (picture.width, picture.height));
+        let grid = grid_from_picture(mode, &picture);
+        assert_eq!(*grid.cell(0, 0), Cell::new('o', Ink::Rgb(BLUE), Ink::Rgb(BLACK)));
+        assert_eq!(*grid.cell(1, 0), Cell::new(' ', Ink::Default, Ink::Rgb(BLACK)));
+        let on_light = Painter::new(mode.plain()).with_light_background(true).grid(&picture);
+        assert_eq!(on_light.cells().iter().map(|cell| cell.glyph.to_string()).collect::<String>(), "oo");
+    }
+
+    #[test]
+    fn kinds_have_names_of_their_own_and_plain_ones_of_as_many_pixels() {
+        let mut names = HashSet::new();
+        for &glyphs in Glyphs::ALL {
+            assert!(names.insert(glyphs.name()), "{glyphs:?}");
+            let mode = CellMode { glyphs, colors: Colors::Truecolor };
+            assert_eq!(mode.plain().pixels_per_cell(), mode.pixels_per_cell(), "{glyphs:?}");
+            assert_eq!(mode.plain().plain(), mode.plain(), "{glyphs:?}");
+        }
+    }
 }

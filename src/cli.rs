@@ -52,7 +52,8 @@ Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wro
 
 /// Stands below the options.
 fn help() -> String {
-    let explained = [cells::EXPLAINED, view::EXPLAINED, encoding::EXPLAINED, settings::EXPLAINED].join("\n");
+    let cells = cells::explained();
+    let explained = [&cells, view::EXPLAINED, encoding::EXPLAINED, settings::EXPLAINED].join("\n");
     format!("{explained}\n\n{EXAMPLES}")
 }
 

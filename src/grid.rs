@@ -3,7 +3,6 @@
 //! It stands between the picture and the bytes: [`cell`](crate::cell) makes it from pixels, [`overlay`](crate::overlay)
 //! lays text over it, [`encode`](crate::encode) and [`export`](crate::export) write it out.
 
-use crate::capabilities::CellShape;
 use crate::color::Srgb8;
 use ratatui::style::Modifier;
 use std::fmt;
@@ -28,6 +27,15 @@ impl Size {
     pub const fn cell_count(self) -> usize {
         self.columns as usize * self.rows as usize
     }
+}
+
+/// What the window's size in pixels tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CellShape {
+    /// A cell's height over its width, if the terminal says how large it is in pixels.
+    pub aspect: Option<f32>,
+    /// Whether the upper and the lower half block are known to meet in the same line.
+    pub halves_meet: bool,
 }
 
 /// A terminal's window.

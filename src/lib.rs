@@ -33,7 +33,6 @@
 //! - [`simd`]: eight numbers in one register, where the CPU has such
 //! - [`ray`]: origin + t * direction, and intervals of t
 //! - [`bounds`]: boxes along the axes
-//! - [`capabilities`]: what a terminal's cells can be made of
 //! - [`text`]: text for messages: printable, lists, the word that was meant
 //! - [`memory`]: asked for before it is used
 //! - [`progress`]: progress reports, and the token by which work is cancelled
@@ -65,9 +64,10 @@
 //! - [`tone`]: exposure, tone curve, transfer function, 8 bits
 //! - [`view`]: the picture, or what it is made of: depths, normals, objects, shadows
 //! - [`describe`]: the picture in words
-//! - [`explain`]: one pixel, and all that its light came from
 //! - [`grid`]: the cell grid
 //! - [`cell`]: picture -> grid, by half blocks or characters, in the colours that there are
+//! - [`capabilities`]: what a terminal's cells can be made of
+//! - [`explain`]: one pixel, and all that its light came from
 //! - [`overlay`]: any ratatui buffer laid over the grid
 //! - [`encode`]: wanted grid, shown grid, pen -> bytes
 //! - [`export`]: grid or picture -> text, ANSI, SVG, HTML, PNG
@@ -119,9 +119,10 @@
 //! [`scene_text`] and [`mesh_file`] say which were tried, and at which file each failed. No fixed epsilon: see
 //! [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin). No order of the tree that could show: see
 //! [`Bounds::crossed`](bounds::Bounds::crossed). No flag says that a picture is out of date: the shot that is wanted is
-//! compared with the one that was begun. An export format is a file under `export/` and a row of the table of
-//! [`Format`](export::Format)s: flags, keys, commands and the check against a golden file follow from them. No list of
-//! panels: a panel is a layer of the viewer, one file with a type that implements `viewer::layers::Layer`, and the line
+//! compared with the one that was begun. A kind of cells is a file under `cell/` with all that is particular to it, and a
+//! row of the table of [`Glyphs`](cell::Glyphs); an export format is a file under `export/` and a row of the table of
+//! [`Format`](export::Format)s: flags, keys, commands, panels and the check against a golden file follow from these. No list
+//! of panels: a panel is a layer of the viewer, one file with a type that implements `viewer::layers::Layer`, and the line
 //! that opens it.
 //!
 //! # One eye ray
@@ -158,7 +159,6 @@ pub mod lanes;
 pub mod simd;
 pub mod ray;
 pub mod bounds;
-pub mod capabilities;
 pub mod text;
 pub mod memory;
 pub mod progress;
@@ -182,9 +182,10 @@ pub mod render;
 pub mod tone;
 pub mod view;
 pub mod describe;
-pub mod explain;
 pub mod grid;
 pub mod cell;
+pub mod capabilities;
+pub mod explain;
 pub mod overlay;
 pub mod encode;
 pub mod export;

@@ -267,13 +267,15 @@ fn is_type(name: &str) -> bool {
     name.starts_with(char::is_uppercase) && (name.len() == 1 || name.contains(char::is_lowercase))
 }
 
-/// Whether code has an item of that name that is no type and no module.
+/// Whether code has an item of that name at its top that is no type and no module.
 fn defines(code: &str, name: &str) -> bool {
-    ["fn ", "const ", "static ", "macro_rules! "].iter().any(|kind| {
-        let item = format!("{kind}{name}");
-        let mut ends = code.match_indices(&item).map(|(at, found)| at + found.len());
-        ends.any(|end| !code[end..].starts_with(is_part_of_name))
-    })
+    let items = code.lines().filter(|line| !line.starts_with(char::is_whitespace));
+    let mut names = items.filter_map(|item| {
+        let kinds = ["fn ", "const ", "static ", "macro_rules! "];
+        let (_, rest) = kinds.iter().find_map(|kind| item.split_once(kind))?;
+        identifier(rest)
+    });
+    names.any(|defined| defined == name)
 }
 
 /// The re-exports of a file, and all the rest.
@@ -309,6 +311,7 @@ fn knots_of_parent_and_child_are_found() {
     assert_eq!(found("pub use half::fill;\nfn f() { fill() }\nfn g() {}", "use super::g;"), 1);
     assert_eq!(found("pub use half::fill;\nfn g() {}", "use super::g;"), 0);
     assert_eq!(found(parent, "use super::Pair;"), 0);
+    assert_eq!(found("mod half;\nimpl A {\n    fn g() { half::fill() }\n}", "use super::g;"), 0, "a sibling");
     assert_eq!(found("mod half;\nfn f() -> half::Half {}\nfn g() {}", "use super::g;"), 0);
     assert_eq!(found(parent, "#[cfg(test)]\nmod tests {\n    use super::g;\n}"), 0);
 }

@@ -1,6 +1,6 @@
 //! The picture that is shown -> a file's contents, and a file of a new name.
 
-use crate::capabilities::{Capabilities, CellMode, Colors, Glyphs};
+use crate::capabilities::{Capabilities, CellMode, Colors};
 use crate::cell;
 use crate::export::{Contents, Format};
 use crate::grid::Size;
@@ -24,16 +24,10 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
             write(picture, pixel_aspect, SCALE)
         }
         Contents::Cells { has_colors, write } => {
-            let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { plain(cell_mode) };
+            let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { cell_mode.plain() };
             Ok(write(&cell::grid_from_picture(mode, picture), mode.colors, cell_aspect))
         }
     }
-}
-
-/// The same cells without colours. Half blocks would not tell much; the ramp has as many pixels in a cell.
-fn plain(cell_mode: CellMode) -> CellMode {
-    let glyphs = if cell_mode.glyphs == Glyphs::Half { Glyphs::Ramp } else { cell_mode.glyphs };
-    CellMode { glyphs, colors: Colors::None }
 }
 
 /// Writes a file of that stem and format, or of the first one with a number that is not there yet; its name.
@@ -69,6 +63,7 @@ pub(super) fn stem(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::capabilities::Glyphs;
 
     #[test]
     fn names_are_plain_words() {
@@ -98,6 +93,9 @@ mod tests {
         let written = |format| contents(format, &picture, &capabilities).expect("written");
         assert_eq!(String::from_utf8_lossy(&written(Format::Text)), "@@\n");
         assert_eq!(String::from_utf8_lossy(&written(Format::Tally)), "@ 2\n");
+        let dots = CellMode { glyphs: Glyphs::Dots, ..CellMode::HALF_BLOCK };
+        let in_dots = contents(Format::Text, &picture, &Capabilities { cell_mode: dots, ..capabilities });
+        assert_eq!(String::from_utf8_lossy(&in_dots.expect("written")), "oo\noo\n");
         for &format in Format::ALL {
             assert!(!written(format).is_empty(), "{format:?}");
         }

@@ -3,6 +3,7 @@
 use super::detection::{asked_for, colorterm, locale};
 use super::{Answers, Capabilities, CellMode, Clues, ColorChoice, Colors, Found, GlyphChoice, Glyphs, Source};
 use super::{USUAL_CELL_ASPECT, colors, glyphs};
+use crate::grid::CellShape;
 
 /// What the user wants and the environment says, read once, to be judged again with each answer.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -125,15 +126,6 @@ impl Hints {
         self.glyphs.is_none()
             && self.judge(None, |clues| glyphs(None, colors(self.color, clues), clues)).value == Glyphs::Half
     }
-}
-
-/// What the window's size in pixels tells.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CellShape {
-    /// A cell's height over its width, if the terminal says how large it is in pixels.
-    pub aspect: Option<f32>,
-    /// Whether the upper and the lower half block are known to meet in the same line.
-    pub halves_meet: bool,
 }
 
 /// What is known of a terminal, and from where.

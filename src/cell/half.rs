@@ -1,15 +1,28 @@
 //! Half blocks: each half of a cell is a pixel.
 
+use super::Glyphs;
 use super::inks::Inks;
+use super::kind::{Fill, Kind};
 use super::pair;
 use super::palette::Palette;
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
 
+pub(super) const KIND: Kind = Kind {
+    name: "half",
+    help: "two pixels, one above the other",
+    title: "half blocks",
+    pixels_per_cell: (1, 2),
+    has_blocks: true,
+    // Lit or not would not tell much.
+    plain: Some(Glyphs::Ramp),
+    fill: Fill::Colored(fill),
+};
+
 /// The lower half block, coloured by the lower pixel, on the upper one. (The upper half block would do as well, but
 /// where the font draws it, it covers a pixel row of the wrong half at odd cell heights; one glyph everywhere keeps
 /// the split straight.) Two equal halves are a space: a full block shows hairlines in some fonts.
-pub(super) fn fill(grid: &mut Grid, picture: &Picture, inks: &mut Inks) {
+fn fill(grid: &mut Grid, picture: &Picture, inks: &mut Inks) {
     if let Inks::Own(palette) = inks {
         return fill_own(grid, picture, palette);
     }

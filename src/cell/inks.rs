@@ -1,7 +1,7 @@
 //! A pixel's colour -> one that the terminal has.
 
+use super::colors::Colors;
 use super::palette::Palette;
-use crate::capabilities::Colors;
 use crate::color::Srgb8;
 use crate::grid::Ink;
 

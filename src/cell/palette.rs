@@ -5,7 +5,7 @@
 //! pixel gets is decided by the blue noise at its place: a picture that stands still stays as it is.
 
 use super::blue_noise::threshold;
-use crate::capabilities::xterm_color;
+use super::colors::xterm_color;
 use crate::color::{LinearRgb, Srgb8, linear_from_srgb};
 
 /// Colours with a number, and what has been mixed from them so far.

@@ -1,16 +1,27 @@
 //! The ASCII ramp: a plain character by lightness, for terminals without colour and for text that people compare.
 
+use super::kind::{Fill, Kind};
 use super::pair;
 use crate::color::{LinearRgb, Srgb8};
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
 use std::sync::LazyLock;
 
+pub(super) const KIND: Kind = Kind {
+    name: "ramp",
+    help: "one of ten characters, by lightness",
+    title: "characters by lightness",
+    pixels_per_cell: (1, 2),
+    has_blocks: false,
+    plain: None,
+    fill: Fill::Lightness(fill),
+};
+
 /// The characters from dark to light. Snapshots of users depend on it: a change is a breaking change.
 pub const RAMP: &[u8; 10] = b" .:-=+*#%@";
 
 /// Each cell by the mean light of its pixels.
-pub(super) fn fill(grid: &mut Grid, picture: &Picture) {
+fn fill(grid: &mut Grid, picture: &Picture) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
             let (upper, lower) = pair::pixels(picture, column, row);

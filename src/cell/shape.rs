@@ -4,6 +4,7 @@
 //! neighbours: eight samples of each, after a blur. Without the blur, a glyph that fits a cell in detail wins over one
 //! that is as light as it, and the picture gets dark and spotty.
 
+use super::kind::{Fill, Kind};
 use crate::color::Srgb8;
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
@@ -13,12 +14,22 @@ mod glyphs;
 
 use glyphs::{ACROSS, DOWN, INK};
 
+pub(super) const KIND: Kind = Kind {
+    name: "shape",
+    help: "the character of ASCII that has its ink where the picture has its light",
+    title: "characters by shape",
+    pixels_per_cell: (ACROSS as u32, DOWN as u32),
+    has_blocks: false,
+    plain: None,
+    fill: Fill::Lightness(fill),
+};
+
 const SAMPLES: usize = ACROSS * DOWN;
 /// One for each part of a cell, row by row from the top.
 type Samples = [f32; SAMPLES];
 
 /// Each cell by the samples in it.
-pub(super) fn fill(grid: &mut Grid, picture: &Picture) {
+fn fill(grid: &mut Grid, picture: &Picture) {
     let matcher = &*MATCHER;
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {

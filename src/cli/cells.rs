@@ -1,11 +1,11 @@
 //! What the picture's cells are made of: the flags of the commands that show cells.
 
 use super::settings::defaults;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use termtrace::capabilities::{CellMode, ColorChoice, Colors, GlyphChoice, Glyphs, Hints, terminfo_colors};
 
-/// Stands below the options in the help.
-pub(super) const EXPLAINED: &str = "\
+const EXPLAINED: &str = "\
 The colours (--color):
   auto       as many as the terminal has, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own answer,
              terminfo and TERM; termtrace doctor says who said what
@@ -14,17 +14,21 @@ The colours (--color):
   truecolor, 256, 16
              just these; of few colours the picture is mixed by dithering
 What stands in the cells (--glyphs):
-  auto       half blocks; shape where there is no colour, the locale is not UTF-8, or a block is not one column wide
-  half       two pixels, one above the other
-  shape      the character of ASCII that has its ink where the picture has its light
-  ramp       one of ten characters, by lightness";
+  auto       half blocks; shape where there is no colour, the locale is not UTF-8, or a block is not one column wide";
+
+/// Stands below the options in the help.
+pub(super) fn explained() -> String {
+    Glyphs::ALL
+        .iter()
+        .fold(EXPLAINED.to_owned(), |text, glyphs| format!("{text}\n  {:<9}  {}", glyphs.name(), glyphs.help()))
+}
 
 #[derive(Args)]
 pub(super) struct CellArgs {
     #[arg(long, help = defaults::help("color", "Which colours the picture may have"), value_name = "WHICH")]
     color: Option<Color>,
-    #[arg(long, help = defaults::help("glyphs", "What its cells are made of"), value_name = "KIND")]
-    glyphs: Option<Kind>,
+    #[arg(long, help = defaults::help("glyphs", "What its cells are made of"), value_name = "KIND", value_parser = glyph_parser())]
+    glyphs: Option<GlyphChoice>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -39,12 +43,12 @@ enum Color {
     Indexed16,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    Auto,
-    Half,
-    Shape,
-    Ramp,
+/// What leaves the choice to the terminal, or to the format of the file.
+const AUTO: &str = "auto";
+
+fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
+    let names = Glyphs::ALL.iter().map(|glyphs| glyphs.name());
+    PossibleValuesParser::new([AUTO].into_iter().chain(names)).map(|name| Glyphs::from_name(&name))
 }
 
 impl CellArgs {
@@ -70,12 +74,7 @@ impl CellArgs {
     }
 
     fn glyph_choice(&self) -> GlyphChoice {
-        match self.glyphs {
-            None | Some(Kind::Auto) => None,
-            Some(Kind::Half) => Some(Glyphs::Half),
-            Some(Kind::Shape) => Some(Glyphs::Shape),
-            Some(Kind::Ramp) => Some(Glyphs::Ramp),
-        }
+        self.glyphs.flatten()
     }
 
     /// What is wanted of a terminal, and what the environment tells of it.

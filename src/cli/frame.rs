@@ -35,7 +35,7 @@ Examples:
   termtrace frame my.ron --check my.txt                       compare with it";
 
 #[derive(Args)]
-#[command(after_help = format!("{}\n{}\n{FILES}\n\n{EXAMPLES}", cells::EXPLAINED, view::EXPLAINED))]
+#[command(after_help = format!("{}\n{}\n{FILES}\n\n{EXAMPLES}", cells::explained(), view::EXPLAINED))]
 pub(super) struct FrameArgs {
     #[command(flatten)]
     scene: SceneArgs,

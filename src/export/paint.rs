@@ -1,6 +1,6 @@
 //! What a grid looks like without a terminal: areas of one colour, and the text over them. SVG and HTML are made of it.
 
-use crate::capabilities::xterm_color;
+use crate::cell::xterm_color;
 use crate::color::Srgb8;
 use crate::grid::{Cell, Glyph, Grid, Ink};
 use ratatui::style::Modifier;

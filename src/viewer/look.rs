@@ -1,6 +1,6 @@
 //! How what lies over the picture looks, and where there is room for it.
 
-use crate::capabilities::{CellMode, Colors, Glyphs};
+use crate::capabilities::{CellMode, Colors};
 use crate::grid::Size;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -27,10 +27,8 @@ impl Look {
             Colors::Indexed16(_) => Style::new().fg(Color::White).bg(Color::Black),
             Colors::None => Style::new(),
         };
-        let (border, bar) = match cell_mode.glyphs {
-            Glyphs::Half => (border::ROUNDED, ['█', '░']),
-            Glyphs::Shape | Glyphs::Ramp => (ASCII_BORDER, ['#', '.']),
-        };
+        let (border, bar) =
+            if cell_mode.glyphs.has_blocks() { (border::ROUNDED, ['█', '░']) } else { (ASCII_BORDER, ['#', '.']) };
         let mark = match cell_mode.colors {
             Colors::None => style.add_modifier(Modifier::BOLD),
             _ => style.fg(Color::LightYellow),

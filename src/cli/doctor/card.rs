@@ -1,6 +1,6 @@
 //! The test card: a circle, a gradient, and stripes of half cells; and what to set where one is wrong.
 
-use termtrace::capabilities::{Capabilities, Colors, Glyphs};
+use termtrace::capabilities::{Capabilities, Colors};
 use termtrace::cell::{self, Painter};
 use termtrace::color::{LinearRgb, Srgb8};
 use termtrace::export;
@@ -24,9 +24,10 @@ pub(super) fn bytes(capabilities: &Capabilities) -> Vec<u8> {
 }
 
 fn advice(capabilities: &Capabilities) -> String {
-    let stripes = match capabilities.cell_mode.glyphs {
-        Glyphs::Half => "The stripes must be even and straight; else set --glyphs=shape",
-        Glyphs::Shape | Glyphs::Ramp => "No half blocks are used here;          for them set --glyphs=half",
+    let stripes = if capabilities.cell_mode.glyphs.has_blocks() {
+        "The stripes must be even and straight; else set --glyphs=shape"
+    } else {
+        "No half blocks are used here;          for them set --glyphs=half"
     };
     let gradient = match capabilities.cell_mode.colors {
         Colors::Truecolor => "The gradient must be smooth;           else set --color=256, 16 or never",

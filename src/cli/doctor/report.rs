@@ -3,7 +3,7 @@
 use crate::cli::settings::Settings;
 use std::fmt::Write;
 use std::time::Duration;
-use termtrace::capabilities::{Answers, Asking, Colors, Findings, Found, Glyphs, Hints, Source};
+use termtrace::capabilities::{Answers, Asking, Colors, Findings, Found, Hints, Source};
 use termtrace::text::visible_lines;
 
 /// How the talk with the terminal went.
@@ -46,7 +46,7 @@ impl Known<'_> {
             self.questions(),
             self.set("colours", "color", findings.colors, colors),
             self.locale(),
-            self.set("cells", self.chosen_by(), findings.glyphs, |cells| glyphs(cells) + &self.width()),
+            self.set("cells", self.chosen_by(), findings.glyphs, |cells| cells.title().to_owned() + &self.width()),
             self.set("cell, height/width", "cell_aspect", findings.cell_aspect, |aspect| {
                 format!("{aspect:.3}{}", self.pixels())
             }),
@@ -176,15 +176,6 @@ fn colors(colors: Colors) -> String {
         Colors::Indexed16(_) => "16",
         Colors::Indexed256 => "256",
         Colors::Truecolor => "truecolor",
-    }
-    .to_owned()
-}
-
-fn glyphs(glyphs: Glyphs) -> String {
-    match glyphs {
-        Glyphs::Half => "half blocks",
-        Glyphs::Shape => "characters by shape",
-        Glyphs::Ramp => "characters by lightness",
     }
     .to_owned()
 }

@@ -1,7 +1,7 @@
 //! The view from the side, as the lecture draws it: the eye, the view rectangle, the ray and what it meets.
 
 use crate::camera::{Basis, Camera};
-use crate::capabilities::{CellMode, Colors, Glyphs};
+use crate::capabilities::{CellMode, Colors};
 use crate::explain::Explanation;
 use crate::framebuffer::Resolution;
 use crate::scene::Scene;
@@ -71,10 +71,7 @@ impl Inset {
         let (across, down) = mode.pixels_per_cell();
         let cell_aspect = resolution.pixel_aspect * down as f32 / across as f32;
         let [x, y] = self.bounds(f32::from(area.width), f32::from(area.height) * cell_aspect);
-        let marker = match mode.glyphs {
-            Glyphs::Half => Marker::Braille,
-            Glyphs::Shape | Glyphs::Ramp => Marker::Custom('*'),
-        };
+        let marker = if mode.glyphs.has_blocks() { Marker::Braille } else { Marker::Custom('*') };
         let ink = |color: Color| if mode.colors == Colors::None { Color::Reset } else { color };
         let line = |from: Vec2, to: Vec2, color: Color| {
             let [from, to] = [from, to].map(Vec2::as_dvec2);

@@ -1,7 +1,7 @@
 //! Where the explanation's cursor and panel are: never on the pixel that they explain.
 
 use super::Explaining;
-use crate::capabilities::{CellMode, Glyphs};
+use crate::capabilities::CellMode;
 use crate::explain::WIDTH;
 use crate::viewer::look::Look;
 use ratatui::buffer::Buffer;
@@ -42,10 +42,10 @@ pub(super) fn split(inside: Rect, lines: u16) -> [Rect; 2] {
 /// The cursor: marks beside the cell, above and below it, with nothing on the cell itself.
 pub(super) fn marks(explaining: &Explaining, look: Look, mode: CellMode, screen: Rect) -> Vec<Buffer> {
     let [column, row] = explaining.cell(mode);
-    let [beside, above] = match (mode.glyphs, explaining.row_in_cell(mode)) {
-        (Glyphs::Half, (0, _)) => [["▀", "▀"], ["│", "│"]],
-        (Glyphs::Half, _) => [["▄", "▄"], ["│", "│"]],
-        _ => [[">", "<"], ["v", "^"]],
+    let [beside, above] = match explaining.row_in_cell(mode) {
+        _ if !mode.glyphs.has_blocks() => [[">", "<"], ["v", "^"]],
+        (row, rows) if 2 * row < rows => [["▀", "▀"], ["│", "│"]],
+        _ => [["▄", "▄"], ["│", "│"]],
     };
     let mut marks = Vec::new();
     let mut mark = |x: Option<u16>, y: Option<u16>, symbol: &str| {

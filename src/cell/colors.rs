@@ -1,0 +1,57 @@
+//! The colours that a cell may have.
+
+use crate::color::Srgb8;
+
+/// The colours that a cell may have, fewer before more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Colors {
+    /// The terminal's own two: nothing is said of colours at all.
+    None,
+    /// Sixteen, which look like this; users choose them.
+    Indexed16([Srgb8; 16]),
+    /// The 240 of 256 that are the same in every terminal: a cube of six levels to a band, and 24 greys.
+    Indexed256,
+    /// Any 8-bit sRGB.
+    Truecolor,
+}
+
+impl Colors {
+    /// Sixteen colours, taken to be xterm's own.
+    pub const SIXTEEN: Self = Self::Indexed16(XTERM_16);
+}
+
+/// The sixteen colours of xterm where nobody has changed them.
+const XTERM_16: [Srgb8; 16] = [
+    Srgb8::new(0, 0, 0),
+    Srgb8::new(205, 0, 0),
+    Srgb8::new(0, 205, 0),
+    Srgb8::new(205, 205, 0),
+    Srgb8::new(0, 0, 238),
+    Srgb8::new(205, 0, 205),
+    Srgb8::new(0, 205, 205),
+    Srgb8::new(229, 229, 229),
+    Srgb8::new(127, 127, 127),
+    Srgb8::new(255, 0, 0),
+    Srgb8::new(0, 255, 0),
+    Srgb8::new(255, 255, 0),
+    Srgb8::new(92, 92, 255),
+    Srgb8::new(255, 0, 255),
+    Srgb8::new(0, 255, 255),
+    Srgb8::new(255, 255, 255),
+];
+
+/// The colour of that number, of 256, in xterm: sixteen that users change, a cube of six levels to a band, and greys.
+pub(crate) fn xterm_color(index: u8) -> Srgb8 {
+    const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
+    match index {
+        0..16 => XTERM_16[usize::from(index)],
+        16..232 => {
+            let [r, g, b] = [36, 6, 1].map(|step| LEVELS[usize::from((index - 16) / step % 6)]);
+            Srgb8::new(r, g, b)
+        }
+        232.. => {
+            let grey = 8 + 10 * (index - 232);
+            Srgb8::new(grey, grey, grey)
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! A dot for each light pixel: a kind of cells that only tests have, to show that this file and its row in the table are
+//! all that one takes.
+
+use super::kind::{Fill, Kind};
+use crate::grid::{Cell, Grid, Ink};
+use crate::tone::Picture;
+
+pub(super) const KIND: Kind = Kind {
+    name: "dots",
+    help: "a dot for each pixel that is light",
+    title: "dots",
+    pixels_per_cell: (1, 1),
+    has_blocks: false,
+    plain: None,
+    fill: Fill::Lightness(fill),
+};
+
+fn fill(grid: &mut Grid, picture: &Picture) {
+    for (cell, pixel) in grid.rows_mut().flatten().zip(&picture.pixels) {
+        *cell = Cell::new(if pixel.g >= 128 { 'o' } else { ' ' }, Ink::Default, Ink::Default);
+    }
+}
