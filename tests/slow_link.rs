@@ -211,8 +211,9 @@ fn spheres(scene: &Scene, eye: Option<[f64; 3]>) -> Grid {
     if let Some(eye) = eye {
         let Pose { eye: home, target, up } = scene.camera().pose();
         let eye = Vec3::from(eye.map(|x| x as f32));
-        scene = scene
-            .with_camera(scene.camera().with_pose(Pose { eye, target: target + (eye - home), up }).expect("a pose"));
+        let pose = Pose { eye, target: target + (eye - home), up };
+        let camera = scene.camera().with_pose(pose).expect("a pose");
+        scene = scene.with_camera(camera);
     }
     pty::picture(&scene, CellMode::HALF_BLOCK, Size::new(80, 24), 2.0)
 }
