@@ -127,12 +127,14 @@
 //!
 //! # One eye ray
 //!
-//! [`render`] goes over a picture tile by tile, for [`view`] or `app::renderer`. `render::tiles` makes a tile's eye rays
-//! (by [`camera`]) -> [`hit`] finds the closest hits: among the objects that stand alone, then in the trees
-//! (`accel`, over [`bvh`]), whose leaves are parts of [`shape`]s -> [`shade`] works out the points that
-//! were met (`shade::points`), sends shadow rays ([`hit`] again), adds up what arrives from the [`light`]s and has the
-//! [`material`] reflect it -> `render::tiles` puts that into the [`framebuffer`] -> [`tone`] -> [`cell`] -> [`encode`] or
-//! [`export`].
+//! [`render`] goes over a picture for [`view`] or `app::renderer`: `render::uniform` with the same number of samples for
+//! each pixel, `render::adaptive` with more where there are edges. `render::schedule` gives each thread its tiles and cuts
+//! their samples into batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye rays (by
+//! [`camera`]) -> [`hit`] finds the closest hits: among the objects that stand alone, then in the trees (`accel`,
+//! over [`bvh`]), whose leaves are parts of [`shape`]s -> [`shade`] works out the points that were met (`shade::points`)
+//! -> it sends shadow rays ([`hit`] again) and adds up what arrives from the [`light`]s -> it has the
+//! [`material`] reflect that. `render::tiles` puts a tile's light into the [`framebuffer`] -> [`tone`] -> [`cell`] ->
+//! [`encode`] or [`export`].
 //!
 //! # One scene with a typo
 //!

@@ -46,11 +46,11 @@ pub struct EightArriving {
 /// The arrays of one light's shadow rays.
 #[derive(Default)]
 pub struct ShadowRays {
-    rays: Vec<EightRays>,
+    pub(crate) rays: Vec<EightRays>,
     /// The light that each brings if nothing is in its way.
     lights: Vec<EightLights>,
     /// V = 0, a bit for each.
-    blocked: Vec<u32>,
+    pub(crate) blocked: Vec<u32>,
 }
 
 /// What arrives at each point. Returns the number of shadow rays that this took.

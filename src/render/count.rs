@@ -2,14 +2,14 @@
 
 use super::Crew;
 use super::sampling::Runs;
+use super::steps::{Buffers, Goal, Shot};
 use super::tiles::Tiles;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::hit::{self, EightHits, Kernel};
+use crate::hit::{self, Kernel};
 use crate::lanes::{Eight, Lanes, Number};
-use crate::ray::EightRays;
 use crate::scene::Scene;
-use crate::shade::{self, EightPoints, TO_THE_LIGHT};
+use crate::shade::{self, ShadowRays, TO_THE_LIGHT};
 use std::num::NonZeroU32;
 use std::ops::Add;
 
@@ -39,65 +39,38 @@ impl Add for Counts {
     }
 }
 
-/// Traces the eye rays of [`render`](super::render) in that way with so many samples of each pixel, and, if the scene has
+/// Traces the eye rays of [`render`](super::render) by that kernel with that number of samples of each pixel, and, if the scene has
 /// shadows, one ray from each hit to each light, also where the surface faces away from it; on the threads of the current
 /// rayon pool.
 pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
     let tiles = Tiles::new(camera, resolution, 1);
+    let goal = if scene.shadows() { Goal::Points } else { Goal::Hits };
+    let shot = Shot { kernel, ..Shot::new(scene, &tiles, goal) };
     let runs = Runs::of(0..samples.get());
-    let count = |buffers: &mut Buffers, (tile, ())| (tile, buffers.count_tile(kernel, scene, &tiles, tile, &runs));
-    let mut counts = Crew::Pool.share(vec![(); tiles.count()], count);
-    // In the tiles' order: a sum of floats depends on it.
-    counts.sort_unstable_by_key(|&(tile, _)| tile);
-    counts.into_iter().fold(Counts::default(), |sum, (_, counts)| sum + counts)
+    let mut counts = vec![Counts::default(); tiles.count()];
+    Crew::Pool.trace(&shot, counts.iter_mut().collect(), |tile, counts| {
+        tile.trace(&runs, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));
+    });
+    // Tile by tile: a sum of floats depends on the order.
+    counts.into_iter().fold(Counts::default(), Add::add)
 }
 
-#[derive(Default)]
-struct Buffers {
-    wanted: Vec<u8>,
-    pixels: Vec<u8>,
-    rays: Vec<EightRays>,
-    hits: Vec<EightHits>,
-    points: Vec<EightPoints>,
-    shadow_rays: Vec<EightRays>,
-    blocked: Vec<u32>,
-}
-
-impl Buffers {
-    fn count_tile(&mut self, kernel: Kernel, scene: &Scene, tiles: &Tiles, tile: usize, runs: &Runs) -> Counts {
-        tiles.inside(tile, &mut self.wanted);
-        let mut counts = Counts::default();
-        for run in runs.iter() {
-            for lot in run.lots(self.wanted.len()) {
-                run.spread(&self.wanted[lot], &mut self.pixels);
-                tiles.make_eye_rays(tile, &self.pixels, &run, &mut self.rays);
-                hit::closest_hits(kernel, scene, &self.rays, &mut self.hits);
-                counts = counts + self.count(kernel, scene);
-            }
-        }
-        counts
+/// Counts a batch's rays and their hits, and the shadow rays that begin there, which it traces.
+fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
+    let Buffers { rays, hits, points, shadows: ShadowRays { rays: shadow_rays, blocked, .. }, .. } = buffers;
+    let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
+    for hits in hits.iter() {
+        counts.hits += u64::from(hits.met.count_ones());
+        // Nothing for those without a hit: a sum without branches.
+        let depths = Eight::select(Eight::answers(hits.met), hits.t, Eight::ZERO);
+        counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
     }
-
-    /// The rays and their hits, and the shadow rays that begin there.
-    fn count(&mut self, kernel: Kernel, scene: &Scene) -> Counts {
-        let Self { rays, hits, points, shadow_rays, blocked, .. } = self;
-        let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
-        for hits in hits.iter() {
-            counts.hits += u64::from(hits.met.count_ones());
-            // Nothing for those without a hit: a sum without branches.
-            let depths = Eight::select(Eight::answers(hits.met), hits.t, Eight::ZERO);
-            counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
-        }
-        if scene.shadows() {
-            shade::surface_points(scene, rays, hits, points);
-        }
-        for light in scene.lights().iter().filter(|_| scene.shadows()) {
-            shade::shadow_rays(light, points, shadow_rays);
-            hit::any_hits(kernel, scene, shadow_rays, TO_THE_LIGHT, blocked);
-            let (traced, blocked) = (shade::count(shadow_rays), blocked.iter().map(|met| u64::from(met.count_ones())));
-            counts.rays += traced;
-            counts.lit += traced - blocked.sum::<u64>();
-        }
-        counts
+    for light in scene.lights().iter().filter(|_| scene.shadows()) {
+        shade::shadow_rays(light, points, shadow_rays);
+        hit::any_hits(kernel, scene, shadow_rays, TO_THE_LIGHT, blocked);
+        let (traced, blocked) = (shade::count(shadow_rays), blocked.iter().map(|met| u64::from(met.count_ones())));
+        counts.rays += traced;
+        counts.lit += traced - blocked.sum::<u64>();
     }
+    counts
 }

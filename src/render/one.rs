@@ -1,7 +1,7 @@
 //! One pixel on its own way through the steps, with what stands between them.
 
-use super::Buffers;
 use super::sampling::{Run, sample_position};
+use super::steps::{Buffers, Goal, Shot};
 use super::tiles::Tiles;
 use crate::camera::Camera;
 use crate::color::LinearRgb;
@@ -10,7 +10,7 @@ use crate::hit::Hit;
 use crate::lanes::{Eight, LANES};
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::shade::{self, EightArriving};
+use crate::shade;
 use glam::Vec2;
 
 /// What the steps of [`render`](super::render) make of the first sample of a pixel.
@@ -40,26 +40,19 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     assert!(x < resolution.width && y < resolution.height, "pixel ({x}, {y}) is outside the picture");
     let tiles = Tiles::new(camera, resolution, 1);
     let (tile, pixel) = tiles.at([x, y]);
-    let mut buffers = Buffers::default();
-    buffers.wanted.push(pixel as u8);
-    buffers.trace_lot(scene, &tiles, tile, &Run::first(), 0..1);
-    let light = shade::light_of(&buffers.lights[0], 0);
+    let (shot, run) = (Shot::new(scene, &tiles, Goal::Reflected), Run::of(0..1));
+    let mut buffers = Buffers { wanted: vec![pixel as u8], ..Buffers::default() };
+    buffers.trace(&shot, tile, &run, 0..1);
+    let [arriving, light] = [&buffers.arriving[0].light, &buffers.lights[0]].map(|lights| shade::light_of(lights, 0));
+    // The reflectance is what is reflected where light of 1 arrives.
+    buffers.arriving[0].light = [Eight([1.0; LANES]); 3];
+    buffers.reflect(&shot, &run);
     Steps {
         q: tiles.q([x as f32, y as f32], sample_position(0).into()).into(),
         ray: buffers.rays[0].ray(0),
         hit: buffers.hits[0].hit(scene, 0),
-        arriving: shade::light_of(&buffers.arriving[0].light, 0),
-        reflectance: buffers.reflectance(scene, &tiles),
+        arriving,
+        reflectance: shade::light_of(&buffers.lights[0], 0),
         light,
-    }
-}
-
-impl Buffers {
-    /// The reflectance of the first of the points: what is reflected where light of 1 arrives.
-    fn reflectance(&mut self, scene: &Scene, tiles: &Tiles) -> LinearRgb {
-        let Self { rays, hits, points, arriving, lights, .. } = self;
-        *arriving = vec![EightArriving { light: [Eight([1.0; LANES]); 3], lit_by: [0; LANES] }];
-        shade::reflect(scene, rays, tiles.steps(0), hits, points, arriving, lights);
-        shade::light_of(&lights[0], 0)
     }
 }

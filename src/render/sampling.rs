@@ -36,7 +36,7 @@ pub(super) const PASSES: [Range<u32>; 4] = [0..1, 1..4, 4..16, 16..64];
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     pub(super) samples: Range<u32>,
-    /// Where the rays of a lot go through their pixels, eight by eight.
+    /// Where the rays of a batch go through their pixels, eight by eight.
     pub(super) positions: [[Eight; 2]; MOST_RAYS / LANES],
 }
 
@@ -79,12 +79,7 @@ fn cut(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
 }
 
 impl Run {
-    /// The first sample of each pixel.
-    pub(super) fn first() -> Self {
-        Self::of(0..1)
-    }
-
-    fn of(samples: Range<u32>) -> Self {
+    pub(super) fn of(samples: Range<u32>) -> Self {
         let mut run = Self { samples, positions: [[Eight::ZERO; 2]; MOST_RAYS / LANES] };
         for ray in 0..MOST_RAYS {
             let (x, y) = sample_position(run.samples.start + (ray % run.each()) as u32);
@@ -99,8 +94,8 @@ impl Run {
         self.samples.len()
     }
 
-    /// So many pixels in lots, each of which goes through the steps at once.
-    pub(super) fn lots(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> {
+    /// Cuts that number of pixels into batches, each of which goes through the steps at once.
+    pub(super) fn batches(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> {
         let at_once = MOST_RAYS / self.each();
         (0..pixels).step_by(at_once).map(move |first| first..pixels.min(first + at_once))
     }
@@ -145,17 +140,17 @@ mod tests {
     /// Whatever is asked for, each sample of each pixel is traced once, in its order, where it lies; and those that go
     /// together stand for the same share of a pixel.
     #[test]
-    fn runs_and_lots_leave_nothing_out() {
+    fn runs_and_batches_leave_nothing_out() {
         for samples in [0..1, 0..3, 0..16, 1..4, 4..16, 16..64, 0..64, 0..65, 0..300, 5..7] {
             for pixels in [0, 1, 5, 21, 22, 255, 256] {
                 let mut traced = vec![Vec::new(); pixels];
                 for run in Runs::of(samples.clone()).iter() {
                     let shares = [run.samples.start, run.samples.end - 1].map(footprint_share);
                     assert_eq!(shares[0], shares[1], "{:?}", run.samples);
-                    for lot in run.lots(pixels) {
+                    for batch in run.batches(pixels) {
                         let numbers: Vec<_> = (0..=u8::MAX).take(pixels).collect();
                         let mut of_rays = Vec::new();
-                        run.spread(&numbers[lot], &mut of_rays);
+                        run.spread(&numbers[batch], &mut of_rays);
                         assert!(of_rays.len() <= MOST_RAYS, "{samples:?} of {pixels} pixels");
                         for (ray, &pixel) in of_rays.iter().enumerate() {
                             let [x, y] = &run.positions[ray / LANES];

@@ -1,18 +1,17 @@
 //! What the rays through a picture's pixels meet, for pictures of something else than light.
 
-use super::sampling::Run;
+use super::sampling::Runs;
+use super::steps::{Buffers, Goal, Shot};
 use super::tiles::Tiles;
-use super::{Buffers, Cost, Crew, Sampling};
+use super::{Cost, Crew, Sampling};
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::hit::{self, Hit, Kernel};
+use crate::hit::Hit;
 use crate::lanes::LANES;
 use crate::progress::Cancelled;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::shade;
 use crate::shape::{Surface, SurfacePoint};
-use std::time::Instant;
 
 /// How far rays are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,46 +79,19 @@ pub(crate) fn all_sights<T: Copy + Default + Send>(
 ) -> Sighted<T> {
     let scale = if sampling == Sampling::Coarse { 2 } else { 1 };
     let tiles = Tiles::new(camera, resolution, scale);
-    let run = Run::first();
+    let goal = if reach == Reach::Lights { Goal::Arriving } else { Goal::Hits };
+    let runs = Runs::of(0..1);
     let mut pixels = vec![T::default(); resolution.pixel_count()];
-    let cost = crew.trace(tiles.split(&mut pixels), |buffers: &mut Buffers, (tile, mut part)| {
-        if crew.is_cancelled() {
-            return Cost::default();
-        }
-        tiles.inside(tile, &mut buffers.wanted);
-        let show = |pixel, sight: &Sight| tiles.put(pixel, see(sight), &mut part);
-        buffers.see_tile(scene, &tiles, tile, &run, reach, show)
+    let cost = crew.trace(&Shot::new(scene, &tiles, goal), tiles.split(&mut pixels), |tile, mut part| {
+        tile.trace(&runs, |Buffers { pixels, rays, hits, arriving, .. }, _, _| {
+            for (group, pixels) in pixels.chunks(LANES).enumerate() {
+                for (lane, &pixel) in pixels.iter().enumerate() {
+                    let lit_by = arriving.get(group).map_or(0, |arriving| arriving.lit_by[lane]);
+                    let sight = Sight { ray: rays[group].ray(lane), hit: hits[group].hit(scene, lane), lit_by };
+                    tiles.put(pixel, see(&sight), &mut part);
+                }
+            }
+        });
     });
     Sighted { pixels, cost }
-}
-
-impl Buffers {
-    /// Shows what is seen through each of the wanted pixels of a tile.
-    fn see_tile(
-        &mut self,
-        scene: &Scene,
-        tiles: &Tiles,
-        tile: usize,
-        run: &Run,
-        reach: Reach,
-        mut show: impl FnMut(u8, &Sight),
-    ) -> Cost {
-        let Self { wanted, rays, hits, points, shadows, arriving, .. } = self;
-        let start = Instant::now();
-        tiles.make_eye_rays(tile, wanted, run, rays);
-        hit::closest_hits(Kernel::Auto, scene, rays, hits);
-        let mut traced = wanted.len() as u64;
-        arriving.clear();
-        if reach == Reach::Lights {
-            shade::surface_points(scene, rays, hits, points);
-            traced += shade::arriving_light(scene, points, shadows, arriving);
-        }
-        for (group, pixels) in wanted.chunks(LANES).enumerate() {
-            for (lane, &pixel) in pixels.iter().enumerate() {
-                let lit_by = arriving.get(group).map_or(0, |arriving| arriving.lit_by[lane]);
-                show(pixel, &Sight { ray: rays[group].ray(lane), hit: hits[group].hit(scene, lane), lit_by });
-            }
-        }
-        Cost { rays: traced, work: start.elapsed() }
-    }
 }

@@ -122,7 +122,7 @@ impl Tiles {
         }
     }
 
-    /// The eye rays of a lot, of each of which that is its pixel in the tile.
+    /// Makes the eye rays of a batch, one for each of these pixels of the tile.
     pub(super) fn make_eye_rays(&self, tile: usize, pixels: &[u8], run: &Run, rays: &mut Vec<EightRays>) {
         rays.clear();
         simd::run(MakeEyeRays { tiles: self, tile, pixels, run, rays });

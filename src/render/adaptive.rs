@@ -1,0 +1,148 @@
+//! More samples where a picture has edges, pass by pass.
+
+use super::pixel::{First, Watched};
+use super::sampling::{PASSES, Runs};
+use super::steps::{Buffers, Goal, Shot};
+use super::tiles::{ALL_PIXELS, PIXELS, Tiles};
+use super::{Cost, Crew};
+use crate::camera::Camera;
+use crate::color::LinearRgb;
+use crate::framebuffer::{Framebuffer, Resolution};
+use crate::lanes::LANES;
+use crate::progress::{Cancellation, Cancelled};
+use crate::scene::Scene;
+use crate::shade;
+use std::num::NonZeroU32;
+use std::ops::Range;
+
+/// A picture in work, which gets more samples where it has edges, as long as that is wanted. Whatever the steps in which
+/// it is made, its light is the same to the bit as if it had been made in one.
+#[derive(Clone, Debug)]
+pub struct Refining {
+    tiles: Tiles,
+    /// What the first sample of each pixel saw, tile by tile.
+    first: Vec<Vec<First>>,
+    /// All samples of each pixel, once there are more.
+    watched: Vec<Vec<Watched>>,
+    /// How many of the passes are done.
+    passes: usize,
+}
+
+impl Refining {
+    /// Nothing of it is traced yet.
+    pub fn new(camera: &Camera, resolution: Resolution) -> Self {
+        let tiles = Tiles::new(camera, resolution, 1);
+        Self { tiles, first: vec![Vec::new(); tiles.count()], watched: vec![Vec::new(); tiles.count()], passes: 0 }
+    }
+
+    /// Traces what is lacking to [`Sampling::UpTo`] that number of samples of the scene, which has to be the same each time.
+    /// Returns what that took.
+    ///
+    /// # Errors
+    /// [`Cancelled`], if the token is; then the picture cannot be refined any further.
+    pub fn refine_or_cancel(
+        &mut self,
+        token: &Cancellation,
+        scene: &Scene,
+        samples: NonZeroU32,
+    ) -> Result<Cost, Cancelled> {
+        let crew = Crew::Cancellable(token);
+        crew.finish(self.refine(crew, scene, samples))
+    }
+
+    pub(super) fn refine(&mut self, crew: Crew<'_>, scene: &Scene, samples: NonZeroU32) -> Cost {
+        let wanted = PASSES.iter().filter(|pass| pass.end <= samples.get()).count();
+        let mut cost = Cost::default();
+        // Where edges are is seen in the whole picture of the first pass. Then each pixel by itself tells whether it needs
+        // more, and nobody waits for another tile.
+        if self.passes == 0 && wanted > 0 {
+            cost += self.trace_first(crew, scene);
+            self.passes = 1;
+        }
+        if self.passes < wanted {
+            cost += self.trace_more(crew, scene, self.passes..wanted);
+            self.passes = wanted;
+        }
+        cost
+    }
+
+    fn trace_first(&mut self, crew: Crew<'_>, scene: &Scene) -> Cost {
+        let runs = Runs::of(PASSES[0].clone());
+        let shot = Shot::new(scene, &self.tiles, Goal::Reflected);
+        crew.trace(&shot, self.first.iter_mut().collect(), |tile, first| {
+            first.resize(PIXELS, First::default());
+            tile.trace(&runs, |buffers, _, _| see_first(first, buffers));
+        })
+    }
+
+    /// The next passes.
+    fn trace_more(&mut self, crew: Crew<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
+        let white = 1.0 / scene.exposure();
+        let runs: Vec<_> = passes.map(|pass| (pass, Runs::of(PASSES[pass].clone()))).collect();
+        let Self { tiles, first, watched, .. } = self;
+        let shot = Shot::new(scene, tiles, Goal::Reflected);
+        crew.trace(&shot, watched.iter_mut().collect(), |tile, watched| {
+            if watched.is_empty() {
+                watched.extend(first[tile.number].iter().map(Watched::new));
+            }
+            for &(pass, ref runs) in &runs {
+                tile.buffers.wanted.retain(|&pixel| match (pass, &watched[usize::from(pixel)]) {
+                    (1, _) => is_at_edge(tiles, first, tile.number, pixel.into(), white),
+                    (2, watched) => watched.is_at_edge(),
+                    (_, watched) => watched.is_rough(white),
+                });
+                tile.trace(runs, |buffers, run, _| add_samples(watched, buffers, run.each()));
+            }
+        })
+    }
+
+    /// Whether no more samples will be taken anywhere.
+    pub fn is_final(&self) -> bool {
+        self.passes == PASSES.len()
+    }
+
+    /// The mean light of each pixel's samples.
+    pub fn framebuffer(&self) -> Framebuffer {
+        let mut framebuffer = Framebuffer::new(self.tiles.resolution);
+        let parts = self.tiles.split(&mut framebuffer.pixels);
+        for ((first, watched), mut part) in self.first.iter().zip(&self.watched).zip(parts) {
+            if !watched.is_empty() {
+                self.tiles.show(&ALL_PIXELS, |pixel| watched[pixel].mean(), &mut part);
+            } else if !first.is_empty() {
+                self.tiles.show(&ALL_PIXELS, |pixel| first[pixel].light, &mut part);
+            }
+        }
+        framebuffer
+    }
+}
+
+/// Whether an edge may run beside that pixel of a tile; `white` is the light that is shown as white.
+fn is_at_edge(tiles: &Tiles, first: &[Vec<First>], tile: usize, pixel: usize, white: f32) -> bool {
+    let own = &first[tile][pixel];
+    let [columns, rows] = tiles.around(tile, pixel);
+    rows.into_iter().any(|y| {
+        columns.clone().any(|x| {
+            let (tile, pixel) = tiles.at([x, y]);
+            own.is_edge_to(&first[tile][pixel], white)
+        })
+    })
+}
+
+/// Puts down what a batch's rays, one through each pixel, saw.
+fn see_first(first: &mut [First], buffers: &Buffers) {
+    for (ray, &pixel) in buffers.pixels.iter().enumerate() {
+        let (group, lane) = (ray / LANES, ray % LANES);
+        // As a sum of one, which is never -0.
+        let light = LinearRgb::BLACK + shade::light_of(&buffers.lights[group], lane);
+        let lit_by = buffers.arriving[group].lit_by[lane];
+        first[usize::from(pixel)] = First::new(light, buffers.points[group].seen(lane), lit_by);
+    }
+}
+
+/// Adds a batch's samples, `each` of a pixel, to those of the tile's pixels.
+fn add_samples(watched: &mut [Watched], buffers: &Buffers, each: usize) {
+    let bands = buffers.bands();
+    for (first, &pixel) in buffers.pixels.iter().enumerate().step_by(each) {
+        watched[usize::from(pixel)].add(bands.each_ref().map(|band| &band[first..first + each]));
+    }
+}

@@ -1,0 +1,105 @@
+//! The way over a picture: which thread takes which tile, and the batches of each tile in their order.
+
+use super::Cost;
+use super::sampling::{Run, Runs};
+use super::steps::{Buffers, Shot};
+use crate::progress::{Cancellation, Cancelled};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+/// The threads that trace.
+#[derive(Clone, Copy, Debug)]
+pub enum Crew<'a> {
+    /// The calling thread alone: to wake others for a frame of less than about a millisecond takes longer than they save.
+    Alone,
+    /// The threads of the current rayon pool.
+    Pool,
+    /// The threads of the current rayon pool, until the token is cancelled.
+    Cancellable(&'a Cancellation),
+}
+
+/// What takes no longer, going by the tiles so far, is traced by the calling thread alone: to wake another one takes 16 us,
+/// and 80 after a pause.
+const SHORT: Duration = Duration::from_micros(300);
+
+impl Crew<'_> {
+    fn is_cancelled(self) -> bool {
+        matches!(self, Self::Cancellable(token) if token.is_cancelled())
+    }
+
+    /// Returns what was traced. A crew that is cancelled passes over what is left, so this is asked when it is through: a
+    /// token that is not cancelled then never was.
+    pub(crate) fn finish<T>(self, traced: T) -> Result<T, Cancelled> {
+        if self.is_cancelled() { Err(Cancelled) } else { Ok(traced) }
+    }
+
+    /// Traces each tile of a shot on one of the threads, each of which keeps its buffers from tile to tile: `trace` is
+    /// given the tile and what is made of it, one of `parts`. Returns what all took.
+    pub(super) fn trace<T: Send>(
+        self,
+        shot: &Shot<'_>,
+        parts: Vec<T>,
+        trace: impl Fn(&mut Tile<'_>, T) + Send + Sync,
+    ) -> Cost {
+        let work = |buffers: &mut Buffers, (number, part)| {
+            shot.tiles.inside(number, &mut buffers.wanted);
+            let mut tile = Tile { crew: self, shot, number, buffers, cost: Cost::default() };
+            trace(&mut tile, part);
+            tile.cost
+        };
+        let (start, count) = (Instant::now(), parts.len() as u32);
+        let is_short = |done: u32| start.elapsed() * count < SHORT * done;
+        let mut is_alone = matches!(self, Self::Alone);
+        let mut tiles = parts.into_iter().enumerate();
+        let (mut buffers, mut costs) = (Buffers::default(), Vec::with_capacity(tiles.len()));
+        for (done, tile) in (1..).zip(tiles.by_ref()) {
+            costs.push(work(&mut buffers, tile));
+            if !is_alone && !is_short(done) {
+                // Not asked before: it may start rayon's own threads.
+                is_alone = rayon::current_num_threads() == 1;
+                if !is_alone {
+                    break;
+                }
+            }
+        }
+        if tiles.len() > 0 {
+            // One by one: a thread that has had the easy ones takes more.
+            costs.par_extend(tiles.par_bridge().map_init(Buffers::default, work));
+        }
+        let mut sum = Cost::default();
+        for cost in costs {
+            sum += cost;
+        }
+        sum
+    }
+}
+
+/// A tile of a shot, on the thread that traces it.
+pub(super) struct Tile<'t> {
+    crew: Crew<'t>,
+    shot: &'t Shot<'t>,
+    /// Its place among the tiles.
+    pub(super) number: usize,
+    pub(super) buffers: &'t mut Buffers,
+    cost: Cost,
+}
+
+impl Tile<'_> {
+    /// Traces samples of the wanted pixels, and gives `sink` the buffers after each batch, with its run and the places of
+    /// its pixels among the wanted ones, until the crew is cancelled.
+    pub(super) fn trace(&mut self, runs: &Runs, mut sink: impl FnMut(&mut Buffers, &Run, Range<usize>)) {
+        let Self { crew, shot, number, ref mut buffers, ref mut cost } = *self;
+        let start = Instant::now();
+        'runs: for run in runs.iter() {
+            for batch in run.batches(buffers.wanted.len()) {
+                if crew.is_cancelled() {
+                    break 'runs;
+                }
+                cost.rays += buffers.trace(shot, number, &run, batch.clone());
+                sink(buffers, &run, batch);
+            }
+        }
+        cost.work += start.elapsed();
+    }
+}
