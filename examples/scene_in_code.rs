@@ -38,5 +38,5 @@ fn ball(k: u8) -> Object {
     let part = f32::from(k) / 9.0;
     let (sin, cos) = libm::sincosf(part * TAU);
     let reflectance = LinearRgb::new(0.9, 0.1, 0.1).lerp(LinearRgb::new(0.1, 0.2, 0.9), part);
-    Object::new(Sphere::new(Vec3::new(2.2 * cos, 0.5, 2.2 * sin), 0.5), Material::Diffuse(reflectance))
+    Object::new(Sphere::new(Vec3::new(2.2 * cos, 0.5, 2.2 * sin), 0.5), Material::diffuse(reflectance))
 }

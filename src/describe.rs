@@ -2,9 +2,10 @@
 //! light comes from.
 
 use crate::camera::{Camera, Pose};
+use crate::color::LinearRgb;
 use crate::framebuffer::Resolution;
-use crate::light::{Falloff, PointLight};
-use crate::material::Material;
+use crate::lanes::Vector;
+use crate::light::Light;
 use crate::scene::{Background, Scene};
 use crate::shape::Shape;
 use crate::text::listed;
@@ -87,13 +88,10 @@ impl Told<'_> {
 
     /// A colour, a kind and a size.
     fn what(&self, object: u32, part: &Covered) -> String {
-        let scene = &self.scene.objects()[object as usize];
-        let color = match scene.material {
-            Material::Checker { a, b, .. } => format!("{} and {} checkered", color(a), color(b)),
-            Material::Diffuse(reflectance) => color(reflectance).to_owned(),
-            Material::Own => color(part.mean_reflectance()).to_owned(),
-        };
-        scene.shape.described(&color)
+        let object = &self.scene.objects()[object as usize];
+        let own = || color(part.mean_reflectance()).to_owned();
+        let color = object.material.described(color).unwrap_or_else(own);
+        object.shape.described(&color)
     }
 
     /// What it stands before and behind; what has no end is behind everything.
@@ -184,24 +182,23 @@ impl Told<'_> {
     fn lights(&self) -> String {
         let target = self.camera.pose().target;
         let mut lights: Vec<_> = self.scene.lights().iter().collect();
-        let strength = |light: &PointLight| {
-            light.intensity.luminance()
-                / match light.falloff {
-                    Falloff::InverseSquare => light.position.distance_squared(target).max(f32::MIN_POSITIVE),
-                    Falloff::None => 1.0,
-                }
+        let strength = |light: &Light| {
+            let to_light = light.to_light(Vector::<f32>::splat(target));
+            let distance_squared = to_light.dot(to_light).max(f32::MIN_POSITIVE);
+            let [r, g, b] = light.irradiance(to_light, distance_squared, 1.0);
+            LinearRgb::new(r, g, b).luminance()
         };
         lights.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
         let mut text = if lights.is_empty() { "No lights.\n" } else { "Lights, the strongest first:\n" }.to_owned();
         for light in lights.iter().take(MOST) {
-            let brightest = light.intensity.r.max(light.intensity.g).max(light.intensity.b).max(f32::MIN_POSITIVE);
-            let _ = writeln!(
-                text,
-                "- {}, {}, {} from the target",
-                color(light.intensity * (1.0 / brightest)),
-                self.comes_from(light.position - target),
-                number(light.position.distance(target))
-            );
+            let light_color = light.color();
+            let brightest = light_color.r.max(light_color.g).max(light_color.b).max(f32::MIN_POSITIVE);
+            let to_light = Vec3::from(light.to_light(Vector::<f32>::splat(target)));
+            let distance = light.position().map(|position| position.distance(target));
+            let distance =
+                distance.map_or_else(String::new, |distance| format!(", {} from the target", number(distance)));
+            let _ =
+                writeln!(text, "- {}, {}{distance}", color(light_color * (1.0 / brightest)), self.comes_from(to_light));
         }
         if lights.len() > MOST {
             let _ = writeln!(text, "- and {} more", lights.len() - MOST);

@@ -12,11 +12,11 @@ use crate::camera::Camera;
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::hit::{self, Hit, Test, Witness};
-use crate::light::PointLight;
+use crate::light::Light;
 use crate::ray::Ray;
 use crate::render::{Steps, trace_pixel};
 use crate::scene::{Scene, ToneCurve};
-use crate::shade::{self, Incidence, TO_THE_LIGHT};
+use crate::shade::{self, Incidence};
 use crate::shape::{Surface, SurfacePoint};
 use crate::tone::{shown, tone};
 use glam::{Vec2, Vec3};
@@ -140,11 +140,11 @@ fn seen(scene: &Scene, steps: &Steps, hit: Hit) -> Seen {
     }
 }
 
-fn lit(scene: &Scene, light: &PointLight, point: &SurfacePoint) -> Lit {
+fn lit(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lit {
     let incidence = shade::incidence_on_either_side(light, point);
     let ray = shade::shadow_ray(light, point);
     let blocker = (scene.shadows() && 0.0 < incidence.cosine)
-        .then(|| hit::any_hit_witnessed(scene, &ray, TO_THE_LIGHT, &mut Listener::default()))
+        .then(|| hit::any_hit_witnessed(scene, &ray, light.in_the_way(), &mut Listener::default()))
         .flatten();
     Lit { incidence, blocker: blocker.map(|hit| (Name::of(scene, hit.object, hit.part), hit.t)) }
 }

@@ -113,9 +113,12 @@
 //!
 //! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, its [`Part`](shape::Part)s are what rays are
 //! tested against. A new surface is one file under `shape/`, where it implements [`Surface`](shape::Surface),
-//! [`Described`](shape::Described) and [`InSceneFile`](shape::InSceneFile), and one line in the table of `shape`, from which the
-//! enums, the lists and trees of `accel`, and what reads, describes and explains it are made (`shape::cube` is such a surface,
-//! for tests). No crate reads scenes or meshes:
+//! [`Described`](shape::Described), [`InSceneFile`](written::InSceneFile) and [`CheckedShape`](shape::CheckedShape), and
+//! one line in the table of `shape`, from which the enums, the lists and trees of `accel`, and what reads, describes and
+//! explains it are made (`shape::cube` is such a surface, for tests). In the same way a material is a file under
+//! `material/` with a type that is [`Reflecting`](material::Reflecting) and a line in the table of [`material`], and a light
+//! a file under `light/` with a [`LightSource`](light::LightSource) and a line in the table of [`light`]
+//! (`material::stripes` and `light::sun`, for tests). No crate reads scenes or meshes:
 //! [`scene_text`] and [`mesh_file`] say which were tried, and at which file each failed. No fixed epsilon: see
 //! [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin). No order of the tree that could show: see
 //! [`Bounds::crossed`](bounds::Bounds::crossed). No flag says that a picture is out of date: the shot that is wanted is

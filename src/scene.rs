@@ -18,7 +18,7 @@ use crate::accel::Accelerator;
 use crate::bounds::Bounds;
 use crate::camera::Camera;
 use crate::color::LinearRgb;
-use crate::light::PointLight;
+use crate::light::Light;
 use crate::material::Material;
 use crate::shape::Shape;
 use std::sync::Arc;
@@ -48,7 +48,7 @@ struct Checked {
     views: Vec<Camera>,
     background: Background,
     ambient: LinearRgb,
-    lights: Vec<PointLight>,
+    lights: Vec<Light>,
     shadows: bool,
     exposure: f32,
     tone_curve: ToneCurve,
@@ -103,8 +103,8 @@ impl Scene {
         self.checked.ambient
     }
 
-    /// Returns the point sources.
-    pub fn lights(&self) -> &[PointLight] {
+    /// Returns the lights, in the order of the scene file.
+    pub fn lights(&self) -> &[Light] {
         &self.checked.lights
     }
 
@@ -164,8 +164,8 @@ impl Scene {
     }
 
     /// Returns the scene under other [lights](Self::lights).
-    pub fn with_lights(self, lights: Vec<PointLight>) -> Self {
-        self.with(|checked| checked.lights = lights)
+    pub fn with_lights(self, lights: impl IntoIterator<Item: Into<Light>>) -> Self {
+        self.with(|checked| checked.lights = lights.into_iter().map(Into::into).collect())
     }
 
     /// Returns the scene with or without [shadows](Self::shadows).
@@ -205,8 +205,8 @@ pub struct Object {
 
 impl Object {
     /// That surface of that material.
-    pub fn new(shape: impl Into<Shape>, material: Material) -> Self {
-        Self { shape: shape.into(), material }
+    pub fn new(shape: impl Into<Shape>, material: impl Into<Material>) -> Self {
+        Self { shape: shape.into(), material: material.into() }
     }
 }
 

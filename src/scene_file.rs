@@ -13,10 +13,12 @@ mod path;
 pub use camera::{WrittenCamera, WrittenLens};
 pub use path::{PathFile, WrittenKeyframe};
 
+use crate::light::WrittenLight;
+use crate::material::WrittenMaterial;
 use crate::progress::Watcher;
 use crate::scene_text::{Faults, Node, Value};
 use crate::shape::WrittenShape;
-use crate::written::{Fields, Reader, Spanned, WrittenColor, WrittenNumber, WrittenVector};
+use crate::written::{Fields, Reader, Spanned, WrittenColor, WrittenNumber};
 
 /// A whole scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,28 +61,6 @@ pub enum WrittenBackground {
     },
 }
 
-/// A point light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WrittenLight {
-    /// Where it is.
-    pub position: Option<WrittenVector>,
-    /// Its colour; white if none is given.
-    pub color: Option<WrittenColor>,
-    /// The factor of its colour; 1 if none is given.
-    pub intensity: Option<WrittenNumber>,
-    /// How it grows weaker; by the inverse square if nothing is given.
-    pub falloff: Option<WrittenFalloff>,
-}
-
-/// How a light grows weaker.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WrittenFalloff {
-    /// `InverseSquare`
-    InverseSquare,
-    /// `None`
-    None,
-}
-
 /// How bright light is brought into the screen's range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrittenToneCurve {
@@ -99,22 +79,6 @@ pub struct NamedMaterial {
     pub name: Box<str>,
     /// What it names.
     pub material: Option<WrittenMaterial>,
-}
-
-/// A material.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum WrittenMaterial {
-    /// One reflectance.
-    Diffuse(Option<WrittenColor>),
-    /// Two, in squares.
-    Checker {
-        /// Of the first square; `"#dddddd"` if none is given.
-        a: Option<WrittenColor>,
-        /// Of the others; `"#333333"` if none is given.
-        b: Option<WrittenColor>,
-        /// A square's side; 1 if none is given.
-        size: Option<WrittenNumber>,
-    },
 }
 
 /// An object's material.
@@ -198,20 +162,8 @@ impl Reader<'_> {
     }
 
     fn light(&mut self, node: &Node<'_>) -> Option<WrittenLight> {
-        self.variant(node, "a light", "a light Point(position: ...)", &["Point"])?;
-        let known = &["position", "color", "intensity", "falloff"];
-        let fields = self.fields(node, "a Point light", "Point(position: ...)", known)?;
-        Some(WrittenLight {
-            position: self.required(&fields, "position", Reader::point),
-            color: self.optional(&fields, "color", Reader::color),
-            intensity: self.optional(&fields, "intensity", Reader::number),
-            falloff: self.optional_word(&fields, "falloff", Reader::falloff),
-        })
-    }
-
-    fn falloff(&mut self, node: &Node<'_>) -> Option<WrittenFalloff> {
-        let all = [("InverseSquare", WrittenFalloff::InverseSquare), ("None", WrittenFalloff::None)];
-        self.choice(node, "a falloff", &all)
+        let name = self.variant(node, "a light", "a light, such as Point(position: ...)", WrittenLight::NAMES)?;
+        WrittenLight::read(name, self, node)
     }
 
     fn tone_curve(&mut self, node: &Node<'_>) -> Option<WrittenToneCurve> {

@@ -13,9 +13,9 @@
 use crate::color::LinearRgb;
 use crate::hit::{self, EightHits, Kernel};
 use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Number, Vector, set_bits};
-use crate::light::{Falloff, PointLight};
+use crate::light::Light;
 use crate::material::Material;
-use crate::ray::{EightRays, Interval, Ray};
+use crate::ray::{EightRays, Ray};
 use crate::scene::{Background, Object, Scene};
 use crate::shape::SurfacePoint;
 use crate::simd::{self, Work};
@@ -67,7 +67,7 @@ pub fn arriving_light(
     arriving.resize(points.len(), EightArriving { light: ambient, lit_by: [0; LANES] });
     for (number, light) in scene.lights().iter().enumerate() {
         simd::run(Aim { light, points, shadows });
-        shadow_rays += shadows.trace(scene);
+        shadow_rays += shadows.trace(scene, light);
         simd::run(Arrive { number, shadows, arriving });
     }
     shadow_rays
@@ -75,7 +75,7 @@ pub fn arriving_light(
 
 /// The shadow rays of points that face a light.
 struct Aim<'w> {
-    light: &'w PointLight,
+    light: &'w Light,
     points: &'w [EightPoints],
     shadows: &'w mut ShadowRays,
 }
@@ -99,9 +99,9 @@ impl Work for Aim<'_> {
 
 impl ShadowRays {
     /// Finds out which rays meet an object before the light. Returns how many of them were traced.
-    fn trace(&mut self, scene: &Scene) -> u64 {
+    fn trace(&mut self, scene: &Scene, light: &Light) -> u64 {
         if scene.shadows() {
-            hit::any_hits(Kernel::Auto, scene, &self.rays, TO_THE_LIGHT, &mut self.blocked);
+            hit::any_hits(Kernel::Auto, scene, &self.rays, light.in_the_way(), &mut self.blocked);
             count(&self.rays)
         } else {
             self.blocked.clear();
@@ -143,13 +143,13 @@ impl Work for Arrive<'_> {
 }
 
 /// A ray to the light from each point.
-pub fn shadow_rays(light: &PointLight, points: &[EightPoints], rays: &mut Vec<EightRays>) {
+pub fn shadow_rays(light: &Light, points: &[EightPoints], rays: &mut Vec<EightRays>) {
     rays.clear();
     simd::run(Shadows { light, points, rays });
 }
 
 struct Shadows<'w> {
-    light: &'w PointLight,
+    light: &'w Light,
     points: &'w [EightPoints],
     rays: &'w mut Vec<EightRays>,
 }
@@ -167,9 +167,9 @@ impl Work for Shadows<'_> {
 
 /// [`shadow_ray`] from those of the points that are asked about.
 #[inline(always)]
-fn eight_shadow_rays<N: Lanes>(light: &PointLight, points: &EightPoints, asked: u32) -> EightRays {
+fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, asked: u32) -> EightRays {
     let origin = points.position.load() + points.facing.load() * N::load(&points.clearance);
-    let direction = Vector::splat(light.position) - origin;
+    let direction = light.to_light(origin);
     let rays = EightRays { origin: origin.store(), direction: direction.store(), asked };
     if asked == ALL || asked == 0 {
         return rays;
@@ -263,7 +263,7 @@ impl Reflect<'_> {
 pub struct Incidence {
     /// The lecture's **l**: the direction to the light. Unit length.
     pub l: Vec3,
-    /// The distance to the light.
+    /// The distance to the light; infinite if the light is infinitely far.
     pub distance: f32,
     /// n.l; not greater than 0 where the surface faces away from the light, which then does nothing.
     pub cosine: f32,
@@ -272,14 +272,15 @@ pub struct Incidence {
 }
 
 /// What the light does at the point, or nothing where the surface faces away from it.
-pub fn incidence(light: &PointLight, point: &SurfacePoint) -> Option<Incidence> {
+pub fn incidence(light: &Light, point: &SurfacePoint) -> Option<Incidence> {
     Some(incidence_on_either_side(light, point)).filter(|incidence| 0.0 < incidence.cosine)
 }
 
 /// The same also where the surface faces away from the light.
-pub fn incidence_on_either_side(light: &PointLight, point: &SurfacePoint) -> Incidence {
+pub fn incidence_on_either_side(light: &Light, point: &SurfacePoint) -> Incidence {
     let (position, normal) = (Vector::<f32>::splat(point.position), Vector::splat(point.normal));
     let (_, Falling { l, distance, cosine, light: [r, g, b] }) = falling(light, position, normal);
+    let distance = if light.position().is_some() { distance } else { f32::INFINITY };
     Incidence { l: l.into(), distance, cosine, light: LinearRgb::new(r, g, b) }
 }
 
@@ -293,19 +294,13 @@ struct Falling<N> {
 
 /// What the light does at points, and whether the surface there faces it.
 #[inline(always)]
-fn falling<N: Number>(light: &PointLight, position: Vector<N>, normal: Vector<N>) -> (N::Mask, Falling<N>) {
-    let to_light = Vector::splat(light.position) - position;
+fn falling<N: Number>(light: &Light, position: Vector<N>, normal: Vector<N>) -> (N::Mask, Falling<N>) {
+    let to_light = light.to_light(position);
     let distance_squared = to_light.dot(to_light);
     let distance = distance_squared.sqrt();
     let l = Vector { x: to_light.x / distance, y: to_light.y / distance, z: to_light.z / distance };
     let cosine = normal.dot(l);
-    let weakening = match light.falloff {
-        Falloff::InverseSquare => cosine / distance_squared,
-        Falloff::None => cosine,
-    };
-    let LinearRgb { r, g, b } = light.intensity;
-    let bounded = |intensity: f32| (N::splat(intensity) * weakening).min(N::splat(BRIGHTEST));
-    let light = [bounded(r), bounded(g), bounded(b)];
+    let light = light.irradiance(l, distance_squared, cosine).map(|band| band.min(N::splat(BRIGHTEST)));
     // No also for NaN: a light that lies in the surface.
     (N::splat(0.0).lt(cosine), Falling { l, distance, cosine, light })
 }
@@ -314,15 +309,11 @@ fn falling<N: Number>(light: &PointLight, position: Vector<N>, normal: Vector<N>
 /// numbers: NaN has other bits on other CPUs. (`min` of NaN and a number is the number.)
 const BRIGHTEST: f32 = 1e30;
 
-/// The ray from a point to a light. The light is at t = 1.
-pub fn shadow_ray(light: &PointLight, point: &SurfacePoint) -> Ray {
+/// The ray from a point to a light. The light is at t = 1, or infinitely far.
+pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Ray {
     let origin = point.ray_origin();
-    Ray { origin, direction: light.position - origin }
+    Ray { origin, direction: light.to_light(Vector::<f32>::splat(origin)).into() }
 }
-
-/// Where on a [`shadow_ray`] an object is in the light's way. Not at t = 0: at the origin of the coordinates a clearance
-/// in proportion to them is nothing, and the point lies in its surface exactly.
-pub const TO_THE_LIGHT: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 };
 
 /// The light that comes along rays that meet nothing.
 #[inline(always)]

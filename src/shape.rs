@@ -34,7 +34,7 @@ pub use one_by_one::OneByOne;
 pub use plane::Plane;
 pub use sphere::{Balls, Sphere};
 pub use triangle::{Corners, Edges, Triangle};
-pub use written::{InSceneFile, Meshes, WrittenShape};
+pub use written::{CheckedShape, Meshes, WrittenShape};
 
 /// What every surface can answer.
 pub trait Surface {

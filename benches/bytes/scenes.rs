@@ -11,7 +11,7 @@ use termtrace::cell;
 use termtrace::color::LinearRgb;
 use termtrace::grid::Size;
 use termtrace::light::{Falloff, PointLight};
-use termtrace::material::Material;
+use termtrace::material::{Checker, Material};
 use termtrace::render::render;
 use termtrace::scene::{Background, Object, Scene};
 use termtrace::shape::{Plane, Sphere};
@@ -190,8 +190,8 @@ impl Sequence {
 
     fn floor(&self) -> Object {
         let (dark, light) = (LinearRgb::grey(0.25), LinearRgb::grey(0.7));
-        let checker = Material::Checker { a: dark, b: light, size: 1.0 };
-        let material = if self.kind.has_checker() { checker } else { Material::Diffuse(light) };
+        let checker = Material::from(Checker { a: dark, b: light, size: 1.0 });
+        let material = if self.kind.has_checker() { checker } else { Material::diffuse(light) };
         Object::new(Plane::new(Vec3::ZERO, Vec3::Y), material)
     }
 
@@ -199,7 +199,7 @@ impl Sequence {
         let way = Vec3::new(0.0, 0.4 * (1.0 - cos), 1.5 * sin);
         self.balls.iter().enumerate().map(move |(at, ball)| {
             let center = if self.moving == Some(at) { ball.center + way } else { ball.center };
-            Object::new(Sphere::new(center, ball.radius), Material::Diffuse(ball.reflectance))
+            Object::new(Sphere::new(center, ball.radius), Material::diffuse(ball.reflectance))
         })
     }
 

@@ -148,7 +148,10 @@ fn add_equation(equation: &Equation, lines: &mut Vec<String>) {
 fn add_light(at: usize, lit: &Lit, lines: &mut Vec<String>) {
     let incidence = &lit.incidence;
     lines.push(String::new());
-    lines.push(format!("light {at}: distance {}", number(incidence.distance).trim_start()));
+    lines.push(match incidence.distance {
+        f32::INFINITY => format!("light {at}: infinitely far"),
+        distance => format!("light {at}: distance {}", number(distance).trim_start()),
+    });
     lines.push(vector("l", incidence.l));
     let n_l = number(incidence.cosine);
     match lit.blocker {

@@ -35,7 +35,7 @@ impl Refining {
         Self { tiles, first: vec![Vec::new(); tiles.count()], watched: vec![Vec::new(); tiles.count()], passes: 0 }
     }
 
-    /// Traces what is lacking to [`Sampling::UpTo`] that number of samples of the scene, which has to be the same each time.
+    /// Traces what is lacking to [`Sampling::UpTo`](super::Sampling::UpTo) that number of samples of the scene, which has to be the same each time.
     /// Returns what that took.
     ///
     /// # Errors

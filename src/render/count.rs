@@ -9,7 +9,7 @@ use crate::framebuffer::Resolution;
 use crate::hit::{self, Kernel};
 use crate::lanes::{Eight, Lanes, Number};
 use crate::scene::Scene;
-use crate::shade::{self, ShadowRays, TO_THE_LIGHT};
+use crate::shade::{self, ShadowRays};
 use std::num::NonZeroU32;
 use std::ops::Add;
 
@@ -67,7 +67,7 @@ fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
     }
     for light in scene.lights().iter().filter(|_| scene.shadows()) {
         shade::shadow_rays(light, points, shadow_rays);
-        hit::any_hits(kernel, scene, shadow_rays, TO_THE_LIGHT, blocked);
+        hit::any_hits(kernel, scene, shadow_rays, light.in_the_way(), blocked);
         let (traced, blocked) = (shade::count(shadow_rays), blocked.iter().map(|met| u64::from(met.count_ones())));
         counts.rays += traced;
         counts.lit += traced - blocked.sum::<u64>();

@@ -9,18 +9,14 @@ pub(super) mod path;
 pub(super) use camera::radians;
 
 use super::{Background, Checked, Draft, Object, ToneCurve};
-use crate::color::{LinearRgb, Srgb8};
-use crate::light::{Falloff, PointLight};
-use crate::material::Material;
+use crate::color::LinearRgb;
+use crate::material::{Material, WrittenMaterial};
 use crate::progress::Watcher;
-use crate::scene_file::{
-    MaterialUse, SceneFile, WrittenBackground, WrittenFalloff, WrittenLight, WrittenMaterial, WrittenObject,
-    WrittenToneCurve,
-};
+use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
-use crate::shape::Meshes;
+use crate::shape::{Meshes, WrittenShape};
 use crate::text::{closest, listed};
-use crate::written::{Checker, Spanned, WrittenColor, WrittenNumber, color_named};
+use crate::written::{Spanned, Validator, WrittenNumber, color_named};
 use std::collections::HashMap;
 
 /// The scene, if nothing is wrong with it; else every fault has been added. Once the watcher has gone, objects are left
@@ -31,14 +27,14 @@ pub(super) fn check(
     watcher: &Watcher<'_>,
     faults: &mut Faults,
 ) -> Option<Draft> {
-    let mut checker = Checker { faults };
-    let camera = file.camera.as_ref().and_then(|camera| checker.camera(camera));
-    let views = file.views.iter().filter_map(|view| checker.view(view, camera.as_ref())).collect();
-    let background = file.background.as_ref().and_then(|written| checker.background(written));
-    let ambient = file.ambient.and_then(|color| checker.light_color(color));
-    let lights = file.lights.iter().filter_map(|light| checker.light(light)).collect();
-    let exposure = file.exposure.and_then(|exposure| checker.exposure(exposure));
-    let objects = checker.objects(file, meshes, watcher);
+    let mut validator = Validator { faults };
+    let camera = file.camera.as_ref().and_then(|camera| validator.camera(camera));
+    let views = file.views.iter().filter_map(|view| validator.view(view, camera.as_ref())).collect();
+    let background = file.background.as_ref().and_then(|written| validator.background(written));
+    let ambient = file.ambient.and_then(|color| validator.light_color(color));
+    let lights = file.lights.iter().filter_map(|light| light.check(&mut validator)).collect();
+    let exposure = file.exposure.and_then(|exposure| validator.exposure(exposure));
+    let objects = validator.objects(file, meshes, watcher);
     if !faults.is_empty() {
         return None;
     }
@@ -61,7 +57,7 @@ pub(super) fn check(
 
 const LARGEST_EXPOSURE: f64 = 1e6;
 
-impl Checker<'_> {
+impl Validator<'_> {
     fn exposure(&mut self, written: WrittenNumber) -> Option<f32> {
         let Spanned { value, span } = written;
         if value > 0.0 && value as f32 > 0.0 && value <= LARGEST_EXPOSURE {
@@ -81,43 +77,14 @@ impl Checker<'_> {
         }
     }
 
-    // Light ---------------------------------------------------------------------------------------------------------
-
-    fn light(&mut self, written: &WrittenLight) -> Option<PointLight> {
-        let position = written.position.and_then(|position| self.point(position));
-        let color = match written.color {
-            Some(color) => self.light_color(color),
-            None => Some(LinearRgb::grey(1.0)),
-        };
-        let factor = match written.intensity {
-            Some(intensity) => self.amount("the intensity", intensity),
-            None => Some(1.0),
-        };
-        Some(PointLight {
-            position: position?,
-            intensity: color? * factor?,
-            falloff: match written.falloff {
-                None | Some(WrittenFalloff::InverseSquare) => Falloff::InverseSquare,
-                Some(WrittenFalloff::None) => Falloff::None,
-            },
-        })
-    }
-
     // Objects -------------------------------------------------------------------------------------------------------
 
     fn objects(&mut self, file: &SceneFile, meshes: &mut dyn Meshes, watcher: &Watcher<'_>) -> Vec<Object> {
-        let materials: HashMap<&str, Named> = file
-            .materials
-            .iter()
-            .map(|named| {
-                let material = named.material.as_ref();
-                let made = Named {
-                    is_checker: matches!(material, Some(WrittenMaterial::Checker { .. })),
-                    material: material.and_then(|material| self.material(material)),
-                };
-                (&*named.name, made)
-            })
-            .collect();
+        let mut materials = HashMap::new();
+        for NamedMaterial { name, material } in &file.materials {
+            let made = material.as_ref().map(|written| Made { written, material: written.check(self) });
+            materials.insert(&**name, made);
+        }
         let object = |written: &WrittenObject| {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
             let (shape, material) = (shape?, material?);
@@ -126,54 +93,41 @@ impl Checker<'_> {
         file.objects.iter().take_while(|_| !watcher.is_gone()).filter_map(object).collect()
     }
 
-    fn material(&mut self, written: &WrittenMaterial) -> Option<Material> {
-        match *written {
-            WrittenMaterial::Diffuse(color) => self.reflectance(color?).map(Material::Diffuse),
-            WrittenMaterial::Checker { a, b, size } => {
-                let mut color_or = |color: Option<WrittenColor>, grey: u8| match color {
-                    Some(color) => self.reflectance(color),
-                    None => Some(LinearRgb::from_srgb8(Srgb8::new(grey, grey, grey))),
-                };
-                let (a, b) = (color_or(a, 0xdd), color_or(b, 0x33));
-                let size = size.map_or(Some(1.0), |size| self.length("size of a square", size));
-                let (a, b, size) = (a?, b?, size?);
-                Some(Material::Checker { a, b, size })
-            }
-        }
-    }
-
     fn material_of(
         &mut self,
         object: &WrittenObject,
         file: &SceneFile,
-        materials: &HashMap<&str, Named>,
+        materials: &HashMap<&str, Option<Made<'_>>>,
     ) -> Option<Material> {
         let Some(Spanned { value, span }) = &object.material else {
             return Some(if object.shape.brings_colors() { Material::Own } else { Material::DEFAULT });
         };
-        let (is_checker, material) = match value {
-            MaterialUse::Inline(written) => {
-                (matches!(written, WrittenMaterial::Checker { .. }), self.material(written))
-            }
+        let Made { written, material } = match value {
+            MaterialUse::Inline(written) => Made { written, material: written.check(self) },
             MaterialUse::Named(name) => match materials.get(&**name) {
-                Some(named) => (named.is_checker, named.material),
+                Some(&made) => made?,
                 None if !file.materials_complete => return None,
                 None => return self.fault(*span, || unknown_material(name, file)),
             },
         };
-        if is_checker && !object.shape.has_coordinates() {
+        if let Some((owner, pattern)) = written.pattern()
+            && !object.shape.has_coordinates()
+        {
             return self.fault(*span, || {
+                let wanted = WrittenShape::with_coordinates().join(" or ");
                 let shape = object.shape.owner();
-                format!("a Checker needs a Plane, on which its squares are laid out; this is {shape}")
+                format!("{owner} needs {wanted}, on which {pattern} are laid out; this is {shape}")
             });
         }
         material
     }
 }
 
-/// A named material after its check.
-struct Named {
-    is_checker: bool,
+/// A material, and what was written of it.
+#[derive(Clone, Copy)]
+struct Made<'f> {
+    written: &'f WrittenMaterial,
+    /// Nothing if it is faulty.
     material: Option<Material>,
 }
 

@@ -4,7 +4,7 @@ use super::{Background, Checked, Draft, Object, Scene};
 use crate::bounds::Bounds;
 use crate::camera::{Camera, Pose, ViewRectangle};
 use crate::color::{LinearRgb, Srgb8};
-use crate::light::{Falloff, PointLight};
+use crate::light::{Falloff, Light, PointLight};
 use crate::material::Material;
 use crate::mesh_file::MeshFile;
 use crate::shape::{Mesh, Plane};
@@ -44,7 +44,7 @@ impl Draft {
         }
         let floor = Plane::new(Vec3::new(middle.x, bounds.min.y, middle.z), Vec3::Y);
         let objects =
-            vec![Object::new(Mesh::from(mesh), Material::Own), Object::new(floor, Material::Diffuse(grey(0xb0)))];
+            vec![Object::new(Mesh::from(mesh), Material::Own), Object::new(floor, Material::diffuse(grey(0xb0)))];
         Some(Self::new(Checked {
             background: Background::Gradient {
                 bottom: grey(0x90),
@@ -76,8 +76,8 @@ fn camera(bounds: &Bounds, middle: Vec3) -> Option<Camera> {
 }
 
 /// As strong everywhere.
-fn light(position: Vec3, strength: f32) -> PointLight {
-    PointLight { position, intensity: LinearRgb::grey(strength), falloff: Falloff::None }
+fn light(position: Vec3, strength: f32) -> Light {
+    PointLight { position, intensity: LinearRgb::grey(strength), falloff: Falloff::None }.into()
 }
 
 fn grey(level: u8) -> LinearRgb {

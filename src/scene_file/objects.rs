@@ -1,9 +1,10 @@
 //! Objects and materials as they are written.
 
-use super::{MaterialUse, NamedMaterial, WrittenMaterial, WrittenObject};
+use super::{MaterialUse, NamedMaterial, WrittenObject};
+use crate::material::WrittenMaterial;
 use crate::scene_text::{Body, Node, Value, quoted};
 use crate::shape::WrittenShape;
-use crate::written::{Reader, Spanned, description, group_of_values, values};
+use crate::written::{Reader, Spanned, description, values};
 use std::collections::HashSet;
 
 impl Reader<'_> {
@@ -68,37 +69,7 @@ impl Reader<'_> {
 
     fn material(&mut self, node: &Node<'_>) -> Option<WrittenMaterial> {
         const FORM: &str = "a material, such as Diffuse(\"red\"), or the name of one";
-        match self.variant(node, "a material", FORM, &["Diffuse", "Checker"])? {
-            "Diffuse" => self.diffuse(node),
-            _ => self.checker(node),
-        }
-    }
-
-    /// `Diffuse(colour)` or `Diffuse(reflectance: colour)`.
-    fn diffuse(&mut self, node: &Node<'_>) -> Option<WrittenMaterial> {
-        if let Value::Group(group) = &node.value
-            && let Body::Values(values) = &group.body
-        {
-            let [color] = &values[..] else {
-                self.fault(node.span, || {
-                    let found = group_of_values(values, "");
-                    format!("expected one colour, as in Diffuse(\"#rrggbb\") or Diffuse((r, g, b)), found {found}")
-                });
-                return None;
-            };
-            return Some(WrittenMaterial::Diffuse(self.color(color)));
-        }
-        let fields = self.fields(node, "Diffuse", "Diffuse(\"#rrggbb\")", &["reflectance"])?;
-        Some(WrittenMaterial::Diffuse(self.required(&fields, "reflectance", Reader::color)))
-    }
-
-    fn checker(&mut self, node: &Node<'_>) -> Option<WrittenMaterial> {
-        let form = "Checker(a: ..., b: ..., size: ...)";
-        let fields = self.fields(node, "a Checker", form, &["a", "b", "size"])?;
-        Some(WrittenMaterial::Checker {
-            a: self.optional(&fields, "a", Reader::color),
-            b: self.optional(&fields, "b", Reader::color),
-            size: self.optional(&fields, "size", Reader::number),
-        })
+        let name = self.variant(node, "a material", FORM, WrittenMaterial::NAMES)?;
+        WrittenMaterial::read(name, self, node)
     }
 }

@@ -1,11 +1,11 @@
 //! Ray-cube intersection: for tests, a surface that is one file, and one line in the table of surfaces.
 
-use super::{Described, Equation, InSceneFile, Meshes, Points, Shape, Step, Surface, SurfacePoint};
+use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::Vector;
 use crate::ray::{Interval, Probe, Ray};
 use crate::text::number;
-use crate::written::{Checker, Fields, Reader, WrittenNumber, WrittenVector};
+use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenNumber, WrittenVector};
 use glam::Vec3;
 
 /// All points x with max |x - c| - h = 0, the faces perpendicular to the axes.
@@ -200,10 +200,12 @@ impl InSceneFile for Cube {
             side: reader.optional(fields, "side", Reader::number),
         }
     }
+}
 
-    fn check(written: &WrittenCube, checker: &mut Checker<'_>, _: &mut dyn Meshes) -> Option<Shape> {
-        let center = written.center.and_then(|center| checker.point(center));
-        let side = written.side.map_or(Some(1.0), |side| checker.length("side", side));
+impl CheckedShape for Cube {
+    fn check(written: &WrittenCube, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let center = written.center.and_then(|center| validator.point(center));
+        let side = written.side.map_or(Some(1.0), |side| validator.length("side", side));
         Some(Self::new(center?, 0.5 * side?).into())
     }
 }

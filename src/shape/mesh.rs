@@ -1,13 +1,13 @@
 //! A mesh: triangles that share their corners.
 
-use super::{InSceneFile, Meshes, Shape, Surface, SurfacePoint, Triangle};
+use super::{CheckedShape, Meshes, Shape, Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::mesh_file::MeshFile;
 use crate::progress::Unfinished;
 use crate::ray::{Interval, Probe, Ray};
 use crate::scene_text::{Node, Value};
-use crate::written::{Checker, FARTHEST, Fields, Reader, SHORTEST, Spanned, WrittenVector};
+use crate::written::{FARTHEST, Fields, InSceneFile, Reader, SHORTEST, Spanned, Validator, WrittenVector};
 use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
 use std::ops::{Add, Mul};
 
@@ -141,7 +141,6 @@ impl InSceneFile for Mesh {
     const OWNER: &'static str = "a Mesh";
     const FORM: &'static str = "Mesh(path: \"...\")";
     const FIELDS: &'static [&'static str] = &["path", "scale", "rotate", "translate", "material"];
-    const BRINGS_COLORS: bool = true;
 
     fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenMesh {
         WrittenMesh {
@@ -151,19 +150,23 @@ impl InSceneFile for Mesh {
             translate: reader.optional(fields, "translate", Reader::point),
         }
     }
+}
 
-    fn check(written: &WrittenMesh, checker: &mut Checker<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
-        let placed = placement(checker, written);
+impl CheckedShape for Mesh {
+    const BRINGS_COLORS: bool = true;
+
+    fn check(written: &WrittenMesh, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
+        let placed = placement(validator, written);
         let path = written.path.as_ref()?;
         let mesh = match meshes.mesh(&path.value) {
             Ok(mesh) => mesh,
             Err(Unfinished::Cancelled) => return None,
-            Err(Unfinished::Failed(message)) => return checker.fault(path.span, || message),
+            Err(Unfinished::Failed(message)) => return validator.fault(path.span, || message),
         };
         let (scale, turn, translation) = placed?;
         match mesh.transformed(scale, turn, translation) {
             Some(mesh) if is_near(&mesh) => Some(Self::from(mesh).into()),
-            _ => checker.fault(path.span, || {
+            _ => validator.fault(path.span, || {
                 "this mesh reaches beyond ±1e9; scale it down, or light cannot be followed".to_owned()
             }),
         }
@@ -195,40 +198,40 @@ fn angles(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<WrittenVector> {
 
 /// Scale, rotation and translation of a mesh.
 fn placement(
-    checker: &mut Checker<'_>,
+    validator: &mut Validator<'_>,
     &WrittenMesh { scale, rotate, translate, .. }: &WrittenMesh,
 ) -> Option<(Vec3, Mat3, Vec3)> {
     let scale = match scale {
-        Some(scale) => factors(checker, scale),
+        Some(scale) => factors(validator, scale),
         None => Some(Vec3::ONE),
     };
     let turn = match rotate {
-        Some(angles) => turn(checker, angles),
+        Some(angles) => turn(validator, angles),
         None => Some(Mat3::IDENTITY),
     };
     let translation = match translate {
-        Some(translation) => checker.point(translation),
+        Some(translation) => validator.point(translation),
         None => Some(Vec3::ZERO),
     };
     Some((scale?, turn?, translation?))
 }
 
 /// Along no axis nothing is left of a mesh; it may be mirrored.
-fn factors(checker: &mut Checker<'_>, written: WrittenVector) -> Option<Vec3> {
+fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3> {
     let factors = written.components.map(|factor| factor.value);
     match written.components.iter().find(|factor| !(SHORTEST..=FARTHEST).contains(&factor.value.abs())) {
         Some(factor) => {
-            checker.fault(factor.span, || "a factor must lie between 1e-9 and 1e9, or be as far below 0".to_owned())
+            validator.fault(factor.span, || "a factor must lie between 1e-9 and 1e9, or be as far below 0".to_owned())
         }
         None => Some(DVec3::from_array(factors).as_vec3()),
     }
 }
 
 /// About x first, then about y, then about z; counterclockwise for who looks against the axis.
-fn turn(checker: &mut Checker<'_>, written: WrittenVector) -> Option<Mat3> {
+fn turn(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
     const MOST_TURNS: f64 = 36_000.0;
     if let Some(angle) = written.components.iter().find(|angle| angle.value.abs() > MOST_TURNS) {
-        return checker.fault(angle.span, || "an angle must lie within ±36000 degrees".to_owned());
+        return validator.fault(angle.span, || "an angle must lie within ±36000 degrees".to_owned());
     }
     let [x, y, z] = written.components.map(|angle| cosine_and_sine(angle.value));
     let about_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.0, x.1), DVec3::new(0.0, -x.1, x.0));

@@ -2,13 +2,13 @@
 
 use super::equation::quotient;
 use super::{
-    AtCrossing, Crossable, Described, Endless, Equation, InSceneFile, Meshes, Points, Shape, Step, Surface,
+    AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, Meshes, Points, Shape, Step, Surface,
     SurfacePoint,
 };
 use crate::bounds::Bounds;
 use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
-use crate::written::{Checker, Fields, Reader, WrittenVector};
+use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenVector};
 use glam::Vec3;
 
 /// All points x with (x - a).n = 0. It has no end, and is seen from both sides.
@@ -162,7 +162,6 @@ impl InSceneFile for Plane {
     const OWNER: &'static str = "a Plane";
     const FORM: &'static str = "Plane(point: ..., normal: ...)";
     const FIELDS: &'static [&'static str] = &["point", "normal", "material"];
-    const HAS_COORDINATES: bool = true;
 
     fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenPlane {
         WrittenPlane {
@@ -170,10 +169,14 @@ impl InSceneFile for Plane {
             normal: reader.required(fields, "normal", Reader::direction),
         }
     }
+}
 
-    fn check(written: &WrittenPlane, checker: &mut Checker<'_>, _: &mut dyn Meshes) -> Option<Shape> {
-        let point = written.point.and_then(|point| checker.point(point));
-        let normal = written.normal.and_then(|normal| checker.unit_vector("normal", normal));
+impl CheckedShape for Plane {
+    const HAS_COORDINATES: bool = true;
+
+    fn check(written: &WrittenPlane, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let point = written.point.and_then(|point| validator.point(point));
+        let normal = written.normal.and_then(|normal| validator.unit_vector("normal", normal));
         Some(Self::new(point?, normal?.as_vec3()).into())
     }
 }

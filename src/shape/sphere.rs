@@ -1,14 +1,14 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
 use super::{
-    AtCrossing, Crossable, Described, Equation, InSceneFile, Meshes, Points, Shape, SideBySide, Step, Surface,
+    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SideBySide, Step, Surface,
     SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
 use crate::text::number;
-use crate::written::{Checker, Fields, Reader, WrittenNumber, WrittenVector};
+use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenNumber, WrittenVector};
 use glam::Vec3;
 use std::array::from_fn;
 
@@ -245,10 +245,12 @@ impl InSceneFile for Sphere {
             radius: reader.required(fields, "radius", Reader::number),
         }
     }
+}
 
-    fn check(written: &WrittenSphere, checker: &mut Checker<'_>, _: &mut dyn Meshes) -> Option<Shape> {
-        let center = written.center.and_then(|center| checker.point(center));
-        let radius = written.radius.and_then(|radius| checker.length("radius", radius));
+impl CheckedShape for Sphere {
+    fn check(written: &WrittenSphere, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let center = written.center.and_then(|center| validator.point(center));
+        let radius = written.radius.and_then(|radius| validator.length("radius", radius));
         Some(Self::new(center?, radius?).into())
     }
 }

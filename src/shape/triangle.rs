@@ -3,14 +3,14 @@
 use super::described::sides;
 use super::equation::quotient;
 use super::{
-    AtCrossing, Crossable, Described, Equation, InSceneFile, Meshes, Points, Shape, SideBySide, Step, Surface,
+    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SideBySide, Step, Surface,
     SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Pencil, Probe, Ray, Rays, nearest_in, sheared_exactly};
 use crate::scene_text::Node;
-use crate::written::{Checker, Fields, Reader, WrittenVector};
+use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenVector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
@@ -363,9 +363,11 @@ impl InSceneFile for Triangle {
     fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenTriangle {
         WrittenTriangle { corners: reader.required(fields, "corners", corners) }
     }
+}
 
-    fn check(written: &WrittenTriangle, checker: &mut Checker<'_>, _: &mut dyn Meshes) -> Option<Shape> {
-        let [a, b, c] = written.corners?.map(|corner| checker.point(corner));
+impl CheckedShape for Triangle {
+    fn check(written: &WrittenTriangle, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let [a, b, c] = written.corners?.map(|corner| validator.point(corner));
         Some(Self::new([a?, b?, c?]).into())
     }
 }

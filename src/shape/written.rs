@@ -4,37 +4,18 @@ use super::{Shape, surfaces};
 use crate::mesh_file::MeshFile;
 use crate::progress::Unfinished;
 use crate::scene_text::Node;
-use crate::written::{Checker, Fields, Reader};
-use std::fmt::Debug;
+use crate::written::{Fields, InSceneFile, Reader, Validator};
 
-/// How a surface is written in a scene file.
-pub trait InSceneFile {
-    /// What the author wrote, typed.
-    type Written: Clone + Debug + PartialEq;
-
-    /// The word before its fields: "Sphere".
-    const NAME: &'static str;
-
-    /// The same after an article, for messages.
-    const OWNER: &'static str;
-
-    /// How all of it is written: "Sphere(center: ..., radius: ...)".
-    const FORM: &'static str;
-
-    /// Its fields, and last `material`, which every object has.
-    const FIELDS: &'static [&'static str];
-
+/// A surface as it is written, and its check.
+pub trait CheckedShape: InSceneFile {
     /// Whether patterns can be laid out on it.
     const HAS_COORDINATES: bool = false;
 
     /// Whether it may bring colours of its own.
     const BRINGS_COLORS: bool = false;
 
-    /// Reads its fields.
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> Self::Written;
-
     /// Returns the shape, if nothing is wrong with it; else faults are added, or were.
-    fn check(written: &Self::Written, checker: &mut Checker<'_>, meshes: &mut dyn Meshes) -> Option<Shape>;
+    fn check(written: &Self::Written, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape>;
 }
 
 /// Where meshes come from.
@@ -74,9 +55,9 @@ macro_rules! written {
             }
 
             /// Returns the shape, if nothing is wrong with it; else faults are added, or were.
-            pub(crate) fn check(&self, checker: &mut Checker<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
+            pub(crate) fn check(&self, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
                 match self {
-                    $($(#[$on])* Self::$surface(written) => super::$surface::check(written, checker, meshes),)*
+                    $($(#[$on])* Self::$surface(written) => super::$surface::check(written, validator, meshes),)*
                 }
             }
 
@@ -85,6 +66,12 @@ macro_rules! written {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::OWNER,)*
                 }
+            }
+
+            /// The names, after articles, of the surfaces on which patterns can be laid out.
+            pub(crate) fn with_coordinates() -> Vec<&'static str> {
+                let all = [$($(#[$on])* (super::$surface::HAS_COORDINATES, super::$surface::OWNER),)*];
+                all.into_iter().filter_map(|(has_coordinates, owner)| has_coordinates.then_some(owner)).collect()
             }
 
             /// Whether patterns can be laid out on it.

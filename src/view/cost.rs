@@ -3,7 +3,7 @@
 use crate::hit::{Test, Witness, any_hit_witnessed, closest_hit_witnessed};
 use crate::render::Sight;
 use crate::scene::Scene;
-use crate::shade::{self, TO_THE_LIGHT};
+use crate::shade;
 
 /// How many tests there were: surfaces, and nodes of the tree, whose boxes are tested at once.
 #[derive(Default)]
@@ -24,7 +24,7 @@ pub(super) fn tests(scene: &Scene, sight: &Sight) -> u32 {
     closest_hit_witnessed(scene, &sight.ray, &mut count);
     if let Some(surface) = sight.surface(scene).filter(|_| scene.shadows()) {
         for light in scene.lights().iter().filter(|light| shade::incidence(light, &surface).is_some()) {
-            any_hit_witnessed(scene, &shade::shadow_ray(light, &surface), TO_THE_LIGHT, &mut count);
+            any_hit_witnessed(scene, &shade::shadow_ray(light, &surface), light.in_the_way(), &mut count);
         }
     }
     count.0

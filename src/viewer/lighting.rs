@@ -5,7 +5,7 @@ use super::lights::Lights;
 use super::mark::LightMark;
 use crate::camera::Camera;
 use crate::control::{self, Command, Toward};
-use crate::light::PointLight;
+use crate::light::Light;
 use glam::{Vec2, Vec3};
 
 /// How far a press moves a light, in parts of the picture's height.
@@ -18,7 +18,7 @@ impl Viewer {
     pub(super) fn take_light(&mut self) {
         let (camera, aspect_ratio) = (self.eye.camera(), self.part().aspect_ratio());
         let pointer = self.hand.at().unwrap_or(Vec2::splat(0.5));
-        let nearest = |lights: &[PointLight]| nearest(lights, &camera?, pointer, aspect_ratio);
+        let nearest = |lights: &[Light]| nearest(lights, &camera?, pointer, aspect_ratio);
         let taken = self.gallery.lights_mut().and_then(|lights| {
             let light = lights.take_next(nearest)?;
             Some((light, lights.all().len(), lights.held()))
@@ -97,11 +97,11 @@ impl Viewer {
 }
 
 /// The light in front of the eye that is nearest to the pointer on the screen, or any if there is none in front of it.
-fn nearest(lights: &[PointLight], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
-    let away = |light: &PointLight| {
-        let place = control::place_of(camera, light.position, aspect_ratio);
+fn nearest(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
+    let away = |position: Vec3| {
+        let place = control::place_of(camera, position, aspect_ratio);
         place.map_or(f32::INFINITY, |place| ((place - pointer) * Vec2::new(aspect_ratio, 1.0)).length())
     };
-    let lights = lights.iter().map(away).enumerate();
+    let lights = lights.iter().enumerate().filter_map(|(light, of)| Some((light, away(of.position()?))));
     lights.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(light, _)| light)
 }

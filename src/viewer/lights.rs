@@ -1,6 +1,6 @@
 //! A scene, and its lights where the user has moved them.
 
-use crate::light::PointLight;
+use crate::light::Light;
 use crate::scene::Scene;
 use glam::Vec3;
 
@@ -9,7 +9,7 @@ pub(super) struct Lights {
     /// With the lights where they are.
     scene: Scene,
     /// As the scene's file has them.
-    written: Vec<PointLight>,
+    written: Vec<Light>,
     /// Which one the user has taken hold of.
     held: Option<usize>,
     /// How many times one was moved.
@@ -27,7 +27,7 @@ impl Lights {
         &self.scene
     }
 
-    pub(super) fn all(&self) -> &[PointLight] {
+    pub(super) fn all(&self) -> &[Light] {
         self.scene.lights()
     }
 
@@ -36,10 +36,13 @@ impl Lights {
         self.moves
     }
 
-    /// Takes hold of the light after the one that is held, or else of the one that `first` gives; its number.
-    pub(super) fn take_next(&mut self, first: impl FnOnce(&[PointLight]) -> Option<usize>) -> Option<usize> {
-        let count = self.all().len();
-        self.held = self.held.map(|held| (held + 1) % count).or_else(|| first(self.all()));
+    /// Takes hold of the light after the one that is held, or else of the one that `first` gives, and returns its number.
+    /// A light that is infinitely far cannot be held.
+    pub(super) fn take_next(&mut self, first: impl FnOnce(&[Light]) -> Option<usize>) -> Option<usize> {
+        let lights = self.all();
+        let after =
+            |held: usize| (held + 1..lights.len()).chain(0..=held).find(|&next| lights[next].position().is_some());
+        self.held = self.held.and_then(after).or_else(|| first(lights));
         self.held
     }
 
@@ -50,21 +53,45 @@ impl Lights {
 
     /// Where the one is that is held.
     pub(super) fn held(&self) -> Option<Vec3> {
-        self.all().get(self.held?).map(|light| light.position)
+        self.all().get(self.held?).and_then(Light::position)
     }
 
     /// Where the scene has the one that is held.
     pub(super) fn home(&self) -> Option<Vec3> {
-        self.written.get(self.held?).map(|light| light.position)
+        self.written.get(self.held?).and_then(Light::position)
     }
 
     /// Moves the one that is held, if there is one, to a place that is finite.
     pub(super) fn move_held(&mut self, to: Vec3) {
         if let Some(held) = self.held.filter(|_| to.is_finite()) {
             let mut lights = self.all().to_vec();
-            lights[held].position = to;
+            lights[held] = lights[held].moved_to(to);
             self.scene = self.scene.clone().with_lights(lights);
             self.moves += 1;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Camera, Pose, ViewRectangle};
+    use crate::color::LinearRgb;
+    use crate::light::{Falloff, PointLight, Sun};
+
+    #[test]
+    fn a_light_that_is_infinitely_far_cannot_be_held() {
+        let pose = Pose { eye: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y };
+        let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(0.8).expect("an angle")).expect("a pose");
+        let sun = Light::from(Sun { direction: Vec3::Y });
+        let lamp = |x| PointLight { position: Vec3::X * x, intensity: LinearRgb::grey(1.0), falloff: Falloff::None };
+        let lights = [sun, lamp(1.0).into(), sun, lamp(2.0).into()];
+        let mut lights = Lights::of(Scene::new(camera, Vec::new()).with_lights(lights));
+        let first = |lights: &[Light]| lights.iter().position(|light| light.position().is_some());
+        let taken = [(); 4].map(|()| lights.take_next(first));
+        assert_eq!(taken, [Some(1), Some(3), Some(1), Some(3)]);
+        lights.move_held(Vec3::Z);
+        assert_eq!((lights.held(), lights.home()), (Some(Vec3::Z), Some(Vec3::X * 2.0)));
+        assert_eq!(Lights::of(Scene::new(camera, Vec::new()).with_lights([sun])).take_next(first), None);
     }
 }

@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3};
 use std::path::Path;
 use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::{LinearRgb, Srgb8};
-use termtrace::light::{Falloff, PointLight};
-use termtrace::material::Material;
+use termtrace::light::{Falloff, Light, PointLight};
+use termtrace::material::{Checker, Material};
 use termtrace::scene::{Background, Object, Scene, ToneCurve};
 use termtrace::shape::{Part, Plane, Sphere};
 
@@ -99,7 +99,7 @@ fn lights_multiply_color_by_intensity() {
     .lights()
     .to_vec();
     let position = Vec3::new(1.0, 2.0, 3.0);
-    let light = |intensity, falloff| PointLight { position, intensity, falloff };
+    let light = |intensity, falloff| Light::from(PointLight { position, intensity, falloff });
     let expected =
         [light(LinearRgb::grey(1.0), Falloff::InverseSquare), light(LinearRgb::new(4.0, 2.0, 0.0), Falloff::None)];
     assert_eq!(lights, expected);
@@ -117,11 +117,11 @@ fn objects_and_their_materials() {
         ]",
     );
     let sphere = Sphere::new(Vec3::new(1.0, 2.0, 3.0), 4.0);
-    let checker = Material::Checker { a: srgb(0xdd, 0xdd, 0xdd), b: srgb(0x33, 0x33, 0x33), size: 2.0 };
+    let checker = Material::from(Checker { a: srgb(0xdd, 0xdd, 0xdd), b: srgb(0x33, 0x33, 0x33), size: 2.0 });
     let expected = [
         Object::new(sphere, Material::DEFAULT),
-        Object::new(sphere, Material::Diffuse(srgb(255, 0, 0))),
-        Object::new(sphere, Material::Diffuse(LinearRgb::grey(0.5))),
+        Object::new(sphere, Material::diffuse(srgb(255, 0, 0))),
+        Object::new(sphere, Material::diffuse(LinearRgb::grey(0.5))),
         Object::new(Plane::new(Vec3::Y, Vec3::Y), checker),
     ];
     assert_eq!(scene.objects(), expected);

@@ -7,7 +7,6 @@ use glam::{Vec2, Vec3};
 use termtrace::capabilities::CellMode;
 use termtrace::control::{point_dragged, point_wheeled};
 use termtrace::grid::Size;
-use termtrace::light::PointLight;
 
 /// The whole picture's width over its height.
 const ASPECT_RATIO: f32 = 40.0 / 24.0;
@@ -16,8 +15,8 @@ const ASPECT_RATIO: f32 = 40.0 / 24.0;
 #[track_caller]
 fn wait_for_light(session: &mut Session, light: Vec3) {
     let scene = load(BALL);
-    let light = PointLight { position: light, ..scene.lights()[0] };
-    let scene = scene.with_lights(vec![light]);
+    let light = scene.lights()[0].moved_to(light);
+    let scene = scene.with_lights([light]);
     let wanted = picture(&scene, CellMode::HALF_BLOCK, Size::new(40, 12), 2.0);
     session.wait_for("the picture in another light", SOON, |seen| shows(seen.screen(), &wanted));
 }
@@ -25,7 +24,7 @@ fn wait_for_light(session: &mut Session, light: Vec3) {
 /// In the ball's scene.
 fn dragged(by: Vec2) -> Vec3 {
     let scene = load(BALL);
-    point_dragged(scene.camera(), scene.lights()[0].position, by, ASPECT_RATIO)
+    point_dragged(scene.camera(), scene.lights()[0].position().expect("a point light"), by, ASPECT_RATIO)
 }
 
 #[test]
@@ -42,7 +41,7 @@ fn arrows_move_the_light_that_g_takes() {
     session.send(b"g\x1b[1;2D\x1b");
     wait_for_light(&mut session, dragged(Vec2::new(-6.0 * step / ASPECT_RATIO, step)));
     session.send(b"gr\x1b");
-    let start = load(BALL).lights()[0].position;
+    let start = load(BALL).lights()[0].position().expect("a point light");
     wait_for_light(&mut session, start);
     session.send(b"g\x1b[5~\x1b");
     wait_for_light(&mut session, point_wheeled(load(BALL).camera(), start, 1.0));
@@ -53,7 +52,7 @@ fn arrows_move_the_light_that_g_takes() {
 
 #[test]
 fn a_drag_moves_the_light_and_the_wheel_its_distance() {
-    let start = load(BALL).lights()[0].position;
+    let start = load(BALL).lights()[0].position().expect("a point light");
     let mut session = looking(BALL, &[]);
     session.send(b"g");
     session.wait_for_text("(*)");

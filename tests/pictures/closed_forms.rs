@@ -9,12 +9,12 @@ use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::framebuffer::{Framebuffer, Resolution};
 use termtrace::hit::any_hit;
-use termtrace::light::{Falloff, PointLight};
-use termtrace::material::Material;
+use termtrace::light::{Falloff, LightSource, PointLight};
+use termtrace::material::{Checker, Material};
 use termtrace::ray::{Interval, Probe, Ray};
 use termtrace::render::render;
 use termtrace::scene::{Background, Object, Scene, ToneCurve};
-use termtrace::shade::{TO_THE_LIGHT, incidence, shadow_ray};
+use termtrace::shade::{incidence, shadow_ray};
 use termtrace::shape::{Plane, Side, Sphere, Surface};
 use termtrace::tone::tone;
 
@@ -32,7 +32,7 @@ fn light(position: [f32; 3], intensity: f32) -> PointLight {
     }
 }
 
-const GREY: Material = Material::Diffuse(LinearRgb::grey(0.5));
+const GREY: Material = Material::diffuse(LinearRgb::grey(0.5));
 
 fn unit_sphere() -> Object {
     Object::new(Sphere::new(Vec3::ZERO, 1.0), GREY)
@@ -132,7 +132,7 @@ fn ambient_light_is_reflected_by_its_share() {
 
 #[test]
 fn colours_of_lights_and_surfaces_multiply_and_lights_add() {
-    let surface = Material::Diffuse(LinearRgb::new(0.2, 0.4, 0.8));
+    let surface = Material::diffuse(LinearRgb::new(0.2, 0.4, 0.8));
     let object = Object::new(Plane::new(Vec3::ZERO, Vec3::Y), surface);
     let lamps =
         [([3.0, 4.0, 0.0], LinearRgb::new(25.0, 0.0, 50.0)), ([0.0, 12.0, 5.0], LinearRgb::new(0.0, 169.0, 169.0))];
@@ -254,15 +254,15 @@ fn a_shadow_reaches_the_point_of_contact() {
     let scene = lit(camera([0.0, 2.0, 4.0], [0.0; 3], 40.0), vec![floor(), ball], vec![lamp]);
     for x in [0.01, 0.03, 0.1, 0.5] {
         let down = Ray { origin: Vec3::new(3.0 + x, 1.0, 0.0), direction: -Vec3::Y };
-        let shadow = shadow_ray(&lamp, &floor().shape.part(0).at_crossing(&down, 1.0));
-        assert!(any_hit(&scene, &shadow, TO_THE_LIGHT), "lit at {x} from the contact");
+        let shadow = shadow_ray(&lamp.into(), &floor().shape.part(0).at_crossing(&down, 1.0));
+        assert!(any_hit(&scene, &shadow, PointLight::IN_THE_WAY), "lit at {x} from the contact");
         assert!(shadow.origin.y < x * x / 2.0, "inside the ball at {x}: {}", shadow.origin);
     }
 }
 
 #[test]
 fn of_two_surfaces_in_one_place_the_first_is_seen() {
-    let ball = |grey| Object::new(Sphere::new(Vec3::ZERO, 1.0), Material::Diffuse(LinearRgb::grey(grey)));
+    let ball = |grey| Object::new(Sphere::new(Vec3::ZERO, 1.0), Material::diffuse(LinearRgb::grey(grey)));
     for (first, second) in [(0.2, 0.7), (0.7, 0.2)] {
         let mut scene = Scene::new(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![ball(first), ball(second)]);
         scene = scene.with_ambient(LinearRgb::grey(1.0));
@@ -299,7 +299,8 @@ fn gradient_of_the_background() {
 #[test]
 fn squares_of_a_checker() {
     let (a, b) = (LinearRgb::grey(0.9), LinearRgb::grey(0.1));
-    let board = Object::new(Plane::new(Vec3::new(1.0, 0.0, -2.0), Vec3::Y), Material::Checker { a, b, size: 2.0 });
+    let board =
+        Object::new(Plane::new(Vec3::new(1.0, 0.0, -2.0), Vec3::Y), Material::from(Checker { a, b, size: 2.0 }));
     // The square from (1, -2) to (3, 0) is of a; its neighbours are of b.
     for (x, z, expected) in
         [(1.5, -1.5, 0.9), (2.9, -0.1, 0.9), (3.1, -0.1, 0.1), (0.9, -1.5, 0.1), (0.9, -2.1, 0.9), (2.0, 0.1, 0.1)]
@@ -314,7 +315,7 @@ fn squares_of_a_checker() {
 #[test]
 fn edges_of_a_checker() {
     let (a, b) = (LinearRgb::grey(0.9), LinearRgb::grey(0.1));
-    let board = Object::new(Plane::new(Vec3::ZERO, Vec3::Y), Material::Checker { a, b, size: 2.0 });
+    let board = Object::new(Plane::new(Vec3::ZERO, Vec3::Y), Material::from(Checker { a, b, size: 2.0 }));
     // From height 1 straight down a pixel is so wide.
     let width = 2.0 * tan_of_degrees(5.0);
     let share = |distance: f64| 0.5 - distance / width;
@@ -457,7 +458,7 @@ fn light_that_no_number_can_hold_is_still_a_number() {
     let point = floor().shape.part(0).at_crossing(&Ray { origin: Vec3::Y, direction: -Vec3::Y }, 1.0);
     for height in [1e-10, 1e-18, 1e-22] {
         let lamp = PointLight { intensity: LinearRgb::new(1e24, 0.0, 1.0), ..light([0.0, height, 0.0], 0.0) };
-        let arriving = incidence(&lamp, &point).expect("it faces the light").light;
+        let arriving = incidence(&lamp.into(), &point).expect("it faces the light").light;
         assert!(arriving.is_finite(), "{arriving:?} at {height}");
     }
 }

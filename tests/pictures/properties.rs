@@ -8,12 +8,12 @@ use termtrace::color::LinearRgb;
 use termtrace::framebuffer::{Framebuffer, Resolution};
 use termtrace::hit::{Hit, Kernel, any_hit, any_hits, closest_hit, closest_hits};
 use termtrace::lanes::LANES;
-use termtrace::light::{Falloff, PointLight};
+use termtrace::light::{Falloff, Light, LightSource, PointLight};
 use termtrace::material::Material;
 use termtrace::ray::{EightRays, Interval, Probe, Ray};
 use termtrace::render::render;
 use termtrace::scene::{Background, Object, Scene};
-use termtrace::shade::{TO_THE_LIGHT, shadow_ray};
+use termtrace::shade::shadow_ray;
 use termtrace::shape::{Part, Plane, Shape, Side, Sphere, Surface, Triangle};
 
 fn number(limit: f32) -> impl Strategy<Value = f32> {
@@ -78,7 +78,7 @@ fn camera() -> impl Strategy<Value = Camera> {
 
 fn objects() -> impl Strategy<Value = Vec<Object>> {
     let object =
-        (shape(), 0.1_f32..1.0).prop_map(|(shape, grey)| Object::new(shape, Material::Diffuse(LinearRgb::grey(grey))));
+        (shape(), 0.1_f32..1.0).prop_map(|(shape, grey)| Object::new(shape, Material::diffuse(LinearRgb::grey(grey))));
     prop::collection::vec(object, 1..8)
 }
 
@@ -89,7 +89,7 @@ fn scene() -> impl Strategy<Value = Scene> {
                 |(position, i)| PointLight { position, intensity: LinearRgb::grey(i), falloff: Falloff::InverseSquare };
             let (bottom, top) = (LinearRgb::grey(0.2), LinearRgb::new(0.3, 0.5, 0.9));
             Scene::new(camera, objects)
-                .with_lights(lights.into_iter().map(light).collect())
+                .with_lights(lights.into_iter().map(light))
                 .with_ambient(LinearRgb::grey(0.1))
                 .with_background(Background::Gradient { bottom, top })
         },
@@ -228,7 +228,7 @@ proptest! {
             prop_assert_eq!(bits(hits[at / LANES].hit(&scene, at % LANES)), bits(closest_hit(&scene, ray)));
         }
         let mut met = Vec::new();
-        for within in [Interval::IN_FRONT, TO_THE_LIGHT, Interval { min: 0.3, max: 0.9 }] {
+        for within in [Interval::IN_FRONT, PointLight::IN_THE_WAY, Interval { min: 0.3, max: 0.9 }] {
             any_hits(Kernel::Auto, &scene, &eights, within, &mut met);
             for (at, ray) in rays.iter().enumerate() {
                 prop_assert_eq!(met[at / LANES] >> (at % LANES) & 1 == 1, any_hit(&scene, ray, within));
@@ -293,7 +293,7 @@ proptest! {
         let pose = scene.camera().pose();
         let camera = scene.camera().with_pose(Pose { eye: pose.eye * s, target: pose.target * s, up: pose.up }).unwrap();
         let objects = scene.objects().iter().map(|object| Object::new(scaled(&object.shape, s), object.material)).collect();
-        let lights = scene.lights().iter().map(|l| PointLight { position: l.position * s, intensity: l.intensity * (s * s), falloff: l.falloff }).collect();
+        let lights = scene.lights().iter().map(|Light::Point(l)| PointLight { position: l.position * s, intensity: l.intensity * (s * s), falloff: l.falloff });
         let large = Scene::new(camera, objects).with_ambient(scene.ambient()).with_background(scene.background()).with_lights(lights);
         prop_assert_eq!(picture(&scene, scene.camera(), 24, 16).hash(), picture(&large, &camera, 24, 16).hash());
     }
@@ -364,7 +364,10 @@ fn surfaces_do_not_shadow_themselves() {
                 };
                 // Lights that the surface hardly faces are left out: the sphere really is in the way of those.
                 let faces = (lamp.position - point.position).normalize().dot(point.normal) > 1e-3;
-                faces && sphere.closest_crossing(&Probe::new(shadow_ray(&lamp, &point)), TO_THE_LIGHT).is_some()
+                faces
+                    && sphere
+                        .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::IN_THE_WAY)
+                        .is_some()
             })
             .count();
         assert!(shadowed <= 10, "{shadowed} false shadows of 100,000 at scale {scale}");
@@ -390,7 +393,9 @@ fn planes_do_not_shadow_themselves() {
                 };
                 let height = (lamp.position - point.position).dot(point.normal);
                 height > 1e-3 * scale
-                    && plane.closest_crossing(&Probe::new(shadow_ray(&lamp, &point)), TO_THE_LIGHT).is_some()
+                    && plane
+                        .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::IN_THE_WAY)
+                        .is_some()
             })
             .count();
         assert_eq!(shadowed, 0, "false shadows of 20,000 at scale {scale}");

@@ -16,14 +16,14 @@ use termtrace::hit::{
 };
 use termtrace::lanes::Eight;
 use termtrace::lanes::{ALL, LANES, set_bits};
-use termtrace::light::{Falloff, PointLight};
+use termtrace::light::{Falloff, LightSource, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
 use termtrace::progress::Cancelled;
 use termtrace::ray::{EightRays, Interval, Probe, Ray, Rays};
 use termtrace::render::render;
 use termtrace::scene::{Object, Scene};
-use termtrace::shade::{TO_THE_LIGHT, shadow_ray};
+use termtrace::shade::shadow_ray;
 use termtrace::shape::{Mesh, Plane, Shape, Side, Sphere, Surface, Triangle};
 
 fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
@@ -159,7 +159,7 @@ fn meshes_do_not_shadow_themselves() {
                 let lamp = PointLight { position, intensity: LinearRgb::grey(1.0), falloff: Falloff::None };
                 // Convex: whatever faces the light is lit by it.
                 let faces = (position - point.position).normalize().dot(point.facing) > 1e-3;
-                faces && any_hit(&scene, &shadow_ray(&lamp, &point), TO_THE_LIGHT)
+                faces && any_hit(&scene, &shadow_ray(&lamp.into(), &point), PointLight::IN_THE_WAY)
             })
             .count();
         assert!(shadowed <= 10, "{shadowed} false shadows of 100,000 at scale {scale}");
@@ -359,7 +359,7 @@ proptest! {
         let parts: u32 = scene.objects().iter().map(|object| object.shape.part_count()).sum();
         // More than a leaf of each kind: there is a tree, and its root is looked at.
         prop_assert!(parts <= 16 || witness.boxes > 0 || witness.tests.len() == parts as usize);
-        for within in [TO_THE_LIGHT, Interval { min: 0.3, max: 0.7 }, Interval { min: -1.0, max: 0.5 }] {
+        for within in [PointLight::IN_THE_WAY, Interval { min: 0.3, max: 0.7 }, Interval { min: -1.0, max: 0.5 }] {
             let mut witness = Listener::default();
             let met = any_hit_witnessed(&scene, &ray, within, &mut witness);
             prop_assert_eq!(met.is_some(), any_hit(&scene, &ray, within));
@@ -375,7 +375,7 @@ proptest! {
         for ray in &rays {
             let found = closest_hit(&scene, ray);
             prop_assert_eq!(found, brute_force(&scene, ray, Interval::IN_FRONT), "{:?}", ray);
-            for within in [TO_THE_LIGHT, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }] {
+            for within in [PointLight::IN_THE_WAY, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }] {
                 prop_assert_eq!(any_hit(&scene, ray, within), brute_force(&scene, ray, within).is_some(), "{:?} {:?}", ray, within);
             }
         }
@@ -449,7 +449,7 @@ proptest! {
         };
         // Once for all kernels.
         let closest = by_brute_force(Interval::IN_FRONT);
-        let met = [TO_THE_LIGHT, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }, Interval { min: -0.5, max: 0.5 }].map(|within| {
+        let met = [PointLight::IN_THE_WAY, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }, Interval { min: -0.5, max: 0.5 }].map(|within| {
             let bits = |hits: [Option<Hit>; LANES]| (0..LANES).filter(|&lane| hits[lane].is_some()).fold(0_u32, |met, lane| met | 1 << lane);
             (within, by_brute_force(within).into_iter().map(bits).collect::<Vec<_>>())
         });

@@ -12,6 +12,7 @@ use termtrace::color::{LinearRgb, Srgb8};
 use termtrace::export;
 use termtrace::framebuffer::Resolution;
 use termtrace::hit::closest_hit;
+use termtrace::light::Light;
 use termtrace::render::{Crew, Sampling, render};
 use termtrace::scene::Scene;
 use termtrace::shade;
@@ -127,9 +128,9 @@ fn views_say_what_is_there() {
             assert!([r, g, b].iter().zip(n).all(|(band, n)| band.abs_diff(n) <= 1), "{name} {at}");
             let is_front = surface.side == Side::Front;
             assert_eq!(shown(View::Facing, at).b > 128, is_front, "{name} {at}");
-            let in_the_way = |light| {
+            let in_the_way = |light: &Light| {
                 scene.shadows()
-                    && termtrace::hit::any_hit(&scene, &shade::shadow_ray(light, &surface), shade::TO_THE_LIGHT)
+                    && termtrace::hit::any_hit(&scene, &shade::shadow_ray(light, &surface), light.in_the_way())
             };
             let lit = scene.lights().iter().filter(|light| arriving(light).is_some() && !in_the_way(light)).count();
             let share = 0.22 + 0.78 * lit as f32 / scene.lights().len() as f32;

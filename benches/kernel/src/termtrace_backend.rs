@@ -9,12 +9,12 @@ use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::hit::{self, EightHits, Kernel};
 use termtrace::lanes::{Eight, Vector};
-use termtrace::light::{Falloff, PointLight};
+use termtrace::light::{Falloff, LightSource, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
 use termtrace::ray::{EightRays, Ray};
 use termtrace::scene::{Object, Scene as Traced};
-use termtrace::shade::{self, EightPoints, TO_THE_LIGHT};
+use termtrace::shade::{self, EightPoints};
 use termtrace::shape::{Mesh, Plane, Shape, Sphere};
 
 pub struct Termtrace {
@@ -40,7 +40,7 @@ thread_local! {
 
 impl Termtrace {
     pub fn new(s: &Scene) -> Self {
-        let grey = || Material::Diffuse(LinearRgb::grey(0.5));
+        let grey = || Material::diffuse(LinearRgb::grey(0.5));
         let spheres = s.spheres.iter().map(|&[x, y, z, r]| Shape::from(Sphere::new(Vec3::new(x, y, z), r)));
         let planes = s.plane.iter().map(|plane| Shape::from(Plane::new(vec3(plane.n * plane.h), vec3(plane.n))));
         let positions = s.verts.iter().copied().map(Vec3::from_array).collect();
@@ -74,7 +74,7 @@ impl Termtrace {
         if full {
             shade::surface_points(&self.scene, rays, hits, points);
             shade::shadow_rays(&self.light, points, shadow_rays);
-            hit::any_hits(self.kernel, &self.scene, shadow_rays, TO_THE_LIGHT, blocked);
+            hit::any_hits(self.kernel, &self.scene, shadow_rays, PointLight::IN_THE_WAY, blocked);
             // One from each hit.
             sum.rays = sum.hits;
             sum.lit = sum.hits - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
@@ -134,7 +134,7 @@ impl Backend for Termtrace {
         let start = Instant::now();
         for rays_of_a_tile in given.chunks(128) {
             if rays.any {
-                hit::any_hits(self.kernel, &self.scene, rays_of_a_tile, TO_THE_LIGHT, &mut blocked);
+                hit::any_hits(self.kernel, &self.scene, rays_of_a_tile, PointLight::IN_THE_WAY, &mut blocked);
                 sum.lit += shade::count(rays_of_a_tile) - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
             } else {
                 hit::closest_hits(self.kernel, &self.scene, rays_of_a_tile, &mut hits);

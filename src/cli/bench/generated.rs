@@ -23,7 +23,7 @@ pub(super) enum Generated {
 impl Generated {
     /// The scene, under one light.
     pub(super) fn scene(self) -> Result<Scene, CameraError> {
-        let grey = |shape: Shape| Object::new(shape, Material::Diffuse(LinearRgb::grey(0.5)));
+        let grey = |shape: Shape| Object::new(shape, Material::diffuse(LinearRgb::grey(0.5)));
         let light = PointLight {
             position: Vec3::new(4.0, 6.0, 5.0),
             intensity: LinearRgb::grey(50.0),

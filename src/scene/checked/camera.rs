@@ -3,14 +3,14 @@
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle};
 use crate::scene_file::{WrittenCamera, WrittenLens};
 use crate::scene_text::Span;
-use crate::written::{Checker, SHORTEST, Spanned, WrittenNumber, WrittenVector};
+use crate::written::{SHORTEST, Spanned, Validator, WrittenNumber, WrittenVector};
 use glam::{Vec2, Vec3};
 
 /// Of the view rectangle's sides to its focal length and each other.
 const LARGEST_RATIO: f64 = 1e6;
 const LARGEST_SHIFT: f64 = 1e3;
 
-impl Checker<'_> {
+impl Validator<'_> {
     pub(super) fn camera(&mut self, written: &WrittenCamera) -> Option<Camera> {
         let rectangle = self.rectangle_of(written);
         self.camera_with(written, (Vec3::Y, "its up vector (0, 1, 0)"), rectangle)

@@ -5,7 +5,7 @@ use crate::camera::{Camera, Pose};
 use crate::camera_path::{CameraPath, Keyframe};
 use crate::scene_file::{PathFile, WrittenKeyframe};
 use crate::scene_text::Faults;
-use crate::written::{Checker, Spanned, WrittenNumber};
+use crate::written::{Spanned, Validator, WrittenNumber};
 
 /// In seconds; more than eleven days.
 const LATEST: f64 = 1e6;
@@ -13,19 +13,19 @@ const LATEST: f64 = 1e6;
 /// The path, if nothing is wrong with it; else every fault has been added. What a keyframe does not say is as `camera`
 /// has it.
 pub(in crate::scene) fn check(file: &PathFile, camera: &Camera, faults: &mut Faults) -> Option<CameraPath> {
-    let mut checker = Checker { faults };
+    let mut validator = Validator { faults };
     let (written, span) = file.keyframes.as_ref()?;
-    let cameras: Vec<_> = written.iter().map(|keyframe| checker.keyframe(keyframe, camera)).collect();
-    checker.rising(written);
-    if !checker.faults.is_empty() {
+    let cameras: Vec<_> = written.iter().map(|keyframe| validator.keyframe(keyframe, camera)).collect();
+    validator.rising(written);
+    if !validator.faults.is_empty() {
         return None;
     }
     let cameras: Option<Vec<Keyframe>> = cameras.into_iter().collect();
     let path = CameraPath::through(cameras?);
-    path.or_else(|| checker.fault(*span, || "a camera path needs at least one keyframe".to_owned()))
+    path.or_else(|| validator.fault(*span, || "a camera path needs at least one keyframe".to_owned()))
 }
 
-impl Checker<'_> {
+impl Validator<'_> {
     fn keyframe(&mut self, written: &WrittenKeyframe, camera: &Camera) -> Option<Keyframe> {
         let time = written.time.and_then(|time| self.time(time));
         let eye = written.eye.and_then(|eye| self.point(eye));

@@ -2,8 +2,9 @@
 
 use crate::camera::{Basis, Camera};
 use crate::capabilities::{CellMode, Colors};
-use crate::explain::Explanation;
+use crate::explain::{Explanation, Lit};
 use crate::framebuffer::Resolution;
+use crate::light::Light;
 use crate::scene::Scene;
 use crate::viewer::look::Look;
 use glam::{Vec2, Vec3};
@@ -50,7 +51,10 @@ impl Inset {
         let ball = seen.and_then(|seen| seen.hit.surface(scene).circle());
         let ball = ball.map(|(center, radius)| (from_side(center), radius));
         let lights = seen.map_or(Vec::new(), |seen| {
-            let ends = scene.lights().iter().map(|light| from_side(light.position));
+            // Of a light that is infinitely far, its direction is shown, for as long a way as the ray's own.
+            let far = |lit: &Lit| seen.point.position + lit.incidence.l * t;
+            let end = |(light, lit): (&Light, &Lit)| from_side(light.position().unwrap_or_else(|| far(lit)));
+            let ends = scene.lights().iter().zip(&seen.lights).map(end);
             ends.zip(&seen.lights).map(|(end, lit)| (end, lit.faces() && lit.blocker.is_none())).collect()
         });
         Self {

@@ -12,11 +12,11 @@ pub(crate) const SHORTEST: f64 = 1e-9;
 const BRIGHTEST: f64 = 1e12;
 
 /// Checks values, and notes what is wrong with them.
-pub struct Checker<'f> {
+pub struct Validator<'f> {
     pub(crate) faults: &'f mut Faults,
 }
 
-impl Checker<'_> {
+impl Validator<'_> {
     pub(crate) fn fault<T>(&mut self, span: Span, message: impl FnOnce() -> String) -> Option<T> {
         self.faults.add(span, message);
         None

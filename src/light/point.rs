@@ -1,0 +1,109 @@
+//! Point sources.
+
+use super::LightSource;
+use crate::color::LinearRgb;
+use crate::lanes::{Number, Vector};
+use crate::scene_text::Node;
+use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, WrittenNumber, WrittenVector};
+use glam::Vec3;
+
+/// A point source: very small, and alike in all directions (lecture, "Shading", assumptions 1 and 2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointLight {
+    /// Where it is, in world space.
+    pub position: Vec3,
+    /// Radiant intensity times 1/pi (the diffuse reflection's constant is folded in): a white surface that faces
+    /// the light at distance 1 has this radiance. Not negative.
+    pub intensity: LinearRgb,
+    /// How the light grows weaker.
+    pub falloff: Falloff,
+}
+
+/// How a light grows weaker with the distance d.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Falloff {
+    /// By 1 / d^2, as light does.
+    #[default]
+    InverseSquare,
+    /// Not at all: the same at every distance, the lecture's simplest picture.
+    None,
+}
+
+impl LightSource for PointLight {
+    #[inline(always)]
+    fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N> {
+        Vector::splat(self.position) - point
+    }
+
+    #[inline(always)]
+    fn irradiance<N: Number>(&self, _: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
+        let weakening = match self.falloff {
+            Falloff::InverseSquare => cosine / distance_squared,
+            Falloff::None => cosine,
+        };
+        let LinearRgb { r, g, b } = self.intensity;
+        [N::splat(r) * weakening, N::splat(g) * weakening, N::splat(b) * weakening]
+    }
+
+    fn color(&self) -> LinearRgb {
+        self.intensity
+    }
+
+    fn position(&self) -> Option<Vec3> {
+        Some(self.position)
+    }
+
+    fn moved_to(self, position: Vec3) -> Self {
+        Self { position, ..self }
+    }
+
+    fn check(written: &WrittenPointLight, validator: &mut Validator<'_>) -> Option<Self> {
+        let position = written.position.and_then(|position| validator.point(position));
+        let color = match written.color {
+            Some(color) => validator.light_color(color),
+            None => Some(LinearRgb::grey(1.0)),
+        };
+        let factor = match written.intensity {
+            Some(intensity) => validator.amount("the intensity", intensity),
+            None => Some(1.0),
+        };
+        let falloff = written.falloff.unwrap_or_default();
+        Some(Self { position: position?, intensity: color? * factor?, falloff })
+    }
+}
+
+/// `Point(position: ...)`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenPointLight {
+    /// Where it is.
+    pub position: Option<WrittenVector>,
+    /// Its colour; white if none is given.
+    pub color: Option<WrittenColor>,
+    /// The factor of its colour; 1 if none is given.
+    pub intensity: Option<WrittenNumber>,
+    /// How it grows weaker; by the inverse square if nothing is given.
+    pub falloff: Option<Falloff>,
+}
+
+impl InSceneFile for PointLight {
+    type Written = WrittenPointLight;
+
+    const NAME: &'static str = "Point";
+    const OWNER: &'static str = "a Point light";
+    const FORM: &'static str = "Point(position: ...)";
+    const FIELDS: &'static [&'static str] = &["position", "color", "intensity", "falloff"];
+
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenPointLight {
+        WrittenPointLight {
+            position: reader.required(fields, "position", Reader::point),
+            color: reader.optional(fields, "color", Reader::color),
+            intensity: reader.optional(fields, "intensity", Reader::number),
+            falloff: reader.optional_word(fields, "falloff", falloff),
+        }
+    }
+}
+
+fn falloff(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Falloff> {
+    let all = [("InverseSquare", Falloff::InverseSquare), ("None", Falloff::None)];
+    reader.choice(node, "a falloff", &all)
+}

@@ -1,0 +1,106 @@
+//! Squares of two reflectances.
+
+use super::{Reflecting, bands};
+use crate::color::{LinearRgb, Srgb8};
+use crate::lanes::Number;
+use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, WrittenNumber};
+
+/// Squares of two reflectances in turn, laid out on the surface's own coordinates (of a plane).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checker {
+    /// Reflectance of the square that begins at the pattern's origin, and of every second one from there.
+    pub a: LinearRgb,
+    /// Reflectance of the others.
+    pub b: LinearRgb,
+    /// A square's side in world units, greater than 0.
+    pub size: f32,
+}
+
+impl Reflecting for Checker {
+    const PATTERN: Option<&'static str> = Some("its squares");
+
+    #[inline(always)]
+    fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
+        let size = N::splat(self.size);
+        let balance = mean_sign(uv[0] / size, footprint[0] / size) * mean_sign(uv[1] / size, footprint[1] / size);
+        let half = N::splat(0.5);
+        let [of_a, of_b] = [half + half * balance, half - half * balance];
+        let ([r0, g0, b0], [r1, g1, b1]) = (bands::<N>(self.a), bands::<N>(self.b));
+        [r0 * of_a + r1 * of_b, g0 * of_a + g1 * of_b, b0 * of_a + b1 * of_b]
+    }
+
+    fn described(&self, name: fn(LinearRgb) -> &'static str) -> String {
+        format!("{} and {} checkered", name(self.a), name(self.b))
+    }
+
+    fn check(written: &WrittenChecker, validator: &mut Validator<'_>) -> Option<Self> {
+        let mut color_or = |color: Option<WrittenColor>, grey: u8| match color {
+            Some(color) => validator.reflectance(color),
+            None => Some(LinearRgb::from_srgb8(Srgb8::new(grey, grey, grey))),
+        };
+        let (a, b) = (color_or(written.a, 0xdd), color_or(written.b, 0x33));
+        let size = written.size.map_or(Some(1.0), |size| validator.length("size of a square", size));
+        Some(Self { a: a?, b: b?, size: size? })
+    }
+}
+
+/// `Checker(a: ..., b: ..., size: ...)`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenChecker {
+    /// The reflectance of the first square; `"#dddddd"` if none is given.
+    pub a: Option<WrittenColor>,
+    /// The reflectance of the others; `"#333333"` if none is given.
+    pub b: Option<WrittenColor>,
+    /// A square's side; 1 if none is given.
+    pub size: Option<WrittenNumber>,
+}
+
+impl InSceneFile for Checker {
+    type Written = WrittenChecker;
+
+    const NAME: &'static str = "Checker";
+    const OWNER: &'static str = "a Checker";
+    const FORM: &'static str = "Checker(a: ..., b: ..., size: ...)";
+    const FIELDS: &'static [&'static str] = &["a", "b", "size"];
+
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenChecker {
+        WrittenChecker {
+            a: reader.optional(fields, "a", Reader::color),
+            b: reader.optional(fields, "b", Reader::color),
+            size: reader.optional(fields, "size", Reader::number),
+        }
+    }
+}
+
+/// The mean over an interval of what is 1 from each even whole number to the next, and -1 in between. So a pattern too
+/// fine for its pixels turns grey, instead of into another one (a box filter; in a plane that is the product of the two
+/// axes' means).
+#[inline(always)]
+fn mean_sign<N: Number>(middle: N, width: N) -> N {
+    let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5) * width);
+    let (start, end) = (middle - half, middle + half);
+    let (first, last) = (start.floor(), end.floor());
+    let sign = N::select(is_even(first), one, -one);
+    // Over one edge: what lies before it less what lies behind it.
+    let over_one = sign * ((last - start) - (end - last)) / (end - start);
+    let over_more = (integrated_sign(end) - integrated_sign(start)) / (end - start);
+    let over_edges = N::select((last - first).same(one), over_one, over_more);
+    let mean = N::select(first.same(last), sign, over_edges);
+    // Beyond, the mean is as good as zero, and intervals may be infinite, or not a number.
+    N::select(width.lt(N::splat(1e6)), mean, zero)
+}
+
+/// The integral of that sign from 0: up and down again.
+#[inline(always)]
+fn integrated_sign<N: Number>(x: N) -> N {
+    let (one, two) = (N::splat(1.0), N::splat(2.0));
+    let in_period = x - two * (N::splat(0.5) * x).floor();
+    one - (in_period - one).abs()
+}
+
+/// For whole numbers of any size; those above 2^24 are all even in f32.
+#[inline(always)]
+fn is_even<N: Number>(whole: N) -> N::Mask {
+    let half = whole * N::splat(0.5);
+    half.floor().same(half)
+}

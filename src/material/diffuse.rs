@@ -1,0 +1,61 @@
+//! One reflectance.
+
+use super::{Reflecting, bands};
+use crate::color::LinearRgb;
+use crate::lanes::Number;
+use crate::scene_text::{Body, Node, Value};
+use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, group_of_values};
+
+/// The same reflectance everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Diffuse {
+    /// The part of the light that is reflected.
+    pub reflectance: LinearRgb,
+}
+
+impl Reflecting for Diffuse {
+    #[inline(always)]
+    fn reflectance<N: Number>(&self, _: [N; 2], _: [N; 2]) -> [N; 3] {
+        bands(self.reflectance)
+    }
+
+    fn described(&self, name: fn(LinearRgb) -> &'static str) -> String {
+        name(self.reflectance).to_owned()
+    }
+
+    fn check(&reflectance: &Option<WrittenColor>, validator: &mut Validator<'_>) -> Option<Self> {
+        Some(Self { reflectance: validator.reflectance(reflectance?)? })
+    }
+}
+
+impl InSceneFile for Diffuse {
+    /// The reflectance.
+    type Written = Option<WrittenColor>;
+
+    const NAME: &'static str = "Diffuse";
+    const OWNER: &'static str = "Diffuse";
+    const FORM: &'static str = "Diffuse(\"#rrggbb\")";
+    const FIELDS: &'static [&'static str] = &["reflectance"];
+
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> Option<WrittenColor> {
+        reader.required(fields, "reflectance", Reader::color)
+    }
+
+    /// `Diffuse(colour)` or `Diffuse(reflectance: colour)`.
+    fn read_node(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Option<WrittenColor>> {
+        if let Value::Group(group) = &node.value
+            && let Body::Values(values) = &group.body
+        {
+            let [color] = &values[..] else {
+                reader.fault(node.span, || {
+                    let found = group_of_values(values, "");
+                    format!("expected one colour, as in Diffuse(\"#rrggbb\") or Diffuse((r, g, b)), found {found}")
+                });
+                return None;
+            };
+            return Some(reader.color(color));
+        }
+        let fields = reader.fields(node, Self::OWNER, Self::FORM, Self::FIELDS)?;
+        Some(Self::read(reader, &fields))
+    }
+}

@@ -1,0 +1,96 @@
+//! Stripes of two reflectances: for tests, a material that is one file, and one line in the table of materials.
+
+use super::{Reflecting, bands};
+use crate::color::LinearRgb;
+use crate::lanes::Number;
+use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor};
+
+/// Stripes of width 1 across the first of the surface's coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stripes {
+    /// Reflectance of the stripe that begins at the pattern's origin, and of every second one from there.
+    pub a: LinearRgb,
+    /// Reflectance of the others.
+    pub b: LinearRgb,
+}
+
+impl Reflecting for Stripes {
+    const PATTERN: Option<&'static str> = Some("its stripes");
+
+    #[inline(always)]
+    fn reflectance<N: Number>(&self, [u, _]: [N; 2], _: [N; 2]) -> [N; 3] {
+        let half = N::splat(0.5) * u.floor();
+        let is_even = half.floor().same(half);
+        let ([r0, g0, b0], [r1, g1, b1]) = (bands::<N>(self.a), bands::<N>(self.b));
+        [N::select(is_even, r0, r1), N::select(is_even, g0, g1), N::select(is_even, b0, b1)]
+    }
+
+    fn described(&self, name: fn(LinearRgb) -> &'static str) -> String {
+        format!("{} and {} striped", name(self.a), name(self.b))
+    }
+
+    fn check(written: &[Option<WrittenColor>; 2], validator: &mut Validator<'_>) -> Option<Self> {
+        let [a, b] = written.map(|color| color.and_then(|color| validator.reflectance(color)));
+        Some(Self { a: a?, b: b? })
+    }
+}
+
+impl InSceneFile for Stripes {
+    type Written = [Option<WrittenColor>; 2];
+
+    const NAME: &'static str = "Stripes";
+    const OWNER: &'static str = "Stripes";
+    const FORM: &'static str = "Stripes(a: ..., b: ...)";
+    const FIELDS: &'static [&'static str] = &["a", "b"];
+
+    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> [Option<WrittenColor>; 2] {
+        ["a", "b"].map(|name| reader.required(fields, name, Reader::color))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::color::LinearRgb;
+    use crate::describe::describe;
+    use crate::framebuffer::Resolution;
+    use crate::render::{Sampling, render};
+    use crate::scene::Scene;
+    use std::num::NonZeroU32;
+
+    /// Seen from straight above, of a width of 4 in a picture of 4 pixels, in a light of 1 from everywhere.
+    fn scene(objects: &str) -> String {
+        let camera = "camera: (eye: (0.0, 1.0, 0.0), target: (0.0, 0.0, 0.0), up: (0.0, 0.0, -1.0), vertical_fov: 126.86989764584402)";
+        format!("({camera}, ambient: 1.0, objects: [{objects}])")
+    }
+
+    #[test]
+    fn they_are_read_drawn_and_described() {
+        let plane = "Plane(point: (0, 0, 0), normal: (0, 1, 0), material: Stripes(a: 0.25, b: \"red\"))";
+        let scene = Scene::from_ron("stripes.ron", &scene(plane)).expect("a scene");
+        let picture = render(&scene, scene.camera(), Resolution::square(4, 4), Sampling::Each(NonZeroU32::MIN));
+        let is_a = |light: &LinearRgb| light.g > 0.2;
+        let columns: Vec<_> = picture.pixels[..4].iter().map(is_a).collect();
+        let rows: Vec<_> = picture.pixels.iter().step_by(4).map(is_a).collect();
+        let in_turn = |seen: &[bool]| seen.windows(2).all(|pair| pair[0] != pair[1]);
+        let alike = |seen: &[bool]| seen.windows(2).all(|pair| pair[0] == pair[1]);
+        assert!(in_turn(&columns) && alike(&rows) || in_turn(&rows) && alike(&columns), "{columns:?} {rows:?}");
+        let told = describe("stripes.ron", &scene, scene.camera(), Resolution::square(40, 40));
+        assert!(told.contains("grey and red striped plane"), "{told}");
+    }
+
+    #[test]
+    fn what_is_wrong_with_them_is_said_as_of_any_material() {
+        let message = |objects: &str| Scene::from_ron("x.ron", &scene(objects)).expect_err("a fault").to_string();
+        let on = |shape: &str, stripes: &str| message(&format!("{shape}, material: {stripes})"));
+        let plane = "Plane(point: (0, 0, 0), normal: (0, 1, 0)";
+        assert!(on(plane, "Stripes(a: 0.5)").contains("missing field \"b\"; Stripes needs one"));
+        assert!(on(plane, "Stripes(a: 0.5, b: 2)").contains("a reflectance must lie within 0 and 1"));
+        assert!(
+            on(plane, "Strpes(a: 0.5, b: 1)").contains("did you mean Stripes?"),
+            "{}",
+            on(plane, "Strpes(a: 0.5, b: 1)")
+        );
+        let ball = on("Sphere(center: (0, 0, 0), radius: 1", "Stripes(a: 0.5, b: 1)");
+        assert!(ball.contains("Stripes needs a Plane, on which its stripes are laid out; this is a Sphere"), "{ball}");
+    }
+}
