@@ -9,7 +9,7 @@ use termtrace::camera::{Camera, Pose, ViewRectangle};
 use termtrace::color::LinearRgb;
 use termtrace::hit::{self, EightHits, Kernel};
 use termtrace::lanes::{Eight, Vector};
-use termtrace::light::{Falloff, LightSource, PointLight};
+use termtrace::light::{Falloff, Light, PointLight};
 use termtrace::material::Material;
 use termtrace::mesh_file::MeshFile;
 use termtrace::ray::{EightRays, Ray};
@@ -20,7 +20,7 @@ use termtrace::shape::{Mesh, Plane, Shape, Sphere};
 pub struct Termtrace {
     kernel: Kernel,
     scene: Arc<Traced>,
-    light: PointLight,
+    light: Light,
     pub build_s: f64,
 }
 
@@ -54,8 +54,9 @@ impl Termtrace {
         let scene = Traced::new(camera, objects);
         let build_s = start.elapsed().as_secs_f64();
         let light =
-            PointLight { position: vec3(s.light), intensity: LinearRgb::grey(1.0), falloff: Falloff::InverseSquare };
-        Self { kernel: Kernel::Auto, scene: Arc::new(scene), light, build_s }
+            PointLight { position: vec3(s.light), intensity: LinearRgb::grey(1.0), falloff: Falloff::InverseSquare }
+                .into();
+        Self { kernel: Kernel::Auto, scene: Arc::new(scene), light: light.into(), build_s }
     }
 
     /// The same scene, traced in that way.
@@ -74,7 +75,7 @@ impl Termtrace {
         if full {
             shade::surface_points(&self.scene, rays, hits, points);
             shade::shadow_rays(&self.light, points, shadow_rays);
-            hit::any_hits(self.kernel, &self.scene, shadow_rays, PointLight::IN_THE_WAY, blocked);
+            hit::any_hits(self.kernel, &self.scene, shadow_rays, self.light.in_the_way(), blocked);
             // One from each hit.
             sum.rays = sum.hits;
             sum.lit = sum.hits - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
@@ -85,11 +86,16 @@ impl Termtrace {
 
 /// Rays through four by two pixels, those inside the tile.
 fn eye_rays(f: &Frame, [x, y]: [u32; 2], [x1, y1]: [u32; 2]) -> EightRays {
-    let (across, down) = (Eight([0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]), Eight([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]));
+    let (across, down) =
+        (Eight([0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]), Eight([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]));
     let (at_x, at_y) = (Eight([x as f32; 8]) + across, Eight([y as f32; 8]) + down);
     let [d00, du, dv] = [f.d00, f.du, f.dv].map(|v| Vector::splat(vec3(v)));
     let is_inside = |lane: u32| x + lane % 4 < x1 && y + lane / 4 < y1;
-    let asked = if is_inside(7) { 0xff } else { (0..8).filter(|&lane| is_inside(lane)).fold(0, |asked, lane| asked | 1 << lane) };
+    let asked = if is_inside(7) {
+        0xff
+    } else {
+        (0..8).filter(|&lane| is_inside(lane)).fold(0, |asked, lane| asked | 1 << lane)
+    };
     EightRays { origin: Vector::splat(vec3(f.o)), direction: d00 + du * at_x + dv * at_y, asked }
 }
 
@@ -134,8 +140,9 @@ impl Backend for Termtrace {
         let start = Instant::now();
         for rays_of_a_tile in given.chunks(128) {
             if rays.any {
-                hit::any_hits(self.kernel, &self.scene, rays_of_a_tile, PointLight::IN_THE_WAY, &mut blocked);
-                sum.lit += shade::count(rays_of_a_tile) - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
+                hit::any_hits(self.kernel, &self.scene, rays_of_a_tile, self.light.in_the_way(), &mut blocked);
+                sum.lit +=
+                    shade::count(rays_of_a_tile) - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
             } else {
                 hit::closest_hits(self.kernel, &self.scene, rays_of_a_tile, &mut hits);
                 for hits in &hits {
