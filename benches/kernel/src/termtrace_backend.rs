@@ -53,10 +53,10 @@ impl Termtrace {
         let start = Instant::now();
         let scene = Traced::new(camera, objects);
         let build_s = start.elapsed().as_secs_f64();
-        let light =
+        let light: Light =
             PointLight { position: vec3(s.light), intensity: LinearRgb::grey(1.0), falloff: Falloff::InverseSquare }
                 .into();
-        Self { kernel: Kernel::Auto, scene: Arc::new(scene), light: light.into(), build_s }
+        Self { kernel: Kernel::Auto, scene: Arc::new(scene), light, build_s }
     }
 
     /// The same scene, traced in that way.
