@@ -142,8 +142,9 @@
 //! # One scene with a typo
 //!
 //! `scene::load` has the bytes read ([`named_file`]) -> [`scene_text`] makes a tree of them, in which every node has its
-//! place -> [`scene_file`] and [`shape`] read the fields; a name that they do not know is a fault there, with the word that was meant
-//! ([`text`]) -> `scene::checked` is silent about what is missing only because of that -> `scene_text::fault` puts all
+//! place -> [`scene_file`] reads the fields, those of a
+//! [`shape`], [`material`] or [`light`] in its own file; a name that is not known is a fault there, with the word that was
+//! meant ([`text`]) -> `scene::checked` is silent about what is missing only because of that -> `scene_text::fault` puts all
 //! faults in order, each with its line and carets -> the error goes back to who loaded the scene: the command line prints
 //! it, and the live view shows the first fault of it (`viewer::fault`).
 //!

@@ -18,6 +18,7 @@ use tiles::Tiles;
 mod tiles;
 mod sampling;
 mod steps;
+mod report;
 mod schedule;
 mod uniform;
 mod pixel;
@@ -25,10 +26,12 @@ mod adaptive;
 mod sights;
 mod count;
 mod one;
+mod order;
 
 pub use adaptive::Refining;
 pub use count::{Counts, count};
 pub use one::{Steps, trace_pixel};
+pub use order::Render;
 pub use sampling::Sampling;
 pub use schedule::Crew;
 pub(crate) use sights::all_sights;
@@ -78,6 +81,17 @@ pub fn render_by(
     crew.finish(render_all(crew, scene, camera, resolution, sampling.into()))
 }
 
+/// Returns the units in which a [`Report`](report::Report) counts such a render: those of [`Unit`](steps::Unit) for all of
+/// its tiles.
+fn units(resolution: Resolution, sampling: Sampling) -> u64 {
+    let pixels = resolution.pixel_count() as u64;
+    match sampling {
+        Sampling::Coarse => u64::from(resolution.width.div_ceil(2)) * u64::from(resolution.height.div_ceil(2)),
+        Sampling::Each(samples) => pixels * u64::from(samples.get()),
+        Sampling::UpTo(samples) => pixels + adaptive::units_of_more(resolution, samples),
+    }
+}
+
 /// [`render`] by that crew; one that is cancelled passes over what is left.
 pub(crate) fn render_all(
     crew: Crew<'_>,
@@ -92,7 +106,10 @@ pub(crate) fn render_all(
         Sampling::UpTo(samples) => {
             let mut picture = Refining::new(camera, resolution);
             let cost = picture.refine(crew, scene, samples);
-            Rendered { framebuffer: picture.framebuffer(), cost }
+            // A cancelled picture is thrown away: to fill millions of pixels takes longer than the answer to a cancel may.
+            let is_lost = crew.is_cancelled();
+            let framebuffer = if is_lost { Framebuffer::new(Resolution::square(0, 0)) } else { picture.framebuffer() };
+            Rendered { framebuffer, cost }
         }
     }
 }

@@ -1,8 +1,9 @@
 //! The way over a picture: which thread takes which tile, and the batches of each tile in their order.
 
 use super::Cost;
+use super::report::Report;
 use super::sampling::{Run, Runs};
-use super::steps::{Buffers, Shot};
+use super::steps::{Buffers, Shot, Unit};
 use crate::progress::{Cancellation, Cancelled};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -17,6 +18,8 @@ pub enum Crew<'a> {
     Pool,
     /// The threads of the current rayon pool, until the token is cancelled.
     Cancellable(&'a Cancellation),
+    /// The threads of the current rayon pool, until the report's token is cancelled.
+    Reporting(&'a Report<'a>),
 }
 
 /// What takes no longer, going by the tiles so far, is traced by the calling thread alone: to wake another one takes 16 us,
@@ -24,8 +27,12 @@ pub enum Crew<'a> {
 const SHORT: Duration = Duration::from_micros(300);
 
 impl Crew<'_> {
-    fn is_cancelled(self) -> bool {
-        matches!(self, Self::Cancellable(token) if token.is_cancelled())
+    pub(super) fn is_cancelled(self) -> bool {
+        match self {
+            Self::Alone | Self::Pool => false,
+            Self::Cancellable(token) => token.is_cancelled(),
+            Self::Reporting(report) => report.is_cancelled(),
+        }
     }
 
     /// Returns what was traced. A crew that is cancelled passes over what is left, so this is asked when it is through: a
@@ -43,9 +50,15 @@ impl Crew<'_> {
         trace: impl Fn(&mut Tile<'_>, T) + Send + Sync,
     ) -> Cost {
         let work = |buffers: &mut Buffers, (number, part)| {
+            if self.is_cancelled() {
+                return Cost::default();
+            }
             shot.tiles.inside(number, &mut buffers.wanted);
             let mut tile = Tile { crew: self, shot, number, buffers, cost: Cost::default() };
             trace(&mut tile, part);
+            if let (Self::Reporting(report), Unit::Tile(units)) = (self, shot.unit) {
+                report.add(units);
+            }
             tile.cost
         };
         let (start, count) = (Instant::now(), parts.len() as u32);
@@ -97,7 +110,11 @@ impl Tile<'_> {
                     break 'runs;
                 }
                 cost.rays += buffers.trace(shot, number, &run, batch.clone());
+                let pixels = batch.len();
                 sink(buffers, &run, batch);
+                if let (Crew::Reporting(report), Unit::Ray) = (crew, shot.unit) {
+                    report.add((pixels * run.each()) as u64);
+                }
             }
         }
         cost.work += start.elapsed();

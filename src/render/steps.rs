@@ -22,6 +22,15 @@ pub(super) enum Goal {
     Reflected,
 }
 
+/// What counts as progress of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Unit {
+    /// Each eye ray.
+    Ray,
+    /// Each tile, as that number of units.
+    Tile(u64),
+}
+
 /// A scene, the tiles of a picture of it, and how its rays are traced.
 #[derive(Clone, Copy)]
 pub(super) struct Shot<'a> {
@@ -30,11 +39,12 @@ pub(super) struct Shot<'a> {
     /// The way in which the closest hits are found.
     pub(super) kernel: Kernel,
     pub(super) goal: Goal,
+    pub(super) unit: Unit,
 }
 
 impl<'a> Shot<'a> {
     pub(super) fn new(scene: &'a Scene, tiles: &'a Tiles, goal: Goal) -> Self {
-        Self { scene, tiles, kernel: Kernel::Auto, goal }
+        Self { scene, tiles, kernel: Kernel::Auto, goal, unit: Unit::Ray }
     }
 }
 
@@ -57,7 +67,7 @@ impl Buffers {
     /// Takes the run's samples of a batch of the wanted pixels through the steps, up to the shot's goal. Returns the number
     /// of rays traced.
     pub(super) fn trace(&mut self, shot: &Shot<'_>, tile: usize, run: &Run, batch: Range<usize>) -> u64 {
-        let &Shot { scene, tiles, kernel, goal } = shot;
+        let &Shot { scene, tiles, kernel, goal, .. } = shot;
         let Self { wanted, pixels, rays, hits, points, shadows, arriving, .. } = self;
         run.spread(&wanted[batch], pixels);
         tiles.make_eye_rays(tile, pixels, run, rays);

@@ -37,6 +37,11 @@ impl Tiles {
         Self { resolution, scale, columns, rows, eye_rays: camera.eye_rays(resolution.aspect_ratio()) }
     }
 
+    /// Returns how many tiles a picture of that resolution has at full scale.
+    pub(super) fn count_of(resolution: Resolution) -> usize {
+        resolution.width.div_ceil(SIDE) as usize * resolution.height.div_ceil(SIDE) as usize
+    }
+
     fn across(&self) -> u32 {
         self.columns.div_ceil(SIDE)
     }

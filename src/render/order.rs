@@ -1,0 +1,177 @@
+//! A picture to be rendered, with all that may be chosen about it.
+
+use super::report::Report;
+use super::{Crew, Sampling, render_all, units};
+use crate::camera::Camera;
+use crate::framebuffer::{Framebuffer, Resolution};
+use crate::progress::{Cancellation, Cancelled};
+use crate::scene::Scene;
+use std::fmt;
+use std::ops::ControlFlow;
+
+/// A receiver of progress reports: parts of the work, from 0 to 1.
+type Hear<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Sync + 'a>;
+
+/// A picture to be rendered: of a scene, from its own camera, with 1280 x 720 pixels and [`Sampling::BEST`], unless another
+/// choice is made. It is rendered on the threads of the current rayon pool.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use termtrace::{framebuffer::Resolution, render::{Render, Sampling}, scene::Scene};
+///
+/// let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, objects: [Sphere(center: (0, 0, 0), radius: 1)])"#;
+/// let scene = Scene::from_ron("ball.ron", text)?;
+/// let picture = Render::new(&scene)
+///     .resolution(Resolution::square(40, 30))
+///     .sampling(Sampling::BEST)
+///     .on_progress(|part| {
+///         eprint!("\r{:3.0} %", 100.0 * part);
+///         ControlFlow::Continue(())
+///     })
+///     .run()?;
+/// assert_eq!(picture.pixels.len(), 1200);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[must_use = "nothing is rendered before `run`"]
+pub struct Render<'a> {
+    scene: &'a Scene,
+    camera: Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+    token: Cancellation,
+    hear: Option<Hear<'a>>,
+}
+
+impl fmt::Debug for Render<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { camera, resolution, sampling, .. } = self;
+        let mut render = f.debug_struct("Render");
+        render
+            .field("camera", camera)
+            .field("resolution", resolution)
+            .field("sampling", sampling)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Render<'a> {
+    /// A picture of that scene.
+    pub fn new(scene: &'a Scene) -> Self {
+        Self {
+            scene,
+            camera: *scene.camera(),
+            resolution: Resolution::square(1280, 720),
+            sampling: Sampling::BEST,
+            token: Cancellation::default(),
+            hear: None,
+        }
+    }
+
+    /// Looks at the scene from somewhere else.
+    pub fn camera(self, camera: &Camera) -> Self {
+        Self { camera: *camera, ..self }
+    }
+
+    /// Gives the picture another size.
+    pub fn resolution(self, resolution: Resolution) -> Self {
+        Self { resolution, ..self }
+    }
+
+    /// Gives its pixels other samples.
+    pub fn sampling(self, sampling: impl Into<Sampling>) -> Self {
+        Self { sampling: sampling.into(), ..self }
+    }
+
+    /// Gives the render up when this token is cancelled: after the rays that are being traced, 256 for each thread.
+    pub fn cancelled_by(self, token: &Cancellation) -> Self {
+        Self { token: token.clone(), ..self }
+    }
+
+    /// Reports which part of the work is done: greater than 0 and rising, and 1 at the end. Reports come one at a time, from
+    /// any of the threads, every 10 ms or more often; the others wait as long as `hear` takes. When it answers
+    /// `Break`, the token is cancelled.
+    pub fn on_progress(self, hear: impl Fn(f32) -> ControlFlow<()> + Sync + 'a) -> Self {
+        Self { hear: Some(Box::new(hear)), ..self }
+    }
+
+    /// Renders the picture: the light of [`render`](super::render), to the bit.
+    ///
+    /// # Errors
+    /// [`Cancelled`], if the token is, or a report was answered by `Break`. The last report, of 1, cancels nothing.
+    pub fn run(self) -> Result<Framebuffer, Cancelled> {
+        let Self { scene, camera, resolution, sampling, token, hear } = self;
+        let render = |crew: Crew<'_>| crew.finish(render_all(crew, scene, &camera, resolution, sampling).framebuffer);
+        let Some(hear) = hear else {
+            return render(Crew::Cancellable(&token));
+        };
+        let report = Report::new(&hear, token, units(resolution, sampling));
+        let framebuffer = render(Crew::Reporting(&report))?;
+        let _ = hear(1.0);
+        Ok(framebuffer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::render;
+    use std::num::NonZeroU32;
+    use std::sync::Mutex;
+
+    fn scene() -> Scene {
+        let sphere = |x: i32| format!("Sphere(center: ({x}, 0, 0), radius: 0.7)");
+        let objects: Vec<_> = (-2..=2).map(sphere).collect();
+        let light = "lights: [Point(position: (3, 5, 4), intensity: 20)]";
+        let text = format!("(camera: (eye: (0, 1, 6), target: (0, 0, 0)), {light}, objects: [{}])", objects.join(", "));
+        Scene::from_ron("row.ron", &text).expect("a scene")
+    }
+
+    fn samplings() -> [Sampling; 4] {
+        let samples = |samples| NonZeroU32::new(samples).expect("more than none");
+        [Sampling::Coarse, Sampling::Each(samples(5)), Sampling::UpTo(samples(1)), Sampling::BEST]
+    }
+
+    #[test]
+    fn its_light_is_that_of_render_and_its_reports_rise_to_one() {
+        let (scene, resolution) = (scene(), Resolution::square(601, 401));
+        for sampling in samplings() {
+            let heard = Mutex::new(Vec::new());
+            let hear = |part| {
+                heard.lock().expect("no report panics").push(part);
+                ControlFlow::Continue(())
+            };
+            let picture = Render::new(&scene).resolution(resolution).sampling(sampling).on_progress(hear).run();
+            let wanted = render(&scene, scene.camera(), resolution, sampling);
+            assert_eq!(picture.expect("nothing cancels it").hash(), wanted.hash(), "{sampling:?}");
+            let heard = heard.into_inner().expect("no report panics");
+            assert!(heard.len() > 50, "{} reports with {sampling:?}", heard.len());
+            assert!(heard.is_sorted_by(|a, b| a < b) && heard[0] > 0.0, "{sampling:?}: {heard:?}");
+            assert!(heard.ends_with(&[1.0]) && heard[heard.len() - 2] > 0.9, "{sampling:?}: {heard:?}");
+        }
+    }
+
+    #[test]
+    fn a_break_gives_it_up_and_nothing_more_is_reported() {
+        let (scene, resolution) = (scene(), Resolution::square(400, 300));
+        for sampling in samplings() {
+            let heard = Mutex::new(0);
+            let hear = |_| {
+                let mut heard = heard.lock().expect("no report panics");
+                *heard += 1;
+                if *heard == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            let render = Render::new(&scene).resolution(resolution).sampling(sampling).on_progress(hear);
+            assert_eq!(render.run(), Err(Cancelled), "{sampling:?}");
+            assert_eq!(heard.into_inner().expect("no report panics"), 3, "{sampling:?}");
+        }
+    }
+
+    #[test]
+    fn a_token_gives_it_up() {
+        let (scene, token) = (scene(), Cancellation::default());
+        token.cancel();
+        assert_eq!(Render::new(&scene).cancelled_by(&token).run(), Err(Cancelled));
+        let never = Render::new(&scene).cancelled_by(&token).on_progress(|_| unreachable!("it is given up before"));
+        assert_eq!(never.run(), Err(Cancelled));
+    }
+}
