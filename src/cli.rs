@@ -12,15 +12,16 @@ mod explain;
 mod frame;
 mod later;
 mod live;
+mod map;
 mod near;
 mod origin;
 mod outcome;
 mod outputs;
 mod picture;
 mod record;
+mod renamed;
 mod scene_args;
 mod settings;
-mod view;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use later::Later;
@@ -53,7 +54,7 @@ Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wro
 /// Stands below the options.
 fn help() -> String {
     let cells = cells::explained();
-    let explained = [&cells, view::EXPLAINED, encoding::EXPLAINED, settings::EXPLAINED].join("\n");
+    let explained = [&cells, map::EXPLAINED, encoding::EXPLAINED, settings::EXPLAINED].join("\n");
     format!("{explained}\n\n{EXAMPLES}")
 }
 
@@ -123,5 +124,7 @@ pub(crate) fn main() -> ExitCode {
 
 fn parse(arguments: impl Iterator<Item = OsString>) -> Result<(Cli, ArgMatches), ExitCode> {
     let given = Cli::command().try_get_matches_from(arguments);
-    given.and_then(|given| Ok((Cli::from_arg_matches(&given)?, given))).map_err(|error| outcome::say(&error))
+    given
+        .and_then(|given| Ok((Cli::from_arg_matches(&given)?, given)))
+        .map_err(|error| outcome::say(&renamed::with_tip(error)))
 }

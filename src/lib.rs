@@ -62,7 +62,7 @@
 //!
 //! From light to the screen:
 //! - [`tone`]: exposure, tone curve, transfer function, 8 bits
-//! - [`view`]: the picture, or what it is made of: depths, normals, objects, shadows
+//! - [`maps`]: the shaded picture, or a map: depths, normals, objects, shadows
 //! - [`describe`]: the picture in words
 //! - [`grid`]: the cell grid
 //! - [`cell`]: picture -> grid, by half blocks or characters, in the colours that there are
@@ -130,7 +130,7 @@
 //!
 //! # One eye ray
 //!
-//! [`render`] goes over a picture for [`view`] or `app::renderer`: `render::uniform` with the same number of samples for
+//! [`render`] goes over a picture for [`maps`] or `app::renderer`: `render::uniform` with the same number of samples for
 //! each pixel, `render::adaptive` with more where there are edges. `render::schedule` gives each thread its tiles and cuts
 //! their samples into batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye rays (by
 //! [`camera`]) -> [`hit`] finds the closest hits: among the objects that stand alone, then in the trees (`accel`,
@@ -186,7 +186,7 @@ pub mod shade;
 pub mod framebuffer;
 pub mod render;
 pub mod tone;
-pub mod view;
+pub mod maps;
 pub mod describe;
 pub mod grid;
 pub mod cell;

@@ -56,7 +56,7 @@ mod status;
 #[cfg(any(test, feature = "test-hooks"))]
 mod story;
 mod tracked;
-mod views;
+mod wiping;
 
 use display::Display;
 pub use extent::MAX_PIXELS;
@@ -120,7 +120,7 @@ pub(crate) struct Viewer {
     receiver: Receiver,
     gallery: Gallery,
     eye: Eye,
-    /// Which views of the scene are wanted.
+    /// Which maps of the scene are wanted.
     shown: Shown,
     hand: Hand,
     screen: Screen,
@@ -143,7 +143,7 @@ impl Viewer {
             receiver: Receiver::default(),
             gallery: Gallery::default(),
             eye: Eye::new(options.pace, options.reduced_motion),
-            shown: Shown::one(options.view),
+            shown: Shown::one(options.map),
             hand: Hand::default(),
             asks: VecDeque::new(),
             now: Duration::ZERO,

@@ -5,12 +5,12 @@ use crate::color::LinearRgb;
 use crate::framebuffer::Resolution;
 use crate::grid::Size;
 use crate::hit::{self, Kernel};
+use crate::maps::Map;
 use crate::progress::Watcher;
 use crate::ray::{Interval, Ray};
 use crate::render::{self, Refining, Sampling};
 use crate::scene::{Draft, Scene};
-use crate::view::View;
-use crate::{describe, explain, export, tone, view};
+use crate::{describe, explain, export, maps, tone};
 use glam::Vec3;
 use std::cell::Cell;
 use std::num::NonZeroU32;
@@ -59,8 +59,8 @@ fn no_picture_builds_a_tree() {
         Refining::new(camera, resolution);
         render::count(Kernel::Auto, scene, camera, resolution, NonZeroU32::MIN);
         render::trace_pixel(scene, camera, resolution, [20, 12]);
-        for map in View::ALL {
-            view::picture(map, scene, camera, resolution, Sampling::BEST);
+        for map in Map::ALL {
+            maps::picture(map, scene, camera, resolution, Sampling::BEST);
         }
         describe::describe("x", scene, camera, resolution);
         explain::explain(scene, camera, resolution, [20, 12]);

@@ -3,12 +3,12 @@
 
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
+use crate::maps::{self, Map, Seen};
 use crate::progress::{Cancellation, Cancelled};
 use crate::render::{Cost, Crew, Refining, Sampling};
 use crate::scene::Scene;
 use crate::terminal::{self, Waker};
 use crate::tone::tone;
-use crate::view::{self, Seen, View};
 use crate::viewer::{Frame, Job, MIDDLE, Shot, Tracing};
 use rayon::ThreadPoolBuilder;
 use std::any::Any;
@@ -94,7 +94,7 @@ impl Renderer {
         if self.is_small(&job) {
             // The same light as of one sample at most, without what is kept to go on: that is little to trace again.
             let one = Sampling::Each(NonZeroU32::MIN);
-            let see = |view, part| view::seen(view, Crew::Alone, &job.scene, &job.shot.camera, part, one);
+            let see = |map, part| maps::seen(map, Crew::Alone, &job.scene, &job.shot.camera, part, one);
             return frame_of(&job, see).ok().map(|frame| self.noted(frame));
         }
         let work = InWork { refines: job.refines, token: Cancellation::default() };
@@ -183,18 +183,18 @@ impl Drop for Renderer {
 type Order = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>;
 
 /// Returns what `see` sees of each part of a frame.
-fn frame_of(job: &Job, mut see: impl FnMut(View, Resolution) -> Result<Seen, Cancelled>) -> Result<Frame, Cancelled> {
+fn frame_of(job: &Job, mut see: impl FnMut(Map, Resolution) -> Result<Seen, Cancelled>) -> Result<Frame, Cancelled> {
     let start = Instant::now();
     let Job { scene, shot, sampling, refines } = job.clone();
     let mut cost = Cost::default();
     let mut parts = Vec::new();
-    for (view, resolution) in shot.shown.parts(shot.resolution) {
-        let seen = see(view, resolution)?;
+    for (map, resolution) in shot.shown.parts(shot.resolution) {
+        let seen = see(map, resolution)?;
         cost += seen.cost;
         parts.push(seen.picture);
     }
     let joined = shot.shown.joined(&parts, MIDDLE).or_else(|| parts.pop());
-    let picture = joined.expect("at least one view is shown");
+    let picture = joined.expect("at least one picture is shown");
     if !shot.shown.is_wipe() {
         parts.clear();
     }
@@ -231,10 +231,10 @@ impl Tracer {
     fn trace(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
         // The last frame may have been traced by the loop, or be of other pictures.
         let mut kept = self.kept.take();
-        frame_of(job, |view, resolution| {
-            let last = if view.refines() { kept.take() } else { None };
+        frame_of(job, |map, resolution| {
+            let last = if map.refines() { kept.take() } else { None };
             let last = last.filter(|kept| job.refines && kept.is_of(job, resolution));
-            self.seen(job, token, view, resolution, last)
+            self.seen(job, token, map, resolution, last)
         })
     }
 
@@ -243,15 +243,15 @@ impl Tracer {
         &mut self,
         job: &Job,
         token: &Cancellation,
-        view: View,
+        map: Map,
         resolution: Resolution,
         kept: Option<Kept>,
     ) -> Result<Seen, Cancelled> {
         let Job { scene, shot, .. } = job;
         let samples = match job.sampling {
-            Sampling::UpTo(samples) if view.refines() => samples,
+            Sampling::UpTo(samples) if map.refines() => samples,
             sampling => {
-                return view::seen(view, Crew::Cancellable(token), scene, &shot.camera, resolution, sampling);
+                return maps::seen(map, Crew::Cancellable(token), scene, &shot.camera, resolution, sampling);
             }
         };
         let mut kept = kept.unwrap_or_else(|| Kept::new(job, resolution));

@@ -3,11 +3,11 @@
 mod golden;
 
 use super::cells::{self, CellArgs};
+use super::map::{self, MapArgs};
 use super::outcome::{Done, Failure, write_stdout};
 use super::outputs;
 use super::picture::PictureArgs;
 use super::scene_args::SceneArgs;
-use super::view::{self, ViewArgs};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::io::{self, IsTerminal};
@@ -35,14 +35,14 @@ Examples:
   termtrace frame my.ron --check my.txt                       compare with it";
 
 #[derive(Args)]
-#[command(after_help = format!("{}\n{}\n{FILES}\n\n{EXAMPLES}", cells::explained(), view::EXPLAINED))]
+#[command(after_help = format!("{}\n{}\n{FILES}\n\n{EXAMPLES}", cells::explained(), map::EXPLAINED))]
 pub(super) struct FrameArgs {
     #[command(flatten)]
     scene: SceneArgs,
     #[command(flatten)]
     picture: PictureArgs,
     #[command(flatten)]
-    view: ViewArgs,
+    map: MapArgs,
     #[command(flatten)]
     cells: CellArgs,
     /// What to write [default: as the file name's ending says, or text]
@@ -98,7 +98,7 @@ impl FrameArgs {
     /// Turns away what the format makes no use of.
     fn check_flags(&self, format: Format) -> Done {
         let wrong = |why: String| Err(Failure::Usage(why));
-        self.view.check_samples(self.picture.samples())?;
+        self.map.check_samples(self.picture.samples())?;
         let name = format.name();
         match format.contents() {
             Contents::Pixels(_) if self.cells.is_given() => {
@@ -126,9 +126,9 @@ impl FrameArgs {
         let resolution = self.picture.resolution(mode)?;
         self.picture.fits_scaled(resolution)?;
         let samples = self.picture.samples();
-        let view = self.view.view();
+        let map = self.map.map();
         let picture =
-            self.scene.on_threads(|| termtrace::view::picture(view, &scene, scene.camera(), resolution, samples))?;
+            self.scene.on_threads(|| termtrace::maps::picture(map, &scene, scene.camera(), resolution, samples))?;
         match format.contents() {
             Contents::Pixels(write) => write(&picture, resolution.pixel_aspect, self.picture.scale())
                 .map_err(|error| Failure::runtime(format.name().to_uppercase(), error)),

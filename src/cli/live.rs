@@ -19,10 +19,10 @@ use termtrace::cell;
 use termtrace::control::{Bindings, Command, Mode};
 use termtrace::export;
 use termtrace::grid::Size;
+use termtrace::maps;
 use termtrace::mesh_file::is_mesh;
 use termtrace::render::Sampling;
 use termtrace::terminal::{Signals, die_of};
-use termtrace::view;
 
 /// For who has not named a scene.
 fn welcome(bindings: &Bindings) -> String {
@@ -60,7 +60,7 @@ impl LiveArgs {
         options.sampling = settings.samples;
         options.pace = settings.pace();
         options.reduced_motion = settings.reduced_motion();
-        options.view = settings.view.view();
+        options.map = settings.map.map();
         options.exports = Some(PathBuf::from("."));
         options.welcome = self.scenes.is_empty().then(|| welcome(&bindings));
         options.bindings = bindings;
@@ -109,8 +109,8 @@ fn print(args: &LiveArgs) -> Done {
     let cell_mode = settings.terminal.cells.in_file(Colors::None);
     let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect);
     let sampling = settings.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
-    let view = settings.view.view();
-    let picture = on_threads(args.look.threads, || view::picture(view, &scene, scene.camera(), resolution, sampling))?;
+    let map = settings.map.map();
+    let picture = on_threads(args.look.threads, || maps::picture(map, &scene, scene.camera(), resolution, sampling))?;
     let grid = cell::grid_from_picture(cell_mode, &picture);
     write_stdout(&export::printed(&grid, cell_mode.colors))
 }

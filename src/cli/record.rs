@@ -4,11 +4,11 @@ mod numbered;
 mod progress;
 
 use super::encoding::{self, EncodingArgs};
+use super::map::{self, MapArgs};
 use super::outcome::{Done, Failure, reason};
 use super::outputs::{Output, Outputs};
 use super::picture::{PictureArgs, fits};
 use super::scene_args::SceneArgs;
-use super::view::{self, ViewArgs};
 use clap::Args;
 use numbered::Numbered;
 use std::io::{self, BufWriter, IsTerminal};
@@ -38,7 +38,7 @@ Examples:
   termtrace record my.ron --compressed-link | gzip >my.cast.gz";
 
 #[derive(Args)]
-#[command(after_help = format!("{}\n{}\n\n{EXAMPLES}", view::EXPLAINED, encoding::EXPLAINED))]
+#[command(after_help = format!("{}\n{}\n\n{EXAMPLES}", map::EXPLAINED, encoding::EXPLAINED))]
 pub(super) struct RecordArgs {
     #[command(flatten)]
     scene: SceneArgs,
@@ -54,7 +54,7 @@ pub(super) struct RecordArgs {
     #[command(flatten)]
     picture: PictureArgs,
     #[command(flatten)]
-    view: ViewArgs,
+    map: MapArgs,
     #[command(flatten)]
     encoding: EncodingArgs,
     /// Write to FILE.cast (asciicast), FILE.gif, or numbered from 1 to FILE-%04d.png; - is an asciicast to standard
@@ -113,7 +113,7 @@ impl RecordArgs {
     /// Turns away what the format cannot be, or makes no use of.
     fn check_flags(&self, format: &Format, resolution: Resolution) -> Done {
         let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
-        self.view.check_samples(self.picture.samples())?;
+        self.map.check_samples(self.picture.samples())?;
         let is_cast = matches!(format, Format::Cast(_));
         if matches!(format, Format::Cast(None)) && io::stdout().is_terminal() {
             return wrong("an asciicast would garble the terminal; name a file with -o, or pipe it");
@@ -278,8 +278,8 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     bar.tick();
     let mut sink = film.written(0, args.sink(film, &mut outputs))?;
     for (frame, camera) in film.cameras.iter().enumerate() {
-        let (view, samples) = (args.view.view(), args.picture.samples());
-        let picture = termtrace::view::picture(view, &film.scene, camera, film.resolution, samples);
+        let (map, samples) = (args.map.map(), args.picture.samples());
+        let picture = termtrace::maps::picture(map, &film.scene, camera, film.resolution, samples);
         film.written(frame, sink.take(&picture, &film.file(frame), &mut outputs))?;
         bar.inc(1);
     }

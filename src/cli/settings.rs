@@ -12,9 +12,9 @@ mod values;
 
 use super::cells::CellArgs;
 use super::encoding::LossArgs;
+use super::map::MapArgs;
 use super::outcome::{Done, Failure, usage};
 use super::picture::{parse_cell_aspect, parse_samples};
-use super::view::ViewArgs;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use entries::Entry;
@@ -52,7 +52,7 @@ pub(super) struct SettingArgs {
     #[command(flatten)]
     pub(super) terminal: TerminalArgs,
     #[command(flatten)]
-    pub(super) view: ViewArgs,
+    pub(super) map: MapArgs,
     #[arg(long, help = defaults::help("samples", "Rays per pixel, also in motion, or `best`: 1, and up to 64 where there are edges"), value_name = "N|best", value_parser = parse_samples)]
     pub(super) samples: Option<Sampling>,
     #[command(flatten)]
@@ -69,9 +69,9 @@ pub(super) struct SettingArgs {
 }
 
 impl SettingArgs {
-    /// Turns away samples that the view makes no use of.
+    /// Refuses more samples than one for each pixel where the map has no use for them.
     pub(super) fn check_samples(&self) -> Done {
-        self.samples.map_or(Ok(()), |samples| self.view.check_samples(samples))
+        self.samples.map_or(Ok(()), |samples| self.map.check_samples(samples))
     }
 
     pub(super) fn pace(&self) -> Pace {

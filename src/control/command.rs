@@ -31,13 +31,13 @@ pub enum Command {
     SaveView,
     /// Back to the view at the start.
     Reset,
-    /// The next view of the scene.
-    NextView,
-    /// The view before.
-    LastView,
-    /// Two views side by side, with a line between them, or one again.
+    /// The next map of the scene.
+    NextMap,
+    /// The map before.
+    LastMap,
+    /// Two maps side by side, with a line between them, or one again.
     Compare,
-    /// The line between two views moves.
+    /// The line between two maps moves.
     Wipe(Side),
     /// The next of several scenes.
     NextScene,
@@ -178,9 +178,9 @@ commands! {
     [Command::View(9)] "View9", A_VIEW;
     [Command::SaveView] "SaveView", "save the view as 1 to 9";
     [Command::Reset] "Reset", "back to the first view";
-    [Command::NextView] "NextView", "next view: depth ...";
-    [Command::LastView] "LastView", "the view before";
-    [Command::Compare] "Compare", "compare two views";
+    [Command::NextMap] "NextMap", "next map: depth ...";
+    [Command::LastMap] "LastMap", "the map before";
+    [Command::Compare] "Compare", "compare two maps";
     [Command::Wipe(Side::Left)] "WipeLeft", "their line to the left";
     [Command::Wipe(Side::Right)] "WipeRight", "their line to the right";
     [Command::NextScene] "NextScene", "next scene";

@@ -9,8 +9,8 @@ use super::status::StatusLine;
 use super::{Ask, Viewer, pointing};
 use crate::control::Command;
 use crate::input::{Input, Reply};
+use crate::maps::Map;
 use crate::memory::OutOfMemory;
-use crate::view::View;
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Duration;
 
@@ -143,8 +143,8 @@ impl Viewer {
             Command::LightFarther => self.wheel_light(1.0),
             Command::LightNearer => self.wheel_light(-1.0),
             Command::LightBack => self.put_light_back(),
-            Command::NextView => self.shown.go_on(View::next),
-            Command::LastView => self.shown.go_on(View::back),
+            Command::NextMap => self.shown.go_on(Map::next),
+            Command::LastMap => self.shown.go_on(Map::back),
             Command::Compare => self.shown.compare(),
             Command::Wipe(side) => self.move_wipe(side),
             Command::Explain => self.screen.toggle_explaining(),

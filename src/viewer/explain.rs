@@ -157,7 +157,7 @@ impl Explaining {
 
 /// What the frame has at the pixel where that is not the explanation's.
 fn notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explanation) -> Vec<String> {
-    // Other views are of the same ray, and have their legend.
+    // Maps are of the same ray, and have their legend.
     if !frame.legends.is_empty() {
         return Vec::new();
     }

@@ -67,7 +67,7 @@ impl Frame {
         self.shot.resolution
     }
 
-    /// Of two views side by side, each is a picture of its own: how large the one is that has this pixel, and which of its
+    /// Of two maps side by side, each is a picture of its own: how large the one is that has this pixel, and which of its
     /// pixels it is. (That of the line between them is the last of the left one.)
     pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
         let resolution = self.resolution();
@@ -80,7 +80,7 @@ impl Frame {
         }
     }
 
-    /// Moves the line between two views, if there is one, to that share of the width.
+    /// Moves the line between two maps, if there is one, to that share of the width.
     pub(super) fn wipe(&mut self, share: f32) {
         if let Some(picture) = self.shot.shown.joined(&self.parts, share) {
             self.picture = picture;

@@ -17,7 +17,7 @@ pub(super) struct Hand {
 pub(super) enum Grasped {
     #[default]
     View,
-    /// The line between two views.
+    /// The line between two maps.
     Line,
     /// The cursor of an explanation.
     Cursor,

@@ -1,4 +1,4 @@
-//! What the colours of a view mean: a line at the foot of the picture, under each of two.
+//! What the colours of a map mean: a line at the foot of the picture, under each of two.
 
 use super::layers::{Canvas, Layer, Level};
 use super::look::Look;
@@ -42,7 +42,7 @@ mod tests {
     use crate::viewer::look::foot;
 
     #[test]
-    fn each_view_has_its_legend_below_it() {
+    fn each_map_has_its_legend_below_it() {
         let screen = Rect::new(0, 0, 81, 24);
         let texts = ["shaded".to_owned(), "depth: white 0, grey 6.41, black far".to_owned()];
         let places: Vec<_> = shared(&texts, foot(screen, 0)).map(|(_, area)| area).collect();

@@ -42,7 +42,7 @@ impl Viewer {
         self.eye.change(self.now, |camera, _| control::framing(camera, &bounds, aspect_ratio));
     }
 
-    /// The picture's size; of two views side by side, each is a picture of its own.
+    /// The picture's size; of two maps side by side, each is a picture of its own.
     pub(super) fn part(&self) -> Resolution {
         let whole = self.resolution();
         self.shown.parts(whole).first().map_or(whole, |(_, part)| *part)

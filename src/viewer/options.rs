@@ -3,8 +3,8 @@
 use crate::capabilities::Hints;
 use crate::control::{Bindings, Pace};
 use crate::encode::{Order, Quality};
+use crate::maps::Map;
 use crate::render::Sampling;
-use crate::view::View;
 use std::path::PathBuf;
 
 /// How the user wants the live view: made by [`Options::new`], then changed.
@@ -36,7 +36,7 @@ pub struct Options {
     /// What is said in the lowest row until the first key.
     pub welcome: Option<String>,
     /// What of the scene is shown at first.
-    pub view: View,
+    pub map: Map,
     /// What the keys do.
     pub bindings: Bindings,
 }
@@ -56,7 +56,7 @@ impl Options {
             reduced_motion: false,
             exports: None,
             welcome: None,
-            view: View::Shaded,
+            map: Map::Shaded,
             bindings: Bindings::default(),
         }
     }

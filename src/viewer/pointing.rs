@@ -1,4 +1,4 @@
-//! What the mouse does: with the view, with the line between two views, with the cursor of an explanation.
+//! What the mouse does: with the view, with the line between two maps, with the cursor of an explanation.
 
 use super::Viewer;
 use super::hand::Grasped;
@@ -9,7 +9,7 @@ use crate::input::Input;
 use crossterm::event::{Event, MouseEvent, MouseEventKind};
 use glam::{Vec2, Vec3};
 
-/// A press this many columns beside the line between two views takes hold of the line.
+/// A press this many columns beside the line between two maps takes hold of the line.
 const NEAR: f32 = 2.0;
 
 /// Of ways of the mouse that are heard at once, and lead on from each other, the last one tells all.

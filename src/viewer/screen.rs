@@ -51,7 +51,7 @@ pub(super) struct Screen {
 /// What the user sees.
 struct Content {
     frame: Option<Frame>,
-    /// Where the line between two views is, as a share of the width.
+    /// Where the line between two maps is, as a share of the width.
     wipe: f32,
     /// How the eye moves.
     moving: Mode,
@@ -109,7 +109,7 @@ impl Screen {
         self.rate.count(moving);
     }
 
-    /// Moves the line between two views to that share of the width.
+    /// Moves the line between two maps to that share of the width.
     pub(super) fn wipe_to(&mut self, share: f32) {
         let content = &mut *self.content;
         content.wipe = share.clamp(0.0, 1.0);

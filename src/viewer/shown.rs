@@ -1,22 +1,22 @@
-//! What of the scene is on the screen: one view, or two to compare.
+//! What of the scene is on the screen: the shaded picture or a map, or two of them to compare.
 
 use crate::camera::Camera;
 use crate::color::Srgb8;
 use crate::framebuffer::Resolution;
+use crate::maps::Map;
 use crate::render::Sampling;
 use crate::scene::Scene;
 use crate::tone::Picture;
-use crate::view::View;
 use std::num::NonZeroU32;
 
-/// Where the line between two views is at first.
+/// Where the line between two maps is at first.
 pub(crate) const MIDDLE: f32 = 0.5;
 
-/// One view, or two.
+/// One map, or two; the shaded picture counts as one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Shown {
     /// What is seen; of two, what is seen on the left.
-    view: View,
+    map: Map,
     /// What is compared with it.
     other: Option<Other>,
 }
@@ -24,11 +24,11 @@ pub(crate) struct Shown {
 /// What is seen on the right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Other {
-    view: View,
+    map: Map,
     split: Split,
 }
 
-/// How two views share the screen.
+/// How two maps share the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Split {
     /// Each is a picture of its own.
@@ -38,27 +38,27 @@ enum Split {
 }
 
 impl Shown {
-    /// That view alone.
-    pub(super) fn one(view: View) -> Self {
-        Self { view, other: None }
+    /// That map alone.
+    pub(super) fn one(map: Map) -> Self {
+        Self { map, other: None }
     }
 
-    /// Goes on to the next view, of two the right one: never to that on the left.
-    pub(super) fn go_on(&mut self, step: fn(View) -> View) {
+    /// Goes on to the next map, of two the right one: never to that on the left.
+    pub(super) fn go_on(&mut self, step: fn(Map) -> Map) {
         match &mut self.other {
-            None => self.view = step(self.view),
+            None => self.map = step(self.map),
             Some(other) => {
-                let next = step(other.view);
-                other.view = if next == self.view { step(next) } else { next };
+                let next = step(other.map);
+                other.map = if next == self.map { step(next) } else { next };
             }
         }
     }
 
-    /// Side by side with the next view; a wipe between the two; the left one alone again.
+    /// Side by side with the next map; a wipe between the two; the left one alone again.
     pub(super) fn compare(&mut self) {
         self.other = match self.other {
-            None => Some(Other { view: self.view.next(), split: Split::Beside }),
-            Some(Other { view, split: Split::Beside }) => Some(Other { view, split: Split::Wipe }),
+            None => Some(Other { map: self.map.next(), split: Split::Beside }),
+            Some(Other { map, split: Split::Beside }) => Some(Other { map, split: Split::Wipe }),
             Some(Other { split: Split::Wipe, .. }) => None,
         };
     }
@@ -69,15 +69,15 @@ impl Shown {
     }
 
     /// What is seen, from left to right.
-    pub(super) fn views(self) -> impl Iterator<Item = View> {
-        [Some(self.view), self.other.map(|other| other.view)].into_iter().flatten()
+    pub(super) fn maps(self) -> impl Iterator<Item = Map> {
+        [Some(self.map), self.other.map(|other| other.map)].into_iter().flatten()
     }
 
     /// The pictures that make up one of that resolution.
-    pub(crate) fn parts(self, whole: Resolution) -> Vec<(View, Resolution)> {
+    pub(crate) fn parts(self, whole: Resolution) -> Vec<(Map, Resolution)> {
         match self.other {
-            Some(Other { split: Split::Beside, .. }) => self.views().zip(halves(whole)).collect(),
-            _ => self.views().map(|view| (view, whole)).collect(),
+            Some(Other { split: Split::Beside, .. }) => self.maps().zip(halves(whole)).collect(),
+            _ => self.maps().map(|map| (map, whole)).collect(),
         }
     }
 
@@ -86,12 +86,12 @@ impl Shown {
         if self == Self::default() {
             return Vec::new();
         }
-        self.views().map(|view| view.legend(scene, camera)).collect()
+        self.maps().map(|map| map.legend(scene, camera)).collect()
     }
 
     /// How finely it is traced where so much is wanted.
     pub(super) fn sampling(self, wanted: Sampling) -> Sampling {
-        if wanted == Sampling::Coarse || self.views().any(View::refines) {
+        if wanted == Sampling::Coarse || self.maps().any(Map::refines) {
             return wanted;
         }
         Sampling::UpTo(NonZeroU32::MIN)
@@ -140,45 +140,45 @@ fn wiped(left: &Picture, right: &Picture, wipe: f32) -> Picture {
 mod tests {
     use super::*;
 
-    fn shown(view: View, other: View, split: Split) -> Shown {
-        Shown { view, other: Some(Other { view: other, split }) }
+    fn shown(map: Map, other: Map, split: Split) -> Shown {
+        Shown { map, other: Some(Other { map: other, split }) }
     }
 
     #[test]
-    fn views_go_round_and_the_right_one_alone_of_two() {
+    fn maps_go_round_and_the_right_one_alone_of_two() {
         let mut seen = Shown::default();
-        for view in View::ALL.into_iter().cycle().skip(1).take(View::ALL.len()) {
-            seen.go_on(View::next);
-            assert_eq!(seen, Shown::one(view));
+        for map in Map::ALL.into_iter().cycle().skip(1).take(Map::ALL.len()) {
+            seen.go_on(Map::next);
+            assert_eq!(seen, Shown::one(map));
         }
-        let mut two = shown(View::Lambert, View::Shaded, Split::Beside);
-        two.go_on(View::next);
-        assert_eq!(two, shown(View::Lambert, View::Depth, Split::Beside), "not what is on the left");
-        two.go_on(View::back);
-        assert_eq!(two, shown(View::Lambert, View::Shaded, Split::Beside));
+        let mut two = shown(Map::Lambert, Map::Shaded, Split::Beside);
+        two.go_on(Map::next);
+        assert_eq!(two, shown(Map::Lambert, Map::Depth, Split::Beside), "not what is on the left");
+        two.go_on(Map::back);
+        assert_eq!(two, shown(Map::Lambert, Map::Shaded, Split::Beside));
     }
 
     #[test]
-    fn two_views_are_beside_each_other_then_wiped_then_one() {
-        let mut seen = Shown::one(View::Depth);
+    fn two_maps_are_beside_each_other_then_wiped_then_one() {
+        let mut seen = Shown::one(Map::Depth);
         seen.compare();
-        assert_eq!(seen, shown(View::Depth, View::Normal, Split::Beside));
+        assert_eq!(seen, shown(Map::Depth, Map::Normal, Split::Beside));
         seen.compare();
         assert!(seen.is_wipe());
         seen.compare();
-        assert_eq!(seen, Shown::one(View::Depth));
+        assert_eq!(seen, Shown::one(Map::Depth));
     }
 
     /// Side by side they have no more pixels than one; a wipe has all of both.
     #[test]
     fn two_pictures_are_as_much_work_as_one_or_two() {
         let whole = Resolution { width: 80, height: 4, pixel_aspect: 0.5 };
-        let parts = shown(View::Shaded, View::Depth, Split::Beside).parts(whole);
+        let parts = shown(Map::Shaded, Map::Depth, Split::Beside).parts(whole);
         let widths: Vec<_> = parts.iter().map(|(_, part)| part.width).collect();
         assert_eq!(widths, [39, 40]);
         assert!(parts.iter().all(|(_, part)| part.height == 4 && part.pixel_aspect == 0.5));
-        let parts = shown(View::Shaded, View::Depth, Split::Wipe).parts(whole);
-        assert_eq!(parts, [(View::Shaded, whole), (View::Depth, whole)]);
+        let parts = shown(Map::Shaded, Map::Depth, Split::Wipe).parts(whole);
+        assert_eq!(parts, [(Map::Shaded, whole), (Map::Depth, whole)]);
     }
 
     /// No more than one ray a pixel where there is no light.
@@ -186,10 +186,10 @@ mod tests {
     fn light_alone_is_refined() {
         let one = Sampling::UpTo(NonZeroU32::MIN);
         assert_eq!(Shown::default().sampling(Sampling::BEST), Sampling::BEST);
-        assert_eq!(Shown::one(View::Depth).sampling(Sampling::BEST), one);
-        assert_eq!(Shown::one(View::Depth).sampling(Sampling::Coarse), Sampling::Coarse);
-        assert_eq!(shown(View::Depth, View::Shaded, Split::Wipe).sampling(Sampling::BEST), Sampling::BEST);
-        assert_eq!(shown(View::Depth, View::Object, Split::Beside).sampling(Sampling::BEST), one);
+        assert_eq!(Shown::one(Map::Depth).sampling(Sampling::BEST), one);
+        assert_eq!(Shown::one(Map::Depth).sampling(Sampling::Coarse), Sampling::Coarse);
+        assert_eq!(shown(Map::Depth, Map::Shaded, Split::Wipe).sampling(Sampling::BEST), Sampling::BEST);
+        assert_eq!(shown(Map::Depth, Map::Object, Split::Beside).sampling(Sampling::BEST), one);
     }
 
     fn flat(width: u32, band: u8) -> Picture {
@@ -204,9 +204,9 @@ mod tests {
 
     #[test]
     fn a_line_parts_two_pictures() {
-        let beside = shown(View::Shaded, View::Depth, Split::Beside);
+        let beside = shown(Map::Shaded, Map::Depth, Split::Beside);
         assert_eq!(rows(&beside.joined(&[flat(3, 1), flat(4, 2)], 0.5).expect("two")), ["111|2222"; 2]);
-        let wipe = shown(View::Shaded, View::Depth, Split::Wipe);
+        let wipe = shown(Map::Shaded, Map::Depth, Split::Wipe);
         for (share, row) in [(0.0, "|222"), (0.5, "11|2"), (0.9, "111|"), (1.0, "111|")] {
             assert_eq!(rows(&wipe.joined(&[flat(4, 1), flat(4, 2)], share).expect("two")), [row; 2]);
         }
@@ -217,7 +217,7 @@ mod tests {
         for width in 1..5 {
             let whole = Resolution::square(width, 2);
             for split in [Split::Beside, Split::Wipe] {
-                let seen = shown(View::Shaded, View::Depth, split);
+                let seen = shown(Map::Shaded, Map::Depth, split);
                 let parts: Vec<_> = seen.parts(whole).iter().map(|(_, part)| flat(part.width, 1)).collect();
                 let joined = seen.joined(&parts, 0.5).expect("two");
                 assert_eq!((joined.width, joined.pixels.len()), (width, 2 * width as usize));

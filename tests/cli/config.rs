@@ -43,15 +43,15 @@ fn config(folder: &Folder, arguments: &str, environment: &[(&str, &str)]) -> Run
 
 #[test]
 fn a_flag_goes_before_the_environment_that_before_the_file_and_that_before_the_default() {
-    let folder = with_settings("(\n    // slowly\n    fps: 30,\n    view: depth,\n)");
+    let folder = with_settings("(\n    // slowly\n    fps: 30,\n    map: depth,\n)");
     let variable = [("TERMTRACE_FPS", "20")];
     assert_eq!(held(&folder, "--fps 10", &variable, "fps"), "10 --fps");
     assert_eq!(held(&folder, "", &variable, "fps"), "20 TERMTRACE_FPS");
     assert_eq!(held(&folder, "", &[("TERMTRACE_FPS", "")], "fps"), "30 ~/config.ron:3", "empty is unset");
-    assert_eq!(held(&folder, "", &[], "view"), "depth ~/config.ron:4");
+    assert_eq!(held(&folder, "", &[], "map"), "depth ~/config.ron:4");
     assert_eq!(held(&folder, "--no-config", &[], "fps"), "60 default");
     assert_eq!(held(&folder, "--no-config", &variable, "fps"), "20 TERMTRACE_FPS");
-    assert_eq!(held(&Folder::new(), "", &[], "view"), "shaded default");
+    assert_eq!(held(&Folder::new(), "", &[], "map"), "shaded default");
 }
 
 /// For colours the variables that all programs heed are the environment, too.
@@ -116,12 +116,19 @@ fn where_the_file_is_looked_for() {
 
 const WRONG: &str = "(
     colour: 256,
-    view: dept,
+    map: dept,
     fps: 0,
     fps: 30,
     samples: (1, 2),
     reduced_motion: maybe,
 )";
+
+/// Maps were called views, which are camera positions now.
+#[test]
+fn the_old_name_of_a_setting_leads_to_the_new_one() {
+    let run = with_settings("(view: depth)").run("config");
+    run.fails(2, "config.ron:1:2: unknown setting \"view\"; the name is now \"map\"\n");
+}
 
 /// All that is wrong, in the file's order, each with its place and what would be right.
 #[test]
@@ -136,7 +143,7 @@ fn a_file_that_is_wrong_is_told_of_in_one_message() {
             heads,
             [
                 "termtrace: ~/config.ron:2:5: unknown setting \"colour\"; did you mean \"color\"?",
-                "~/config.ron:3:11: expected one of shaded, lambert, depth, normal, object, shadow, cost, facing, \
+                "~/config.ron:3:10: expected one of shaded, lambert, depth, normal, object, shadow, cost, facing, \
                  contrast; did you mean depth?",
                 "~/config.ron:4:10: expected frames per second, from 0.01 to 1000",
                 "~/config.ron:5:5: duplicate setting \"fps\"",
@@ -144,7 +151,7 @@ fn a_file_that_is_wrong_is_told_of_in_one_message() {
                 "~/config.ron:7:21: expected one of true, false",
             ]
         );
-        assert!(message.contains("  3 |     view: dept,\n    |           ^^^^\n"), "{message}");
+        assert!(message.contains("  3 |     map: dept,\n    |          ^^^^\n"), "{message}");
     }
     assert_eq!(folder.run("config --no-config").code, Some(0));
     for (text, words) in [
@@ -174,11 +181,11 @@ fn a_variable_that_is_wrong_is_told_of_by_its_name() {
 #[test]
 fn frames_know_nothing_of_settings() {
     let plain = Folder::new();
-    for text in ["(color: truecolor, glyphs: shape, view: depth, samples: 4)", WRONG] {
+    for text in ["(color: truecolor, glyphs: shape, map: depth, samples: 4)", WRONG] {
         let folder = with_settings(text);
         for command in ["ball.ron", "frame ball.ron", "frame ball.ron --format ansi --size 20x6", "describe ball.ron"] {
             let mut with_variable = folder.command(command);
-            with_variable.env("TERMTRACE_VIEW", "normal");
+            with_variable.env("TERMTRACE_MAP", "normal");
             assert!(finish(&mut with_variable).done() == plain.run(command).done(), "{command}");
         }
     }

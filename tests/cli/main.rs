@@ -12,6 +12,7 @@ mod explain;
 mod formats;
 mod golden;
 mod inputs;
+mod maps;
 mod outputs;
 mod pictures;
 mod pipes;
@@ -20,7 +21,6 @@ mod pty;
 mod record;
 mod shells;
 mod sizes;
-mod views;
 mod web;
 
 use std::fs::{self, File};

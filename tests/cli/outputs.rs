@@ -183,7 +183,7 @@ fn the_next_run_removes_what_a_killed_one_left_and_nothing_else() {
 #[test]
 fn two_films_of_one_name_are_one_of_them() {
     let folder = Folder::new();
-    let kinds = ["shaded", "normal"].map(|view| format!("record ball.ron --seconds 1 --size 60x20 --view {view} -o"));
+    let kinds = ["shaded", "normal"].map(|map| format!("record ball.ron --seconds 1 --size 60x20 --map {map} -o"));
     let whole = kinds.each_ref().map(|kind| {
         folder.run(&format!("{kind} whole.cast")).done();
         folder.read("whole.cast")

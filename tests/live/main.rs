@@ -9,6 +9,7 @@ mod keyboard;
 mod leaving;
 mod lights;
 mod loading;
+mod maps;
 #[path = "../mesh_writers/mod.rs"]
 mod mesh_writers;
 mod mouse;
@@ -23,5 +24,4 @@ mod refining;
 mod scenes;
 mod settings;
 mod signals;
-mod views;
 mod windows;

@@ -131,10 +131,10 @@ fn a_pointer_that_runs_ahead_is_caught_up_with_at_once() {
     assert_near(pose.eye, start.target + turned(start.eye - start.target, -10.0));
 }
 
-/// A drag that begins on the line between two views moves the line, and nothing else.
+/// A drag that begins on the line between two maps moves the line, and nothing else.
 #[test]
 fn the_line_of_a_wipe_is_dragged() {
-    let mut session = looking(BALL, &["--view", "normal"]);
+    let mut session = looking(BALL, &["--map", "normal"]);
     session.send(b"||");
     let line = |column: usize| {
         move |session: &mut Session| {

@@ -65,17 +65,17 @@ fn leave(session: &mut Session) {
 
 #[test]
 fn what_the_file_sets_holds_unless_a_flag_or_a_variable_says_otherwise() {
-    let home = user(&[("config.ron", "(view: depth)")]);
-    for (flags, legend) in [(&[][..], "depth:"), (&["--view=normal"], "normal:")] {
+    let home = user(&[("config.ron", "(map: depth)")]);
+    for (flags, legend) in [(&[][..], "depth:"), (&["--map=normal"], "normal:")] {
         let mut session = start(&home, flags);
         wait_for_last(&mut session, legend);
         leave(&mut session);
     }
     let program = Start::new(env!("CARGO_BIN_EXE_termtrace")).env("HOME", home.path()).arg(SCENE);
-    let mut session = program.env("TERMTRACE_VIEW", "shadow").spawn();
+    let mut session = program.env("TERMTRACE_MAP", "shadow").spawn();
     wait_for_last(&mut session, "shadow:");
     leave(&mut session);
-    // The status line has the last row to itself: no legend, so it is the shaded view.
+    // The status line has the last row to itself: no legend, so it is the shaded picture.
     let mut session = start(&home, &["--no-config"]);
     wait_for_picture(&mut session);
     session.send(b"i");
@@ -87,12 +87,12 @@ fn what_the_file_sets_holds_unless_a_flag_or_a_variable_says_otherwise() {
 /// Before the terminal is touched.
 #[test]
 fn a_file_that_is_wrong_is_told_of_before_anything_else() {
-    let home = user(&[("config.ron", "(\n    veiw: depth,\n    fps: 0,\n)")]);
+    let home = user(&[("config.ron", "(\n    mpa: depth,\n    fps: 0,\n)")]);
     let mut session = start(&home, &[]);
     assert_eq!(session.wait_exit(SOON).code(), Some(2));
     session.assert_clean();
     let said = String::from_utf8_lossy(session.seen().bytes()).into_owned();
-    assert!(said.contains("config.ron:2:5: unknown setting \"veiw\"; did you mean \"view\"?"), "{said}");
+    assert!(said.contains("config.ron:2:5: unknown setting \"mpa\"; did you mean \"map\"?"), "{said}");
     assert!(said.contains("config.ron:3:10: expected frames per second"), "{said}");
     assert!(!said.contains('\x1b'), "{said}");
 }

@@ -7,7 +7,7 @@ mod describe;
 mod explain;
 mod goldens;
 mod hashes;
+mod maps;
 mod properties;
 mod sampling;
 mod triangles;
-mod views;

@@ -4,7 +4,7 @@
 const DEFAULTS: [(&str, &str); 11] = [
     ("color", "auto"),
     ("glyphs", "auto"),
-    ("view", "shaded"),
+    ("map", "shaded"),
     ("quality", "exact; live, on a slow link, equal"),
     ("max_rate", "as many as the link takes"),
     ("cell_aspect", "as the terminal says, or 2"),

@@ -2,6 +2,7 @@
 
 use super::files::UserFile;
 use super::values::check;
+use crate::cli::renamed;
 use clap::Command;
 use termtrace::scene_text::{self, Faults, Field, Name, SceneError, Value, line_and_column};
 use termtrace::text::closest;
@@ -66,6 +67,9 @@ fn text_of(field: &Field<'_>, command: &Command, faults: &mut Faults) -> Option<
 }
 
 fn unknown(name: &str, command: &Command) -> String {
+    if let Some(new) = renamed::setting(name) {
+        return format!("unknown setting \"{name}\"; the name is now \"{new}\"");
+    }
     let known: Vec<_> = command.get_arguments().map(|setting| setting.get_id().as_str()).collect();
     match closest(name, known.iter().copied()) {
         Some(meant) => format!("unknown setting \"{name}\"; did you mean \"{meant}\"?"),

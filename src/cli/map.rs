@@ -1,16 +1,16 @@
-//! What of the scene is shown: the flag of the commands that make pictures.
+//! `--map`: what the commands that make pictures show of the scene.
 
 use super::outcome::{Done, Failure};
 use super::settings::defaults;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::num::NonZeroU32;
+use termtrace::maps::Map;
 use termtrace::render::Sampling;
-use termtrace::view::View;
 
 /// Stands below the options in the help.
 pub(super) const EXPLAINED: &str = "\
-What is shown (--view); all but the first trace one ray for each pixel:
+What is shown (--map); all but the first trace one ray for each pixel:
   shaded     the light
   lambert    n.l of all lights, at most 1: no colours, no shadows
   depth      how far away it is: white at the eye, half as light at the target's distance, black far away
@@ -22,27 +22,27 @@ What is shown (--view); all but the first trace one ray for each pixel:
   contrast   black and white, with lines between objects";
 
 #[derive(Args)]
-pub(super) struct ViewArgs {
-    #[arg(long, help = defaults::help("view", "What of the scene is shown"), value_name = "VIEW", value_parser = view_parser(), hide_possible_values = true)]
-    view: Option<View>,
+pub(super) struct MapArgs {
+    #[arg(long, help = defaults::help("map", "The shaded picture, or a map of the scene"), value_name = "MAP", value_parser = map_parser(), hide_possible_values = true)]
+    map: Option<Map>,
 }
 
-fn view_parser() -> impl TypedValueParser<Value = View> {
-    PossibleValuesParser::new(View::ALL.map(View::name)).map(|name| View::named(&name).unwrap_or_default())
+fn map_parser() -> impl TypedValueParser<Value = Map> {
+    PossibleValuesParser::new(Map::ALL.map(Map::name)).map(|name| Map::named(&name).unwrap_or_default())
 }
 
-impl ViewArgs {
-    pub(super) fn view(&self) -> View {
-        self.view.unwrap_or_default()
+impl MapArgs {
+    pub(super) fn map(&self) -> Map {
+        self.map.unwrap_or_default()
     }
 
-    /// Turns away samples that the view makes no use of.
+    /// Refuses more samples than one for each pixel where the map has no use for them.
     pub(super) fn check_samples(&self, sampling: Sampling) -> Done {
-        let view = self.view();
-        if view.refines() || sampling == Sampling::Each(NonZeroU32::MIN) {
+        let map = self.map();
+        if map.refines() || sampling == Sampling::Each(NonZeroU32::MIN) {
             return Ok(());
         }
-        let name = view.name();
-        Err(Failure::Usage(format!("--samples is for the shaded view: --view {name} has one ray for each pixel")))
+        let name = map.name();
+        Err(Failure::Usage(format!("--samples is for the shaded picture: --map {name} has one ray for each pixel")))
     }
 }

@@ -1,4 +1,4 @@
-//! Numbers -> colours, each by a map that is the same for every picture.
+//! Numbers -> colours, each by a scale that is the same for every picture.
 
 use crate::color::Srgb8;
 use glam::Vec3;

@@ -1,8 +1,8 @@
-//! Scene -> pictures of what the light is made of: what there is to see besides light, from the same eye.
+//! Scene -> the shaded picture, or a map: what there is to see besides light, from the same camera.
 //!
-//! All views but [`Shaded`](View::Shaded) are made of the rays through the middles of the pixels, one for each, and paint
-//! each pixel by a fixed map: the same thing has the same colour in every picture, and the legend says which. Only the
-//! map of depths knows of the camera: it is fixed to the distance of the target.
+//! A map is made of one ray through the middle of each pixel and has a fixed colour scale: equal values have equal colours
+//! in every picture, and the legend says which. Only the scale of depths depends on the camera, on the distance of its
+//! target. A *view* is something else: a camera position, as in a scene's [`views`](Scene::views).
 
 use crate::camera::{Camera, Pose};
 use crate::color::{LinearRgb, Srgb8};
@@ -14,22 +14,22 @@ use crate::shade;
 use crate::shape::Side;
 use crate::tone::Picture;
 
+mod colors;
 mod contrast;
 mod cost;
-mod maps;
 mod shaded;
 
-/// What of a scene is shown.
+/// What a picture shows of a scene: its light, or one of the maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum View {
+pub enum Map {
     /// Its light.
     #[default]
     Shaded,
     /// The sum of n.l over all lights that the surface faces, at most 1, as light off white surfaces: no colours, no
     /// distances, no shadows.
     Lambert,
-    /// How far away surfaces are along the view, t: the lightness 1 / (1 + (t / d)^2), where d is the distance from the
-    /// eye to the target.
+    /// How far away surfaces are along the direction of view, t: the lightness 1 / (1 + (t / d)^2), where d is the distance
+    /// from the eye to the target.
     Depth,
     /// The normal on the seen side, (n + 1) / 2 as red, green and blue.
     Normal,
@@ -47,7 +47,7 @@ pub enum View {
     Contrast,
 }
 
-/// Where a ray meets nothing, in every view but those of light, of costs, and of high contrast.
+/// Where a ray meets nothing, in every picture but those of light, of costs, and of high contrast.
 const NOTHING: Srgb8 = Srgb8::new(16, 20, 56);
 /// The side of a surface to which its normal points,
 const FRONT: Srgb8 = Srgb8::new(70, 150, 230);
@@ -63,8 +63,8 @@ pub struct Seen {
     pub cost: Cost,
 }
 
-impl View {
-    /// All views, in the order in which they are gone through.
+impl Map {
+    /// The shaded picture and all maps, in the order in which the keys go through them.
     pub const ALL: [Self; 9] = [
         Self::Shaded,
         Self::Lambert,
@@ -77,7 +77,7 @@ impl View {
         Self::Contrast,
     ];
 
-    /// Its name, one word.
+    /// Returns the name, one word.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Shaded => "shaded",
@@ -92,37 +92,37 @@ impl View {
         }
     }
 
-    /// The view of that name.
+    /// Returns the map of that name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|view| view.name() == name)
+        Self::ALL.into_iter().find(|map| map.name() == name)
     }
 
-    /// The next one; the first after the last.
+    /// Returns the next map; after the last, the first.
     pub fn next(self) -> Self {
         self.after(1)
     }
 
-    /// The one before; the last before the first.
+    /// Returns the map before; before the first, the last.
     pub fn back(self) -> Self {
         self.after(Self::ALL.len() - 1)
     }
 
     fn after(self, steps: usize) -> Self {
-        let at = Self::ALL.iter().position(|&view| view == self).unwrap_or(0);
+        let at = Self::ALL.iter().position(|&map| map == self).unwrap_or(0);
         Self::ALL[(at + steps) % Self::ALL.len()]
     }
 
-    /// Whether more samples make it better: the others have one ray for each pixel.
+    /// Returns whether more samples make it better: the others have one ray for each pixel.
     pub const fn refines(self) -> bool {
         matches!(self, Self::Shaded)
     }
 
-    /// Its name and what its colours mean there, in at most 38 characters of ASCII.
+    /// Returns the name and what the colours mean in that picture, in at most 38 characters of ASCII.
     pub fn legend(self, scene: &Scene, camera: &Camera) -> String {
         let meaning = match self {
             Self::Shaded => return self.name().to_owned(),
             Self::Lambert => "n.l, no shadows".to_owned(),
-            Self::Depth => format!("white 0, grey {}, black far", maps::short(distance(camera))),
+            Self::Depth => format!("white 0, grey {}, black far", colors::short(distance(camera))),
             Self::Normal => "red x, green y, blue z".to_owned(),
             Self::Object => format!("{} colours", scene.objects().len()),
             Self::Shadow => format!("white lit by {}, dark by 0", scene.lights().len()),
@@ -134,16 +134,16 @@ impl View {
     }
 }
 
-/// What `camera` sees of `scene`. The sampling is the shaded view's; of the others only [`Sampling::Coarse`] means
-/// something. Each is a function of nothing else.
+/// Returns the picture that `camera` takes of `scene`: a function of these arguments alone. Samples refine the shaded
+/// picture; of the maps only [`Sampling::Coarse`] changes anything.
 pub fn picture(
-    view: View,
+    map: Map,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: impl Into<Sampling>,
 ) -> Picture {
-    all_seen(view, Crew::Pool, scene, camera, resolution, sampling.into()).picture
+    all_seen(map, Crew::Pool, scene, camera, resolution, sampling.into()).picture
 }
 
 /// [`picture`], traced by that crew.
@@ -151,18 +151,18 @@ pub fn picture(
 /// # Errors
 /// [`Cancelled`], if the crew's token is.
 pub fn seen(
-    view: View,
+    map: Map,
     crew: Crew<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
 ) -> Result<Seen, Cancelled> {
-    crew.finish(all_seen(view, crew, scene, camera, resolution, sampling))
+    crew.finish(all_seen(map, crew, scene, camera, resolution, sampling))
 }
 
 fn all_seen(
-    view: View,
+    map: Map,
     crew: Crew<'_>,
     scene: &Scene,
     camera: &Camera,
@@ -175,28 +175,28 @@ fn all_seen(
         Seen { picture: Picture { width, height, pixels: sighted.pixels }, cost: sighted.cost }
     };
     let of_surfaces = |paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| painted(Reach::Surfaces, paint);
-    match view {
-        View::Shaded => shaded::seen(crew, scene, camera, resolution, sampling),
-        View::Lambert => of_surfaces(&|sight| lambert(scene, sight)),
-        View::Depth => {
+    match map {
+        Map::Shaded => shaded::seen(crew, scene, camera, resolution, sampling),
+        Map::Lambert => of_surfaces(&|sight| lambert(scene, sight)),
+        Map::Depth => {
             let middle = distance(camera);
-            of_surfaces(&|sight| sight.hit.map_or(NOTHING, |hit| maps::depth(hit.t, middle)))
+            of_surfaces(&|sight| sight.hit.map_or(NOTHING, |hit| colors::depth(hit.t, middle)))
         }
-        View::Normal => {
-            of_surfaces(&|sight| sight.surface(scene).map_or(NOTHING, |surface| maps::normal(surface.normal)))
+        Map::Normal => {
+            of_surfaces(&|sight| sight.surface(scene).map_or(NOTHING, |surface| colors::normal(surface.normal)))
         }
-        View::Object => of_surfaces(&|sight| sight.hit.map_or(NOTHING, |hit| maps::object(hit.object))),
-        View::Shadow => painted(Reach::Lights, &|sight| match sight.hit {
-            Some(_) => maps::share(sight.lit_by.count_ones(), scene.lights().len().min(32) as u32),
+        Map::Object => of_surfaces(&|sight| sight.hit.map_or(NOTHING, |hit| colors::object(hit.object))),
+        Map::Shadow => painted(Reach::Lights, &|sight| match sight.hit {
+            Some(_) => colors::share(sight.lit_by.count_ones(), scene.lights().len().min(32) as u32),
             None => NOTHING,
         }),
-        View::Cost => of_surfaces(&|sight| maps::heat(cost::tests(scene, sight))),
-        View::Facing => of_surfaces(&|sight| match sight.surface(scene).map(|surface| surface.side) {
+        Map::Cost => of_surfaces(&|sight| colors::heat(cost::tests(scene, sight))),
+        Map::Facing => of_surfaces(&|sight| match sight.surface(scene).map(|surface| surface.side) {
             None => NOTHING,
             Some(Side::Front) => FRONT,
             Some(Side::Back) => BACK,
         }),
-        View::Contrast => contrast::seen(crew, scene, camera, resolution, sampling),
+        Map::Contrast => contrast::seen(crew, scene, camera, resolution, sampling),
     }
 }
 

@@ -1,7 +1,7 @@
-//! Every view of the same scene: looked at as text, the same bytes for any number of threads, and true to what the
+//! Every map of the same scene: looked at as text, the same bytes for any number of threads, and true to what the
 //! scene's own functions say of a pixel.
 //!
-//! `INSTA_UPDATE=always cargo test --test pictures views` writes the goldens in `tests/snapshots/views` and the hashes anew.
+//! `INSTA_UPDATE=always cargo test --test pictures maps` writes the goldens in `tests/snapshots/maps` and the hashes anew.
 
 use std::num::NonZeroU32;
 use std::path::Path;
@@ -13,12 +13,12 @@ use termtrace::export;
 use termtrace::framebuffer::Resolution;
 use termtrace::hit::closest_hit;
 use termtrace::light::Light;
+use termtrace::maps::{self, Map, picture, seen};
 use termtrace::render::{Crew, Sampling, render};
 use termtrace::scene::Scene;
 use termtrace::shade;
 use termtrace::shape::{Side, Surface};
 use termtrace::tone::{Picture, tone};
-use termtrace::view::{self, View, picture, seen};
 
 const ONE: NonZeroU32 = NonZeroU32::MIN;
 
@@ -39,105 +39,101 @@ fn settings() -> insta::Settings {
     let mut settings = insta::Settings::clone_current();
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    settings.set_snapshot_path("../snapshots/views");
+    settings.set_snapshot_path("../snapshots/maps");
     settings
 }
 
 #[test]
-fn every_view_looks_as_its_golden() {
+fn every_map_looks_as_its_golden() {
     let scene = scene("three_spheres");
     let resolution = Resolution::square(60, 40);
-    for view in View::ALL {
-        let seen = picture(view, &scene, scene.camera(), resolution, ONE);
+    for map in Map::ALL {
+        let seen = picture(map, &scene, scene.camera(), resolution, ONE);
         let text = export::text(&cell::grid_from_picture(CellMode::RAMP, &seen));
         let framed =
-            format!("{}\n|{}|", view.legend(&scene, scene.camera()), text.trim_end_matches('\n').replace('\n', "|\n|"));
-        settings().bind(|| insta::assert_snapshot!(view.name(), framed));
+            format!("{}\n|{}|", map.legend(&scene, scene.camera()), text.trim_end_matches('\n').replace('\n', "|\n|"));
+        settings().bind(|| insta::assert_snapshot!(map.name(), framed));
     }
 }
 
-/// The same bytes on any number of threads, or without a pool; and no two views alike.
+/// The same bytes on any number of threads, or without a pool; and no two maps alike.
 #[test]
-fn every_view_has_the_same_bytes_everywhere() {
+fn every_map_has_the_same_bytes_everywhere() {
     let mut hashes = Vec::new();
     let mut found = Vec::new();
     for name in ["three_spheres", "teapots", "inside_sphere"] {
         let scene = scene(name);
-        for view in View::ALL {
+        for map in Map::ALL {
             let resolution = Resolution::square(83, 50);
             let made = |threads| {
                 let pool =
                     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
-                hash(&pool.install(|| picture(view, &scene, scene.camera(), resolution, ONE)))
+                hash(&pool.install(|| picture(map, &scene, scene.camera(), resolution, ONE)))
             };
             let [one, two, seven] = [1, 2, 7].map(made);
             let alone =
-                seen(view, Crew::Alone, &scene, scene.camera(), resolution, ONE.into()).expect("it has no token");
-            assert!(one == two && one == seven && one == hash(&alone.picture), "{name} {view:?}");
-            assert!(!found.contains(&one), "{name} {view:?} looks as another view");
+                seen(map, Crew::Alone, &scene, scene.camera(), resolution, ONE.into()).expect("it has no token");
+            assert!(one == two && one == seven && one == hash(&alone.picture), "{name} {map:?}");
+            assert!(!found.contains(&one), "{name} {map:?} looks as another map");
             found.push(one);
-            hashes.push(format!("{name} {} {one:016x}", view.name()));
+            hashes.push(format!("{name} {} {one:016x}", map.name()));
         }
     }
     settings().bind(|| insta::assert_snapshot!("hashes", hashes.join("\n")));
 }
 
-/// Two by two pixels are alike while the view moves.
+/// Two by two pixels are alike while the camera moves.
 #[test]
-fn a_coarse_view_is_of_larger_pixels() {
+fn a_coarse_map_is_of_larger_pixels() {
     let scene = scene("three_spheres");
-    for view in View::ALL {
-        let coarse = picture(view, &scene, scene.camera(), Resolution::square(41, 23), Sampling::Coarse);
+    for map in Map::ALL {
+        let coarse = picture(map, &scene, scene.camera(), Resolution::square(41, 23), Sampling::Coarse);
         let at = |x: usize, y: usize| coarse.pixels[y * 41 + x];
         let is_alike = |x, y| at(x, y) == at(x & !1, y & !1);
-        let lines = usize::from(view == View::Contrast) * 41 * 23;
+        let lines = usize::from(map == Map::Contrast) * 41 * 23;
         let others = (0..41 * 23).filter(|pixel| !is_alike(pixel % 41, pixel / 41)).count();
-        assert!(others <= lines, "{view:?}: {others} pixels differ from their squares");
+        assert!(others <= lines, "{map:?}: {others} pixels differ from their squares");
     }
 }
 
 /// What one ray at a time finds, and the formulas of the README, pixel by pixel.
 #[test]
-fn views_say_what_is_there() {
+fn maps_say_what_is_there() {
     for name in ["three_spheres", "inside_sphere", "teapots", "bare"] {
         let scene = scene(name);
         let resolution = Resolution::square(32, 20);
-        let views = View::ALL.map(|view| picture(view, &scene, scene.camera(), resolution, ONE));
-        let shown =
-            |view: View, at: usize| views[View::ALL.iter().position(|&v| v == view).expect("a view")].pixels[at];
+        let maps = Map::ALL.map(|map| picture(map, &scene, scene.camera(), resolution, ONE));
+        let shown = |map: Map, at: usize| maps[Map::ALL.iter().position(|&v| v == map).expect("a map")].pixels[at];
         let light = tone(&render(&scene, scene.camera(), resolution, ONE), &scene);
         for at in 0..32 * 20 {
             let ray = eye_ray(scene.camera(), resolution, at);
-            assert_eq!(shown(View::Shaded, at), light.pixels[at]);
+            assert_eq!(shown(Map::Shaded, at), light.pixels[at]);
             let Some(hit) = closest_hit(&scene, &ray) else {
-                for view in [View::Lambert, View::Depth, View::Normal, View::Object, View::Shadow, View::Facing] {
-                    assert_eq!(shown(view, at), Srgb8::new(16, 20, 56), "{name} {view:?} {at}");
+                for map in [Map::Lambert, Map::Depth, Map::Normal, Map::Object, Map::Shadow, Map::Facing] {
+                    assert_eq!(shown(map, at), Srgb8::new(16, 20, 56), "{name} {map:?} {at}");
                 }
                 continue;
             };
             let surface = hit.surface(&scene).at_crossing(&ray, hit.t);
             let arriving = |light| shade::incidence(light, &surface);
             let lambert: f32 = scene.lights().iter().filter_map(arriving).map(|light| light.cosine).sum();
-            assert_eq!(shown(View::Lambert, at), Srgb8::from_linear(LinearRgb::grey(lambert)), "{name} {at}");
+            assert_eq!(shown(Map::Lambert, at), Srgb8::from_linear(LinearRgb::grey(lambert)), "{name} {at}");
             let pose = scene.camera().pose();
             let part = hit.t / pose.eye.distance(pose.target);
             let depth = (255.0 / (1.0 + part * part)).round() as u8;
-            assert!(shown(View::Depth, at).r.abs_diff(depth) <= 1, "{name} {at}");
+            assert!(shown(Map::Depth, at).r.abs_diff(depth) <= 1, "{name} {at}");
             let n = surface.normal.to_array().map(|n| (127.5 * (n + 1.0)).round() as u8);
-            let Srgb8 { r, g, b } = shown(View::Normal, at);
+            let Srgb8 { r, g, b } = shown(Map::Normal, at);
             assert!([r, g, b].iter().zip(n).all(|(band, n)| band.abs_diff(n) <= 1), "{name} {at}");
             let is_front = surface.side == Side::Front;
-            assert_eq!(shown(View::Facing, at).b > 128, is_front, "{name} {at}");
+            assert_eq!(shown(Map::Facing, at).b > 128, is_front, "{name} {at}");
             let in_the_way = |light: &Light| {
                 scene.shadows()
                     && termtrace::hit::any_hit(&scene, &shade::shadow_ray(light, &surface), light.in_the_way())
             };
             let lit = scene.lights().iter().filter(|light| arriving(light).is_some() && !in_the_way(light)).count();
             let share = 0.22 + 0.78 * lit as f32 / scene.lights().len() as f32;
-            assert!(
-                shown(View::Shadow, at).r.abs_diff((255.0 * share).round() as u8) <= 1,
-                "{name} {at}: lit by {lit}"
-            );
+            assert!(shown(Map::Shadow, at).r.abs_diff((255.0 * share).round() as u8) <= 1, "{name} {at}: lit by {lit}");
         }
     }
 }
@@ -155,20 +151,20 @@ fn eye_ray(camera: &Camera, resolution: Resolution, at: usize) -> termtrace::ray
 fn the_cost_is_what_rays_are_tested_against() {
     let scene = scene("three_spheres");
     let resolution = Resolution::square(40, 30);
-    let picture = picture(View::Cost, &scene, scene.camera(), resolution, ONE);
+    let picture = picture(Map::Cost, &scene, scene.camera(), resolution, ONE);
     let mut kinds: Vec<_> = picture.pixels.clone();
     kinds.sort();
     kinds.dedup();
     assert!((2..=12).contains(&kinds.len()), "{} costs", kinds.len());
     // Into the sky goes the eye ray alone; from the spheres and the floor shadow rays go on.
     let sky = picture.pixels[0];
-    assert_eq!(sky, Srgb8::new(31, 128, 224), "four tests: the second of the map's colours");
+    assert_eq!(sky, Srgb8::new(31, 128, 224), "four tests: the second of the scale's colours");
     let at = |x: usize, y: usize| picture.pixels[y * 40 + x];
     assert_eq!(at(39, 0), sky);
     assert!(at(20, 15) != sky && at(20, 29) != sky);
     // Without shadows no ray goes on.
     let bare = scene.clone().with_shadows(false);
-    let bare = view::picture(View::Cost, &bare, bare.camera(), resolution, ONE);
+    let bare = maps::picture(Map::Cost, &bare, bare.camera(), resolution, ONE);
     assert!(bare.pixels.iter().all(|&pixel| pixel == sky), "each eye ray meets the same tests");
 }
 
@@ -177,19 +173,19 @@ fn the_cost_is_what_rays_are_tested_against() {
 fn legends_are_short() {
     for name in ["three_spheres", "many_spheres", "teapots"] {
         let scene = scene(name);
-        for view in View::ALL {
-            let legend = view.legend(&scene, scene.camera());
-            assert!(legend.is_ascii() && legend.len() <= 38 && legend.starts_with(view.name()), "{legend}");
+        for map in Map::ALL {
+            let legend = map.legend(&scene, scene.camera());
+            assert!(legend.is_ascii() && legend.len() <= 38 && legend.starts_with(map.name()), "{legend}");
         }
     }
 }
 
 #[test]
-fn views_go_round() {
-    for view in View::ALL {
-        assert_eq!(view.next().back(), view);
-        assert_eq!(View::named(view.name()), Some(view));
+fn maps_go_round() {
+    for map in Map::ALL {
+        assert_eq!(map.next().back(), map);
+        assert_eq!(Map::named(map.name()), Some(map));
     }
-    assert_eq!(View::Shaded.back().next(), View::Shaded);
-    assert_eq!(View::named("nothing"), None);
+    assert_eq!(Map::Shaded.back().next(), Map::Shaded);
+    assert_eq!(Map::named("nothing"), None);
 }

@@ -1,4 +1,4 @@
-//! Commands for the line between two views.
+//! Commands for the line between two maps.
 
 use super::Viewer;
 use crate::control::Side;
@@ -7,7 +7,7 @@ use crate::control::Side;
 const STEP: f32 = 1.0 / 32.0;
 
 impl Viewer {
-    /// Moves the line between two views, if there is one: nothing is traced for it.
+    /// Moves the line between two maps, if there is one: nothing is traced for it.
     pub(super) fn move_wipe(&mut self, side: Side) {
         let step = if side == Side::Left { -STEP } else { STEP };
         self.wipe_to(self.screen.wipe() + step);

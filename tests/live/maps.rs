@@ -1,4 +1,4 @@
-//! The views of a scene in the live view, and two of them compared: keys in, screen out.
+//! The maps of a scene in the live view, and two of them compared: keys in, screen out.
 
 use crate::pty::{SOON, Screen, Session, Size, Start, halves_of, shows};
 use std::cmp::Ordering;
@@ -7,10 +7,10 @@ use termtrace::capabilities::CellMode;
 use termtrace::cell;
 use termtrace::color::Srgb8;
 use termtrace::framebuffer::Resolution;
+use termtrace::maps::{self, Map};
 use termtrace::render::Sampling;
 use termtrace::scene::Scene;
 use termtrace::tone::Picture;
-use termtrace::view::{self, View};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 const SIZE: Size = Size { columns: 60, rows: 20, cell: (10, 20) };
@@ -32,11 +32,11 @@ fn scene() -> Scene {
     Scene::load(Path::new(SCENE)).expect("the scene is fine")
 }
 
-/// The whole picture of a view, as fine as it gets.
-fn whole(view: View) -> Picture {
+/// The whole picture of a map, as fine as it gets.
+fn whole(map: Map) -> Picture {
     let scene = scene();
     let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size(), 2.0);
-    view::picture(view, &scene, scene.camera(), resolution, Sampling::BEST)
+    maps::picture(map, &scene, scene.camera(), resolution, Sampling::BEST)
 }
 
 fn grid_size() -> termtrace::grid::Size {
@@ -65,27 +65,27 @@ fn wait_for(session: &mut Session, what: &str, picture: &Picture, last: impl Fn(
 }
 
 #[test]
-fn v_and_b_go_through_the_views_and_say_what_their_colours_mean() {
+fn v_and_b_go_through_the_maps_and_say_what_their_colours_mean() {
     let mut session = start();
-    wait_for(&mut session, "the light", &whole(View::Shaded), |last| !last.contains("shaded"));
+    wait_for(&mut session, "the light", &whole(Map::Shaded), |last| !last.contains("shaded"));
     let scene = scene();
-    for view in View::ALL.into_iter().skip(1) {
+    for map in Map::ALL.into_iter().skip(1) {
         session.send(b"v");
-        let legend = view.legend(&scene, scene.camera());
-        wait_for(&mut session, view.name(), &whole(view), |last| last.contains(&legend));
+        let legend = map.legend(&scene, scene.camera());
+        wait_for(&mut session, map.name(), &whole(map), |last| last.contains(&legend));
     }
     session.send(b"v");
-    wait_for(&mut session, "the light again", &whole(View::Shaded), |last| !last.contains("contrast"));
+    wait_for(&mut session, "the light again", &whole(Map::Shaded), |last| !last.contains("contrast"));
     session.send(b"b");
-    wait_for(&mut session, "the last view", &whole(View::Contrast), |last| last.contains("contrast"));
+    wait_for(&mut session, "the last map", &whole(Map::Contrast), |last| last.contains("contrast"));
     session.send(b"q");
     session.wait_exit(SOON);
 }
 
 #[test]
-fn the_view_asked_for_is_there_at_first() {
-    let mut session = start_with(&["--view", "depth"]);
-    wait_for(&mut session, "depths", &whole(View::Depth), |last| last.contains("depth: white 0, grey 6.41"));
+fn the_map_asked_for_is_there_at_first() {
+    let mut session = start_with(&["--map", "depth"]);
+    wait_for(&mut session, "depths", &whole(Map::Depth), |last| last.contains("depth: white 0, grey 6.41"));
     // The status line and its keys are below.
     session.send(b"i");
     session.wait_for("all three lines", SOON, |seen| {
@@ -96,23 +96,23 @@ fn the_view_asked_for_is_there_at_first() {
 
 /// Two pictures of half the width, each of the right shape; then one with a line that keys move; then one.
 #[test]
-fn two_views_are_compared() {
+fn two_maps_are_compared() {
     let mut session = start();
-    wait_for(&mut session, "the light", &whole(View::Shaded), |_| true);
+    wait_for(&mut session, "the light", &whole(Map::Shaded), |_| true);
     session.send(b"|vv");
     let scene = scene();
-    let half = |width, view| {
+    let half = |width, map| {
         let resolution = Resolution::square(width, u32::from(SIZE.rows) * 2);
-        view::picture(view, &scene, scene.camera(), resolution, Sampling::BEST)
+        maps::picture(map, &scene, scene.camera(), resolution, Sampling::BEST)
     };
     let legends = |last: &str| {
         let right: String = last.chars().skip(30).collect();
         last.starts_with(" shaded ") && right.starts_with(" normal: red x")
     };
-    let beside = joined(&half(29, View::Shaded), &half(30, View::Normal));
+    let beside = joined(&half(29, Map::Shaded), &half(30, Map::Normal));
     wait_for(&mut session, "two pictures", &beside, legends);
     session.send(b"|");
-    let wipe = |line| wiped(&whole(View::Shaded), &whole(View::Normal), line);
+    let wipe = |line| wiped(&whole(Map::Shaded), &whole(Map::Normal), line);
     wait_for(&mut session, "a wipe", &wipe(30), legends);
     session.send(b">>>><");
     // Three steps of a thirty-second of 60 columns.
@@ -120,7 +120,7 @@ fn two_views_are_compared() {
     session.send(&b"<".repeat(40));
     wait_for(&mut session, "the line at the left edge", &wipe(0), legends);
     session.send(b"|");
-    wait_for(&mut session, "the light alone", &whole(View::Shaded), |last| !last.contains("shaded"));
+    wait_for(&mut session, "the light alone", &whole(Map::Shaded), |last| !last.contains("shaded"));
 }
 
 const LINE: Srgb8 = Srgb8::new(255, 208, 64);
@@ -144,11 +144,11 @@ fn wiped(left: &Picture, right: &Picture, line: u32) -> Picture {
 #[test]
 fn small_screens_have_no_legend() {
     let size = Size { rows: 11, ..SIZE };
-    let mut session = started(size, &["--view", "normal"]);
+    let mut session = started(size, &["--map", "normal"]);
     let scene = scene();
     let grid_size = termtrace::grid::Size::new(size.columns, size.rows);
     let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size, 2.0);
-    let normals = view::picture(View::Normal, &scene, scene.camera(), resolution, Sampling::BEST);
+    let normals = maps::picture(Map::Normal, &scene, scene.camera(), resolution, Sampling::BEST);
     let wanted = cell::grid_from_picture(CellMode::HALF_BLOCK, &normals);
     session.wait_for("the normals and nothing else", SOON, |seen| shows(seen.screen(), &wanted));
 }
