@@ -5,14 +5,10 @@ use glam::Vec3;
 use std::hint::black_box;
 use std::num::NonZeroU32;
 use std::path::Path;
-use termtrace::camera::{Camera, Pose};
-use termtrace::capabilities::{CellMode, Colors, Glyphs};
-use termtrace::cell::{self, Painter};
-use termtrace::encode::{Encoder, Order};
-use termtrace::grid::{Grid, Size};
-use termtrace::render::render;
-use termtrace::scene::Scene;
-use termtrace::tone::{Picture, tone};
+use termtrace::internals::cell;
+use termtrace::{
+    Camera, CellMode, Colors, Encoder, Glyphs, Grid, Order, Painter, Picture, Pose, Scene, Size, render, tone,
+};
 
 const SIZES: [Size; 2] = [Size::new(80, 24), Size::new(200, 60)];
 

@@ -9,7 +9,7 @@ use ratatui::widgets::{Block, Gauge, Paragraph};
 use ratatui::{Frame, Terminal};
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
-use termtrace::encode::{Encoder, EncoderBackend, Order};
+use termtrace::{Encoder, EncoderBackend, Order};
 
 fn main() -> io::Result<()> {
     if !io::stdout().is_terminal() {

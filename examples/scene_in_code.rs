@@ -4,14 +4,12 @@ use glam::Vec3;
 use std::f32::consts::TAU;
 use std::io::{self, Write};
 use std::num::NonZeroU32;
-use termtrace::camera::{Camera, Pose, ViewRectangle};
-use termtrace::capabilities::{CellMode, USUAL_CELL_ASPECT};
-use termtrace::color::LinearRgb;
-use termtrace::light::{Falloff, PointLight};
-use termtrace::material::Material;
-use termtrace::scene::{Object, Scene};
-use termtrace::shape::{Plane, Sphere};
-use termtrace::{cell, export, grid::Size, render::render, tone::tone};
+use termtrace::internals::capabilities::USUAL_CELL_ASPECT;
+use termtrace::internals::cell;
+use termtrace::{
+    Camera, CellMode, Falloff, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Size, Sphere,
+    ViewRectangle, export, render, tone,
+};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pose = Pose { eye: Vec3::new(0.0, 3.0, 7.0), target: Vec3::new(0.0, 0.4, 0.0), up: Vec3::Y };

@@ -1,7 +1,7 @@
 //! A scene as plain text: what a snapshot test compares.
 
 use std::path::Path;
-use termtrace::{export::text_frame, grid::Size, scene::Scene};
+use termtrace::{Scene, Size, text_frame};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::load(Path::new("scenes/three_spheres.ron"))?;

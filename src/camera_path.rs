@@ -55,13 +55,13 @@ impl CameraPath {
     /// through the target along up, at the same height over the target all the time. It begins with `camera` itself.
     ///
     /// ```
-    /// use termtrace::{camera_path::CameraPath, scene::Scene};
+    /// use termtrace::{CameraPath, Scene};
     ///
     /// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 1, 5), target: (0, 0, 0)))")?;
     /// let path = CameraPath::orbit(*scene.camera(), 8.0);
     /// let quarter = path.camera_at(2.0).unwrap().pose().eye;
     /// assert!(quarter.abs_diff_eq(glam::Vec3::new(5.0, 1.0, 0.0), 1e-6));
-    /// # Ok::<(), termtrace::scene_text::SceneError>(())
+    /// # Ok::<(), termtrace::SceneError>(())
     /// ```
     pub fn orbit(camera: Camera, seconds: f64) -> Self {
         Self(Way::Orbit { camera, seconds })

@@ -97,9 +97,9 @@ enum Command {
 
 /// Reads the command line, does what it says, and says what went wrong.
 pub(crate) fn main() -> ExitCode {
-    termtrace::terminal::hold_panic_messages();
+    termtrace::internals::terminal::hold_panic_messages();
     // Where it cannot be done, such a write ends the process as it would any other.
-    let _ = termtrace::terminal::fail_large_writes();
+    let _ = termtrace::internals::terminal::fail_large_writes();
     let (cli, given) = match parse(std::env::args_os()) {
         Ok(parsed) => parsed,
         Err(exit) => return exit,

@@ -109,7 +109,7 @@ impl Format {
 /// aspect of 2, one line for each row, each with all its characters and a line feed.
 ///
 /// ```
-/// use termtrace::{export::text_frame, grid::Size, scene::Scene};
+/// use termtrace::{Scene, Size, text_frame};
 ///
 /// let scene = Scene::from_ron("ball.ron", r##"(
 ///     camera: (eye: (0, 0, 4), target: (0, 0, 0)),

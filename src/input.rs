@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use crossterm::event::{Event, KeyCode};
-//! use termtrace::input::{Input, Parser, Reply};
+//! use termtrace::internals::input::{Input, Parser, Reply};
 //!
 //! let mut parser = Parser::new();
 //! let mut out = Vec::new();

@@ -5,7 +5,8 @@
 //!
 //! ```
 //! use std::num::NonZeroU32;
-//! use termtrace::{framebuffer::Resolution, render::render, scene::Scene, tone::tone};
+//! use termtrace::internals::{render, tone};
+//! use termtrace::{Resolution, Scene};
 //!
 //! let scene = Scene::from_ron("ball.ron", r##"(
 //!     camera: (eye: (0, 1, 4), target: (0, 1, 0)),
@@ -15,11 +16,26 @@
 //! let light = render(&scene, scene.camera(), Resolution::square(80, 48), NonZeroU32::MIN);
 //! let picture = tone(&light, &scene);
 //! assert_eq!(picture.pixels.len(), 80 * 48);
-//! # Ok::<(), termtrace::scene_text::SceneError>(())
+//! # Ok::<(), termtrace::SceneError>(())
 //! ```
 //!
-//! A library user meets [`Scene`](scene::Scene): all that was checked, together with the trees that rays go through. Loading
+//! A library user meets [`Scene`]: all that was checked, together with the trees that rays go through. Loading
 //! one, or building one in code, builds the trees once; copies share them, and no function that takes a scene builds any.
+//!
+//! # The surface
+//!
+//! What is promised stands at the crate's root, in [`export`] and in [`live`]; the modules of the route are private.
+//! - Scene files: [`Scene`], its errors [`LoadError`] and [`SceneError`], and [`Progress`] of reading
+//! - Scenes in code: [`Camera`], [`Object`], [`Shape`], [`Material`], [`Light`], [`Background`], [`ToneCurve`],
+//!   [`LinearRgb`]
+//! - Cameras over time: [`CameraPath`]
+//! - Pictures: [`render()`] and [`Render`] with [`Resolution`] and [`Sampling`] -> [`Framebuffer`], [`tone()`] -> [`Picture`];
+//!   [`Map`]
+//! - Pictures in words: [`describe()`], [`explain()`]
+//! - Cells and text: [`Grid`], [`CellMode`], [`Painter`], [`text_frame`], [`frame_grid`], [`export`]
+//! - ratatui: [`EncoderBackend`] and its [`Encoder`], [`lay_over`]
+//! - Films: [`Cast`], [`Gif`]
+//! - The live view: [`live`]
 //!
 //! # The route
 //!
@@ -28,182 +44,236 @@
 //!
 //! Words that all stages speak:
 //! - `table`: a type with a row for each of its values
-//! - [`color`]: linear RGB, 8-bit sRGB, and the transfer function between them
-//! - [`lanes`]: a number, or eight side by side
-//! - [`simd`]: eight numbers in one register, where the CPU has such
-//! - [`ray`]: origin + t * direction, and intervals of t
-//! - [`bounds`]: boxes along the axes
-//! - [`text`]: text for messages: printable, lists, the word that was meant
-//! - [`memory`]: asked for before it is used
-//! - [`progress`]: progress reports, and the token by which work is cancelled
-//! - [`named_file`]: the bytes of a file that a person names, within bounds
+//! - `color`: linear RGB, 8-bit sRGB, and the transfer function between them
+//! - `lanes`: a number, or eight side by side
+//! - `simd`: eight numbers in one register, where the CPU has such
+//! - `ray`: origin + t * direction, and intervals of t
+//! - `bounds`: boxes along the axes
+//! - `text`: text for messages: printable, lists, the word that was meant
+//! - `memory`: asked for before it is used
+//! - `progress`: progress reports, and the token by which work is cancelled
+//! - `named_file`: the bytes of a file that a person names, within bounds
 //!
 //! What was written:
-//! - [`scene_text`]: RON -> a syntax tree with places; faults with line, column and caret
-//! - [`mesh_file`]: OBJ, STL, PLY or glTF -> triangles, checked
-//! - [`written`]: values as the author wrote them, with places: read from the tree, and checked
+//! - `scene_text`: RON -> a syntax tree with places; faults with line, column and caret
+//! - `mesh_file`: OBJ, STL, PLY or glTF -> triangles, checked
+//! - `written`: values as the author wrote them, with places: read from the tree, and checked
 //!
 //! What is drawn, checked once, in radians, linear light and unit vectors:
-//! - [`bvh`]: which of many boxes a ray may meet
-//! - [`shape`]: surfaces f(p) = 0, where a ray crosses them, their normals
+//! - `bvh`: which of many boxes a ray may meet
+//! - `shape`: surfaces f(p) = 0, where a ray crosses them, their normals
 //! - `accel`: the trees over all shapes of a scene, built once
-//! - [`material`]: diffuse reflectance
-//! - [`light`]: point lights
-//! - [`camera`]: eye, target, up, field of view -> basis u, v, w -> eye rays
-//! - [`camera_path`]: the camera over time: an orbit, or through keyframes
-//! - [`scene_file`]: a whole file as the author wrote it, typed
-//! - [`scene`]: all of it, and the one conversion from what was written
+//! - `material`: diffuse reflectance
+//! - `light`: point lights
+//! - `camera`: eye, target, up, field of view -> basis u, v, w -> eye rays
+//! - `camera_path`: the camera over time: an orbit, or through keyframes
+//! - `scene_file`: a whole file as the author wrote it, typed
+//! - `scene`: all of it, and the one conversion from what was written
 //!
 //! From the eye to the light:
-//! - [`hit`]: the closest hit, any hit
-//! - [`shade`]: light from a surface to the eye
-//! - [`framebuffer`]: linear light per pixel
-//! - [`render`]: tile by tile, eye rays -> hits -> shadow rays -> shade
+//! - `hit`: the closest hit, any hit
+//! - `shade`: light from a surface to the eye
+//! - `framebuffer`: linear light per pixel
+//! - `render`: tile by tile, eye rays -> hits -> shadow rays -> shade
 //!
 //! From light to the screen:
-//! - [`tone`]: exposure, tone curve, transfer function, 8 bits
-//! - [`maps`]: the shaded picture, or a map: depths, normals, objects, shadows
-//! - [`describe`]: the picture in words
-//! - [`grid`]: the cell grid
-//! - [`cell`]: picture -> grid, by half blocks or characters, in the colours that there are
-//! - [`capabilities`]: what a terminal's cells can be made of
-//! - [`explain`]: one pixel, and all that its light came from
-//! - [`overlay`]: any ratatui buffer laid over the grid
-//! - [`encode`]: wanted grid, shown grid, pen -> bytes
-//! - [`export`]: grid or picture -> text, ANSI, SVG, HTML, PNG
-//! - [`record`]: frames over time -> asciicast, GIF
-//! - [`output_file`]: bytes -> a file that is replaced whole, or not at all
+//! - `tone`: exposure, tone curve, transfer function, 8 bits
+//! - `maps`: the shaded picture, or a map: depths, normals, objects, shadows
+//! - `describe`: the picture in words
+//! - `grid`: the cell grid
+//! - `cell`: picture -> grid, by half blocks or characters, in the colours that there are
+//! - `capabilities`: what a terminal's cells can be made of
+//! - `explain`: one pixel, and all that its light came from
+//! - `overlay`: any ratatui buffer laid over the grid
+//! - `encode`: wanted grid, shown grid, pen -> bytes
+//! - `export`: grid or picture -> text, ANSI, SVG, HTML, PNG
+//! - `record`: frames over time -> asciicast, GIF
+//! - `output_file`: bytes -> a file that is replaced whole, or not at all
 //!
 //! With a person:
-//! - [`input`]: bytes -> events and replies
-//! - [`protocol`]: modes and queries -> bytes; replies -> what is still outstanding
-//! - [`pace`]: what may be in flight, and when
-//! - [`control`]: keys, mouse + camera -> camera
+//! - `input`: bytes -> events and replies
+//! - `protocol`: modes and queries -> bytes; replies -> what is still outstanding
+//! - `pace`: what may be in flight, and when
+//! - `control`: keys, mouse + camera -> camera
 //! - `viewer`: one person's view: bytes, scenes, frames and time in; bytes and frames to be traced out
-//! - [`terminal`]: the one owner of the terminal
-//! - [`app`]: a viewer on the terminal
+//! - `terminal`: the one owner of the terminal
+//! - `app`: a viewer on the terminal
+//!
+//! For programs that use the crate:
+//! - [`live`]: what of `app` and `terminal` is promised
+//! - [`prelude`]: what a first program imports
+//! - `internals`: every module of the route, without any promise, for this project's own program, tests and benches
 //!
 //! # Laws
 //!
 //! 1. A module uses only what stands above it here. Within a module the files of one folder form no cycle, and between a
 //!    file and those in its folder only types go one of the ways (`tests/laws.rs` reads the imports).
-//! 2. Written, then checked: [`scene_file`] holds what the author wrote and where, of surfaces in the terms of [`shape`];
-//!    [`scene`] has it converted once into a value that cannot be wrong. Units and colour spaces change there and nowhere
+//! 2. Written, then checked: `scene_file` holds what the author wrote and where, of surfaces in the terms of `shape`;
+//!    `scene` has it converted once into a value that cannot be wrong. Units and colour spaces change there and nowhere
 //!    else.
-//! 3. The value between two layers has a name: [`Scene`](scene::Scene), [`Camera`](camera::Camera),
-//!    [`Hit`](hit::Hit), [`Framebuffer`](framebuffer::Framebuffer), [`Picture`](tone::Picture), [`Grid`](grid::Grid),
+//! 3. The value between two layers has a name: [`Scene`], [`Camera`],
+//!    [`Hit`], [`Framebuffer`], [`Picture`], [`Grid`],
 //!    bytes. Each can be made by hand in a test.
 //! 4. The picture is a pure function of scene, camera, resolution and samples: no clock, no randomness, no number of
 //!    threads, and the same bits on any CPU, because only + - * / and the square root are on its path, with libm in
 //!    Rust at set-up (clippy bans the rest; `tests/hashes.txt` has the bits).
-//! 5. Only [`terminal`] touches the operating system's terminal and signals, and it is the one owner of what is turned
+//! 5. Only `terminal` touches the operating system's terminal and signals, and it is the one owner of what is turned
 //!    on. Everything above bytes runs without a terminal. The feature `test-hooks`, which this crate's tests turn on for
 //!    themselves (a dev-dependency of the crate on itself), lets them say where it is to fail; no other build has it.
-//!    [`input`], [`protocol`], [`pace`], [`control`] and `viewer` know no file, thread or clock: they are told the time.
+//!    `input`, `protocol`, `pace`, `control` and `viewer` know no file, thread or clock: they are told the time.
 //! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no
 //!    timer runs. *When* to trace, refine, draw and wait is decided by one function of one snapshot of facts
 //!    (`viewer::schedule`). Each piece of state has one owner: no field is assigned but in the file that defines its type.
 //! 7. The library neither prints nor exits, and installs nothing by itself.
 //! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over arrays of its rays, in which
-//!    eight rays stand side by side all the way ([`EightRays`](ray::EightRays)), each with a bit for whether it is asked
+//!    eight rays stand side by side all the way (`EightRays`), each with a bit for whether it is asked
 //!    about.
-//! 9. Only [`output_file`] writes files, for the library and the program.
+//! 9. Only `output_file` writes files, for the library and the program.
 //!
 //! # What is not here
 //!
-//! No trait objects in the tracer: a [`Shape`](shape::Shape) is an enum, its [`Part`](shape::Part)s are what rays are
-//! tested against. A new surface is one file under `shape/`, where it implements [`Surface`](shape::Surface),
-//! [`Described`](shape::Described), [`InSceneFile`](written::InSceneFile) and [`CheckedShape`](shape::CheckedShape), and
+//! No trait objects in the tracer: a [`Shape`] is an enum, its `Part`s are what rays are
+//! tested against. A new surface is one file under `shape/`, where it implements `Surface`,
+//! `Described`, `InSceneFile` and `CheckedShape`, and
 //! one line in the table of `shape`, from which the enums, the lists and trees of `accel`, and what reads, describes and
 //! explains it are made (`shape::cube` is such a surface, for tests). In the same way a material is a file under
-//! `material/` with a type that is [`Reflecting`](material::Reflecting) and a line in the table of [`material`], and a light
-//! a file under `light/` with a [`LightSource`](light::LightSource) and a line in the table of [`light`]
+//! `material/` with a type that is `Reflecting` and a line in the table of `material`, and a light
+//! a file under `light/` with a `LightSource` and a line in the table of `light`
 //! (`material::stripes` and `light::sun`, for tests). No crate reads scenes or meshes:
-//! [`scene_text`] and [`mesh_file`] say which were tried, and at which file each failed. No fixed epsilon: see
-//! [`SurfacePoint::ray_origin`](shape::SurfacePoint::ray_origin). No order of the tree that could show: see
-//! [`Bounds::crossed`](bounds::Bounds::crossed). No flag says that a picture is out of date: the shot that is wanted is
+//! `scene_text` and `mesh_file` say which were tried, and at which file each failed. No fixed epsilon: see
+//! `SurfacePoint::ray_origin`. No order of the tree that could show: see
+//! `Bounds::crossed`. No flag says that a picture is out of date: the shot that is wanted is
 //! compared with the one that was begun. A kind of cells is a file under `cell/` with all that is particular to it, and a
-//! row of the table of [`Glyphs`](cell::Glyphs); an export format is a file under `export/` and a row of the table of
+//! row of the table of [`Glyphs`]; an export format is a file under `export/` and a row of the table of
 //! [`Format`](export::Format)s: flags, keys, commands, panels and the check against a golden file follow from these. No list
 //! of panels: a panel is a layer of the viewer, one file with a type that implements `viewer::layers::Layer`, and the line
 //! that opens it.
 //!
 //! # One eye ray
 //!
-//! [`render`] goes over a picture for [`maps`] or `app::renderer`: `render::uniform` with the same number of samples for
+//! `render` goes over a picture for `maps` or `app::renderer`: `render::uniform` with the same number of samples for
 //! each pixel, `render::adaptive` with more where there are edges. `render::schedule` gives each thread its tiles and cuts
 //! their samples into batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye rays (by
-//! [`camera`]) -> [`hit`] finds the closest hits: among the objects that stand alone, then in the trees (`accel`,
-//! over [`bvh`]), whose leaves are parts of [`shape`]s -> [`shade`] works out the points that were met (`shade::points`)
-//! -> it sends shadow rays ([`hit`] again) and adds up what arrives from the [`light`]s -> it has the
-//! [`material`] reflect that. `render::tiles` puts a tile's light into the [`framebuffer`] -> [`tone`] -> [`cell`] ->
-//! [`encode`] or [`export`].
+//! `camera`) -> `hit` finds the closest hits: among the objects that stand alone, then in the trees (`accel`,
+//! over `bvh`), whose leaves are parts of `shape`s -> `shade` works out the points that were met (`shade::points`)
+//! -> it sends shadow rays (`hit` again) and adds up what arrives from the `light`s -> it has the
+//! `material` reflect that. `render::tiles` puts a tile's light into the `framebuffer` -> `tone` -> `cell` ->
+//! `encode` or `export`.
 //!
 //! # One scene with a typo
 //!
-//! `scene::load` has the bytes read ([`named_file`]) -> [`scene_text`] makes a tree of them, in which every node has its
-//! place -> [`scene_file`] reads the fields, those of a
-//! [`shape`], [`material`] or [`light`] in its own file; a name that is not known is a fault there, with the word that was
-//! meant ([`text`]) -> `scene::checked` is silent about what is missing only because of that -> `scene_text::fault` puts all
+//! `scene::load` has the bytes read (`named_file`) -> `scene_text` makes a tree of them, in which every node has its
+//! place -> `scene_file` reads the fields, those of a
+//! `shape`, `material` or `light` in its own file; a name that is not known is a fault there, with the word that was
+//! meant (`text`) -> `scene::checked` is silent about what is missing only because of that -> `scene_text::fault` puts all
 //! faults in order, each with its line and carets -> the error goes back to who loaded the scene: the command line prints
 //! it, and the live view shows the first fault of it (`viewer::fault`).
 //!
 //! # One key press
 //!
-//! `app::live` reads the terminal's bytes -> `viewer::events`: the receiver of [`protocol`] cuts them into inputs
-//! ([`input`]), the bindings of [`control`] into a command, and that moves the eye (`viewer::eye`) -> `viewer::schedule`
-//! decides that a frame is to be traced -> `app::renderer` traces it ([`render`]) -> the frame comes to `viewer::screen`,
-//! and the schedule decides that it is to be drawn: cells ([`cell`]), layers over them, bytes ([`encode`]) ->
-//! [`terminal`].
+//! `app::live` reads the terminal's bytes -> `viewer::events`: the receiver of `protocol` cuts them into inputs
+//! (`input`), the bindings of `control` into a command, and that moves the eye (`viewer::eye`) -> `viewer::schedule`
+//! decides that a frame is to be traced -> `app::renderer` traces it (`render`) -> the frame comes to `viewer::screen`,
+//! and the schedule decides that it is to be drawn: cells (`cell`), layers over them, bytes (`encode`) ->
+//! `terminal`.
 
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
 compile_error!("termtrace runs on Linux and macOS: it talks to the terminal through POSIX termios, poll and signals");
 
 mod table;
-pub mod color;
-pub mod lanes;
-pub mod simd;
-pub mod ray;
-pub mod bounds;
-pub mod text;
-pub mod memory;
-pub mod progress;
-pub mod named_file;
-pub mod scene_text;
-pub mod mesh_file;
-pub mod written;
-pub mod bvh;
-pub mod shape;
+mod color;
+mod lanes;
+mod simd;
+mod ray;
+mod bounds;
+mod text;
+mod memory;
+mod progress;
+mod named_file;
+mod scene_text;
+mod mesh_file;
+mod written;
+mod bvh;
+mod shape;
 mod accel;
-pub mod material;
-pub mod light;
-pub mod camera;
-pub mod camera_path;
-pub mod scene_file;
-pub mod scene;
-pub mod hit;
-pub mod shade;
-pub mod framebuffer;
-pub mod render;
-pub mod tone;
-pub mod maps;
-pub mod describe;
-pub mod grid;
-pub mod cell;
-pub mod capabilities;
-pub mod explain;
-pub mod overlay;
-pub mod encode;
+mod material;
+mod light;
+mod camera;
+mod camera_path;
+mod scene_file;
+mod scene;
+mod hit;
+mod shade;
+mod framebuffer;
+mod render;
+mod tone;
+mod maps;
+mod describe;
+mod grid;
+mod cell;
+mod capabilities;
+mod explain;
+mod overlay;
+mod encode;
 pub mod export;
-pub mod record;
-pub mod output_file;
-pub mod input;
-pub mod protocol;
-pub mod pace;
-pub mod control;
+mod record;
+mod output_file;
+mod input;
+mod protocol;
+mod pace;
+mod control;
 mod viewer;
-pub mod terminal;
-pub mod app;
+mod terminal;
+mod app;
+pub mod live;
+pub mod prelude;
+#[doc(hidden)]
+pub mod internals;
+
+// Scene files.
+pub use progress::{Progress, Work};
+pub use scene::{LoadError, Scene};
+pub use scene_text::SceneError;
+
+// Scenes in code.
+pub use bounds::Bounds;
+pub use camera::{Camera, CameraError, Pose, ViewRectangle};
+pub use color::{LinearRgb, Srgb8};
+pub use light::{Falloff, Light, PointLight};
+pub use material::{Checker, Diffuse, Material};
+pub use mesh_file::MeshError;
+pub use scene::{Background, Object, ToneCurve};
+pub use shape::{Mesh, Plane, Shape, Sphere, Triangle};
+
+// Cameras over time.
+pub use camera_path::{CameraPath, Keyframe, NoView};
+
+// Pictures.
+pub use framebuffer::{Framebuffer, Resolution};
+pub use hit::Hit;
+pub use maps::Map;
+pub use progress::Cancelled;
+pub use render::{Render, Sampling, render};
+pub use tone::{Picture, tone};
+
+// Pictures in words.
+pub use describe::describe;
+pub use explain::{Explanation, explain};
+
+// Cells and text.
+pub use cell::{CellMode, Colors, Glyphs, Painter};
+pub use export::{frame_grid, text_frame};
+pub use grid::{Cell, Glyph, Grid, Ink, Size};
+
+// ratatui.
+pub use encode::{Encoder, EncoderBackend, Order, Quality};
+pub use overlay::lay_over;
+
+// Films.
+pub use record::{Cast, Gif, gif_size};
+
+// The crates whose types are in signatures.
+pub use glam;
 
 /// The examples of the README are compiled and run with the others.
 #[cfg(doctest)]

@@ -75,7 +75,7 @@ use std::path::Path;
 /// triangle; some may have no area.
 ///
 /// ```
-/// use termtrace::mesh_file::MeshFile;
+/// use termtrace::internals::mesh_file::MeshFile;
 ///
 /// let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 /// let mesh = MeshFile::from_bytes("square.obj", text, &mut |_| unreachable!("it names no other file"))?;
@@ -83,7 +83,7 @@ use std::path::Path;
 ///
 /// let error = MeshFile::from_bytes("x.obj", b"v 0 0 0\nf 1 2 3\n", &mut |_| unreachable!()).unwrap_err();
 /// assert_eq!(error.to_string(), "x.obj:2:5: vertex 2 does not exist: 1 stands above this line");
-/// # Ok::<(), termtrace::mesh_file::MeshError>(())
+/// # Ok::<(), termtrace::MeshError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
@@ -172,7 +172,7 @@ impl MeshFile {
     ///
     /// ```no_run
     /// use std::path::Path;
-    /// use termtrace::mesh_file::MeshFile;
+    /// use termtrace::internals::mesh_file::MeshFile;
     ///
     /// match MeshFile::load(Path::new("meshes/teapot.obj")) {
     ///     Ok(mesh) => println!("{} triangles", mesh.triangles().len()),

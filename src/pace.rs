@@ -27,7 +27,7 @@
 //!
 //! ```
 //! use std::time::Duration;
-//! use termtrace::pace::Link;
+//! use termtrace::internals::pace::Link;
 //!
 //! let ms = Duration::from_millis;
 //! let mut link = Link::new(None, None, true);

@@ -3,8 +3,8 @@
 //!
 //! ```
 //! use std::time::Duration;
-//! use termtrace::input::Reply;
-//! use termtrace::protocol::{FENCE, Mode, Modes, Outstanding};
+//! use termtrace::internals::input::Reply;
+//! use termtrace::internals::protocol::{FENCE, Mode, Modes, Outstanding};
 //!
 //! let (mut modes, mut bytes) = (Modes::default(), Vec::new());
 //! modes.switch_on(Mode::AlternateScreen, &mut bytes);

@@ -28,12 +28,12 @@ use std::sync::Arc;
 /// Both are built once and never change; copies share them. A scene with other lights, or another camera, shares the trees.
 ///
 /// ```
-/// use termtrace::{color::LinearRgb, scene::Scene};
+/// use termtrace::{LinearRgb, Scene};
 ///
 /// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")?;
 /// let brighter = scene.clone().with_ambient(LinearRgb::grey(0.5)).with_exposure(2.0);
 /// assert_eq!((scene.exposure(), brighter.exposure()), (1.0, 2.0));
-/// # Ok::<(), termtrace::scene_text::SceneError>(())
+/// # Ok::<(), termtrace::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {

@@ -2,9 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use termtrace::camera_path::CameraPath;
-use termtrace::control::{Bindings, Key};
-use termtrace::scene::Scene;
+use termtrace::internals::control::{Bindings, Key};
+use termtrace::{CameraPath, Scene};
 
 fn readme() -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("the README is there")
@@ -59,7 +58,7 @@ fn the_message_in_it_is_the_programs() {
 
 #[test]
 fn the_size_of_the_live_picture_is_the_programs() {
-    let cells = termtrace::app::MAX_PIXELS / 2;
+    let cells = termtrace::internals::app::MAX_PIXELS / 2;
     let cells = format!("{},{:03},{:03} cells", cells / 1_000_000, cells / 1000 % 1000, cells % 1000);
     assert!(readme().contains(&cells), "{cells}");
 }

@@ -16,9 +16,7 @@ use std::path::Path;
 use std::process::ExitStatus;
 use std::time::{Duration, Instant};
 use tempfile::NamedTempFile;
-use termtrace::capabilities::CellMode;
-use termtrace::render::Sampling;
-use termtrace::scene::Scene;
+use termtrace::{CellMode, Sampling, Scene};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
@@ -377,7 +375,7 @@ fn refining(scene: &NamedTempFile) -> (Session, Phases) {
 fn a_key_does_not_wait_for_a_refinement() {
     let scene = gravel();
     let loaded = Scene::load(scene.path()).unwrap_or_else(|error| panic!("{error}"));
-    let cells = termtrace::grid::Size::new(LARGE.columns, LARGE.rows);
+    let cells = termtrace::Size::new(LARGE.columns, LARGE.rows);
     let wanted = picture_with(Sampling::BEST, &loaded, CellMode::HALF_BLOCK, cells, 2.0);
     let (mut session, phases) = refining(&scene);
     let start = Instant::now();

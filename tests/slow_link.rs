@@ -11,10 +11,7 @@ use pty::{Colour, SOON, Screen, Start, halves_of, shows};
 use relay::{Link, Relay};
 use std::path::Path;
 use std::time::Duration;
-use termtrace::camera::Pose;
-use termtrace::capabilities::CellMode;
-use termtrace::grid::{Grid, Size};
-use termtrace::scene::Scene;
+use termtrace::{CellMode, Grid, Pose, Scene, Size};
 
 #[path = "slow_link/source.rs"]
 mod source;

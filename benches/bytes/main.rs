@@ -19,10 +19,7 @@ use seen::{Outcome, outcome};
 use send::{Sent, Way, sent, times};
 use std::fs;
 use std::path::{Path, PathBuf};
-use termtrace::color::Srgb8;
-use termtrace::encode::{Order, Quality};
-use termtrace::grid::Size;
-use termtrace::tone::Picture;
+use termtrace::{Order, Picture, Quality, Size, Srgb8};
 
 const SIZES: [Size; 2] = [Size::new(80, 24), Size::new(200, 60)];
 

@@ -5,17 +5,11 @@ use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_8, PI, TAU};
 use std::fmt;
 use std::num::NonZeroU32;
-use termtrace::camera::{Camera, Pose, ViewRectangle};
-use termtrace::capabilities::CellMode;
-use termtrace::cell;
-use termtrace::color::LinearRgb;
-use termtrace::grid::Size;
-use termtrace::light::{Falloff, PointLight};
-use termtrace::material::{Checker, Material};
-use termtrace::render::render;
-use termtrace::scene::{Background, Object, Scene};
-use termtrace::shape::{Plane, Sphere};
-use termtrace::tone::{Picture, tone};
+use termtrace::internals::cell;
+use termtrace::{
+    Background, Camera, CellMode, Checker, Falloff, LinearRgb, Material, Object, Picture, Plane, PointLight, Pose,
+    Scene, Size, Sphere, ViewRectangle, render, tone,
+};
 
 /// How many frames a sequence has, 1/30 s apart.
 pub(crate) const FRAMES: usize = 120;

@@ -4,11 +4,9 @@
 use crate::send::{self, Lossy, encoder, time_of};
 use std::num::NonZeroU16;
 use std::time::Duration;
-use termtrace::capabilities::CellMode;
-use termtrace::cell::grid_from_picture;
-use termtrace::color::{Oklab, Srgb8};
-use termtrace::encode::{Order, Quality};
-use termtrace::tone::Picture;
+use termtrace::internals::cell::grid_from_picture;
+use termtrace::internals::color::Oklab;
+use termtrace::{CellMode, Order, Picture, Quality, Srgb8};
 
 /// What came of a sequence.
 pub(crate) struct Outcome {

@@ -10,11 +10,9 @@ use std::cell::RefCell;
 use std::io::{self, Write};
 use std::rc::Rc;
 use std::time::Duration;
-use termtrace::capabilities::CellMode;
-use termtrace::cell::grid_from_picture;
-use termtrace::color::Srgb8;
-use termtrace::encode::{Allowance, Encoder, Order, Quality};
-use termtrace::tone::Picture;
+use termtrace::internals::cell::grid_from_picture;
+use termtrace::internals::encode::Allowance;
+use termtrace::{CellMode, Encoder, Order, Picture, Quality, Srgb8};
 
 /// A way to send pictures.
 #[derive(Clone, Copy)]

@@ -2,4 +2,4 @@
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|story: &[u8]| termtrace::app::tell_viewer(story));
+libfuzzer_sys::fuzz_target!(|story: &[u8]| termtrace::internals::app::tell_viewer(story));

@@ -2,6 +2,8 @@
 
 use crate::camera::Pose;
 use crate::color::LinearRgb;
+use crate::describe::describe;
+use crate::explain::explain;
 use crate::framebuffer::Resolution;
 use crate::grid::Size;
 use crate::hit::{self, Kernel};
@@ -10,7 +12,8 @@ use crate::progress::Watcher;
 use crate::ray::{Interval, Ray};
 use crate::render::{self, Refining, Sampling};
 use crate::scene::{Draft, Scene};
-use crate::{describe, explain, export, maps, tone};
+use crate::tone::tone;
+use crate::{export, maps};
 use glam::Vec3;
 use std::cell::Cell;
 use std::num::NonZeroU32;
@@ -55,15 +58,15 @@ fn no_picture_builds_a_tree() {
     let (camera, resolution) = (scene.camera(), Resolution::square(40, 24));
     let built = builds(|| {
         let light = render::render(scene, camera, resolution, Sampling::BEST);
-        tone::tone(&light, scene);
+        tone(&light, scene);
         Refining::new(camera, resolution);
         render::count(Kernel::Auto, scene, camera, resolution, NonZeroU32::MIN);
         render::trace_pixel(scene, camera, resolution, [20, 12]);
         for map in Map::ALL {
             maps::picture(map, scene, camera, resolution, Sampling::BEST);
         }
-        describe::describe("x", scene, camera, resolution);
-        explain::explain(scene, camera, resolution, [20, 12]);
+        describe("x", scene, camera, resolution);
+        explain(scene, camera, resolution, [20, 12]);
         export::text_frame(scene, Size::new(40, 12));
         let ray = Ray { origin: Vec3::new(0.0, 1.0, 6.0), direction: Vec3::NEG_Z };
         hit::closest_hit(scene, &ray);

@@ -12,12 +12,10 @@ use std::fmt::Write;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use termtrace::framebuffer::Resolution;
-use termtrace::hit::Kernel;
-use termtrace::render::{Counts, count, render};
-use termtrace::scene::Scene;
-use termtrace::text::visible;
-use termtrace::tone::tone;
+use termtrace::internals::hit::Kernel;
+use termtrace::internals::render::{Counts, count};
+use termtrace::internals::text::visible;
+use termtrace::{Resolution, Scene, render, tone};
 
 const FIGURES: &str = "\
 A round traces the rays of a picture, and one from each hit to each light, and says what they met, how long that took and

@@ -3,7 +3,8 @@
 use super::settings::defaults;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use termtrace::capabilities::{CellMode, ColorChoice, Colors, GlyphChoice, Glyphs, Hints, terminfo_colors};
+use termtrace::internals::capabilities::{ColorChoice, GlyphChoice, Hints, terminfo_colors};
+use termtrace::{CellMode, Colors, Glyphs};
 
 const EXPLAINED: &str = "\
 The colours (--color):

@@ -3,7 +3,7 @@
 use super::outcome::{Done, write_stdout};
 use super::scene_args::SceneArgs;
 use clap::Args;
-use termtrace::text::visible;
+use termtrace::internals::text::visible;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -4,7 +4,7 @@ use super::Cli;
 use super::outcome::{Done, Failure, reason, write_stdout};
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
-use termtrace::text::closest;
+use termtrace::internals::text::closest;
 
 const COMPLETIONS: &str = "\
 Examples:

@@ -5,7 +5,7 @@ use super::settings::files::path_of;
 use super::settings::{Held, SettingArgs, Settings, keys};
 use clap::{ArgMatches, Args};
 use std::fmt::Write;
-use termtrace::text::visible_lines;
+use termtrace::internals::text::visible_lines;
 use unicode_width::UnicodeWidthStr;
 
 const EXAMPLES: &str = "\

@@ -4,9 +4,8 @@ use super::outcome::{Done, write_stdout};
 use super::picture::{fits, parse_size};
 use super::scene_args::SceneArgs;
 use clap::Args;
-use termtrace::describe::describe;
-use termtrace::framebuffer::Resolution;
-use termtrace::text::visible;
+use termtrace::internals::text::visible;
+use termtrace::{Resolution, describe};
 
 const EXAMPLES: &str = "\
 It tells of the objects that are seen, the largest first: kind, colour and size, where in the picture, how much of it, how

@@ -9,10 +9,11 @@ use clap::{ArgMatches, Args};
 use report::{Known, Talk};
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
-use termtrace::capabilities::{Asking, CellShape, Findings};
-use termtrace::input::Input;
-use termtrace::protocol::{Questions, Receiver};
-use termtrace::terminal::{Signals, Terminal, die_of};
+use termtrace::internals::capabilities::{Asking, CellShape, Findings};
+use termtrace::internals::input::Input;
+use termtrace::internals::protocol::{Questions, Receiver};
+use termtrace::internals::terminal::{Terminal, die_of};
+use termtrace::live::Signals;
 
 #[derive(Args)]
 pub(super) struct DoctorArgs {

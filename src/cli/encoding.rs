@@ -2,7 +2,7 @@
 
 use super::settings::defaults;
 use clap::{Args, ValueEnum};
-use termtrace::encode;
+use termtrace::internals::encode;
 
 /// Stands below the options in the help.
 pub(super) const EXPLAINED: &str = "\

@@ -4,9 +4,8 @@ use super::outcome::{Done, usage, write_stdout};
 use super::picture::SizeArgs;
 use super::scene_args::SceneArgs;
 use clap::Args;
-use termtrace::capabilities::CellMode;
-use termtrace::explain::{cell, explain};
-use termtrace::framebuffer::Resolution;
+use termtrace::internals::explain::cell;
+use termtrace::{CellMode, Resolution, explain};
 
 const MEANING: &str = "\
 It says what the program does for the pixel, in the symbols of the lecture: the eye ray o + t d through the point (q_u, q_v)

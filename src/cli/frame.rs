@@ -12,10 +12,11 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
-use termtrace::capabilities::{CellMode, Colors};
-use termtrace::cell;
-use termtrace::export::{Contents, Format};
-use termtrace::text::listed;
+use termtrace::export::Format;
+use termtrace::internals::cell;
+use termtrace::internals::export::Contents;
+use termtrace::internals::text::listed;
+use termtrace::{CellMode, Colors};
 
 /// What is written where nothing says otherwise.
 const DEFAULT: Format = Format::Text;
@@ -127,8 +128,9 @@ impl FrameArgs {
         self.picture.fits_scaled(resolution)?;
         let samples = self.picture.samples();
         let map = self.map.map();
-        let picture =
-            self.scene.on_threads(|| termtrace::maps::picture(map, &scene, scene.camera(), resolution, samples))?;
+        let picture = self
+            .scene
+            .on_threads(|| termtrace::internals::maps::picture(map, &scene, scene.camera(), resolution, samples))?;
         match format.contents() {
             Contents::Pixels(write) => write(&picture, resolution.pixel_aspect, self.picture.scale())
                 .map_err(|error| Failure::runtime(format.name().to_uppercase(), error)),

@@ -13,16 +13,13 @@ use std::io::{self, IsTerminal};
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use termtrace::app::{self, Ending, Options, Outcome, Source};
-use termtrace::capabilities::{Colors, USUAL_CELL_ASPECT};
-use termtrace::cell;
-use termtrace::control::{Bindings, Command, Mode};
-use termtrace::export;
-use termtrace::grid::Size;
-use termtrace::maps;
-use termtrace::mesh_file::is_mesh;
-use termtrace::render::Sampling;
-use termtrace::terminal::{Signals, die_of};
+use termtrace::internals::capabilities::USUAL_CELL_ASPECT;
+use termtrace::internals::control::{Bindings, Command, Mode};
+use termtrace::internals::mesh_file::is_mesh;
+use termtrace::internals::terminal::die_of;
+use termtrace::internals::{app, cell, maps};
+use termtrace::live::{Ending, Options, Outcome, Signals, Source};
+use termtrace::{Colors, Sampling, Size, export};
 
 /// For who has not named a scene.
 fn welcome(bindings: &Bindings) -> String {
@@ -167,6 +164,6 @@ fn source(origin: Origin, look: &LookArgs) -> Source<Failure> {
 fn rehearse() {
     let path = std::env::var_os("TERMTRACE_TEST_SOCKET");
     if let Some(Ok(test)) = path.map(std::os::unix::net::UnixStream::connect) {
-        termtrace::terminal::rehearse(test);
+        termtrace::internals::terminal::rehearse(test);
     }
 }

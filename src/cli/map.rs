@@ -5,8 +5,7 @@ use super::settings::defaults;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::num::NonZeroU32;
-use termtrace::maps::Map;
-use termtrace::render::Sampling;
+use termtrace::{Map, Sampling};
 
 /// Stands below the options in the help.
 pub(super) const EXPLAINED: &str = "\

@@ -1,8 +1,8 @@
 //! The file that was meant by a name that is none.
 
 use std::path::{Path, PathBuf};
-use termtrace::mesh_file::is_mesh;
-use termtrace::text::closest;
+use termtrace::internals::mesh_file::is_mesh;
+use termtrace::internals::text::closest;
 
 /// So many files of a folder are looked at.
 const MOST_FILES: usize = 10_000;

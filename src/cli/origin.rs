@@ -5,9 +5,9 @@ use super::outcome::{Failure, reason, usage};
 use std::fmt;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use termtrace::progress::{Unfinished, Watcher};
-use termtrace::scene::{Draft, LoadError, Scene};
-use termtrace::scene_text::SceneError;
+use termtrace::internals::progress::{Unfinished, Watcher};
+use termtrace::internals::scene::Draft;
+use termtrace::{LoadError, Scene, SceneError};
 
 /// The scene that is shown when none is named.
 const BUILT_IN: &str = include_str!("../../scenes/three_spheres.ron");
@@ -76,7 +76,7 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
 /// All of it, up to one byte more than a scene may have.
 fn read_stdin() -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    let limit = termtrace::scene_text::MAX_BYTES as u64 + 1;
+    let limit = termtrace::internals::scene_text::MAX_BYTES as u64 + 1;
     let read = io::stdin().lock().take(limit).read_to_end(&mut bytes);
     read.map(|_| bytes).map_err(|error| Failure::runtime("standard input", reason(&error)))
 }

@@ -3,8 +3,8 @@
 use std::fmt::{self, Display};
 use std::io::{self, Write};
 use std::process::ExitCode;
-use termtrace::scene_text::SceneError;
-use termtrace::text::{Notice, visible_lines};
+use termtrace::SceneError;
+use termtrace::internals::text::{Notice, visible_lines};
 
 /// Why a command ends without having done what was asked.
 pub(super) enum Failure {
@@ -81,7 +81,7 @@ fn complain(message: &str, code: u8) -> ExitCode {
 
 /// Prints it if that stops nobody. Where no one listens any more, the exit code says it too.
 fn print_error(text: &str) {
-    if termtrace::terminal::stderr_is_read() {
+    if termtrace::internals::terminal::stderr_is_read() {
         let _ = io::stderr().write_all(text.as_bytes());
     }
 }
@@ -95,7 +95,7 @@ pub(super) fn reason(error: &io::Error) -> String {
 
 /// Says what the threads said when they panicked, and ends as a panic does.
 pub(super) fn complain_of_panic() -> ! {
-    let messages = termtrace::terminal::take_panic_messages();
+    let messages = termtrace::internals::terminal::take_panic_messages();
     for message in messages {
         print_error(&(visible_lines(&message) + "\n"));
     }

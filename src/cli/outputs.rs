@@ -5,8 +5,8 @@ use std::fs::File;
 use std::io::{self, Stdout, Write};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
-use termtrace::output_file::{OutputFile, open_stream};
-use termtrace::terminal::before_death;
+use termtrace::internals::output_file::{OutputFile, open_stream};
+use termtrace::internals::terminal::before_death;
 
 /// The file that is being written, shared with the thread that hears of signals. Whoever has locked it keeps the other
 /// from beginning, writing, finishing or removing it; streams, which may block, are not in it.

@@ -3,9 +3,8 @@
 use super::outcome::{Done, Failure};
 use clap::Args;
 use std::num::NonZeroU32;
-use termtrace::capabilities::{CellMode, USUAL_CELL_ASPECT};
-use termtrace::framebuffer::Resolution;
-use termtrace::render::Sampling;
+use termtrace::internals::capabilities::USUAL_CELL_ASPECT;
+use termtrace::{CellMode, Resolution, Sampling};
 
 /// How large a frame is.
 #[derive(Args)]

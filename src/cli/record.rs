@@ -13,17 +13,10 @@ use clap::Args;
 use numbered::Numbered;
 use std::io::{self, BufWriter, IsTerminal};
 use std::path::{Path, PathBuf};
-use termtrace::camera::Camera;
-use termtrace::camera_path::CameraPath;
-use termtrace::capabilities::CellMode;
-use termtrace::cell;
-use termtrace::encode::{Encoder, Order};
-use termtrace::export;
-use termtrace::framebuffer::Resolution;
-use termtrace::grid::Size;
-use termtrace::record::{Cast, Gif, gif_size};
-use termtrace::scene::Scene;
-use termtrace::tone::Picture;
+use termtrace::internals::cell;
+use termtrace::{
+    Camera, CameraPath, Cast, CellMode, Encoder, Gif, Order, Picture, Resolution, Scene, Size, export, gif_size,
+};
 
 const EXAMPLES: &str = "\
 Camera paths:
@@ -279,7 +272,7 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     let mut sink = film.written(0, args.sink(film, &mut outputs))?;
     for (frame, camera) in film.cameras.iter().enumerate() {
         let (map, samples) = (args.map.map(), args.picture.samples());
-        let picture = termtrace::maps::picture(map, &film.scene, camera, film.resolution, samples);
+        let picture = termtrace::internals::maps::picture(map, &film.scene, camera, film.resolution, samples);
         film.written(frame, sink.take(&picture, &film.file(frame), &mut outputs))?;
         bar.inc(1);
     }

@@ -5,9 +5,9 @@ use super::outcome::{Done, Failure, usage};
 use clap::Args;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
-use termtrace::camera::{Camera, CameraError, Pose};
-use termtrace::progress::Watcher;
-use termtrace::scene::{Draft, Scene};
+use termtrace::internals::progress::Watcher;
+use termtrace::internals::scene::Draft;
+use termtrace::{Camera, CameraError, Pose, Scene};
 
 /// The scene, and who looks at it: on every command.
 #[derive(Args)]

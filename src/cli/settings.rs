@@ -20,9 +20,9 @@ use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use entries::Entry;
 use files::UserFile;
 use std::path::PathBuf;
-use termtrace::capabilities::Hints;
-use termtrace::control::Pace;
-use termtrace::render::Sampling;
+use termtrace::Sampling;
+use termtrace::internals::capabilities::Hints;
+use termtrace::internals::control::Pace;
 
 /// Stands below the options in the help.
 pub(super) const EXPLAINED: &str = "\

@@ -15,7 +15,7 @@ impl Bindings {
     ///
     /// ```
     /// use crossterm::event::KeyCode;
-    /// use termtrace::control::{Bindings, Command, Mode};
+    /// use termtrace::internals::control::{Bindings, Command, Mode};
     ///
     /// let text = r#"(
     ///     fly: { "8": MoveForward, ["2", "Home"]: MoveBack, "w": None },
@@ -24,7 +24,7 @@ impl Bindings {
     /// let bindings = Bindings::from_ron("keys.ron", text)?;
     /// let meant = bindings.command(&[Mode::Fly, Mode::Always], &KeyCode::Char('Q').into());
     /// assert_eq!(meant, Some((Command::Quit, false)));
-    /// # Ok::<(), termtrace::scene_text::SceneError>(())
+    /// # Ok::<(), termtrace::SceneError>(())
     /// ```
     ///
     /// # Errors

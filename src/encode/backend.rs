@@ -17,7 +17,7 @@ use std::ops::Range;
 ///
 /// ```
 /// use ratatui::{Terminal, widgets::Gauge};
-/// use termtrace::encode::EncoderBackend;
+/// use termtrace::EncoderBackend;
 ///
 /// let mut terminal = Terminal::new(EncoderBackend::new(Vec::new(), (80, 24)))?;
 /// terminal.draw(|frame| frame.render_widget(Gauge::default().percent(42), frame.area()))?;

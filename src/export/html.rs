@@ -22,7 +22,8 @@ pub(super) const KIND: Kind = Kind {
 /// half blocks; as [`svg`](super::svg) has them. It has no script, and loads nothing.
 ///
 /// ```
-/// use termtrace::{export::html, grid::{Cell, Grid, Ink, Size}};
+/// use termtrace::export::html;
+/// use termtrace::{Cell, Grid, Ink, Size};
 ///
 /// let mut grid = Grid::new(Size::new(2, 1));
 /// *grid.cell_mut(1, 0) = Cell::new('<', Ink::Default, Ink::Default);

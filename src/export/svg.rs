@@ -28,7 +28,8 @@ const ADVANCE: f64 = 0.6;
 /// otherwise. The 256 colours are taken to be xterm's. It needs nothing but itself, and moves nothing.
 ///
 /// ```
-/// use termtrace::{export::svg, grid::{Cell, Grid, Ink, Size}};
+/// use termtrace::export::svg;
+/// use termtrace::{Cell, Grid, Ink, Size};
 ///
 /// let mut grid = Grid::new(Size::new(2, 1));
 /// *grid.cell_mut(0, 0) = Cell::new('▀', Ink::Indexed(196), Ink::Indexed(21));

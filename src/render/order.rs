@@ -17,7 +17,7 @@ type Hear<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Sync + 'a>;
 ///
 /// ```
 /// use std::ops::ControlFlow;
-/// use termtrace::{framebuffer::Resolution, render::{Render, Sampling}, scene::Scene};
+/// use termtrace::{Render, Resolution, Sampling, Scene};
 ///
 /// let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, objects: [Sphere(center: (0, 0, 0), radius: 1)])"#;
 /// let scene = Scene::from_ron("ball.ron", text)?;

@@ -21,7 +21,7 @@ impl Scene {
     /// for from its folder.
     ///
     /// ```
-    /// use termtrace::scene::Scene;
+    /// use termtrace::Scene;
     ///
     /// let text = r#"(
     ///     camera: (eye: (0, 0, 5), target: (0, 0, 0)),
@@ -33,7 +33,7 @@ impl Scene {
     ///
     /// let error = Scene::from_ron("ball.ron", &text.replace("radius", "radus")).unwrap_err();
     /// assert!(error.to_string().starts_with(r#"ball.ron:4:41: unknown field "radus"; did you mean "radius"?"#));
-    /// # Ok::<(), termtrace::scene_text::SceneError>(())
+    /// # Ok::<(), termtrace::SceneError>(())
     /// ```
     ///
     /// # Errors
@@ -46,7 +46,7 @@ impl Scene {
     /// The scene that the bytes describe, which should be UTF-8 text.
     ///
     /// ```
-    /// use termtrace::scene::Scene;
+    /// use termtrace::Scene;
     ///
     /// let error = Scene::from_bytes("photo.png", b"\x89PNG\r\n\x1a\n\0\0").unwrap_err();
     /// assert!(error.to_string().contains("not a text file"));
@@ -62,7 +62,7 @@ impl Scene {
     ///
     /// ```no_run
     /// use std::path::Path;
-    /// use termtrace::scene::Scene;
+    /// use termtrace::Scene;
     ///
     /// match Scene::load(Path::new("scenes/three_spheres.ron")) {
     ///     Ok(scene) => println!("{} objects", scene.objects().len()),
@@ -125,7 +125,7 @@ impl CameraPath {
     /// has it. The name is used in messages only.
     ///
     /// ```
-    /// use termtrace::{camera_path::CameraPath, scene::Scene};
+    /// use termtrace::{CameraPath, Scene};
     ///
     /// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")?;
     /// let text = "(keyframes: [
@@ -134,7 +134,7 @@ impl CameraPath {
     /// ])";
     /// let path = CameraPath::from_ron("flight.ron", text, scene.camera())?;
     /// assert_eq!(path.camera_at(1.0).unwrap().pose().eye, glam::Vec3::new(2.0, 0.5, 5.0));
-    /// # Ok::<(), termtrace::scene_text::SceneError>(())
+    /// # Ok::<(), termtrace::SceneError>(())
     /// ```
     ///
     /// # Errors

@@ -9,12 +9,12 @@ impl Camera {
     /// be to be read back with the same bits.
     ///
     /// ```
-    /// use termtrace::scene::Scene;
+    /// use termtrace::Scene;
     ///
     /// let line = "camera: (eye: (0, 1.5, 6), target: (0, 0.7, 0), up: (0, 1, 0), vertical_fov: 40)";
     /// let scene = Scene::from_ron("x.ron", &format!("({line})"))?;
     /// assert_eq!(scene.camera().to_ron(), line);
-    /// # Ok::<(), termtrace::scene_text::SceneError>(())
+    /// # Ok::<(), termtrace::SceneError>(())
     /// ```
     pub fn to_ron(&self) -> String {
         let pose = self.pose();

@@ -8,7 +8,8 @@ use crate::scene_text::{Body, Faults, Field, Node, Value, parse};
 /// The text of a scene file with that camera as the last of its `views`. `None` if the text is no scene's.
 ///
 /// ```
-/// use termtrace::scene::{Scene, with_view};
+/// use termtrace::Scene;
+/// use termtrace::internals::scene::with_view;
 ///
 /// let text = "(\n    // From in front.\n    camera: (eye: (0, 0, 5), target: (0, 0, 0)),\n)\n";
 /// let camera = *Scene::from_ron("x.ron", &text.replace("0, 0, 5", "3, 1, 2"))?.camera();
@@ -20,7 +21,7 @@ use crate::scene_text::{Body, Faults, Field, Node, Value, parse};
 ///     ],
 /// )
 /// ");
-/// # Ok::<(), termtrace::scene_text::SceneError>(())
+/// # Ok::<(), termtrace::SceneError>(())
 /// ```
 pub fn with_view(text: &str, camera: &Camera) -> Option<String> {
     let root = parse(text).ok()?;

@@ -3,12 +3,8 @@
 use super::{Folder, shipped_scenes};
 use std::collections::HashMap;
 use std::num::NonZeroU32;
-use termtrace::export;
-use termtrace::framebuffer::Resolution;
-use termtrace::hit::closest_hit;
-use termtrace::render::render;
-use termtrace::scene::Scene;
-use termtrace::tone::tone;
+use termtrace::internals::hit::closest_hit;
+use termtrace::{Resolution, Scene, export, render, tone};
 
 /// Each round's figures, by what stands before and behind them: `7 hits` is 7 of hits, `hash 7` is 7 of hash.
 fn rounds(text: &str) -> Vec<HashMap<&str, &str>> {

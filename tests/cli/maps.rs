@@ -1,7 +1,7 @@
 //! `--map`: the maps of a scene.
 
 use super::Folder;
-use termtrace::maps::Map;
+use termtrace::Map;
 
 #[test]
 fn a_frame_or_a_film_is_of_the_map_asked_for() {

@@ -9,16 +9,9 @@ use std::num::NonZeroU32;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::Stdio;
-use termtrace::camera::Camera;
-use termtrace::camera_path::CameraPath;
-use termtrace::capabilities::CellMode;
-use termtrace::cell::grid_from_picture;
-use termtrace::color::{Oklab, Srgb8};
-use termtrace::framebuffer::Resolution;
-use termtrace::grid::{Grid, Ink};
-use termtrace::render::render;
-use termtrace::scene::Scene;
-use termtrace::tone::{Picture, tone};
+use termtrace::internals::cell::grid_from_picture;
+use termtrace::internals::color::Oklab;
+use termtrace::{Camera, CameraPath, CellMode, Grid, Ink, Picture, Resolution, Scene, Srgb8, render, tone};
 
 /// Three keyframes, the first of them twice: a film that stands still at first.
 const FLIGHT: &str = "(keyframes: [
@@ -81,7 +74,7 @@ fn halves_wanted(grid: &Grid) -> Vec<[Option<avt::Color>; 2]> {
     };
     let text = termtrace::export::text(grid);
     let glyphs = text.chars().filter(|&glyph| glyph != '\n');
-    let halves = |(glyph, cell): (char, &termtrace::grid::Cell)| match glyph {
+    let halves = |(glyph, cell): (char, &termtrace::Cell)| match glyph {
         ' ' => [color(cell.bg); 2],
         '▄' => [color(cell.bg), color(cell.fg)],
         _ => [color(cell.fg), color(cell.bg)],
@@ -225,7 +218,7 @@ fn a_cast_shows_each_frame_of_a_path() {
     let flags = "--size 40x10 --fps 20 --path flight.ron --seconds 0.05";
     let narrow = folder.run(&format!("record ball.ron {flags} --fov 20 --up 1,1,0")).done();
     let lens = ball().camera().rectangle().with_vertical_fov(20_f32.to_radians()).expect("an angle");
-    let pose = termtrace::camera::Pose { up: glam::Vec3::new(1.0, 1.0, 0.0), ..ball().camera().pose() };
+    let pose = termtrace::Pose { up: glam::Vec3::new(1.0, 1.0, 0.0), ..ball().camera().pose() };
     assert_shows(&narrow, 20, resolution, &[Camera::new(pose, lens).expect("a camera")]);
 }
 

@@ -1,10 +1,8 @@
 //! How large a frame is.
 
 use super::{BALL, Folder};
-use termtrace::cell::RAMP;
-use termtrace::export::text_frame;
-use termtrace::grid::Size;
-use termtrace::scene::Scene;
+use termtrace::internals::cell::RAMP;
+use termtrace::{Scene, Size, text_frame};
 
 /// Lines and their length, which is the same for all; nothing but the ramp's characters and line feeds.
 #[track_caller]

@@ -16,9 +16,8 @@ use std::cell::RefCell;
 use std::io::{self, Write};
 use std::num::NonZeroU16;
 use std::rc::Rc;
-use termtrace::encode::{Encoder, EncoderBackend, Order};
-use termtrace::grid::{Cell, Grid, Ink};
-use termtrace::{grid, overlay};
+use termtrace::internals::{grid, overlay};
+use termtrace::{Cell, Encoder, EncoderBackend, Grid, Ink, Order};
 
 /// Two emulators on one line, and what has come over it.
 #[derive(Clone)]

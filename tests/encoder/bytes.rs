@@ -8,8 +8,8 @@ use alacritty_terminal::vte::ansi;
 use ratatui::style::Modifier;
 use std::io::{self, Write};
 use std::time::Duration;
-use termtrace::encode::{Allowance, Encoder, Order, Quality};
-use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
+use termtrace::internals::encode::Allowance;
+use termtrace::{Cell, Encoder, Glyph, Grid, Ink, Order, Quality, Size};
 
 const A: Ink = rgb(10, 20, 30);
 const B: Ink = rgb(200, 100, 0);

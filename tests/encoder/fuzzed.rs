@@ -7,9 +7,8 @@ use super::watched::Watched;
 use arbitrary::{Result, Unstructured};
 use ratatui::style::Modifier;
 use std::time::Duration;
-use termtrace::color::Srgb8;
-use termtrace::encode::{Allowance, Order, Quality};
-use termtrace::grid::{Cell, Grid, Ink, Size};
+use termtrace::internals::encode::Allowance;
+use termtrace::{Cell, Grid, Ink, Order, Quality, Size, Srgb8};
 
 const GLYPHS: [&str; 9] = ["▄", "▀", " ", "a", "@", "é", "│", "世", "🙂"];
 

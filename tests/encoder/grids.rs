@@ -1,6 +1,6 @@
 //! Grids made of cells.
 
-use termtrace::grid::{Cell, Grid, Size};
+use termtrace::{Cell, Grid, Size};
 use unicode_width::UnicodeWidthStr;
 
 /// Puts a glyph where it has room.

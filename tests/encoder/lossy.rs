@@ -8,8 +8,8 @@ use super::{CELLS, PICTURE, Stage, Step, WAYS, anything, cell, panel, rgb, size,
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::time::Duration;
-use termtrace::encode::{Allowance, Encoder, Order, Quality};
-use termtrace::grid::{Cell, Grid, Ink, Size};
+use termtrace::internals::encode::Allowance;
+use termtrace::{Cell, Encoder, Grid, Ink, Order, Quality, Size};
 
 /// Colours that are near each other, further than a quality allows, and in between.
 fn near_ink() -> impl Strategy<Value = Ink> {

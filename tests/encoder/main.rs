@@ -25,9 +25,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use screens::{Clusters, glyph_of};
-use termtrace::color::Srgb8;
-use termtrace::encode::Order;
-use termtrace::grid::{Cell, Grid, Ink, Size};
+use termtrace::{Cell, Grid, Ink, Order, Size, Srgb8};
 use watched::Watched;
 
 pub(crate) const fn rgb(r: u8, g: u8, b: u8) -> Ink {
@@ -182,7 +180,7 @@ impl Stage {
             Step::Redraw(cells) => self.grid = filled(self.grid.size(), cells),
             Step::Panel(cells, panel) => {
                 self.grid = filled(self.grid.size(), cells);
-                termtrace::overlay::lay_over(&mut self.grid, &panel.buffer());
+                termtrace::lay_over(&mut self.grid, &panel.buffer());
                 overlay::assert_lies_over(&self.grid, &filled(self.grid.size(), cells), &panel.buffer());
             }
             Step::Resize(size, cells) => {

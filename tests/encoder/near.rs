@@ -3,9 +3,7 @@
 
 use super::screens::Screens;
 use std::sync::LazyLock;
-use termtrace::color::Srgb8;
-use termtrace::encode::Quality;
-use termtrace::grid::{Cell, Glyph, Grid, Ink};
+use termtrace::{Cell, Glyph, Grid, Ink, Quality, Srgb8};
 
 /// What a quality promises.
 #[derive(Clone, Copy, Debug)]

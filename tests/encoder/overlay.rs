@@ -6,9 +6,7 @@ use ratatui::buffer::{Buffer, CellDiffOption};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use std::num::NonZeroU16;
-use termtrace::encode::Encoder;
-use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
-use termtrace::overlay::lay_over;
+use termtrace::{Cell, Encoder, Glyph, Grid, Ink, Size, lay_over};
 use unicode_width::UnicodeWidthStr;
 
 /// A picture of one colour.

@@ -3,7 +3,7 @@
 use super::grids::put;
 use super::screens::Clusters;
 use super::{Stage, rgb};
-use termtrace::grid::{Cell, Grid, Ink, Size};
+use termtrace::{Cell, Grid, Ink, Size};
 
 const SIZE: Size = Size::new(53, 17);
 

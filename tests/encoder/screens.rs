@@ -10,8 +10,7 @@
 
 use ratatui::style::Modifier;
 use std::num::NonZeroU16;
-use termtrace::color::Srgb8;
-use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
+use termtrace::{Cell, Glyph, Grid, Ink, Size, Srgb8};
 use unicode_segmentation::UnicodeSegmentation;
 use unicode_width::UnicodeWidthStr;
 

@@ -9,10 +9,9 @@ use super::scenes::{FRAMES, Kind, Sequence};
 use super::screens::Clusters;
 use super::watched::Watched;
 use std::time::Duration;
-use termtrace::capabilities::CellMode;
-use termtrace::cell::grid_from_picture;
-use termtrace::encode::{Allowance, Encoder, Order, Quality};
-use termtrace::grid::{Grid, Size};
+use termtrace::internals::cell::grid_from_picture;
+use termtrace::internals::encode::Allowance;
+use termtrace::{CellMode, Encoder, Grid, Order, Quality, Size};
 
 const SMALL: Size = Size::new(80, 24);
 const LARGE: Size = Size::new(200, 60);

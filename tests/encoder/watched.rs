@@ -3,8 +3,8 @@
 use super::near::{Caps, assert_text_is_exact, assert_within, distance, halves, square};
 use super::screens::{Clusters, Screens};
 use std::time::Duration;
-use termtrace::encode::{Allowance, Encoder, Order, Quality};
-use termtrace::grid::{Cell, Grid, Size};
+use termtrace::internals::encode::Allowance;
+use termtrace::{Cell, Encoder, Grid, Order, Quality, Size};
 
 /// The encoder, and the terminals.
 pub(crate) struct Watched {
@@ -177,7 +177,7 @@ fn pictures<'a>(
     before: &'a [Cell],
     seen: &'a Grid,
     wanted: &'a Grid,
-) -> impl Iterator<Item = [[termtrace::color::Srgb8; 2]; 3]> {
+) -> impl Iterator<Item = [[termtrace::Srgb8; 2]; 3]> {
     let cells = before.iter().zip(seen.cells()).zip(wanted.cells());
     cells.filter_map(|((before, seen), wanted)| Some([halves(before)?, halves(seen)?, halves(wanted)?]))
 }

@@ -15,7 +15,7 @@ use ratatui::widgets::{
     List, ListItem, ListState, MascotEyeColor, Padding, Paragraph, RatatuiLogo, RatatuiLogoSize, RatatuiMascot, Row,
     Scrollbar, ScrollbarOrientation, ScrollbarState, Sparkline, Table, TableState, Tabs, Wrap,
 };
-use termtrace::encode::{Encoder, Order};
+use termtrace::{Encoder, Order};
 use time::{Date, Month};
 
 const SIZE: Size = Size::new(40, 12);

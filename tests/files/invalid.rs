@@ -3,9 +3,7 @@
 //! the messages anew; read them before they are committed.
 
 use std::path::{Path, PathBuf};
-use termtrace::camera_path::CameraPath;
-use termtrace::scene::Scene;
-use termtrace::scene_text::SceneError;
+use termtrace::{CameraPath, Scene, SceneError};
 
 /// A folder of broken files, how many there are at least, and what reads them.
 struct Kind {

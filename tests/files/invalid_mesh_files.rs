@@ -3,7 +3,7 @@
 //! anew; read them before they are committed.
 
 use std::path::{Path, PathBuf};
-use termtrace::mesh_file::MeshFile;
+use termtrace::internals::mesh_file::MeshFile;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/invalid_meshes")

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
-use termtrace::control::{Bindings, Command, Key, Mode};
+use termtrace::internals::control::{Bindings, Command, Key, Mode};
 
 const KEYS: [&str; 14] = ["q", "Q", "w", "W", "Esc", "Ctrl-C", "Ctrl-Q", "Space", "PageUp", "F1", "é", "\\", "\"", "?"];
 

@@ -5,8 +5,8 @@ use glam::{Vec2, Vec3};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use termtrace::color::{LinearRgb, Srgb8};
-use termtrace::mesh_file::{MeshFile, Place};
+use termtrace::internals::mesh_file::{MeshFile, Place};
+use termtrace::{LinearRgb, Srgb8};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes")

@@ -6,7 +6,7 @@ use crate::mesh_writers::{WRITERS, Written};
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 use std::path::Path;
-use termtrace::mesh_file::MeshFile;
+use termtrace::internals::mesh_file::MeshFile;
 
 fn number() -> impl Strategy<Value = f32> {
     prop_oneof![

@@ -6,15 +6,12 @@ use std::num::NonZeroU32;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
-use termtrace::color::Srgb8;
-use termtrace::framebuffer::Resolution;
-use termtrace::mesh_file::MeshFile;
-use termtrace::progress::{Cancellation, Progress, Unfinished, Watcher, Work};
-use termtrace::render::render;
-use termtrace::scene::{Draft, Scene};
-use termtrace::scene_file::SceneFile;
-use termtrace::scene_text::{Faults, parse};
-use termtrace::tone::tone;
+use termtrace::internals::mesh_file::MeshFile;
+use termtrace::internals::progress::{Cancellation, Unfinished, Watcher};
+use termtrace::internals::scene::Draft;
+use termtrace::internals::scene_file::SceneFile;
+use termtrace::internals::scene_text::{Faults, parse};
+use termtrace::{Progress, Resolution, Scene, Srgb8, Work, render, tone};
 
 /// A ball of so many triangles that a test has read.
 fn read(triangles: u32) -> MeshFile {

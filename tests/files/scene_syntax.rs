@@ -4,8 +4,8 @@
 use proptest::prelude::*;
 use std::fmt::Write;
 use std::time::{Duration, Instant};
-use termtrace::scene::Scene;
-use termtrace::scene_text::{Body, MAX_BYTES, Node, SceneError, Value, parse};
+use termtrace::internals::scene_text::{Body, MAX_BYTES, Node, Value, parse};
+use termtrace::{Scene, SceneError};
 
 const SCENE: &str = r##"// A scene with one of everything.
 Scene(
@@ -118,7 +118,7 @@ fn ours(node: &Node<'_>) -> String {
                 Body::Nothing => {}
                 Body::Values(values) => write!(text, "({})", many(values)).unwrap(),
                 Body::Fields(fields) => {
-                    let field = |field: &termtrace::scene_text::Field<'_>| {
+                    let field = |field: &termtrace::internals::scene_text::Field<'_>| {
                         format!("{}:{}", field.name.text, ours(&field.value))
                     };
                     write!(text, "({})", fields.iter().map(field).collect::<Vec<_>>().join(" ")).unwrap();

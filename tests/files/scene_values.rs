@@ -2,12 +2,11 @@
 
 use glam::{Vec2, Vec3};
 use std::path::Path;
-use termtrace::camera::{Camera, Pose, ViewRectangle};
-use termtrace::color::{LinearRgb, Srgb8};
-use termtrace::light::{Falloff, Light, PointLight};
-use termtrace::material::{Checker, Material};
-use termtrace::scene::{Background, Object, Scene, ToneCurve};
-use termtrace::shape::{Part, Plane, Sphere};
+use termtrace::internals::shape::Part;
+use termtrace::{
+    Background, Camera, Checker, Falloff, Light, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Sphere,
+    Srgb8, ToneCurve, ViewRectangle,
+};
 
 const CAMERA: &str = "camera: (eye: (0, 1, 5), target: (0, 1, 0))";
 
@@ -197,8 +196,8 @@ fn meshes_bring_their_colours() {
         )
         .unwrap_or_else(|error| panic!("{error}"));
         scene = scene.with_shadows(false);
-        let resolution = termtrace::framebuffer::Resolution::square(1, 1);
-        termtrace::render::render(&scene, scene.camera(), resolution, std::num::NonZeroU32::MIN).pixel(0, 0)
+        let resolution = termtrace::Resolution::square(1, 1);
+        termtrace::render(&scene, scene.camera(), resolution, std::num::NonZeroU32::MIN).pixel(0, 0)
     };
     let coloured = light("path: \"tests/meshes/square.ply\"");
     assert!(coloured != LinearRgb::grey(0.8) && coloured != LinearRgb::BLACK, "{coloured:?}");
@@ -214,12 +213,12 @@ fn meshes_bring_their_colours() {
 #[test]
 fn a_mesh_alone_is_a_scene() {
     let scene = Scene::load(Path::new("scenes/teapot.obj")).unwrap_or_else(|error| panic!("{error}"));
-    let resolution = termtrace::framebuffer::Resolution::square(80, 48);
-    let picture = termtrace::render::render(&scene, scene.camera(), resolution, std::num::NonZeroU32::MIN);
+    let resolution = termtrace::Resolution::square(80, 48);
+    let picture = termtrace::render(&scene, scene.camera(), resolution, std::num::NonZeroU32::MIN);
     let rays = scene.camera().eye_rays(resolution.aspect_ratio());
     let object = |x: u32, y: u32| {
         let ray = rays.through((x as f32 + 0.5) / 80.0, 1.0 - (y as f32 + 0.5) / 48.0);
-        termtrace::hit::closest_hit(&scene, &ray).map(|hit| hit.object)
+        termtrace::internals::hit::closest_hit(&scene, &ray).map(|hit| hit.object)
     };
     let all = || (0..48).flat_map(|y| (0..80).map(move |x| (x, y)));
     let seen: Vec<_> = all().filter(|&(x, y)| object(x, y) == Some(0)).collect();
@@ -257,10 +256,10 @@ fn the_outermost_values_make_a_picture() {
         exposure: 1e6, tone_curve: Filmic,
     )";
     let scene = Scene::from_ron("x.ron", text).unwrap_or_else(|error| panic!("{error}"));
-    let resolution = termtrace::framebuffer::Resolution::square(16, 8);
+    let resolution = termtrace::Resolution::square(16, 8);
     let one = std::num::NonZeroU32::MIN;
-    let frame = termtrace::render::render(&scene, scene.camera(), resolution, one);
-    assert_eq!(termtrace::tone::tone(&frame, &scene).pixels.len(), 128);
+    let frame = termtrace::render(&scene, scene.camera(), resolution, one);
+    assert_eq!(termtrace::tone(&frame, &scene).pixels.len(), 128);
 }
 
 #[test]

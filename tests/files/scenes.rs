@@ -1,8 +1,7 @@
 //! The scenes that come with the program.
 
 use std::path::Path;
-use termtrace::camera_path::CameraPath;
-use termtrace::scene::Scene;
+use termtrace::{CameraPath, Scene};
 
 #[test]
 fn every_scene_loads_and_says_what_to_look_at() {

@@ -3,8 +3,8 @@
 
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Duration;
-use termtrace::control::{Bindings, COAST, GLIDE, Mode, Motion};
-use termtrace::input::{Input, PASTE_PATIENCE, Parser};
+use termtrace::internals::control::{Bindings, COAST, GLIDE, Mode, Motion};
+use termtrace::internals::input::{Input, PASTE_PATIENCE, Parser};
 
 /// Panics if a law is broken for these bytes, of which the first says how the rest is split.
 pub(crate) fn hold_for(data: &[u8]) {

@@ -2,10 +2,7 @@
 
 use crate::pty::{SOON, Screen, Session, Size, Start, halves_of, picture, shows};
 use std::path::Path;
-use termtrace::capabilities::CellMode;
-use termtrace::explain::explain;
-use termtrace::grid::Grid;
-use termtrace::scene::Scene;
+use termtrace::{CellMode, Grid, Scene, explain};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 
@@ -14,7 +11,7 @@ fn scene() -> Scene {
 }
 
 fn grid(size: Size) -> Grid {
-    picture(&scene(), CellMode::HALF_BLOCK, termtrace::grid::Size::new(size.columns, size.rows), 2.0)
+    picture(&scene(), CellMode::HALF_BLOCK, termtrace::Size::new(size.columns, size.rows), 2.0)
 }
 
 /// A session that shows its finished picture.
@@ -35,9 +32,9 @@ fn leave(session: &mut Session) {
 
 /// The lines of the panel are the library's for that pixel, from the first on, as many as there is room for.
 fn explains(screen: &Screen, size: Size, pixel: [u32; 2]) -> bool {
-    let resolution = termtrace::cell::resolution(
+    let resolution = termtrace::internals::cell::resolution(
         CellMode::HALF_BLOCK,
-        termtrace::grid::Size::new(size.columns, size.rows),
+        termtrace::Size::new(size.columns, size.rows),
         f32::from(size.cell.1) / f32::from(size.cell.0),
     );
     let scene = scene();

@@ -4,9 +4,8 @@ use crate::pty::{self, SOON, Session, Start, shows};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
-use termtrace::capabilities::CellMode;
-use termtrace::export;
-use termtrace::scene::{Scene, with_view};
+use termtrace::internals::scene::with_view;
+use termtrace::{CellMode, Scene, export};
 
 const TEXT: &str = "// Mine.
 (
@@ -42,9 +41,9 @@ fn sees_all(session: &mut Session, text: &str) {
     session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
 }
 
-fn grid(text: &str) -> termtrace::grid::Grid {
+fn grid(text: &str) -> termtrace::Grid {
     let scene = Scene::from_ron("wanted", text).expect("the scene is fine");
-    pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(80, 24), 2.0)
+    pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::Size::new(80, 24), 2.0)
 }
 
 fn leave(session: &mut Session) {

@@ -4,7 +4,7 @@
 use crate::pty::{Deadline, SOON, Seen, Session, Size, Start};
 use rustix::process::Signal;
 use std::time::{Duration, Instant};
-use termtrace::control::GLIDE;
+use termtrace::internals::control::GLIDE;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 const PUSH: &[u8] = b"\x1b[>15u";

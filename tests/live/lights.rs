@@ -4,9 +4,8 @@ use crate::mouse::{drag, report};
 use crate::orbit::{BALL, camera, load, looking};
 use crate::pty::{SOON, Session, picture, shows};
 use glam::{Vec2, Vec3};
-use termtrace::capabilities::CellMode;
-use termtrace::control::{point_dragged, point_wheeled};
-use termtrace::grid::Size;
+use termtrace::internals::control::{point_dragged, point_wheeled};
+use termtrace::{CellMode, Size};
 
 /// The whole picture's width over its height.
 const ASPECT_RATIO: f32 = 40.0 / 24.0;

@@ -13,9 +13,8 @@ use std::process::Command;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 use tempfile::TempDir;
-use termtrace::capabilities::CellMode;
-use termtrace::mesh_file::MeshFile;
-use termtrace::scene::Scene;
+use termtrace::internals::mesh_file::MeshFile;
+use termtrace::{CellMode, Scene};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 
@@ -166,8 +165,8 @@ fn eye(seen: &pty::Seen) -> Option<String> {
 }
 
 /// What a scene looks like when it is whole.
-fn picture(scene: &Scene, size: Size) -> termtrace::grid::Grid {
-    pty::picture(scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(size.columns, size.rows), 2.0)
+fn picture(scene: &Scene, size: Size) -> termtrace::Grid {
+    pty::picture(scene, CellMode::HALF_BLOCK, termtrace::Size::new(size.columns, size.rows), 2.0)
 }
 
 fn ball_scene() -> Scene {

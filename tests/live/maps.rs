@@ -3,14 +3,8 @@
 use crate::pty::{SOON, Screen, Session, Size, Start, halves_of, shows};
 use std::cmp::Ordering;
 use std::path::Path;
-use termtrace::capabilities::CellMode;
-use termtrace::cell;
-use termtrace::color::Srgb8;
-use termtrace::framebuffer::Resolution;
-use termtrace::maps::{self, Map};
-use termtrace::render::Sampling;
-use termtrace::scene::Scene;
-use termtrace::tone::Picture;
+use termtrace::internals::{cell, maps};
+use termtrace::{CellMode, Map, Picture, Resolution, Sampling, Scene, Srgb8};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 const SIZE: Size = Size { columns: 60, rows: 20, cell: (10, 20) };
@@ -39,8 +33,8 @@ fn whole(map: Map) -> Picture {
     maps::picture(map, &scene, scene.camera(), resolution, Sampling::BEST)
 }
 
-fn grid_size() -> termtrace::grid::Size {
-    termtrace::grid::Size::new(SIZE.columns, SIZE.rows)
+fn grid_size() -> termtrace::Size {
+    termtrace::Size::new(SIZE.columns, SIZE.rows)
 }
 
 /// Whether the screen shows this picture in all rows but the last.
@@ -146,7 +140,7 @@ fn small_screens_have_no_legend() {
     let size = Size { rows: 11, ..SIZE };
     let mut session = started(size, &["--map", "normal"]);
     let scene = scene();
-    let grid_size = termtrace::grid::Size::new(size.columns, size.rows);
+    let grid_size = termtrace::Size::new(size.columns, size.rows);
     let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size, 2.0);
     let normals = maps::picture(Map::Normal, &scene, scene.camera(), resolution, Sampling::BEST);
     let wanted = cell::grid_from_picture(CellMode::HALF_BLOCK, &normals);

@@ -4,8 +4,8 @@
 use crate::orbit::{BALL, TEAPOT, camera, load, looking, turned};
 use crate::pty::{SOON, Session, Size, Start};
 use glam::{Vec2, Vec3};
-use termtrace::camera::Camera;
-use termtrace::control::{framing, place_of};
+use termtrace::Camera;
+use termtrace::internals::control::{framing, place_of};
 
 /// The whole picture's width over its height.
 const ASPECT_RATIO: f32 = 40.0 / 24.0;

@@ -7,11 +7,8 @@ use std::io::Write;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::time::Duration;
-use termtrace::capabilities::{CellMode, Colors, Glyphs};
-use termtrace::control::{Bindings, Command, Mode};
-use termtrace::encode::{Encoder, Order};
-use termtrace::grid::Grid;
-use termtrace::scene::Scene;
+use termtrace::internals::control::{Bindings, Command, Mode};
+use termtrace::{CellMode, Colors, Encoder, Glyphs, Grid, Order, Scene};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 
@@ -27,7 +24,7 @@ fn termtrace() -> Start {
 fn picture(cell_mode: CellMode, size: Size) -> Grid {
     let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
     let aspect = f32::from(size.cell.1) / f32::from(size.cell.0);
-    pty::picture(&scene, cell_mode, termtrace::grid::Size::new(size.columns, size.rows), aspect)
+    pty::picture(&scene, cell_mode, termtrace::Size::new(size.columns, size.rows), aspect)
 }
 
 #[track_caller]
@@ -593,10 +590,7 @@ fn output_that_is_no_terminal_gets_one_plain_frame() {
     session.assert_clean();
     assert!(session.seen().bytes().is_empty(), "nothing goes to the terminal");
     let text = std::fs::read_to_string(file.path()).expect("text");
-    assert_eq!(
-        text,
-        termtrace::export::text_frame(&Scene::load(Path::new(SCENE)).unwrap(), termtrace::grid::Size::new(80, 24))
-    );
+    assert_eq!(text, termtrace::text_frame(&Scene::load(Path::new(SCENE)).unwrap(), termtrace::Size::new(80, 24)));
 }
 
 /// The flag would stay on the terminal when we are gone, and the shell would find it set.

@@ -2,9 +2,8 @@
 
 use crate::pty::{SOON, Session, Size, Start};
 use glam::Vec3;
-use termtrace::camera::{Camera, Pose};
-use termtrace::control::framing;
-use termtrace::scene::Scene;
+use termtrace::internals::control::framing;
+use termtrace::{Camera, Pose, Scene};
 
 pub(crate) const BALL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 pub(crate) const TEAPOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/teapot.obj");

@@ -6,11 +6,9 @@ use std::fmt::Write;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::time::Duration;
-use termtrace::capabilities::{CellMode, Colors, Glyphs, Hints};
-use termtrace::color::Srgb8;
-use termtrace::grid::Grid;
-use termtrace::protocol::Questions;
-use termtrace::scene::Scene;
+use termtrace::internals::capabilities::Hints;
+use termtrace::internals::protocol::Questions;
+use termtrace::{CellMode, Colors, Glyphs, Grid, Scene, Srgb8};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 const FENCE: &[u8] = b"\x1b[c";
@@ -27,7 +25,7 @@ fn live() -> Start {
 /// What the scene looks like in these cells, whose height is `aspect` times their width.
 fn picture(glyphs: Glyphs, colors: Colors, aspect: f32) -> Grid {
     let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
-    pty::picture(&scene, CellMode { glyphs, colors }, termtrace::grid::Size::new(80, 24), aspect)
+    pty::picture(&scene, CellMode { glyphs, colors }, termtrace::Size::new(80, 24), aspect)
 }
 
 #[track_caller]

@@ -7,11 +7,7 @@ use crate::gravel::gravel;
 use crate::pty::{self, Phases, SOON, Session, Size, Start, shows};
 use std::num::NonZeroU32;
 use std::path::Path;
-use termtrace::capabilities::CellMode;
-use termtrace::encode::{Encoder, Order};
-use termtrace::grid::Grid;
-use termtrace::render::Sampling;
-use termtrace::scene::Scene;
+use termtrace::{CellMode, Encoder, Grid, Order, Sampling, Scene};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
@@ -21,7 +17,7 @@ const FENCE: &[u8] = b"\x1b[c";
 
 fn picture(sampling: Sampling, scene: &Path, size: Size) -> Grid {
     let scene = Scene::load(scene).unwrap_or_else(|error| panic!("{error}"));
-    pty::picture_with(sampling, &scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(size.columns, size.rows), 2.0)
+    pty::picture_with(sampling, &scene, CellMode::HALF_BLOCK, termtrace::Size::new(size.columns, size.rows), 2.0)
 }
 
 /// The bytes of a whole frame that shows just this.

@@ -5,8 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::TempDir;
-use termtrace::capabilities::CellMode;
-use termtrace::scene::Scene;
+use termtrace::{CellMode, Scene};
 
 /// A ball of that colour, looked at from there.
 pub(crate) fn ball(color: &str, eye: &str) -> String {
@@ -57,14 +56,14 @@ fn looking(paths: &[&Path]) -> Session {
 #[track_caller]
 pub(crate) fn sees(session: &mut Session, text: &str) {
     let scene = Scene::from_ron("wanted", text).expect("the scene is fine");
-    let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(80, 24), 2.0);
+    let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::Size::new(80, 24), 2.0);
     session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
 }
 
 /// Whether the upper half of the screen shows that scene, whatever lies over the lower one.
 fn upper_half_shows(session: &mut Session, text: &str) -> bool {
     let scene = Scene::from_ron("wanted", text).expect("the scene is fine");
-    let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(80, 24), 2.0);
+    let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::Size::new(80, 24), 2.0);
     (0..12 * 80).all(|at| {
         let shown = session.seen().screen().cell(at % 80, at / 80);
         let cell = &wanted.cells()[at];
@@ -151,7 +150,7 @@ fn a_changed_mesh_is_seen() {
     let path = folder.write("square.ron", text);
     let sees = |session: &mut Session| {
         let scene = Scene::load(&path).expect("the scene is fine");
-        let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::grid::Size::new(80, 24), 2.0);
+        let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::Size::new(80, 24), 2.0);
         session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
     };
     let mut session = program().arg(&path).spawn();

@@ -3,7 +3,7 @@
 use crate::pty::{SOON, Session, Size, Start};
 use std::fs;
 use tempfile::TempDir;
-use termtrace::control::{Bindings, Mode};
+use termtrace::internals::control::{Bindings, Mode};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 

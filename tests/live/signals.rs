@@ -4,9 +4,7 @@ use crate::pty::{SOON, Session, Start, picture, shows};
 use rustix::process::Signal;
 use std::os::unix::process::ExitStatusExt;
 use std::process::Command;
-use termtrace::capabilities::CellMode;
-use termtrace::grid::Size;
-use termtrace::scene::Scene;
+use termtrace::{CellMode, Scene, Size};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");

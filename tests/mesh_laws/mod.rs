@@ -3,8 +3,8 @@
 use glam::{Vec2, Vec3};
 use std::io;
 use std::path::Path;
-use termtrace::color::LinearRgb;
-use termtrace::mesh_file::{MeshError, MeshFile, Place};
+use termtrace::internals::mesh_file::{MeshFile, Place};
+use termtrace::{LinearRgb, MeshError};
 
 /// A mesh that is as it should be, or an error that can be shown. The file may name others: what stands after the
 /// first NUL is every MTL file, what stands after the second one every other file. (OBJ and MTL have no NUL, other

@@ -7,8 +7,8 @@ use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
-use termtrace::color::{LinearRgb, Srgb8};
-use termtrace::mesh_file::MeshFile;
+use termtrace::internals::mesh_file::MeshFile;
+use termtrace::{LinearRgb, Srgb8};
 
 /// A mesh before it is written; all vertices have the same things.
 #[derive(Clone, Debug)]

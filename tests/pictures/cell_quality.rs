@@ -1,15 +1,9 @@
 //! How near cells come to their picture, seen from some way off: measured here by a blur and a colour space of our own.
 
 use std::path::Path;
-use termtrace::capabilities::{CellMode, Colors, Glyphs};
-use termtrace::cell::grid_from_picture;
-use termtrace::color::Srgb8;
 use termtrace::export::text;
-use termtrace::framebuffer::Resolution;
-use termtrace::grid::{Grid, Ink};
-use termtrace::render::render;
-use termtrace::scene::Scene;
-use termtrace::tone::{Picture, tone};
+use termtrace::internals::cell::grid_from_picture;
+use termtrace::{CellMode, Colors, Glyphs, Grid, Ink, Picture, Resolution, Scene, Srgb8, render, tone};
 
 const SCENES: [&str; 3] = ["three_spheres", "many_spheres", "inside_sphere"];
 
@@ -120,7 +114,7 @@ fn pixels(grid: &Grid) -> Picture {
         Ink::Indexed(index) => shown(index),
         other => panic!("{other:?} is none of the few colours"),
     };
-    let lower = |cell: &termtrace::grid::Cell| shown(if cell.glyph == ' ' { cell.bg } else { cell.fg });
+    let lower = |cell: &termtrace::Cell| shown(if cell.glyph == ' ' { cell.bg } else { cell.fg });
     let (width, height) = (u32::from(grid.size().columns), 2 * u32::from(grid.size().rows));
     let rows = grid.rows().flat_map(|row| {
         let upper = row.iter().map(|cell| shown(cell.bg));

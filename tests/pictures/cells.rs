@@ -1,13 +1,9 @@
 //! Pictures made by hand, and the cells that show them.
 
-use termtrace::capabilities::{CellMode, Colors, Glyphs};
-use termtrace::cell::{Painter, RAMP, grid_from_picture, resolution};
-use termtrace::color::Srgb8;
-use termtrace::encode::Encoder;
-use termtrace::export;
-use termtrace::framebuffer::Resolution;
-use termtrace::grid::{Cell, Glyph, Grid, Ink, Size};
-use termtrace::tone::Picture;
+use termtrace::internals::cell::{RAMP, grid_from_picture, resolution};
+use termtrace::{
+    Cell, CellMode, Colors, Encoder, Glyph, Glyphs, Grid, Ink, Painter, Picture, Resolution, Size, Srgb8, export,
+};
 
 /// Rows of pixels, each a letter: b(lack), w(hite), r(ed), g(rey).
 fn picture(rows: &[&str]) -> Picture {
@@ -287,7 +283,7 @@ fn goldens() {
     settings.set_omit_expression(true);
     settings.set_snapshot_path("../snapshots/cells");
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/three_spheres.ron");
-    let scene = termtrace::scene::Scene::load(&path).expect("the scene is fine");
+    let scene = termtrace::Scene::load(&path).expect("the scene is fine");
     for (name, glyphs, colors, digits) in [
         ("shape", Glyphs::Shape, Colors::None, 0),
         ("half", Glyphs::Half, Colors::None, 0),

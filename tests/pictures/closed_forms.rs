@@ -5,18 +5,15 @@
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 use std::num::NonZeroU32;
-use termtrace::camera::{Camera, Pose, ViewRectangle};
-use termtrace::color::LinearRgb;
-use termtrace::framebuffer::{Framebuffer, Resolution};
-use termtrace::hit::any_hit;
-use termtrace::light::{Falloff, LightSource, PointLight};
-use termtrace::material::{Checker, Material};
-use termtrace::ray::{Interval, Probe, Ray};
-use termtrace::render::render;
-use termtrace::scene::{Background, Object, Scene, ToneCurve};
-use termtrace::shade::{incidence, shadow_ray};
-use termtrace::shape::{Plane, Side, Sphere, Surface};
-use termtrace::tone::tone;
+use termtrace::internals::hit::any_hit;
+use termtrace::internals::light::LightSource;
+use termtrace::internals::ray::{Interval, Probe, Ray};
+use termtrace::internals::shade::{incidence, shadow_ray};
+use termtrace::internals::shape::{Side, Surface};
+use termtrace::{
+    Background, Camera, Checker, Falloff, Framebuffer, LinearRgb, Material, Object, Plane, PointLight, Pose,
+    Resolution, Scene, Sphere, ToneCurve, ViewRectangle, render, tone,
+};
 
 /// A camera that sees `fov` degrees vertically.
 fn camera(eye: [f32; 3], target: [f32; 3], fov: f32) -> Camera {

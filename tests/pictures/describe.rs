@@ -1,9 +1,7 @@
 //! What `describe` says of scenes: goldens, and where its words must change when the scene does.
 
 use std::path::Path;
-use termtrace::describe::describe;
-use termtrace::framebuffer::Resolution;
-use termtrace::scene::Scene;
+use termtrace::{Resolution, Scene, describe};
 
 const PICTURE: Resolution = Resolution::square(160, 96);
 

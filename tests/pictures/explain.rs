@@ -2,12 +2,8 @@
 
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use termtrace::color::LinearRgb;
-use termtrace::explain::{Explanation, WIDTH, explain};
-use termtrace::framebuffer::Resolution;
-use termtrace::render::render;
-use termtrace::scene::{Scene, ToneCurve};
-use termtrace::tone::{Picture, tone};
+use termtrace::internals::explain::WIDTH;
+use termtrace::{Explanation, LinearRgb, Picture, Resolution, Scene, ToneCurve, explain, render, tone};
 
 fn shipped_scenes() -> Vec<(PathBuf, Scene)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
@@ -39,7 +35,7 @@ fn adds_up(scene: &Scene, explanation: &Explanation) {
         assert_eq!(sum, seen.arriving, "{explanation:?}");
         assert_eq!(sum * seen.reflectance, *light, "{explanation:?}");
     }
-    assert_eq!(explanation.shown, termtrace::tone::shown(*light, scene));
+    assert_eq!(explanation.shown, termtrace::internals::tone::shown(*light, scene));
     let through = scene.camera().eye_rays(SIZE.aspect_ratio()).through(explanation.q.x, explanation.q.y);
     assert_eq!(explanation.ray, through);
 }

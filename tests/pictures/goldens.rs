@@ -8,9 +8,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
-use termtrace::export::text_frame;
-use termtrace::grid::Size;
-use termtrace::scene::Scene;
+use termtrace::{Scene, Size, text_frame};
 
 const SIZE: Size = Size::new(80, 24);
 
@@ -80,7 +78,7 @@ fn goldens_are_pictures() {
         assert_eq!(rows.len(), usize::from(SIZE.rows), "{name}");
         for row in &rows {
             assert_eq!(row.len(), usize::from(SIZE.columns), "{name}: {row:?}");
-            assert!(row.bytes().all(|byte| termtrace::cell::RAMP.contains(&byte)), "{name}: {row:?}");
+            assert!(row.bytes().all(|byte| termtrace::internals::cell::RAMP.contains(&byte)), "{name}: {row:?}");
         }
         let characters: BTreeSet<u8> = rows.iter().flat_map(|row| row.bytes()).collect();
         assert!(characters.len() >= 3, "{name} has only {} kinds of characters", characters.len());

@@ -7,10 +7,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use termtrace::color::LinearRgb;
-use termtrace::framebuffer::{Framebuffer, Resolution};
-use termtrace::render::{Crew, render, render_by};
-use termtrace::scene::Scene;
+use termtrace::internals::render::{Crew, render_by};
+use termtrace::{Framebuffer, LinearRgb, Resolution, Scene, render};
 
 /// Width and height in pixels, samples per pixel. The last has tiles cut off at both edges.
 const FRAMES: [(u32, u32, u32); 3] = [(80, 48, 1), (80, 48, 4), (200, 120, 1)];

@@ -5,20 +5,14 @@
 
 use std::num::NonZeroU32;
 use std::path::Path;
-use termtrace::camera::Camera;
-use termtrace::capabilities::CellMode;
-use termtrace::cell;
-use termtrace::color::{LinearRgb, Srgb8};
-use termtrace::export;
-use termtrace::framebuffer::Resolution;
-use termtrace::hit::closest_hit;
-use termtrace::light::Light;
-use termtrace::maps::{self, Map, picture, seen};
-use termtrace::render::{Crew, Sampling, render};
-use termtrace::scene::Scene;
-use termtrace::shade;
-use termtrace::shape::{Side, Surface};
-use termtrace::tone::{Picture, tone};
+use termtrace::internals::hit::closest_hit;
+use termtrace::internals::maps::{self, picture, seen};
+use termtrace::internals::render::Crew;
+use termtrace::internals::shape::{Side, Surface};
+use termtrace::internals::{cell, shade};
+use termtrace::{
+    Camera, CellMode, Light, LinearRgb, Map, Picture, Resolution, Sampling, Scene, Srgb8, export, render, tone,
+};
 
 const ONE: NonZeroU32 = NonZeroU32::MIN;
 
@@ -129,7 +123,11 @@ fn maps_say_what_is_there() {
             assert_eq!(shown(Map::Facing, at).b > 128, is_front, "{name} {at}");
             let in_the_way = |light: &Light| {
                 scene.shadows()
-                    && termtrace::hit::any_hit(&scene, &shade::shadow_ray(light, &surface), light.in_the_way())
+                    && termtrace::internals::hit::any_hit(
+                        &scene,
+                        &shade::shadow_ray(light, &surface),
+                        light.in_the_way(),
+                    )
             };
             let lit = scene.lights().iter().filter(|light| arriving(light).is_some() && !in_the_way(light)).count();
             let share = 0.22 + 0.78 * lit as f32 / scene.lights().len() as f32;
@@ -138,7 +136,7 @@ fn maps_say_what_is_there() {
     }
 }
 
-fn eye_ray(camera: &Camera, resolution: Resolution, at: usize) -> termtrace::ray::Ray {
+fn eye_ray(camera: &Camera, resolution: Resolution, at: usize) -> termtrace::internals::ray::Ray {
     let (width, height) = (resolution.width, resolution.height);
     let (x, y) = (at as u32 % width, at as u32 / width);
     let (qu, qv) = ((x as f32 + 0.5) / width as f32, (height as f32 - (y as f32 + 0.5)) / height as f32);

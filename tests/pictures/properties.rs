@@ -3,18 +3,16 @@
 use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 use std::num::NonZeroU32;
-use termtrace::camera::{Camera, CameraError, Pose, ViewRectangle};
-use termtrace::color::LinearRgb;
-use termtrace::framebuffer::{Framebuffer, Resolution};
-use termtrace::hit::{Hit, Kernel, any_hit, any_hits, closest_hit, closest_hits};
-use termtrace::lanes::LANES;
-use termtrace::light::{Falloff, Light, LightSource, PointLight};
-use termtrace::material::Material;
-use termtrace::ray::{EightRays, Interval, Probe, Ray};
-use termtrace::render::render;
-use termtrace::scene::{Background, Object, Scene};
-use termtrace::shade::shadow_ray;
-use termtrace::shape::{Part, Plane, Shape, Side, Sphere, Surface, Triangle};
+use termtrace::internals::hit::{Kernel, any_hit, any_hits, closest_hit, closest_hits};
+use termtrace::internals::lanes::LANES;
+use termtrace::internals::light::LightSource;
+use termtrace::internals::ray::{EightRays, Interval, Probe, Ray};
+use termtrace::internals::shade::shadow_ray;
+use termtrace::internals::shape::{Part, Side, Surface};
+use termtrace::{
+    Background, Camera, CameraError, Falloff, Framebuffer, Hit, Light, LinearRgb, Material, Object, Plane, PointLight,
+    Pose, Resolution, Scene, Shape, Sphere, Triangle, ViewRectangle, render,
+};
 
 fn number(limit: f32) -> impl Strategy<Value = f32> {
     (-1.0_f32..1.0).prop_map(move |x| x * limit)

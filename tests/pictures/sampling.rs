@@ -3,15 +3,12 @@
 use glam::Vec3;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use termtrace::camera::{Camera, Pose, ViewRectangle};
-use termtrace::color::LinearRgb;
-use termtrace::framebuffer::{Framebuffer, Resolution};
-use termtrace::material::{Checker, Material};
-use termtrace::progress::{Cancellation, Cancelled};
-use termtrace::render::{Crew, Refining, Sampling, render, render_by};
-use termtrace::scene::{Object, Scene};
-use termtrace::shape::Plane;
-use termtrace::tone::tone;
+use termtrace::internals::progress::Cancellation;
+use termtrace::internals::render::{Crew, Refining, render_by};
+use termtrace::{
+    Camera, Cancelled, Checker, Framebuffer, LinearRgb, Material, Object, Plane, Pose, Resolution, Sampling, Scene,
+    ViewRectangle, render, tone,
+};
 
 const SIZE: Resolution = Resolution::square(80, 48);
 
@@ -31,7 +28,7 @@ fn samples(count: u32) -> NonZeroU32 {
 /// Of the colours that are shown, in dB.
 fn psnr(scene: &Scene, a: &Framebuffer, b: &Framebuffer) -> f64 {
     let (a, b) = (tone(a, scene), tone(b, scene));
-    let bands = |p: &termtrace::color::Srgb8| [p.r, p.g, p.b].map(f64::from);
+    let bands = |p: &termtrace::Srgb8| [p.r, p.g, p.b].map(f64::from);
     let pairs = a.pixels.iter().flat_map(bands).zip(b.pixels.iter().flat_map(bands));
     let squares: f64 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
     10.0 * libm::log10(255.0 * 255.0 * 3.0 * a.pixels.len() as f64 / squares)

@@ -6,25 +6,20 @@ use std::collections::{HashMap, HashSet};
 use std::num::NonZeroU32;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use termtrace::bounds::Bounds;
-use termtrace::bvh::{Bvh, LeafVisitor, Leaves, Prefetch, Queue};
-use termtrace::camera::{Camera, Pose, ViewRectangle};
-use termtrace::color::LinearRgb;
-use termtrace::framebuffer::Resolution;
-use termtrace::hit::{
-    Hit, Kernel, Test, Witness, any_hit, any_hit_witnessed, any_hits, closest_hit, closest_hit_witnessed, closest_hits,
+use termtrace::internals::bvh::{Bvh, LeafVisitor, Leaves, Prefetch, Queue};
+use termtrace::internals::hit::{
+    Kernel, Test, Witness, any_hit, any_hit_witnessed, any_hits, closest_hit, closest_hit_witnessed, closest_hits,
 };
-use termtrace::lanes::Eight;
-use termtrace::lanes::{ALL, LANES, set_bits};
-use termtrace::light::{Falloff, LightSource, PointLight};
-use termtrace::material::Material;
-use termtrace::mesh_file::MeshFile;
-use termtrace::progress::Cancelled;
-use termtrace::ray::{EightRays, Interval, Probe, Ray, Rays};
-use termtrace::render::render;
-use termtrace::scene::{Object, Scene};
-use termtrace::shade::shadow_ray;
-use termtrace::shape::{Mesh, Plane, Shape, Side, Sphere, Surface, Triangle};
+use termtrace::internals::lanes::{ALL, Eight, LANES, set_bits};
+use termtrace::internals::light::LightSource;
+use termtrace::internals::mesh_file::MeshFile;
+use termtrace::internals::ray::{EightRays, Interval, Probe, Ray, Rays};
+use termtrace::internals::shade::shadow_ray;
+use termtrace::internals::shape::{Side, Surface};
+use termtrace::{
+    Bounds, Camera, Cancelled, Falloff, Hit, LinearRgb, Material, Mesh, Object, Plane, PointLight, Pose, Resolution,
+    Scene, Shape, Sphere, Triangle, ViewRectangle, render,
+};
 
 fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
     let pose = Pose { eye: Vec3::new(0.0, 0.0, 5.0), target: Vec3::ZERO, up: Vec3::Y };

@@ -1,12 +1,8 @@
 //! What the library makes of a scene, and whether a terminal shows it.
 
 use super::screen::{Colour, Screen};
-use termtrace::capabilities::CellMode;
-use termtrace::cell;
-use termtrace::grid::{Grid, Ink, Size};
-use termtrace::render::{Sampling, render};
-use termtrace::scene::Scene;
-use termtrace::tone::tone;
+use termtrace::internals::cell;
+use termtrace::{CellMode, Grid, Ink, Sampling, Scene, Size, render, tone};
 
 /// What a scene looks like in the end on a screen, whose cells' height is `aspect` times their width.
 pub(crate) fn picture(scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {

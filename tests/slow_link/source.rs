@@ -4,8 +4,8 @@ use rustix::event::{PollFd, PollFlags, poll};
 use std::fs::File;
 use std::io::{Read, Write};
 use std::time::{Duration, Instant};
-use termtrace::input::{Input, Parser, Reply};
-use termtrace::pace::Link;
+use termtrace::internals::input::{Input, Parser, Reply};
+use termtrace::internals::pace::Link;
 
 /// The bytes of a frame, with its question.
 const FRAME: usize = 4_000;

@@ -1,9 +1,8 @@
 //! What holds for any bytes that are read as a scene, a camera path or a file of keys: for the tests and for the fuzzer.
 
-use termtrace::camera_path::CameraPath;
-use termtrace::control::Bindings;
-use termtrace::scene::Scene;
-use termtrace::scene_text::{SceneError, text_from};
+use termtrace::internals::control::Bindings;
+use termtrace::internals::scene_text::text_from;
+use termtrace::{CameraPath, Scene, SceneError};
 
 /// A scene, or faults that can be shown.
 pub(crate) fn scene(bytes: &[u8]) {

@@ -8,7 +8,7 @@ mod termtrace_backend;
 use rayon::prelude::*;
 use scene::*;
 use std::time::Instant;
-use termtrace::hit::Kernel;
+use termtrace::internals::hit::Kernel;
 
 fn render(b: &dyn Backend, f: &Frame, tile: u32, pool: Option<&rayon::ThreadPool>) -> Acc {
     let (tx, ty) = (f.width.div_ceil(tile), f.height.div_ceil(tile));

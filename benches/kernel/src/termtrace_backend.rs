@@ -5,17 +5,12 @@ use glam::{Vec3, Vec3A};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::Instant;
-use termtrace::camera::{Camera, Pose, ViewRectangle};
-use termtrace::color::LinearRgb;
-use termtrace::hit::{self, EightHits, Kernel};
-use termtrace::lanes::{Eight, Vector};
-use termtrace::light::{Falloff, Light, PointLight};
-use termtrace::material::Material;
-use termtrace::mesh_file::MeshFile;
-use termtrace::ray::{EightRays, Ray};
-use termtrace::scene::{Object, Scene as Traced};
-use termtrace::shade::{self, EightPoints};
-use termtrace::shape::{Mesh, Plane, Shape, Sphere};
+use termtrace::internals::hit::{self, EightHits, Kernel};
+use termtrace::internals::lanes::{Eight, Vector};
+use termtrace::internals::mesh_file::MeshFile;
+use termtrace::internals::ray::{EightRays, Ray};
+use termtrace::internals::shade::{self, EightPoints};
+use termtrace::{Camera, Falloff, Light, LinearRgb, Material, Mesh, Object, Plane, PointLight, Pose, Scene as Traced, Shape, Sphere, ViewRectangle};
 
 pub struct Termtrace {
     kernel: Kernel,

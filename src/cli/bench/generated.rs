@@ -2,12 +2,10 @@
 
 use clap::ValueEnum;
 use glam::Vec3;
-use termtrace::camera::{Camera, CameraError, Pose, ViewRectangle};
-use termtrace::color::LinearRgb;
-use termtrace::light::{Falloff, PointLight};
-use termtrace::material::Material;
-use termtrace::scene::{Object, Scene};
-use termtrace::shape::{Plane, Shape, Sphere};
+use termtrace::{
+    Camera, CameraError, Falloff, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Shape, Sphere,
+    ViewRectangle,
+};
 
 /// Which of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,11 +1,8 @@
 //! The test card: a circle, a gradient, and stripes of half cells; and what to set where one is wrong.
 
-use termtrace::capabilities::{Capabilities, Colors};
-use termtrace::cell::{self, Painter};
-use termtrace::color::{LinearRgb, Srgb8};
-use termtrace::export;
-use termtrace::grid::{Cell, Grid, Size};
-use termtrace::tone::Picture;
+use termtrace::internals::capabilities::Capabilities;
+use termtrace::internals::cell;
+use termtrace::{Cell, Colors, Grid, LinearRgb, Painter, Picture, Size, Srgb8, export};
 
 /// With the report, all of it is on a screen of 24 rows.
 const ROWS: u16 = 8;

@@ -3,8 +3,9 @@
 use crate::cli::settings::Settings;
 use std::fmt::Write;
 use std::time::Duration;
-use termtrace::capabilities::{Answers, Asking, Colors, Findings, Found, Hints, Source};
-use termtrace::text::visible_lines;
+use termtrace::Colors;
+use termtrace::internals::capabilities::{Answers, Asking, Findings, Found, Hints, Source};
+use termtrace::internals::text::visible_lines;
 
 /// How the talk with the terminal went.
 #[derive(Clone, Copy)]

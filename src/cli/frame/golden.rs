@@ -4,9 +4,9 @@ use crate::cli::outcome::{Done, Failure, write_stdout};
 use std::io;
 use std::path::Path;
 use termtrace::export::Format;
-use termtrace::named_file::{self, Accepted};
-use termtrace::progress::Watcher;
-use termtrace::text::visible;
+use termtrace::internals::named_file::{self, Accepted};
+use termtrace::internals::progress::Watcher;
+use termtrace::internals::text::visible;
 
 /// The most bytes that a golden frame has: 16 MiB, as any text that is read, or four times as many as the frame that it is
 /// compared with. A larger one is of another picture, and its diff would be as long.

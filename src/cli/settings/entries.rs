@@ -4,8 +4,9 @@ use super::files::UserFile;
 use super::values::check;
 use crate::cli::renamed;
 use clap::Command;
-use termtrace::scene_text::{self, Faults, Field, Name, SceneError, Value, line_and_column};
-use termtrace::text::closest;
+use termtrace::SceneError;
+use termtrace::internals::scene_text::{self, Faults, Field, Name, Value, line_and_column};
+use termtrace::internals::text::closest;
 
 /// What the file says of a setting.
 pub(super) struct Entry {

@@ -2,10 +2,10 @@
 
 use std::io;
 use std::path::PathBuf;
-use termtrace::named_file::{self, Accepted};
-use termtrace::progress::Watcher;
-use termtrace::scene::LoadError;
-use termtrace::scene_text::text_from;
+use termtrace::LoadError;
+use termtrace::internals::named_file::{self, Accepted};
+use termtrace::internals::progress::Watcher;
+use termtrace::internals::scene_text::text_from;
 
 /// The most bytes that a file of the user's has: 64 KiB, more than ten times the whole table of keys with what each command
 /// does, which is the longest of them (5 kB).

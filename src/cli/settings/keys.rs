@@ -2,7 +2,7 @@
 
 use super::files::UserFile;
 use crate::cli::outcome::{Failure, usage};
-use termtrace::control::Bindings;
+use termtrace::internals::control::Bindings;
 
 /// The built-in bindings, changed as `keys.ron` says, unless the user wants none of his files.
 pub(in crate::cli) fn bindings(no_config: bool) -> Result<Bindings, Failure> {

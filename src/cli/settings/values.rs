@@ -2,7 +2,7 @@
 
 use clap::builder::PossibleValue;
 use clap::{Arg, Command};
-use termtrace::text::closest;
+use termtrace::internals::text::closest;
 
 /// The setting's flag.
 pub(super) fn flag(setting: &Arg) -> String {
