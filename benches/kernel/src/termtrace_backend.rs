@@ -10,7 +10,10 @@ use termtrace::internals::lanes::{Eight, Vector};
 use termtrace::internals::mesh_file::MeshFile;
 use termtrace::internals::ray::{EightRays, Ray};
 use termtrace::internals::shade::{self, EightPoints};
-use termtrace::{Camera, Falloff, Light, LinearRgb, Material, Mesh, Object, Plane, PointLight, Pose, Scene as Traced, Shape, Sphere, ViewRectangle};
+use termtrace::{
+    Camera, Falloff, Light, LinearRgb, Material, Mesh, Object, Plane, PointLight, Pose, Scene as Traced, Shape, Sphere,
+    ViewRectangle,
+};
 
 pub struct Termtrace {
     kernel: Kernel,
