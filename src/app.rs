@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::memory::OutOfMemory;
-use crate::scene::Scene;
+use crate::scene::{LoadError, Scene};
 use crate::terminal::{self, Signals, Terminal};
 use crate::text::Notice;
 /// For the fuzz target: no build that is not a test has it.
@@ -38,6 +38,7 @@ pub struct Outcome {
 }
 
 /// Why the live view ended.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// The user left.
@@ -85,7 +86,8 @@ pub fn open<E: Into<Notice> + Send + 'static>(
 
 /// Why there was nothing to see, or nothing more.
 #[derive(Debug)]
-pub enum Error<E> {
+#[non_exhaustive]
+pub enum Error<E = LoadError> {
     /// There is no terminal, or it has gone away, or there is not enough memory for its window.
     Terminal(io::Error),
     /// What is wrong with the scene.

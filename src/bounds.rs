@@ -19,26 +19,29 @@ const SLACK: f32 = 16.0 / 16_777_216.0;
 
 impl Bounds {
     /// Around nothing: with it, a union is the other box.
-    pub const EMPTY: Self = Self { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
+    pub(crate) const EMPTY: Self = Self { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
 
     /// Around these points.
+    #[doc(hidden)]
     pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |bounds, point| bounds.union(&Self { min: point, max: point }))
     }
 
     /// Around both. (No coordinate is NaN, and whether a zero is -0 makes no difference to any comparison or product
     /// that follows: so it does not matter how `min` and `max` treat them.)
+    #[doc(hidden)]
     pub fn union(&self, other: &Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
     /// How far it reaches along each axis.
+    #[doc(hidden)]
     pub fn extent(&self) -> Vec3 {
         self.max - self.min
     }
 
     /// Half its surface. A ray that meets a convex body around it meets it with a probability in proportion to this.
-    pub fn half_area(&self) -> f32 {
+    pub(crate) fn half_area(&self) -> f32 {
         let Vec3 { x, y, z } = self.extent();
         x * y + y * z + z * x
     }
@@ -48,6 +51,7 @@ impl Bounds {
     /// Widened a little, so that whatever lies in the box is met inside. Every step is monotone in the box's
     /// coordinates, in IEEE arithmetic as on paper: the way through a larger box contains the way through a smaller one,
     /// bit for bit. So it does not depend on the boxes around a shape's own whether the shape is tested.
+    #[doc(hidden)]
     pub fn crossed(&self, probe: &Probe) -> Interval {
         let [min, max] = crossed([Vector::splat(self.min), Vector::splat(self.max)], &probe.rays);
         Interval { min, max }

@@ -97,12 +97,14 @@ impl Camera {
     ///
     /// # Errors
     /// As [`Camera::new`].
+    #[doc(hidden)]
     pub fn with_pose(&self, pose: Pose) -> Result<Self, CameraError> {
         Self::new(pose, self.rectangle)
     }
 
     /// The same pose with another view rectangle.
     #[must_use]
+    #[doc(hidden)]
     pub fn with_rectangle(&self, rectangle: ViewRectangle) -> Self {
         Self { rectangle, ..*self }
     }
@@ -113,6 +115,7 @@ impl Camera {
     }
 
     /// u, v and w.
+    #[doc(hidden)]
     pub fn basis(&self) -> Basis {
         self.basis
     }
@@ -123,6 +126,7 @@ impl Camera {
     }
 
     /// The eye rays of a picture of that aspect ratio (width / height).
+    #[doc(hidden)]
     pub fn eye_rays(&self, aspect_ratio: f32) -> EyeRays {
         let Basis { u, v, w } = self.basis;
         let (width, height, middle) = self.rectangle.fitted_to(aspect_ratio);
@@ -191,6 +195,7 @@ impl ViewRectangle {
     ///
     /// # Errors
     /// As [`ViewRectangle::from_vertical_fov`].
+    #[doc(hidden)]
     pub fn with_vertical_fov(self, radians: f32) -> Result<Self, CameraError> {
         let Self { height, .. } = Self::from_vertical_fov(radians)?;
         Ok(Self { height, width: self.width.map(|width| width * (height / self.height)), ..self })
@@ -200,6 +205,7 @@ impl ViewRectangle {
     ///
     /// # Errors
     /// Unless both sides stay greater than 0 and finite.
+    #[doc(hidden)]
     pub fn scaled(self, factor: f32) -> Result<Self, CameraError> {
         let (width, height) = (self.width.map(|width| width * factor), self.height * factor);
         if is_length(height) && width.is_none_or(is_length) {
@@ -213,6 +219,7 @@ impl ViewRectangle {
     ///
     /// # Errors
     /// Unless the aspect ratio is greater than 0 and finite.
+    #[doc(hidden)]
     pub fn with_aspect_ratio(self, aspect_ratio: f32) -> Result<Self, CameraError> {
         let width = self.height * aspect_ratio;
         if is_length(width) { Ok(Self { width: Some(width), ..self }) } else { Err(CameraError::ViewRectangle) }
@@ -227,26 +234,31 @@ impl ViewRectangle {
     }
 
     /// The angle that the rectangle takes up vertically when it is not shifted, in radians.
+    #[doc(hidden)]
     pub fn vertical_fov(&self) -> f32 {
         2.0 * libm::atanf(0.5 * self.height)
     }
 
     /// Width over focal length, where the rectangle has a width of its own.
+    #[doc(hidden)]
     pub fn width(&self) -> Option<f32> {
         self.width
     }
 
     /// Height over focal length.
+    #[doc(hidden)]
     pub fn height(&self) -> f32 {
         self.height
     }
 
     /// The rectangle's own aspect ratio, where it has one.
+    #[doc(hidden)]
     pub fn aspect_ratio(&self) -> Option<f32> {
         self.width.map(|width| width / self.height)
     }
 
     /// The middle of the rectangle off the w axis, in heights of the rectangle.
+    #[doc(hidden)]
     pub fn shift(&self) -> Vec2 {
         self.shift
     }

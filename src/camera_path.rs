@@ -104,6 +104,7 @@ impl CameraPath {
     ///
     /// # Errors
     /// The first time at which there is no picture.
+    #[doc(hidden)]
     pub fn cameras(&self, frames: usize, frames_per_second: u32) -> Result<Vec<Camera>, NoView> {
         let camera = |frame: usize| {
             let time = frame as f64 / f64::from(frames_per_second);

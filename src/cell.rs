@@ -52,26 +52,31 @@ crate::table::table! {
 
 impl Glyphs {
     /// The word by which people choose them.
+    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         self.row().name
     }
 
     /// The glyphs of that name.
+    #[doc(hidden)]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|glyphs| glyphs.name() == name)
     }
 
     /// What they are, for the help of the command line.
+    #[doc(hidden)]
     pub const fn help(self) -> &'static str {
         self.row().help
     }
 
     /// What a report calls them, in a few words.
+    #[doc(hidden)]
     pub const fn title(self) -> &'static str {
         self.row().title
     }
 
     /// Whether they are block characters: where a terminal can show these, panels have their like.
+    #[doc(hidden)]
     pub const fn has_blocks(self) -> bool {
         self.row().has_blocks
     }
@@ -84,11 +89,13 @@ impl CellMode {
     pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
 
     /// How many pixels a cell wants, across and down.
+    #[doc(hidden)]
     pub const fn pixels_per_cell(self) -> (u32, u32) {
         self.glyphs.row().pixels_per_cell
     }
 
     /// The mode in which text without colours shows the same pixels.
+    #[doc(hidden)]
     pub fn plain(self) -> Self {
         Self { glyphs: self.glyphs.row().plain.unwrap_or(self.glyphs), colors: Colors::None }
     }
@@ -131,6 +138,7 @@ impl Painter {
     }
 
     /// How it turns pixels into cells.
+    #[doc(hidden)]
     pub fn mode(&self) -> CellMode {
         self.mode
     }

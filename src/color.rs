@@ -36,22 +36,26 @@ impl LinearRgb {
     }
 
     /// What an 8-bit sRGB colour means as light, each band in 0..=1.
+    #[doc(hidden)]
     pub fn from_srgb8(color: Srgb8) -> Self {
         let table = &TRANSFER.linear_from_srgb8;
         Self::new(table[usize::from(color.r)], table[usize::from(color.g)], table[usize::from(color.b)])
     }
 
     /// The relative luminance Y of CIE 1931 (the second row of sRGB's matrix; IEC 61966-2-1).
+    #[doc(hidden)]
     pub fn luminance(self) -> f32 {
         0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
     }
 
     /// The mix of `self` (at `t` = 0) and `other` (at `t` = 1).
+    #[doc(hidden)]
     pub fn lerp(self, other: Self, t: f32) -> Self {
         self * (1.0 - t) + other * t
     }
 
     /// Whether no band is infinite or NaN.
+    #[doc(hidden)]
     pub fn is_finite(self) -> bool {
         self.r.is_finite() && self.g.is_finite() && self.b.is_finite()
     }
@@ -105,12 +109,13 @@ impl Srgb8 {
     /// The nearest 8-bit colour: each band clamped to 0..=1, put through the transfer function and rounded.
     /// NaN counts as no light.
     #[inline]
+    #[doc(hidden)]
     pub fn from_linear(light: LinearRgb) -> Self {
         TRANSFER.color(light)
     }
 
     /// The same of all in a row.
-    pub fn all_from_linear(lights: impl Iterator<Item = LinearRgb>) -> impl Iterator<Item = Self> {
+    pub(crate) fn all_from_linear(lights: impl Iterator<Item = LinearRgb>) -> impl Iterator<Item = Self> {
         lights.map(|light| TRANSFER.color(light))
     }
 }

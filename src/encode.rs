@@ -121,19 +121,20 @@ impl Encoder {
     }
 
     /// The same for an encoder in use.
-    pub fn set_order(&mut self, order: Order) {
+    pub(crate) fn set_order(&mut self, order: Order) {
         self.order = order;
     }
 
     /// Whether a half-block cell may be written with either half, whichever saves a change of colour: right where a cell
     /// has an even number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and their
     /// mix would show.
+    #[doc(hidden)]
     pub fn with_upper_half(self, upper_half: bool) -> Self {
         Self { upper_half, ..self }
     }
 
     /// The same for an encoder in use: a window may have come to other cells.
-    pub fn set_upper_half(&mut self, upper_half: bool) {
+    pub(crate) fn set_upper_half(&mut self, upper_half: bool) {
         self.upper_half = upper_half;
     }
 
@@ -168,6 +169,7 @@ impl Encoder {
     ///
     /// # Errors
     /// If the writer has one. As nobody knows then how much has arrived, the next frame is drawn whole.
+    #[doc(hidden)]
     pub fn encode_to(&mut self, writer: &mut impl Write, wanted: &Grid) -> io::Result<()> {
         let mut bytes = Vec::new();
         self.encode(wanted, &mut bytes);
@@ -175,6 +177,7 @@ impl Encoder {
     }
 
     /// Appends the bytes that make the terminal show `wanted`, or something near it for a while; none if it does already.
+    #[doc(hidden)]
     pub fn encode_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) {
         let Some(caps) = lossy::Caps::of(allowance.quality) else { return self.encode(wanted, bytes) };
         self.stillness.note(wanted, allowance.now);
@@ -219,6 +222,7 @@ impl Encoder {
 
     /// When to encode the last wanted grid again, if nothing else is wanted until then: what is not shown exactly yet is
     /// to be so then. `None`: all is exact, and nothing would be sent.
+    #[doc(hidden)]
     pub fn due(&self) -> Option<Duration> {
         self.due
     }

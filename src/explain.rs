@@ -31,12 +31,16 @@ pub struct Explanation {
     /// The lecture's (qu, qv): where in the picture that is, from the lower left corner (0, 0) to the upper right (1, 1).
     pub q: Vec2,
     /// The eye ray: **o** and **d**. As d reaches from the eye to the view rectangle, **q** is o + d.
+    #[doc(hidden)]
     pub ray: Ray,
     /// How many nodes of trees, of up to eight boxes each, it was tested against.
+    #[doc(hidden)]
     pub nodes: u32,
     /// What surfaces it was tested against: those that it crosses by rising t, then the others.
+    #[doc(hidden)]
     pub tested: Vec<Tested>,
     /// What it met; nothing: its light is the background's.
+    #[doc(hidden)]
     pub seen: Option<Seen>,
     /// What goes to the eye.
     pub light: LinearRgb,
@@ -182,7 +186,7 @@ impl Listener {
 
 impl Explanation {
     /// The lecture's **q**: where the ray goes through the view rectangle.
-    pub fn q_in_space(&self) -> Vec3 {
+    pub(crate) fn q_in_space(&self) -> Vec3 {
         self.ray.at(1.0)
     }
 }

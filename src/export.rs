@@ -13,10 +13,13 @@ mod svg;
 mod tally;
 mod text;
 
-pub use ansi::{ansi, printed};
+pub use ansi::ansi;
+#[doc(hidden)]
+pub use ansi::printed;
 pub use html::html;
+#[doc(hidden)]
 pub use kind::Contents;
-pub use png::png;
+pub use png::{ExportError, png};
 pub use svg::svg;
 pub use text::text;
 
@@ -55,51 +58,61 @@ impl Format {
     }
 
     /// The format of that name.
+    #[doc(hidden)]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|format| format.name() == name)
     }
 
     /// What it is, for the help of the command line.
+    #[doc(hidden)]
     pub const fn help(self) -> &'static str {
         self.row().help
     }
 
     /// How the names of such files end, without the dot.
+    #[doc(hidden)]
     pub const fn ending(self) -> &'static str {
         self.row().endings[0]
     }
 
     /// The format of files whose names end so, without the dot, in lower case.
+    #[doc(hidden)]
     pub fn from_ending(ending: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|format| format.row().endings.contains(&ending))
     }
 
     /// The letter that asks for it in the live view.
+    #[doc(hidden)]
     pub const fn key(self) -> char {
         self.row().key
     }
 
     /// The name of the command that asks for it. Names stay: people's files have them.
+    #[doc(hidden)]
     pub const fn command(self) -> &'static str {
         self.row().command
     }
 
     /// What the live view calls it, in a few words.
+    #[doc(hidden)]
     pub const fn title(self) -> &'static str {
         self.row().title
     }
 
     /// What it is made of, and by what.
+    #[doc(hidden)]
     pub const fn contents(self) -> Contents {
         self.row().contents
     }
 
     /// Whether it has pixels, not cells.
+    #[doc(hidden)]
     pub const fn has_pixels(self) -> bool {
         matches!(self.contents(), Contents::Pixels(_))
     }
 
     /// How a file of it differs from the golden one of that name, in lines for a person.
+    #[doc(hidden)]
     pub fn difference(self, golden: &[u8], file: &[u8], name: &str) -> String {
         (self.row().difference)(golden, file, name)
     }

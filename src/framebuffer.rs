@@ -20,12 +20,13 @@ impl Resolution {
     }
 
     /// The picture's aspect ratio as it is seen: width over height.
+    #[doc(hidden)]
     pub fn aspect_ratio(&self) -> f32 {
         self.width as f32 / (self.height as f32 * self.pixel_aspect)
     }
 
     /// How many pixels there are.
-    pub fn pixel_count(&self) -> usize {
+    pub(crate) fn pixel_count(&self) -> usize {
         self.width as usize * self.height as usize
     }
 }
@@ -41,6 +42,7 @@ pub struct Framebuffer {
 
 impl Framebuffer {
     /// A black picture.
+    #[doc(hidden)]
     pub fn new(resolution: Resolution) -> Self {
         Self { resolution, pixels: vec![LinearRgb::BLACK; resolution.pixel_count()] }
     }
@@ -49,6 +51,7 @@ impl Framebuffer {
     ///
     /// # Panics
     /// Outside the picture.
+    #[doc(hidden)]
     pub fn pixel(&self, x: u32, y: u32) -> LinearRgb {
         assert!(x < self.resolution.width && y < self.resolution.height, "pixel ({x}, {y}) is outside the picture");
         self.pixels[y as usize * self.resolution.width as usize + x as usize]
@@ -56,6 +59,7 @@ impl Framebuffer {
 
     /// A 64-bit hash of the exact bits of all pixels and of the size (FNV-1a over 32-bit words, little end first):
     /// equal pictures, and as good as only those, have equal hashes, on every machine.
+    #[doc(hidden)]
     pub fn hash(&self) -> u64 {
         let size = [self.resolution.width, self.resolution.height];
         let bands = self.pixels.iter().flat_map(|p| [p.r, p.g, p.b]).map(f32::to_bits);

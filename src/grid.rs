@@ -24,6 +24,7 @@ impl Size {
     }
 
     /// How many cells there are.
+    #[doc(hidden)]
     pub const fn cell_count(self) -> usize {
         self.columns as usize * self.rows as usize
     }
@@ -115,10 +116,11 @@ pub struct Cell {
 
 impl Cell {
     /// A space in the terminal's own colours.
+    #[doc(hidden)]
     pub const BLANK: Self = Self::new(' ', Ink::Default, Ink::Default);
 
     /// What is not ours.
-    pub const FOREIGN: Self = Self::with_glyph(Glyph::Foreign, Ink::Default, Ink::Default);
+    pub(crate) const FOREIGN: Self = Self::with_glyph(Glyph::Foreign, Ink::Default, Ink::Default);
 
     /// A character in these colours, without modifiers.
     pub const fn new(character: char, fg: Ink, bg: Ink) -> Self {
@@ -144,6 +146,7 @@ impl Grid {
     }
 
     /// Makes all of it blank, at that size.
+    #[doc(hidden)]
     pub fn clear(&mut self, size: Size) {
         self.size = size;
         self.cells.clear();
@@ -151,6 +154,7 @@ impl Grid {
     }
 
     /// All foreign: of a screen of which nothing is known, or on which nothing is wanted.
+    #[doc(hidden)]
     pub fn foreign(size: Size) -> Self {
         Self { size, cells: vec![Cell::FOREIGN; size.cell_count()] }
     }
@@ -161,11 +165,13 @@ impl Grid {
     }
 
     /// All cells, row by row from the top.
+    #[doc(hidden)]
     pub fn cells(&self) -> &[Cell] {
         &self.cells
     }
 
     /// All cells to change.
+    #[doc(hidden)]
     pub fn cells_mut(&mut self) -> &mut [Cell] {
         &mut self.cells
     }
@@ -177,6 +183,7 @@ impl Grid {
     }
 
     /// The rows to change.
+    #[doc(hidden)]
     pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut [Cell]> {
         self.cells.chunks_exact_mut(usize::from(self.size.columns).max(1))
     }
@@ -185,6 +192,7 @@ impl Grid {
     ///
     /// # Panics
     /// Outside the grid.
+    #[doc(hidden)]
     pub fn row_from(&self, column: u16, row: u16) -> &[Cell] {
         let left = usize::from(self.size.columns - column);
         &self.cells[self.index(column, row)..][..left]
@@ -194,6 +202,7 @@ impl Grid {
     ///
     /// # Panics
     /// Outside the grid.
+    #[doc(hidden)]
     pub fn cell(&self, column: u16, row: u16) -> &Cell {
         &self.cells[self.index(column, row)]
     }
@@ -202,6 +211,7 @@ impl Grid {
     ///
     /// # Panics
     /// Outside the grid.
+    #[doc(hidden)]
     pub fn cell_mut(&mut self, column: u16, row: u16) -> &mut Cell {
         let index = self.index(column, row);
         &mut self.cells[index]
@@ -211,6 +221,7 @@ impl Grid {
     ///
     /// # Panics
     /// Outside the grid.
+    #[doc(hidden)]
     pub fn put(&mut self, column: u16, row: u16, cell: &Cell, columns: u16) {
         let end = column + columns.max(1);
         self.split(column, row);
@@ -235,7 +246,7 @@ impl Grid {
     }
 
     /// Moves everything up by so many rows; blanks come in at the bottom.
-    pub fn scroll_up(&mut self, rows: u16) {
+    pub(crate) fn scroll_up(&mut self, rows: u16) {
         let gone = Size { rows: rows.min(self.size.rows), ..self.size }.cell_count();
         self.cells.drain(..gone);
         self.cells.resize(self.size.cell_count(), Cell::BLANK);

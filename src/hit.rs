@@ -33,6 +33,7 @@ pub struct Hit {
 
 impl Hit {
     /// What was hit.
+    #[doc(hidden)]
     pub fn surface(self, scene: &Scene) -> Part<'_> {
         scene.objects()[self.object as usize].shape.part(self.part)
     }

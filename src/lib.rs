@@ -246,7 +246,7 @@ pub use scene::{Background, Object, ToneCurve};
 pub use shape::{Mesh, Plane, Shape, Sphere, Triangle};
 
 // Cameras over time.
-pub use camera_path::{CameraPath, Keyframe, NoView};
+pub use camera_path::{CameraPath, Keyframe};
 
 // Pictures.
 pub use framebuffer::{Framebuffer, Resolution};
@@ -270,7 +270,7 @@ pub use encode::{Encoder, EncoderBackend, Order, Quality};
 pub use overlay::lay_over;
 
 // Films.
-pub use record::{Cast, Gif, gif_size};
+pub use record::{Cast, Gif};
 
 // The crates whose types are in signatures.
 pub use glam;

@@ -60,6 +60,7 @@ macro_rules! lights {
 
         impl Light {
             /// [`LightSource::IN_THE_WAY`].
+            #[doc(hidden)]
             pub fn in_the_way(&self) -> Interval {
                 match self {
                     $($(#[$on])* Self::$name(_) => $light::IN_THE_WAY,)*
@@ -67,6 +68,7 @@ macro_rules! lights {
             }
 
             /// [`LightSource::to_light`].
+            #[doc(hidden)]
             #[inline(always)]
             pub fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N> {
                 match self {
@@ -75,6 +77,7 @@ macro_rules! lights {
             }
 
             /// [`LightSource::irradiance`].
+            #[doc(hidden)]
             #[inline(always)]
             pub fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
                 match self {
@@ -83,6 +86,7 @@ macro_rules! lights {
             }
 
             /// [`LightSource::color`].
+            #[doc(hidden)]
             pub fn color(&self) -> LinearRgb {
                 match self {
                     $($(#[$on])* Self::$name(light) => light.color(),)*
@@ -90,6 +94,7 @@ macro_rules! lights {
             }
 
             /// [`LightSource::position`].
+            #[doc(hidden)]
             pub fn position(&self) -> Option<Vec3> {
                 match self {
                     $($(#[$on])* Self::$name(light) => light.position(),)*
@@ -97,6 +102,7 @@ macro_rules! lights {
             }
 
             /// [`LightSource::moved_to`].
+            #[doc(hidden)]
             #[must_use]
             pub fn moved_to(self, position: Vec3) -> Self {
                 match self {

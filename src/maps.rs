@@ -93,16 +93,19 @@ impl Map {
     }
 
     /// Returns the map of that name.
+    #[doc(hidden)]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|map| map.name() == name)
     }
 
     /// Returns the next map; after the last, the first.
+    #[doc(hidden)]
     pub fn next(self) -> Self {
         self.after(1)
     }
 
     /// Returns the map before; before the first, the last.
+    #[doc(hidden)]
     pub fn back(self) -> Self {
         self.after(Self::ALL.len() - 1)
     }
@@ -113,11 +116,13 @@ impl Map {
     }
 
     /// Returns whether more samples make it better: the others have one ray for each pixel.
+    #[doc(hidden)]
     pub const fn refines(self) -> bool {
         matches!(self, Self::Shaded)
     }
 
     /// Returns the name and what the colours mean in that picture, in at most 38 characters of ASCII.
+    #[doc(hidden)]
     pub fn legend(self, scene: &Scene, camera: &Camera) -> String {
         let meaning = match self {
             Self::Shaded => return self.name().to_owned(),

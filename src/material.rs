@@ -51,6 +51,7 @@ macro_rules! materials {
 
         impl Material {
             /// [`Reflecting::reflectance`]; for what is [`Own`](Self::Own), that of a surface that brings nothing.
+            #[doc(hidden)]
             #[inline(always)]
             pub fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
                 match self {
@@ -118,10 +119,11 @@ materials! {
 
 impl Material {
     /// The material of an object that is given none: a light grey.
+    #[doc(hidden)]
     pub const DEFAULT: Self = Self::diffuse(Self::DEFAULT_REFLECTANCE);
 
     /// The reflectance of [`DEFAULT`](Self::DEFAULT).
-    pub const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
+    pub(crate) const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
 
     /// Returns the material with the same reflectance everywhere.
     pub const fn diffuse(reflectance: LinearRgb) -> Self {

@@ -51,12 +51,14 @@ impl<W: Write> Cast<W> {
     }
 
     /// Of that quality.
+    #[doc(hidden)]
     pub fn with_quality(self, quality: Quality) -> Self {
         Self { quality, ..self }
     }
 
     /// For a link that takes so many bytes a second: while they are on their way, frames are left out (their events are
     /// empty). But for the last frame, which waits for nothing.
+    #[doc(hidden)]
     pub fn with_max_rate(self, max_rate: Option<u32>) -> Self {
         Self { max_rate, ..self }
     }

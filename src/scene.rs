@@ -134,6 +134,7 @@ impl Scene {
     }
 
     /// Returns how much memory the trees over the parts of all objects take, in bytes.
+    #[doc(hidden)]
     pub fn tree_bytes(&self) -> usize {
         self.accelerator.bytes()
     }

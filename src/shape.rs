@@ -256,6 +256,7 @@ macro_rules! shapes {
 
         impl Shape {
             /// How many parts it has, each of which is a surface: one, but for meshes.
+            #[doc(hidden)]
             pub fn part_count(&self) -> u32 {
                 match self {
                     Self::Mesh(mesh) => mesh.triangle_count(),
@@ -267,6 +268,7 @@ macro_rules! shapes {
             ///
             /// # Panics
             /// If a mesh has fewer.
+            #[doc(hidden)]
             #[inline]
             pub fn part(&self, part: u32) -> Part<'_> {
                 match self {
@@ -276,6 +278,7 @@ macro_rules! shapes {
             }
 
             /// [`Surface::footprint`]; that of a mesh is zero.
+            #[doc(hidden)]
             #[inline(always)]
             pub fn footprint<N: Number>(&self, direction: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
                 match self {

@@ -129,6 +129,7 @@ fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
             }
             app::Error::Terminal(error) => Failure::runtime("terminal", reason(&error)),
             app::Error::Scene(failure) => failure,
+            error => Failure::Runtime(error.to_string()),
         })?,
         Err(_) => complain_of_panic(),
     };

@@ -14,9 +14,8 @@ use numbered::Numbered;
 use std::io::{self, BufWriter, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::internals::cell;
-use termtrace::{
-    Camera, CameraPath, Cast, CellMode, Encoder, Gif, Order, Picture, Resolution, Scene, Size, export, gif_size,
-};
+use termtrace::internals::record::gif_size;
+use termtrace::{Camera, CameraPath, Cast, CellMode, Encoder, Gif, Order, Picture, Resolution, Scene, Size, export};
 
 const EXAMPLES: &str = "\
 Camera paths:

@@ -84,17 +84,20 @@ impl<W: Write> EncoderBackend<W> {
     }
 
     /// The size of the window in pixels, for [`window_size`](Backend::window_size); 0 by 0 until it is said.
+    #[doc(hidden)]
     pub fn set_pixels(&mut self, pixels: impl Into<Size>) {
         self.window.pixels = pixels.into();
     }
 
     /// Where the bytes go.
+    #[doc(hidden)]
     pub fn writer(&self) -> &W {
         &self.writer
     }
 
     /// Where the bytes go, to write something else in between. What changes the screen has to be followed by
     /// [`Terminal::clear`](ratatui::Terminal::clear).
+    #[doc(hidden)]
     pub fn writer_mut(&mut self) -> &mut W {
         &mut self.writer
     }

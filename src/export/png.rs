@@ -2,7 +2,7 @@
 
 use super::kind::{Contents, Kind};
 use crate::tone::Picture;
-use std::io;
+use std::{fmt, io};
 
 pub(super) const KIND: Kind = Kind {
     name: "png",
@@ -19,7 +19,7 @@ pub(super) const KIND: Kind = Kind {
 ///
 /// # Errors
 /// If the picture has no pixels, or too many for the format.
-pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, png::EncodingError> {
+pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, ExportError> {
     let mut bytes = Vec::new();
     let mut encoder =
         png::Encoder::new(&mut bytes, picture.width.saturating_mul(scale), picture.height.saturating_mul(scale));
@@ -27,8 +27,24 @@ pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, 
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_pixel_dims(pixel_dimensions(pixel_aspect));
-    encoder.write_header()?.write_image_data(&scaled(picture, scale as usize))?;
-    Ok(bytes)
+    let written = encoder.write_header().and_then(|mut file| file.write_image_data(&scaled(picture, scale as usize)));
+    written.map(|()| bytes).map_err(ExportError)
+}
+
+/// The reason why a picture cannot be written in a format: it has no pixels, or too many.
+#[derive(Debug)]
+pub struct ExportError(png::EncodingError);
+
+impl fmt::Display for ExportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl std::error::Error for ExportError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.0.source()
+    }
 }
 
 /// The shape of a pixel as the format says it: how many of them make up one unit each way.

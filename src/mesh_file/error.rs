@@ -45,16 +45,19 @@ impl MeshError {
     }
 
     /// The file that the fault is in: the mesh, or one that it names.
+    #[doc(hidden)]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// Where the fault is.
+    #[doc(hidden)]
     pub fn place(&self) -> Place {
         self.place
     }
 
     /// What is wrong: one line, no full stop.
+    #[doc(hidden)]
     pub fn message(&self) -> &str {
         &self.message
     }

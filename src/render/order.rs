@@ -83,6 +83,7 @@ impl<'a> Render<'a> {
     }
 
     /// Gives the render up when this token is cancelled: after the rays that are being traced, 256 for each thread.
+    #[doc(hidden)]
     pub fn cancelled_by(self, token: &Cancellation) -> Self {
         Self { token: token.clone(), ..self }
     }

@@ -6,7 +6,7 @@ use crate::camera_path::CameraPath;
 use crate::memory;
 use crate::mesh_file::{self, MeshError, MeshFile};
 use crate::named_file::{self, Accepted};
-use crate::progress::{Unfinished, Watcher};
+use crate::progress::{Progress, Unfinished, Watcher};
 use crate::scene_file::{PathFile, SceneFile};
 use crate::scene_text::{MAX_BYTES, SceneError, read, read_or_cancel, text_from};
 use crate::shape;
@@ -14,6 +14,7 @@ use crate::text::{Notice, visible};
 use std::collections::HashMap;
 use std::fmt;
 use std::io;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 impl Scene {
@@ -54,6 +55,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::from_ron`], and for bytes that are no text.
+    #[doc(hidden)]
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, SceneError> {
         Self::from_ron(name, text_from(name, bytes)?)
     }
@@ -74,6 +76,35 @@ impl Scene {
     /// If the file cannot be read, or as [`Scene::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, LoadError> {
         load(path, &Watcher::patient()).map(Draft::finish).map_err(Unfinished::failure)
+    }
+
+    /// Loads the scene in that file, as [`Scene::load`] does, and reports what it does and how far it is. When `hear`
+    /// answers `Break`, it gives the scene up and returns `None`. Reports come from any thread.
+    ///
+    /// ```
+    /// use std::{ops::ControlFlow, path::Path};
+    /// use termtrace::Scene;
+    ///
+    /// let path = Path::new("scenes/teapot.obj");
+    /// let scene = Scene::load_watched(path, |_| ControlFlow::Continue(()))?;
+    /// assert!(scene.is_some());
+    /// let scene = Scene::load_watched(path, |_| ControlFlow::Break(()))?;
+    /// assert!(scene.is_none());
+    /// # Ok::<(), termtrace::LoadError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load_watched(
+        path: &Path,
+        hear: impl Fn(Progress) -> ControlFlow<()> + Sync,
+    ) -> Result<Option<Self>, LoadError> {
+        let watcher = Watcher::new(&hear);
+        match Draft::load(path, &watcher) {
+            Ok(draft) => Ok(draft.build_or_cancel(&watcher).ok()),
+            Err(Unfinished::Cancelled) => Ok(None),
+            Err(Unfinished::Failed(error)) => Err(error),
+        }
     }
 }
 
@@ -139,6 +170,7 @@ impl CameraPath {
     ///
     /// # Errors
     /// As [`Scene::from_ron`], and for times that do not rise.
+    #[doc(hidden)]
     pub fn from_ron(name: &str, text: &str, camera: &Camera) -> Result<Self, SceneError> {
         let smallest = "camera path is (keyframes: [(time: 0, eye: (0, 0, 5), target: (0, 0, 0))])";
         read(name, text, smallest, |root, faults| checked::path::check(&PathFile::read(root, faults), camera, faults))
@@ -148,6 +180,7 @@ impl CameraPath {
     ///
     /// # Errors
     /// As [`CameraPath::from_ron`], and for bytes that are no text.
+    #[doc(hidden)]
     pub fn from_bytes(name: &str, bytes: &[u8], camera: &Camera) -> Result<Self, SceneError> {
         Self::from_ron(name, text_from(name, bytes)?, camera)
     }
@@ -164,6 +197,7 @@ impl CameraPath {
 
 /// Why a file gave no scene, or no camera path.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum LoadError {
     /// It could not be read.
     CannotRead {

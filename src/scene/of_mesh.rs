@@ -26,6 +26,7 @@ impl Scene {
     /// The mesh on a floor, seen whole from in front and above, lit from the left by a strong light and from the right by a
     /// weak one. Up is +y. `None` if it has no size, is too small for where it is, or reaches beyond ±1e9: a scene file can
     /// bring it nearer.
+    #[doc(hidden)]
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
         Draft::of_mesh(mesh).map(Draft::finish)
     }

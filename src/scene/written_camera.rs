@@ -16,6 +16,7 @@ impl Camera {
     /// assert_eq!(scene.camera().to_ron(), line);
     /// # Ok::<(), termtrace::SceneError>(())
     /// ```
+    #[doc(hidden)]
     pub fn to_ron(&self) -> String {
         let pose = self.pose();
         let [eye, target, up] = [pose.eye, pose.target, pose.up].map(vector);

@@ -107,6 +107,7 @@ impl SceneError {
     const PRINTED: usize = 50;
 
     /// These faults of that text. The name is the file's, for messages only.
+    #[doc(hidden)]
     pub fn new(name: &str, text: &str, faults: impl Into<Faults>) -> Self {
         let Faults { mut kept, more } = faults.into();
         kept.sort_by_key(|fault| (fault.span.start, fault.span.end));
@@ -115,12 +116,38 @@ impl SceneError {
         Self { name: visible(name), reports, more }
     }
 
+    /// Returns the line of the first fault, counted from 1.
+    pub fn line(&self) -> usize {
+        self.reports.first().map_or(1, |report| report.line)
+    }
+
+    /// Returns the column of the first fault, in characters, counted from 1.
+    pub fn column(&self) -> usize {
+        self.reports.first().map_or(1, |report| report.column)
+    }
+
+    /// Returns what is wrong there, in one line without a full stop.
+    ///
+    /// ```
+    /// use termtrace::Scene;
+    ///
+    /// let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)),\n objects: [Sphere(center: (0, 1, 0), radus: 1)])";
+    /// let error = Scene::from_ron("x.ron", text).expect_err("a field is misspelt");
+    /// assert_eq!((error.line(), error.column()), (2, 38));
+    /// assert!(error.message().contains("did you mean \"radius\"?"));
+    /// ```
+    pub fn message(&self) -> &str {
+        self.reports.first().map_or("", |report| &report.message)
+    }
+
     /// The faults in the order of the text; of more than a thousand, a thousand.
+    #[doc(hidden)]
     pub fn reports(&self) -> &[Report] {
         &self.reports
     }
 
     /// The first fault, in parts.
+    #[doc(hidden)]
     pub fn notice(&self) -> Notice {
         let has_more = self.count() > 1;
         let Some(first) = self.reports.first() else { return Notice { has_more, ..Notice::default() } };
@@ -128,6 +155,7 @@ impl SceneError {
     }
 
     /// How many faults there are.
+    #[doc(hidden)]
     pub fn count(&self) -> usize {
         self.reports.len() + self.more
     }

@@ -33,6 +33,7 @@ macro_rules! described {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         impl Shape {
             /// What it is called: "sphere".
+            #[doc(hidden)]
             pub fn kind(&self) -> &'static str {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::KIND,)*
@@ -41,6 +42,7 @@ macro_rules! described {
             }
 
             /// Returns what it is, in that colour: "a red sphere of radius 1".
+            #[doc(hidden)]
             pub fn described(&self, color: &str) -> String {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.described(color),)*
@@ -51,6 +53,7 @@ macro_rules! described {
             }
 
             /// Returns whether the point lies inside it; a mesh need not be closed, and encloses nothing.
+            #[doc(hidden)]
             pub fn encloses(&self, point: Vec3) -> bool {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.encloses(point),)*
@@ -59,6 +62,7 @@ macro_rules! described {
             }
 
             /// Returns the smallest box around it; nothing where it has no end.
+            #[doc(hidden)]
             pub fn bounds(&self) -> Option<Bounds> {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.bounds(),)*

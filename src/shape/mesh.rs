@@ -26,16 +26,17 @@ impl From<MeshFile> for Mesh {
 
 impl Mesh {
     /// How many triangles there are; at least one.
-    pub fn triangle_count(&self) -> u32 {
+    pub(crate) fn triangle_count(&self) -> u32 {
         self.file.triangles().len() as u32
     }
 
     /// Whether any of them stand for a smooth surface.
-    pub fn is_smooth(&self) -> bool {
+    pub(crate) fn is_smooth(&self) -> bool {
         self.file.has_normals()
     }
 
     /// What it is made of.
+    #[doc(hidden)]
     pub fn file(&self) -> &MeshFile {
         &self.file
     }
@@ -44,6 +45,7 @@ impl Mesh {
     ///
     /// # Panics
     /// If there are fewer.
+    #[doc(hidden)]
     pub fn facet(&self, index: u32) -> Facet<'_> {
         let corners = self.file.triangles()[index as usize];
         let positions = self.file.positions();

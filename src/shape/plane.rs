@@ -35,11 +35,13 @@ impl Plane {
     }
 
     /// A point of the plane; patterns begin there.
+    #[doc(hidden)]
     pub fn point(&self) -> Vec3 {
         self.point
     }
 
     /// Unit length.
+    #[doc(hidden)]
     pub fn normal(&self) -> Vec3 {
         self.normal
     }

@@ -37,11 +37,13 @@ impl Sphere {
     }
 
     /// The lecture's **c**.
+    #[doc(hidden)]
     pub fn center(&self) -> Vec3 {
         self.center
     }
 
     /// The lecture's r, greater than 0.
+    #[doc(hidden)]
     pub fn radius(&self) -> f32 {
         self.radius
     }

@@ -260,6 +260,7 @@ impl Triangle {
     }
 
     /// The corners.
+    #[doc(hidden)]
     pub fn corners(&self) -> [Vec3; 3] {
         self.corners
     }

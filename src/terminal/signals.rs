@@ -105,6 +105,7 @@ impl Signals {
     }
 
     /// What becomes readable when there is something to do.
+    #[doc(hidden)]
     pub fn wake_pipe(&self) -> BorrowedFd<'_> {
         self.read.as_fd()
     }
@@ -113,11 +114,13 @@ impl Signals {
     ///
     /// # Errors
     /// If the operating system refuses.
+    #[doc(hidden)]
     pub fn waker(&self) -> io::Result<Waker> {
         self.write.try_clone().map(Waker)
     }
 
     /// Empties the wake pipe; to be done before looking at what happened.
+    #[doc(hidden)]
     pub fn drain(&mut self) {
         let mut buffer = [0; 256];
         while matches!(self.read.read(&mut buffer), Ok(count) if count > 0) {}
@@ -129,23 +132,27 @@ impl Signals {
     }
 
     /// Whether the window may have changed its size since the last call.
+    #[doc(hidden)]
     pub fn take_resized(&self) -> bool {
         self.resized.swap(false, Ordering::SeqCst)
     }
 
     /// Whether a signal asked the program to stop since the last call.
+    #[doc(hidden)]
     pub fn take_stop(&self) -> bool {
         self.stops.as_ref().is_some_and(|stops| stops.try_recv().is_ok())
     }
 
     /// Whether the program was stopped by something that it cannot hear of (SIGSTOP), and continued, since the last
     /// call.
+    #[doc(hidden)]
     pub fn take_continued(&self) -> bool {
         self.continued.swap(false, Ordering::SeqCst)
     }
 
     /// Stops until a shell says to go on: to be called by the thread that called [`catch`](Self::catch), with the
     /// terminal given back. It returns at once where stops are ignored, or where nobody is there to say it.
+    #[doc(hidden)]
     pub fn stop(&mut self, who: Stopped) {
         let Some(stops) = &self.stops else { return };
         if who == Stopped::Group && rustix::process::kill_current_process_group(rustix::process::Signal::TSTP).is_ok() {

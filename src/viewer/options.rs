@@ -7,11 +7,12 @@ use crate::maps::Map;
 use crate::render::Sampling;
 use std::path::PathBuf;
 
-/// How the user wants the live view: made by [`Options::new`], then changed.
+/// How the user wants the live view: made by [`Options::default`], then changed.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Options {
     /// What is wanted and known of the terminal before it is asked.
+    #[doc(hidden)]
     pub hints: Hints,
     /// In which order changed cells are sent; `None`: row by row, which takes the least time, and by colour, which takes
     /// the fewest bytes, while the link is slow.
@@ -28,6 +29,7 @@ pub struct Options {
     /// How many threads trace; `None`: as many as there are cores.
     pub threads: Option<usize>,
     /// How fast keys move and turn the view.
+    #[doc(hidden)]
     pub pace: Pace,
     /// Whether each press of a key moves one step at once, and nothing glides or moves by itself.
     pub reduced_motion: bool,
@@ -38,11 +40,20 @@ pub struct Options {
     /// What of the scene is shown at first.
     pub map: Map,
     /// What the keys do.
+    #[doc(hidden)]
     pub bindings: Bindings,
+}
+
+/// The choices of the terminal and the machine.
+impl Default for Options {
+    fn default() -> Self {
+        Self::new(Hints::default())
+    }
 }
 
 impl Options {
     /// For a terminal of which that is known, on a link that does not compress; the rest as terminal and machine say.
+    #[doc(hidden)]
     pub fn new(hints: Hints) -> Self {
         Self {
             hints,
