@@ -142,6 +142,6 @@ fn view<E: Into<Notice> + Send + 'static>(
         Error::Terminal(error) => signals.deadly().map(Ending::Signal).ok_or(Error::Terminal(error)),
         fault @ Error::Scene(_) => Err(fault),
     })?;
-    let heard = live.give_back();
+    let heard = live.restore();
     Ok(Outcome { ending, moved: live.moved(), heard })
 }

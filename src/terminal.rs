@@ -1,12 +1,14 @@
-//! The one owner of the terminal: what it turns on it turns off again, in reverse order, whatever happens.
+//! The single owner of the terminal: every mode that it switches on it switches off again, in reverse order.
 //!
-//! The terminal is given back when [`Terminal`] is dropped: on return, on an error, while a panic unwinds. Signals
-//! that would end the process end the loop of [`app`](crate::app) instead, and so drop it too; `main` then lets the
-//! signal do its work. Before a stop (Ctrl-Z, SIGTSTP) it is given back, and taken again after. Messages of panics are
-//! kept until the terminal is back (see [`hold_panic_messages`]), or they would vanish with the alternate screen.
+//! Dropping a [`Terminal`] restores the terminal: on return, on an error, and while a panic unwinds. A signal that would
+//! end the process ends the loop of [`app`](crate::app) instead, which drops the `Terminal` too; `main` then raises the
+//! signal again with its default action. The terminal is also restored before a stop (Ctrl-Z, SIGTSTP) and taken again
+//! afterwards. Panic messages are kept until the terminal is restored (see [`hold_panic_messages`]): printed earlier, they
+//! would vanish with the alternate screen.
 //!
-//! `O_NONBLOCK` is never set on what is shared with the shell, which would find it set after us: the screen is opened
-//! a second time for that. So a terminal that has stopped reading never keeps us from hearing keys and signals.
+//! `O_NONBLOCK` is a property of the open file description, which the shell shares and would find set after the program
+//! has ended. So it is never set on an inherited descriptor: the terminal is opened a second time for writing. Keys and
+//! signals are therefore handled even when the terminal has stopped reading.
 
 use crate::capabilities::{self, CellShape};
 use crate::grid::Size;
@@ -24,18 +26,18 @@ use std::time::Duration;
 mod modes;
 mod output;
 mod panics;
-mod rehearsal;
+mod fault_injection;
 mod replies;
 mod signals;
 
+#[cfg(feature = "test-hooks")]
+pub use fault_injection::inject_faults;
+pub(crate) use fault_injection::{reach, reach_in_thread, rest, take_worker_panic};
 use modes::Modes;
-pub use output::stderr_is_read;
+pub use output::stderr_accepts_message;
 use output::{Output, timespec};
 pub use panics::{hold_panic_messages, take_panic_messages};
-#[cfg(feature = "test-hooks")]
-pub use rehearsal::rehearse;
-pub(crate) use rehearsal::{reach, reach_beside, rest, take_worker_panic};
-pub use signals::{Signals, Stopped, Waker, before_death, die_of, fail_large_writes, without_signals};
+pub use signals::{Signals, StopTarget, Waker, before_death, die_of, fail_large_writes, without_signals};
 
 /// A terminal in raw mode with the alternate screen, to be read, written and asked for its size.
 pub struct Terminal {
@@ -44,21 +46,23 @@ pub struct Terminal {
     modes: Modes,
 }
 
-/// What woke [`Terminal::wait`].
+/// The inputs that are readable when [`Terminal::wait`] returns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Woken {
-    /// There are bytes from the terminal, or it is gone.
+pub struct Readable {
+    /// Whether the terminal has sent bytes, or has hung up.
     pub keys: bool,
-    /// The wake pipe has something to say.
+    /// Whether the wake pipe has been written to.
     pub wake: bool,
 }
 
 impl Terminal {
-    /// Takes the terminal over: the picture goes to standard output; keys come from standard input, or from the
-    /// controlling terminal where standard input is something else. In the background it waits to be in the foreground.
+    /// Takes control of the terminal: raw mode, the alternate screen, reports of keys, mouse and focus.
+    ///
+    /// Frames go to standard output. Keys come from standard input, or from the controlling terminal if standard input is
+    /// not a terminal. A process in the background waits here until it is in the foreground.
     ///
     /// # Errors
-    /// If either is not a terminal, or cannot be set up; it is then as it was.
+    /// If either is not a terminal, or cannot be set up; the terminal is then in its original state.
     pub fn take(signals: &Signals) -> io::Result<Self> {
         let output = Output::open()?;
         let mut terminal = Self { keys: keys_file()?, output, modes: Modes::default() };
@@ -66,22 +70,22 @@ impl Terminal {
         Ok(terminal)
     }
 
-    /// Takes the terminal over after [`give_back`](Self::give_back).
+    /// Takes control of the terminal again after [`restore`](Self::restore).
     ///
     /// # Errors
-    /// If it cannot be set up; what was done is undone when this is dropped.
+    /// If the terminal cannot be set up. Dropping `self` undoes the steps that succeeded.
     pub fn take_again(&mut self, signals: &Signals) -> io::Result<()> {
-        self.modes.turn_on(&self.keys, &mut self.output, signals)
+        self.modes.switch_on_all(&self.keys, &mut self.output, signals)
     }
 
-    /// The window's size now.
+    /// Returns the window's current size, in cells and, where the terminal reports them, in pixels.
     ///
     /// # Errors
     /// If the terminal is gone.
     pub fn window(&self) -> io::Result<Window> {
         let window = termios::tcgetwinsize(self.output.file())?;
         let (columns, rows) = (window.ws_col, window.ws_row);
-        // A terminal that nobody told its size has none.
+        // A terminal without a known size reports 0 by 0, a serial line for example.
         let size = if columns == 0 || rows == 0 { Size::new(80, 24) } else { Size::new(columns, rows) };
         let aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
         let cell = CellShape { aspect, halves_meet: capabilities::halves_meet(rows, window.ws_ypixel) };
@@ -90,8 +94,8 @@ impl Terminal {
         Ok(Window { size, cell, cell_pixels })
     }
 
-    /// Sends a frame or queries, in one write where the terminal takes them whole. What it does not take at once goes
-    /// out while [`wait`](Self::wait) waits. The caller tells its [`Receiver`] of queries among them.
+    /// Sends a frame or queries, in a single write if the terminal accepts all of it. The rest is written during
+    /// [`wait`](Self::wait). The caller reports any queries among the bytes to its [`Receiver`].
     ///
     /// # Errors
     /// If the terminal is gone.
@@ -99,8 +103,8 @@ impl Terminal {
         self.output.send(bytes)
     }
 
-    /// Switches a mode on that not every terminal knows, until the terminal is given back. A mode that is on stays on, and
-    /// nothing is sent.
+    /// Switches on a mode that not every terminal supports, until the terminal is restored. Sends nothing if the mode is
+    /// already on.
     ///
     /// # Errors
     /// If the terminal is gone.
@@ -108,7 +112,7 @@ impl Terminal {
         self.modes.switch_on(mode, &mut self.output)
     }
 
-    /// Gives the user's clipboard a text, where the terminal lets programs do that (OSC 52).
+    /// Copies `text` to the user's clipboard by OSC 52, which the terminal may ignore.
     ///
     /// # Errors
     /// If the terminal is gone.
@@ -117,30 +121,32 @@ impl Terminal {
         self.output.send(format!("\x1b]52;c;{encoded}\x1b\\").as_bytes())
     }
 
-    /// Whether the terminal has not taken the last frame yet.
+    /// Returns whether a part of the last frame has not been written yet.
     pub fn is_sending(&self) -> bool {
         self.output.is_pending()
     }
 
-    /// Gives the terminal back, as dropping it does, and waits for the replies that are outstanding, for as long as it does
-    /// for the last bytes to be taken, so that the shell is not sent them. Whether it took all that was sent: one that has
-    /// stopped reading is left after a second, and is not to be written to any more.
-    pub fn give_back(&mut self, receiver: &mut Receiver, now: Duration) -> bool {
-        let is_taken = self.modes.give_back(&self.keys, &mut self.output, Some((&mut *receiver, now)), None);
+    /// Restores the terminal and waits for outstanding replies, which the shell would otherwise read as typed text.
+    ///
+    /// Both the last bytes and the replies share a timeout of one second. Returns whether the terminal accepted all bytes:
+    /// if it did not, it has stopped reading, and writing to it would block.
+    pub fn restore(&mut self, receiver: &mut Receiver, now: Duration) -> bool {
+        let is_drained = self.modes.restore(&self.keys, &mut self.output, Some((&mut *receiver, now)), None);
         receiver.forget();
-        is_taken
+        is_drained
     }
 
-    /// Gives the terminal back to whoever had it while the program was stopped without a word; returns what was typed
-    /// meanwhile. What is typed from then on stays to be read: no shell is to be spared it.
-    pub fn hand_over(&mut self, receiver: &mut Receiver, now: Duration) -> Vec<Input> {
+    /// Restores the terminal after a stop that could not be caught (SIGSTOP), and returns the input read meanwhile.
+    ///
+    /// Unlike [`restore`](Self::restore) it does not flush unread input: the program continues and reads it.
+    pub fn restore_keeping_input(&mut self, receiver: &mut Receiver, now: Duration) -> Vec<Input> {
         let mut typed = Vec::new();
-        self.modes.give_back(&self.keys, &mut self.output, Some((&mut *receiver, now)), Some(&mut typed));
+        self.modes.restore(&self.keys, &mut self.output, Some((&mut *receiver, now)), Some(&mut typed));
         receiver.forget_replies();
         typed
     }
 
-    /// The bytes that are there. None at all: the terminal is gone.
+    /// Reads the bytes that have arrived. An empty slice means that the terminal has hung up.
     ///
     /// # Errors
     /// If the terminal is gone.
@@ -148,7 +154,7 @@ impl Terminal {
         loop {
             match self.keys.read(buffer) {
                 Ok(count) => {
-                    rehearsal::count_read(count);
+                    fault_injection::count_read(count);
                     return Ok(&buffer[..count]);
                 }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
@@ -157,13 +163,13 @@ impl Terminal {
         }
     }
 
-    /// Sleeps until there are keys or the wake pipe is readable, at most for `timeout`, or for ever without one; also
-    /// until the terminal takes more of what is being sent.
+    /// Sleeps until keys arrive, the wake pipe is readable, or the terminal accepts more pending bytes, which are then
+    /// written. Returns after `timeout` at the latest; `None` waits without a limit.
     ///
     /// # Errors
-    /// If the terminal is gone, or the operating system refuses.
-    pub fn wait(&mut self, wake: BorrowedFd<'_>, timeout: Option<Duration>) -> io::Result<Woken> {
-        // Without anything to send, only its end is told of the screen.
+    /// If the terminal is gone, or polling fails.
+    pub fn wait(&mut self, wake: BorrowedFd<'_>, timeout: Option<Duration>) -> io::Result<Readable> {
+        // Without pending bytes the output is polled for a hang-up only, which poll always reports.
         let sending = if self.is_sending() { PollFlags::OUT } else { PollFlags::empty() };
         let mut fds = [
             PollFd::new(&self.keys, PollFlags::IN),
@@ -171,29 +177,30 @@ impl Terminal {
             PollFd::new(self.output.file(), sending),
         ];
         let timeout = timeout.map(timespec);
-        let woken = match poll(&mut fds, timeout.as_ref()) {
-            // A signal: what it was is in the wake pipe, and the next call finds it there.
-            Err(rustix::io::Errno::INTR) => Woken::default(),
+        let readable = match poll(&mut fds, timeout.as_ref()) {
+            // Interrupted by a signal: its handler has written to the wake pipe, which the next call finds readable.
+            Err(rustix::io::Errno::INTR) => Readable::default(),
             Err(error) => return Err(error.into()),
-            // The keys may come from another terminal, which knows nothing of the screen's end.
+            // The keys may come from another terminal, so a hang-up of the output would go unnoticed there.
             Ok(_) if fds[2].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL) => {
                 return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
             }
-            Ok(_) => Woken { keys: !fds[0].revents().is_empty(), wake: !fds[1].revents().is_empty() },
+            Ok(_) => Readable { keys: !fds[0].revents().is_empty(), wake: !fds[1].revents().is_empty() },
         };
         self.output.push()?;
-        Ok(woken)
+        Ok(readable)
     }
 }
 
 impl Drop for Terminal {
-    /// Gives the terminal back without waiting for replies: who knows of any has given it back before.
+    /// Restores the terminal without waiting for replies: only a caller with a [`Receiver`] knows of outstanding ones, and
+    /// calls [`restore`](Terminal::restore) first.
     fn drop(&mut self) {
-        self.modes.give_back(&self.keys, &mut self.output, None, None);
+        self.modes.restore(&self.keys, &mut self.output, None, None);
     }
 }
 
-/// Standard input if it is a terminal, else the controlling one.
+/// Opens the source of keys: standard input if it is a terminal, otherwise the controlling terminal.
 fn keys_file() -> io::Result<File> {
     if io::stdin().is_terminal() {
         return Ok(File::from(io::stdin().as_fd().try_clone_to_owned()?));

@@ -13,7 +13,7 @@ use super::source::Named;
 use super::{Ending, Error, Options};
 use crate::camera::Camera;
 use crate::export::Format;
-use crate::terminal::{self, Signals, Stopped, Terminal};
+use crate::terminal::{self, Signals, StopTarget, Terminal};
 use crate::text::Notice;
 use crate::viewer::{Ask, Busy, FRAME, Step, Viewer};
 use std::io;
@@ -48,7 +48,7 @@ pub(super) struct Live {
 
 impl Drop for Live {
     fn drop(&mut self) {
-        self.give_back();
+        self.restore();
     }
 }
 
@@ -70,8 +70,8 @@ impl Live {
     }
 
     /// Gives the terminal back; whether it took all that was sent.
-    pub(super) fn give_back(&mut self) -> bool {
-        self.terminal.give_back(self.viewer.receiver(), self.clock.now())
+    pub(super) fn restore(&mut self) -> bool {
+        self.terminal.restore(self.viewer.receiver(), self.clock.now())
     }
 
     /// Asks the terminal what it is, and goes on until the user leaves.
@@ -155,7 +155,7 @@ impl Live {
             signals.drain();
         }
         if signals.take_stop() {
-            return self.suspend(Some(Stopped::Process), signals);
+            return self.suspend(Some(StopTarget::Process), signals);
         }
         if signals.take_continued() {
             // Stopped unasked, and another program may have left the terminal in any state.
@@ -174,7 +174,7 @@ impl Live {
         while let Some(ask) = self.viewer.ask() {
             match ask {
                 Ask::Leave => return Ok(true),
-                Ask::Suspend => self.suspend(Some(Stopped::Group), signals)?,
+                Ask::Suspend => self.suspend(Some(StopTarget::Group), signals)?,
                 Ask::GoOn(steps) => scenes.go(steps)?,
                 Ask::Copy(text) => self.terminal.copy(&text)?,
                 Ask::Export(format) => {
@@ -239,15 +239,15 @@ impl Live {
     /// Gives the terminal back, stops if that is wanted, and takes the terminal again: at its size of then, and with all
     /// drawn anew. With a signal to end, it stays given back. What was typed is not thrown away where no shell was asked
     /// for.
-    fn suspend(&mut self, stop: Option<Stopped>, signals: &mut Signals) -> io::Result<()> {
+    fn suspend(&mut self, stop: Option<StopTarget>, signals: &mut Signals) -> io::Result<()> {
         let now = self.clock.now();
         self.viewer.lose_terminal(now);
         let mut typed = Vec::new();
         if let Some(who) = stop {
-            self.terminal.give_back(self.viewer.receiver(), now);
+            self.terminal.restore(self.viewer.receiver(), now);
             signals.stop(who);
         } else {
-            typed = self.terminal.hand_over(self.viewer.receiver(), now);
+            typed = self.terminal.restore_keeping_input(self.viewer.receiver(), now);
         }
         if signals.deadly().is_some() {
             return Ok(());

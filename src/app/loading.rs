@@ -261,7 +261,7 @@ fn build<E>(draft: Draft, watcher: &Watcher<'_>, teller: &Teller<'_, E>) {
     if let Some(sketch) = draft.sketch() {
         teller.tell(News::Sketch(sketch));
     }
-    let _ = terminal::reach_beside("build");
+    let _ = terminal::reach_in_thread("build");
     if let Ok(scene) = draft.build_or_cancel(watcher) {
         teller.tell(News::Scene(scene));
     }

@@ -64,7 +64,7 @@ fn talk(questions: &mut Questions, cell: &mut CellShape) -> io::Result<Talk> {
         receiver.sent(questions.bytes(), Duration::ZERO);
         await_replies(&mut terminal, &mut receiver, &mut signals, questions, asked)
     });
-    terminal.give_back(&mut receiver, asked.elapsed());
+    terminal.restore(&mut receiver, asked.elapsed());
     if let Some(signal) = signals.deadly() {
         die_of(signal);
     }

@@ -115,7 +115,7 @@ fn print(args: &LiveArgs) -> Done {
 /// The live view. Whatever happens in it, the terminal is given back before a word is said.
 fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
     #[cfg(feature = "test-hooks")]
-    rehearse();
+    inject_faults();
     let settings = Settings::gather(given)?.args;
     settings.check_samples()?;
     let bindings = keys::bindings(given.get_flag("no_config"))?;
@@ -162,9 +162,9 @@ fn source(origin: Origin, look: &LookArgs) -> Source<Failure> {
 
 /// Lets the test that started us say where things are to go wrong.
 #[cfg(feature = "test-hooks")]
-fn rehearse() {
+fn inject_faults() {
     let path = std::env::var_os("TERMTRACE_TEST_SOCKET");
     if let Some(Ok(test)) = path.map(std::os::unix::net::UnixStream::connect) {
-        termtrace::internals::terminal::rehearse(test);
+        termtrace::internals::terminal::inject_faults(test);
     }
 }

@@ -81,7 +81,7 @@ fn complain(message: &str, code: u8) -> ExitCode {
 
 /// Prints it if that stops nobody. Where no one listens any more, the exit code says it too.
 fn print_error(text: &str) {
-    if termtrace::internals::terminal::stderr_is_read() {
+    if termtrace::internals::terminal::stderr_accepts_message() {
         let _ = io::stderr().write_all(text.as_bytes());
     }
 }

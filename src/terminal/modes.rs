@@ -1,8 +1,8 @@
-//! What is turned on: raw mode, then the modes of the screen, mouse and keyboard; turned off the other way round.
+//! The terminal's modes: raw mode first, then those of screen, mouse and keyboard; switched off in reverse order.
 
 use super::output::Output;
 use super::replies::{await_last, is_in_background};
-use super::{Signals, panics, rehearsal, signals};
+use super::{Signals, fault_injection, panics, signals};
 use crate::input::Input;
 use crate::protocol::{self, FENCE, Mode, Receiver};
 use rustix::termios::{self, Action, OptionalActions, QueueSelector, Termios};
@@ -10,21 +10,23 @@ use std::fs::File;
 use std::io;
 use std::time::{Duration, Instant};
 
-/// Everything that was turned on.
+/// The modes that are on.
 #[derive(Default)]
 pub(super) struct Modes {
-    /// The settings from before raw mode, which is the first to be turned on.
+    /// The settings before raw mode, which is switched on first.
     before: Option<Box<Termios>>,
     on: protocol::Modes,
 }
 
-/// How long the terminal may take over the last bytes. One that has stopped reading (Ctrl-S, a dead link) is left without.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Timeout for the last bytes and replies. A terminal that has stopped reading (Ctrl-S, a dead link) delays the exit by
+/// this much and does not get the rest.
+const RESTORE_TIMEOUT: Duration = Duration::from_secs(1);
 
 impl Modes {
-    /// Raw mode, the alternate screen, no cursor, pastes in brackets, word of the focus and of the mouse. What is about to
-    /// be turned on is listed first: half done is undone too.
-    pub(super) fn turn_on(&mut self, keys: &File, output: &mut Output, signals: &Signals) -> io::Result<()> {
+    /// Switches on raw mode, the alternate screen, bracketed paste and reports of focus and mouse, and hides the cursor.
+    ///
+    /// Each mode is recorded before it is switched on, so that a failure half-way is undone as well.
+    pub(super) fn switch_on_all(&mut self, keys: &File, output: &mut Output, signals: &Signals) -> io::Result<()> {
         wait_for_foreground(keys, signals)?;
         let before = termios::tcgetattr(keys)?;
         let mut raw = before.clone();
@@ -32,16 +34,16 @@ impl Modes {
         self.before = Some(Box::new(before));
         panics::hold(true);
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
-        rehearsal::reach("raw mode")?;
+        fault_injection::reach("raw mode")?;
         let mut bytes = Vec::new();
         for mode in Mode::ALL_TERMINALS {
             self.on.switch_on(mode, &mut bytes);
         }
         output.send(&bytes)?;
-        rehearsal::reach("all modes")
+        fault_injection::reach("all modes")
     }
 
-    /// Switches a mode on that is off.
+    /// Switches on a mode unless it is on already.
     pub(super) fn switch_on(&mut self, mode: Mode, output: &mut Output) -> io::Result<()> {
         let mut bytes = Vec::new();
         self.on.switch_on(mode, &mut bytes);
@@ -49,72 +51,80 @@ impl Modes {
             return Ok(());
         }
         output.send(&bytes)?;
-        if mode == Mode::Keyboard { rehearsal::reach("keyboard") } else { Ok(()) }
+        if mode == Mode::Keyboard { fault_injection::reach("keyboard") } else { Ok(()) }
     }
 
-    /// Turns everything off, newest first. What still waits of a picture is dropped, between two of its sequences, so that
-    /// nothing is torn. What fails is passed over: the rest must be undone all the same. Replies that the receiver knows to
-    /// be on their way are waited for. Keys are thrown away, unless they are to go to `typed`. Whether the terminal took it
-    /// all; asked again, it did.
-    pub(super) fn give_back(
+    /// Switches off all modes, newest first, and waits for the replies that `receiver` knows to be outstanding.
+    ///
+    /// The unwritten rest of a frame is dropped at a sequence boundary, so that no sequence is cut in two. A step that
+    /// fails does not keep the next ones from running. Unread keys are flushed, or appended to `typed` if given. Returns
+    /// whether the terminal accepted all bytes; `true` if the modes are off already.
+    pub(super) fn restore(
         &mut self,
         keys: &File,
         output: &mut Output,
         mut receiver: Option<(&mut Receiver, Duration)>,
         mut typed: Option<&mut Vec<Input>>,
     ) -> bool {
-        output.drop_picture();
-        // It tells of releases until it has heard that it no longer should, and q is let go of about then. Its answer
-        // comes after the last of them.
-        let asks = self.on.are_on(Mode::Keyboard) && !is_in_background(keys);
+        output.drop_frame();
+        // With the kitty keyboard protocol the terminal reports key releases until it has processed the sequence that
+        // switches them off, and the release of `q` comes about then. The reply to a fence follows the last report.
+        let needs_fence = self.on.are_on(Mode::Keyboard) && !is_in_background(keys);
         let mut off = Vec::new();
         self.on.switch_all_off(&mut off);
         output.put(&off);
         let Some(before) = self.before.take() else { return true };
-        if asks {
+        if needs_fence {
             output.put(FENCE);
             if let Some((receiver, now)) = &mut receiver {
                 receiver.sent(FENCE, *now);
             }
         }
-        let deadline = Instant::now() + PATIENCE;
-        let heard = output.finish(deadline);
-        // A terminal that has stopped reading does not answer either.
-        if let Some((receiver, now)) = receiver.filter(|_| heard) {
+        let deadline = Instant::now() + RESTORE_TIMEOUT;
+        let is_drained = output.drain(deadline);
+        // A terminal that has stopped reading does not reply either.
+        if let Some((receiver, now)) = receiver.filter(|_| is_drained) {
             let read = await_last(keys, receiver, now, deadline);
             if let Some(typed) = &mut typed {
                 typed.extend(read);
             }
         }
         let flushes = typed.is_none();
-        signals::in_the_background(|| restore(keys, &before, flushes));
+        signals::in_the_background(|| restore_settings(keys, &before, flushes));
         panics::hold(false);
-        heard
+        is_drained
     }
 }
 
-/// The settings of now are given back in the end, so they must be the shell's for its jobs, not those with which it reads
-/// its next line. Whoever is told to end meanwhile does not wait any longer: that is the error.
+/// Waits until the process is in the foreground of its terminal.
+///
+/// The settings found now are restored at the end, so they must be the ones that the shell sets for its jobs, not those
+/// with which its line editor reads.
+///
+/// # Errors
+/// `Interrupted`, if a signal asks the process to end meanwhile.
 fn wait_for_foreground(keys: &File, signals: &Signals) -> io::Result<()> {
     while is_in_background(keys) && signals::stop_for_output() {
         if signals.deadly().is_some() {
             return Err(io::ErrorKind::Interrupted.into());
         }
         if !signals.take_continued() {
-            // Nobody is there who could continue us: so says what follows.
+            // The process group is orphaned: no shell can continue it. The next call then fails with EIO.
             break;
         }
     }
-    // (It has output go on that a program has held up, on some systems also what Ctrl-S has.)
+    // TCOON: resumes output that another program has suspended; on some systems also after Ctrl-S.
     termios::tcflow(keys, Action::OOn)?;
-    // Nothing was on the screen that somebody could have written over.
+    // Discards a SIGCONT from before the first frame: there is nothing to draw again.
     signals.take_continued();
     Ok(())
 }
 
-/// Keys that were meant for us are not left for the shell, if they are to be flushed. (TCSAFLUSH would do both, but it waits
-/// for the output to be read, and a terminal stopped by Ctrl-S does not read.)
-fn restore(keys: &File, before: &Termios, flushes: bool) {
+/// Restores the settings, after flushing unread keys if `flushes`, so that the shell does not get them.
+///
+/// TCSAFLUSH would do both in one call, but it first waits until all output is transmitted, which a terminal stopped by
+/// Ctrl-S never does.
+fn restore_settings(keys: &File, before: &Termios, flushes: bool) {
     if flushes {
         let _ = termios::tcflush(keys, QueueSelector::IFlush);
     }

@@ -1,6 +1,6 @@
-//! The screen's side of the terminal: bytes go out as fast as it takes them, and nothing here waits for ever.
+//! Output to the terminal that never blocks for longer than a stated time.
 
-use super::rehearsal;
+use super::fault_injection;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fd::AsFd;
 use rustix::fs::OFlags;
@@ -12,62 +12,62 @@ use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::OpenOptionsExt;
 use std::time::{Duration, Instant};
 
-/// Bytes on their way to the screen.
+/// The terminal's output and the bytes that wait to be written.
 pub(super) struct Output {
     file: File,
-    /// The file is the shell's too, and may block.
+    /// Whether the open file description is shared with the shell, so that a write may block.
     shared: bool,
-    /// What the terminal has not taken yet, from `taken` on.
+    /// Bytes to write; those before `written` are written already.
     pending: Vec<u8>,
-    taken: usize,
+    written: usize,
 }
 
-/// So much is written at once where writing may block. A terminal that says it has room has room for this: Linux counts
-/// the room of a pseudo-terminal in blocks of 256 bytes.
-const ROOM: usize = 256;
+/// Largest write to a shared file, in bytes. A terminal that polls as writable accepts this much without blocking: Linux
+/// accounts for the buffer of a pseudo-terminal in blocks of 256 bytes.
+const MAX_SHARED_WRITE: usize = 256;
 
 impl Output {
-    /// The terminal of standard output.
+    /// Opens the terminal of standard output.
     pub(super) fn open() -> io::Result<Self> {
         let shared = File::from(io::stdout().as_fd().try_clone_to_owned()?);
-        Ok(match opened_again(&shared) {
+        Ok(match reopen(&shared) {
             Some(own) => Self::of(own, false),
             None => Self::of(shared, true),
         })
     }
 
     fn of(file: File, shared: bool) -> Self {
-        Self { file, shared, pending: Vec::new(), taken: 0 }
+        Self { file, shared, pending: Vec::new(), written: 0 }
     }
 
-    /// What to ask for the window's size, and to poll.
+    /// Returns the file, to poll it and to ask for the window's size.
     pub(super) fn file(&self) -> &File {
         &self.file
     }
 
-    /// Whether the terminal has not taken all bytes yet.
+    /// Returns whether bytes wait to be written.
     pub(super) fn is_pending(&self) -> bool {
         !self.pending.is_empty()
     }
 
-    /// Sends bytes after those before: in one write where the terminal takes them whole.
+    /// Appends bytes and writes, in a single call if the terminal accepts them all.
     pub(super) fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.put(bytes);
         self.push()
     }
 
-    /// Adds to what is pending.
+    /// Appends bytes without writing.
     pub(super) fn put(&mut self, bytes: &[u8]) {
         self.pending.extend_from_slice(bytes);
     }
 
-    /// Sends as much of what is pending as the terminal takes.
+    /// Writes pending bytes until the terminal accepts no more.
     pub(super) fn push(&mut self) -> io::Result<()> {
         while self.is_pending() {
             match self.write() {
                 Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
-                Ok(count) => self.count(count),
-                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return rehearsal::reach("frame"),
+                Ok(count) => self.advance(count),
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return fault_injection::reach("frame"),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => return Err(error),
             }
@@ -76,56 +76,55 @@ impl Output {
     }
 
     fn write(&mut self) -> io::Result<usize> {
-        let mut bytes = &self.pending[self.taken..];
+        let mut bytes = &self.pending[self.written..];
         if self.shared {
-            if !has_room(&self.file, Duration::ZERO) {
+            if !is_writable(&self.file, Duration::ZERO) {
                 return Err(io::ErrorKind::WouldBlock.into());
             }
-            bytes = &bytes[..bytes.len().min(ROOM)];
+            bytes = &bytes[..bytes.len().min(MAX_SHARED_WRITE)];
         }
         self.file.write(bytes)
     }
 
-    fn count(&mut self, taken: usize) {
-        self.taken += taken;
-        if self.taken == self.pending.len() {
+    fn advance(&mut self, count: usize) {
+        self.written += count;
+        if self.written == self.pending.len() {
             self.pending.clear();
-            self.taken = 0;
+            self.written = 0;
         }
     }
 
-    /// Drops what the terminal has not taken of pictures, so that it need not be waited for: all that is printed, and the
-    /// sequences that place and colour it. What turns modes on or off and what asks for a reply stays.
-    pub(super) fn drop_picture(&mut self) {
-        let boundary = boundary(&self.pending, self.taken);
+    /// Drops pending text and the sequences that position and colour it. Mode switches and queries stay.
+    pub(super) fn drop_frame(&mut self) {
+        let boundary = boundary(&self.pending, self.written);
         let rest = self.pending.split_off(boundary);
         self.pending.extend(sequences(&rest).filter(|sequence| !paints(sequence)).flatten());
-        self.count(0);
+        self.advance(0);
     }
 
-    /// Waits until the terminal has taken everything and takes more, at most until the deadline. Whether it does: what is
-    /// printed next then blocks nobody. (One that has stopped reading may still have had room for the last bytes.)
-    pub(super) fn finish(&mut self, deadline: Instant) -> bool {
+    /// Writes all pending bytes, waiting until the deadline at most, and returns whether the terminal accepts more: then
+    /// the next print does not block. (A terminal that has stopped reading may have had room for exactly these bytes.)
+    pub(super) fn drain(&mut self, deadline: Instant) -> bool {
         while self.push().is_ok() && self.is_pending() {
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
                 break;
             }
-            has_room(&self.file, left);
+            is_writable(&self.file, left);
         }
-        !self.is_pending() && has_room(&self.file, deadline.saturating_duration_since(Instant::now()))
+        !self.is_pending() && is_writable(&self.file, deadline.saturating_duration_since(Instant::now()))
     }
 }
 
-/// Where the sequence or the character ends that has begun before that place.
-fn boundary(bytes: &[u8], place: usize) -> usize {
-    let start = bytes[..place].iter().rposition(|&byte| byte == ESCAPE).unwrap_or(place);
-    let end = place.max(start + sequence_len(&bytes[start..]).unwrap_or(0));
-    let is_inside = |byte: &&u8| **byte & 0xc0 == 0x80;
-    end + bytes[end..].iter().take_while(is_inside).count()
+/// Returns the first index at or after `index` that lies inside neither an escape sequence nor a UTF-8 character.
+fn boundary(bytes: &[u8], index: usize) -> usize {
+    let start = bytes[..index].iter().rposition(|&byte| byte == ESCAPE).unwrap_or(index);
+    let end = index.max(start + sequence_len(&bytes[start..]).unwrap_or(0));
+    let is_continuation = |byte: &&u8| **byte & 0xc0 == 0x80;
+    end + bytes[end..].iter().take_while(is_continuation).count()
 }
 
-/// The escape sequences of bytes that begin outside of one.
+/// Returns the escape sequences among `bytes`, which begin outside of one.
 fn sequences(mut bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     std::iter::from_fn(move || {
         let start = bytes.iter().position(|&byte| byte == ESCAPE)?;
@@ -137,8 +136,10 @@ fn sequences(mut bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 const ESCAPE: u8 = 0x1b;
 
-/// How long the escape sequence is that bytes begin with: of those that are sent, a control sequence ends with a letter, and
-/// a string with ST. `None`: there is none, or no end of it.
+/// Returns the length of the escape sequence at the start of `bytes`, or `None` if none starts there or it is incomplete.
+///
+/// Knows the forms that the program sends: CSI sequences with their final byte, OSC strings that end with ST, and two-byte
+/// sequences.
 fn sequence_len(bytes: &[u8]) -> Option<usize> {
     match bytes {
         [ESCAPE, b'[', rest @ ..] => Some(3 + rest.iter().position(|byte| (0x40..=0x7e).contains(byte))?),
@@ -148,31 +149,33 @@ fn sequence_len(bytes: &[u8]) -> Option<usize> {
     }
 }
 
-/// Whether it only says where and in which colour something is printed.
+/// Returns whether a sequence only moves the cursor, sets colours or erases.
 fn paints(sequence: &[u8]) -> bool {
     let [ESCAPE, b'[', parameters @ .., end] = sequence else { return false };
-    // Modes and what concerns the keyboard have a mark before their parameters.
+    // Private sequences, such as modes and the keyboard protocol, have a marker (`?`, `>`, ...) before their parameters.
     let is_plain = parameters.iter().all(|byte| matches!(byte, b'0'..=b'9' | b';' | b':'));
     is_plain && matches!(end, b'm' | b'H' | b'G' | b'A'..=b'D' | b'J')
 }
 
-/// Waits until the terminal takes bytes, or is gone, at most so long. Whether it does, or is.
-fn has_room(file: &impl AsFd, patience: Duration) -> bool {
+/// Waits for at most `timeout` and returns whether the terminal accepts bytes or has hung up.
+fn is_writable(file: &impl AsFd, timeout: Duration) -> bool {
     let mut fds = [PollFd::new(file, PollFlags::OUT)];
-    poll(&mut fds, Some(&timespec(patience))).is_ok_and(|ready| ready > 0)
+    poll(&mut fds, Some(&timespec(timeout))).is_ok_and(|ready| ready > 0)
 }
 
-/// Whether words to standard error are read, or can wait: a terminal that has stopped reading would stop us too. It gets
-/// a moment.
-pub fn stderr_is_read() -> bool {
+/// Returns whether a message to standard error would not block: it is not a terminal, or the terminal accepts bytes within
+/// 250 ms. A terminal that has stopped reading would keep the program from ending.
+pub fn stderr_accepts_message() -> bool {
     let stderr = io::stderr();
-    !stderr.is_terminal() || has_room(&stderr, Duration::from_millis(250))
+    !stderr.is_terminal() || is_writable(&stderr, Duration::from_millis(250))
 }
 
-/// The terminal without blocking. Opened anew it has flags of its own; `O_NONBLOCK` on the shell's would stay there when
-/// we are gone. By its name it cannot be opened where it belongs to somebody else (after `su`); as the session's own
-/// terminal it can.
-fn opened_again(terminal: &File) -> Option<File> {
+/// Opens the terminal a second time, non-blocking, with an open file description of its own: `O_NONBLOCK` on the shared
+/// one would outlive the program.
+///
+/// Opening it by name fails where the device belongs to another user (after `su`); `/dev/tty` then works if it is the
+/// terminal of this session.
+fn reopen(terminal: &File) -> Option<File> {
     let open = |name: &[u8]| {
         let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits().try_into().ok()?;
         OpenOptions::new().write(true).custom_flags(flags).open(OsStr::from_bytes(name)).ok()
@@ -196,26 +199,25 @@ mod tests {
     use std::sync::mpsc::channel;
     use std::thread;
 
-    /// From whatever place on a picture is dropped: what was sent ends between two sequences and between two characters, and
-    /// modes, strings and queries are all sent, in their order.
+    /// Wherever the frame is cut, the bytes written end at a boundary, and all modes, strings and queries follow in order.
     #[test]
-    fn a_picture_is_dropped_between_its_sequences() {
+    fn a_frame_is_dropped_at_a_sequence_boundary() {
         let picture = "\x1b[?2026h\x1b[2;3H\x1b[38;2;1;2;3m▄é\x1b[58:2::1:2:3mx\x1b[C\x1b[m\x1b[2J\x1b[?2026l\x1b[c";
         let (before, after) = ("\x1b[?1049h\x1b[>15u\x1b[?u", "\x1b]52;c;YQ==\x1b\\");
         let sent = [before, picture, after].concat();
         let kept = ["\x1b[?1049h", "\x1b[>15u", "\x1b[?u", "\x1b[?2026h", "\x1b[?2026l", "\x1b[c", after];
-        for taken in 0..=sent.len() {
+        for written in 0..=sent.len() {
             let null = File::options().write(true).open("/dev/null").expect("there is always /dev/null");
-            let mut output = Output { pending: sent.clone().into_bytes(), taken, ..Output::of(null, false) };
-            output.drop_picture();
+            let mut output = Output { pending: sent.clone().into_bytes(), written, ..Output::of(null, false) };
+            output.drop_frame();
             let shown = if output.pending.is_empty() { sent.clone() } else { string(&output.pending) };
             let mut rest = &*shown;
             for sequence in kept {
-                let at = rest.find(sequence).unwrap_or_else(|| panic!("{taken}: {sequence:?} in {shown:?}"));
+                let at = rest.find(sequence).unwrap_or_else(|| panic!("{written}: {sequence:?} in {shown:?}"));
                 rest = &rest[at + sequence.len()..];
             }
-            let (begun, rest) = shown.split_at(boundary(sent.as_bytes(), taken).min(shown.len()));
-            assert!(sent.starts_with(begun) && !rest.contains(['▄', 'é', 'x', 'm', 'H', 'C']), "{taken}: {rest:?}");
+            let (begun, rest) = shown.split_at(boundary(sent.as_bytes(), written).min(shown.len()));
+            assert!(sent.starts_with(begun) && !rest.contains(['▄', 'é', 'x', 'm', 'H', 'C']), "{written}: {rest:?}");
         }
     }
 
@@ -223,9 +225,9 @@ mod tests {
         String::from_utf8(bytes.to_vec()).expect("no character is cut")
     }
 
-    /// Where the terminal can only be had as the shell has it, blocking, a frame that it does not take stops nobody.
+    /// A frame that does not fit does not block the sender, even on a descriptor in blocking mode.
     #[test]
-    fn a_terminal_that_blocks_is_not_waited_for() {
+    fn sending_to_a_blocking_terminal_does_not_block() {
         let (mut master, slave) = pty_process::blocking::open().expect("a pseudo-terminal can be had");
         let slave = slave.as_fd().try_clone_to_owned().expect("a file descriptor can be doubled");
         let frame: Vec<u8> = (b'a'..=b'z').cycle().take(300_000).collect();
@@ -235,14 +237,14 @@ mod tests {
             let mut output = Output::of(File::from(slave), true);
             output.send(&frame).expect("the terminal is there");
             let _ = done.send(output.is_pending());
-            let finished = output.finish(Instant::now() + Duration::from_secs(10));
-            let _ = done.send(finished);
+            let is_drained = output.drain(Instant::now() + Duration::from_secs(10));
+            let _ = done.send(is_drained);
         });
         let soon = Duration::from_secs(10);
-        assert_eq!(wait.recv_timeout(soon), Ok(true), "nobody reads: something is left");
+        assert_eq!(wait.recv_timeout(soon), Ok(true), "without a reader, bytes stay pending");
         let mut read = vec![0; sent.len()];
         master.read_exact(&mut read).expect("all of it comes");
-        assert_eq!(wait.recv_timeout(soon), Ok(true), "all is sent");
-        assert!(read == sent, "in order");
+        assert_eq!(wait.recv_timeout(soon), Ok(true), "all bytes are written");
+        assert!(read == sent, "the bytes arrive in order");
     }
 }

@@ -1,15 +1,17 @@
-//! Panic messages, kept back while the alternate screen would swallow them.
+//! Panic messages, which are kept while the alternate screen is on and would be lost with it.
 
 use std::panic::PanicHookInfo;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether the terminal is taken.
+/// Whether messages are kept: a [`Terminal`](super::Terminal) is in use.
 static HELD: AtomicBool = AtomicBool::new(false);
 static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// From now on the message of a panic, in any thread, is kept while a [`Terminal`](super::Terminal) lives, for
-/// [`take_panic_messages`]; at other times it goes where it went before. To be called once, by `main`.
+/// Installs a panic hook that keeps the messages of all threads for [`take_panic_messages`] while a
+/// [`Terminal`](super::Terminal) is in use, and otherwise calls the previous hook.
+///
+/// Call this once, in `main`.
 pub fn hold_panic_messages() {
     let before = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
@@ -21,14 +23,14 @@ pub fn hold_panic_messages() {
     }));
 }
 
-/// The messages kept so far, oldest first.
+/// Removes and returns the messages kept so far, oldest first.
 pub fn take_panic_messages() -> Vec<String> {
     MESSAGES.lock().map(|mut messages| std::mem::take(&mut *messages)).unwrap_or_default()
 }
 
-/// Said by whoever takes the terminal and gives it back.
-pub(super) fn hold(taken: bool) {
-    HELD.store(taken, Ordering::SeqCst);
+/// Starts or ends keeping messages.
+pub(super) fn hold(is_held: bool) {
+    HELD.store(is_held, Ordering::SeqCst);
 }
 
 fn keep(panic: &PanicHookInfo<'_>) {

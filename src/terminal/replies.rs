@@ -1,4 +1,4 @@
-//! The replies that are outstanding when a terminal is given back.
+//! Replies that are outstanding when the terminal is restored.
 
 use super::output::timespec;
 use crate::input::Input;
@@ -9,8 +9,9 @@ use std::fs::File;
 use std::io::Read;
 use std::time::{Duration, Instant};
 
-/// Reads what comes up to the last reply that is outstanding at `now`, at most until the deadline, so that none is left
-/// for the shell. It gets those that come later. Returns what was read.
+/// Reads input up to the last reply outstanding at `now`, until the deadline at most, and returns it.
+///
+/// The shell would read such a reply as typed text, and still does if it comes after the deadline.
 pub(super) fn await_last(keys: &File, receiver: &mut Receiver, now: Duration, deadline: Instant) -> Vec<Input> {
     let mut inputs = Vec::new();
     if !is_in_background(keys) {
@@ -40,13 +41,13 @@ fn read_up_to_last(
         }
         match keys.read(&mut buffer) {
             Ok(count) if count > 0 => inputs.extend(receiver.hear(&buffer[..count], now + start.elapsed())),
-            // It is gone.
+            // The terminal has hung up.
             _ => return,
         }
     }
 }
 
-/// Whether the terminal is another job's now: reading it would stop us.
+/// Returns whether another process group is in the foreground: reading the terminal would stop this process.
 pub(super) fn is_in_background(keys: &File) -> bool {
     termios::tcgetpgrp(keys).is_ok_and(|foreground| foreground != process::getpgrp())
 }

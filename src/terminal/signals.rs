@@ -1,12 +1,12 @@
-//! Signals as something to wait for, and job control.
+//! Signals as events of the loop, and job control.
 //!
-//! A signal that whoever started the program ignores stays ignored: a shell's `trap '' HUP`, or a job in the background
-//! of a shell without job control.
+//! Signals that were ignored when the program was started stay ignored: after a shell's `trap '' HUP`, or in a background
+//! job of a shell without job control.
 //!
-//! Every other signal whose default action is to end the process ends the loop instead, except SIGKILL, and SIGSEGV and
-//! SIGBUS, whose handlers report a stack overflow. The usual four are caught. All others are held off like SIGTSTP and
-//! taken by one thread: their disposition stays the default, so that [`die_of`] only has to let one through. (To set a
-//! disposition back takes unsafe code, and signal-hook, which has it, does so for a list without real-time signals.)
+//! Every other signal whose default action ends the process ends the loop instead, except SIGKILL, and SIGSEGV and SIGBUS,
+//! whose handlers report a stack overflow. SIGTERM, SIGHUP, SIGINT and SIGQUIT are caught. All others are blocked, as
+//! SIGTSTP is, and accepted by one thread: their disposition stays the default, so that [`die_of`] only has to unblock the
+//! signal. (Resetting a disposition takes unsafe code; signal-hook offers it only for a list without real-time signals.)
 
 use nix::sys::signal::{SigSet, SigmaskHow, Signal, raise};
 use rustix::fd::{AsFd, BorrowedFd};
@@ -22,42 +22,43 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::Duration;
 
-/// Catches signals, and carries all that wakes the loop besides keys: the wake pipe.
+/// Signal handlers and the wake pipe, which wakes the loop for everything besides keys.
 pub struct Signals {
     read: UnixStream,
     write: UnixStream,
-    /// The last signal that asked the program to end; 0: none.
+    /// The last signal that asked the program to end, or 0.
     deadly: Arc<AtomicUsize>,
     resized: Arc<AtomicBool>,
     continued: Arc<AtomicBool>,
-    /// Something for each SIGTSTP; nobody to ask if it is ignored.
+    /// One item per SIGTSTP received; `None` if SIGTSTP is ignored.
     stops: Option<Receiver<()>>,
 }
 
-/// The signals by which a program is usually asked to end: they are caught.
+/// Signals that conventionally ask a program to end. They are caught.
 const CAUGHT: [i32; 4] = [SIGTERM, SIGHUP, SIGINT, SIGQUIT];
 
-/// The other signals that end a program by default and that signal-hook can set back. [`before_death`] catches them too:
-/// it is called when threads run already, which would not hold them off. Real-time signals, SIGIO, SIGPWR and SIGSTKFLT
-/// are missing; the next run removes what they leave.
+/// The other signals that end a program by default and whose disposition signal-hook can reset.
+///
+/// [`before_death`] catches these too, because it is called when threads are running, which would not have them blocked.
+/// Real-time signals, SIGIO, SIGPWR and SIGSTKFLT are not among them; the next run removes the temporary files they leave.
 const CAUGHT_BEFORE_DEATH: [i32; 8] = [SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGSYS, SIGTRAP];
 
-/// The signals that are not held off, besides those that are caught.
-const LET_THROUGH: &[Signal] = &[
-    // No program can hold them off.
+/// Signals that are never blocked.
+const UNBLOCKED: &[Signal] = &[
+    // Cannot be blocked.
     Signal::SIGKILL,
     Signal::SIGSTOP,
     // Faults of the program itself; the standard library reports a stack overflow from their handlers.
     Signal::SIGSEGV,
     Signal::SIGBUS,
-    // Their default is not to end the process.
+    // Their default action does not end the process.
     Signal::SIGCHLD,
     Signal::SIGURG,
     Signal::SIGTTIN,
     Signal::SIGTTOU,
     #[cfg(target_os = "macos")]
     Signal::SIGINFO,
-    // The failed write is the error: see `fail_large_writes`, and what the standard library does.
+    // Reported as the error of the write instead: SIGXFSZ by `fail_large_writes`, SIGPIPE by the standard library.
     Signal::SIGXFSZ,
     Signal::SIGPIPE,
     // Caught.
@@ -69,20 +70,23 @@ const LET_THROUGH: &[Signal] = &[
     Signal::SIGCONT,
 ];
 
-/// How long our own copy of a signal to the whole group may take.
-const DELIVERY: Duration = Duration::from_millis(100);
+/// Timeout for this process's own copy of a signal that it has sent to its group. Delivery takes well under a millisecond
+/// on an idle machine; the limit only keeps a lost signal from hanging the program.
+const GROUP_SIGNAL_TIMEOUT: Duration = Duration::from_millis(100);
 
-/// Who is to be stopped.
+/// The processes that [`Signals::stop`] stops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stopped {
-    /// This process.
+pub enum StopTarget {
+    /// Only this process.
     Process,
-    /// All of its process group, as when the terminal itself understands Ctrl-Z.
+    /// The whole process group, as a terminal does for Ctrl-Z.
     Group,
 }
 
 impl Signals {
-    /// From now on signals are caught, by the calling thread alone if the others are begun by [`without_signals`].
+    /// Installs the handlers.
+    ///
+    /// Signals arrive at the calling thread if all other threads are started within [`without_signals`].
     ///
     /// # Errors
     /// If the operating system refuses.
@@ -99,18 +103,18 @@ impl Signals {
             Ok(flag)
         };
         let (resized, continued) = (flag(SIGWINCH)?, flag(SIGCONT)?);
-        let stops = take_held_off(ignored, Arc::clone(&deadly), Waker(write.try_clone()?))?;
+        let stops = accept_blocked(ignored, Arc::clone(&deadly), Waker(write.try_clone()?))?;
         let stops = (!contains(ignored, SIGTSTP)).then_some(stops);
         Ok(Self { read, write, deadly, resized, continued, stops })
     }
 
-    /// What becomes readable when there is something to do.
+    /// Returns the reading end of the wake pipe, to be polled.
     #[doc(hidden)]
     pub fn wake_pipe(&self) -> BorrowedFd<'_> {
         self.read.as_fd()
     }
 
-    /// Another thread's end of the wake pipe.
+    /// Returns a writing end of the wake pipe for another thread.
     ///
     /// # Errors
     /// If the operating system refuses.
@@ -119,56 +123,58 @@ impl Signals {
         self.write.try_clone().map(Waker)
     }
 
-    /// Empties the wake pipe; to be done before looking at what happened.
+    /// Empties the wake pipe. Call this before looking at the flags, so that a later event wakes the loop again.
     #[doc(hidden)]
     pub fn drain(&mut self) {
         let mut buffer = [0; 256];
         while matches!(self.read.read(&mut buffer), Ok(count) if count > 0) {}
     }
 
-    /// The signal that asked the program to end, if one has.
+    /// Returns the signal that asked the program to end, if any.
     pub fn deadly(&self) -> Option<i32> {
         signal_in(&self.deadly)
     }
 
-    /// Whether the window may have changed its size since the last call.
+    /// Returns whether the window may have changed its size since the last call.
     #[doc(hidden)]
     pub fn take_resized(&self) -> bool {
         self.resized.swap(false, Ordering::SeqCst)
     }
 
-    /// Whether a signal asked the program to stop since the last call.
+    /// Returns whether SIGTSTP has arrived since the last call.
     #[doc(hidden)]
     pub fn take_stop(&self) -> bool {
         self.stops.as_ref().is_some_and(|stops| stops.try_recv().is_ok())
     }
 
-    /// Whether the program was stopped by something that it cannot hear of (SIGSTOP), and continued, since the last
-    /// call.
+    /// Returns whether the program was continued since the last call, after a stop that cannot be caught (SIGSTOP).
     #[doc(hidden)]
     pub fn take_continued(&self) -> bool {
         self.continued.swap(false, Ordering::SeqCst)
     }
 
-    /// Stops until a shell says to go on: to be called by the thread that called [`catch`](Self::catch), with the
-    /// terminal given back. It returns at once where stops are ignored, or where nobody is there to say it.
+    /// Stops the process until it is continued.
+    ///
+    /// Must be called by the thread that called [`catch`](Self::catch), after the terminal has been restored. Returns at
+    /// once if SIGTSTP is ignored or the process group is orphaned, so that nothing could continue it.
     #[doc(hidden)]
-    pub fn stop(&mut self, who: Stopped) {
+    pub fn stop(&mut self, target: StopTarget) {
         let Some(stops) = &self.stops else { return };
-        if who == Stopped::Group && rustix::process::kill_current_process_group(rustix::process::Signal::TSTP).is_ok() {
-            // We are in the group too, and would be stopped a second time.
-            let _ = stops.recv_timeout(DELIVERY);
+        let stop_group = || rustix::process::kill_current_process_group(rustix::process::Signal::TSTP);
+        if target == StopTarget::Group && stop_group().is_ok() {
+            // The signal comes to this process too, and would stop it a second time.
+            let _ = stops.recv_timeout(GROUP_SIGNAL_TIMEOUT);
         }
-        // To this thread alone, where it is held off: the one that hears of stops does not get it. A SIGCONT from now on
-        // takes it away again.
+        // Pending for this thread alone, where it is blocked, so that the accepting thread does not get it. A SIGCONT from
+        // here on removes it again.
         let stop = stop_signal();
         let _ = raise(Signal::SIGTSTP);
         if self.take_continued() {
-            // The shell saw the rest of the group stop, and was quick: who stops now is never continued.
+            // The shell has seen the rest of the group stop and has continued it already. Stopping now would be for ever.
             let _ = raise(Signal::SIGTSTP);
             let _ = stop.wait();
         } else {
-            // Here it stops.
+            // Unblocking delivers the signal: the process stops here.
             let _ = stop.thread_unblock();
             let _ = stop.thread_block();
         }
@@ -177,16 +183,17 @@ impl Signals {
     }
 }
 
-/// Catches signals that ask the program to end, but for the ignored ones.
+/// Catches the signals that are not ignored.
 fn catch_deadly(signals: &[i32], ignored: u64, deadly: &Arc<AtomicUsize>, wake: &UnixStream) -> io::Result<()> {
     for &signal in signals.iter().filter(|&&signal| !contains(ignored, signal)) {
-        // The flag before the pipe: who is woken must find it set.
+        // The flag before the pipe: a thread that the pipe wakes must find the flag set.
         signal_hook::flag::register_usize(signal, Arc::clone(deadly), signal as usize)?;
         signal_hook::low_level::pipe::register(signal, wake.try_clone()?)?;
     }
     Ok(())
 }
 
+/// Returns the signal recorded in `deadly`, which holds 0 for none.
 fn signal_in(deadly: &AtomicUsize) -> Option<i32> {
     match deadly.load(Ordering::SeqCst) {
         0 => None,
@@ -194,8 +201,9 @@ fn signal_in(deadly: &AtomicUsize) -> Option<i32> {
     }
 }
 
-/// For a command without a loop: from now on a signal that asks the program to end does this first, on a thread of its
-/// own, and then kills the program as if it had not been caught. Stops are not caught.
+/// Runs `last_act` before a signal ends the process, for commands without a loop.
+///
+/// It runs on a thread of its own, which then raises the signal with its default action. Stops are not caught.
 ///
 /// # Errors
 /// If the operating system refuses.
@@ -204,38 +212,38 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
     let deadly = Arc::new(AtomicUsize::new(0));
     let caught = Arc::clone(&deadly);
     let wait = move || {
-        // An error: no signal could be caught.
+        // A read error means that no handler could be installed.
         if let (Ok(()), Some(signal)) = (read.read_exact(&mut [0]), signal_in(&caught)) {
             last_act();
             die_of(signal);
         }
     };
-    // Before the signals are caught: nobody else would hear of them.
+    // Started before the handlers are installed, so that no signal is caught without a receiver.
     thread::Builder::new().name("signals".to_owned()).spawn(wait)?;
     let ignored = ignored();
     catch_deadly(&CAUGHT, ignored, &deadly, &write)?;
     catch_deadly(&CAUGHT_BEFORE_DEATH, ignored, &deadly, &write)
 }
 
-/// Holds off from all threads what is not caught, and has one thread take it: SIGTSTP goes into the channel, any other
+/// Blocks the uncaught signals in all threads and accepts them on one: SIGTSTP goes into the returned channel, any other
 /// signal asks the program to end.
 ///
-/// SIGTSTP is not caught, so that its action stays the system's: that alone stops a process as its shell expects, and does
-/// not where nobody could continue it (started by a terminal without a shell, it is of an orphaned process group, and would
-/// hang for ever after SIGSTOP).
-fn take_held_off(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> io::Result<Receiver<()>> {
-    let signals = held_off();
+/// SIGTSTP is blocked rather than caught, because only its default action stops a process as its shell expects, and does
+/// nothing in an orphaned process group, where the process could not be continued (a terminal that runs the program
+/// without a shell). SIGSTOP would hang it there for ever.
+fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> io::Result<Receiver<()>> {
+    let signals = blocked();
     signals.thread_block()?;
-    let mut taken = Taken::of(&signals)?;
-    let (heard, stops) = channel();
-    let listen = move || {
-        while let Ok(signal) = taken.next() {
-            // A signal that is held off stays pending even if it is ignored, so it arrives here all the same.
+    let mut pending = PendingSignals::of(&signals)?;
+    let (stopped, stops) = channel();
+    let accept = move || {
+        while let Ok(signal) = pending.next() {
+            // A blocked signal becomes pending even if it is ignored, and arrives here.
             if contains(ignored, signal) {
                 continue;
             }
             if signal == SIGTSTP {
-                if heard.send(()).is_err() {
+                if stopped.send(()).is_err() {
                     break;
                 }
             } else {
@@ -244,50 +252,50 @@ fn take_held_off(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> io
             waker.wake();
         }
     };
-    without_signals(|| thread::Builder::new().name("signals".to_owned()).spawn(listen))?;
+    without_signals(|| thread::Builder::new().name("signals".to_owned()).spawn(accept))?;
     Ok(stops)
 }
 
-/// The signals that are held off: also those that nix has no name for, the real-time signals.
-fn held_off() -> SigSet {
+/// Returns the signals to block, including the real-time signals, which nix has no names for.
+fn blocked() -> SigSet {
     let mut signals = SigSet::all();
-    for &signal in LET_THROUGH {
+    for &signal in UNBLOCKED {
         signals.remove(signal);
     }
     signals
 }
 
-/// The signals that a process has pending, one by one. (`sigwait` would do, but nix returns its own enumeration, which has
-/// no real-time signals.)
+/// The signals pending for the process, one by one. `sigwait` would do, but nix's version returns an enumeration without
+/// the real-time signals.
 #[cfg(target_os = "linux")]
-struct Taken(nix::sys::signalfd::SignalFd);
+struct PendingSignals(nix::sys::signalfd::SignalFd);
 
 #[cfg(target_os = "linux")]
-impl Taken {
+impl PendingSignals {
     fn of(signals: &SigSet) -> io::Result<Self> {
         use nix::sys::signalfd::{SfdFlags, SignalFd};
         Ok(Self(SignalFd::with_flags(signals, SfdFlags::SFD_CLOEXEC)?))
     }
 
-    /// Waits for the next one.
+    /// Waits for the next signal and removes it from the pending ones.
     fn next(&mut self) -> io::Result<i32> {
         let signal = self.0.read_signal()?.ok_or(io::ErrorKind::WouldBlock)?;
         i32::try_from(signal.ssi_signo).map_err(io::Error::other)
     }
 }
 
-/// The signals that a process has pending, one by one.
+/// The signals pending for the process, one by one.
 #[cfg(not(target_os = "linux"))]
-struct Taken(SigSet);
+struct PendingSignals(SigSet);
 
 #[cfg(not(target_os = "linux"))]
-impl Taken {
+impl PendingSignals {
     #[expect(clippy::unnecessary_wraps, reason = "it can fail on Linux")]
     fn of(signals: &SigSet) -> io::Result<Self> {
         Ok(Self(*signals))
     }
 
-    /// Waits for the next one.
+    /// Waits for the next signal and removes it from the pending ones.
     fn next(&mut self) -> io::Result<i32> {
         Ok(self.0.wait()? as i32)
     }
@@ -297,25 +305,30 @@ fn stop_signal() -> SigSet {
     SigSet::from_iter([Signal::SIGTSTP])
 }
 
-/// Does something without any signal. Threads begun in it never get one, so that all go to the thread that knows what
-/// to do: it has then seen the signals that came while it was stopped when it goes on.
+/// Runs `work` with all signals blocked, which threads started in it inherit.
+///
+/// So signals are delivered to the thread that installed the handlers, and a SIGCONT handler has run by the time that
+/// thread continues.
 pub fn without_signals<T>(work: impl FnOnce() -> T) -> T {
     without(&SigSet::all(), work)
 }
 
-/// Stops the whole process group, as the system does for a process in the background that writes; a shell sees no stop of
-/// a job in parts. Whether that is not ignored. (The system would begin what it stopped us for anew after each signal that
-/// is caught, and so stop us again before we have heard of one.)
+/// Stops the whole process group by SIGTTOU, as the kernel does when a background process changes its terminal, and
+/// returns whether it could: `false` if SIGTTOU is ignored.
+///
+/// Leaving it to the kernel fails: it restarts the interrupted call after each caught signal, and so stops the process
+/// again before the signal has been handled. The group, not the process: a shell does not notice a partly stopped job.
 pub(super) fn stop_for_output() -> bool {
-    let is_heeded = !contains(ignored(), SIGTTOU);
-    is_heeded && rustix::process::kill_current_process_group(rustix::process::Signal::TTOU).is_ok()
+    let is_stopping = !contains(ignored(), SIGTTOU);
+    is_stopping && rustix::process::kill_current_process_group(rustix::process::Signal::TTOU).is_ok()
 }
 
-/// Does something for which the system would stop a process in the background.
+/// Runs `work` with SIGTTOU blocked, so that a background process may change its terminal without being stopped.
 pub(super) fn in_the_background<T>(work: impl FnOnce() -> T) -> T {
     without(&SigSet::from_iter([Signal::SIGTTOU]), work)
 }
 
+/// Runs `work` with `signals` blocked in this thread.
 fn without<T>(signals: &SigSet, work: impl FnOnce() -> T) -> T {
     let before = signals.thread_swap_mask(SigmaskHow::SIG_BLOCK);
     let done = work();
@@ -325,7 +338,7 @@ fn without<T>(signals: &SigSet, work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// The signals that are ignored now, a bit for each. Only Linux says so; elsewhere the ignored ones are caught too.
+/// Returns the set of ignored signals, signal n in bit n - 1. Empty except on Linux: elsewhere they are caught too.
 fn ignored() -> u64 {
     ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
 }
@@ -343,7 +356,7 @@ fn ignored_in(status: &str) -> u64 {
 pub struct Waker(UnixStream);
 
 impl Waker {
-    /// One more.
+    /// Returns another writing end.
     ///
     /// # Errors
     /// If the operating system refuses.
@@ -351,31 +364,33 @@ impl Waker {
         self.0.try_clone().map(Self)
     }
 
-    /// Does so.
+    /// Wakes the loop.
     pub fn wake(&mut self) {
-        // A full pipe wakes as well; a closed one has nobody to wake.
+        // A full pipe wakes the loop as well; a closed one means that there is no loop any more.
         let _ = self.0.write(&[1]);
     }
 }
 
-/// Dies as if the signal had been neither caught nor held off, so that the parent process sees it.
+/// Ends the process by the signal's default action, so that the parent process sees the signal as the cause.
+///
+/// Returns only if that fails.
 pub fn die_of(signal: i32) {
-    // Does not return if the signal is caught, or one that it knows to be deadly.
+    // Does not return for signals that signal-hook knows to end a process.
     let _ = signal_hook::low_level::emulate_default_handler(signal);
-    // Of all that is let through, what is pending for the thread itself comes first. If even that fails, the caller goes
-    // on to exit.
+    // Unblocking delivers the signals pending for this thread before those pending for the process.
     let _ = signal_hook::low_level::raise(signal);
-    let _ = held_off().thread_unblock();
+    let _ = blocked().thread_unblock();
 }
 
-/// Has writes beyond the limit on the size of files (`ulimit -f`) fail with an error, instead of SIGXFSZ ending the
-/// process. To be called once, by `main`, for all threads.
+/// Makes writes beyond the file size limit (`ulimit -f`) fail with an error instead of ending the process by SIGXFSZ.
+///
+/// Call this once, in `main`; it holds for all threads.
 ///
 /// # Errors
 /// If the operating system refuses.
 pub fn fail_large_writes() -> io::Result<()> {
-    // A handler that does nothing suffices: the write has failed already. Unlike an ignored signal it goes back to the
-    // default in programs that are started.
+    // An empty handler suffices: the write has already failed. Unlike SIG_IGN, a handler is not inherited by programs that
+    // are started.
     signal_hook::flag::register(SIGXFSZ, Arc::default()).map(drop)
 }
 
@@ -384,7 +399,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ignored_signals_are_read_from_the_processs_status() {
+    fn ignored_signals_are_read_from_proc_self_status() {
         let ignored =
             ignored_in("Name:\tsh\nSigBlk:\t0000000000000002\nSigIgn:\t0000000000000001\nSigCgt:\t0000000000000002\n");
         assert_eq!(ignored, 1 << (SIGHUP - 1));
