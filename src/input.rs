@@ -1,7 +1,7 @@
-//! Bytes from a terminal -> events and replies. Pure: no input or output, no clock.
+//! Parser of a terminal's bytes: events and replies. Pure: no I/O and no clock.
 //!
-//! Every source of bytes (a terminal, an SSH channel, a test) goes through one [`Parser`]. What a person did comes out
-//! as crossterm's [`Event`]; what the terminal answered comes out as a [`Reply`], and a reply is never a key.
+//! Every source of bytes (a terminal, an SSH channel, a test) is parsed by a [`Parser`]. The user's actions are reported as
+//! crossterm's [`Event`], the terminal's answers to queries as [`Reply`]; a reply is never reported as a key.
 //! crossterm's own reader is not used: it swallows replies, and it spins when the terminal disappears.
 //!
 //! ```
@@ -14,28 +14,28 @@
 //! assert_eq!(out[0], Input::Event(Event::Key(KeyCode::Char('w').into())));
 //! assert_eq!(out[1], Input::Reply(Reply::DeviceAttributes(vec![62, 22])));
 //!
-//! // The Escape key, or the first byte of an arrow key? Only time can tell.
+//! // The Escape key, or the first byte of an arrow key: only a timeout can decide.
 //! assert!(parser.is_waiting());
 //! parser.give_up_waiting(&mut out);
 //! assert_eq!(out[2], Input::Event(Event::Key(KeyCode::Esc.into())));
 //! ```
 //!
-//! # What is ambiguous, and what was chosen
-//! - **Escape alone** waits for [`Parser::give_up_waiting`]. The owner of the clock does well to wait longer (a round
-//!   trip) while a reply is outstanding, because the reply's first byte may come alone.
+//! # Ambiguities and how they are resolved
+//! - **A lone Escape** is undecided until [`Parser::give_up_waiting`] is called. While a reply is outstanding the caller
+//!   should wait for a round trip, because the reply's first byte may arrive alone.
 //! - **`ESC ESC [ A`** is Alt+Up (rxvt, `PuTTY`, Terminal.app). `ESC ESC [ ? 62 c` is the Escape key and a reply.
 //! - **`CSI row ; column R`** is a cursor report, although some terminals send Shift+F3 as `CSI 1 ; 2 R`. F3 itself is
 //!   `SS3 R`, `CSI R` or `CSI 13 ~`, and under the kitty protocol only the last.
-//! - **Half a sequence** (`ESC [`, `ESC O`, `ESC ] 1 1`) is dropped when the wait is given up, and so is its rest if it
-//!   comes after all, unless it completes a reply, which is then reported. So Alt+`[` and Alt+O, which look like
-//!   such halves, are not understood. A control letter always gets through: Ctrl-C is never swallowed for long.
-//! - **Invalid UTF-8, U+FFFD and the C1 controls** are no keys.
-//! - **With the kitty keyboard protocol** ([`Parser::set_keys_are_sequences`]) none of that is ambiguous: every key is a
-//!   sequence, Escape too. A lone `ESC` is the beginning of something, and a character that comes as itself is typed
-//!   text: pressed and let go at once, for nobody will tell of its release.
-//! - **A release** counts however late the end of its sequence comes: it only ever ends something.
-//! - **A paste** ends with its closing bracket. Without one it ends after [`PASTE_PATIENCE`] waits in a row given up.
-//!   Past [`PASTE_LIMIT`] bytes the rest of it is thrown away.
+//! - **An incomplete sequence** (`ESC [`, `ESC O`, `ESC ] 1 1`) is dropped at the timeout. Its rest is dropped as well if
+//!   it arrives later, unless it completes a reply, which is then reported. As a consequence Alt+`[` and Alt+O, which look
+//!   like such beginnings, are not recognised. Control characters end a sequence, so Ctrl-C always takes effect.
+//! - **Invalid UTF-8, U+FFFD and the C1 controls** are not keys.
+//! - **With the kitty keyboard protocol** ([`Parser::set_keys_are_sequences`]) there is no ambiguity: every key is a
+//!   sequence, Escape included. A lone `ESC` then starts a sequence. A plain character is typed text, reported as pressed
+//!   and released at once, because no release follows.
+//! - **A key release** is reported even if its sequence is completed after the timeout: it can only end a movement.
+//! - **A paste** ends with its closing sequence, or after [`MAX_PASTE_WAITS`] timeouts in a row. Bytes beyond
+//!   [`MAX_PASTE_BYTES`] are dropped.
 
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 
@@ -43,7 +43,7 @@ mod csi;
 mod key;
 mod mouse;
 mod paste;
-mod place;
+mod state;
 mod reply;
 #[cfg(test)]
 mod tests;
@@ -51,32 +51,32 @@ mod token;
 
 use csi::Meaning;
 use paste::Paste;
-pub use paste::{PASTE_LIMIT, PASTE_PATIENCE};
-use place::{Place, Text};
+pub use paste::{MAX_PASTE_BYTES, MAX_PASTE_WAITS};
 pub use reply::Reply;
+use state::{State, Text};
 use token::{Token, Tokeniser};
 
-/// The most bytes of one operating-system, device-control or application string that are kept. A longer one is thrown
-/// away whole: half an answer would be a wrong answer.
-const STRING_LIMIT: usize = 4096;
+/// Limit on the bytes of an OSC, DCS or APC string. A longer string is dropped as a whole, because a truncated reply would
+/// be a wrong one. The longest reply that is used has about 40 bytes.
+const MAX_STRING_BYTES: usize = 4096;
 
-/// The most bytes of one CSI or SS3 sequence that are kept.
-const SEQUENCE_LIMIT: usize = 256;
+/// Limit on the bytes of a CSI or SS3 sequence that are kept.
+const MAX_SEQUENCE_BYTES: usize = 256;
 
-/// How many bytes may still be swallowed as the rest of a sequence that was given up.
-const REST_LIMIT: usize = 256;
+/// Limit on the bytes that are dropped as the late rest of an incomplete sequence.
+const MAX_LATE_BYTES: usize = 256;
 
 const ESC: u8 = 0x1b;
 const BEL: u8 = 0x07;
 const CAN: u8 = 0x18;
 const SUB: u8 = 0x1a;
 
-/// One thing that the bytes said.
+/// An item of parsed input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// What a person did: a key, the mouse, a paste, the window's focus.
+    /// A user's action: a key, the mouse, a paste, or a change of the window's focus.
     Event(Event),
-    /// What the terminal answered.
+    /// The terminal's answer to a query.
     Reply(Reply),
 }
 
@@ -86,149 +86,148 @@ impl From<KeyEvent> for Input {
     }
 }
 
-/// Turns bytes into [`Input`], however they are split.
+/// An incremental parser from bytes to [`Input`]. The result does not depend on how the bytes are split.
 #[derive(Default)]
 pub struct Parser {
     tokeniser: Tokeniser,
-    place: Place,
-    /// A second ESC stood before this sequence: Alt, or the Escape key if the sequence turns out to be no key.
+    state: State,
+    /// Whether a second ESC precedes the current sequence: Alt, or the Escape key if the sequence is not a key.
     escaped: bool,
-    /// ESC came before the character at hand, which is pressed with Alt.
+    /// Whether ESC precedes the current character, so that Alt was held.
     alt: bool,
-    /// The bytes of the sequence or string at hand, up to the limit of each.
+    /// The bytes of the current sequence or string, up to its limit.
     text: Vec<u8>,
-    /// The string at hand outgrew its limit.
+    /// Whether the current string exceeds its limit.
     overflow: bool,
-    /// The paste at hand.
     paste: Paste,
-    /// The wait for the end of this sequence was given up: so many bytes of its rest may still be swallowed.
-    rest: Option<usize>,
-    keys: Keys,
+    /// After a timeout within a sequence: the number of late bytes that may still be dropped as its rest.
+    late: Option<usize>,
+    key_encoding: KeyEncoding,
 }
 
-/// How the terminal writes keys.
+/// The encoding of keys.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
-enum Keys {
-    /// Characters as themselves, Escape as `ESC`, others as sequences.
+enum KeyEncoding {
+    /// Characters as themselves, Escape as `ESC`, other keys as sequences.
     #[default]
-    Plain,
-    /// All as sequences.
+    Legacy,
+    /// Every key as a sequence, as the kitty keyboard protocol does with flag 8.
     Sequences,
 }
 
 impl Parser {
-    /// A parser at the start of a stream.
+    /// Returns a parser for the start of a stream.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Whether the terminal writes every key as a sequence: with the flags 2 and 8 of the kitty keyboard protocol, which
-    /// tells of releases, too.
+    /// Sets whether the terminal sends every key as a sequence and reports releases: flags 2 and 8 of the kitty keyboard
+    /// protocol.
     pub fn set_keys_are_sequences(&mut self, keys_are_sequences: bool) {
-        self.keys = if keys_are_sequences { Keys::Sequences } else { Keys::Plain };
+        self.key_encoding = if keys_are_sequences { KeyEncoding::Sequences } else { KeyEncoding::Legacy };
     }
 
-    /// Takes the next bytes of the stream and appends to `out` what they say.
+    /// Parses the next bytes of the stream and appends the completed inputs to `out`.
     pub fn feed(&mut self, bytes: &[u8], out: &mut Vec<Input>) {
         for &byte in bytes {
             self.take(byte, out);
         }
     }
 
-    /// Whether something is begun that more bytes may finish: a lone `ESC`, half a sequence, half a character, a paste.
+    /// Returns whether more bytes may complete an input: after a lone `ESC`, in a sequence, a character or a paste.
     ///
-    /// The owner of the clock then waits for more bytes only a short time (some 50 ms), and calls
-    /// [`Parser::give_up_waiting`] when none came.
+    /// The caller then waits a short time (some 50 ms) for more bytes, and calls [`Parser::give_up_waiting`] if none
+    /// arrive.
     pub fn is_waiting(&self) -> bool {
-        self.place != Place::Ground && self.rest.is_none()
+        self.state != State::Ground && self.late.is_none()
     }
 
-    /// Says that no more bytes came in time: a lone `ESC` is the Escape key, and half a sequence is dropped.
+    /// Reports a timeout: a lone `ESC` becomes the Escape key, and an incomplete sequence is dropped.
     ///
-    /// Nothing is waited for afterwards, but for a paste, which outlives [`PASTE_PATIENCE`] such calls.
+    /// Afterwards the parser no longer waits, except for a paste, which ends after [`MAX_PASTE_WAITS`] such calls.
     pub fn give_up_waiting(&mut self, out: &mut Vec<Input>) {
         if !self.is_waiting() {
             return;
         }
         self.release_escape(out);
-        match self.place {
-            Place::Escape if self.keys == Keys::Plain => {
+        match self.state {
+            State::Escape if self.key_encoding == KeyEncoding::Legacy => {
                 out.push(key::escape().into());
                 self.reset();
             }
-            Place::Escape | Place::Ss3 | Place::Csi | Place::Text(_) | Place::TextEscape(_) => {
-                self.rest = Some(REST_LIMIT);
+            State::Escape | State::Ss3 | State::Csi | State::Text(_) | State::TextEscape(_) => {
+                self.late = Some(MAX_LATE_BYTES);
             }
-            Place::Paste if self.paste.outlives_a_wait() => {}
-            Place::Paste => self.finish_paste(out),
+            State::Paste if self.paste.survives_timeout() => {}
+            State::Paste => self.finish_paste(out),
             _ => self.reset(),
         }
     }
 
     fn take(&mut self, byte: u8, out: &mut Vec<Input>) {
-        if self.rest.is_some() && !self.belongs_to_rest(byte) {
+        if self.late.is_some() && !self.continues_late_sequence(byte) {
             self.reset();
         }
-        match self.place {
-            Place::Ground | Place::Character => self.take_plain(byte, out),
-            Place::Escape => self.take_after_escape(byte, out),
-            Place::Ss3 => self.take_ss3(byte, out),
-            Place::Csi => self.take_csi(byte, out),
-            Place::LinuxFunction => self.take_linux_function(byte, out),
-            Place::OldMouse => self.take_old_mouse(byte, out),
-            Place::Text(kind) => self.take_text(kind, byte, out),
-            Place::TextEscape(kind) => self.take_text_escape(kind, byte, out),
-            Place::Paste if self.paste.ends_with(byte) => self.finish_paste(out),
-            Place::Paste => {}
+        match self.state {
+            State::Ground | State::Character => self.take_plain(byte, out),
+            State::Escape => self.take_after_escape(byte, out),
+            State::Ss3 => self.take_ss3(byte, out),
+            State::Csi => self.take_csi(byte, out),
+            State::LinuxFunction => self.take_linux_function(byte, out),
+            State::OldMouse => self.take_old_mouse(byte, out),
+            State::Text(kind) => self.take_text(kind, byte, out),
+            State::TextEscape(kind) => self.take_text_escape(kind, byte, out),
+            State::Paste if self.paste.ends_with(byte) => self.finish_paste(out),
+            State::Paste => {}
         }
     }
 
-    /// Whether `byte` can be the rest of the sequence that was given up; counts it if so.
-    fn belongs_to_rest(&mut self, byte: u8) -> bool {
-        let Some(left @ 1..) = self.rest else {
+    /// Returns whether `byte` may belong to the rest of a sequence dropped at a timeout, and counts it if so.
+    fn continues_late_sequence(&mut self, byte: u8) -> bool {
+        let Some(left @ 1..) = self.late else {
             return false;
         };
-        self.rest = Some(left - 1);
-        match self.place {
-            Place::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
-            Place::Text(kind) if self.text.is_empty() => kind.begins_with(byte),
-            Place::Text(_) => byte >= 0x20 || byte == BEL || byte == ESC,
-            Place::TextEscape(_) => byte == b'\\',
+        self.late = Some(left - 1);
+        match self.state {
+            State::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
+            State::Text(kind) if self.text.is_empty() => kind.begins_with(byte),
+            State::Text(_) => byte >= 0x20 || byte == BEL || byte == ESC,
+            State::TextEscape(_) => byte == b'\\',
             _ => byte >= 0x20,
         }
     }
 
-    /// Back to the ground from anywhere, with nothing begun.
+    /// Returns to the ground state and drops everything incomplete.
     fn reset(&mut self) {
         self.tokeniser = Tokeniser::default();
         self.forget_sequence();
     }
 
-    /// Back to the ground after a whole sequence.
+    /// Returns to the ground state after a complete sequence.
     fn forget_sequence(&mut self) {
-        self.place = Place::Ground;
+        self.state = State::Ground;
         self.escaped = false;
         self.alt = false;
         self.overflow = false;
-        self.rest = None;
+        self.late = None;
         self.text.clear();
     }
 
-    /// What was begun is dropped, and `byte` is taken as if it had not been.
-    fn drop_and_take(&mut self, byte: u8, out: &mut Vec<Input>) {
+    /// Drops everything incomplete and parses `byte` in the ground state.
+    fn drop_and_parse(&mut self, byte: u8, out: &mut Vec<Input>) {
         self.release_escape(out);
         self.reset();
         self.take_plain(byte, out);
     }
 
-    /// The ESC held back before this sequence was the Escape key.
+    /// Reports the ESC before the current sequence as the Escape key, if it has been held back.
     fn release_escape(&mut self, out: &mut Vec<Input>) {
         if std::mem::take(&mut self.escaped) {
             out.push(key::escape().into());
         }
     }
 
-    /// Keeps a byte of the sequence or string at hand.
+    /// Appends a byte to the current sequence or string, unless it has reached `limit`.
     fn keep(&mut self, byte: u8, limit: usize) {
         if self.text.len() < limit {
             self.text.push(byte);
@@ -239,22 +238,22 @@ impl Parser {
 
     fn take_plain(&mut self, byte: u8, out: &mut Vec<Input>) {
         if byte == ESC {
-            // A half character goes.
+            // An incomplete character is dropped.
             self.reset();
-            self.place = Place::Escape;
+            self.state = State::Escape;
             return;
         }
         let tokens = self.tokeniser.take(byte, &[]);
-        // A leading byte never ends a character; one that follows does when the tokeniser says so.
+        // A leading byte never completes a character; a continuation byte does if the tokeniser returns a token.
         let unfinished = match byte {
             0xc2..=0xf4 => true,
             0x80..=0xbf => tokens.is_empty(),
             _ => false,
         };
-        self.place = if unfinished { Place::Character } else { Place::Ground };
+        self.state = if unfinished { State::Character } else { State::Ground };
         for token in tokens {
             let alt = std::mem::take(&mut self.alt);
-            self.say_plain(&token, alt, out);
+            self.report_plain(&token, alt, out);
         }
     }
 
@@ -262,17 +261,17 @@ impl Parser {
         match byte {
             ESC => {
                 self.release_escape(out);
-                self.escaped = self.keys == Keys::Plain;
+                self.escaped = self.key_encoding == KeyEncoding::Legacy;
             }
             b'[' => {
                 self.tokeniser.begin_csi();
-                self.place = Place::Csi;
+                self.state = State::Csi;
             }
-            b'O' => self.place = Place::Ss3,
-            b']' => self.place = Place::Text(Text::Osc),
-            b'P' => self.place = Place::Text(Text::Dcs),
-            b'_' => self.place = Place::Text(Text::Apc),
-            b'X' | b'^' => self.place = Place::Text(Text::Other),
+            b'O' => self.state = State::Ss3,
+            b']' => self.state = State::Text(Text::Osc),
+            b'P' => self.state = State::Text(Text::Dcs),
+            b'_' => self.state = State::Text(Text::Apc),
+            b'X' | b'^' => self.state = State::Text(Text::Other),
             _ => {
                 self.release_escape(out);
                 self.alt = true;
@@ -283,31 +282,31 @@ impl Parser {
 
     fn take_ss3(&mut self, byte: u8, out: &mut Vec<Input>) {
         match byte {
-            b'0'..=b'9' | b';' => self.keep(byte, SEQUENCE_LIMIT),
+            b'0'..=b'9' | b';' => self.keep(byte, MAX_SEQUENCE_BYTES),
             0x20..=0x7e => {
                 let meaning = key::from_ss3(&self.text, byte).map_or(Meaning::Nothing, Meaning::Key);
                 self.finish(meaning, out);
             }
-            _ => self.drop_and_take(byte, out),
+            _ => self.drop_and_parse(byte, out),
         }
     }
 
     fn take_csi(&mut self, byte: u8, out: &mut Vec<Input>) {
         if matches!(byte, ESC | CAN | SUB) {
-            return self.drop_and_take(byte, out);
+            return self.drop_and_parse(byte, out);
         }
         if (0x20..=0x7e).contains(&byte) {
-            self.keep(byte, SEQUENCE_LIMIT);
+            self.keep(byte, MAX_SEQUENCE_BYTES);
         }
         let mut meaning = None;
         for token in self.tokeniser.take(byte, &self.text) {
             match token {
-                Token::Csi(said) => meaning = Some(said),
-                other => self.say_plain(&other, false, out),
+                Token::Csi(csi) => meaning = Some(csi),
+                other => self.report_plain(&other, false, out),
             }
         }
         if (0x40..=0x7e).contains(&byte) {
-            // The tokeniser keeps silent about a sequence that breaks the grammar.
+            // The tokeniser returns no token for a malformed sequence.
             self.finish(meaning.unwrap_or(Meaning::Nothing), out);
         }
     }
@@ -316,15 +315,15 @@ impl Parser {
         match byte {
             b'A'..=b'E' => self.finish(Meaning::Key(key::function(byte - b'A' + 1)), out),
             0x20..=0x7e => self.finish(Meaning::Nothing, out),
-            _ => self.drop_and_take(byte, out),
+            _ => self.drop_and_parse(byte, out),
         }
     }
 
     fn take_old_mouse(&mut self, byte: u8, out: &mut Vec<Input>) {
         if byte < 0x20 {
-            return self.drop_and_take(byte, out);
+            return self.drop_and_parse(byte, out);
         }
-        self.keep(byte, SEQUENCE_LIMIT);
+        self.keep(byte, MAX_SEQUENCE_BYTES);
         if let [button, column, row] = self.text[..] {
             let event = mouse::from_bytes(button, column, row);
             self.finish(event.map_or(Meaning::Nothing, Meaning::Event), out);
@@ -334,14 +333,14 @@ impl Parser {
     fn take_text(&mut self, kind: Text, byte: u8, out: &mut Vec<Input>) {
         match byte {
             ESC => {
-                self.rest = None;
-                self.place = Place::TextEscape(kind);
+                self.late = None;
+                self.state = State::TextEscape(kind);
             }
             BEL if kind == Text::Osc => self.finish_text(kind, out),
-            CAN | SUB => self.drop_and_take(byte, out),
-            // No string of a terminal holds a control letter.
+            CAN | SUB => self.drop_and_parse(byte, out),
+            // Strings from terminals contain no control characters.
             0..0x20 => {}
-            _ => self.keep(byte, STRING_LIMIT),
+            _ => self.keep(byte, MAX_STRING_BYTES),
         }
     }
 
@@ -349,10 +348,10 @@ impl Parser {
         if byte == b'\\' {
             return self.finish_text(kind, out);
         }
-        // The string broke off, and the ESC begins something else.
+        // The string was aborted; the ESC starts something else.
         self.release_escape(out);
         self.reset();
-        self.place = Place::Escape;
+        self.state = State::Escape;
         self.take_after_escape(byte, out);
     }
 
@@ -373,9 +372,9 @@ impl Parser {
         self.forget_sequence();
     }
 
-    /// A sequence is whole: says what it means, and goes on from there.
+    /// Reports the meaning of a complete sequence and enters the state that follows it.
     fn finish(&mut self, meaning: Meaning, out: &mut Vec<Input>) {
-        let late = self.rest.is_some();
+        let late = self.late.is_some();
         if let Meaning::Key(mut key) = meaning {
             if self.escaped {
                 key.modifiers |= KeyModifiers::ALT;
@@ -394,30 +393,31 @@ impl Parser {
         match meaning {
             Meaning::Reply(reply) => out.push(Input::Reply(reply)),
             Meaning::Event(event) if !late => out.push(Input::Event(event)),
-            Meaning::PasteStart => self.place = Place::Paste,
-            Meaning::OldMouse => self.place = Place::OldMouse,
+            Meaning::PasteStart => self.state = State::Paste,
+            Meaning::OldMouse => self.state = State::OldMouse,
             Meaning::LinuxFunction => {
                 self.escaped = escaped;
-                self.place = Place::LinuxFunction;
+                self.state = State::LinuxFunction;
             }
             Meaning::Event(_) | Meaning::Key(_) | Meaning::Nothing => {}
         }
     }
 
-    fn say_plain(&self, token: &Token, alt: bool, out: &mut Vec<Input>) {
+    fn report_plain(&self, token: &Token, alt: bool, out: &mut Vec<Input>) {
         let Some(mut key) = plain_key(token) else { return };
         if alt {
             key.modifiers |= KeyModifiers::ALT;
         }
         out.push(key.into());
-        if self.keys == Keys::Sequences {
+        // Typed text has no release of its own: the key would be held for ever.
+        if self.key_encoding == KeyEncoding::Sequences {
             key.kind = KeyEventKind::Release;
             out.push(key.into());
         }
     }
 }
 
-/// The key, if any, that a character or a control letter stands for.
+/// Returns the key of a character or control character, if there is one.
 fn plain_key(token: &Token) -> Option<KeyEvent> {
     match *token {
         Token::Print(c) => key::from_char(c),

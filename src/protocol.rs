@@ -1,5 +1,4 @@
-//! What a terminal is told and asked, without a terminal: the modes that are switched on, the queries, what it sends, and
-//! the replies that are outstanding. Pure: bytes and replies in, bytes out, and the time is told.
+//! The protocol with a terminal: modes that are on, queries, and outstanding replies. Pure: bytes and times in, bytes out.
 //!
 //! ```
 //! use std::time::Duration;
@@ -16,9 +15,9 @@
 //!
 //! let mut outstanding = Outstanding::default();
 //! outstanding.sent(FENCE, Duration::ZERO);
-//! assert!(outstanding.patience(Duration::from_millis(20)).is_some());
+//! assert!(outstanding.time_left(Duration::from_millis(20)).is_some());
 //! outstanding.take(&Reply::DeviceAttributes(vec![62]));
-//! assert_eq!(outstanding.patience(Duration::from_millis(30)), None);
+//! assert_eq!(outstanding.time_left(Duration::from_millis(30)), None);
 //! ```
 
 mod modes;

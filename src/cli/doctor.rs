@@ -107,7 +107,7 @@ fn take_replies(
     if bytes.is_empty() {
         return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
     }
-    for input in receiver.hear(bytes, now) {
+    for input in receiver.receive(bytes, now) {
         if let Input::Reply(reply) = input {
             questions.take(&reply);
         }

@@ -1,30 +1,30 @@
-//! CSI sequences: `ESC [`, a mark, numbers, marks, a letter.
+//! CSI sequences: `ESC [`, a private marker, parameters, intermediates and a final byte.
 
 use crossterm::event::{Event, KeyEvent, KeyModifiers};
 use vte::Params;
 
 use super::{Reply, key, mouse};
 
-/// What a sequence says.
+/// The meaning of a sequence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
     /// A key.
     Key(KeyEvent),
-    /// The mouse or the focus.
+    /// An event of the mouse or the focus.
     Event(Event),
-    /// An answer of the terminal.
+    /// A reply of the terminal.
     Reply(Reply),
-    /// A paste begins.
+    /// The start of a paste.
     PasteStart,
-    /// Three bytes of the oldest mouse report follow.
+    /// The start of an X10 mouse report, of which three bytes follow.
     OldMouse,
-    /// The letter of a function key of the Linux console follows.
+    /// The start of a function key of the Linux console, of which a letter follows.
     LinuxFunction,
-    /// Nothing that matters here.
+    /// Nothing that is reported.
     Nothing,
 }
 
-/// What the sequence of these numbers and marks says; `text` is all of it after `ESC [`.
+/// Returns the meaning of a sequence. `marks` are its private marker and intermediates, `text` is all of it after `ESC [`.
 pub(super) fn meaning(params: &Params, marks: &[u8], ignored: bool, last: char, text: &[u8]) -> Meaning {
     let sequence = Sequence { params: params.iter().collect(), last, text };
     let meaning = match marks {
@@ -40,24 +40,24 @@ pub(super) fn meaning(params: &Params, marks: &[u8], ignored: bool, last: char, 
 }
 
 struct Sequence<'a> {
-    /// Numbers, each with what follows it after colons.
+    /// The parameters, each with its subparameters.
     params: Vec<&'a [u16]>,
     last: char,
     text: &'a [u8],
 }
 
 impl Sequence<'_> {
-    /// No number and no mark: the letter alone.
+    /// Returns whether the sequence consists of its final byte only.
     fn is_bare(&self) -> bool {
         self.text.len() == 1
     }
 
-    /// The numbers, without what follows after colons.
+    /// Returns the parameters without their subparameters.
     fn numbers(&self) -> Vec<u16> {
         self.params.iter().map(|param| param[0]).collect()
     }
 
-    /// The numbers, if there are so many, none with a colon.
+    /// Returns the parameters if there are exactly `N` and none has subparameters.
     fn exactly<const N: usize>(&self) -> Option<[u16; N]> {
         let plain = self.params.iter().all(|param| param.len() == 1);
         plain.then(|| self.numbers().try_into().ok()).flatten()
@@ -104,7 +104,7 @@ impl Sequence<'_> {
         }
     }
 
-    /// Some terminals add a third number, the page.
+    /// Returns the cursor position. Some terminals add a third parameter, the page.
     fn cursor_position(&self) -> Option<Reply> {
         let [row, column] = self.exactly().or_else(|| self.exactly().map(|[row, column, _page]| [row, column]))?;
         Some(Reply::CursorPosition { row, column })

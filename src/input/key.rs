@@ -1,18 +1,18 @@
-//! Keys: the many ways in which terminals name them.
+//! Decoders for the encodings of keys.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifiers, MediaKeyCode, ModifierKeyCode};
 
-/// The Escape key.
+/// Returns the Escape key.
 pub(super) fn escape() -> KeyEvent {
     KeyCode::Esc.into()
 }
 
-/// The function key of this number.
+/// Returns function key `number`.
 pub(super) fn function(number: u8) -> KeyEvent {
     KeyCode::F(number).into()
 }
 
-/// A character typed; none for U+FFFD, which stands for broken bytes, and for the C1 controls.
+/// Returns the key of a typed character; `None` for U+FFFD, which stands for invalid bytes, and for the C1 controls.
 pub(super) fn from_char(c: char) -> Option<KeyEvent> {
     match c {
         '\u{7f}' => Some(KeyCode::Backspace.into()),
@@ -23,8 +23,9 @@ pub(super) fn from_char(c: char) -> Option<KeyEvent> {
     }
 }
 
-/// A control letter: the key of its own, or Ctrl and a letter. A line feed is Ctrl+J, since raw mode leaves the Enter
-/// key its carriage return.
+/// Returns the key of a control character: Backspace, Tab, Enter, or Ctrl with a letter.
+///
+/// A line feed is Ctrl+J, because the Enter key sends a carriage return in raw mode.
 pub(super) fn from_control(byte: u8) -> Option<KeyEvent> {
     let letter = match byte {
         0x08 => return Some(KeyCode::Backspace.into()),
@@ -32,14 +33,14 @@ pub(super) fn from_control(byte: u8) -> Option<KeyEvent> {
         b'\r' => return Some(KeyCode::Enter.into()),
         0x00 => b' ',
         0x01..=0x1a => byte - 1 + b'a',
-        // Ctrl+\ ] ^ _, which crossterm names after the digits that give the same.
+        // Ctrl with \ ] ^ _, which crossterm reports as Ctrl with the digits that send the same bytes.
         0x1c..=0x1f => byte - 0x1c + b'4',
         _ => return None,
     };
     Some(KeyEvent::new(KeyCode::Char(letter.into()), KeyModifiers::CONTROL))
 }
 
-/// `ESC O`, perhaps `1 ; modifiers` or the modifiers alone, and a letter.
+/// Decodes `ESC O letter`, with `1 ; modifiers` or the modifiers alone before the letter.
 pub(super) fn from_ss3(numbers: &[u8], letter: u8) -> Option<KeyEvent> {
     let last = numbers.rsplit(|&byte| byte == b';').next().unwrap_or_default();
     let modifiers = match std::str::from_utf8(last).ok()? {
@@ -47,7 +48,7 @@ pub(super) fn from_ss3(numbers: &[u8], letter: u8) -> Option<KeyEvent> {
         digits => modifiers_from_mask(digits.parse().ok()?),
     };
     match letter {
-        // The arrows of rxvt with Ctrl.
+        // rxvt's arrows with Ctrl.
         b'a'..=b'd' => {
             let letter = char::from(letter.to_ascii_uppercase());
             from_letter(letter, modifiers | KeyModifiers::CONTROL)
@@ -57,7 +58,7 @@ pub(super) fn from_ss3(numbers: &[u8], letter: u8) -> Option<KeyEvent> {
     }
 }
 
-/// The keypad in application mode.
+/// Returns the keypad key of a letter in application keypad mode.
 fn from_keypad(letter: u8, modifiers: KeyModifiers) -> Option<KeyEvent> {
     let code = match letter {
         b'p'..=b'y' => KeyCode::Char((letter - b'p' + b'0').into()),
@@ -72,7 +73,7 @@ fn from_keypad(letter: u8, modifiers: KeyModifiers) -> Option<KeyEvent> {
     Some(KeyEvent::new_with_kind_and_state(code, modifiers, KeyEventKind::Press, state))
 }
 
-/// The key that a letter after `ESC [` or `ESC O` names.
+/// Returns the key of the letter after `ESC [` or `ESC O`.
 pub(super) fn from_letter(letter: char, modifiers: KeyModifiers) -> Option<KeyEvent> {
     let code = match letter {
         'A' => KeyCode::Up,
@@ -90,24 +91,24 @@ pub(super) fn from_letter(letter: char, modifiers: KeyModifiers) -> Option<KeyEv
     Some(KeyEvent::new(code, modifiers))
 }
 
-/// `CSI 1 ; modifiers : kind A`, or the letter alone.
+/// Decodes `CSI 1 ; modifiers : kind letter`, or the letter alone.
 pub(super) fn from_letter_with_modifiers(letter: char, params: &[&[u16]]) -> Option<KeyEvent> {
-    let how = How::from_params(params.get(1))?;
-    // An echo of our own cursor movements (`CSI 5 A`) is no key.
+    let press = Press::from_params(params.get(1))?;
+    // An echo of a cursor movement (`CSI 5 A`) is not a key.
     if params.len() > 2 || !matches!(params[0], [0 | 1]) {
         return None;
     }
     match letter {
-        'Z' => Some(how.press(KeyCode::BackTab, KeyModifiers::SHIFT)),
-        // `CSI R` alone: with numbers it is a cursor report, and does not come here.
-        'R' => Some(how.press(KeyCode::F(3), KeyModifiers::NONE)),
-        _ => from_letter(letter, KeyModifiers::NONE).map(|key| how.press(key.code, KeyModifiers::NONE)),
+        'Z' => Some(press.press(KeyCode::BackTab, KeyModifiers::SHIFT)),
+        // `CSI R` without parameters; with them it is a cursor report, decoded elsewhere.
+        'R' => Some(press.press(KeyCode::F(3), KeyModifiers::NONE)),
+        _ => from_letter(letter, KeyModifiers::NONE).map(|key| press.press(key.code, KeyModifiers::NONE)),
     }
 }
 
-/// `CSI number ; modifiers : kind ~`, and the letters that rxvt puts in the place of `~`.
+/// Decodes `CSI number ; modifiers : kind ~`, where rxvt has other final bytes than `~` for the modifiers in `more`.
 pub(super) fn from_number(params: &[&[u16]], more: KeyModifiers) -> Option<KeyEvent> {
-    let how = How::from_params(params.get(1))?;
+    let press = Press::from_params(params.get(1))?;
     let [number] = *params[0] else {
         return None;
     };
@@ -125,26 +126,26 @@ pub(super) fn from_number(params: &[&[u16]], more: KeyModifiers) -> Option<KeyEv
         n @ 31..=34 => KeyCode::F(n - 14),
         _ => return None,
     };
-    (params.len() <= 2).then(|| how.press(code, more))
+    (params.len() <= 2).then(|| press.press(code, more))
 }
 
-/// `CSI 27 ; modifiers ; code ~`: xterm's `modifyOtherKeys`.
+/// Decodes `CSI 27 ; modifiers ; code ~`: xterm's `modifyOtherKeys`.
 pub(super) fn from_other_keys(params: &[&[u16]]) -> Option<KeyEvent> {
     let [_, modifiers, code] = params else {
         return None;
     };
-    let how = How::from_params(Some(modifiers))?;
-    key_from_code(code.first().copied()?, None, how)
+    let press = Press::from_params(Some(modifiers))?;
+    key_from_code(code.first().copied()?, None, press)
 }
 
-/// `CSI code : shifted : base ; modifiers : kind ; text u`: the kitty keyboard protocol.
+/// Decodes `CSI code : shifted : base ; modifiers : kind ; text u`: the kitty keyboard protocol.
 ///
-/// A key of an alphabet other than the Latin one goes by its place on a Latin keyboard where the terminal says it, with
-/// what Shift makes of it there: the letter is a command here, not text.
+/// A key of a non-Latin layout is reported as the key at the same position of a Latin one (`base`), if the terminal
+/// reports that: letters are commands here, not text.
 ///
-/// Unicode above U+FFFF cannot be told apart here (the tokeniser keeps 16 bits) and is no key.
+/// Characters above U+FFFF are ignored: the tokeniser saturates parameters at 16 bits, so they cannot be told apart.
 pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
-    let how = How::from_params(params.get(1))?;
+    let press = Press::from_params(params.get(1))?;
     let alternate = |at: usize| params[0].get(at).copied().filter(|&code| code != 0);
     let (code, shifted) = match (params[0][0], alternate(2)) {
         (LATIN_END.., Some(base @ 0x20..0x7f)) => (base, None),
@@ -154,48 +155,48 @@ pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
         return None;
     }
     if let Some(key) = functional(code) {
-        return Some(how.press(key, KeyModifiers::NONE));
+        return Some(press.press(key, KeyModifiers::NONE));
     }
     if let Some(key) = keypad(code) {
-        let mut event = how.press(key, KeyModifiers::NONE);
+        let mut event = press.press(key, KeyModifiers::NONE);
         event.state |= KeyEventState::KEYPAD;
         return Some(event);
     }
-    key_from_code(code, shifted, how)
+    key_from_code(code, shifted, press)
 }
 
-/// The first letter that is not Latin: Greek.
+/// The first code point after the Latin blocks: Greek.
 const LATIN_END: u16 = 0x370;
 
-/// The key of a Unicode number, with the character that Shift makes of it where the terminal says so.
-fn key_from_code(code: u16, shifted: Option<u16>, how: How) -> Option<KeyEvent> {
+/// Returns the key of a code point; `shifted` is the code point with Shift, if the terminal reports it.
+fn key_from_code(code: u16, shifted: Option<u16>, press: Press) -> Option<KeyEvent> {
     let key = match code {
         0x08 | 0x7f => KeyCode::Backspace,
-        0x09 if how.modifiers.contains(KeyModifiers::SHIFT) => KeyCode::BackTab,
+        0x09 if press.modifiers.contains(KeyModifiers::SHIFT) => KeyCode::BackTab,
         0x09 => KeyCode::Tab,
         0x0d => KeyCode::Enter,
         0x1b => KeyCode::Esc,
-        _ => return Some(how.press_char(char_from_code(code)?, shifted.and_then(char_from_code))),
+        _ => return Some(press.press_char(char_from_code(code)?, shifted.and_then(char_from_code))),
     };
-    Some(how.press(key, KeyModifiers::NONE))
+    Some(press.press(key, KeyModifiers::NONE))
 }
 
-/// The character of a number, if it can be typed: no control, no private use (where the protocol keeps its own
-/// keys), and not U+FFFF, at which the tokeniser stops counting.
+/// Returns the character of a code point that can be typed: not a control character, not in the private use area, where
+/// the kitty protocol has its functional keys, and not U+FFFF, at which the tokeniser saturates.
 fn char_from_code(code: u16) -> Option<char> {
     char::from_u32(code.into()).filter(|c| !c.is_control() && !matches!(code, 0xe000..=0xf8ff | 0xfffd..))
 }
 
-/// How a key is pressed.
+/// The modifiers, kind and locks of a key event.
 #[derive(Clone, Copy)]
-struct How {
+struct Press {
     modifiers: KeyModifiers,
     kind: KeyEventKind,
     state: KeyEventState,
 }
 
-impl How {
-    /// From `modifiers : kind`; none where the kind is none that is known.
+impl Press {
+    /// Decodes `modifiers : kind`; `None` for an unknown kind.
     fn from_params(param: Option<&&[u16]>) -> Option<Self> {
         let (mask, kind) = match param {
             None => (0, 1),
@@ -216,8 +217,8 @@ impl How {
         KeyEvent::new_with_kind_and_state(code, self.modifiers | more, self.kind, self.state)
     }
 
-    /// A character, named as it would be without the protocol: Shift and `w` is `W` with Shift, Shift and `/` is `?`
-    /// without, if the terminal says that it is.
+    /// Returns a character key as the legacy encoding would report it: Shift with `w` as `W` with Shift, Shift with `/` as
+    /// `?` without, if the terminal reports the shifted character.
     fn press_char(self, c: char, shifted: Option<char>) -> KeyEvent {
         if !self.modifiers.contains(KeyModifiers::SHIFT) {
             return self.press(KeyCode::Char(c), KeyModifiers::NONE);
@@ -231,7 +232,7 @@ impl How {
     }
 }
 
-/// The capital of a letter, where it is one letter.
+/// Returns the upper case of a letter if it is a single character, otherwise the letter itself.
 fn upper_case(c: char) -> char {
     let mut upper = c.to_uppercase();
     match (upper.next(), upper.next()) {
@@ -240,9 +241,9 @@ fn upper_case(c: char) -> char {
     }
 }
 
-/// The modifiers of a mask that counts from 1.
+/// Returns the modifiers of a parameter, which is the bit mask plus 1.
 fn modifiers_from_mask(mask: u16) -> KeyModifiers {
-    // The order of the bits is the same in the protocol and in crossterm, but it is crossterm's own affair.
+    // The bits have the same order in the protocol and in crossterm, which does not promise that.
     let order = [
         KeyModifiers::SHIFT,
         KeyModifiers::ALT,
@@ -255,7 +256,7 @@ fn modifiers_from_mask(mask: u16) -> KeyModifiers {
     (0..).zip(order).filter(|(bit, _)| bits >> bit & 1 == 1).map(|(_, modifier)| modifier).collect()
 }
 
-/// The locks of a mask that counts from 1.
+/// Returns the locks of a parameter, which is the bit mask plus 1.
 fn state_from_mask(mask: u16) -> KeyEventState {
     let bits = mask.saturating_sub(1);
     let mut state = KeyEventState::NONE;
@@ -264,7 +265,7 @@ fn state_from_mask(mask: u16) -> KeyEventState {
     state
 }
 
-/// The keys of the keypad, by the kitty protocol's numbers.
+/// Returns the keypad key of a functional key code of the kitty protocol.
 fn keypad(code: u16) -> Option<KeyCode> {
     const NAMED: [KeyCode; 19] = [
         KeyCode::Char('.'),
@@ -294,7 +295,7 @@ fn keypad(code: u16) -> Option<KeyCode> {
     }
 }
 
-/// The keys that write nothing, by the kitty protocol's numbers.
+/// Returns the key of a functional key code of the kitty protocol: locks, F13 and up, media and modifier keys.
 fn functional(code: u16) -> Option<KeyCode> {
     const LOCKS: [KeyCode; 6] =
         [KeyCode::CapsLock, KeyCode::ScrollLock, KeyCode::NumLock, KeyCode::PrintScreen, KeyCode::Pause, KeyCode::Menu];

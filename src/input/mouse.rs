@@ -6,27 +6,27 @@ const SHIFT: u16 = 4;
 const ALT: u16 = 8;
 const CONTROL: u16 = 16;
 const MOTION: u16 = 32;
-/// What the older encodings add to each number, to keep clear of the control letters.
+/// Offset that the older encodings add to each number, so that none is a control character.
 const OFFSET: u8 = 32;
 
-/// `CSI < code ; column ; row M`, or `m` for a release: the SGR encoding, in cells or in pixels, from 1.
+/// Decodes `CSI < code ; column ; row M`, or `m` for a release: the SGR encoding, in cells or in pixels, from 1.
 pub(super) fn from_sgr(code: u16, column: u16, row: u16, released: bool) -> Option<Event> {
     let kind = match (kind_from_code(code)?, released) {
         (MouseEventKind::Down(button) | MouseEventKind::Drag(button), true) => MouseEventKind::Up(button),
-        // A wheel is not let go, and 3 is the release of an older encoding, which could not say of which button.
+        // A wheel has no release, and code 3 is a release in the older encodings, which do not name the button.
         (_, true) | (MouseEventKind::Up(_), false) => return None,
         (kind, false) => kind,
     };
     Some(event(kind, code, column, row))
 }
 
-/// `CSI code ; column ; row M`: the encoding of rxvt.
+/// Decodes `CSI code ; column ; row M`: the encoding of rxvt.
 pub(super) fn from_rxvt(code: u16, column: u16, row: u16) -> Option<Event> {
     let code = code.checked_sub(u16::from(OFFSET))?;
     Some(event(kind_from_code(code)?, code, column, row))
 }
 
-/// `CSI M` and three bytes: the oldest encoding.
+/// Decodes the three bytes after `CSI M`: the X10 encoding.
 pub(super) fn from_bytes(code: u8, column: u8, row: u8) -> Option<Event> {
     let code = u16::from(code.checked_sub(OFFSET)?);
     let column = u16::from(column.checked_sub(OFFSET)?);
@@ -43,7 +43,7 @@ fn event(kind: MouseEventKind, code: u16, column: u16, row: u16) -> Event {
     })
 }
 
-/// The lowest two bits and the highest two name the button, the sixth says that the mouse moved.
+/// Decodes the event kind: bits 0, 1, 6 and 7 are the button, bit 5 is set for motion.
 fn kind_from_code(code: u16) -> Option<MouseEventKind> {
     let button = (code & 0b11) | ((code & 0b1100_0000) >> 4);
     let moved = code & MOTION != 0;
@@ -61,7 +61,7 @@ fn kind_from_code(code: u16) -> Option<MouseEventKind> {
         (5, false) => MouseEventKind::ScrollDown,
         (6, false) => MouseEventKind::ScrollLeft,
         (7, false) => MouseEventKind::ScrollRight,
-        // The side buttons have no name here.
+        // crossterm has no name for the side buttons.
         _ => return None,
     })
 }

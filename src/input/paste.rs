@@ -2,32 +2,32 @@
 
 use crossterm::event::Event;
 
-/// The most bytes of one paste that are kept; what comes after them is thrown away.
-pub const PASTE_LIMIT: usize = 1 << 20;
+/// Limit on the bytes of a paste that are kept; the rest is dropped.
+pub const MAX_PASTE_BYTES: usize = 1 << 20;
 
-/// How many waits in a row, with no byte between them, an unfinished paste outlives: on a slow link a paste comes in
-/// pieces, and a piece taken for keys would do harm.
-pub const PASTE_PATIENCE: u32 = 20;
+/// Number of timeouts in a row after which an unfinished paste ends. A slow link delivers a paste in pieces, and a piece
+/// parsed as keys would run commands.
+pub const MAX_PASTE_WAITS: u32 = 20;
 
-/// What closes a paste.
+/// The sequence that ends a paste.
 const END: &[u8] = b"\x1b[201~";
 
-/// A paste on its way.
+/// An unfinished paste.
 #[derive(Default)]
 pub(super) struct Paste {
     text: Vec<u8>,
-    /// How many bytes of [`END`] have come.
+    /// Number of bytes of [`END`] that have matched.
     matched: usize,
-    /// How many waits in a row were given up.
+    /// Number of timeouts since the last byte.
     waits: u32,
 }
 
 impl Paste {
-    /// Takes a byte; whether it ends the paste.
+    /// Takes a byte and returns whether it completes the paste.
     pub(super) fn ends_with(&mut self, byte: u8) -> bool {
         self.waits = 0;
         if byte != END[self.matched] {
-            // END holds one ESC, its first byte: a new match can only begin here.
+            // ESC occurs only as the first byte of END, so a new match can only begin with this byte.
             self.keep(&END[..self.matched]);
             self.matched = 0;
         }
@@ -39,20 +39,20 @@ impl Paste {
         self.matched == END.len()
     }
 
-    /// No byte came in time; whether the paste is still waited for.
-    pub(super) fn outlives_a_wait(&mut self) -> bool {
+    /// Counts a timeout and returns whether to go on waiting for the end.
+    pub(super) fn survives_timeout(&mut self) -> bool {
         self.waits += 1;
-        self.waits < PASTE_PATIENCE
+        self.waits < MAX_PASTE_WAITS
     }
 
-    /// The paste as an event; ready for the next.
+    /// Returns the paste as an event and starts a new one.
     pub(super) fn finish(&mut self) -> Event {
         let paste = std::mem::take(self);
         Event::Paste(String::from_utf8_lossy(&paste.text).into_owned())
     }
 
     fn keep(&mut self, bytes: &[u8]) {
-        let room = PASTE_LIMIT - self.text.len();
+        let room = MAX_PASTE_BYTES - self.text.len();
         self.text.extend_from_slice(&bytes[..bytes.len().min(room)]);
     }
 }

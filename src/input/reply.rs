@@ -1,27 +1,27 @@
-//! What a terminal answers when it is asked.
+//! Replies of a terminal to queries.
 
-/// An answer of the terminal. None of them is ever a key.
+/// A terminal's reply to a query.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// `CSI ? n ; ... c`: what kind of terminal this is (DA1). The answer every terminal gives, and so the fence behind
-    /// a batch of questions.
+    /// `CSI ? n ; ... c`: the device attributes (DA1). Every terminal sends this reply, which makes the query for it the
+    /// fence behind a batch of queries.
     DeviceAttributes(Vec<u16>),
-    /// `CSI > n ; ... c`: kind and version (DA2).
+    /// `CSI > n ; ... c`: the terminal's type and version (DA2).
     SecondaryAttributes(Vec<u16>),
     /// `CSI row ; column R`, both from 1 (CPR; also the private form with `?`).
     CursorPosition {
-        /// From 1, the top line.
+        /// The row, from 1 at the top.
         row: u16,
-        /// From 1, the leftmost column.
+        /// The column, from 1 at the left.
         column: u16,
     },
-    /// `CSI 0 n`: the terminal is well (DSR); 3 for not.
+    /// `CSI n n`: the device status (DSR); 0 for ready, 3 for a malfunction.
     Status(u16),
-    /// `CSI ? mode ; state $ y`: how a private mode stands (DECRPM).
+    /// `CSI ? mode ; state $ y`: the state of a private mode (DECRPM).
     Mode {
         /// The number of the mode.
         mode: u16,
-        /// 0 not known, 1 set, 2 reset, 3 set for good, 4 reset for good.
+        /// 0 not recognised, 1 set, 2 reset, 3 permanently set, 4 permanently reset.
         state: u16,
     },
     /// `CSI 6 ; height ; width t`: the size of a cell in pixels.
@@ -45,9 +45,9 @@ pub enum Reply {
         /// Cells from top to bottom.
         rows: u16,
     },
-    /// Any other `CSI n ; ... t`: a report of the window.
+    /// Any other `CSI n ; ... t`: a window report.
     Window(Vec<u16>),
-    /// `CSI ? flags u`: the flags of the kitty keyboard protocol that are on.
+    /// `CSI ? flags u`: the flags of the kitty keyboard protocol that are set.
     KeyboardFlags(u16),
     /// `ESC ] ... ST` (or BEL): the bytes between, such as `11;rgb:1e1e/1e1e/1e1e`.
     Osc(Vec<u8>),
@@ -55,6 +55,6 @@ pub enum Reply {
     Dcs(Vec<u8>),
     /// `ESC _ ... ST`: the bytes between, such as `Gi=1;OK`.
     Apc(Vec<u8>),
-    /// Any other CSI sequence: the bytes after `ESC [`, the first 256 of them.
+    /// Any other CSI sequence: the bytes after `ESC [`, at most 256.
     Unknown(Vec<u8>),
 }

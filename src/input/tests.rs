@@ -1,6 +1,6 @@
-//! What bytes say, as a table; and that it does not depend on how they are split.
+//! A table of byte sequences and their inputs, and properties: above all, that the split of the bytes does not matter.
 
-use super::{Input, PASTE_LIMIT, PASTE_PATIENCE, Parser, Reply};
+use super::{Input, MAX_PASTE_BYTES, MAX_PASTE_WAITS, Parser, Reply};
 use crossterm::event::{Event, KeyCode, KeyEventKind};
 use proptest::prelude::*;
 
@@ -15,7 +15,7 @@ fn parse(pieces: &[&[u8]]) -> Vec<Input> {
     parse_with(Parser::new(), pieces)
 }
 
-/// For a terminal that writes every key as a sequence.
+/// Returns a parser for a terminal that sends every key as a sequence.
 fn of_sequences() -> Parser {
     let mut parser = Parser::new();
     parser.set_keys_are_sequences(true);
@@ -35,14 +35,14 @@ fn is_key(input: &Input) -> bool {
 }
 
 #[test]
-fn bytes_say_what_the_table_says() {
+fn bytes_are_parsed_as_the_table_says() {
     for (bytes, expected) in table() {
         assert_eq!(parse(&[bytes]), expected, "{}", bytes.escape_ascii());
     }
 }
 
 #[test]
-fn nothing_is_waited_for_after_a_whole_sequence() {
+fn a_complete_sequence_leaves_no_wait() {
     for (bytes, expected) in table() {
         let (mut parser, mut out) = (Parser::new(), Vec::new());
         parser.feed(bytes, &mut out);
@@ -53,7 +53,7 @@ fn nothing_is_waited_for_after_a_whole_sequence() {
 }
 
 #[test]
-fn a_split_changes_nothing() {
+fn the_split_of_the_bytes_does_not_matter() {
     for (bytes, expected) in table() {
         for at in 0..=bytes.len() {
             let (first, second) = bytes.split_at(at);
@@ -65,11 +65,11 @@ fn a_split_changes_nothing() {
 }
 
 #[test]
-fn no_reply_becomes_a_key() {
+fn a_reply_is_never_reported_as_a_key() {
     for (bytes, expected) in [replies(), replies_in_strings_and_others()].concat() {
         let wanted: Vec<&Input> = expected.iter().filter(|input| !is_key(input)).collect();
         let keys = expected.iter().filter(|input| is_key(input)).count();
-        // The Escape key is the price of giving up after a lone ESC: the owner waits longer when an answer is due.
+        // A timeout after the lone ESC of a reply reports the Escape key: callers wait longer while a reply is due.
         for at in (0..=bytes.len()).filter(|&at| at == 0 || !bytes[..at].ends_with(b"\x1b")) {
             let (mut parser, mut out) = (Parser::new(), Vec::new());
             parser.feed(&bytes[..at], &mut out);
@@ -83,7 +83,7 @@ fn no_reply_becomes_a_key() {
 }
 
 #[test]
-fn a_string_whose_very_end_is_late_is_still_a_reply() {
+fn a_string_whose_terminator_is_late_is_still_a_reply() {
     let (mut parser, mut out) = (Parser::new(), Vec::new());
     parser.feed(b"\x1b]11;?\x1b", &mut out);
     parser.give_up_waiting(&mut out);
@@ -91,7 +91,7 @@ fn a_string_whose_very_end_is_late_is_still_a_reply() {
     assert_eq!(out, [reply(Reply::Osc(b"11;?".to_vec())), letter('x', NONE)]);
 }
 
-/// What comes of `begun` when the wait is given up, and then of `later`.
+/// Returns the inputs of `begun` up to a timeout, and those of `later` after it.
 fn given_up(begun: &[u8], later: &[u8]) -> (Vec<Input>, Vec<Input>) {
     let (mut parser, mut at_once, mut out) = (Parser::new(), Vec::new(), Vec::new());
     parser.feed(begun, &mut at_once);
@@ -111,7 +111,7 @@ fn a_lone_escape_is_the_escape_key() {
 }
 
 #[test]
-fn half_a_sequence_is_dropped_with_its_rest() {
+fn an_incomplete_sequence_is_dropped_with_its_late_rest() {
     for begun in [&b"\x1b["[..], b"\x1b[1;", b"\x1bO", b"\x1bO5"] {
         assert_eq!(given_up(begun, b"Ax"), (vec![], vec![letter('x', NONE)]));
     }
@@ -121,7 +121,7 @@ fn half_a_sequence_is_dropped_with_its_rest() {
 }
 
 #[test]
-fn half_a_sequence_does_not_swallow_keys_for_ever() {
+fn an_incomplete_sequence_drops_a_bounded_number_of_late_bytes() {
     let interrupt = vec![letter('c', CONTROL)];
     for begun in [&b"\x1b["[..], b"\x1b[1;", b"\x1bO", b"\x1b]11;", b"\x1bP1$", b"\x1b_G", b"\x1b]0\x1b"] {
         assert_eq!(given_up(begun, b"\x03").1, interrupt, "{}", begun.escape_ascii());
@@ -132,21 +132,21 @@ fn half_a_sequence_does_not_swallow_keys_for_ever() {
 }
 
 #[test]
-fn an_escape_pressed_inside_a_string_given_up_is_the_end_of_it() {
+fn an_escape_after_a_timed_out_string_ends_it() {
     let (_, out) = given_up(b"\x1b]11;", b"abc\x1bOAx");
     assert_eq!(out, [key(KeyCode::Up, NONE), letter('x', NONE)]);
 }
 
 #[test]
-fn an_unfinished_paste_does_not_hang_the_keys() {
+fn an_unfinished_paste_ends_after_its_timeouts() {
     let (mut parser, mut out) = (Parser::new(), Vec::new());
     parser.feed(b"\x1b[200~ab", &mut out);
-    for _ in 1..PASTE_PATIENCE {
+    for _ in 1..MAX_PASTE_WAITS {
         parser.give_up_waiting(&mut out);
         assert!(parser.is_waiting());
     }
     parser.feed(b"c", &mut out);
-    for _ in 0..PASTE_PATIENCE {
+    for _ in 0..MAX_PASTE_WAITS {
         assert_eq!(out, []);
         parser.give_up_waiting(&mut out);
     }
@@ -156,24 +156,24 @@ fn an_unfinished_paste_does_not_hang_the_keys() {
 }
 
 #[test]
-fn a_paste_is_bounded() {
+fn a_paste_is_truncated_at_its_limit() {
     let mut bytes = b"\x1b[200~".to_vec();
-    bytes.resize(bytes.len() + 3 * PASTE_LIMIT, b'q');
+    bytes.resize(bytes.len() + 3 * MAX_PASTE_BYTES, b'q');
     bytes.extend(b"\x1b[201~x");
     let out = parse(&[&bytes]);
     let [Input::Event(Event::Paste(text)), last] = &out[..] else {
         panic!("not a paste and a key: {} inputs", out.len());
     };
-    assert_eq!((text.len(), last), (PASTE_LIMIT, &letter('x', NONE)));
+    assert_eq!((text.len(), last), (MAX_PASTE_BYTES, &letter('x', NONE)));
 }
 
 #[test]
-fn a_string_or_a_sequence_without_end_keeps_little() {
+fn an_endless_string_or_sequence_takes_bounded_memory() {
     for introducer in [&b"\x1b]0;"[..], b"\x1bP1$r", b"\x1b_G", b"\x1bX", b"\x1b[", b"\x1bO"] {
         let (mut parser, mut out) = (Parser::new(), Vec::new());
         parser.feed(introducer, &mut out);
         parser.feed(&vec![b'1'; 1 << 20], &mut out);
-        assert!(parser.text.capacity() <= 2 * super::STRING_LIMIT);
+        assert!(parser.text.capacity() <= 2 * super::MAX_STRING_BYTES);
         assert!(parser.is_waiting());
         parser.feed(b"\x1b\\\x1b[Ax", &mut out);
         let [.., up, x] = &out[..] else { panic!("{out:?}") };
@@ -182,9 +182,9 @@ fn a_string_or_a_sequence_without_end_keeps_little() {
 }
 
 #[test]
-fn where_keys_are_sequences_they_say_the_same() {
+fn sequences_mean_the_same_with_the_kitty_protocol() {
     for (bytes, expected) in [kitty_keys(), keys_without_a_letter(), replies()].concat() {
-        // But for the last of the keys of old, which are followed by a plain x.
+        // Except the last of the legacy keys, which a plain x follows.
         if !bytes.ends_with(b"x") {
             assert_eq!(parse_with(of_sequences(), &[bytes]), expected, "{}", bytes.escape_ascii());
         }
@@ -192,7 +192,7 @@ fn where_keys_are_sequences_they_say_the_same() {
 }
 
 #[test]
-fn where_keys_are_sequences_a_character_is_pressed_and_let_go() {
+fn a_plain_character_is_pressed_and_released_with_the_kitty_protocol() {
     let typed = |code, modifiers| {
         [KeyEventKind::Press, KeyEventKind::Release].map(|kind| of_kind(code, modifiers, kind)).to_vec()
     };
@@ -204,7 +204,7 @@ fn where_keys_are_sequences_a_character_is_pressed_and_let_go() {
 }
 
 #[test]
-fn where_keys_are_sequences_a_lone_escape_is_none() {
+fn a_lone_escape_is_not_a_key_with_the_kitty_protocol() {
     let given_up = |begun: &[u8], later: &[u8]| {
         let (mut parser, mut out) = (of_sequences(), Vec::new());
         parser.feed(begun, &mut out);
@@ -217,7 +217,7 @@ fn where_keys_are_sequences_a_lone_escape_is_none() {
     for begun in [&b"\x1b"[..], b"\x1b\x1b"] {
         assert_eq!(given_up(begun, b"\x1b[27u"), [key(KeyCode::Esc, NONE)]);
     }
-    // What is late is dropped, but for what ends something.
+    // A late key is dropped, unless it is a release.
     let released = || of_kind(KeyCode::Char('w'), NONE, KeyEventKind::Release);
     for at in 1..b"\x1b[119;1:3u".len() {
         let (begun, rest) = b"\x1b[119;1:3u".split_at(at);
@@ -228,7 +228,7 @@ fn where_keys_are_sequences_a_lone_escape_is_none() {
     assert_eq!(given_up(b"\x1b", b"[?62c"), [reply(Reply::DeviceAttributes(vec![62]))]);
 }
 
-/// Bytes in which escape sequences are frequent.
+/// Random bytes in which escape sequences are frequent.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     let byte = prop_oneof![
         4 => prop::sample::select(b"\x1b\x1b\x1b[[O]P_<>?;:0123456789~uMmtcRA$\\\x07\x18".to_vec()),
@@ -241,17 +241,17 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn noise_says_the_same_in_any_split(bytes in noise(), at in any::<prop::sample::Index>()) {
+    fn noise_is_parsed_alike_however_it_is_split(bytes in noise(), at in any::<prop::sample::Index>()) {
         let (first, second) = bytes.split_at(at.index(bytes.len() + 1));
         prop_assert_eq!(parse(&[first, second]), parse(&[&bytes]));
         prop_assert_eq!(parse_with(of_sequences(), &[first, second]), parse_with(of_sequences(), &[&bytes]));
     }
 
     #[test]
-    fn after_any_noise_keys_come_again(bytes in noise()) {
+    fn keys_are_reported_again_after_any_noise(bytes in noise()) {
         let (mut parser, mut out) = (Parser::new(), Vec::new());
         parser.feed(&bytes, &mut out);
-        for _ in 0..PASTE_PATIENCE {
+        for _ in 0..MAX_PASTE_WAITS {
             parser.give_up_waiting(&mut out);
         }
         prop_assert!(!parser.is_waiting());
@@ -260,9 +260,9 @@ proptest! {
         prop_assert_eq!(out, vec![letter('c', CONTROL), letter('w', NONE)]);
     }
 
-    /// Sequences of any letter and numbers: a key comes only of the letters that name keys.
+    /// Of sequences with any final byte and parameters, only those with the final byte of a key are keys.
     #[test]
-    fn unknown_sequences_are_no_keys(
+    fn unknown_sequences_are_not_keys(
         mark in prop::sample::select(vec!["", "?", ">", "<", "="]),
         numbers in "[0-9;:]{0,12}",
         between in prop::sample::select(vec!["", "$", " ", "!", "'"]),
@@ -277,7 +277,7 @@ proptest! {
 }
 
 #[test]
-fn a_megabyte_of_random_bytes_is_survived() {
+fn a_megabyte_of_random_bytes_is_parsed_without_hanging() {
     const SEED: u64 = 0x7465_726d_7472_6163;
     let mut state = SEED;
     let bytes: Vec<u8> = std::iter::repeat_with(|| {
@@ -292,6 +292,6 @@ fn a_megabyte_of_random_bytes_is_survived() {
     let whole = parse(&[&bytes]);
     let pieces: Vec<&[u8]> = bytes.chunks(7).collect();
     assert!(parse(&pieces) == whole, "split in sevens, seed {SEED:#x}");
-    // Half of all bytes are ASCII or control letters: most of them are keys, if no string or paste hangs.
+    // Half of all bytes are ASCII: most of these are keys, unless a string or paste has swallowed them.
     assert!(whole.len() > 10_000, "{} inputs, seed {SEED:#x}", whole.len());
 }

@@ -1,4 +1,4 @@
-//! The modes that are switched on, in order, and the bytes that switch each on and off.
+//! The modes that are on, in order, and the bytes that switch each on and off.
 
 use crossterm::event::{self, KeyboardEnhancementFlags};
 use crossterm::{Command, cursor, style, terminal};
@@ -6,25 +6,25 @@ use crossterm::{Command, cursor, style, terminal};
 /// A mode of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// The alternate screen (1049), whose contents vanish when it is switched off.
+    /// The alternate screen (1049), whose contents are lost when it is switched off.
     AlternateScreen,
-    /// The pen's colours. Nothing switches them on: the picture sets them, and the shell must not inherit them.
+    /// The pen's colours. No bytes switch this mode on: frames set colours, and the shell must not inherit them.
     Colors,
-    /// No cursor (25).
+    /// A hidden cursor (25).
     HiddenCursor,
-    /// Brackets around what is pasted (2004).
+    /// Bracketed paste (2004).
     BracketedPaste,
-    /// Reports of the focus (1004).
+    /// Reports of focus changes (1004).
     FocusChange,
-    /// Reports of the mouse's buttons and wheel, and of its motion while a button is held (1002). (crossterm's command
-    /// asks for motion without a button too: many events that mean nothing here.)
+    /// Reports of mouse buttons, wheel and drags (1002). crossterm's command also requests motion without a button (1003),
+    /// which would wake the loop for events without a meaning here.
     Mouse,
-    /// Mouse reports in SGR form (1006): coordinates of any size, and which button is released.
+    /// Mouse reports in SGR form (1006): coordinates of any size, and the button of a release.
     MouseSgr,
     /// Mouse reports in pixels (1016).
     MousePixels,
-    /// The kitty keyboard protocol: every key as a sequence, with its release, and with what Shift makes of it. It is
-    /// pushed on that protocol's stack, with a query for the flags that are then set.
+    /// The kitty keyboard protocol: every key as a sequence, with its release and its shifted character. Its flags are
+    /// pushed on the protocol's stack and then queried.
     Keyboard,
 }
 
@@ -37,7 +37,7 @@ const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUAT
 const KEYBOARD_QUERY: &str = "\x1b[?u";
 
 impl Mode {
-    /// The modes of the live view that every terminal knows or ignores, in the order in which they are switched on.
+    /// The live view's modes that every terminal supports or ignores, in the order in which they are switched on.
     pub const ALL_TERMINALS: [Self; 7] = [
         Self::AlternateScreen,
         Self::Colors,
@@ -84,9 +84,9 @@ pub struct Modes {
 }
 
 impl Modes {
-    /// Appends the bytes that switch a mode on, and lists it; no bytes if it is listed already.
+    /// Records a mode as on and appends the bytes that switch it on; appends nothing if it is on already.
     ///
-    /// To be called before the bytes are sent: what was only sent in part is switched off too.
+    /// Call this before sending the bytes, so that a mode whose bytes were sent in part is switched off too.
     pub fn switch_on(&mut self, mode: Mode, bytes: &mut Vec<u8>) {
         if !self.are_on(mode) {
             self.on.push(mode);
@@ -94,7 +94,7 @@ impl Modes {
         }
     }
 
-    /// Whether a mode is switched on.
+    /// Returns whether a mode is on.
     pub fn are_on(&self, mode: Mode) -> bool {
         self.on.contains(&mode)
     }
@@ -107,7 +107,7 @@ impl Modes {
     }
 }
 
-/// A command's escape sequence.
+/// Returns a command's escape sequence.
 fn ansi(command: impl Command) -> String {
     let mut text = String::new();
     command.write_ansi(&mut text).expect("writing to memory does not fail");

@@ -1,48 +1,48 @@
-//! The replies that are outstanding.
+//! Queries whose replies are outstanding.
 
 use super::query::{FENCE, Tag};
 use crate::input::Reply;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// A terminal that has not answered after this time is taken for one that does not answer.
-const LATEST: Duration = Duration::from_secs(3);
+/// Time after the last query at which a terminal counts as one that does not reply.
+const REPLY_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// The most queries that are remembered: those of [`LATEST`] at 60 frames a second, and as many again.
-const MOST: usize = 360;
+/// Limit on the recorded queries: twice the number that [`REPLY_TIMEOUT`] holds at 60 frames a second.
+const MAX_QUERIES: usize = 360;
 
-/// What ended some bytes.
+/// A query at the end of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Query {
     Fence,
     Tag(Tag),
 }
 
-/// The queries that end what was sent, until their replies come.
+/// The queries sent whose replies have not arrived.
 ///
-/// Terminals answer in order: a reply shows that no reply to an older query will come.
+/// Terminals reply in order: a reply shows that no reply to an older query will come.
 #[derive(Clone, Debug, Default)]
 pub struct Outstanding {
     /// Oldest first.
     queries: VecDeque<Query>,
-    /// When the last of them was sent.
-    asked: Duration,
+    /// The time at which the last query was sent.
+    last_sent: Duration,
 }
 
 impl Outstanding {
-    /// These bytes are sent now: notes the query that they end with, if they end with one.
+    /// Records that `bytes` are sent at `now`, with the query at their end, if any.
     pub fn sent(&mut self, bytes: &[u8], now: Duration) {
         let fence = bytes.ends_with(FENCE).then_some(Query::Fence);
         if let Some(query) = fence.or_else(|| Tag::at_end_of(bytes).map(Query::Tag)) {
-            if self.queries.len() == MOST {
+            if self.queries.len() == MAX_QUERIES {
                 self.queries.pop_front();
             }
             self.queries.push_back(query);
-            self.asked = now;
+            self.last_sent = now;
         }
     }
 
-    /// A reply has come; one to no query that is outstanding changes nothing.
+    /// Removes the query that `reply` answers and all older ones. A reply to no outstanding query changes nothing.
     pub fn take(&mut self, reply: &Reply) {
         let answered = match reply {
             Reply::DeviceAttributes(_) => Some(Query::Fence),
@@ -54,13 +54,13 @@ impl Outstanding {
         }
     }
 
-    /// How much longer replies may come: `None` if none is outstanding, or the last is overdue.
-    pub fn patience(&self, now: Duration) -> Option<Duration> {
+    /// Returns the time left until the timeout; `None` if no reply is outstanding or the timeout has passed.
+    pub fn time_left(&self, now: Duration) -> Option<Duration> {
         self.queries.back()?;
-        (self.asked + LATEST).checked_sub(now)
+        (self.last_sent + REPLY_TIMEOUT).checked_sub(now)
     }
 
-    /// Waits for none of these replies any more.
+    /// Forgets all queries.
     pub fn clear(&mut self) {
         self.queries.clear();
     }
@@ -77,38 +77,38 @@ mod tests {
     }
 
     #[test]
-    fn the_reply_to_a_tag_is_the_last_of_all_before_it() {
+    fn a_reply_to_a_tag_removes_all_older_queries() {
         let [first, second, third] = [Tag::FIRST, Tag::FIRST.next(), Tag::FIRST.next().next()];
         let mut outstanding = Outstanding::default();
         outstanding.sent(FENCE, NOW);
         for tag in [first, second, third] {
             outstanding.sent(&tag.query(), NOW);
         }
-        // The fence's reply and that to the first are lost; another comes twice, and one is foreign.
+        // The replies to the fence and to the first tag are lost, the second arrives twice, and two replies are foreign.
         for reply in [mode(201), mode(201), mode(700), mode(2026), Reply::DeviceAttributes(vec![62])] {
             outstanding.take(&reply);
         }
         assert_eq!(outstanding.queries, [Query::Tag(third)]);
         outstanding.take(&mode(202));
-        assert_eq!(outstanding.patience(NOW), None);
+        assert_eq!(outstanding.time_left(NOW), None);
     }
 
     #[test]
-    fn a_terminal_that_does_not_answer_is_waited_for_3_seconds() {
+    fn a_reply_times_out_3_seconds_after_its_query() {
         let mut outstanding = Outstanding::default();
         outstanding.sent(b"frame", NOW);
-        assert_eq!(outstanding.patience(NOW), None, "nothing was asked");
+        assert_eq!(outstanding.time_left(NOW), None, "these bytes hold no query");
         outstanding.sent(b"frame\x1b[c", NOW);
-        assert_eq!(outstanding.patience(NOW + LATEST / 3), Some(2 * LATEST / 3));
-        assert_eq!(outstanding.patience(NOW + 2 * LATEST), None);
+        assert_eq!(outstanding.time_left(NOW + REPLY_TIMEOUT / 3), Some(2 * REPLY_TIMEOUT / 3));
+        assert_eq!(outstanding.time_left(NOW + 2 * REPLY_TIMEOUT), None);
     }
 
     #[test]
-    fn no_more_queries_are_remembered_than_can_be_answered_in_time() {
+    fn the_number_of_recorded_queries_is_bounded() {
         let mut outstanding = Outstanding::default();
-        for _ in 0..10 * MOST {
+        for _ in 0..10 * MAX_QUERIES {
             outstanding.sent(FENCE, NOW);
         }
-        assert_eq!(outstanding.queries.len(), MOST);
+        assert_eq!(outstanding.queries.len(), MAX_QUERIES);
     }
 }

@@ -1,48 +1,46 @@
-//! The queries that end a frame, by whose replies it is known to have arrived.
+//! Queries at the end of a frame, whose replies show that the terminal has processed the frame.
 //!
-//! Every terminal answers [`FENCE`] (DA1), but all its replies are alike: they can only be counted. A terminal that
-//! also reports modes which it does not know (DECRQM) repeats their number in the reply. So a mode that does not exist
-//! is a sequence number, and a reply that is lost, late, doubled or foreign is recognised.
+//! Every terminal replies to [`FENCE`] (DA1), but all these replies are alike and can only be counted. A terminal that
+//! reports unknown modes (DECRQM) repeats the mode's number in the reply. So the number of a mode that does not exist
+//! serves as a sequence number, by which a lost, late, duplicated or foreign reply is recognised.
 //!
-//! The numbers have three digits, because each digit is one byte more in every frame, and because no terminal is known
-//! to use a private mode from 200 to 999. (A cursor position, CPR, would be answered by more terminals, but asking for
-//! one of our choosing moves the cursor: 10 to 14 bytes a frame instead of 8, and none in a window of a single row, whose
-//! replies are those of Shift+F3.)
+//! The numbers have three digits: each digit costs one byte a frame, and no terminal is known to use a private mode from
+//! 200 to 999. (More terminals report the cursor position, CPR. But a position of our choosing takes a cursor move, 10 to
+//! 14 bytes a frame instead of 8, and fails in a window of a single row, where the reply is also that of Shift+F3.)
 
 use std::ops::RangeInclusive;
 
-/// The query that every terminal answers (DA1).
+/// The query that every terminal replies to (DA1).
 pub const FENCE: &[u8] = b"\x1b[c";
 
-/// The modes that do not exist.
+/// Private mode numbers that no terminal uses.
 const NUMBERS: RangeInclusive<u16> = 200..=999;
 
-/// A query whose reply repeats its number: DECRQM of a private mode that does not exist.
+/// A numbered query: DECRQM of a private mode that does not exist, whose reply repeats the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tag(u16);
 
 impl Tag {
-    /// Asked once in the queries of the start. A terminal that answers it answers all others.
+    /// The tag among the queries sent at the start. A terminal that replies to it replies to all tags.
     pub const FIRST: Self = Self(*NUMBERS.start());
 
-    /// The one after this, which is never [`FIRST`](Self::FIRST). There are 799 of them: at 60 frames a second a
-    /// number comes again after 13 s.
+    /// Returns the next tag, which is never [`FIRST`](Self::FIRST). The 799 others repeat after 13 s at 60 frames a second.
     pub fn next(self) -> Self {
         Self(if self.0 < *NUMBERS.end() { self.0 + 1 } else { Self::FIRST.0 + 1 })
     }
 
-    /// The tag whose reply tells of this private mode, if one's does.
+    /// Returns the tag with the number of a private mode, if there is one.
     pub fn of_mode(mode: u16) -> Option<Self> {
         NUMBERS.contains(&mode).then_some(Self(mode))
     }
 
-    /// The bytes that ask.
+    /// Returns the bytes of the query.
     pub fn query(self) -> [u8; 8] {
         let [hundreds, tens, ones] = [self.0 / 100, self.0 / 10 % 10, self.0 % 10].map(|digit| b'0' + digit as u8);
         [0x1b, b'[', b'?', hundreds, tens, ones, b'$', b'p']
     }
 
-    /// The tag that these bytes end with, if they end with one.
+    /// Returns the tag whose query `bytes` end with, if any.
     pub(super) fn at_end_of(bytes: &[u8]) -> Option<Self> {
         let &[hundreds, tens, ones] = bytes.strip_suffix(b"$p")?.last_chunk()?;
         let digits = [hundreds, tens, ones].map(|digit| u16::from(digit.wrapping_sub(b'0')));
@@ -56,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tag_is_read_back_from_its_query_and_its_reply() {
+    fn a_tag_is_recognised_in_its_query_and_its_reply() {
         let mut tag = Tag::FIRST;
         for _ in 0..799 {
             tag = tag.next();
@@ -71,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn other_queries_are_no_tags() {
+    fn other_queries_are_not_tags() {
         for bytes in
             [&b"\x1b[?2026$p"[..], b"\x1b[?1006$p", b"\x1b[?25$p", b"\x1b[c", b"300$p", b"$p", b"", b"\x1b[?3a0$p"]
         {

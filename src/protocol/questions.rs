@@ -1,30 +1,30 @@
-//! What a terminal is asked at the start, all at once, and what becomes of its replies.
+//! The queries sent to a terminal at the start, as one batch, and their replies.
 //!
-//! The batch ends with the question that every terminal answers (DA1). Terminals answer in order: when that answer is
-//! here, no other of the batch will come. Nothing waits for it.
+//! The batch ends with the query that every terminal replies to (DA1). Terminals reply in order: once that reply is here,
+//! no other reply to the batch follows. The first picture does not wait for it.
 
 use crate::capabilities::{Answers, Asking, Hints, TEST_COLOR};
 use crate::input::Reply;
 
 use super::query::{FENCE, Tag};
 
-/// A batch of questions, and the answers to it.
+/// A batch of queries and the answers to it.
 #[derive(Clone, Debug, Default)]
 pub struct Questions {
     bytes: Vec<u8>,
     answers: Answers,
-    /// Whether answers may still come.
+    /// Whether replies may still arrive.
     open: bool,
 }
 
 impl Questions {
-    /// What is not known yet of that terminal and matters for the picture.
+    /// Returns the queries for the facts that the picture depends on and the environment leaves open.
     pub fn needed(hints: &Hints) -> Self {
         let wonders = [hints.wonders_about_truecolor(), hints.wonders_about_sixteen(), hints.wonders_about_blocks()];
         Self::of(hints.asking(), wonders)
     }
 
-    /// All that the terminal may be asked.
+    /// Returns all queries that the terminal is known to tolerate.
     pub fn all(hints: &Hints) -> Self {
         Self::of(hints.asking(), [hints.allows_color(), true, true])
     }
@@ -56,28 +56,29 @@ impl Questions {
         Self { bytes, answers: Answers::default(), open: true }
     }
 
-    /// The bytes that ask; they end with [`FENCE`]. Empty, if nothing is to be asked.
+    /// Returns the bytes of the batch, which end with [`FENCE`]; empty if there are no queries.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// What has been answered.
+    /// Returns the answers so far.
     pub fn answers(&self) -> &Answers {
         &self.answers
     }
 
-    /// Whether the fence's answer is still to come.
+    /// Returns whether the reply to the fence is outstanding.
     pub fn is_open(&self) -> bool {
         self.open
     }
 
-    /// No more answers will come: something that was asked later has been answered, so the fence's answer is lost.
-    /// Whether any could have come until now.
+    /// Closes the batch and returns whether it was open.
+    ///
+    /// Called when a later query has been answered, which shows that the reply to the fence is lost.
     pub fn close(&mut self) -> bool {
         std::mem::take(&mut self.open)
     }
 
-    /// Takes a reply, if it may be to one of these questions. Whether it was the last: nothing that comes later counts.
+    /// Records a reply, and returns whether it ends the batch. Later replies are ignored.
     pub fn take(&mut self, reply: &Reply) -> bool {
         if !self.open {
             return false;
@@ -97,14 +98,15 @@ impl Questions {
     }
 }
 
-/// A half block in the corner, a cursor report (CPR), and the row erased.
+/// Prints a half block in the corner, requests the cursor position (CPR), and erases the row: the column in the reply
+/// gives the block's width.
 const BLOCK_WIDTH: &str = "\x1b[H▄\x1b[6n\r\x1b[K";
 const BACKGROUND: &[u8] = b"\x1b]11;?\x1b\\";
 const SYNCHRONIZED: &[u8] = b"\x1b[?2026$p";
 const MOUSE_AND_KEYBOARD: &[u8] = b"\x1b[?1006$p\x1b[?1016$p\x1b[?u";
 const CELL_PIXELS: &[u8] = b"\x1b[16t";
 
-/// A 24-bit background colour, the question which rendition is in use (DECRQSS of SGR), and an end to it.
+/// Returns the bytes that set a 24-bit background, query the current rendition (DECRQSS of SGR) and reset it.
 fn truecolor_question() -> Vec<u8> {
     let crate::color::Srgb8 { r, g, b } = TEST_COLOR;
     format!("\x1b[48;2;{r};{g};{b}m\x1bP$qm\x1b\\\x1b[0m").into_bytes()
@@ -141,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn each_terminal_is_asked_what_it_understands() {
+    fn each_terminal_gets_the_queries_that_it_understands() {
         let parts: [&[u8]; 7] =
             [b"\x1b[6n", b"\x1b]11;?", b"?2026$p", b"?1006$p", b"\x1b[16t", b"\x1bP$qm", b"\x1b]4;15;?"];
         for (term, expected) in [
@@ -158,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_is_not_asked() {
+    fn known_facts_are_not_queried() {
         let questions = Questions::needed(&hints("xterm", "truecolor"));
         assert!(!has(&questions, b"$qm") && !has(&questions, b"\x1b]4;"));
         assert!(has(&Questions::needed(&hints("xterm", "")), b"$qm"));
@@ -185,14 +187,14 @@ mod tests {
         assert_eq!((answers.block_width, answers.synchronized_output), (Some(1), Some(true)));
         assert_eq!((answers.kitty_keyboard, answers.cell_pixels), (Some(true), Some((10, 20))));
         assert_eq!((answers.truecolor, answers.light_background()), (Some(true), Some(true)));
-        // Forged, or an answer to another program.
+        // Forged, or a reply to another program.
         assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));
         assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
         assert_eq!(questions.answers(), &answers);
     }
 
     #[test]
-    fn a_lost_fence_is_made_up_for_once() {
+    fn a_batch_with_a_lost_fence_is_closed_once() {
         let mut questions = Questions::all(&hints("xterm", ""));
         questions.take(&Reply::Mode { mode: 2026, state: 2 });
         assert!(questions.close() && !questions.close() && !questions.is_open());
@@ -200,14 +202,14 @@ mod tests {
     }
 
     #[test]
-    fn tags_are_tried_where_modes_are_asked_for() {
+    fn tags_are_tried_where_modes_are_queried() {
         for (term, expected) in [("xterm", true), ("tmux-256color", true), ("screen", false), ("linux", false)] {
             assert_eq!(has(&Questions::needed(&hints(term, "")), &Tag::FIRST.query()), expected, "{term}");
         }
     }
 
     #[test]
-    fn who_is_not_asked_does_not_answer() {
+    fn replies_without_queries_are_ignored() {
         let mut questions = Questions::all(&hints("dumb", ""));
         assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
         assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));

@@ -1,40 +1,41 @@
-//! What a terminal sends, cut into inputs once, and the replies among it that are still to come.
+//! Parsing of a terminal's bytes, and bookkeeping of the outstanding replies among them.
 
 use super::outstanding::Outstanding;
 use crate::input::{Input, Parser};
 use std::time::Duration;
 
-/// How long the rest of a key's escape sequence may take before a lone Escape is taken for the key.
-const ESCAPE_WAIT: Duration = Duration::from_millis(50);
-/// The same where a lone Escape is no key: the first byte of a reply may come alone.
-const REPLY_WAIT: Duration = Duration::from_secs(1);
+/// Timeout after which a lone `ESC` is the Escape key. 50 ms is the usual choice of editors: longer than the gap within a
+/// sequence on most links, shorter than what is felt as a delay.
+const ESCAPE_TIMEOUT: Duration = Duration::from_millis(50);
+/// Timeout where a lone `ESC` is probably the first byte of a reply, or keys are sequences and it cannot be the key.
+const SEQUENCE_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Parses the bytes of a terminal, and strikes off the replies that were outstanding.
+/// Parser of a terminal's bytes that also tracks outstanding replies.
 #[derive(Default)]
 pub struct Receiver {
     parser: Parser,
     outstanding: Outstanding,
-    /// Whether the terminal writes every key as a sequence.
+    /// Whether the terminal sends every key as a sequence.
     keys_are_sequences: bool,
-    /// When bytes last came, or were waited for in vain.
-    heard: Duration,
+    /// Time of the last bytes or timeout.
+    last_event: Duration,
 }
 
 impl Receiver {
-    /// Notes the query that these bytes end with, if they end with one.
+    /// Records that `bytes` are sent at `now`, with the query at their end, if any.
     pub fn sent(&mut self, bytes: &[u8], now: Duration) {
         self.outstanding.sent(bytes, now);
     }
 
-    /// Returns what bytes say that come now. Without any, time has passed: where the rest of an escape sequence is overdue,
-    /// what there is of it is taken for all of it.
-    pub fn hear(&mut self, bytes: &[u8], now: Duration) -> Vec<Input> {
+    /// Parses the bytes that arrive at `now` and returns the inputs. Without bytes it handles the timeout of an incomplete
+    /// escape sequence, if that has passed.
+    pub fn receive(&mut self, bytes: &[u8], now: Duration) -> Vec<Input> {
         let mut inputs = Vec::new();
         if !bytes.is_empty() {
-            self.heard = now;
+            self.last_event = now;
             self.parser.feed(bytes, &mut inputs);
         } else if self.escape_due(now).is_some_and(|due| due <= now) {
-            self.heard = now;
+            self.last_event = now;
             self.parser.give_up_waiting(&mut inputs);
         }
         for input in &inputs {
@@ -45,31 +46,31 @@ impl Receiver {
         inputs
     }
 
-    /// When [`hear`](Self::hear) is to be called if nothing comes until then.
+    /// Returns the time at which to call [`receive`](Self::receive) if no bytes arrive before.
     pub fn escape_due(&self, now: Duration) -> Option<Duration> {
-        let is_no_key = self.keys_are_sequences || self.patience(now).is_some();
-        let wait = if is_no_key { REPLY_WAIT } else { ESCAPE_WAIT };
-        self.parser.is_waiting().then_some(self.heard + wait)
+        let starts_sequence = self.keys_are_sequences || self.reply_time_left(now).is_some();
+        let timeout = if starts_sequence { SEQUENCE_TIMEOUT } else { ESCAPE_TIMEOUT };
+        self.parser.is_waiting().then_some(self.last_event + timeout)
     }
 
-    /// Whether the terminal writes every key as a sequence from now on: see [`Parser::set_keys_are_sequences`].
+    /// Sets whether the terminal sends every key as a sequence: see [`Parser::set_keys_are_sequences`].
     pub fn set_keys_are_sequences(&mut self, keys_are_sequences: bool) {
         self.keys_are_sequences = keys_are_sequences;
         self.parser.set_keys_are_sequences(keys_are_sequences);
     }
 
-    /// How much longer replies may come: `None` if none is outstanding, or the last is overdue.
-    pub fn patience(&self, now: Duration) -> Option<Duration> {
-        self.outstanding.patience(now)
+    /// Returns the time left for outstanding replies; `None` if none is outstanding or their timeout has passed.
+    pub fn reply_time_left(&self, now: Duration) -> Option<Duration> {
+        self.outstanding.time_left(now)
     }
 
-    /// Waits for no reply any more.
+    /// Forgets the outstanding replies.
     pub fn forget_replies(&mut self) {
         self.outstanding.clear();
     }
 
-    /// Forgets half a sequence and all outstanding replies: the terminal was given back, and what comes from it next is a
-    /// new beginning.
+    /// Forgets an incomplete sequence and all outstanding replies, after the terminal has been restored: the next bytes
+    /// start a new stream.
     pub fn forget(&mut self) {
         self.forget_replies();
         self.parser = Parser::new();
@@ -89,41 +90,41 @@ mod tests {
         [Input::Event(Event::Key(KeyCode::Esc.into()))]
     }
 
-    /// A terminal may be given back more than once.
+    /// The terminal may be restored more than once.
     #[test]
-    fn what_was_asked_before_is_not_waited_for_again() {
+    fn replies_forgotten_at_a_restore_do_not_count_later() {
         let mut receiver = Receiver::default();
         receiver.sent(FENCE, Duration::ZERO);
         receiver.sent(b"frame\x1b[c", Duration::ZERO);
         receiver.forget();
-        assert_eq!(receiver.patience(Duration::ZERO), None);
-        // What is late then answers nothing, and what is asked then has a reply of its own.
-        receiver.hear(b"\x1b[?62c", Duration::ZERO);
+        assert_eq!(receiver.reply_time_left(Duration::ZERO), None);
+        // A late reply matches no query, and a new query waits for its own reply.
+        receiver.receive(b"\x1b[?62c", Duration::ZERO);
         receiver.sent(FENCE, Duration::ZERO);
-        assert!(receiver.patience(Duration::ZERO).is_some());
-        receiver.hear(b"\x1b[?62c", Duration::ZERO);
-        assert_eq!(receiver.patience(Duration::ZERO), None);
+        assert!(receiver.reply_time_left(Duration::ZERO).is_some());
+        receiver.receive(b"\x1b[?62c", Duration::ZERO);
+        assert_eq!(receiver.reply_time_left(Duration::ZERO), None);
     }
 
     #[test]
-    fn a_lone_escape_is_the_key_when_its_rest_is_overdue() {
+    fn a_lone_escape_is_the_key_after_its_timeout() {
         let mut receiver = Receiver::default();
         assert_eq!(receiver.escape_due(Duration::ZERO), None);
-        assert_eq!(receiver.hear(ESCAPE, Duration::ZERO), []);
+        assert_eq!(receiver.receive(ESCAPE, Duration::ZERO), []);
         let due = receiver.escape_due(Duration::ZERO).expect("it waits");
-        assert_eq!(receiver.hear(&[], due.mul_f32(0.9)), []);
-        assert_eq!(receiver.hear(&[], due), escape());
+        assert_eq!(receiver.receive(&[], due.mul_f32(0.9)), []);
+        assert_eq!(receiver.receive(&[], due), escape());
         assert_eq!(receiver.escape_due(due), None);
     }
 
     #[test]
-    fn the_rest_is_waited_for_longer_where_it_may_be_a_reply() {
+    fn a_lone_escape_times_out_later_where_a_reply_may_follow() {
         let (mut asked, mut kitty) = (Receiver::default(), Receiver::default());
         asked.sent(FENCE, Duration::ZERO);
         kitty.set_keys_are_sequences(true);
         for receiver in [&mut asked, &mut kitty] {
-            receiver.hear(ESCAPE, Duration::ZERO);
-            assert_eq!(receiver.escape_due(Duration::ZERO), Some(REPLY_WAIT));
+            receiver.receive(ESCAPE, Duration::ZERO);
+            assert_eq!(receiver.escape_due(Duration::ZERO), Some(SEQUENCE_TIMEOUT));
         }
     }
 }

@@ -29,8 +29,8 @@ fn read_up_to_last(
 ) {
     let start = Instant::now();
     let mut buffer = [0; 4096];
-    while let Some(patience) = receiver.patience(now + start.elapsed()) {
-        let left = deadline.saturating_duration_since(Instant::now()).min(patience);
+    while let Some(reply_time_left) = receiver.reply_time_left(now + start.elapsed()) {
+        let left = deadline.saturating_duration_since(Instant::now()).min(reply_time_left);
         if left.is_zero() {
             return;
         }
@@ -40,7 +40,7 @@ fn read_up_to_last(
             Err(_) => return,
         }
         match keys.read(&mut buffer) {
-            Ok(count) if count > 0 => inputs.extend(receiver.hear(&buffer[..count], now + start.elapsed())),
+            Ok(count) if count > 0 => inputs.extend(receiver.receive(&buffer[..count], now + start.elapsed())),
             // The terminal has hung up.
             _ => return,
         }

@@ -24,7 +24,7 @@ impl Viewer {
     /// # Errors
     /// If there is not enough memory for pictures of the size that the terminal turns out to have.
     pub(crate) fn hear(&mut self, bytes: &[u8], now: Duration) -> Result<(), OutOfMemory> {
-        let inputs = self.receiver.hear(bytes, now);
+        let inputs = self.receiver.receive(bytes, now);
         self.take_inputs(&inputs, now)
     }
 

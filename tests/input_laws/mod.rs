@@ -4,7 +4,7 @@
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Duration;
 use termtrace::internals::control::{Bindings, COAST, GLIDE, Mode, Motion};
-use termtrace::internals::input::{Input, PASTE_PATIENCE, Parser};
+use termtrace::internals::input::{Input, MAX_PASTE_WAITS, Parser};
 
 /// Panics if a law is broken for these bytes, of which the first says how the rest is split.
 pub(crate) fn hold_for(data: &[u8]) {
@@ -58,7 +58,7 @@ fn keys_come_again(mut parser: Parser, pieces: &[&[u8]]) {
         parser.feed(piece, &mut out);
         parser.give_up_waiting(&mut out);
     }
-    for _ in 0..PASTE_PATIENCE {
+    for _ in 0..MAX_PASTE_WAITS {
         parser.give_up_waiting(&mut out);
     }
     assert!(!parser.is_waiting());

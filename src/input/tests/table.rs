@@ -1,4 +1,4 @@
-//! What bytes say.
+//! The table of byte sequences and the inputs that they are parsed into.
 
 use crate::input::{Input, Reply};
 use crossterm::event::{
@@ -13,7 +13,7 @@ pub(super) const CONTROL: KeyModifiers = KeyModifiers::CONTROL;
 
 type Row = (&'static [u8], Vec<Input>);
 
-// -- how a test says what it expects ----------------------------------------------------------------------------------
+// -- shorthands for expected inputs -----------------------------------------------------------------------------------
 
 pub(super) fn key(code: KeyCode, modifiers: KeyModifiers) -> Input {
     KeyEvent::new(code, modifiers).into()
@@ -81,7 +81,7 @@ fn broken_characters() -> Vec<Row> {
     vec![
         (b"a\xffb\xc3c\x80\x9b\xe2\x82d", ['a', 'b', 'c', 'd'].map(|c| letter(c, NONE)).to_vec()),
         (b"\xe2\x82\x1b[A\xc3\xc3\xa9", vec![key(KeyCode::Up, NONE), letter('é', NONE)]),
-        // A control of the second set, encoded; a surrogate; the character that stands for broken bytes.
+        // An encoded C1 control; a surrogate; U+FFFD, which stands for invalid bytes.
         (b"\xc2\x9b\xed\xa0\x80\xef\xbf\xbd", vec![]),
         (b"\x1b\xc3x\x1b\xffy", vec![letter('x', NONE), letter('y', NONE)]),
     ]
@@ -136,7 +136,7 @@ pub(super) fn kitty_keys() -> Vec<Row> {
         }),
         (b"\x1b[47:63;2u\x1b[47;2u", vec![letter('?', NONE), letter('/', SHIFT)]),
         (b"\x1b[1094::119;1u\x1b[1094:1062:119;2u\x1b[1089::99;5u", {
-            // By the place on a Latin keyboard; letters of a Latin one are what they are.
+            // Non-Latin keys by their position on a Latin keyboard, Latin ones by their letter.
             vec![letter('w', NONE), letter('W', SHIFT), letter('c', CONTROL)]
         }),
         (b"\x1b[1094;1u\x1b[122::119;1u\x1b[246::59;1u", ['ц', 'z', 'ö'].map(|c| letter(c, NONE)).to_vec()),
@@ -242,7 +242,7 @@ pub(super) fn replies_in_strings_and_others() -> Vec<Row> {
         (b"\x1b[?1;0;256S", vec![unknown(b"?1;0;256S")]),
         (b"\x1b[4;1$y", vec![unknown(b"4;1$y")]),
         (b"\x1b[7;5A\x1b[1;2;3A\x1b[99~", { [&b"7;5A"[..], b"1;2;3A", b"99~"].map(unknown).to_vec() }),
-        // The Escape key pressed while an answer was on its way.
+        // The Escape key pressed just before a reply arrives.
         (b"\x1b\x1b[?62c", vec![key(KeyCode::Esc, NONE), reply(Reply::DeviceAttributes(vec![62]))]),
         (b"\x1b\x1b]11;?\x07", vec![key(KeyCode::Esc, NONE), reply(Reply::Osc(b"11;?".to_vec()))]),
     ]
@@ -250,19 +250,19 @@ pub(super) fn replies_in_strings_and_others() -> Vec<Row> {
 
 fn broken_sequences() -> Vec<Row> {
     vec![
-        // A second sequence cuts the first.
+        // A sequence that starts within another aborts it.
         (b"\x1b[1;\x1b[A", vec![key(KeyCode::Up, NONE)]),
         (b"\x1bO\x1b[A", vec![key(KeyCode::Up, NONE)]),
         (b"\x1b]11;\x1b[A", vec![key(KeyCode::Up, NONE)]),
         (b"\x1bP1$r\x1b]4;0;x\x07", vec![reply(Reply::Osc(b"4;0;x".to_vec()))]),
-        // CAN and SUB end what was begun; they are Ctrl-X and Ctrl-Z of a person who waits no longer.
+        // CAN and SUB abort a sequence, and are reported as Ctrl-X and Ctrl-Z.
         (b"\x1b[1;\x18A", vec![letter('x', CONTROL), letter('A', SHIFT)]),
         (b"\x1b]11;\x1aA", vec![letter('z', CONTROL), letter('A', SHIFT)]),
-        // A control letter inside a sequence is what it always is.
+        // A control character inside a sequence is reported as elsewhere.
         (b"\x1b[1;\x035A", vec![letter('c', CONTROL), key(KeyCode::Up, CONTROL)]),
-        // Strings in which nothing is answered.
+        // Strings of kinds that carry no replies.
         (b"\x1bXnoise\x1b\\\x1b^noise\x1b\\", vec![]),
-        // Grammar of no terminal.
+        // Sequences that no terminal sends.
         (b"\x1b[1?5Ax\x1b[ 1Ay", vec![letter('x', NONE), letter('y', NONE)]),
         (b"\x1bO!x\x1bO9;9;9Zy", vec![letter('x', NONE), letter('y', NONE)]),
         (b"\x1b[1;2$%&'A", vec![unknown(b"1;2$%&'A")]),

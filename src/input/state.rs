@@ -1,12 +1,12 @@
-//! Where in the stream of bytes the parser stands.
+//! The states of the parser.
 
-/// Where in the stream of bytes the parser stands.
+/// The state of the parser, named as in the VT500 parser of Paul Williams.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Place {
-    /// Between characters.
+pub(super) enum State {
+    /// Between characters: nothing is incomplete.
     #[default]
     Ground,
-    /// Inside a character of several bytes.
+    /// Inside a multi-byte character.
     Character,
     /// After `ESC`.
     Escape,
@@ -14,33 +14,33 @@ pub(super) enum Place {
     Ss3,
     /// After `ESC [`.
     Csi,
-    /// After `ESC [ [`, by which the Linux console begins F1 to F5.
+    /// After `ESC [ [`, with which F1 to F5 begin on the Linux console.
     LinuxFunction,
-    /// After `ESC [ M`: three bytes of the oldest mouse report follow.
+    /// After `ESC [ M`: three bytes of an X10 mouse report follow.
     OldMouse,
     /// Inside a string.
     Text(Text),
-    /// After an `ESC` inside a string: `\` ends it.
+    /// After an `ESC` inside a string, which a `\` ends.
     TextEscape(Text),
     /// Inside a bracketed paste.
     Paste,
 }
 
-/// The kinds of string a terminal may send.
+/// A kind of string that a terminal may send.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Text {
     /// Operating system command, `ESC ]`: colours, titles.
     Osc,
     /// Device control string, `ESC P`: settings, terminfo, the terminal's name.
     Dcs,
-    /// Application program command, `ESC _`: answers of the kitty graphics protocol.
+    /// Application program command, `ESC _`: replies of the kitty graphics protocol.
     Apc,
-    /// Start of string and privacy message, `ESC X` and `ESC ^`: nothing is answered in them.
+    /// Start of string and privacy message, `ESC X` and `ESC ^`: never used for replies.
     Other,
 }
 
 impl Text {
-    /// Whether an answer of this kind may begin with `byte`.
+    /// Returns whether a reply of this kind may begin with `byte`.
     pub(super) fn begins_with(self, byte: u8) -> bool {
         match self {
             Self::Osc => byte.is_ascii_digit(),
