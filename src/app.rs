@@ -28,6 +28,7 @@ pub use source::Source;
 
 /// How the live view ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Outcome {
     /// Why.
     pub ending: Ending,
@@ -39,7 +40,7 @@ pub struct Outcome {
 
 /// Why the live view ended.
 #[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Ending {
     /// The user left.
     Left,

@@ -5,9 +5,12 @@
 use crate::color::Srgb8;
 use crate::framebuffer::Resolution;
 use crate::grid::{Grid, Size};
+use crate::text::{ParseError, named};
 use crate::tone::Picture;
 use inks::Inks;
 use kind::{Fill, Kind};
+use std::fmt;
+use std::str::FromStr;
 
 mod blue_noise;
 mod colors;
@@ -27,7 +30,7 @@ pub(crate) use colors::xterm_color;
 pub use ramp::RAMP;
 
 /// How pixels become cells: what stands in them, and in which colours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CellMode {
     /// What stands in a cell.
     pub glyphs: Glyphs,
@@ -82,11 +85,39 @@ impl Glyphs {
     }
 }
 
+impl fmt::Display for Glyphs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// The value of that name.
+///
+/// ```
+/// use termtrace::Glyphs;
+///
+/// assert_eq!("half".parse(), Ok(Glyphs::Half));
+/// let error = "halv".parse::<Glyphs>().unwrap_err();
+/// assert_eq!(error.to_string(), "unknown glyphs \"halv\"; did you mean \"half\"?");
+/// ```
+impl FromStr for Glyphs {
+    type Err = ParseError;
+
+    fn from_str(name: &str) -> Result<Self, ParseError> {
+        named("glyphs", name, Self::ALL, Self::name)
+    }
+}
+
 impl CellMode {
     /// Half blocks in truecolor.
     pub const HALF_BLOCK: Self = Self { glyphs: Glyphs::Half, colors: Colors::Truecolor };
     /// The ramp in the terminal's own colours: the text that people compare.
     pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
+
+    /// Returns the resolution at which to render for a screen of that size whose cells have that aspect (height / width).
+    pub fn resolution(self, size: Size, cell_aspect: f32) -> Resolution {
+        resolution(self, size, cell_aspect)
+    }
 
     /// How many pixels a cell wants, across and down.
     #[doc(hidden)]
@@ -124,6 +155,14 @@ pub struct Painter {
     mode: CellMode,
     light_background: bool,
     inks: Inks,
+}
+
+impl fmt::Debug for Painter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mode, light_background, .. } = self;
+        let mut painter = f.debug_struct("Painter");
+        painter.field("mode", mode).field("light_background", light_background).finish_non_exhaustive()
+    }
 }
 
 impl Painter {

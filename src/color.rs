@@ -61,6 +61,20 @@ impl LinearRgb {
     }
 }
 
+/// The three bands, linear.
+impl From<[f32; 3]> for LinearRgb {
+    fn from([r, g, b]: [f32; 3]) -> Self {
+        Self::new(r, g, b)
+    }
+}
+
+/// What an 8-bit sRGB colour means as light, each band in 0..=1.
+impl From<Srgb8> for LinearRgb {
+    fn from(color: Srgb8) -> Self {
+        Self::from_srgb8(color)
+    }
+}
+
 impl Add for LinearRgb {
     type Output = Self;
     fn add(self, other: Self) -> Self {
@@ -117,6 +131,28 @@ impl Srgb8 {
     /// The same of all in a row.
     pub(crate) fn all_from_linear(lights: impl Iterator<Item = LinearRgb>) -> impl Iterator<Item = Self> {
         lights.map(|light| TRANSFER.color(light))
+    }
+}
+
+/// The three bands.
+impl From<[u8; 3]> for Srgb8 {
+    fn from([r, g, b]: [u8; 3]) -> Self {
+        Self::new(r, g, b)
+    }
+}
+
+/// The three bands.
+impl From<Srgb8> for [u8; 3] {
+    fn from(Srgb8 { r, g, b }: Srgb8) -> Self {
+        [r, g, b]
+    }
+}
+
+/// The nearest 8-bit colour: each band clamped to 0..=1, put through the transfer function and rounded. NaN counts as no
+/// light.
+impl From<LinearRgb> for Srgb8 {
+    fn from(light: LinearRgb) -> Self {
+        Self::from_linear(light)
     }
 }
 

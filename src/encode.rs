@@ -40,7 +40,8 @@ use std::time::Duration;
 use stillness::Stillness;
 
 /// The order in which cells are sent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Order {
     /// Row by row from the top: for links that compress.
     #[default]
@@ -51,7 +52,8 @@ pub enum Order {
 
 /// How near a moving picture is to the wanted one. Text is always exact, and so is the picture within a second after it
 /// last changed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Quality {
     /// Every half cell has its colour.
     #[default]

@@ -23,6 +23,7 @@ use glam::{Vec2, Vec3};
 
 /// What a picture's pixel comes from: the first of its samples, which goes through its centre.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Explanation {
     /// The picture's size.
     pub resolution: Resolution,

@@ -28,9 +28,12 @@ use crate::cell;
 use crate::grid::{Grid, Size};
 use crate::render::render;
 use crate::scene::Scene;
+use crate::text::{ParseError, named};
 use crate::tone::tone;
 use kind::Kind;
+use std::fmt;
 use std::num::NonZeroU32;
+use std::str::FromStr;
 
 crate::table::table! {
     /// What a file with a picture can be, in the order of the keys that ask for it.
@@ -115,6 +118,29 @@ impl Format {
     #[doc(hidden)]
     pub fn difference(self, golden: &[u8], file: &[u8], name: &str) -> String {
         (self.row().difference)(golden, file, name)
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// The value of that name.
+///
+/// ```
+/// use termtrace::export::Format;
+///
+/// assert_eq!("html".parse(), Ok(Format::Html));
+/// let error = "htm".parse::<Format>().unwrap_err();
+/// assert_eq!(error.to_string(), "unknown format \"htm\"; did you mean \"html\"?");
+/// ```
+impl FromStr for Format {
+    type Err = ParseError;
+
+    fn from_str(name: &str) -> Result<Self, ParseError> {
+        named("format", name, Self::ALL, Self::name)
     }
 }
 

@@ -9,12 +9,19 @@ use std::fmt;
 use std::sync::Arc;
 
 /// A screen's size in cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Size {
     /// Cells in a row.
     pub columns: u16,
     /// Rows of cells.
     pub rows: u16,
+}
+
+/// Columns and rows.
+impl From<(u16, u16)> for Size {
+    fn from((columns, rows): (u16, u16)) -> Self {
+        Self { columns, rows }
+    }
 }
 
 impl Size {
@@ -63,7 +70,8 @@ pub enum Ink {
 }
 
 /// What stands in a cell. Something wide is followed by [`Glyph::Covered`].
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Glyph {
     /// A character that takes as many cells in every terminal: one, or two.
     Char(char),
@@ -100,7 +108,7 @@ impl fmt::Display for Glyph {
 }
 
 /// One cell.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Cell {
     /// What stands in it.
     pub glyph: Glyph,
@@ -133,7 +141,7 @@ impl Cell {
 }
 
 /// A screenful of cells, row by row from the top.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Grid {
     size: Size,
     cells: Vec<Cell>,
@@ -196,6 +204,26 @@ impl Grid {
     pub fn row_from(&self, column: u16, row: u16) -> &[Cell] {
         let left = usize::from(self.size.columns - column);
         &self.cells[self.index(column, row)..][..left]
+    }
+
+    /// Returns the cell in that column and row, counted from 0 at the top left; `None` outside the grid.
+    ///
+    /// ```
+    /// use termtrace::{Grid, Size};
+    ///
+    /// let grid = Grid::new(Size::new(80, 24));
+    /// assert!(grid.get(79, 23).is_some_and(|cell| cell.glyph == ' '));
+    /// assert!(grid.get(80, 0).is_none());
+    /// ```
+    pub fn get(&self, column: u16, row: u16) -> Option<&Cell> {
+        let is_inside = column < self.size.columns && row < self.size.rows;
+        is_inside.then(|| self.cell(column, row))
+    }
+
+    /// Returns the cell in that column and row to change; `None` outside the grid.
+    pub fn get_mut(&mut self, column: u16, row: u16) -> Option<&mut Cell> {
+        let is_inside = column < self.size.columns && row < self.size.rows;
+        is_inside.then(|| self.cell_mut(column, row))
     }
 
     /// One cell, counted from the top left.

@@ -5,8 +5,7 @@
 //!
 //! ```
 //! use std::num::NonZeroU32;
-//! use termtrace::internals::{render, tone};
-//! use termtrace::{Resolution, Scene};
+//! use termtrace::{Resolution, Scene, render, tone};
 //!
 //! let scene = Scene::from_ron("ball.ron", r##"(
 //!     camera: (eye: (0, 1, 4), target: (0, 1, 0)),
@@ -271,6 +270,9 @@ pub use overlay::lay_over;
 
 // Films.
 pub use record::{Cast, Gif};
+
+// What is read from words.
+pub use text::ParseError;
 
 // The crates whose types are in signatures.
 pub use glam;

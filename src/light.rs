@@ -54,6 +54,7 @@ macro_rules! lights {
     ($($(#[$on:meta])* $name:ident: $light:ident, $of:literal;)*) => {
         /// Any of the lights. It hands every question on to [`LightSource`].
         #[derive(Clone, Copy, Debug, PartialEq)]
+        #[non_exhaustive]
         pub enum Light {
             $(#[doc = $of] $(#[$on])* $name($light),)*
         }

@@ -12,7 +12,10 @@ use crate::render::{Cost, Crew, Reach, Sampling, Sight, all_sights};
 use crate::scene::Scene;
 use crate::shade;
 use crate::shape::Side;
+use crate::text::{ParseError, named};
 use crate::tone::Picture;
+use std::fmt;
+use std::str::FromStr;
 
 mod colors;
 mod contrast;
@@ -21,6 +24,7 @@ mod shaded;
 
 /// What a picture shows of a scene: its light, or one of the maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Map {
     /// Its light.
     #[default]
@@ -76,6 +80,18 @@ impl Map {
         Self::Facing,
         Self::Contrast,
     ];
+
+    /// Returns the picture that `camera` takes of `scene`: a function of these arguments alone. Samples refine the shaded
+    /// picture; of the maps only [`Sampling::Coarse`] changes anything.
+    pub fn picture(
+        self,
+        scene: &Scene,
+        camera: &Camera,
+        resolution: Resolution,
+        sampling: impl Into<Sampling>,
+    ) -> Picture {
+        picture(self, scene, camera, resolution, sampling)
+    }
 
     /// Returns the name, one word.
     pub const fn name(self) -> &'static str {
@@ -139,8 +155,30 @@ impl Map {
     }
 }
 
-/// Returns the picture that `camera` takes of `scene`: a function of these arguments alone. Samples refine the shaded
-/// picture; of the maps only [`Sampling::Coarse`] changes anything.
+impl fmt::Display for Map {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// The value of that name.
+///
+/// ```
+/// use termtrace::Map;
+///
+/// assert_eq!("depth".parse(), Ok(Map::Depth));
+/// let error = "dept".parse::<Map>().unwrap_err();
+/// assert_eq!(error.to_string(), "unknown map \"dept\"; did you mean \"depth\"?");
+/// ```
+impl FromStr for Map {
+    type Err = ParseError;
+
+    fn from_str(name: &str) -> Result<Self, ParseError> {
+        named("map", name, &Self::ALL, Self::name)
+    }
+}
+
+/// Returns the [picture](Map::picture) of that map.
 pub fn picture(
     map: Map,
     scene: &Scene,

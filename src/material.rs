@@ -42,6 +42,7 @@ macro_rules! materials {
     ($($(#[$on:meta])* $material:ident, $of:literal;)*) => {
         /// Any of the materials, or what a surface brings itself.
         #[derive(Clone, Copy, Debug, PartialEq)]
+        #[non_exhaustive]
         pub enum Material {
             $(#[doc = $of] $(#[$on])* $material($material),)*
             /// What the surface brings itself: the colours and textures of a mesh's file; where there are none, as
@@ -115,6 +116,13 @@ materials! {
     Checker, "Squares of two reflectances in turn.";
     #[cfg(test)]
     Stripes, "Stripes of two reflectances in turn.";
+}
+
+/// The material of an object that is given none: a light grey.
+impl Default for Material {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
 }
 
 impl Material {

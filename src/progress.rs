@@ -8,7 +8,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is being done, and how much of it is done.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub struct Progress {
     /// What is being done.
     pub work: Work,
@@ -19,7 +20,8 @@ pub struct Progress {
 }
 
 /// What takes time on the way from a file to a scene.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Work {
     /// The file of that name comes from the disk.
     Reading(String),
@@ -98,7 +100,7 @@ impl Cancellation {
 }
 
 /// The error of work that was given up because its token was cancelled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cancelled;
 
 impl fmt::Display for Cancelled {

@@ -8,6 +8,7 @@ use crate::framebuffer::Resolution;
 use crate::grid::{Grid, Size};
 use crate::tone::Picture;
 use gif::{EncodingError, Repeat};
+use std::fmt;
 use std::io::{self, Write};
 use std::time::Duration;
 
@@ -28,6 +29,14 @@ pub struct Cast<W: Write> {
     free_at: Duration,
     /// The last frame and its bytes, which may not be all yet.
     last: Option<(Grid, Vec<u8>)>,
+}
+
+impl<W: Write> fmt::Debug for Cast<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { frames_per_second, frame, .. } = self;
+        let mut cast = f.debug_struct("Cast");
+        cast.field("frames_per_second", frames_per_second).field("frame", frame).finish_non_exhaustive()
+    }
 }
 
 impl<W: Write> Cast<W> {
@@ -121,6 +130,15 @@ pub struct Gif<W: Write> {
     size: (u16, u16),
     frames_per_second: u32,
     frame: u64,
+}
+
+impl<W: Write> fmt::Debug for Gif<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { size, frames_per_second, frame, .. } = self;
+        let mut gif = f.debug_struct("Gif");
+        gif.field("size", size).field("frames_per_second", frames_per_second).field("frame", frame);
+        gif.finish_non_exhaustive()
+    }
 }
 
 impl<W: Write> Gif<W> {

@@ -213,6 +213,7 @@ impl Object {
 
 /// The light that arrives along rays that meet no object.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Background {
     /// The same from everywhere.
     Color(LinearRgb),
@@ -226,7 +227,8 @@ pub enum Background {
 }
 
 /// How light is fitted to the screen's range.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ToneCurve {
     /// As it is; what is brighter than white is white.
     #[default]

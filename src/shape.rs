@@ -248,6 +248,7 @@ macro_rules! shapes {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         /// Any of the surfaces, or a mesh.
         #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
         pub enum Shape {
             $(#[doc = $of] $(#[$on])* $surface($surface),)*
             /// Many triangles.

@@ -10,7 +10,8 @@ macro_rules! table {
         }
     ) => {
         $(#[doc = $about])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[non_exhaustive]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum $Table {
             $($(#[doc = $doc])* $(#[cfg($condition)])? $Row,)*
         }

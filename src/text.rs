@@ -2,9 +2,12 @@
 //! prose; the word that was probably meant; an error in parts.
 
 mod notice;
+mod parse_error;
 mod words;
 
 pub use notice::Notice;
+pub use parse_error::ParseError;
+pub(crate) use parse_error::named;
 pub(crate) use words::number;
 pub use words::{closest, listed};
 

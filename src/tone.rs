@@ -6,7 +6,7 @@ use crate::scene::{Scene, ToneCurve};
 use rayon::prelude::*;
 
 /// The picture as files and terminals take it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Picture {
     /// Pixels in a row.
     pub width: u32,

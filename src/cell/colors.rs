@@ -3,7 +3,7 @@
 use crate::color::Srgb8;
 
 /// The colours that a cell may have, fewer before more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Colors {
     /// The terminal's own two: nothing is said of colours at all.
     None,

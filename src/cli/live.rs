@@ -122,7 +122,7 @@ fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
     let (sources, options) = (sources(args)?, args.options(&settings, bindings));
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
-    let Outcome { ending, moved, heard } = match ended {
+    let Outcome { ending, moved, heard, .. } = match ended {
         Ok(outcome) => outcome.map_err(|error| match error {
             app::Error::Terminal(error) if error.kind() == io::ErrorKind::OutOfMemory => {
                 Failure::Runtime(error.to_string())

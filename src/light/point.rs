@@ -20,7 +20,8 @@ pub struct PointLight {
 }
 
 /// How a light grows weaker with the distance d.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Falloff {
     /// By 1 / d^2, as light does.
     #[default]

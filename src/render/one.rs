@@ -31,6 +31,27 @@ pub struct Steps {
     pub light: LinearRgb,
 }
 
+impl Scene {
+    /// Returns what the eye ray through the middle of a pixel meets first, counted from the top left; `None` where it meets
+    /// nothing, and outside the picture.
+    ///
+    /// ```
+    /// use termtrace::{Resolution, Scene};
+    ///
+    /// let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
+    /// let scene = Scene::from_ron("ball.ron", text)?;
+    /// let resolution = Resolution::square(81, 81);
+    /// let hit = scene.hit(scene.camera(), resolution, [40, 40]);
+    /// assert!(hit.is_some_and(|hit| hit.object == 0 && (hit.t - 4.0).abs() < 1e-3));
+    /// assert_eq!(scene.hit(scene.camera(), resolution, [0, 0]), None);
+    /// # Ok::<(), termtrace::SceneError>(())
+    /// ```
+    pub fn hit(&self, camera: &Camera, resolution: Resolution, pixel: [u32; 2]) -> Option<Hit> {
+        let is_inside = pixel[0] < resolution.width && pixel[1] < resolution.height;
+        is_inside.then(|| trace_pixel(self, camera, resolution, pixel).hit).flatten()
+    }
+}
+
 /// The steps of [`render`](super::render) for one pixel of a picture, counted from the top left: what that does for all,
 /// done by the same functions for one.
 ///

@@ -6,7 +6,8 @@ use std::num::NonZeroU32;
 use std::ops::Range;
 
 /// How many rays go through the pixels of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Sampling {
     /// One through the middle of each two by two pixels.
     Coarse,

@@ -2,10 +2,11 @@
 
 use super::WrittenNumber;
 use super::reader::{Reader, values};
-use crate::color::Srgb8;
+use crate::color::{LinearRgb, Srgb8};
 use crate::scene_text::{Body, Group, Node, Span, Value, quoted};
-use crate::text::closest;
+use crate::text::{ParseError, closest};
 use csscolorparser::NAMED_COLORS;
+use std::str::FromStr;
 
 /// A colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +54,23 @@ impl Reader<'_> {
                 None
             }
         }
+    }
+}
+
+/// `#rgb`, `#rrggbb`, or a name of CSS, as in scene files.
+///
+/// ```
+/// use termtrace::LinearRgb;
+///
+/// assert_eq!("#ffffff".parse(), Ok(LinearRgb::grey(1.0)));
+/// let error = "stelblue".parse::<LinearRgb>().unwrap_err();
+/// assert_eq!(error.to_string(), "\"stelblue\" is not the name of a colour; did you mean \"steelblue\"?");
+/// ```
+impl FromStr for LinearRgb {
+    type Err = ParseError;
+
+    fn from_str(text: &str) -> Result<Self, ParseError> {
+        color_from(text).map(Self::from).map_err(ParseError::new)
     }
 }
 

@@ -291,7 +291,10 @@ proptest! {
         let pose = scene.camera().pose();
         let camera = scene.camera().with_pose(Pose { eye: pose.eye * s, target: pose.target * s, up: pose.up }).unwrap();
         let objects = scene.objects().iter().map(|object| Object::new(scaled(&object.shape, s), object.material)).collect();
-        let lights = scene.lights().iter().map(|Light::Point(l)| PointLight { position: l.position * s, intensity: l.intensity * (s * s), falloff: l.falloff });
+        let lights = scene.lights().iter().map(|light| {
+            let Light::Point(l) = light else { panic!("the scene has only points of light") };
+            PointLight { position: l.position * s, intensity: l.intensity * (s * s), falloff: l.falloff }
+        });
         let large = Scene::new(camera, objects).with_ambient(scene.ambient()).with_background(scene.background()).with_lights(lights);
         prop_assert_eq!(picture(&scene, scene.camera(), 24, 16).hash(), picture(&large, &camera, 24, 16).hash());
     }

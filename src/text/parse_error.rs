@@ -1,0 +1,40 @@
+//! The error of `FromStr`.
+
+use super::{closest, listed, visible};
+use std::fmt;
+
+/// The reason why a text is not the value that it was to be read as: what was found, and what would be right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ParseError {
+    message: String,
+}
+
+impl ParseError {
+    /// An error with that message: one line, no full stop.
+    pub(crate) fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into() }
+    }
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for ParseError {}
+
+/// Returns the value of that name among all values of a kind.
+///
+/// # Errors
+/// If none has it, with the name that was meant, or all of them.
+pub(crate) fn named<T: Copy>(kind: &str, text: &str, all: &[T], name: fn(T) -> &'static str) -> Result<T, ParseError> {
+    all.iter().copied().find(|&value| name(value) == text).ok_or_else(|| {
+        let names: Vec<_> = all.iter().map(|&value| name(value)).collect();
+        let unknown = format!("unknown {kind} \"{}\"", visible(text));
+        ParseError::new(match closest(text, names.iter().copied()) {
+            Some(meant) => format!("{unknown}; did you mean \"{meant}\"?"),
+            None => format!("{unknown}; there are {}", listed(&names)),
+        })
+    })
+}
