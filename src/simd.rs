@@ -16,11 +16,13 @@ pub use prefetch::prefetch;
 /// Does the work with the best that this CPU has.
 #[inline]
 pub fn run<W: Work>(work: W) -> W::Output {
-    #[cfg(target_arch = "x86_64")]
-    return if has_avx512() {
+    #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
+    if has_avx512() {
         // SAFETY: the CPU was asked right here.
-        unsafe { avx512::run(work) }
-    } else if has_avx2() {
+        return unsafe { avx512::run(work) };
+    }
+    #[cfg(target_arch = "x86_64")]
+    return if has_avx2() {
         // SAFETY: the CPU was asked right here.
         unsafe { avx2::run(work) }
     } else {
@@ -45,7 +47,7 @@ fn has_avx2() -> bool {
         && is_x86_feature_detected!("popcnt")
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
 #[inline]
 fn has_avx512() -> bool {
     has_avx2()
@@ -60,7 +62,9 @@ fn has_avx512() -> bool {
 mod avx;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-#[cfg(target_arch = "x86_64")]
+// The build script looks at the compiler's version, which clippy knows nothing of.
+#[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
+#[clippy::msrv = "1.89"]
 mod avx512;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
@@ -131,6 +135,7 @@ mod tests {
                 // SAFETY: the CPU was asked right here.
                 check(unsafe { avx2::run(All(&pairs)) }, "AVX2");
             }
+            #[cfg(compiler_has_avx512)]
             if has_avx512() {
                 // SAFETY: the CPU was asked right here.
                 check(unsafe { avx512::run(All(&pairs)) }, "AVX-512");

@@ -4,8 +4,10 @@
 //! an unlocked one for a leftover between them, the maker sees that it lost the file and makes another.
 
 use super::target::folder_of;
+use rustix::fs::{FlockOperation, flock};
+use rustix::io::Errno;
 use std::ffi::OsStr;
-use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
+use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt, fchown};
 use std::path::{Path, PathBuf};
@@ -57,7 +59,7 @@ impl Temporary {
     /// Locks a file just made; `None` if another process takes it for a leftover.
     fn claim(path: PathBuf, file: File) -> io::Result<Option<Self>> {
         // Where the file system has no locks, nobody else gets one to remove it either.
-        let is_taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        let is_taken = try_lock(&file) == Err(Errno::WOULDBLOCK);
         if is_taken || !is_at(&file, &path)? {
             return Ok(None);
         }
@@ -134,11 +136,16 @@ fn remove_if_stale(path: &Path, owner: u32) -> io::Result<()> {
     if data.is_file() && data.uid() == owner {
         // Writable, because some network file systems lock no others.
         let file = File::options().write(true).open(path)?;
-        if file.try_lock().is_ok() && is_at(&file, path)? {
+        if try_lock(&file).is_ok() && is_at(&file, path)? {
             fs::remove_file(path)?;
         }
     }
     Ok(())
+}
+
+/// Locks the file if no other has it locked. (The standard library's function came with Rust 1.89.)
+fn try_lock(file: &File) -> rustix::io::Result<()> {
+    flock(file, FlockOperation::NonBlockingLockExclusive)
 }
 
 /// Whether the file has this name.

@@ -1,6 +1,7 @@
 //! The program from outside: arguments, files and pipes in; bytes and an exit code out. Only the progress of `record`
 //! needs a terminal here; the live view has tests of its own.
 
+mod assets;
 mod bench;
 mod camera;
 mod cells;

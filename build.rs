@@ -1,0 +1,20 @@
+//! Tells the library whether its compiler has AVX-512, which came with Rust 1.89: before, the library does without.
+
+use std::env;
+use std::process::Command;
+
+const FIRST: u32 = 89;
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rustc-check-cfg=cfg(compiler_has_avx512)");
+    if minor_version().is_some_and(|minor| minor >= FIRST) {
+        println!("cargo::rustc-cfg=compiler_has_avx512");
+    }
+}
+
+/// Returns the 95 of `rustc 1.95.0 (...)`.
+fn minor_version() -> Option<u32> {
+    let output = Command::new(env::var_os("RUSTC")?).arg("--version").output().ok()?;
+    String::from_utf8(output.stdout).ok()?.split('.').nth(1)?.parse().ok()
+}

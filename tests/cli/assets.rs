@@ -1,0 +1,70 @@
+//! What packagers install beside the program: the manual and the completions in `assets/`, as the program prints them.
+//!
+//! `BLESS=1 cargo test --test cli assets` writes them anew.
+
+use super::Folder;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Each file in `assets/`, and the command that prints it.
+const ASSETS: [(&str, &str); 16] = [
+    ("completions/termtrace.bash", "completions bash"),
+    ("completions/termtrace.elv", "completions elvish"),
+    ("completions/termtrace.fish", "completions fish"),
+    ("completions/_termtrace.ps1", "completions powershell"),
+    ("completions/_termtrace", "completions zsh"),
+    ("man/termtrace.1", "man"),
+    ("man/termtrace-bench.1", "man bench"),
+    ("man/termtrace-check.1", "man check"),
+    ("man/termtrace-completions.1", "man completions"),
+    ("man/termtrace-config.1", "man config"),
+    ("man/termtrace-describe.1", "man describe"),
+    ("man/termtrace-doctor.1", "man doctor"),
+    ("man/termtrace-explain.1", "man explain"),
+    ("man/termtrace-frame.1", "man frame"),
+    ("man/termtrace-man.1", "man man"),
+    ("man/termtrace-record.1", "man record"),
+];
+
+fn assets() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets")
+}
+
+#[test]
+fn the_manual_and_the_completions_are_current() {
+    let folder = Folder::new();
+    let mut stale = vec![];
+    for (name, command) in ASSETS {
+        let (path, printed) = (assets().join(name), folder.run(command).done());
+        if std::env::var_os("BLESS").is_some() {
+            fs::create_dir_all(path.parent().expect("a folder")).expect("the folder can be made");
+            fs::write(&path, &printed).expect("the file can be written");
+        }
+        if fs::read(&path).ok() != Some(printed) {
+            stale.push(name);
+        }
+    }
+    assert!(stale.is_empty(), "{stale:?}: BLESS=1 cargo test --test cli assets writes them anew");
+}
+
+/// Every page that the manual refers to is there, and no file that is in no list.
+#[test]
+fn the_manual_is_whole() {
+    let listed: BTreeSet<_> = ASSETS.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let mut there = BTreeSet::new();
+    for part in ["completions", "man"] {
+        for entry in fs::read_dir(assets().join(part)).expect("the folder is there") {
+            let name = entry.expect("it can be read").file_name();
+            there.insert(format!("{part}/{}", name.to_string_lossy()));
+        }
+    }
+    assert_eq!(there, listed);
+    let manual = fs::read_to_string(assets().join("man/termtrace.1")).expect("the manual is there");
+    let pages = manual.split("termtrace\\-").skip(1).filter_map(|rest| rest.split_once("(1)")).map(|(name, _)| name);
+    let pages: BTreeSet<_> = pages.filter(|name| name.chars().all(|c| c.is_ascii_lowercase())).collect();
+    assert!(pages.len() > 5, "the manual refers to its pages: {pages:?}");
+    for page in pages {
+        assert!(there.contains(&format!("man/termtrace-{page}.1")), "{page} has no page");
+    }
+}

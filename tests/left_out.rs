@@ -1,0 +1,56 @@
+//! Names what `cargo test` leaves out in the package.
+//!
+//! The package has no test data, so of the test programs it has this one alone. There it prints the others by name; in the
+//! repository it fails if its list is not theirs.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// The other test programs, each with what it tests.
+const LEFT_OUT: [(&str, &str); 12] = [
+    ("cli", "the command line"),
+    ("encoder", "cells to bytes, and ratatui's backend"),
+    ("files", "scene files, meshes and textures, right and wrong"),
+    ("input_corpus", "a fuzzer's inputs, once more"),
+    ("laws", "the order of the modules"),
+    ("live", "the live view on a pseudo-terminal"),
+    ("package", "what is in the package"),
+    ("pictures", "pictures, bit for bit"),
+    ("public_api", "what the library promises"),
+    ("readme", "what the README says"),
+    ("slow", "limits in time"),
+    ("slow_link", "a link of few bytes, late replies"),
+];
+
+fn main() -> ExitCode {
+    // A test runner asks for names of tests, of which there are none.
+    if std::env::args().any(|argument| argument == "--list") {
+        return ExitCode::SUCCESS;
+    }
+    let there = programs(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests"));
+    if there.is_empty() {
+        println!(
+            "The package has the unit tests and the documentation's examples. Other test programs need the repository:"
+        );
+        for (name, tests) in LEFT_OUT {
+            println!("test program {name} ... left out: {tests}");
+        }
+        return ExitCode::SUCCESS;
+    }
+    let listed: BTreeSet<_> = LEFT_OUT.iter().map(|(name, _)| (*name).to_owned()).collect();
+    if there == listed {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!("LEFT_OUT of tests/left_out.rs lists {listed:?}, but the test programs are {there:?}");
+    ExitCode::FAILURE
+}
+
+/// Returns the names of the test programs in `folder` but for this one.
+fn programs(folder: &Path) -> BTreeSet<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).map(|entry| entry.path());
+    let programs = entries.filter(|path| path.join("main.rs").exists() || path.extension().is_some_and(|e| e == "rs"));
+    let names = programs.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()));
+    names.filter(|name| name != "left_out").collect()
+}
