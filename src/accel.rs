@@ -9,7 +9,7 @@ use crate::lanes::{Answers, Eight, LANES, Lanes};
 use crate::progress::{Cancelled, Progress, Watcher, Work};
 use crate::shape::{Endless, Part, Shape, SideBySide, Surface, surfaces};
 use crate::simd;
-use rayon::prelude::*;
+use crate::threads;
 use std::array::from_fn;
 use std::convert::Infallible;
 use std::fmt;
@@ -442,12 +442,8 @@ impl<T: Surface + Copy + Sync> Bounded<T> {
             (S::of(&shapes[..numbers.len()]), PartIds::of(from_fn(|lane| self.ids[number(lane)])))
         };
         let few = if bvh.is_leaf() { self.ids.len() } else { 0 };
-        let (mut leaves, mut ids) = (Vec::new(), Vec::new());
-        if places.count() < FEW {
-            (leaves, ids) = (0..places.count()).map(leaf).unzip();
-        } else {
-            (0..places.count()).into_par_iter().map(leaf).unzip_into_vecs(&mut leaves, &mut ids);
-        }
+        let count = places.count();
+        let (leaves, ids) = if count < FEW { (0..count).map(leaf).unzip() } else { threads::unzip(count, leaf) };
         Ok(Tree { bvh, leaves, ids, first, few })
     }
 }

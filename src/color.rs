@@ -7,6 +7,8 @@
 //!
 //! The primaries are those of sRGB (IEC 61966-2-1), the white is D65.
 
+mod names;
+
 use std::ops::{Add, AddAssign, Mul};
 
 /// An amount of light in three bands, linear, in sRGB's primaries. 1 is the screen's white at exposure 1; values

@@ -4,9 +4,12 @@
 //! lays text over it, [`encode`](crate::encode) and [`export`](crate::export) write it out.
 
 use crate::color::Srgb8;
-use ratatui::style::Modifier;
 use std::fmt;
 use std::sync::Arc;
+
+mod attributes;
+
+pub use attributes::Attributes;
 
 /// A screen's size in cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -116,10 +119,10 @@ pub struct Cell {
     pub fg: Ink,
     /// The colour behind it.
     pub bg: Ink,
-    /// The colour of the line below, where [`Modifier::UNDERLINED`] draws one; by default it is the glyph's.
+    /// The colour of the line below, where [`Attributes::UNDERLINED`] draws one; by default it is the glyph's.
     pub underline: Ink,
     /// Bold, underlined and so on; none in a picture.
-    pub modifier: Modifier,
+    pub attributes: Attributes,
 }
 
 impl Cell {
@@ -130,13 +133,13 @@ impl Cell {
     /// What is not ours.
     pub(crate) const FOREIGN: Self = Self::with_glyph(Glyph::Foreign, Ink::Default, Ink::Default);
 
-    /// A character in these colours, without modifiers.
+    /// A character in these colours, without attributes.
     pub const fn new(character: char, fg: Ink, bg: Ink) -> Self {
         Self::with_glyph(Glyph::Char(character), fg, bg)
     }
 
     const fn with_glyph(glyph: Glyph, fg: Ink, bg: Ink) -> Self {
-        Self { glyph, fg, bg, underline: Ink::Default, modifier: Modifier::empty() }
+        Self { glyph, fg, bg, underline: Ink::Default, attributes: Attributes::empty() }
     }
 }
 

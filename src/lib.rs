@@ -51,6 +51,7 @@
 //! - `text`: text for messages: printable, lists, the word that was meant
 //! - `memory`: asked for before it is used
 //! - `progress`: progress reports, and the token by which work is cancelled
+//! - `threads`: work in parallel, on the threads of rayon or without
 //! - `named_file`: the bytes of a file that a person names, within bounds
 //!
 //! What was written:
@@ -188,6 +189,7 @@ mod bounds;
 mod text;
 mod memory;
 mod progress;
+mod threads;
 mod named_file;
 mod scene_text;
 mod mesh_file;
@@ -262,7 +264,7 @@ pub use explain::{Explanation, explain};
 // Cells and text.
 pub use cell::{CellMode, Colors, Glyphs, Painter};
 pub use export::{frame_grid, text_frame};
-pub use grid::{Cell, Glyph, Grid, Ink, Size};
+pub use grid::{Attributes, Cell, Glyph, Grid, Ink, Size};
 
 // ratatui.
 pub use encode::{Encoder, EncoderBackend, Order, Quality};

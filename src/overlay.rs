@@ -1,10 +1,10 @@
 //! Text and panels over the picture: any ratatui buffer laid over the grid.
 
 use crate::color::Srgb8;
-use crate::grid::{Cell, Glyph, Grid, Ink};
-use ratatui::buffer::{Buffer, CellDiffOption, CellWidth};
-use ratatui::layout::{Position, Rect};
-use ratatui::style::Color;
+use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
+use ratatui_core::buffer::{Buffer, CellDiffOption, CellWidth};
+use ratatui_core::layout::{Position, Rect};
+use ratatui_core::style::{Color, Modifier};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Puts the buffer's cells over the grid's, where both have them.
@@ -23,7 +23,7 @@ pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
 
 /// Puts one cell into the grid, where there is room for so many columns; how many it takes. A skipped one leaves what is
 /// there: ratatui's programs skip where a picture is.
-pub(crate) fn put(grid: &mut Grid, place: Position, cell: &ratatui::buffer::Cell, room: u16) -> u16 {
+pub(crate) fn put(grid: &mut Grid, place: Position, cell: &ratatui_core::buffer::Cell, room: u16) -> u16 {
     if is_skipped(cell) {
         return 1;
     }
@@ -35,14 +35,14 @@ pub(crate) fn put(grid: &mut Grid, place: Position, cell: &ratatui::buffer::Cell
         fg: ink_from_ratatui(cell.fg),
         bg: ink_from_ratatui(cell.bg),
         underline: ink_from_ratatui(cell.underline_color),
-        modifier: cell.modifier,
+        attributes: attributes_from_ratatui(cell.modifier),
     };
     grid.put(place.x, place.y, &cell, columns);
     columns
 }
 
 #[expect(deprecated, reason = "programs still set the older one of the two ways to say it")]
-fn is_skipped(cell: &ratatui::buffer::Cell) -> bool {
+fn is_skipped(cell: &ratatui_core::buffer::Cell) -> bool {
     match cell.diff_option {
         CellDiffOption::Skip => true,
         CellDiffOption::None => cell.skip,
@@ -52,7 +52,7 @@ fn is_skipped(cell: &ratatui::buffer::Cell) -> bool {
 
 /// What stands in the cell, and how many columns ratatui takes it for. Control characters would do something else to the
 /// terminal than the encoder knows, and what has no width would go to another cell: each is a blank.
-fn glyph_from_ratatui(cell: &ratatui::buffer::Cell) -> (Glyph, u16) {
+fn glyph_from_ratatui(cell: &ratatui_core::buffer::Cell) -> (Glyph, u16) {
     let symbol = cell.symbol();
     if symbol.contains(char::is_control) || symbol.width() == 0 {
         return (Glyph::Char(' '), 1);
@@ -69,6 +69,28 @@ fn glyph_from_ratatui(cell: &ratatui::buffer::Cell) -> (Glyph, u16) {
 /// A regional indicator: two of them are a flag, and of one alone terminals disagree.
 fn is_half_a_flag(character: char) -> bool {
     matches!(character, '\u{1f1e6}'..='\u{1f1ff}')
+}
+
+/// Each attribute of ratatui's, and that of the grid.
+const ATTRIBUTES: [(Modifier, Attributes); 9] = [
+    (Modifier::BOLD, Attributes::BOLD),
+    (Modifier::DIM, Attributes::DIM),
+    (Modifier::ITALIC, Attributes::ITALIC),
+    (Modifier::UNDERLINED, Attributes::UNDERLINED),
+    (Modifier::SLOW_BLINK, Attributes::SLOW_BLINK),
+    (Modifier::RAPID_BLINK, Attributes::RAPID_BLINK),
+    (Modifier::REVERSED, Attributes::REVERSED),
+    (Modifier::HIDDEN, Attributes::HIDDEN),
+    (Modifier::CROSSED_OUT, Attributes::CROSSED_OUT),
+];
+
+fn attributes_from_ratatui(modifier: Modifier) -> Attributes {
+    // Most cells have none.
+    if modifier.is_empty() {
+        return Attributes::empty();
+    }
+    let those = ATTRIBUTES.into_iter().filter(|&(of_ratatui, _)| modifier.contains(of_ratatui));
+    those.map(|(_, one)| one).collect()
 }
 
 /// The 16 named colours are the first of the indexed ones, in the order of SGR's codes.

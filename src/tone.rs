@@ -3,7 +3,7 @@
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::scene::{Scene, ToneCurve};
-use rayon::prelude::*;
+use crate::threads;
 
 /// The picture as files and terminals take it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -21,14 +21,14 @@ pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     let Resolution { width, height, .. } = framebuffer.resolution;
     let (curve, exposure) = (scene.tone_curve(), scene.exposure());
     let mut pixels = vec![Srgb8::new(0, 0, 0); framebuffer.pixels.len()];
-    let show = |(pixels, lights): (&mut [Srgb8], &[LinearRgb])| {
+    let show = |pixels: &mut [Srgb8], lights: &[LinearRgb]| {
         let shown = Srgb8::all_from_linear(lights.iter().map(|&light| bend(curve, light * exposure)));
         pixels.iter_mut().zip(shown).for_each(|(pixel, shown)| *pixel = shown);
     };
     if pixels.len() <= ALONE {
-        show((&mut pixels, &framebuffer.pixels));
+        show(&mut pixels, &framebuffer.pixels);
     } else {
-        pixels.par_chunks_mut(ALONE).zip(framebuffer.pixels.par_chunks(ALONE)).for_each(show);
+        threads::for_each_chunk(&mut pixels, &framebuffer.pixels, ALONE, show);
     }
     Picture { width, height, pixels }
 }

@@ -10,7 +10,6 @@ mod reader;
 mod validator;
 
 pub use colors::WrittenColor;
-pub(crate) use colors::color_named;
 pub use reader::{Fields, Reader};
 pub(crate) use reader::{description, group_of_values, values};
 pub use validator::Validator;

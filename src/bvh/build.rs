@@ -5,6 +5,7 @@
 use super::{Bvh, Child, Leaves, Node};
 use crate::bounds::Bounds;
 use crate::lanes::LANES;
+use crate::threads;
 use glam::Vec3;
 use std::array::from_fn;
 use std::ops::Range;
@@ -208,7 +209,7 @@ fn subtree<E: Send>(items: &mut [Item], first: usize, depth: usize, report: Repo
     let cut = cut(items, &around, depth).unwrap_or(items.len() / 2);
     let (left, right) = items.split_at_mut(cut);
     let (left, right) =
-        rayon::join(|| subtree(left, first, depth + 1, report), || subtree(right, first + cut, depth + 1, report));
+        threads::join(|| subtree(left, first, depth + 1, report), || subtree(right, first + cut, depth + 1, report));
     let (left, right) = (left?, right?);
     let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
     nodes.push(Pair { bounds, count: 0, at: 1 + left.len() as u32 });

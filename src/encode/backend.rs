@@ -7,13 +7,13 @@ use super::Encoder;
 use super::moves::{Move, Place};
 use crate::grid::{Cell, Grid};
 use crate::overlay;
-use ratatui::backend::{Backend, ClearType, WindowSize};
-use ratatui::layout::{Position, Rect, Size};
+use ratatui_core::backend::{Backend, ClearType, WindowSize};
+use ratatui_core::layout::{Position, Rect, Size};
 use std::io::{self, Write};
 use std::iter;
 use std::ops::Range;
 
-/// A [`ratatui::backend::Backend`] on any [`Write`], for programs that read their keys elsewhere.
+/// A [`ratatui_core::backend::Backend`] on any [`Write`], for programs that read their keys elsewhere.
 ///
 /// ```
 /// use ratatui::{Terminal, widgets::Gauge};
@@ -96,7 +96,7 @@ impl<W: Write> EncoderBackend<W> {
     }
 
     /// Where the bytes go, to write something else in between. What changes the screen has to be followed by
-    /// [`Terminal::clear`](ratatui::Terminal::clear).
+    /// [`Terminal::clear`](ratatui_core::terminal::Terminal::clear).
     #[doc(hidden)]
     pub fn writer_mut(&mut self) -> &mut W {
         &mut self.writer
@@ -121,7 +121,7 @@ impl<W: Write> EncoderBackend<W> {
 
     /// Wants a cell; how many columns it takes. ratatui draws what has changed: where nothing has, it must know of
     /// something else that was drawn there, and the cell is sent again.
-    fn draw_cell(&mut self, place: Position, cell: &ratatui::buffer::Cell) -> u16 {
+    fn draw_cell(&mut self, place: Position, cell: &ratatui_core::buffer::Cell) -> u16 {
         let before = self.wanted.cell(place.x, place.y).clone();
         let columns = overlay::put(&mut self.wanted, place, cell, self.window.columns_rows.width - place.x);
         if *self.wanted.cell(place.x, place.y) == before {
@@ -199,7 +199,7 @@ impl<W: Write> Backend for EncoderBackend<W> {
     /// Sends nothing yet. What a wide character covers is not drawn, even if it is in `content`.
     fn draw<'a, I>(&mut self, content: I) -> io::Result<()>
     where
-        I: Iterator<Item = (u16, u16, &'a ratatui::buffer::Cell)>,
+        I: Iterator<Item = (u16, u16, &'a ratatui_core::buffer::Cell)>,
     {
         self.drawing = true;
         let Size { width, height } = self.window.columns_rows;

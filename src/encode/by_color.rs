@@ -9,8 +9,7 @@
 use super::moves::{Place, cheapest};
 use super::pen::Pen;
 use super::strokes::after;
-use crate::grid::{Cell, Glyph, Grid, Ink};
-use ratatui::style::Modifier;
+use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
 use std::ops::Range;
 
 /// The places in the order in which they are to be written: first what is no picture, row by row.
@@ -30,10 +29,10 @@ pub(super) fn order(wanted: &Grid, changed: &[Place], upper_half: bool, pen: Pen
 fn inks(cell: &Cell) -> Option<(Ink, Ink)> {
     let is_rgb = |ink| matches!(ink, Ink::Rgb(_));
     match cell.glyph {
-        Glyph::Char('▄' | '▀') if cell.modifier.is_empty() && is_rgb(cell.fg) && is_rgb(cell.bg) => {
+        Glyph::Char('▄' | '▀') if cell.attributes.is_empty() && is_rgb(cell.fg) && is_rgb(cell.bg) => {
             Some((cell.fg, cell.bg))
         }
-        Glyph::Char(' ') if cell.modifier.is_empty() && is_rgb(cell.bg) => Some((cell.bg, cell.bg)),
+        Glyph::Char(' ') if cell.attributes.is_empty() && is_rgb(cell.bg) => Some((cell.bg, cell.bg)),
         _ => None,
     }
 }
@@ -165,7 +164,7 @@ impl<'a> Tour<'a> {
 
     /// The cheaper of the two pens that can write the pair.
     fn pen_for(&self, pair: &Pair) -> Pen {
-        let pen = |fg, bg| Pen { fg, bg, ..self.pen.before_colors(Modifier::empty()) };
+        let pen = |fg, bg| Pen { fg, bg, ..self.pen.before_colors(Attributes::empty()) };
         if pair.fg == pair.bg {
             return pen(self.pen.fg, pair.bg);
         }

@@ -30,7 +30,7 @@ pub(super) type Halves = [Srgb8; 2];
 
 /// Those of a half block or a space in truecolor; anything else is text, also a space that has a colour for characters.
 pub(super) fn halves(cell: &Cell) -> Option<Halves> {
-    let (Ink::Rgb(bg), true) = (cell.bg, cell.modifier.is_empty()) else { return None };
+    let (Ink::Rgb(bg), true) = (cell.bg, cell.attributes.is_empty()) else { return None };
     match (&cell.glyph, cell.fg) {
         (Glyph::Char(' '), Ink::Default) => Some([bg; 2]),
         (Glyph::Char('▄'), Ink::Rgb(fg)) => Some([bg, fg]),

@@ -1,17 +1,16 @@
-//! The pen: the colours and modifiers that the terminal would write with now, and what it costs to change them.
+//! The pen: the colours and attributes that the terminal would write with now, and what it costs to change them.
 
 use super::numbers::{band_digits, digits, write_bands, write_number};
-use crate::grid::{Cell, Glyph, Ink};
-use ratatui::style::Modifier;
+use crate::grid::{Attributes, Cell, Glyph, Ink};
 use std::mem;
 
-/// The colours and modifiers that the terminal would write with now.
+/// The colours and attributes that the terminal would write with now.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Pen {
     pub(super) fg: Ink,
     pub(super) bg: Ink,
     pub(super) underline: Ink,
-    pub(super) modifier: Modifier,
+    pub(super) attributes: Attributes,
 }
 
 impl Pen {
@@ -25,7 +24,7 @@ impl Pen {
     /// saves bytes on a screen does not change files.
     pub(crate) fn write_cell(&mut self, cell: &Cell, bytes: &mut Vec<u8>) {
         let wanted = self.as_it_stands(cell);
-        self.become_pen(Self { fg: self.before_colors(wanted.modifier).fg, ..wanted }, bytes);
+        self.become_pen(Self { fg: self.before_colors(wanted.attributes).fg, ..wanted }, bytes);
         self.become_pen(wanted, bytes);
         write_glyph(&cell.glyph, bytes);
     }
@@ -36,7 +35,7 @@ impl Pen {
     #[inline]
     pub(super) fn wanted_by(&self, cell: &Cell) -> Self {
         // Nearly every cell of a picture.
-        if cell.glyph != ' ' && cell.modifier.is_empty() && self.modifier.is_empty() {
+        if cell.glyph != ' ' && cell.attributes.is_empty() && self.attributes.is_empty() {
             return Self { fg: cell.fg, bg: cell.bg, ..*self };
         }
         self.wanted_by_any(cell)
@@ -50,7 +49,7 @@ impl Pen {
     /// The same for such a space.
     fn wanted_by_space(&self, cell: &Cell) -> Self {
         let plain = self.as_it_stands(cell);
-        let exchanged = Self { modifier: Modifier::REVERSED, ..*self };
+        let exchanged = Self { attributes: Attributes::REVERSED, ..*self };
         if self.cost_of(&exchanged) < self.cost_of(&plain) { exchanged } else { plain }
     }
 
@@ -60,13 +59,13 @@ impl Pen {
         is_plain_space(cell)
             && self.fg == cell.bg
             && cell.bg != Ink::Default
-            && Modifier::REVERSED.contains(self.modifier)
+            && Attributes::REVERSED.contains(self.attributes)
     }
 
     /// The pen of the cell as the grid has it. The colour of a plain space's character is not seen, nor that of a line
     /// that is not drawn: nothing is said for their sake.
     fn as_it_stands(&self, cell: &Cell) -> Self {
-        let mut pen = self.before_colors(cell.modifier);
+        let mut pen = self.before_colors(cell.attributes);
         pen.bg = cell.bg;
         if !is_plain_space(cell) {
             pen.fg = cell.fg;
@@ -77,25 +76,25 @@ impl Pen {
         pen
     }
 
-    /// The pen once the modifiers are these: terminals disagree on how to switch single ones off, so all is switched off
+    /// The pen once the attributes are these: terminals disagree on how to switch single ones off, so all is switched off
     /// first, colours too, which is understood everywhere. Only for the exchange of the two colours they all know an off
     /// of its own.
-    pub(super) fn before_colors(self, modifier: Modifier) -> Self {
-        let from = if self.starts_anew(modifier) { Self::default() } else { self };
-        Self { modifier, ..from }
+    pub(super) fn before_colors(self, attributes: Attributes) -> Self {
+        let from = if self.starts_anew(attributes) { Self::default() } else { self };
+        Self { attributes, ..from }
     }
 
-    /// Whether all is switched off on the way to these modifiers.
-    fn starts_anew(&self, modifier: Modifier) -> bool {
-        !Modifier::REVERSED.contains(self.modifier ^ modifier)
+    /// Whether all is switched off on the way to these attributes.
+    fn starts_anew(&self, attributes: Attributes) -> bool {
+        !Attributes::REVERSED.contains(self.attributes ^ attributes)
     }
 
-    /// The code on the way to these modifiers that exchanges the two colours, or ends that, where nothing starts anew.
-    fn exchange(&self, modifier: Modifier) -> Option<&'static [u8]> {
-        if self.modifier == modifier || self.starts_anew(modifier) {
+    /// The code on the way to these attributes that exchanges the two colours, or ends that, where nothing starts anew.
+    fn exchange(&self, attributes: Attributes) -> Option<&'static [u8]> {
+        if self.attributes == attributes || self.starts_anew(attributes) {
             return None;
         }
-        Some(if modifier.contains(Modifier::REVERSED) { b"7" } else { b"27" })
+        Some(if attributes.contains(Attributes::REVERSED) { b"7" } else { b"27" })
     }
 
     /// How many bytes [`become_pen`](Self::become_pen) takes.
@@ -106,7 +105,7 @@ impl Pen {
     /// The same where [`ink_lens`](Self::ink_lens) of the wanted pen are known.
     #[inline]
     pub(super) fn cost_of_inks(&self, wanted: &Self, lens: [usize; 2]) -> usize {
-        if self.modifier == wanted.modifier {
+        if self.attributes == wanted.attributes {
             self.cost_of_colors(0, wanted, lens)
         } else {
             self.cost_of_all(wanted, lens)
@@ -118,13 +117,13 @@ impl Pen {
         [1 + ink_len(self.fg), 1 + ink_len(self.bg)]
     }
 
-    /// The same where modifiers change.
+    /// The same where attributes change.
     fn cost_of_all(&self, wanted: &Self, lens: [usize; 2]) -> usize {
-        if self.starts_anew(wanted.modifier) {
-            let codes = modifier_codes(wanted.modifier).count();
-            return 4 + 2 * codes + self.before_colors(wanted.modifier).cost_of_colors(0, wanted, lens);
+        if self.starts_anew(wanted.attributes) {
+            let codes = attribute_codes(wanted.attributes).count();
+            return 4 + 2 * codes + self.before_colors(wanted.attributes).cost_of_colors(0, wanted, lens);
         }
-        let exchange = self.exchange(wanted.modifier).map_or(0, |code| 1 + code.len());
+        let exchange = self.exchange(wanted.attributes).map_or(0, |code| 1 + code.len());
         self.cost_of_colors(exchange, wanted, lens)
     }
 
@@ -138,19 +137,19 @@ impl Pen {
         underline + if codes == 0 { 0 } else { 2 + codes }
     }
 
-    /// Says what differs: modifiers that start anew in one sequence, the colours in another, the line's in a third. (All
+    /// Says what differs: attributes that start anew in one sequence, the colours in another, the line's in a third. (All
     /// in one could be more numbers than some terminals take.)
     pub(super) fn become_pen(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
-        if self.starts_anew(wanted.modifier) {
+        if self.starts_anew(wanted.attributes) {
             bytes.extend_from_slice(b"\x1b[0");
-            for code in modifier_codes(wanted.modifier) {
+            for code in attribute_codes(wanted.attributes) {
                 bytes.extend_from_slice(&[b';', code]);
             }
             bytes.push(b'm');
         }
-        let from = self.before_colors(wanted.modifier);
+        let from = self.before_colors(wanted.attributes);
         let mut lead: &[u8] = b"\x1b[";
-        if let Some(code) = self.exchange(wanted.modifier) {
+        if let Some(code) = self.exchange(wanted.attributes) {
             bytes.extend_from_slice(mem::replace(&mut lead, b";"));
             bytes.extend_from_slice(code);
         }
@@ -172,7 +171,7 @@ impl Pen {
 
 /// Whether nobody can tell the two cells apart.
 pub(super) fn look_alike(a: &Cell, b: &Cell) -> bool {
-    (a.bg, a.modifier) == (b.bg, b.modifier)
+    (a.bg, a.attributes) == (b.bg, b.attributes)
         && a.glyph == b.glyph
         && (a.fg == b.fg || is_plain_space(a))
         && (a.underline == b.underline || !is_underlined(a))
@@ -180,12 +179,12 @@ pub(super) fn look_alike(a: &Cell, b: &Cell) -> bool {
 
 /// Whether only the colour behind the character is seen.
 pub(super) fn is_plain_space(cell: &Cell) -> bool {
-    cell.glyph == ' ' && cell.modifier.is_empty()
+    cell.glyph == ' ' && cell.attributes.is_empty()
 }
 
 /// Whether the colour of the line below is seen.
 fn is_underlined(cell: &Cell) -> bool {
-    cell.modifier.contains(Modifier::UNDERLINED)
+    cell.attributes.contains(Attributes::UNDERLINED)
 }
 
 /// In UTF-8.
@@ -258,20 +257,20 @@ fn underline_len(ink: Ink) -> usize {
     }
 }
 
-/// The number of each modifier that is on, in rising order.
-fn modifier_codes(modifier: Modifier) -> impl Iterator<Item = u8> {
-    const CODES: [(Modifier, u8); 9] = [
-        (Modifier::BOLD, b'1'),
-        (Modifier::DIM, b'2'),
-        (Modifier::ITALIC, b'3'),
-        (Modifier::UNDERLINED, b'4'),
-        (Modifier::SLOW_BLINK, b'5'),
-        (Modifier::RAPID_BLINK, b'6'),
-        (Modifier::REVERSED, b'7'),
-        (Modifier::HIDDEN, b'8'),
-        (Modifier::CROSSED_OUT, b'9'),
+/// The number of each attributes that is on, in rising order.
+fn attribute_codes(attributes: Attributes) -> impl Iterator<Item = u8> {
+    const CODES: [(Attributes, u8); 9] = [
+        (Attributes::BOLD, b'1'),
+        (Attributes::DIM, b'2'),
+        (Attributes::ITALIC, b'3'),
+        (Attributes::UNDERLINED, b'4'),
+        (Attributes::SLOW_BLINK, b'5'),
+        (Attributes::RAPID_BLINK, b'6'),
+        (Attributes::REVERSED, b'7'),
+        (Attributes::HIDDEN, b'8'),
+        (Attributes::CROSSED_OUT, b'9'),
     ];
-    CODES.into_iter().filter(move |&(flag, _)| modifier.contains(flag)).map(|(_, code)| code)
+    CODES.into_iter().filter(move |&(flag, _)| attributes.contains(flag)).map(|(_, code)| code)
 }
 
 #[cfg(test)]
@@ -283,12 +282,13 @@ mod tests {
     #[test]
     fn costs_are_true() {
         let inks = [Ink::Default, Ink::Indexed(7), Ink::Indexed(200), Ink::Rgb(Srgb8::new(0, 10, 100))];
-        let reversed = Modifier::REVERSED;
-        let modifiers = [Modifier::empty(), reversed, Modifier::BOLD, Modifier::BOLD | reversed, Modifier::all()];
+        let reversed = Attributes::REVERSED;
+        let attributes =
+            [Attributes::empty(), reversed, Attributes::BOLD, Attributes::BOLD | reversed, Attributes::all()];
         let colors = || inks.into_iter().flat_map(|fg| inks.map(|bg| (fg, bg)));
         let looks = || colors().flat_map(|colors| inks.map(|underline| (colors, underline)));
         let pens: Vec<Pen> = looks()
-            .flat_map(|((fg, bg), underline)| modifiers.map(|modifier| Pen { fg, bg, underline, modifier }))
+            .flat_map(|((fg, bg), underline)| attributes.map(|attributes| Pen { fg, bg, underline, attributes }))
             .collect();
         for from in &pens {
             for to in &pens {

@@ -34,7 +34,7 @@ pub(super) fn look_ahead(wanted: &Grid, strokes: &mut [Stroke]) {
     for at in (1..strokes.len()).rev() {
         let next = strokes[at].pen;
         let stroke = &mut strokes[at - 1];
-        let only_fg = stroke.pen.modifier.is_empty() && Pen { fg: next.fg, ..stroke.pen } == next;
+        let only_fg = stroke.pen.attributes.is_empty() && Pen { fg: next.fg, ..stroke.pen } == next;
         if only_fg && is_plain_space(wanted.cell(stroke.place.column, stroke.place.row)) {
             stroke.pen = next;
         }
@@ -110,7 +110,10 @@ fn other_half(glyph: &Glyph) -> Option<char> {
 /// Whether the cell looks the same when its halves and colours are exchanged. The terminal's own colours cannot be: each
 /// is known only in its own place.
 fn can_be_turned(cell: &Cell) -> bool {
-    other_half(&cell.glyph).is_some() && cell.modifier.is_empty() && cell.fg != Ink::Default && cell.bg != Ink::Default
+    other_half(&cell.glyph).is_some()
+        && cell.attributes.is_empty()
+        && cell.fg != Ink::Default
+        && cell.bg != Ink::Default
 }
 
 /// A cheapest way to have written everything up to a cell.

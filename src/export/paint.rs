@@ -2,8 +2,7 @@
 
 use crate::cell::xterm_color;
 use crate::color::Srgb8;
-use crate::grid::{Cell, Glyph, Grid, Ink};
-use ratatui::style::Modifier;
+use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -27,7 +26,7 @@ pub(super) struct Run {
     pub(super) columns: usize,
     pub(super) text: String,
     color: Srgb8,
-    modifier: Modifier,
+    attributes: Attributes,
 }
 
 impl Run {
@@ -37,12 +36,12 @@ impl Run {
         if self.color != DEFAULT_TEXT {
             css.push(format!("{fill}:{}", hex(self.color)));
         }
-        let modifiers = [
-            (Modifier::BOLD, "font-weight:bold"),
-            (Modifier::ITALIC, "font-style:italic"),
-            (Modifier::UNDERLINED, "text-decoration:underline"),
+        let rules = [
+            (Attributes::BOLD, "font-weight:bold"),
+            (Attributes::ITALIC, "font-style:italic"),
+            (Attributes::UNDERLINED, "text-decoration:underline"),
         ];
-        css.extend(modifiers.iter().filter(|(one, _)| self.modifier.contains(*one)).map(|&(_, rule)| rule.to_owned()));
+        css.extend(rules.iter().filter(|(one, _)| self.attributes.contains(*one)).map(|&(_, rule)| rule.to_owned()));
         css.join(";")
     }
 
@@ -109,7 +108,7 @@ fn halves(cell: &Cell) -> [Srgb8; 2] {
 /// The glyph's colour and the one behind it.
 fn colors(cell: &Cell) -> [Srgb8; 2] {
     let (fg, bg) = (color(cell.fg, DEFAULT_TEXT), color(cell.bg, DEFAULT_BACKGROUND));
-    if cell.modifier.contains(Modifier::REVERSED) { [bg, fg] } else { [fg, bg] }
+    if cell.attributes.contains(Attributes::REVERSED) { [bg, fg] } else { [fg, bg] }
 }
 
 fn color(ink: Ink, default: Srgb8) -> Srgb8 {
@@ -124,20 +123,20 @@ fn color(ink: Ink, default: Srgb8) -> Srgb8 {
 pub(super) fn runs(row: &[Cell]) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (column, cell) in row.iter().enumerate() {
-        let (color, modifier) = (colors(cell)[0], cell.modifier);
+        let (color, attributes) = (colors(cell)[0], cell.attributes);
         let Some(text) = written(cell) else {
             if let Some(run) = runs.last_mut().filter(|run| cell.glyph == Glyph::Covered && run.end() == column) {
                 run.columns += 1;
             }
             continue;
         };
-        match runs.last_mut().filter(|run| (run.color, run.modifier) == (color, modifier)) {
+        match runs.last_mut().filter(|run| (run.color, run.attributes) == (color, attributes)) {
             Some(run) => {
                 run.text.extend(std::iter::repeat_n(' ', column - run.end()));
                 run.text.push_str(&text);
                 run.columns = column + 1 - run.column;
             }
-            None => runs.push(Run { column, columns: 1, text, color, modifier }),
+            None => runs.push(Run { column, columns: 1, text, color, attributes }),
         }
     }
     runs
@@ -151,7 +150,7 @@ impl Run {
 
 /// The cell's text, if it is not a part of the areas.
 fn written(cell: &Cell) -> Option<String> {
-    let underlined = cell.modifier.contains(Modifier::UNDERLINED);
+    let underlined = cell.attributes.contains(Attributes::UNDERLINED);
     match cell.glyph {
         Glyph::Covered | Glyph::Foreign | Glyph::Char('▀' | '▄' | '█') => None,
         Glyph::Char(' ') if !underlined => None,

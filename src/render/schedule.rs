@@ -5,7 +5,7 @@ use super::report::Report;
 use super::sampling::{Run, Runs};
 use super::steps::{Buffers, Shot, Unit};
 use crate::progress::{Cancellation, Cancelled};
-use rayon::prelude::*;
+use crate::threads;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
@@ -70,15 +70,14 @@ impl Crew<'_> {
             costs.push(work(&mut buffers, tile));
             if !is_alone && !is_short(done) {
                 // Not asked before: it may start rayon's own threads.
-                is_alone = rayon::current_num_threads() == 1;
+                is_alone = threads::count() == 1;
                 if !is_alone {
                     break;
                 }
             }
         }
         if tiles.len() > 0 {
-            // One by one: a thread that has had the easy ones takes more.
-            costs.par_extend(tiles.par_bridge().map_init(Buffers::default, work));
+            costs.extend(threads::map_one_by_one(tiles, Buffers::default, work));
         }
         let mut sum = Cost::default();
         for cost in costs {

@@ -9,14 +9,14 @@ pub(super) mod path;
 pub(super) use camera::radians;
 
 use super::{Background, Checked, Draft, Object, ToneCurve};
-use crate::color::LinearRgb;
+use crate::color::{LinearRgb, Srgb8};
 use crate::material::{Material, WrittenMaterial};
 use crate::progress::Watcher;
 use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
 use crate::shape::{Meshes, WrittenShape};
 use crate::text::{closest, listed};
-use crate::written::{Spanned, Validator, WrittenNumber, color_named};
+use crate::written::{Spanned, Validator, WrittenNumber};
 use std::collections::HashMap;
 
 /// The scene, if nothing is wrong with it; else every fault has been added. Once the watcher has gone, objects are left
@@ -134,7 +134,7 @@ struct Made<'f> {
 fn unknown_material(name: &str, file: &SceneFile) -> String {
     let unknown = format!("unknown material {}", quoted(name));
     let names = || file.materials.iter().map(|named| &*named.name);
-    let is_color = name.starts_with('#') || color_named(name).is_some();
+    let is_color = name.starts_with('#') || Srgb8::from_name(name).is_some();
     match (closest(name, names()), is_color) {
         (Some(meant), false) => return format!("{unknown}; did you mean {}?", quoted(meant)),
         (Some(meant), true) => {

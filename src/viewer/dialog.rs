@@ -5,10 +5,13 @@ use super::look::Look;
 use crate::control::{Binding, Bindings, Command, Mode};
 use crate::export::Format;
 use crate::text::visible;
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Margin, Rect};
-use ratatui::text::Line;
-use ratatui::widgets::{Block, Clear, Paragraph, Widget};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::{Margin, Rect};
+use ratatui_core::text::Line;
+use ratatui_core::widgets::Widget;
+use ratatui_widgets::block::Block;
+use ratatui_widgets::clear::Clear;
+use ratatui_widgets::paragraph::Paragraph;
 use unicode_width::UnicodeWidthStr;
 
 /// A question; until it is answered, keys are answers.

@@ -4,9 +4,12 @@ use super::layers::{Canvas, Layer, Level};
 use super::look::{self, Look};
 use crate::control::{Bindings, Command, Direction, Key, Mode, Toward};
 use crossterm::event::KeyCode;
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Margin, Rect};
-use ratatui::widgets::{Block, Clear, Paragraph, Widget};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::{Margin, Rect};
+use ratatui_core::widgets::Widget;
+use ratatui_widgets::block::Block;
+use ratatui_widgets::clear::Clear;
+use ratatui_widgets::paragraph::Paragraph;
 use std::collections::HashSet;
 use unicode_width::UnicodeWidthStr;
 

@@ -8,8 +8,8 @@ use crate::capabilities::CellMode;
 use crate::control::{Bindings, Mode};
 use crate::grid::Grid;
 use crate::overlay;
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
 use std::any::Any;
 use std::time::Duration;
 

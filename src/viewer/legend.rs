@@ -2,9 +2,10 @@
 
 use super::layers::{Canvas, Layer, Level};
 use super::look::Look;
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::widgets::{Paragraph, Widget};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::widgets::Widget;
+use ratatui_widgets::paragraph::Paragraph;
 
 /// The legends of the frame that is shown.
 pub(super) struct Legends;

@@ -2,11 +2,12 @@
 
 use crate::capabilities::{CellMode, Colors};
 use crate::grid::Size;
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::style::{Color, Modifier, Style};
-use ratatui::symbols::border;
-use ratatui::widgets::{Paragraph, Widget};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::style::{Color, Modifier, Style};
+use ratatui_core::symbols::border;
+use ratatui_core::widgets::Widget;
+use ratatui_widgets::paragraph::Paragraph;
 
 /// Colours and border of panels. Where the picture has neither colour nor block characters, nor have they.
 #[derive(Clone, Copy)]

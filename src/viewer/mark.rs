@@ -5,8 +5,8 @@ use super::layers::{Canvas, Layer, Level};
 use super::look::Look;
 use crate::control::{self, Mode};
 use glam::Vec3;
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
 
 /// The light that is held, and where it is.
 #[derive(PartialEq)]

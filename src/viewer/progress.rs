@@ -4,10 +4,13 @@ use super::layers::{Canvas, Layer, Level};
 use super::look::Look;
 use crate::progress::{Progress, Work};
 use crate::text::visible;
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Margin, Rect};
-use ratatui::text::Line;
-use ratatui::widgets::{Block, Clear, Paragraph, Widget};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::{Margin, Rect};
+use ratatui_core::text::Line;
+use ratatui_core::widgets::Widget;
+use ratatui_widgets::block::Block;
+use ratatui_widgets::clear::Clear;
+use ratatui_widgets::paragraph::Paragraph;
 use std::path::Path;
 use unicode_width::UnicodeWidthStr;
 

@@ -6,7 +6,7 @@ use super::look;
 use crate::grid::Size;
 use crate::render::Sampling;
 use glam::Vec3;
-use ratatui::layout::Rect;
+use ratatui_core::layout::Rect;
 use std::time::Duration;
 
 /// The lowest row or two.

@@ -5,7 +5,6 @@ use super::reader::{Reader, values};
 use crate::color::{LinearRgb, Srgb8};
 use crate::scene_text::{Body, Group, Node, Span, Value, quoted};
 use crate::text::{ParseError, closest};
-use csscolorparser::NAMED_COLORS;
 use std::str::FromStr;
 
 /// A colour.
@@ -76,13 +75,7 @@ impl FromStr for LinearRgb {
 
 /// A name of CSS whose quotes were forgotten.
 fn is_color_word(group: &Group<'_>) -> bool {
-    group.body == Body::Nothing && group.name.is_some_and(|name| color_named(name.text).is_some())
-}
-
-/// The CSS colour of that name, whatever the case.
-pub(crate) fn color_named(name: &str) -> Option<Srgb8> {
-    let &[r, g, b] = NAMED_COLORS.get(name.into())?;
-    Some(Srgb8::new(r, g, b))
+    group.body == Body::Nothing && group.name.is_some_and(|name| Srgb8::from_name(name.text).is_some())
 }
 
 fn color_from(string: &str) -> Result<Srgb8, String> {
@@ -90,7 +83,7 @@ fn color_from(string: &str) -> Result<Srgb8, String> {
     if let Some(digits) = name.strip_prefix('#') {
         return from_hex(digits).ok_or_else(|| bad_hex(string, digits));
     }
-    color_named(name).ok_or_else(|| unknown_name(string, name))
+    Srgb8::from_name(name).ok_or_else(|| unknown_name(string, name))
 }
 
 fn from_hex(digits: &str) -> Option<Srgb8> {
@@ -128,7 +121,7 @@ fn unknown_name(string: &str, name: &str) -> String {
     {
         return format!("{quoted} is not a colour; did you mean \"#{name}\"?");
     }
-    match closest(name, NAMED_COLORS.keys().map(|known| known.as_str())) {
+    match closest(name, Srgb8::names()) {
         Some(meant) => format!("{quoted} is not the name of a colour; did you mean \"{meant}\"?"),
         None => format!("{quoted} is not a colour; write \"#rrggbb\" or a name of CSS, such as \"steelblue\""),
     }

@@ -5,11 +5,10 @@ use alacritty_terminal::event::VoidListener;
 use alacritty_terminal::grid::Dimensions;
 use alacritty_terminal::term::Config;
 use alacritty_terminal::vte::ansi;
-use ratatui::style::Modifier;
 use std::io::{self, Write};
 use std::time::Duration;
 use termtrace::internals::encode::Allowance;
-use termtrace::{Cell, Encoder, Glyph, Grid, Ink, Order, Quality, Size};
+use termtrace::{Attributes, Cell, Encoder, Glyph, Grid, Ink, Order, Quality, Size};
 
 const A: Ink = rgb(10, 20, 30);
 const B: Ink = rgb(200, 100, 0);
@@ -73,11 +72,11 @@ fn modifiers_begin_with_all_off() {
     let mut encoder = Encoder::new();
     let mut grid = flat(&Cell::new('x', A, B));
     encoded(&mut encoder, &grid);
-    let bold = Cell { modifier: Modifier::BOLD | Modifier::UNDERLINED, ..Cell::new('x', A, B) };
+    let bold = Cell { attributes: Attributes::BOLD | Attributes::UNDERLINED, ..Cell::new('x', A, B) };
     *grid.cell_mut(0, 0) = bold.clone();
     let colours = "\x1b[38;2;10;20;30;48;2;200;100;0m";
     assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[H\x1b[0;1;4m{colours}x"));
-    *grid.cell_mut(1, 0) = Cell { modifier: Modifier::BOLD | Modifier::UNDERLINED, ..Cell::new(' ', C, B) };
+    *grid.cell_mut(1, 0) = Cell { attributes: Attributes::BOLD | Attributes::UNDERLINED, ..Cell::new(' ', C, B) };
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;2H\x1b[38;2;1;2;3m ", "the line under a space is seen");
     *grid.cell_mut(0, 0) = Cell::new('x', A, B);
     assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[H\x1b[0m{colours}x"));
@@ -171,9 +170,9 @@ fn a_space_takes_the_colour_that_glyphs_have() {
     let x = |fg, bg| Cell::new('x', fg, bg);
     assert_eq!(cells([space(A), space(A), x(A, B), x(A, C)]), "\x1b[H\x1b[7m  \x1b[27mx\x1b[48;2;1;2;3mx");
     assert_eq!(cells([space(A), space(C), x(C, C), space(B)]), "\x1b[1;2H \x1b[38;2;1;2;3mx\x1b[48;2;200;100;0m ");
-    let reversed = Cell { modifier: Modifier::REVERSED, ..x(C, B) };
+    let reversed = Cell { attributes: Attributes::REVERSED, ..x(C, B) };
     assert_eq!(cells([space(C), space(C), reversed.clone(), space(C)]), "\x1b[H\x1b[7m  x ");
-    let bold = Cell { modifier: Modifier::BOLD, ..x(C, B) };
+    let bold = Cell { attributes: Attributes::BOLD, ..x(C, B) };
     let colors = "\x1b[38;2;1;2;3;48;2;200;100;0m";
     assert_eq!(cells([space(C), space(C), bold, reversed]), format!("\x1b[1;3H\x1b[0;1m{colors}x\x1b[0;7m{colors}x"));
     let default = "\x1b[H\x1b[27;39;48;2;1;2;3mx\x1b[49m \x1b[48;2;1;2;3m  ";
@@ -187,7 +186,7 @@ fn an_exchanged_space_keeps_its_colour() {
     let mut grid = Grid::new(Size::new(3, 1));
     *grid.cell_mut(0, 0) = Cell::new('x', one, two);
     *grid.cell_mut(1, 0) = Cell::new(' ', Ink::Default, one);
-    *grid.cell_mut(2, 0) = Cell { modifier: Modifier::REVERSED, ..Cell::new('x', Ink::Indexed(9), two) };
+    *grid.cell_mut(2, 0) = Cell { attributes: Attributes::REVERSED, ..Cell::new('x', Ink::Indexed(9), two) };
     assert_eq!(
         encoded(&mut Encoder::new().with_order(Order::Color), &grid),
         "\x1b[0m\x1b[H\x1b[38;5;1;48;5;200mx\x1b[7m \x1b[38;5;9mx"
@@ -273,22 +272,22 @@ fn wide_clusters_are_written_on_blanks() {
 #[test]
 fn underlines_have_a_colour() {
     let mut encoder = Encoder::new();
-    let underlined = |underline, modifier| Cell { underline, modifier, ..Cell::new('x', A, B) };
-    let mut grid = flat(&underlined(Ink::Default, Modifier::UNDERLINED));
+    let underlined = |underline, attributes| Cell { underline, attributes, ..Cell::new('x', A, B) };
+    let mut grid = flat(&underlined(Ink::Default, Attributes::UNDERLINED));
     encoded(&mut encoder, &grid);
     let colours = "\x1b[38;2;10;20;30;48;2;200;100;0m";
-    for (underline, modifier, expected) in [
-        (A, Modifier::UNDERLINED, "\x1b[58:2::10:20:30mx"),
-        (Ink::Indexed(7), Modifier::UNDERLINED, "\x1b[58:5:7mx"),
-        (Ink::Default, Modifier::UNDERLINED, "\x1b[59mx"),
-        (C, Modifier::UNDERLINED, "\x1b[58:2::1:2:3mx"),
-        (C, Modifier::empty(), &format!("\x1b[0m{colours}x")),
-        (A, Modifier::empty(), ""),
-        (A, Modifier::ITALIC | Modifier::UNDERLINED, &format!("\x1b[0;3;4m{colours}\x1b[58:2::10:20:30mx")),
+    for (underline, attributes, expected) in [
+        (A, Attributes::UNDERLINED, "\x1b[58:2::10:20:30mx"),
+        (Ink::Indexed(7), Attributes::UNDERLINED, "\x1b[58:5:7mx"),
+        (Ink::Default, Attributes::UNDERLINED, "\x1b[59mx"),
+        (C, Attributes::UNDERLINED, "\x1b[58:2::1:2:3mx"),
+        (C, Attributes::empty(), &format!("\x1b[0m{colours}x")),
+        (A, Attributes::empty(), ""),
+        (A, Attributes::ITALIC | Attributes::UNDERLINED, &format!("\x1b[0;3;4m{colours}\x1b[58:2::10:20:30mx")),
     ] {
-        *grid.cell_mut(0, 0) = underlined(underline, modifier);
+        *grid.cell_mut(0, 0) = underlined(underline, attributes);
         let place = if expected.is_empty() { "" } else { "\x1b[H" };
-        assert_eq!(encoded(&mut encoder, &grid), format!("{place}{expected}"), "{underline:?} {modifier:?}");
+        assert_eq!(encoded(&mut encoder, &grid), format!("{place}{expected}"), "{underline:?} {attributes:?}");
     }
 }
 

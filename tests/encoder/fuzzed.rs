@@ -5,10 +5,9 @@ use super::grids::{filled, put_at};
 use super::screens::{Clusters, glyph_of};
 use super::watched::Watched;
 use arbitrary::{Result, Unstructured};
-use ratatui::style::Modifier;
 use std::time::Duration;
 use termtrace::internals::encode::Allowance;
-use termtrace::{Cell, Grid, Ink, Order, Quality, Size, Srgb8};
+use termtrace::{Attributes, Cell, Grid, Ink, Order, Quality, Size, Srgb8};
 
 const GLYPHS: [&str; 9] = ["▄", "▀", " ", "a", "@", "é", "│", "世", "🙂"];
 
@@ -67,13 +66,13 @@ fn most_bytes(bytes: &mut Unstructured<'_>) -> Result<Option<usize>> {
 
 fn cell(bytes: &mut Unstructured<'_>) -> Result<Cell> {
     let underline = if bytes.ratio(1, 8)? { ink(bytes)? } else { Ink::Default };
-    let modifier = if bytes.ratio(1, 4)? { bytes.arbitrary()? } else { 0 };
+    let attributes = if bytes.ratio(1, 4)? { bytes.arbitrary()? } else { 0 };
     Ok(Cell {
         glyph: glyph_of(bytes.choose(&GLYPHS)?),
         fg: ink(bytes)?,
         bg: ink(bytes)?,
         underline,
-        modifier: Modifier::from_bits_truncate(modifier),
+        attributes: Attributes::from_bits_truncate(attributes),
     })
 }
 

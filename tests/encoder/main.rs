@@ -25,7 +25,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use screens::{Clusters, glyph_of};
-use termtrace::{Cell, Grid, Ink, Order, Size, Srgb8};
+use termtrace::{Attributes, Cell, Grid, Ink, Order, Size, Srgb8};
 use watched::Watched;
 
 pub(crate) const fn rgb(r: u8, g: u8, b: u8) -> Ink {
@@ -42,18 +42,19 @@ fn ink() -> impl Strategy<Value = Ink> {
     ]
 }
 
-fn modifier() -> impl Strategy<Value = Modifier> {
-    prop_oneof![4 => Just(Modifier::empty()), 1 => any::<u16>().prop_map(Modifier::from_bits_truncate)]
+/// The bits of text attributes, which are the same in a grid and in ratatui's buffers.
+fn attribute_bits() -> impl Strategy<Value = u16> {
+    prop_oneof![4 => Just(0), 1 => any::<u16>()]
 }
 
 fn cell(texts: &'static [&'static str]) -> impl Strategy<Value = Cell> {
-    let looks = (ink(), ink(), ink(), modifier());
-    (prop::sample::select(texts), looks).prop_map(|(text, (fg, bg, underline, modifier))| Cell {
+    let looks = (ink(), ink(), ink(), attribute_bits());
+    (prop::sample::select(texts), looks).prop_map(|(text, (fg, bg, underline, bits))| Cell {
         glyph: glyph_of(text),
         fg,
         bg,
         underline,
-        modifier,
+        attributes: Attributes::from_bits_truncate(bits),
     })
 }
 
@@ -107,8 +108,10 @@ fn panel(clusters: Clusters) -> impl Strategy<Value = Panel> {
     let area =
         (0_u16..8, 0_u16..4, 1_u16..9, 1_u16..4).prop_map(|(x, y, width, height)| Rect::new(x, y, width, height));
     let text = vec(prop::sample::select(anything(clusters)), 0..8).prop_map(|text| text.concat());
-    let style = (color.clone(), color.clone(), color, modifier())
-        .prop_map(|(fg, bg, line, modifier)| Style::new().fg(fg).bg(bg).underline_color(line).add_modifier(modifier));
+    let style = (color.clone(), color.clone(), color, attribute_bits()).prop_map(|(fg, bg, line, bits)| {
+        let modifier = Modifier::from_bits_truncate(bits);
+        Style::new().fg(fg).bg(bg).underline_color(line).add_modifier(modifier)
+    });
     (area, text, style).prop_map(|(area, text, style)| Panel { area, text, style })
 }
 
@@ -201,7 +204,7 @@ impl Stage {
     }
 }
 
-/// A place, all nine modifiers, three colours, a wide cluster that is written on blanks.
+/// A place, all nine attributes, three colours, a wide cluster that is written on blanks.
 const MOST_BYTES: usize = "\x1b[12;12H\x1b[0;1;2;3;4;5;6;7;8;9m\x1b[38;2;255;255;255;48;2;255;255;255m".len()
     + "\x1b[58:2::255:255:255m  \x1b[12;12H👨\u{200d}👩\u{200d}👧".len();
 

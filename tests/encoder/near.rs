@@ -29,7 +29,7 @@ impl Caps {
 /// colour, without modifiers.
 /// Everything else is text.
 pub(crate) fn halves(cell: &Cell) -> Option<[Srgb8; 2]> {
-    let (Ink::Rgb(bg), true) = (cell.bg, cell.modifier.is_empty()) else { return None };
+    let (Ink::Rgb(bg), true) = (cell.bg, cell.attributes.is_empty()) else { return None };
     match (&cell.glyph, cell.fg) {
         (Glyph::Char(' '), Ink::Default) => Some([bg; 2]),
         (Glyph::Char('▄'), Ink::Rgb(fg)) => Some([bg, fg]),

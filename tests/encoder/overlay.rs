@@ -4,9 +4,9 @@ use super::rgb;
 use super::screens::{Clusters, Screens};
 use ratatui::buffer::{Buffer, CellDiffOption};
 use ratatui::layout::Rect;
-use ratatui::style::{Color, Modifier, Style};
+use ratatui::style::{Color, Style};
 use std::num::NonZeroU16;
-use termtrace::{Cell, Encoder, Glyph, Grid, Ink, Size, lay_over};
+use termtrace::{Attributes, Cell, Encoder, Glyph, Grid, Ink, Size, lay_over};
 use unicode_width::UnicodeWidthStr;
 
 /// A picture of one colour.
@@ -50,7 +50,7 @@ pub(crate) fn assert_lies_over(grid: &Grid, before: &Grid, buffer: &Buffer) {
             assert_eq!(found.glyph.to_string(), text, "({column}, {row})");
             assert_eq!((found.fg, found.bg), (ink(wanted.fg), ink(wanted.bg)), "({column}, {row})");
             assert_eq!(found.underline, ink(wanted.underline_color), "({column}, {row})");
-            assert_eq!(found.modifier, wanted.modifier, "({column}, {row})");
+            assert_eq!(found.attributes, Attributes::from_bits_truncate(wanted.modifier.bits()), "({column}, {row})");
             if width == 2 && fits {
                 let second = Cell { glyph: Glyph::Covered, ..found.clone() };
                 assert_eq!(*grid.cell(column + 1, row), second, "({column}, {row})");
@@ -116,7 +116,7 @@ fn a_line_of_text_over_a_picture() {
         fg: Ink::Indexed(1),
         bg: rgb(9, 8, 7),
         underline: Ink::Indexed(99),
-        modifier: Modifier::BOLD | Modifier::UNDERLINED,
+        attributes: Attributes::BOLD | Attributes::UNDERLINED,
     };
     let beside = picture(size).cell(0, 0).clone();
     let row = [text('a'.into()), text('世'.into()), text(Glyph::Covered), text('b'.into())];

@@ -8,21 +8,20 @@
 //! - neither knows the colour of an underline;
 //! - `vt100` keeps marks with their letter, but not a family or a flag in one place; `avt` gives every mark a cell.
 
-use ratatui::style::Modifier;
 use std::num::NonZeroU16;
-use termtrace::{Cell, Glyph, Grid, Ink, Size, Srgb8};
+use termtrace::{Attributes, Cell, Glyph, Grid, Ink, Size, Srgb8};
 use unicode_segmentation::UnicodeSegmentation;
 use unicode_width::UnicodeWidthStr;
 
-const AVT_KNOWS: Modifier = Modifier::BOLD
-    .union(Modifier::DIM)
-    .union(Modifier::ITALIC)
-    .union(Modifier::UNDERLINED)
-    .union(Modifier::SLOW_BLINK)
-    .union(Modifier::REVERSED)
-    .union(Modifier::CROSSED_OUT);
+const AVT_KNOWS: Attributes = Attributes::BOLD
+    .union(Attributes::DIM)
+    .union(Attributes::ITALIC)
+    .union(Attributes::UNDERLINED)
+    .union(Attributes::SLOW_BLINK)
+    .union(Attributes::REVERSED)
+    .union(Attributes::CROSSED_OUT);
 
-const VT100_KNOWS: Modifier = AVT_KNOWS.difference(Modifier::SLOW_BLINK).difference(Modifier::CROSSED_OUT);
+const VT100_KNOWS: Attributes = AVT_KNOWS.difference(Attributes::SLOW_BLINK).difference(Attributes::CROSSED_OUT);
 
 /// What the clusters of a frame are, by which of the emulators keep them.
 #[derive(Clone, Copy, Debug)]
@@ -191,17 +190,17 @@ pub(crate) fn seen_by_avt(avt: &avt::Terminal, column: u16, row: u16) -> Cell {
         Some(avt::Color::RGB(c)) => Ink::Rgb(Srgb8::new(c.r, c.g, c.b)),
     };
     let pen = cell.pen();
-    let modifier = modifier_of([
-        (pen.is_bold(), Modifier::BOLD),
-        (pen.is_faint(), Modifier::DIM),
-        (pen.is_italic(), Modifier::ITALIC),
-        (pen.is_underline(), Modifier::UNDERLINED),
-        (pen.is_blink(), Modifier::SLOW_BLINK),
-        (pen.is_inverse(), Modifier::REVERSED),
-        (pen.is_strikethrough(), Modifier::CROSSED_OUT),
+    let attributes = attributes_of([
+        (pen.is_bold(), Attributes::BOLD),
+        (pen.is_faint(), Attributes::DIM),
+        (pen.is_italic(), Attributes::ITALIC),
+        (pen.is_underline(), Attributes::UNDERLINED),
+        (pen.is_blink(), Attributes::SLOW_BLINK),
+        (pen.is_inverse(), Attributes::REVERSED),
+        (pen.is_strikethrough(), Attributes::CROSSED_OUT),
     ]);
     let glyph = if cell.width() == 0 { Glyph::Covered } else { cell.char().into() };
-    seen_of(Cell { glyph, fg: ink(pen.foreground()), bg: ink(pen.background()), underline: Ink::Default, modifier })
+    seen_of(Cell { glyph, fg: ink(pen.foreground()), bg: ink(pen.background()), underline: Ink::Default, attributes })
 }
 
 pub(crate) fn seen_by_vt100(vt100: &vt100::Parser, column: u16, row: u16) -> Cell {
@@ -211,18 +210,18 @@ pub(crate) fn seen_by_vt100(vt100: &vt100::Parser, column: u16, row: u16) -> Cel
         vt100::Color::Idx(index) => Ink::Indexed(index),
         vt100::Color::Rgb(r, g, b) => Ink::Rgb(Srgb8::new(r, g, b)),
     };
-    let modifier = modifier_of([
-        (cell.bold(), Modifier::BOLD),
-        (cell.dim(), Modifier::DIM),
-        (cell.italic(), Modifier::ITALIC),
-        (cell.underline(), Modifier::UNDERLINED),
-        (cell.inverse(), Modifier::REVERSED),
+    let attributes = attributes_of([
+        (cell.bold(), Attributes::BOLD),
+        (cell.dim(), Attributes::DIM),
+        (cell.italic(), Attributes::ITALIC),
+        (cell.underline(), Attributes::UNDERLINED),
+        (cell.inverse(), Attributes::REVERSED),
     ]);
     let glyph = if cell.is_wide_continuation() { Glyph::Covered } else { glyph_of(cell.contents()) };
-    seen_of(Cell { glyph, fg: ink(cell.fgcolor()), bg: ink(cell.bgcolor()), underline: Ink::Default, modifier })
+    seen_of(Cell { glyph, fg: ink(cell.fgcolor()), bg: ink(cell.bgcolor()), underline: Ink::Default, attributes })
 }
 
-fn modifier_of<const N: usize>(flags: [(bool, Modifier); N]) -> Modifier {
+fn attributes_of<const N: usize>(flags: [(bool, Attributes); N]) -> Attributes {
     flags.into_iter().filter_map(|(is_on, flag)| is_on.then_some(flag)).collect()
 }
 
@@ -238,11 +237,11 @@ pub(crate) fn glyph_of(text: &str) -> Glyph {
 /// What can be seen of a cell: a plain space has no colour of its own, nor has a line that is not drawn. A space whose
 /// colours are exchanged is one of the other colour, but the terminal's own for glyphs cannot be said behind them.
 fn seen_of(cell: Cell) -> Cell {
-    if cell.glyph == ' ' && cell.modifier == Modifier::REVERSED && cell.fg != Ink::Default {
+    if cell.glyph == ' ' && cell.attributes == Attributes::REVERSED && cell.fg != Ink::Default {
         return Cell::new(' ', Ink::Default, cell.fg);
     }
-    let no_glyph = cell.glyph == ' ' && cell.modifier.is_empty();
-    let no_line = !cell.modifier.contains(Modifier::UNDERLINED);
+    let no_glyph = cell.glyph == ' ' && cell.attributes.is_empty();
+    let no_line = !cell.attributes.contains(Attributes::UNDERLINED);
     Cell {
         fg: if no_glyph { Ink::Default } else { cell.fg },
         underline: if no_line { Ink::Default } else { cell.underline },
@@ -253,7 +252,7 @@ fn seen_of(cell: Cell) -> Cell {
 /// A cell of two colours as its lower half on its upper one's colour. The terminal's own colours stay where they are:
 /// that of characters is not that behind them.
 fn lower_half(cell: Cell) -> Cell {
-    if !cell.modifier.is_empty() || cell.bg == Ink::Default {
+    if !cell.attributes.is_empty() || cell.bg == Ink::Default {
         return cell;
     }
     match cell.glyph {
@@ -265,18 +264,18 @@ fn lower_half(cell: Cell) -> Cell {
 
 trait Known {
     /// The cell as a terminal keeps it that knows these modifiers, and bold and dim as one scale.
-    fn as_known(&self, known: Modifier) -> Cell;
+    fn as_known(&self, known: Attributes) -> Cell;
 }
 
 impl Known for Cell {
-    fn as_known(&self, known: Modifier) -> Cell {
-        let mut modifier = self.modifier & known;
+    fn as_known(&self, known: Attributes) -> Cell {
+        let mut attributes = self.attributes & known;
         // The encoder says dim after bold.
-        if modifier.contains(Modifier::DIM) {
-            modifier.remove(Modifier::BOLD);
+        if attributes.contains(Attributes::DIM) {
+            attributes.remove(Attributes::BOLD);
         }
         // Rapid blinking is blinking, or nothing: either way the model has looked at it.
-        seen_of(Cell { modifier, underline: Ink::Default, ..self.clone() })
+        seen_of(Cell { attributes, underline: Ink::Default, ..self.clone() })
     }
 }
 
@@ -372,11 +371,11 @@ impl Model {
                 rest
             }
             [code @ 1..=9, ref rest @ ..] => {
-                self.pen.modifier.insert(Modifier::from_bits_truncate(1 << (code - 1)));
+                self.pen.attributes.insert(Attributes::from_bits_truncate(1 << (code - 1)));
                 rest
             }
             [27, ref rest @ ..] => {
-                self.pen.modifier.remove(Modifier::REVERSED);
+                self.pen.attributes.remove(Attributes::REVERSED);
                 rest
             }
             [code @ (30..=37 | 39), ref rest @ ..] => {

@@ -58,7 +58,7 @@ fn an_odd_row_fills_the_upper_half() {
     assert_half_blocks(&["bw", "br", "rw"], &[" -b ▄rw", "▀r- ▀w-"]);
 }
 
-/// No modifiers in a picture, and one column for each pixel.
+/// No attributes in a picture, and one column for each pixel.
 #[test]
 fn a_grid_is_as_wide_as_its_picture() {
     for (width, height, rows) in [(1, 1, 1), (1, 2, 1), (2, 3, 2), (7, 4, 2), (300, 1, 1), (1, 301, 151)] {
@@ -66,7 +66,7 @@ fn a_grid_is_as_wide_as_its_picture() {
         for mode in [CellMode::HALF_BLOCK, CellMode::RAMP] {
             let grid = grid_from_picture(mode, &picture);
             assert_eq!(grid.size(), Size::new(width as u16, rows), "{width}x{height}");
-            assert!(grid.cells().iter().all(|cell| cell.modifier.is_empty()));
+            assert!(grid.cells().iter().all(|cell| cell.attributes.is_empty()));
         }
     }
 }

@@ -8,13 +8,13 @@ use crate::light::Light;
 use crate::scene::Scene;
 use crate::viewer::look::Look;
 use glam::{Vec2, Vec3};
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::style::{Color, Style};
-use ratatui::symbols::Marker;
-use ratatui::text::Line as Text;
-use ratatui::widgets::Widget;
-use ratatui::widgets::canvas::{Canvas, Circle, Line};
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::style::{Color, Style};
+use ratatui_core::symbols::Marker;
+use ratatui_core::text::Line as Text;
+use ratatui_core::widgets::Widget;
+use ratatui_widgets::canvas::{Canvas, Circle, Line};
 
 /// What is drawn, in the plane of the view and the vertical: along -w and v from the eye.
 pub(super) struct Inset {

@@ -4,8 +4,8 @@ use super::Explaining;
 use crate::capabilities::CellMode;
 use crate::explain::WIDTH;
 use crate::viewer::look::Look;
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
 
 /// How wide the panel is, with its border and a blank at each side.
 const PANEL: u16 = WIDTH as u16 + 4;

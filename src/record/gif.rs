@@ -1,0 +1,119 @@
+//! GIFs.
+
+use crate::framebuffer::Resolution;
+use crate::tone::Picture;
+use gif::{EncodingError, Repeat};
+use std::fmt;
+use std::io::{self, Write};
+
+/// A GIF that plays for ever. Its pixels are square, as all viewers take them to be: where the picture's are not, they
+/// are repeated the longer way, so that the picture has the right shape.
+///
+/// Each frame has its own 256 colours. Delays are whole hundredths of a second; their rounding is carried on from frame
+/// to frame, so that the whole takes its right time. (Viewers show delays of less than two hundredths much longer.)
+pub struct Gif<W: Write> {
+    encoder: gif::Encoder<W>,
+    resolution: Resolution,
+    size: (u16, u16),
+    frames_per_second: u32,
+    frame: u64,
+}
+
+impl<W: Write> fmt::Debug for Gif<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { size, frames_per_second, frame, .. } = self;
+        let mut gif = f.debug_struct("Gif");
+        gif.field("size", size).field("frames_per_second", frames_per_second).field("frame", frame);
+        gif.finish_non_exhaustive()
+    }
+}
+
+impl<W: Write> Gif<W> {
+    /// For pictures of that resolution, each pixel `scale` times as large.
+    ///
+    /// # Errors
+    /// If it cannot be written; if [`gif_size`] is more than 65,535 either way.
+    pub fn begin(out: W, resolution: Resolution, scale: u32, frames_per_second: u32) -> io::Result<Self> {
+        let (width, height) = gif_size(resolution, scale);
+        let size = match (width.try_into(), height.try_into()) {
+            (Ok(width), Ok(height)) => (width, height),
+            _ => return Err(invalid("a GIF has at most 65535 pixels each way")),
+        };
+        let mut encoder = gif::Encoder::new(out, size.0, size.1, &[]).map_err(io_error)?;
+        encoder.set_repeat(Repeat::Infinite).map_err(io_error)?;
+        Ok(Self { encoder, resolution, size, frames_per_second, frame: 0 })
+    }
+
+    /// The next frame.
+    ///
+    /// # Errors
+    /// If it cannot be written, or is of another size.
+    pub fn frame(&mut self, picture: &Picture) -> io::Result<()> {
+        let Resolution { width, height, .. } = self.resolution;
+        if (picture.width, picture.height, picture.pixels.len()) != (width, height, self.resolution.pixel_count()) {
+            return Err(invalid("all frames of a film have one size"));
+        }
+        let rgb: Vec<u8> = picture.pixels.iter().flat_map(|p| [p.r, p.g, p.b]).collect();
+        // The colours are chosen from the picture's own pixels; neither side is more than the GIF's.
+        let mut frame = gif::Frame::from_rgb_speed(width as u16, height as u16, &rgb, haste(picture.pixels.len()));
+        frame.buffer = self.enlarged(&frame.buffer).into();
+        (frame.width, frame.height) = self.size;
+        frame.delay = self.delay();
+        self.frame += 1;
+        self.encoder.write_frame(&frame).map_err(io_error)
+    }
+
+    /// Writes the rest after the last frame, and returns the writer.
+    ///
+    /// # Errors
+    /// If the rest cannot be written.
+    pub fn end(self) -> io::Result<W> {
+        let mut out = self.encoder.into_inner().map_err(io_error)?;
+        out.flush()?;
+        Ok(out)
+    }
+
+    /// The picture's pixels repeated until they fill the GIF's.
+    fn enlarged(&self, pixels: &[u8]) -> Vec<u8> {
+        let (across, down) = (usize::from(self.size.0), usize::from(self.size.1));
+        let (width, height) = (self.resolution.width as usize, self.resolution.height as usize);
+        let mut enlarged = Vec::with_capacity(across * down);
+        for y in 0..down {
+            let row = &pixels[y * height / down * width..][..width];
+            enlarged.extend((0..across).map(|x| row[x * width / across]));
+        }
+        enlarged
+    }
+
+    /// How long the frame is shown, in hundredths of a second: up to where the next one begins.
+    fn delay(&self) -> u16 {
+        let second = u64::from(self.frames_per_second.max(1));
+        let hundredths = |frame: u64| (100 * frame + second / 2) / second;
+        // At most a hundred.
+        (hundredths(self.frame + 1) - hundredths(self.frame)) as u16
+    }
+}
+
+/// How many pixels a GIF has, across and down, for pictures of that resolution with each pixel `scale` times as large.
+pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
+    let Resolution { width, height, pixel_aspect } = resolution;
+    let [width, height] = [width, height].map(|side| u64::from(side) * u64::from(scale));
+    let longer = |side: u64, by: f32| ((side as f64 * f64::from(by)).round() as u64).max(side);
+    if pixel_aspect < 1.0 { (longer(width, 1.0 / pixel_aspect), height) } else { (width, longer(height, pixel_aspect)) }
+}
+
+/// How coarsely the quantiser looks at a picture of so many pixels, from 1 (at each) to 30: at some 50,000 of them.
+fn haste(pixels: usize) -> i32 {
+    i32::try_from(pixels / 50_000).map_or(30, |haste| haste.clamp(1, 30))
+}
+
+fn invalid(why: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, why)
+}
+
+fn io_error(error: EncodingError) -> io::Error {
+    match error {
+        EncodingError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}

@@ -1,0 +1,40 @@
+//! The calling thread alone. The bounds on types are those of the other way, so that all code compiles for both.
+
+/// Returns 1.
+pub(crate) fn count() -> usize {
+    1
+}
+
+/// Calls both functions, one after the other.
+pub(crate) fn join<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
+    (first(), second())
+}
+
+/// Returns both parts of what `make` returns for each number below `count`.
+pub(crate) fn unzip<A: Send, B: Send>(count: usize, make: impl Fn(usize) -> (A, B) + Send + Sync) -> (Vec<A>, Vec<B>) {
+    (0..count).map(make).unzip()
+}
+
+/// Calls `work` with chunks of `length` values of both slices, which are at the same place.
+pub(crate) fn for_each_chunk<A: Send, B: Sync>(
+    written: &mut [A],
+    read: &[B],
+    length: usize,
+    work: impl Fn(&mut [A], &[B]) + Send + Sync,
+) {
+    written.chunks_mut(length).zip(read.chunks(length)).for_each(|(written, read)| work(written, read));
+}
+
+/// Returns what `work` returns for each item.
+pub(crate) fn map_one_by_one<I, S, T>(
+    items: I,
+    state: impl Fn() -> S + Send + Sync,
+    work: impl Fn(&mut S, I::Item) -> T + Send + Sync,
+) -> Vec<T>
+where
+    I: Iterator<Item: Send> + Send,
+    T: Send,
+{
+    let mut state = state();
+    items.map(|item| work(&mut state, item)).collect()
+}

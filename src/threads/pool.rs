@@ -1,0 +1,44 @@
+//! The threads of the current rayon pool.
+
+use rayon::prelude::*;
+
+/// Returns how many threads there are. This may start rayon's own.
+pub(crate) fn count() -> usize {
+    rayon::current_num_threads()
+}
+
+/// Calls both functions, perhaps at the same time.
+pub(crate) fn join<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
+    rayon::join(first, second)
+}
+
+/// Returns both parts of what `make` returns for each number below `count`.
+pub(crate) fn unzip<A: Send, B: Send>(count: usize, make: impl Fn(usize) -> (A, B) + Send + Sync) -> (Vec<A>, Vec<B>) {
+    let (mut first, mut second) = (Vec::new(), Vec::new());
+    (0..count).into_par_iter().map(make).unzip_into_vecs(&mut first, &mut second);
+    (first, second)
+}
+
+/// Calls `work` with chunks of `length` values of both slices, which are at the same place.
+pub(crate) fn for_each_chunk<A: Send, B: Sync>(
+    written: &mut [A],
+    read: &[B],
+    length: usize,
+    work: impl Fn(&mut [A], &[B]) + Send + Sync,
+) {
+    written.par_chunks_mut(length).zip(read.par_chunks(length)).for_each(|(written, read)| work(written, read));
+}
+
+/// Returns what `work` returns for each item, in any order. Items are taken one by one, so that a thread that has had the
+/// easy ones takes more; each thread keeps a state of its own.
+pub(crate) fn map_one_by_one<I, S, T>(
+    items: I,
+    state: impl Fn() -> S + Send + Sync,
+    work: impl Fn(&mut S, I::Item) -> T + Send + Sync,
+) -> Vec<T>
+where
+    I: Iterator<Item: Send> + Send,
+    T: Send,
+{
+    items.par_bridge().map_init(state, work).collect()
+}
