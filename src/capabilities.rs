@@ -3,6 +3,7 @@
 mod answers;
 mod detection;
 mod findings;
+#[cfg(feature = "live")]
 mod terminfo;
 
 // What a terminal can show is said in the words of what shows it.
@@ -11,6 +12,7 @@ pub use crate::grid::CellShape;
 pub use answers::{Answers, TEST_COLOR};
 pub use detection::{Clues, Found, GlyphChoice, Source, colors, glyphs};
 pub use findings::{Asking, Findings, Hints, VARIABLES};
+#[cfg(feature = "live")]
 pub use terminfo::terminfo_colors;
 
 /// What the screen's cells can be made of.

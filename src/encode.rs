@@ -20,8 +20,11 @@
 
 use crate::grid::{Cell, Glyph, Grid, Size};
 
+#[cfg(feature = "backend")]
 mod backend;
 mod by_color;
+#[cfg(feature = "backend")]
+mod elsewhere;
 mod columns;
 mod halves;
 mod lossy;
@@ -32,6 +35,7 @@ mod pen;
 mod stillness;
 mod strokes;
 
+#[cfg(feature = "backend")]
 pub use backend::EncoderBackend;
 use moves::Place;
 pub(crate) use pen::Pen;
@@ -268,30 +272,6 @@ impl Encoder {
             return Ok(());
         }
         writer.write_all(bytes).and_then(|()| writer.flush()).inspect_err(|_| self.forget())
-    }
-
-    /// From here on nothing is known of that cell.
-    fn forget_cell(&mut self, Place { column, row }: Place) {
-        if let Some(known) = &mut self.known {
-            *known.shown.cell_mut(column, row) = Cell::FOREIGN;
-        }
-    }
-
-    /// Whatever comes from elsewhere is not to be in our colours.
-    fn lay_down_pen(&mut self, bytes: &mut Vec<u8>) {
-        if let Some(known) = &mut self.known
-            && known.pen != Pen::default()
-        {
-            known.pen.reset(bytes);
-        }
-    }
-
-    /// The content of the screen moves up by so many rows. (Many terminals fill the rows that come in with the pen's
-    /// colour: it has to be laid down.)
-    fn scroll_up(&mut self, rows: u16) {
-        if let Some(known) = &mut self.known {
-            known.shown.scroll_up(rows);
-        }
     }
 
     /// Appends the bytes that make the terminal show the grid; where the cursor is after them, if that is sure.

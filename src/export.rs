@@ -7,6 +7,7 @@ mod difference;
 mod html;
 mod kind;
 mod paint;
+#[cfg(feature = "png")]
 mod png;
 mod svg;
 #[cfg(test)]
@@ -19,6 +20,7 @@ pub use ansi::printed;
 pub use html::html;
 #[doc(hidden)]
 pub use kind::Contents;
+#[cfg(feature = "png")]
 pub use png::{ExportError, png};
 pub use svg::svg;
 pub use text::text;
@@ -39,6 +41,7 @@ crate::table::table! {
     /// What a file with a picture can be, in the order of the keys that ask for it.
     pub enum Format: Kind {
         /// Its pixels: [`png()`].
+        #[cfg(feature = "png")]
         Png = png::KIND;
         /// Cells in colour, for terminals: [`ansi()`].
         Ansi = ansi::KIND;

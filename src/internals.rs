@@ -19,7 +19,6 @@ modules! {
     text
     memory
     progress
-    named_file
     scene_text
     mesh_file
     written
@@ -29,7 +28,6 @@ modules! {
     light
     camera
     camera_path
-    scene_file
     scene
     hit
     shade
@@ -42,10 +40,23 @@ modules! {
     cell
     capabilities
     explain
-    overlay
     encode
     export
-    record
+}
+
+#[cfg(feature = "ron")]
+modules! {
+    named_file
+    scene_file
+}
+
+#[cfg(feature = "ratatui")]
+modules! {
+    overlay
+}
+
+#[cfg(feature = "live")]
+modules! {
     output_file
     input
     protocol
@@ -54,4 +65,9 @@ modules! {
     viewer
     terminal
     app
+}
+
+#[cfg(any(feature = "cast", feature = "gif"))]
+modules! {
+    record
 }

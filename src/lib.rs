@@ -177,8 +177,10 @@
 //! and the schedule decides that it is to be drawn: cells (`cell`), layers over them, bytes (`encode`) ->
 //! `terminal`.
 
-#[cfg(not(any(target_os = "linux", target_os = "macos")))]
-compile_error!("termtrace runs on Linux and macOS: it talks to the terminal through POSIX termios, poll and signals");
+#[cfg(all(feature = "live", not(any(target_os = "linux", target_os = "macos"))))]
+compile_error!(
+    "the feature `live` of termtrace is for Linux and macOS: it talks to the terminal through POSIX termios, poll and signals"
+);
 
 mod table;
 mod color;
@@ -190,9 +192,11 @@ mod text;
 mod memory;
 mod progress;
 mod threads;
+#[cfg(feature = "ron")]
 mod named_file;
 mod scene_text;
 mod mesh_file;
+#[cfg_attr(not(feature = "ron"), allow(dead_code, unused_imports, reason = "only files have written values"))]
 mod written;
 mod bvh;
 mod shape;
@@ -201,6 +205,7 @@ mod material;
 mod light;
 mod camera;
 mod camera_path;
+#[cfg(feature = "ron")]
 mod scene_file;
 mod scene;
 mod hit;
@@ -214,18 +219,29 @@ mod grid;
 mod cell;
 mod capabilities;
 mod explain;
+#[cfg(feature = "ratatui")]
 mod overlay;
 mod encode;
 pub mod export;
+#[cfg(any(feature = "cast", feature = "gif"))]
 mod record;
+#[cfg(feature = "live")]
 mod output_file;
+#[cfg(feature = "live")]
 mod input;
+#[cfg(feature = "live")]
 mod protocol;
+#[cfg(feature = "live")]
 mod pace;
+#[cfg(feature = "live")]
 mod control;
+#[cfg(feature = "live")]
 mod viewer;
+#[cfg(feature = "live")]
 mod terminal;
+#[cfg(feature = "live")]
 mod app;
+#[cfg(feature = "live")]
 pub mod live;
 pub mod prelude;
 #[doc(hidden)]
@@ -233,7 +249,9 @@ pub mod internals;
 
 // Scene files.
 pub use progress::{Progress, Work};
-pub use scene::{LoadError, Scene};
+#[cfg(feature = "ron")]
+pub use scene::LoadError;
+pub use scene::Scene;
 pub use scene_text::SceneError;
 
 // Scenes in code.
@@ -267,17 +285,25 @@ pub use export::{frame_grid, text_frame};
 pub use grid::{Attributes, Cell, Glyph, Grid, Ink, Size};
 
 // ratatui.
-pub use encode::{Encoder, EncoderBackend, Order, Quality};
+#[cfg(feature = "backend")]
+pub use encode::EncoderBackend;
+pub use encode::{Encoder, Order, Quality};
+#[cfg(feature = "ratatui")]
 pub use overlay::lay_over;
 
 // Films.
-pub use record::{Cast, Gif};
+#[cfg(feature = "cast")]
+pub use record::Cast;
+#[cfg(feature = "gif")]
+pub use record::Gif;
 
 // What is read from words.
 pub use text::ParseError;
 
 // The crates whose types are in signatures.
 pub use glam;
+#[cfg(feature = "ratatui")]
+pub use ratatui_core;
 
 /// The examples of the README are compiled and run with the others.
 #[cfg(doctest)]

@@ -124,6 +124,7 @@ macro_rules! lights {
             $(#[doc = $of] $(#[$on])* $name(<$light as InSceneFile>::Written),)*
         }
 
+        #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenLight {
             /// The words that name lights.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $light::NAME,)*];

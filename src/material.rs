@@ -82,6 +82,7 @@ macro_rules! materials {
             $(#[doc = $of] $(#[$on])* $material(<$material as InSceneFile>::Written),)*
         }
 
+        #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenMaterial {
             /// The words that name materials.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $material::NAME,)*];

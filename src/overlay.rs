@@ -34,7 +34,7 @@ pub(crate) fn put(grid: &mut Grid, place: Position, cell: &ratatui_core::buffer:
         glyph,
         fg: ink_from_ratatui(cell.fg),
         bg: ink_from_ratatui(cell.bg),
-        underline: ink_from_ratatui(cell.underline_color),
+        underline: underline(cell),
         attributes: attributes_from_ratatui(cell.modifier),
     };
     grid.put(place.x, place.y, &cell, columns);
@@ -69,6 +69,17 @@ fn glyph_from_ratatui(cell: &ratatui_core::buffer::Cell) -> (Glyph, u16) {
 /// A regional indicator: two of them are a flag, and of one alone terminals disagree.
 fn is_half_a_flag(character: char) -> bool {
     matches!(character, '\u{1f1e6}'..='\u{1f1ff}')
+}
+
+/// The colour of the line below, where ratatui's cells have one.
+#[cfg(feature = "underline-color")]
+fn underline(cell: &ratatui_core::buffer::Cell) -> Ink {
+    ink_from_ratatui(cell.underline_color)
+}
+
+#[cfg(not(feature = "underline-color"))]
+fn underline(_: &ratatui_core::buffer::Cell) -> Ink {
+    Ink::Default
 }
 
 /// Each attribute of ratatui's, and that of the grid.

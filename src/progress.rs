@@ -1,5 +1,11 @@
 //! Progress reports on work that takes a while, and the token by which it is cancelled.
 
+#[cfg(feature = "ron")]
+mod meter;
+
+#[cfg(feature = "ron")]
+pub(crate) use meter::Meter;
+
 use crate::text::Notice;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -133,6 +139,7 @@ impl<E> Unfinished<E> {
     ///
     /// # Panics
     /// If it was cancelled.
+    #[cfg(feature = "ron")]
     pub(crate) fn failure(self) -> E {
         match self {
             Self::Cancelled => panic!("work was cancelled that has no token"),
@@ -166,47 +173,3 @@ impl<E: fmt::Display> fmt::Display for Unfinished<E> {
 }
 
 impl<E: fmt::Debug + fmt::Display> std::error::Error for Unfinished<E> {}
-
-/// A parser's position in its file, reported to a [`Watcher`] every [`STRIDE`] bytes.
-pub(crate) struct Meter<'a> {
-    watcher: &'a Watcher<'a>,
-    name: &'a str,
-    /// The file's length in bytes.
-    total: usize,
-    /// The first position that is to be reported.
-    next: usize,
-}
-
-/// How many bytes lie between two reports: one or two milliseconds of parsing.
-const STRIDE: usize = 256 << 10;
-
-impl<'a> Meter<'a> {
-    /// A meter at the start of the file `name`, which has `total` bytes.
-    pub(crate) fn new(watcher: &'a Watcher<'a>, name: &'a str, total: usize) -> Self {
-        Self { watcher, name, total, next: 0 }
-    }
-
-    /// Notes that the parser is at byte `at`.
-    ///
-    /// # Errors
-    /// If the file is no longer wanted.
-    #[inline]
-    pub(crate) fn reach(&mut self, at: usize) -> Result<(), Cancelled> {
-        if at < self.next { Ok(()) } else { self.tell(at, self.total) }
-    }
-
-    /// Notes progress of a parser that does not read its file from front to back: the report has no position.
-    ///
-    /// # Errors
-    /// If the file is no longer wanted.
-    pub(crate) fn step(&mut self) -> Result<(), Cancelled> {
-        self.tell(0, 0)
-    }
-
-    #[cold]
-    fn tell(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
-        self.next = done + STRIDE;
-        let work = Work::Parsing(self.name.to_owned());
-        self.watcher.tell(Progress { work, done, total })
-    }
-}

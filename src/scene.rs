@@ -3,15 +3,23 @@
 //! All units are fixed here: world units, radians, linear light, unit vectors. [`Scene::load`] and [`Scene::from_ron`]
 //! are the only way from what was written to what is drawn. A [`Draft`] is checked and has no trees yet.
 
+#[cfg(feature = "ron")]
 mod checked;
 mod draft;
+#[cfg(feature = "ron")]
 mod load;
 mod of_mesh;
+#[cfg(feature = "mesh")]
+mod sketch;
+#[cfg(feature = "ron")]
 mod written_camera;
+#[cfg(feature = "ron")]
 mod written_view;
 
 pub use draft::Draft;
+#[cfg(feature = "ron")]
 pub use load::LoadError;
+#[cfg(feature = "ron")]
 pub use written_view::with_view;
 
 use crate::accel::Accelerator;
@@ -185,6 +193,7 @@ impl Scene {
     }
 
     /// Returns whether both are copies of one scene, which nothing has changed since.
+    #[cfg(feature = "live")]
     pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.checked, &other.checked) && Arc::ptr_eq(&self.accelerator, &other.accelerator)
     }

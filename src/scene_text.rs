@@ -16,14 +16,20 @@
 //!   fault, where 31 of the 79 faulty scenes of the tests have several.
 
 mod fault;
+#[cfg(feature = "ron")]
 mod parser;
+#[cfg(feature = "ron")]
 mod tokens;
+#[cfg(feature = "ron")]
 mod whole;
 
 pub use fault::{Fault, Faults, Report, SceneError, line_and_column};
 pub(crate) use fault::{clipped, quoted};
+#[cfg(feature = "ron")]
 pub use parser::parse;
+#[cfg(feature = "ron")]
 pub(crate) use whole::read_or_cancel;
+#[cfg(feature = "ron")]
 pub use whole::{read, text_from};
 
 /// The bytes of the text that something was written in: from `start` up to, and without, `end`.

@@ -176,7 +176,7 @@ fn a_module_uses_only_what_stands_above_it() {
 const PUBLIC: [&str; 4] = ["export", "live", "prelude", "internals"];
 
 /// The crates whose types are in promised signatures.
-const REEXPORTED_CRATES: [&str; 1] = ["glam"];
+const REEXPORTED_CRATES: [&str; 2] = ["glam", "ratatui_core"];
 
 /// Every stage is on the route, and nothing else stands at the root, where it would be above and below everything.
 #[test]
@@ -391,6 +391,36 @@ fn the_operating_systems_terminal_has_one_owner() {
             }
         }
     }
+}
+
+/// What ties code to some operating systems.
+const OF_A_SYSTEM: [&str; 7] =
+    ["std::os::", "rustix::", "nix::", "signal_hook", "cfg(unix", "cfg(windows", "target_os"];
+
+/// Whether a file is compiled with the feature `live` only: its module, or one that it is in, is declared so.
+fn is_live_only(path: &Path) -> bool {
+    let folder = path.parent().expect("a file is in a folder");
+    let is_top = folder == root().join("src");
+    let parent = if is_top { folder.join("lib.rs") } else { folder.with_extension("rs") };
+    let name = path.file_stem().and_then(OsStr::to_str).expect("names are UTF-8");
+    let declarations = ["mod ", "pub mod "].map(|start| format!("\n#[cfg(feature = \"live\")]\n{start}{name};\n"));
+    let text = fs::read_to_string(&parent).expect("the parent is there");
+    declarations.iter().any(|declaration| text.contains(declaration)) || !is_top && is_live_only(&parent)
+}
+
+/// Without the feature `live` the library is for every system that Rust has a standard library for.
+#[test]
+fn only_the_live_view_is_tied_to_a_system() {
+    let files = library_files();
+    for (path, text) in files.iter().filter(|(path, _)| stage(path) != "lib" && !is_live_only(path)) {
+        let code = code(text);
+        for word in OF_A_SYSTEM {
+            assert!(!code.contains(word), "{} has {word}, and does not stand behind `live`", path.display());
+        }
+    }
+    let is_live_only = |file: &str| is_live_only(&root().join("src").join(file));
+    assert!(["app.rs", "terminal/signals.rs", "named_file/posix.rs"].into_iter().all(is_live_only));
+    assert!(!["scene.rs", "named_file.rs", "named_file/plain.rs"].into_iter().any(is_live_only));
 }
 
 /// The modules of a person's session that need no terminal, file or clock: they are told the time, and driven by a terminal,

@@ -158,9 +158,17 @@ mod tests {
         })
     }
 
+    fn numbered(word: &str, numbers: Range<usize>) -> String {
+        let mut text = String::new();
+        for number in numbers {
+            let _ = writeln!(text, "{word}{number}");
+        }
+        text
+    }
+
     #[test]
     fn it_is_written_as_others_write_it() {
-        let rows: String = (0..20).map(|row| format!("row {row}\n")).collect();
+        let rows = numbered("row ", 0..20);
         for file in [
             rows.clone(),
             rows.replace("row 7\n", "row seven\n"),
@@ -178,8 +186,7 @@ mod tests {
 
     #[test]
     fn more_lines_than_can_be_compared_are_one_change() {
-        let numbers = |from: usize| (from..from + 3000).map(|number| format!("{number}\n")).collect::<String>();
-        let difference = unified(&numbers(0), &numbers(1500), "golden");
+        let difference = unified(&numbered("", 0..3000), &numbered("", 1500..4500), "golden");
         assert_eq!((changes(&difference), difference.matches("@@ ").count()), (6000, 1));
     }
 

@@ -1,7 +1,7 @@
 //! A mesh that grows, triangle by triangle.
 
 use super::attribute::Attribute;
-use super::error::Fault;
+use super::fault::Fault;
 use super::limits::MAX_TRIANGLES;
 use super::{MeshFile, MeshMaterial};
 use crate::color::LinearRgb;

@@ -61,7 +61,7 @@ impl MeshFile {
     }
 
     /// A triangle with these corners, otherwise like that one of this mesh.
-    fn push_like(&self, index: usize, positions: [u32; 3], mesh: &mut Builder) -> Result<(), super::error::Fault> {
+    fn push_like(&self, index: usize, positions: [u32; 3], mesh: &mut Builder) -> Result<(), super::fault::Fault> {
         mesh.set_material(self.material_of(index).map(|material| material as u32)); // as many as there were
         let triangle = Triangle {
             positions,

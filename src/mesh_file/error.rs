@@ -1,7 +1,5 @@
 //! Why a file is no mesh, and how a person is told: one line with the place in it.
 
-use crate::progress::{Cancelled, Unfinished};
-use crate::scene_text::clipped;
 use crate::text::visible;
 use std::fmt;
 
@@ -40,7 +38,7 @@ impl MeshError {
         Self::at(name, Place::File, message)
     }
 
-    fn at(name: &str, place: Place, message: &str) -> Self {
+    pub(super) fn at(name: &str, place: Place, message: &str) -> Self {
         Self { name: visible(name), place, message: visible(message) }
     }
 
@@ -75,117 +73,3 @@ impl fmt::Display for MeshError {
 }
 
 impl std::error::Error for MeshError {}
-
-/// A fault, or that there is none to be found, on its way up to where the file's name is known. In a box, because a result of eight bytes keeps the
-/// reading of numbers fast.
-#[derive(Debug)]
-pub(super) struct Fault(Box<Cause>);
-
-#[derive(Debug)]
-enum Cause {
-    Here {
-        place: FaultPlace,
-        message: String,
-    },
-    /// In another file, whose name is known.
-    Elsewhere(MeshError),
-    /// There is none: the work was given up.
-    Cancelled,
-}
-
-/// A place as readers know it: by the bytes before it.
-#[derive(Clone, Copy, Debug)]
-enum FaultPlace {
-    File,
-    Text(usize),
-    Byte(usize),
-}
-
-impl Fault {
-    /// A fault of the whole file, or one whose message says where it is.
-    #[cold]
-    pub(super) fn of_file(message: impl Into<String>) -> Self {
-        Self(Box::new(Cause::Here { place: FaultPlace::File, message: message.into() }))
-    }
-
-    /// A fault at that byte of a text.
-    #[cold]
-    pub(super) fn in_text(at: usize, message: impl Into<String>) -> Self {
-        Self(Box::new(Cause::Here { place: FaultPlace::Text(at), message: message.into() }))
-    }
-
-    /// A fault at that byte of a binary file.
-    #[cold]
-    pub(super) fn at_byte(at: usize, message: impl Into<String>) -> Self {
-        Self(Box::new(Cause::Here { place: FaultPlace::Byte(at), message: message.into() }))
-    }
-
-    /// The error of the file with these bytes.
-    pub(super) fn into_error(self, name: &str, bytes: &[u8]) -> Unfinished<MeshError> {
-        Unfinished::Failed(match *self.0 {
-            Cause::Here { place: FaultPlace::File, message } => MeshError::of_file(name, &message),
-            Cause::Here { place: FaultPlace::Byte(byte), message } => MeshError::at(name, Place::Byte(byte), &message),
-            Cause::Here { place: FaultPlace::Text(at), message } => {
-                let (line, column) = line_and_column(bytes, at);
-                MeshError::at(name, Place::Text { line, column }, &message)
-            }
-            Cause::Elsewhere(error) => error,
-            Cause::Cancelled => return Unfinished::Cancelled,
-        })
-    }
-}
-
-impl From<MeshError> for Fault {
-    fn from(error: MeshError) -> Self {
-        Self(Box::new(Cause::Elsewhere(error)))
-    }
-}
-
-impl From<Unfinished<MeshError>> for Fault {
-    fn from(unfinished: Unfinished<MeshError>) -> Self {
-        match unfinished {
-            Unfinished::Cancelled => Cancelled.into(),
-            Unfinished::Failed(error) => error.into(),
-        }
-    }
-}
-
-impl From<Cancelled> for Fault {
-    #[cold]
-    fn from(Cancelled: Cancelled) -> Self {
-        Self(Box::new(Cause::Cancelled))
-    }
-}
-
-/// Lines end with a line feed, a carriage return, or both.
-fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
-    let before = &bytes[..at.min(bytes.len())];
-    let ends_line =
-        |&i: &usize| before[i] == b'\n' || (before[i] == b'\r' && bytes.get(i + 1).is_none_or(|&next| next != b'\n'));
-    let line = 1 + (0..before.len()).filter(ends_line).count();
-    let start = (0..before.len()).rev().find(ends_line).map_or(0, |end| end + 1);
-    // A byte order mark takes no column.
-    let text = before[start..].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&before[start..]);
-    let characters = |chunk: std::str::Utf8Chunk<'_>| chunk.valid().chars().count() + chunk.invalid().len().min(1);
-    (line, 1 + text.utf8_chunks().map(characters).sum::<usize>())
-}
-
-/// A piece of a file, as a message shows it.
-pub(super) fn shown(bytes: &[u8]) -> String {
-    // Of a long piece only the beginning is shown, and only that is decoded.
-    format!("\"{}\"", clipped(&String::from_utf8_lossy(&bytes[..bytes.len().min(200)])))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_end_in_three_ways_and_columns_are_characters() {
-        assert_eq!(line_and_column(b"", 0), (1, 1));
-        assert_eq!(line_and_column(b"ab", 9), (1, 3));
-        assert_eq!(line_and_column(b"a\nb\r\nc\rd", 7), (4, 1));
-        assert_eq!(line_and_column(b"a\r\nb", 2), (1, 3));
-        assert_eq!(line_and_column("\u{feff}\u{e9}x".as_bytes(), 5), (1, 2));
-    }
-}

@@ -12,7 +12,7 @@ mod nodes;
 mod primitives;
 
 use super::MeshFile;
-use super::error::{Fault, shown};
+use super::fault::{Fault, shown};
 use super::neighbours::Neighbours;
 use crate::progress::Meter;
 use buffers::Buffers;

@@ -1,6 +1,6 @@
 //! Which format a file has, told by its content.
 
-use super::error::{Fault, shown};
+use super::fault::{Fault, shown};
 use super::{obj, stl};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! MTL, the materials of OBJ files: `Kd` and `map_Kd`. All other lines are passed over.
 
 use super::MeshMaterial;
-use super::error::{Fault, shown};
+use super::fault::{Fault, shown};
 use super::neighbours::{Neighbours, local_path};
 use super::text::Text;
 use super::texture::{self, Budget, Texture, TexturePlacement};

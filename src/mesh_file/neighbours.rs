@@ -1,6 +1,6 @@
 //! The files that a mesh names.
 
-use super::error::shown;
+use super::fault::shown;
 use super::limits::MAX_BYTES;
 use crate::named_file;
 use std::io;

@@ -2,7 +2,7 @@
 //! materials of MTL files. Lines, points, curves and surfaces are passed over.
 
 use super::builder::{Builder, Triangle, unit};
-use super::error::{Fault, shown};
+use super::fault::{Fault, shown};
 use super::mtl::{self, Library};
 use super::neighbours::{Neighbours, local_path};
 use super::text::Text;

@@ -5,7 +5,7 @@ mod header;
 mod rows;
 
 use super::builder::{Builder, Triangle, unit};
-use super::error::Fault;
+use super::fault::Fault;
 use super::{MeshFile, polygon};
 use crate::color::{LinearRgb, Srgb8, linear_from_srgb};
 use crate::progress::Meter;

@@ -3,7 +3,7 @@
 
 use super::MeshFile;
 use super::builder::{Builder, Triangle, too_many};
-use super::error::{Fault, shown};
+use super::fault::{Fault, shown};
 use super::limits::MAX_TRIANGLES;
 use super::polygon;
 use super::text::Text;

@@ -3,7 +3,7 @@
 //! OBJ, MTL, STL and PLY agree in this much: words stand between blanks, a line is a statement. What only OBJ knows, a
 //! comment after `#` and a line that goes on after `\`, does not occur in the others.
 
-use super::error::{Fault, shown};
+use super::fault::{Fault, shown};
 
 /// A place in a text, and what is read from there on.
 pub(super) struct Text<'a> {

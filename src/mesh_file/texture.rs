@@ -1,15 +1,15 @@
 //! Pictures on meshes: PNG and JPEG.
 
-use super::limits::MAX_TEXELS;
+#[cfg(feature = "mesh")]
+mod decoded;
+
+#[cfg(feature = "mesh")]
+pub(super) use decoded::{Budget, decode};
+
 use crate::color::{LinearRgb, Srgb8};
 use glam::{Vec2, Vec3};
 use std::fmt;
-use std::io::Cursor;
 use std::sync::Arc;
-use zune_jpeg::JpegDecoder;
-use zune_jpeg::zune_core::bytestream::ZCursor;
-use zune_jpeg::zune_core::colorspace::ColorSpace;
-use zune_jpeg::zune_core::options::DecoderOptions;
 
 /// A picture as its file has it: sRGB, 8 bits, without its transparency.
 #[derive(Clone, PartialEq, Eq)]
@@ -30,11 +30,6 @@ pub struct TexturePlacement {
 }
 
 impl TexturePlacement {
-    /// The picture where the texture coordinates say.
-    pub(super) fn plain(texture: Arc<Texture>) -> Self {
-        Self { texture, transform: [Vec3::X, Vec3::Y] }
-    }
-
     /// The picture's coordinates: (0, 0) is its top left corner, (1, 1) its bottom right one.
     pub fn at(&self, uv: Vec2) -> Vec2 {
         let uv1 = uv.extend(1.0);
@@ -82,96 +77,4 @@ impl fmt::Debug for Texture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Texture({} x {})", self.width, self.height)
     }
-}
-
-/// How many texels may still be unpacked.
-pub(super) struct Budget(usize);
-
-impl Default for Budget {
-    fn default() -> Self {
-        Self(MAX_TEXELS)
-    }
-}
-
-impl Budget {
-    fn take(&mut self, width: usize, height: usize) -> Result<(), String> {
-        if width == 0 || height == 0 {
-            return Err("is a picture without pixels".to_owned());
-        }
-        let left = width.checked_mul(height).and_then(|texels| self.0.checked_sub(texels));
-        let too_large =
-            || format!("is {width} x {height} pixels, too large: all textures together have at most {MAX_TEXELS}");
-        self.0 = left.ok_or_else(too_large)?;
-        Ok(())
-    }
-}
-
-/// The picture in a file; `Err` says what the file is, as in "is neither PNG nor JPEG".
-pub(super) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
-    if bytes.starts_with(b"\x89PNG") {
-        decode_png(bytes, budget)
-    } else if bytes.starts_with(b"\xff\xd8") {
-        decode_jpeg(bytes, budget)
-    } else if bytes.starts_with(b"version https://git-lfs") {
-        Err("is only a pointer of Git LFS to the file: fetch it with `git lfs pull`".to_owned())
-    } else {
-        Err("is neither a PNG nor a JPEG picture".to_owned())
-    }
-}
-
-fn decode_png(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
-    let say = |error: png::DecodingError| format!("is a PNG picture that cannot be read: {error}");
-    let limits = png::Limits { bytes: 8 * MAX_TEXELS };
-    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
-    decoder.set_transformations(png::Transformations::normalize_to_color8());
-    let mut reader = decoder.read_info().map_err(say)?;
-    let (width, height) = reader.info().size();
-    budget.take(width as usize, height as usize)?;
-    check_plausible(width as usize * height as usize, bytes, 8 * 1032, "PNG")?;
-    let size = reader.output_buffer_size().ok_or("is a PNG picture that is too large")?;
-    let mut samples = vec![0; size];
-    let frame = reader.next_frame(&mut samples).map_err(say)?;
-    samples.truncate(frame.buffer_size());
-    let texels = match frame.color_type.samples() {
-        1 => samples.iter().map(|&y| Srgb8::new(y, y, y)).collect(),
-        2 => samples.chunks_exact(2).map(|s| Srgb8::new(s[0], s[0], s[0])).collect(),
-        n => samples.chunks_exact(n).map(|s| Srgb8::new(s[0], s[1], s[2])).collect(),
-    };
-    complete(width, height, texels, "PNG")
-}
-
-fn decode_jpeg(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
-    let say = |error: &dyn fmt::Debug| format!("is a JPEG picture that cannot be read: {error:?}");
-    let options = DecoderOptions::default()
-        .set_max_width(MAX_TEXELS)
-        .set_max_height(MAX_TEXELS)
-        // Otherwise what is missing of a picture would be grey.
-        .set_strict_mode(true)
-        .jpeg_set_out_colorspace(ColorSpace::RGB);
-    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
-    decoder.decode_headers().map_err(|error| say(&error))?;
-    let (width, height) = decoder.dimensions().ok_or("is a JPEG picture without a size")?;
-    budget.take(width, height)?;
-    check_plausible(width * height, bytes, 8 * 64, "JPEG")?;
-    let samples = decoder.decode().map_err(|error| say(&error))?;
-    let texels = samples.chunks_exact(3).map(|s| Srgb8::new(s[0], s[1], s[2])).collect();
-    complete(width as u32, height as u32, texels, "JPEG") // sizes of JPEG have 16 bits
-}
-
-/// Whether the file can hold as many texels as it claims, before they cost time and memory: a byte of PNG unpacks to at
-/// most 1032 bytes of one bit a texel; in JPEG every block of 64 texels takes at least a bit.
-fn check_plausible(texels: usize, bytes: &[u8], most_per_byte: usize, format: &str) -> Result<(), String> {
-    if texels / most_per_byte > bytes.len() { Err(cut_short(format)) } else { Ok(()) }
-}
-
-fn cut_short(format: &str) -> String {
-    format!("is a {format} picture that is cut short")
-}
-
-/// The decoders promise as many texels as the header; nothing here trusts them.
-fn complete(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
-    if texels.len() != width as usize * height as usize {
-        return Err(cut_short(format));
-    }
-    Ok(Texture { width, height, texels })
 }

@@ -40,6 +40,7 @@ macro_rules! written {
             $surface(<super::$surface as InSceneFile>::Written),)*
         }
 
+        #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenShape {
             /// The words that name shapes.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* <super::$surface as InSceneFile>::NAME,)*];

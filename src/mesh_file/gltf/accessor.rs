@@ -2,7 +2,7 @@
 
 use super::buffers::{Buffers, View};
 use super::json::Json;
-use crate::mesh_file::error::Fault;
+use crate::mesh_file::fault::Fault;
 
 /// So many elements of so many components each.
 pub(super) struct Accessor<'a> {

@@ -2,7 +2,7 @@
 
 use super::json::Json;
 use crate::mesh_file::MAX_TRIANGLES;
-use crate::mesh_file::error::{Fault, shown};
+use crate::mesh_file::fault::{Fault, shown};
 use crate::mesh_file::neighbours::{Neighbours, local_path};
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};

@@ -1,6 +1,6 @@
 //! Values of a JSON document that know their path in it, so that a fault can say where it is.
 
-use crate::mesh_file::error::{Fault, shown};
+use crate::mesh_file::fault::{Fault, shown};
 use serde_json::{Map, Value};
 use std::fmt::{self, Write};
 

@@ -4,7 +4,7 @@ use super::buffers::{Buffers, described};
 use super::json::Json;
 use crate::color::LinearRgb;
 use crate::mesh_file::MeshMaterial;
-use crate::mesh_file::error::Fault;
+use crate::mesh_file::fault::Fault;
 use crate::mesh_file::texture::{self, Budget, Texture, TexturePlacement};
 use glam::Vec3;
 use std::collections::HashMap;

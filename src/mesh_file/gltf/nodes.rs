@@ -4,7 +4,7 @@ use super::buffers::Buffers;
 use super::json::Json;
 use super::primitives::Primitives;
 use crate::mesh_file::MeshFile;
-use crate::mesh_file::error::Fault;
+use crate::mesh_file::fault::Fault;
 use crate::progress::Meter;
 use glam::{DMat4, DQuat, DVec3, DVec4};
 

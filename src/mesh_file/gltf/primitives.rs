@@ -7,7 +7,7 @@ use super::materials;
 use crate::color::LinearRgb;
 use crate::mesh_file::MeshFile;
 use crate::mesh_file::builder::{Builder, Triangle, unit};
-use crate::mesh_file::error::Fault;
+use crate::mesh_file::fault::Fault;
 use glam::{DMat3, DMat4, Vec2, Vec3};
 use std::collections::HashMap;
 

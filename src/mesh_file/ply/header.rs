@@ -1,6 +1,6 @@
 //! The header: which elements there are, and what each of their rows holds.
 
-use crate::mesh_file::error::{Fault, shown};
+use crate::mesh_file::fault::{Fault, shown};
 use crate::mesh_file::text::Text;
 
 /// All of it.

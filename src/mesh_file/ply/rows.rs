@@ -1,7 +1,7 @@
 //! The numbers of the body, as text or as bytes.
 
 use super::header::{Element, Property, Shape, Type};
-use crate::mesh_file::error::Fault;
+use crate::mesh_file::fault::Fault;
 use crate::mesh_file::text::Text;
 use crate::progress::Meter;
 

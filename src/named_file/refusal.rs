@@ -1,0 +1,31 @@
+//! Why a file was not read, in words.
+
+use std::fmt;
+use std::io::{self, ErrorKind};
+
+/// An error whose words are our own.
+pub(super) fn refused(kind: ErrorKind, message: String) -> io::Error {
+    io::Error::new(kind, Refusal(message))
+}
+
+#[derive(Debug)]
+struct Refusal(String);
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+/// Why a file could not be read: the words that follow its name and a colon in a message.
+pub fn reason(error: &io::Error) -> String {
+    match error.kind() {
+        _ if error.get_ref().and_then(|inner| inner.downcast_ref::<Refusal>()).is_some() => error.to_string(),
+        ErrorKind::NotFound => "there is no such file".to_owned(),
+        ErrorKind::IsADirectory => "this is a directory, not a file".to_owned(),
+        ErrorKind::PermissionDenied => "no permission to read this file".to_owned(),
+        _ => format!("cannot be read: {error}"),
+    }
+}
