@@ -127,6 +127,7 @@ impl Encoder {
     }
 
     /// The same for an encoder in use.
+    #[cfg(feature = "live")]
     pub(crate) fn set_order(&mut self, order: Order) {
         self.order = order;
     }
@@ -140,6 +141,7 @@ impl Encoder {
     }
 
     /// The same for an encoder in use: a window may have come to other cells.
+    #[cfg(feature = "live")]
     pub(crate) fn set_upper_half(&mut self, upper_half: bool) {
         self.upper_half = upper_half;
     }

@@ -277,6 +277,7 @@ impl Grid {
     }
 
     /// Moves everything up by so many rows; blanks come in at the bottom.
+    #[cfg(feature = "backend")]
     pub(crate) fn scroll_up(&mut self, rows: u16) {
         let gone = Size { rows: rows.min(self.size.rows), ..self.size }.cell_count();
         self.cells.drain(..gone);
