@@ -36,6 +36,30 @@
 //! - Films: [`Cast`], [`Gif`]
 //! - The live view: [`live`]
 //!
+//! # Features
+//!
+//! Without any there are scenes in code, pictures and maps, descriptions and explanations, cells, the encoder, and text, ANSI,
+//! SVG and HTML. What more there is with a feature, and how many crates are compiled in all, this one included:
+//!
+//! | features | what they bring | crates |
+//! |---|---|--:|
+//! | (none) | | 4 |
+//! | `ron` | scene files and camera paths, and the plain files beside them | 4 |
+//! | `parallel` | tracing, toning and building trees on all threads of the current rayon pool; the same bits | 10 |
+//! | `ron`, `parallel` | the least that traces a scene file on all cores | 10 |
+//! | `mesh` | OBJ, STL, PLY and glTF files with their textures; includes `ron` | 23 |
+//! | `png` | PNG files | 14 |
+//! | `gif` | films as GIF | 7 |
+//! | `cast` | films as asciicast | 9 |
+//! | `ratatui` | ratatui's buffers laid over cells, on `ratatui-core` alone | 33 |
+//! | `underline-color` | the colours of their underlines; all of the program's ratatui backends must have theirs on | 33 |
+//! | `backend` | the encoder as a backend of ratatui; includes `ratatui` | 33 |
+//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif`, `cast` and the last two | 92 |
+//! | `cli` | the program `termtrace`, by default | 107 |
+//!
+//! A program that only uses the library turns the default off:
+//! `termtrace = { version = "0.1", default-features = false, features = ["ron", "parallel"] }`.
+//!
 //! # The route
 //!
 //! One file per stage, in the order in which the data travels; a stage that outgrows its file has a folder of the same
