@@ -59,6 +59,7 @@ crate::table::table! {
 
 impl Format {
     /// The word by which the command line asks for it.
+    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         self.row().name
     }

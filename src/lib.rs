@@ -14,7 +14,7 @@
 //! )"##)?;
 //! let light = render(&scene, scene.camera(), Resolution::square(80, 48), NonZeroU32::MIN);
 //! let picture = tone(&light, &scene);
-//! assert_eq!(picture.pixels.len(), 80 * 48);
+//! assert_eq!(picture.pixels().len(), 80 * 48);
 //! # Ok::<(), termtrace::SceneError>(())
 //! ```
 //!

@@ -94,6 +94,7 @@ impl Map {
     }
 
     /// Returns the name, one word.
+    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Shaded => "shaded",

@@ -8,12 +8,49 @@ use crate::threads;
 /// The picture as files and terminals take it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Picture {
-    /// Pixels in a row.
-    pub width: u32,
-    /// Rows of pixels.
-    pub height: u32,
-    /// `width * height` pixels, row by row from the top.
-    pub pixels: Vec<Srgb8>,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// `width * height`, row by row from the top.
+    pub(crate) pixels: Vec<Srgb8>,
+}
+
+impl Picture {
+    /// Returns the picture with these pixels, row by row from the top; `None`, unless there are `width * height`.
+    ///
+    /// ```
+    /// use termtrace::{Picture, Srgb8};
+    ///
+    /// let grey = Srgb8::new(128, 128, 128);
+    /// let picture = Picture::from_pixels(3, 2, vec![grey; 6]).ok_or("six are wanted")?;
+    /// assert_eq!((picture.width(), picture.height()), (3, 2));
+    /// assert_eq!(picture.to_bytes(), [128; 18]);
+    /// assert_eq!(Picture::from_pixels(3, 2, vec![grey; 5]), None);
+    /// # Ok::<(), &str>(())
+    /// ```
+    pub fn from_pixels(width: u32, height: u32, pixels: Vec<Srgb8>) -> Option<Self> {
+        let count = u64::from(width) * u64::from(height);
+        (pixels.len() as u64 == count).then_some(Self { width, height, pixels })
+    }
+
+    /// Returns the number of pixels in a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Returns the number of rows of pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Returns the pixels, row by row from the top.
+    pub fn pixels(&self) -> &[Srgb8] {
+        &self.pixels
+    }
+
+    /// Returns red, green and blue of each pixel, row by row from the top, as other crates take pictures.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        self.pixels.iter().flat_map(|pixel| [pixel.r, pixel.g, pixel.b]).collect()
+    }
 }
 
 /// The framebuffer as `scene` wants its light shown.

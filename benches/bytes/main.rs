@@ -86,10 +86,9 @@ impl Frames {
         let size = Size::new(columns.parse().ok()?, rows.parse().ok()?);
         let (width, height) = (usize::from(size.columns), 2 * usize::from(size.rows));
         let bytes = fs::read(path).expect("a file of frames can be read");
-        let picture = |frame: &[u8]| Picture {
-            width: width as u32,
-            height: height as u32,
-            pixels: frame.chunks_exact(3).map(|p| Srgb8::new(p[0], p[1], p[2])).collect(),
+        let picture = |frame: &[u8]| {
+            let pixels = frame.chunks_exact(3).map(|p| Srgb8::new(p[0], p[1], p[2])).collect();
+            Picture::from_pixels(width as u32, height as u32, pixels).expect("all its pixels")
         };
         let pictures = bytes.chunks_exact(3 * width * height).take(most).map(picture).collect();
         let kind = Kind::ALL.into_iter().find(|kind| kind.name() == name);

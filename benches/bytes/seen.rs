@@ -36,7 +36,7 @@ pub(crate) fn outcome(quality: Quality, frames: &[Picture]) -> Outcome {
         let bytes = lossy.send(picture, time_of(k));
         sizes.push(bytes.len());
         screen.feed(bytes);
-        errors.note(&screen.pixels(), &picture.pixels);
+        errors.note(&screen.pixels(), picture.pixels());
     }
     let (last, end) = (&frames[frames.len() - 1], time_of(frames.len() - 1));
     let mut rest = end;
@@ -59,7 +59,7 @@ pub(crate) fn outcome(quality: Quality, frames: &[Picture]) -> Outcome {
         psnr: psnr(errors.sum / errors.frames),
         distance: errors.distance,
         rest: rest.saturating_sub(end),
-        is_exact: lossy.due().is_none() && screen.pixels() == last.pixels,
+        is_exact: lossy.due().is_none() && screen.pixels() == last.pixels(),
     }
 }
 
@@ -108,7 +108,7 @@ struct Screen(vt100::Parser);
 impl Screen {
     fn new(picture: &Picture) -> Self {
         let side = |cells: u32| NonZeroU16::new(cells as u16).expect("a screen has cells");
-        Self(vt100::Parser::new(side(picture.height / 2), side(picture.width), 0))
+        Self(vt100::Parser::new(side(picture.height() / 2), side(picture.width()), 0))
     }
 
     fn feed(&mut self, bytes: &[u8]) {

@@ -97,7 +97,7 @@ impl Write for Sink {
 
 fn by_ratatui(frames: &[Picture], mut take: impl FnMut(&[u8])) {
     let sink = Sink::default();
-    let (columns, rows) = (frames[0].width as u16, (frames[0].height / 2) as u16);
+    let (columns, rows) = (frames[0].width() as u16, (frames[0].height() / 2) as u16);
     let options = TerminalOptions { viewport: Viewport::Fixed(Rect::new(0, 0, columns, rows)) };
     let mut terminal = Terminal::with_options(CrosstermBackend::new(sink.clone()), options).expect("memory");
     for picture in frames {
@@ -109,8 +109,8 @@ fn by_ratatui(frames: &[Picture], mut take: impl FnMut(&[u8])) {
 
 fn fill(buffer: &mut ratatui::buffer::Buffer, picture: &Picture) {
     let color = |p: Srgb8| Color::Rgb(p.r, p.g, p.b);
-    let width = picture.width as usize;
-    for (row, pair) in picture.pixels.chunks_exact(2 * width).enumerate() {
+    let width = picture.width() as usize;
+    for (row, pair) in picture.pixels().chunks_exact(2 * width).enumerate() {
         for column in 0..width {
             let cell = &mut buffer[(column as u16, row as u16)];
             cell.set_symbol("▀").set_fg(color(pair[column])).set_bg(color(pair[width + column]));

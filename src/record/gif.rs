@@ -53,7 +53,7 @@ impl<W: Write> Gif<W> {
         if (picture.width, picture.height, picture.pixels.len()) != (width, height, self.resolution.pixel_count()) {
             return Err(invalid("all frames of a film have one size"));
         }
-        let rgb: Vec<u8> = picture.pixels.iter().flat_map(|p| [p.r, p.g, p.b]).collect();
+        let rgb = picture.to_bytes();
         // The colours are chosen from the picture's own pixels; neither side is more than the GIF's.
         let mut frame = gif::Frame::from_rgb_speed(width as u16, height as u16, &rgb, haste(picture.pixels.len()));
         frame.buffer = self.enlarged(&frame.buffer).into();

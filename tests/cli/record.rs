@@ -330,7 +330,7 @@ fn a_gif_shows_each_frame() {
         assert_eq!((frame.width, frame.height), (240, 144));
         let mut squares = 0;
         for (i, shown) in frame.buffer.chunks_exact(4).enumerate() {
-            let wanted = picture.pixels[i / 240 / 3 * 80 + i % 240 / 3];
+            let wanted = picture.pixels()[i / 240 / 3 * 80 + i % 240 / 3];
             let pairs = [(shown[0], wanted.r), (shown[1], wanted.g), (shown[2], wanted.b)];
             squares += pairs.iter().map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2)).sum::<u64>();
         }

@@ -161,8 +161,9 @@ fn a_sketch_looks_like_the_scene() {
     let count = sketch.objects()[0].shape.part_count();
     assert!((10_000..60_000).contains(&count), "{count} triangles");
     assert_eq!(sketch.camera(), draft.camera());
-    let pixels =
-        |scene: &Scene| tone(&render(scene, scene.camera(), Resolution::square(80, 48), NonZeroU32::MIN), scene).pixels;
+    let pixels = |scene: &Scene| {
+        tone(&render(scene, scene.camera(), Resolution::square(80, 48), NonZeroU32::MIN), scene).pixels().to_vec()
+    };
     let (coarse, fine) = (pixels(&sketch), pixels(&draft.finish()));
     let is_near = |(a, b): &(&Srgb8, &Srgb8)| a.g.abs_diff(b.g) < 24;
     let near = coarse.iter().zip(&fine).filter(is_near).count();

@@ -259,7 +259,7 @@ fn the_outermost_values_make_a_picture() {
     let resolution = termtrace::Resolution::square(16, 8);
     let one = std::num::NonZeroU32::MIN;
     let frame = termtrace::render(&scene, scene.camera(), resolution, one);
-    assert_eq!(termtrace::tone(&frame, &scene).pixels.len(), 128);
+    assert_eq!(termtrace::tone(&frame, &scene).pixels().len(), 128);
 }
 
 #[test]

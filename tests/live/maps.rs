@@ -120,18 +120,19 @@ fn two_maps_are_compared() {
 const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 
 fn joined(left: &Picture, right: &Picture) -> Picture {
-    let rows = left.pixels.chunks(left.width as usize).zip(right.pixels.chunks(right.width as usize));
-    let pixels = rows.flat_map(|(left, right)| [left, &[LINE], right].concat()).collect();
-    Picture { width: left.width + 1 + right.width, height: left.height, pixels }
+    let rows = left.pixels().chunks(left.width() as usize).zip(right.pixels().chunks(right.width() as usize));
+    let pixels = rows.flat_map(|(left, right)| [left, &[LINE][..], right].concat()).collect();
+    Picture::from_pixels(left.width() + 1 + right.width(), left.height(), pixels).expect("all its pixels")
 }
 
 fn wiped(left: &Picture, right: &Picture, line: u32) -> Picture {
-    let at = |at: u32| match (at % left.width).cmp(&line) {
-        Ordering::Less => left.pixels[at as usize],
+    let at = |at: u32| match (at % left.width()).cmp(&line) {
+        Ordering::Less => left.pixels()[at as usize],
         Ordering::Equal => LINE,
-        Ordering::Greater => right.pixels[at as usize],
+        Ordering::Greater => right.pixels()[at as usize],
     };
-    Picture { pixels: (0..left.width * left.height).map(at).collect(), ..*left }
+    let pixels = (0..left.width() * left.height()).map(at).collect();
+    Picture::from_pixels(left.width(), left.height(), pixels).expect("all its pixels")
 }
 
 /// Panels step aside where there is no room.

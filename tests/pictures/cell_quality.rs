@@ -25,7 +25,7 @@ struct Plane {
 
 impl Plane {
     fn of(picture: &Picture, value: impl Fn(Srgb8) -> f64) -> Self {
-        Self { width: picture.width as usize, values: picture.pixels.iter().map(|&pixel| value(pixel)).collect() }
+        Self { width: picture.width() as usize, values: picture.pixels().iter().map(|&pixel| value(pixel)).collect() }
     }
 
     /// After a Gaussian blur; beyond the edge the picture is mirrored.
@@ -120,7 +120,7 @@ fn pixels(grid: &Grid) -> Picture {
         let upper = row.iter().map(|cell| shown(cell.bg));
         upper.chain(row.iter().map(lower))
     });
-    Picture { width, height, pixels: rows.collect() }
+    Picture::from_pixels(width, height, rows.collect()).expect("all its pixels")
 }
 
 /// The nearest colour to each pixel by its bands: what is done where nobody thinks of it.
@@ -130,7 +130,8 @@ fn nearest(picture: &Picture, indices: std::ops::RangeInclusive<u8>) -> Picture 
     };
     let nearest =
         |&pixel: &Srgb8| indices.clone().map(shown).min_by_key(|&color| apart(color, pixel)).expect("a range");
-    Picture { pixels: picture.pixels.iter().map(nearest).collect(), ..*picture }
+    let pixels = picture.pixels().iter().map(nearest).collect();
+    Picture::from_pixels(picture.width(), picture.height(), pixels).expect("all its pixels")
 }
 
 #[test]

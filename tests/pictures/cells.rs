@@ -8,7 +8,7 @@ use termtrace::{
 /// Rows of pixels, each a letter: b(lack), w(hite), r(ed), g(rey).
 fn picture(rows: &[&str]) -> Picture {
     let pixels = rows.iter().flat_map(|row| row.chars()).map(color).collect();
-    Picture { width: rows[0].len() as u32, height: rows.len() as u32, pixels }
+    Picture::from_pixels(rows[0].len() as u32, rows.len() as u32, pixels).expect("all its pixels")
 }
 
 fn color(letter: char) -> Srgb8 {
@@ -62,7 +62,8 @@ fn an_odd_row_fills_the_upper_half() {
 #[test]
 fn a_grid_is_as_wide_as_its_picture() {
     for (width, height, rows) in [(1, 1, 1), (1, 2, 1), (2, 3, 2), (7, 4, 2), (300, 1, 1), (1, 301, 151)] {
-        let picture = Picture { width, height, pixels: vec![Srgb8::default(); (width * height) as usize] };
+        let picture = Picture::from_pixels(width, height, vec![Srgb8::default(); (width * height) as usize])
+            .expect("all its pixels");
         for mode in [CellMode::HALF_BLOCK, CellMode::RAMP] {
             let grid = grid_from_picture(mode, &picture);
             assert_eq!(grid.size(), Size::new(width as u16, rows), "{width}x{height}");
@@ -125,7 +126,8 @@ fn pixels_of_shapes() {
     let expected = Resolution { width: 160, height: 96, pixel_aspect: 1.0 };
     assert_eq!(resolution(mode, Size::new(80, 24), 2.0), expected);
     for (width, height, columns, rows) in [(1, 1, 1, 1), (2, 4, 1, 1), (3, 5, 2, 2), (160, 96, 80, 24)] {
-        let picture = Picture { width, height, pixels: vec![Srgb8::new(255, 255, 255); (width * height) as usize] };
+        let picture = Picture::from_pixels(width, height, vec![Srgb8::new(255, 255, 255); (width * height) as usize])
+            .expect("all its pixels");
         let grid = grid_from_picture(mode, &picture);
         assert_eq!(grid.size(), Size::new(columns, rows), "{width}x{height}");
         assert!(grid.cells().iter().all(|cell| cell.glyph == 'Q'), "the densest that is so all over");
@@ -144,7 +146,7 @@ fn confetti(seed: u32) -> Picture {
     let (width, height) = (80, 96);
     let mix = |at: u32| (at + seed).wrapping_mul(0x9e37_79b1) >> 8;
     let pixels = (0..width * height).map(mix).map(|c| Srgb8::new((c >> 16) as u8, (c >> 8) as u8, c as u8));
-    Picture { width, height, pixels: pixels.collect() }
+    Picture::from_pixels(width, height, pixels.collect()).expect("all its pixels")
 }
 
 fn inks(grid: &Grid) -> impl Iterator<Item = Ink> {
@@ -190,13 +192,11 @@ fn a_still_picture_sends_nothing() {
 /// What a pixel becomes depends on its colour and its place alone: a picture in a part of another is the same there.
 #[test]
 fn dithering_keeps_to_its_pixel() {
-    let mut other = confetti(1);
-    let width = other.width as usize;
-    for (at, pixel) in other.pixels.iter_mut().enumerate() {
-        if at % width >= width / 2 {
-            *pixel = Srgb8::new(200, 10, 90);
-        }
-    }
+    let picture = confetti(1);
+    let width = picture.width() as usize;
+    let pixels = picture.pixels().iter().enumerate();
+    let half = pixels.map(|(at, &pixel)| if at % width < width / 2 { pixel } else { Srgb8::new(200, 10, 90) });
+    let other = Picture::from_pixels(picture.width(), picture.height(), half.collect()).expect("all its pixels");
     for colors in [Colors::None, Colors::SIXTEEN, Colors::Indexed256] {
         let mode = CellMode { glyphs: Glyphs::Half, colors };
         let (whole, part) = (grid_from_picture(mode, &confetti(1)), grid_from_picture(mode, &other));
@@ -210,7 +210,7 @@ fn dithering_keeps_to_its_pixel() {
 #[test]
 fn few_colours_of_flat_pictures() {
     let indices = |colors, grey| -> std::collections::BTreeSet<u8> {
-        let picture = Picture { width: 32, height: 32, pixels: vec![Srgb8::new(grey, grey, grey); 1024] };
+        let picture = Picture::from_pixels(32, 32, vec![Srgb8::new(grey, grey, grey); 1024]).expect("all its pixels");
         let grid = grid_from_picture(CellMode { glyphs: Glyphs::Half, colors }, &picture);
         let indices = inks(&grid).filter_map(|ink| match ink {
             Ink::Indexed(index) => Some(index),
@@ -236,7 +236,8 @@ fn a_light_background_turns_what_has_no_colour() {
     for mode in modes() {
         let size = mode.pixels_per_cell();
         let glyph = |pixel: Srgb8, light| {
-            let picture = Picture { width: size.0, height: size.1, pixels: vec![pixel; (size.0 * size.1) as usize] };
+            let picture =
+                Picture::from_pixels(size.0, size.1, vec![pixel; (size.0 * size.1) as usize]).expect("all its pixels");
             let grid = Painter::new(mode).with_light_background(light).grid(&picture);
             grid.cell(0, 0).clone()
         };
@@ -262,7 +263,7 @@ fn without_colour_a_half_is_lit_or_not() {
 #[test]
 fn characters_are_coloured_as_bright_as_can_be() {
     let flat = |glyphs, pixel| {
-        let picture = Picture { width: 2, height: 4, pixels: vec![pixel; 8] };
+        let picture = Picture::from_pixels(2, 4, vec![pixel; 8]).expect("all its pixels");
         grid_from_picture(CellMode { glyphs, colors: Colors::Truecolor }, &picture).cell(0, 0).clone()
     };
     let black = Ink::Rgb(color('b'));

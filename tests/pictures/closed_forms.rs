@@ -424,28 +424,28 @@ fn light_becomes_srgb_by_its_own_curve() {
     let mut scene = Scene::new(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![]);
     for (linear, code) in [(0.0, 0), (0.002, 7), (0.18, 118), (0.5, 188), (0.9, 243), (1.0, 255), (4.0, 255)] {
         scene = scene.with_background(Background::Color(LinearRgb::grey(linear)));
-        let shown = tone(&picture(&scene, 1, 1), &scene).pixels[0];
+        let shown = tone(&picture(&scene, 1, 1), &scene).pixels()[0];
         assert_eq!(shown.r, code, "{linear}");
     }
     // Exposure multiplies; Reinhard's curve makes 1 a half.
     scene = scene.with_background(Background::Color(LinearRgb::grey(0.25)));
     scene = scene.with_exposure(2.0);
-    assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 188);
+    assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels()[0].g, 188);
     scene = scene.with_exposure(4.0);
     scene = scene.with_tone_curve(ToneCurve::Reinhard);
-    assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 188);
+    assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels()[0].g, 188);
     // Of a colour, the luminance is bent, and the hue stays: Y of (1, 0.5, 0) is 0.5702, and 1 / 1.5702 = 0.63686.
     scene = scene.with_background(Background::Color(LinearRgb::new(0.25, 0.125, 0.0)));
-    let orange = tone(&picture(&scene, 1, 1), &scene).pixels[0];
+    let orange = tone(&picture(&scene, 1, 1), &scene).pixels()[0];
     assert_eq!([orange.r, orange.g, orange.b], [209, 153, 0]);
     scene = scene.with_background(Background::Color(LinearRgb::grey(0.25)));
     scene = scene.with_tone_curve(ToneCurve::Filmic);
     // (2.51 + 0.03) / (2.43 + 0.59 + 0.14) = 0.80380, which is encoded as 0.90824.
-    assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 232);
+    assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels()[0].g, 232);
     // No light is too bright to be white.
     for curve in [ToneCurve::None, ToneCurve::Reinhard, ToneCurve::Filmic] {
         scene = scene.with_tone_curve(curve).with_background(Background::Color(LinearRgb::grey(1e30)));
-        assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels[0].g, 255, "{curve:?}");
+        assert_eq!(tone(&picture(&scene, 1, 1), &scene).pixels()[0].g, 255, "{curve:?}");
     }
 }
 

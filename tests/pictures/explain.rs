@@ -48,7 +48,7 @@ fn every_pixel_of_every_scene_is_explained() {
         let picture = picture(&scene);
         for (at, pixel) in pixels().enumerate() {
             let explanation = explain(&scene, scene.camera(), SIZE, pixel);
-            assert_eq!(explanation.bytes, picture.pixels[at], "{} {pixel:?}", path.display());
+            assert_eq!(explanation.bytes, picture.pixels()[at], "{} {pixel:?}", path.display());
             adds_up(&scene, &explanation);
         }
     }
@@ -62,7 +62,7 @@ fn exposure_and_curve_are_the_frames() {
         let picture = picture(&scene);
         for (at, pixel) in pixels().enumerate().step_by(7) {
             let explanation = explain(&scene, scene.camera(), SIZE, pixel);
-            assert_eq!(explanation.bytes, picture.pixels[at], "{tone_curve:?} {pixel:?}");
+            assert_eq!(explanation.bytes, picture.pixels()[at], "{tone_curve:?} {pixel:?}");
             adds_up(&scene, &explanation);
         }
     }

@@ -23,8 +23,8 @@ fn scene(name: &str) -> Scene {
 
 /// FNV-1a, as of framebuffers.
 fn hash(picture: &Picture) -> u64 {
-    let size = [picture.width, picture.height].map(u32::to_le_bytes).concat();
-    let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r, pixel.g, pixel.b]);
+    let size = [picture.width(), picture.height()].map(u32::to_le_bytes).concat();
+    let bytes = picture.pixels().iter().flat_map(|pixel| [pixel.r, pixel.g, pixel.b]);
     let fold = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
     size.into_iter().chain(bytes).fold(0xcbf2_9ce4_8422_2325, fold)
 }
@@ -82,7 +82,7 @@ fn a_coarse_map_is_of_larger_pixels() {
     let scene = scene("three_spheres");
     for map in Map::ALL {
         let coarse = picture(map, &scene, scene.camera(), Resolution::square(41, 23), Sampling::Coarse);
-        let at = |x: usize, y: usize| coarse.pixels[y * 41 + x];
+        let at = |x: usize, y: usize| coarse.pixels()[y * 41 + x];
         let is_alike = |x, y| at(x, y) == at(x & !1, y & !1);
         let lines = usize::from(map == Map::Contrast) * 41 * 23;
         let others = (0..41 * 23).filter(|pixel| !is_alike(pixel % 41, pixel / 41)).count();
@@ -97,11 +97,11 @@ fn maps_say_what_is_there() {
         let scene = scene(name);
         let resolution = Resolution::square(32, 20);
         let maps = Map::ALL.map(|map| picture(map, &scene, scene.camera(), resolution, ONE));
-        let shown = |map: Map, at: usize| maps[Map::ALL.iter().position(|&v| v == map).expect("a map")].pixels[at];
+        let shown = |map: Map, at: usize| maps[Map::ALL.iter().position(|&v| v == map).expect("a map")].pixels()[at];
         let light = tone(&render(&scene, scene.camera(), resolution, ONE), &scene);
         for at in 0..32 * 20 {
             let ray = eye_ray(scene.camera(), resolution, at);
-            assert_eq!(shown(Map::Shaded, at), light.pixels[at]);
+            assert_eq!(shown(Map::Shaded, at), light.pixels()[at]);
             let Some(hit) = closest_hit(&scene, &ray) else {
                 for map in [Map::Lambert, Map::Depth, Map::Normal, Map::Object, Map::Shadow, Map::Facing] {
                     assert_eq!(shown(map, at), Srgb8::new(16, 20, 56), "{name} {map:?} {at}");
@@ -150,20 +150,20 @@ fn the_cost_is_what_rays_are_tested_against() {
     let scene = scene("three_spheres");
     let resolution = Resolution::square(40, 30);
     let picture = picture(Map::Cost, &scene, scene.camera(), resolution, ONE);
-    let mut kinds: Vec<_> = picture.pixels.clone();
+    let mut kinds = picture.pixels().to_vec();
     kinds.sort();
     kinds.dedup();
     assert!((2..=12).contains(&kinds.len()), "{} costs", kinds.len());
     // Into the sky goes the eye ray alone; from the spheres and the floor shadow rays go on.
-    let sky = picture.pixels[0];
+    let sky = picture.pixels()[0];
     assert_eq!(sky, Srgb8::new(31, 128, 224), "four tests: the second of the scale's colours");
-    let at = |x: usize, y: usize| picture.pixels[y * 40 + x];
+    let at = |x: usize, y: usize| picture.pixels()[y * 40 + x];
     assert_eq!(at(39, 0), sky);
     assert!(at(20, 15) != sky && at(20, 29) != sky);
     // Without shadows no ray goes on.
     let bare = scene.clone().with_shadows(false);
     let bare = maps::picture(Map::Cost, &bare, bare.camera(), resolution, ONE);
-    assert!(bare.pixels.iter().all(|&pixel| pixel == sky), "each eye ray meets the same tests");
+    assert!(bare.pixels().iter().all(|&pixel| pixel == sky), "each eye ray meets the same tests");
 }
 
 /// A legend fits half of a screen of 80 columns.

@@ -29,9 +29,9 @@ fn samples(count: u32) -> NonZeroU32 {
 fn psnr(scene: &Scene, a: &Framebuffer, b: &Framebuffer) -> f64 {
     let (a, b) = (tone(a, scene), tone(b, scene));
     let bands = |p: &termtrace::Srgb8| [p.r, p.g, p.b].map(f64::from);
-    let pairs = a.pixels.iter().flat_map(bands).zip(b.pixels.iter().flat_map(bands));
+    let pairs = a.pixels().iter().flat_map(bands).zip(b.pixels().iter().flat_map(bands));
     let squares: f64 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
-    10.0 * libm::log10(255.0 * 255.0 * 3.0 * a.pixels.len() as f64 / squares)
+    10.0 * libm::log10(255.0 * 255.0 * 3.0 * a.pixels().len() as f64 / squares)
 }
 
 #[test]

@@ -71,7 +71,8 @@ fn picture(capabilities: &Capabilities) -> Picture {
         };
         at.color(capabilities.cell_aspect)
     };
-    Picture { width: resolution.width, height: resolution.height, pixels: pixels.map(color).collect() }
+    let pixels = pixels.map(color).collect();
+    Picture::from_pixels(resolution.width, resolution.height, pixels).expect("a pixel for each place")
 }
 
 /// A place on the card, in cells, and the size of a pixel.
