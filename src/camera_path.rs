@@ -76,6 +76,7 @@ impl CameraPath {
     /// keyframes, whatever their times. A value that is the same at two neighbours stays exactly the same between them.
     /// Of the view rectangle the height runs in the same way, by its logarithm: zooming is even, and no angle is ever
     /// out of range. Its shape and its shift are those of the keyframe before.
+    #[doc(hidden)]
     pub fn through(keyframes: Vec<Keyframe>) -> Option<Self> {
         let rise = keyframes.windows(2).all(|pair| pair[0].time < pair[1].time);
         (rise && !keyframes.is_empty()).then_some(Self(Way::Through(keyframes)))

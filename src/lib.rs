@@ -289,7 +289,7 @@ pub use scene::{Background, Object, ToneCurve};
 pub use shape::{Mesh, Plane, Shape, Sphere, Triangle};
 
 // Cameras over time.
-pub use camera_path::{CameraPath, Keyframe};
+pub use camera_path::CameraPath;
 
 // Pictures.
 pub use framebuffer::{Framebuffer, Resolution};

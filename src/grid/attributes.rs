@@ -41,21 +41,25 @@ impl Attributes {
     ];
 
     /// Returns the set without any.
+    #[doc(hidden)]
     pub const fn empty() -> Self {
         Self(0)
     }
 
     /// Returns the set of all nine.
+    #[doc(hidden)]
     pub const fn all() -> Self {
         Self((1 << Self::NAMES.len()) - 1)
     }
 
     /// Returns the attributes of these bits, [`BOLD`](Self::BOLD) first; the seven highest mean nothing.
+    #[doc(hidden)]
     pub const fn from_bits_truncate(bits: u16) -> Self {
         Self(bits & Self::all().0)
     }
 
     /// Returns whether there are none.
+    #[doc(hidden)]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
@@ -66,26 +70,31 @@ impl Attributes {
     }
 
     /// Returns what is in either set.
+    #[doc(hidden)]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
     /// Returns what is in this set and not in `other`.
+    #[doc(hidden)]
     pub const fn difference(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
     /// Adds all of `other`.
+    #[doc(hidden)]
     pub const fn insert(&mut self, other: Self) {
         *self = self.union(other);
     }
 
     /// Takes all of `other` away.
+    #[doc(hidden)]
     pub const fn remove(&mut self, other: Self) {
         *self = self.difference(other);
     }
 
     /// Returns the attributes one by one, in the order of SGR's codes.
+    #[doc(hidden)]
     pub fn iter(self) -> impl Iterator<Item = Self> {
         Self::NAMES.into_iter().map(|(one, _)| one).filter(move |&one| self.contains(one))
     }
