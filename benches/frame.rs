@@ -18,7 +18,7 @@ fn scene(name: &str) -> Scene {
 }
 
 fn picture(scene: &Scene, camera: &Camera, size: Size) -> Picture {
-    let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0);
+    let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0).expect("a size that pictures can have");
     tone(&render(scene, camera, resolution, NonZeroU32::MIN), scene)
 }
 
@@ -42,7 +42,7 @@ fn trace(criterion: &mut Criterion) {
     for name in ["three_spheres.ron", "many_spheres.ron"] {
         let scene = scene(name);
         for size in SIZES {
-            let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0);
+            let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0).expect("a size that pictures can have");
             group.bench_with_input(BenchmarkId::new(name, format!("{size:?}")), &resolution, |bencher, &resolution| {
                 bencher.iter(|| render(black_box(&scene), scene.camera(), resolution, NonZeroU32::MIN));
             });
@@ -52,7 +52,12 @@ fn trace(criterion: &mut Criterion) {
 
 fn light_to_cells(criterion: &mut Criterion) {
     let scene = scene("three_spheres.ron");
-    let light = render(&scene, scene.camera(), cell::resolution(CellMode::HALF_BLOCK, SIZES[1], 2.0), NonZeroU32::MIN);
+    let light = render(
+        &scene,
+        scene.camera(),
+        cell::resolution(CellMode::HALF_BLOCK, SIZES[1], 2.0).expect("a size that pictures can have"),
+        NonZeroU32::MIN,
+    );
     criterion.bench_function("tone", |bencher| bencher.iter(|| tone(black_box(&light), &scene)));
     for (name, glyphs, colors) in [
         ("half blocks in truecolor", Glyphs::Half, Colors::Truecolor),
@@ -63,7 +68,7 @@ fn light_to_cells(criterion: &mut Criterion) {
         ("the ramp", Glyphs::Ramp, Colors::None),
     ] {
         let mode = CellMode { glyphs, colors };
-        let resolution = cell::resolution(mode, SIZES[1], 2.0);
+        let resolution = cell::resolution(mode, SIZES[1], 2.0).expect("a size that pictures can have");
         let picture = tone(&render(&scene, scene.camera(), resolution, NonZeroU32::MIN), &scene);
         let mut painter = Painter::new(mode);
         criterion.bench_function(&format!("cells: {name}"), |bencher| {

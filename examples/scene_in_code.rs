@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .with_ambient(LinearRgb::grey(0.05))
         .with_lights(vec![light]);
 
-    let resolution = cell::resolution(CellMode::HALF_BLOCK, Size::new(80, 24), USUAL_CELL_ASPECT);
+    let resolution = cell::resolution(CellMode::HALF_BLOCK, Size::new(80, 24), USUAL_CELL_ASPECT)?;
     let picture = tone(&render(&scene, scene.camera(), resolution, NonZeroU32::MIN), &scene);
     io::stdout().write_all(&export::ansi(&cell::grid_from_picture(CellMode::HALF_BLOCK, &picture)))?;
     Ok(())

@@ -15,6 +15,8 @@ pub use findings::{Asking, Findings, Hints, VARIABLES};
 #[cfg(feature = "live")]
 pub use terminfo::terminfo_colors;
 
+use std::ops::RangeInclusive;
+
 /// What the screen's cells can be made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capabilities {
@@ -32,6 +34,9 @@ pub struct Capabilities {
 
 /// The aspect of a cell of which nothing is known.
 pub const USUAL_CELL_ASPECT: f32 = 2.0;
+
+/// The aspects of cells in which anybody could read. Others are not what a person or a program means.
+pub const CELL_ASPECTS: RangeInclusive<f32> = 0.1..=10.0;
 
 /// Whether pictures may be coloured, and how, as the user says it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 //! A kind of cells is one file here, with its `mod` line, and one row of the table of [`Glyphs`].
 
 use crate::color::Srgb8;
-use crate::framebuffer::Resolution;
+use crate::framebuffer::{Resolution, ResolutionError};
 use crate::grid::{Grid, Size};
 use crate::text::{ParseError, named};
 use crate::tone::Picture;
@@ -115,7 +115,10 @@ impl CellMode {
     pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
 
     /// Returns the resolution at which to render for a screen of that size whose cells have that aspect (height / width).
-    pub fn resolution(self, size: Size, cell_aspect: f32) -> Resolution {
+    ///
+    /// # Errors
+    /// If the screen has more pixels than a picture may have, or the aspect is not greater than 0 and finite.
+    pub fn resolution(self, size: Size, cell_aspect: f32) -> Result<Resolution, ResolutionError> {
         resolution(self, size, cell_aspect)
     }
 
@@ -132,14 +135,14 @@ impl CellMode {
     }
 }
 
-/// The resolution at which to render for a screen of that size whose cells have that aspect (height / width).
-pub fn resolution(mode: CellMode, size: Size, cell_aspect: f32) -> Resolution {
+/// Returns the resolution at which to render for a screen of that size whose cells have that aspect (height / width).
+///
+/// # Errors
+/// If the screen has more pixels than a picture may have, or the aspect is not greater than 0 and finite.
+pub fn resolution(mode: CellMode, size: Size, cell_aspect: f32) -> Result<Resolution, ResolutionError> {
     let (across, down) = mode.pixels_per_cell();
-    Resolution {
-        width: u32::from(size.columns) * across,
-        height: u32::from(size.rows) * down,
-        pixel_aspect: cell_aspect * across as f32 / down as f32,
-    }
+    Resolution::new(u32::from(size.columns) * across, u32::from(size.rows) * down)?
+        .with_pixel_aspect(cell_aspect * across as f32 / down as f32)
 }
 
 /// The cells that show the picture, as a new [`Painter`] paints them.
@@ -242,8 +245,8 @@ mod tests {
         let glyphs = Glyphs::from_name("dots").expect("by its name");
         let picture = Picture { width: 2, height: 1, pixels: vec![BLUE, BLACK] };
         let mode = CellMode { glyphs, colors: Colors::Truecolor };
-        let Resolution { width, height, .. } = resolution(mode, Size::new(2, 1), 2.0);
-        assert_eq!((width, height), (picture.width, picture.height));
+        let resolution = resolution(mode, Size::new(2, 1), 2.0).expect("a small screen");
+        assert_eq!((resolution.width(), resolution.height()), (picture.width, picture.height));
         let grid = grid_from_picture(mode, &picture);
         assert_eq!(*grid.cell(0, 0), Cell::new('o', Ink::Rgb(BLUE), Ink::Rgb(BLACK)));
         assert_eq!(*grid.cell(1, 0), Cell::new(' ', Ink::Default, Ink::Rgb(BLACK)));

@@ -115,7 +115,8 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
     let steps = trace_pixel(scene, camera, resolution, pixel);
     let mut listener = Listener::default();
     hit::closest_hit_witnessed(scene, &steps.ray, &mut listener);
-    let one = Framebuffer { resolution: Resolution::square(1, 1), pixels: vec![steps.light] };
+    let mut one = Framebuffer::new(Resolution::square(1, 1));
+    one.pixels_mut()[0] = steps.light;
     Explanation {
         resolution,
         pixel,

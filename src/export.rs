@@ -169,13 +169,21 @@ impl FromStr for Format {
 /// ];
 /// assert_eq!(text_frame(&scene, Size::new(12, 6)), rows.map(|row| format!("{row}\n")).concat());
 /// ```
+///
+/// # Panics
+/// If the screen has more pixels than [a picture may have](crate::framebuffer::Resolution::MAX_PIXELS): two for each cell.
 pub fn text_frame(scene: &Scene, size: Size) -> String {
     text(&frame_grid(scene, CellMode::RAMP, size, USUAL_CELL_ASPECT))
 }
 
-/// The scene's own view as the cells of a screen of that size and cell aspect, one ray through each pixel's centre.
+/// Returns the scene's own view as the cells of a screen of that size and cell aspect, one ray through each pixel's centre.
+///
+/// # Panics
+/// If [`cell::resolution`] is an error: for a screen with more pixels than a picture may have, or an aspect that is not
+/// greater than 0 and finite.
 pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f32) -> Grid {
-    let resolution = cell::resolution(cell_mode, size, cell_aspect);
+    let resolution =
+        cell::resolution(cell_mode, size, cell_aspect).expect("a size and an aspect that pictures can have");
     let picture = tone(&render(scene, scene.camera(), resolution, NonZeroU32::MIN), scene);
     cell::grid_from_picture(cell_mode, &picture)
 }

@@ -1,53 +1,162 @@
 //! The picture as light: what arrives at the eye through each pixel.
 
 use crate::color::LinearRgb;
+use std::fmt;
 
-/// A picture's size in pixels, and their shape.
+/// A picture's size in pixels, and their shape: at most [`MAX_PIXELS`](Self::MAX_PIXELS), which may be none.
+///
+/// ```
+/// use termtrace::framebuffer::Resolution;
+///
+/// let resolution = Resolution::new(320, 200)?.with_pixel_aspect(1.2)?;
+/// assert_eq!((resolution.width(), resolution.height()), (320, 200));
+/// assert!((resolution.aspect_ratio() - 4.0 / 3.0).abs() < 1e-6);
+///
+/// let error = Resolution::new(200_000, 200_000).unwrap_err();
+/// assert_eq!(error.to_string(), "a picture of 200000x200000 pixels is too large; at most 33554432 pixels in all");
+/// # Ok::<(), termtrace::framebuffer::ResolutionError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    /// Pixels in a row.
-    pub width: u32,
-    /// Rows of pixels.
-    pub height: u32,
-    /// A pixel's height over its width, greater than 0. A half cell of the usual terminal is square: 1.
-    pub pixel_aspect: f32,
+    width: u32,
+    height: u32,
+    pixel_aspect: f32,
 }
 
 impl Resolution {
-    /// Square pixels.
-    pub const fn square(width: u32, height: u32) -> Self {
-        Self { width, height, pixel_aspect: 1.0 }
+    /// The most pixels of a picture, 33,554,432: more than 8K. Rendering a picture of that size takes some 900 MB at one
+    /// sample of each pixel.
+    pub const MAX_PIXELS: u32 = 1 << 25;
+
+    /// Returns the size of a picture of square pixels.
+    ///
+    /// # Errors
+    /// [`ResolutionError::TooLarge`], if there are more than [`MAX_PIXELS`](Self::MAX_PIXELS).
+    pub const fn new(width: u32, height: u32) -> Result<Self, ResolutionError> {
+        if width as u64 * height as u64 > Self::MAX_PIXELS as u64 {
+            return Err(ResolutionError::TooLarge { width, height });
+        }
+        Ok(Self { width, height, pixel_aspect: 1.0 })
     }
 
-    /// The picture's aspect ratio as it is seen: width over height.
+    /// Returns the size of a picture of square pixels, for sizes that stand in the source.
+    ///
+    /// # Panics
+    /// If there are more than [`MAX_PIXELS`](Self::MAX_PIXELS).
+    pub const fn square(width: u32, height: u32) -> Self {
+        match Self::new(width, height) {
+            Ok(resolution) => resolution,
+            Err(_) => panic!("a picture may have 33554432 pixels"),
+        }
+    }
+
+    /// Returns the same number of pixels of another shape: a pixel's height over its width. A half cell of the usual
+    /// terminal is square: 1.
+    ///
+    /// # Errors
+    /// [`ResolutionError::PixelAspect`], unless it is greater than 0 and finite.
+    pub const fn with_pixel_aspect(self, pixel_aspect: f32) -> Result<Self, ResolutionError> {
+        if pixel_aspect > 0.0 && pixel_aspect.is_finite() {
+            Ok(Self { pixel_aspect, ..self })
+        } else {
+            Err(ResolutionError::PixelAspect(pixel_aspect))
+        }
+    }
+
+    /// Returns the number of pixels in a row.
+    pub const fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Returns the number of rows of pixels.
+    pub const fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Returns a pixel's height over its width.
+    pub const fn pixel_aspect(&self) -> f32 {
+        self.pixel_aspect
+    }
+
+    /// Returns the picture's aspect ratio as it is seen: width over height.
     #[doc(hidden)]
     pub fn aspect_ratio(&self) -> f32 {
         self.width as f32 / (self.height as f32 * self.pixel_aspect)
     }
 
-    /// How many pixels there are.
-    pub(crate) fn pixel_count(&self) -> usize {
+    /// Returns the number of pixels.
+    pub(crate) const fn pixel_count(&self) -> usize {
         self.width as usize * self.height as usize
     }
+
+    /// Returns the size of a part of the picture that is no wider.
+    #[cfg(feature = "live")]
+    pub(crate) fn with_width(self, width: u32) -> Self {
+        Self { width: width.min(self.width), ..self }
+    }
 }
+
+/// The reason why no picture has that size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ResolutionError {
+    /// There are more than [`Resolution::MAX_PIXELS`].
+    TooLarge {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows of pixels.
+        height: u32,
+    },
+    /// A pixel's height over its width is not greater than 0 and finite.
+    PixelAspect(f32),
+}
+
+impl fmt::Display for ResolutionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLarge { width, height } => {
+                let most = Resolution::MAX_PIXELS;
+                write!(f, "a picture of {width}x{height} pixels is too large; at most {most} pixels in all")
+            }
+            Self::PixelAspect(aspect) => {
+                write!(f, "a pixel's height over its width must be greater than 0 and finite, and is {aspect}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ResolutionError {}
 
 /// Linear light per pixel, row by row from the top; pixel (0, 0) is top left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Framebuffer {
-    /// Its size.
-    pub resolution: Resolution,
-    /// `width * height` pixels.
-    pub pixels: Vec<LinearRgb>,
+    resolution: Resolution,
+    pixels: Vec<LinearRgb>,
 }
 
 impl Framebuffer {
-    /// A black picture.
+    /// Returns a black picture.
     #[doc(hidden)]
     pub fn new(resolution: Resolution) -> Self {
         Self { resolution, pixels: vec![LinearRgb::BLACK; resolution.pixel_count()] }
     }
 
-    /// The light at a pixel.
+    /// Returns its size.
+    pub fn resolution(&self) -> Resolution {
+        self.resolution
+    }
+
+    /// Returns all pixels, row by row from the top.
+    pub fn pixels(&self) -> &[LinearRgb] {
+        &self.pixels
+    }
+
+    /// Returns all pixels to change.
+    pub fn pixels_mut(&mut self) -> &mut [LinearRgb] {
+        &mut self.pixels
+    }
+
+    /// Returns the light at a pixel.
     ///
     /// # Panics
     /// Outside the picture.
@@ -57,7 +166,7 @@ impl Framebuffer {
         self.pixels[y as usize * self.resolution.width as usize + x as usize]
     }
 
-    /// A 64-bit hash of the exact bits of all pixels and of the size (FNV-1a over 32-bit words, little end first):
+    /// Returns a 64-bit hash of the exact bits of all pixels and of the size (FNV-1a over 32-bit words, little end first):
     /// equal pictures, and as good as only those, have equal hashes, on every machine.
     #[doc(hidden)]
     pub fn hash(&self) -> u64 {

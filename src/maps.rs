@@ -215,7 +215,7 @@ fn all_seen(
 ) -> Seen {
     let painted = |reach, paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| {
         let sighted = all_sights(crew, scene, camera, resolution, sampling, reach, paint);
-        let Resolution { width, height, .. } = resolution;
+        let [width, height] = [resolution.width(), resolution.height()];
         Seen { picture: Picture { width, height, pixels: sighted.pixels }, cost: sighted.cost }
     };
     let of_surfaces = |paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| painted(Reach::Surfaces, paint);

@@ -86,7 +86,7 @@ pub fn render_by(
 fn units(resolution: Resolution, sampling: Sampling) -> u64 {
     let pixels = resolution.pixel_count() as u64;
     match sampling {
-        Sampling::Coarse => u64::from(resolution.width.div_ceil(2)) * u64::from(resolution.height.div_ceil(2)),
+        Sampling::Coarse => u64::from(resolution.width().div_ceil(2)) * u64::from(resolution.height().div_ceil(2)),
         Sampling::Each(samples) => pixels * u64::from(samples.get()),
         Sampling::UpTo(samples) => pixels + adaptive::units_of_more(resolution, samples),
     }

@@ -1,7 +1,7 @@
 //! Light -> picture: exposure, tone curve, transfer function, rounding to 8 bits. Light is linear up to here.
 
 use crate::color::{LinearRgb, Srgb8};
-use crate::framebuffer::{Framebuffer, Resolution};
+use crate::framebuffer::Framebuffer;
 use crate::scene::{Scene, ToneCurve};
 use crate::threads;
 
@@ -55,17 +55,17 @@ impl Picture {
 
 /// The framebuffer as `scene` wants its light shown.
 pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
-    let Resolution { width, height, .. } = framebuffer.resolution;
+    let [width, height] = [framebuffer.resolution().width(), framebuffer.resolution().height()];
     let (curve, exposure) = (scene.tone_curve(), scene.exposure());
-    let mut pixels = vec![Srgb8::new(0, 0, 0); framebuffer.pixels.len()];
+    let mut pixels = vec![Srgb8::new(0, 0, 0); framebuffer.pixels().len()];
     let show = |pixels: &mut [Srgb8], lights: &[LinearRgb]| {
         let shown = Srgb8::all_from_linear(lights.iter().map(|&light| bend(curve, light * exposure)));
         pixels.iter_mut().zip(shown).for_each(|(pixel, shown)| *pixel = shown);
     };
     if pixels.len() <= ALONE {
-        show(&mut pixels, &framebuffer.pixels);
+        show(&mut pixels, framebuffer.pixels());
     } else {
-        threads::for_each_chunk(&mut pixels, &framebuffer.pixels, ALONE, show);
+        threads::for_each_chunk(&mut pixels, framebuffer.pixels(), ALONE, show);
     }
     Picture { width, height, pixels }
 }

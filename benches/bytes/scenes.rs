@@ -166,7 +166,7 @@ impl Sequence {
     pub(crate) fn frame(&self, k: usize, size: Size) -> Picture {
         let phase = k as f32 / FRAMES as f32;
         let scene = self.scene(phase);
-        let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0);
+        let resolution = cell::resolution(CellMode::HALF_BLOCK, size, 2.0).expect("a size that pictures can have");
         tone(&render(&scene, scene.camera(), resolution, NonZeroU32::MIN), &scene)
     }
 

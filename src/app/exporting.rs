@@ -20,8 +20,8 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
     let Capabilities { cell_mode, cell_aspect, .. } = *capabilities;
     match format.contents() {
         Contents::Pixels(write) => {
-            let pixel_aspect = cell::resolution(cell_mode, Size::new(1, 1), cell_aspect).pixel_aspect;
-            write(picture, pixel_aspect, SCALE)
+            let one = cell::resolution(cell_mode, Size::new(1, 1), cell_aspect).map_err(io::Error::other)?;
+            write(picture, one.pixel_aspect(), SCALE)
         }
         Contents::Cells { has_colors, write } => {
             let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { cell_mode.plain() };

@@ -148,8 +148,7 @@ impl Renderer {
 
     /// Whether a frame will take next to no time, going by the last of one sample.
     fn is_small(&self, job: &Job) -> bool {
-        let Resolution { width, height, .. } = job.shot.resolution;
-        let pixels = f64::from(width) * f64::from(height);
+        let pixels = job.shot.resolution.pixel_count() as f64;
         let is_short = |(shot, seconds): (Shot, f64)| {
             let is_alike = (shot.scene, shot.shown) == (job.shot.scene, job.shot.shown);
             is_alike && seconds * pixels < SMALL.as_secs_f64()

@@ -2,7 +2,7 @@
 
 use super::detection::{asked_for, colorterm, locale};
 use super::{Answers, Capabilities, CellMode, Clues, ColorChoice, Colors, Found, GlyphChoice, Glyphs, Source};
-use super::{USUAL_CELL_ASPECT, colors, glyphs};
+use super::{CELL_ASPECTS, USUAL_CELL_ASPECT, colors, glyphs};
 use crate::grid::CellShape;
 
 /// What the user wants and the environment says, read once, to be judged again with each answer.
@@ -12,7 +12,7 @@ pub struct Hints {
     pub color: ColorChoice,
     /// Which glyphs the user wants.
     pub glyphs: GlyphChoice,
-    /// The shape of a cell, if the user says it: its height over its width.
+    /// The shape of a cell, if the user says it: its height over its width. One outside [`CELL_ASPECTS`] says nothing.
     pub cell_aspect: Option<f32>,
     variables: Vec<(&'static str, String)>,
     terminfo: Option<Colors>,
@@ -157,7 +157,10 @@ impl Findings {
         let colors = with_answered_values(hints.colors(answers.truecolor), answers);
         let answered = |answer: Option<bool>| found(answer, Source::Reply, false);
         let of_window = |value| Found { value, source: Source::Window };
-        let cell_aspect = hints.cell_aspect.map(|value| Found { value, source: Source::User });
+        let cell_aspect = hints
+            .cell_aspect
+            .filter(|aspect| CELL_ASPECTS.contains(aspect))
+            .map(|value| Found { value, source: Source::User });
         let by_pixels = window.aspect.map(of_window);
         Self {
             colors,

@@ -124,13 +124,12 @@ fn shares<const N: usize>(deviation: f64) -> [f32; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::framebuffer::Resolution;
 
     /// The character for a cell of so many rows of two pixels, each a letter from a (black) to z (white).
     fn character(pixels: &str) -> String {
         let grey = |letter: char| ((letter as u32 - 'a' as u32) * 255 / 25) as u8;
         let pixels = pixels.chars().map(|letter| Srgb8::new(grey(letter), grey(letter), grey(letter)));
-        let Resolution { width, height, .. } = Resolution::square(2, 4);
+        let [width, height] = [2, 4];
         let mut grid = Grid::new(crate::grid::Size::new(1, 1));
         fill(&mut grid, &Picture { width, height, pixels: pixels.collect() });
         grid.cell(0, 0).glyph.to_string()

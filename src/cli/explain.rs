@@ -5,7 +5,7 @@ use super::picture::SizeArgs;
 use super::scene_args::SceneArgs;
 use clap::Args;
 use termtrace::internals::explain::cell;
-use termtrace::{CellMode, Resolution, explain};
+use termtrace::{CellMode, explain};
 
 const MEANING: &str = "\
 It says what the program does for the pixel, in the symbols of the lecture: the eye ray o + t d through the point (q_u, q_v)
@@ -33,7 +33,7 @@ pub(super) struct ExplainArgs {
 pub(super) fn run(args: &ExplainArgs) -> Done {
     let mode = CellMode::HALF_BLOCK;
     let resolution = args.size.resolution(mode)?;
-    let Resolution { width, height, .. } = resolution;
+    let [width, height] = [resolution.width(), resolution.height()];
     let [x, y] = args.pixel;
     if x >= width || y >= height {
         return Err(usage(format!("there is no pixel {x},{y} in a frame of {width}x{height} pixels")));

@@ -132,7 +132,7 @@ impl FrameArgs {
             .scene
             .on_threads(|| termtrace::internals::maps::picture(map, &scene, scene.camera(), resolution, samples))?;
         match format.contents() {
-            Contents::Pixels(write) => write(&picture, resolution.pixel_aspect, self.picture.scale())
+            Contents::Pixels(write) => write(&picture, resolution.pixel_aspect(), self.picture.scale())
                 .map_err(|error| Failure::runtime(format.name().to_uppercase(), error)),
             Contents::Cells { write, .. } => {
                 let grid = cell::grid_from_picture(mode, &picture);

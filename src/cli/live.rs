@@ -104,7 +104,7 @@ fn print(args: &LiveArgs) -> Done {
     let scene = scene.with_camera(camera);
     let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = settings.terminal.cells.in_file(Colors::None);
-    let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect);
+    let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect).map_err(usage)?;
     let sampling = settings.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
     let map = settings.map.map();
     let picture = on_threads(args.look.threads, || maps::picture(map, &scene, scene.camera(), resolution, sampling))?;

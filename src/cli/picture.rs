@@ -3,7 +3,7 @@
 use super::outcome::{Done, Failure};
 use clap::Args;
 use std::num::NonZeroU32;
-use termtrace::internals::capabilities::USUAL_CELL_ASPECT;
+use termtrace::internals::capabilities::{CELL_ASPECTS, USUAL_CELL_ASPECT};
 use termtrace::{CellMode, Resolution, Sampling};
 
 /// How large a frame is.
@@ -32,9 +32,6 @@ pub(super) struct PictureArgs {
     scale: Option<u32>,
 }
 
-/// The most pixels that a frame may have, and a scaled picture: some 900 MB while it is traced.
-const MAX_PIXELS: u64 = 1 << 25;
-
 impl SizeArgs {
     pub(super) fn resolution(&self, mode: CellMode) -> Result<Resolution, Failure> {
         let (across, down) = mode.pixels_per_cell();
@@ -44,8 +41,9 @@ impl SizeArgs {
         if width > across * limit || height > down * limit {
             return Err(too_large(width.into(), height.into()));
         }
-        fits(width.into(), height.into())?;
-        Ok(Resolution { width, height, pixel_aspect: self.cell_aspect * across as f32 / down as f32 })
+        let pixel_aspect = self.cell_aspect * across as f32 / down as f32;
+        let resolution = Resolution::new(width, height).and_then(|square| square.with_pixel_aspect(pixel_aspect));
+        resolution.map_err(|_| too_large(width.into(), height.into()))
     }
 }
 
@@ -71,7 +69,7 @@ impl PictureArgs {
     /// Whether a file with the picture at that scale is not too large.
     pub(super) fn fits_scaled(&self, resolution: Resolution) -> Done {
         let [width, height] =
-            [resolution.width, resolution.height].map(|side| u64::from(side) * u64::from(self.scale()));
+            [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(self.scale()));
         fits(width, height)
     }
 
@@ -83,12 +81,14 @@ impl PictureArgs {
 
 /// No picture is larger than memory can be expected to hold.
 pub(super) fn fits(width: u64, height: u64) -> Done {
-    if width.saturating_mul(height) > MAX_PIXELS { Err(too_large(width, height)) } else { Ok(()) }
+    let most = u64::from(Resolution::MAX_PIXELS);
+    if width.saturating_mul(height) > most { Err(too_large(width, height)) } else { Ok(()) }
 }
 
 fn too_large(width: u64, height: u64) -> Failure {
+    let most = Resolution::MAX_PIXELS;
     Failure::Usage(format!(
-        "a frame of {width}x{height} pixels is too large; at most 65535 cells each way, and {MAX_PIXELS} pixels in all"
+        "a frame of {width}x{height} pixels is too large; at most 65535 cells each way, and {most} pixels in all"
     ))
 }
 
@@ -111,6 +111,6 @@ pub(super) fn parse_samples(text: &str) -> Result<Sampling, String> {
 
 /// A cell that anybody could read in.
 pub(super) fn parse_cell_aspect(text: &str) -> Result<f32, String> {
-    let aspect = text.parse().ok().filter(|aspect| (0.1..=10.0).contains(aspect));
+    let aspect = text.parse().ok().filter(|aspect| CELL_ASPECTS.contains(aspect));
     aspect.ok_or_else(|| "expected a number from 0.1 to 10, such as 2".to_owned())
 }

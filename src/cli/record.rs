@@ -170,7 +170,7 @@ impl RecordArgs {
                 };
                 let (across, down) = CellMode::HALF_BLOCK.pixels_per_cell();
                 // A resolution is checked to have no more cells.
-                let size = Size::new((resolution.width / across) as u16, resolution.height.div_ceil(down) as u16);
+                let size = Size::new((resolution.width() / across) as u16, resolution.height().div_ceil(down) as u16);
                 // Players draw the two halves of a cell alike.
                 let encoder =
                     Encoder::new().with_order(self.encoding.order().unwrap_or(Order::Color)).with_upper_half(true);
@@ -184,7 +184,7 @@ impl RecordArgs {
                 let out = BufWriter::new(outputs.begin(path)?);
                 Sink::Gif(Gif::begin(out, resolution, self.picture.scale(), self.fps)?)
             }
-            Format::Png(_) => Sink::Png { pixel_aspect: resolution.pixel_aspect, scale: self.picture.scale() },
+            Format::Png(_) => Sink::Png { pixel_aspect: resolution.pixel_aspect(), scale: self.picture.scale() },
         })
     }
 }

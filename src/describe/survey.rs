@@ -71,7 +71,7 @@ impl Covered {
     }
 
     pub(super) fn inside(&self, resolution: Resolution) -> Inside {
-        let sides = [resolution.width, resolution.height].map(|side| side as f32);
+        let sides = [resolution.width(), resolution.height()].map(|side| side as f32);
         let middle = [0, 1].map(|axis| (self.sum[axis] as f32 / self.pixels as f32 + 0.5) / sides[axis]);
         let extent = [self.columns, self.rows].map(|[first, end]| (end - first) as f32);
         Inside { middle, extent: [extent[0] / sides[0], extent[1] / sides[1]] }
@@ -101,7 +101,7 @@ impl Survey {
                 continue;
             };
             let covered = survey.covered.entry(spot.object).or_default();
-            covered.add(spot, at % resolution.width, at / resolution.width);
+            covered.add(spot, at % resolution.width(), at / resolution.width());
             for behind in spot.behind.into_iter().flatten() {
                 *survey.hides.entry((spot.object, behind)).or_default() += 1;
             }

@@ -45,7 +45,7 @@ impl Explanation {
     pub fn lines(&self) -> Vec<String> {
         let [i, j] = self.pixel;
         let mut lines = vec![
-            format!("(i, j) = ({i}, {j}) of {}x{}", self.resolution.width, self.resolution.height),
+            format!("(i, j) = ({i}, {j}) of {}x{}", self.resolution.width(), self.resolution.height()),
             format!("(q_u, q_v) = ({:.4}, {:.4})", self.q.x, self.q.y),
             vector("q", self.q_in_space()),
             vector("o", self.ray.origin),

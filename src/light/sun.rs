@@ -77,7 +77,7 @@ mod tests {
         for (objects, wanted) in [("", 0.4), ("Sphere(center: (3000, 4000, 0), radius: 100)", 0.0)] {
             let scene = read("Sun(direction: (3, 4, 0))", objects);
             let picture = render(&scene, scene.camera(), resolution, Sampling::BEST);
-            assert!(picture.pixels.iter().all(|light| (light.r - wanted).abs() < 1e-6), "{objects}: {picture:?}");
+            assert!(picture.pixels().iter().all(|light| (light.r - wanted).abs() < 1e-6), "{objects}: {picture:?}");
         }
     }
 

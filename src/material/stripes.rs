@@ -69,8 +69,8 @@ mod tests {
         let scene = Scene::from_ron("stripes.ron", &scene(plane)).expect("a scene");
         let picture = render(&scene, scene.camera(), Resolution::square(4, 4), Sampling::Each(NonZeroU32::MIN));
         let is_a = |light: &LinearRgb| light.g > 0.2;
-        let columns: Vec<_> = picture.pixels[..4].iter().map(is_a).collect();
-        let rows: Vec<_> = picture.pixels.iter().step_by(4).map(is_a).collect();
+        let columns: Vec<_> = picture.pixels()[..4].iter().map(is_a).collect();
+        let rows: Vec<_> = picture.pixels().iter().step_by(4).map(is_a).collect();
         let in_turn = |seen: &[bool]| seen.windows(2).all(|pair| pair[0] != pair[1]);
         let alike = |seen: &[bool]| seen.windows(2).all(|pair| pair[0] == pair[1]);
         assert!(in_turn(&columns) && alike(&rows) || in_turn(&rows) && alike(&columns), "{columns:?} {rows:?}");

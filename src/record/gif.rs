@@ -49,7 +49,7 @@ impl<W: Write> Gif<W> {
     /// # Errors
     /// If it cannot be written, or is of another size.
     pub fn frame(&mut self, picture: &Picture) -> io::Result<()> {
-        let Resolution { width, height, .. } = self.resolution;
+        let [width, height] = [self.resolution.width(), self.resolution.height()];
         if (picture.width, picture.height, picture.pixels.len()) != (width, height, self.resolution.pixel_count()) {
             return Err(invalid("all frames of a film have one size"));
         }
@@ -76,7 +76,7 @@ impl<W: Write> Gif<W> {
     /// The picture's pixels repeated until they fill the GIF's.
     fn enlarged(&self, pixels: &[u8]) -> Vec<u8> {
         let (across, down) = (usize::from(self.size.0), usize::from(self.size.1));
-        let (width, height) = (self.resolution.width as usize, self.resolution.height as usize);
+        let (width, height) = (self.resolution.width() as usize, self.resolution.height() as usize);
         let mut enlarged = Vec::with_capacity(across * down);
         for y in 0..down {
             let row = &pixels[y * height / down * width..][..width];
@@ -96,8 +96,8 @@ impl<W: Write> Gif<W> {
 
 /// How many pixels a GIF has, across and down, for pictures of that resolution with each pixel `scale` times as large.
 pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
-    let Resolution { width, height, pixel_aspect } = resolution;
-    let [width, height] = [width, height].map(|side| u64::from(side) * u64::from(scale));
+    let pixel_aspect = resolution.pixel_aspect();
+    let [width, height] = [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(scale));
     let longer = |side: u64, by: f32| ((side as f64 * f64::from(by)).round() as u64).max(side);
     if pixel_aspect < 1.0 { (longer(width, 1.0 / pixel_aspect), height) } else { (width, longer(height, pixel_aspect)) }
 }

@@ -104,7 +104,7 @@ impl Refining {
     /// The mean light of each pixel's samples.
     pub fn framebuffer(&self) -> Framebuffer {
         let mut framebuffer = Framebuffer::new(self.tiles.resolution);
-        let parts = self.tiles.split(&mut framebuffer.pixels);
+        let parts = self.tiles.split(framebuffer.pixels_mut());
         for ((first, watched), mut part) in self.first.iter().zip(&self.watched).zip(parts) {
             if !watched.is_empty() {
                 self.tiles.show(&ALL_PIXELS, |pixel| watched[pixel].mean(), &mut part);

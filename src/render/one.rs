@@ -47,7 +47,7 @@ impl Scene {
     /// # Ok::<(), termtrace::SceneError>(())
     /// ```
     pub fn hit(&self, camera: &Camera, resolution: Resolution, pixel: [u32; 2]) -> Option<Hit> {
-        let is_inside = pixel[0] < resolution.width && pixel[1] < resolution.height;
+        let is_inside = pixel[0] < resolution.width() && pixel[1] < resolution.height();
         is_inside.then(|| trace_pixel(self, camera, resolution, pixel).hit).flatten()
     }
 }
@@ -58,7 +58,7 @@ impl Scene {
 /// # Panics
 /// Outside the picture.
 pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y]: [u32; 2]) -> Steps {
-    assert!(x < resolution.width && y < resolution.height, "pixel ({x}, {y}) is outside the picture");
+    assert!(x < resolution.width() && y < resolution.height(), "pixel ({x}, {y}) is outside the picture");
     let tiles = Tiles::new(camera, resolution, 1);
     let (tile, pixel) = tiles.at([x, y]);
     let (shot, run) = (Shot::new(scene, &tiles, Goal::Reflected), Run::of(0..1));

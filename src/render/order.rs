@@ -29,7 +29,7 @@ type Hear<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Sync + 'a>;
 ///         ControlFlow::Continue(())
 ///     })
 ///     .run()?;
-/// assert_eq!(picture.pixels.len(), 1200);
+/// assert_eq!(picture.pixels().len(), 1200);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use = "nothing is rendered before `run`"]

@@ -33,13 +33,13 @@ pub(super) struct Tiles {
 
 impl Tiles {
     pub(super) fn new(camera: &Camera, resolution: Resolution, scale: u32) -> Self {
-        let (columns, rows) = (resolution.width.div_ceil(scale), resolution.height.div_ceil(scale));
+        let (columns, rows) = (resolution.width().div_ceil(scale), resolution.height().div_ceil(scale));
         Self { resolution, scale, columns, rows, eye_rays: camera.eye_rays(resolution.aspect_ratio()) }
     }
 
     /// Returns how many tiles a picture of that resolution has at full scale.
     pub(super) fn count_of(resolution: Resolution) -> usize {
-        resolution.width.div_ceil(SIDE) as usize * resolution.height.div_ceil(SIDE) as usize
+        resolution.width().div_ceil(SIDE) as usize * resolution.height().div_ceil(SIDE) as usize
     }
 
     fn across(&self) -> u32 {
@@ -61,7 +61,7 @@ impl Tiles {
     pub(super) fn split<'p, T>(&self, pixels: &'p mut [T]) -> Vec<Vec<&'p mut [T]>> {
         let side = (SIDE * self.scale) as usize;
         let mut tiles: Vec<_> = (0..self.count()).map(|_| Vec::with_capacity(side)).collect();
-        for (y, row) in pixels.chunks_mut(self.resolution.width.max(1) as usize).enumerate() {
+        for (y, row) in pixels.chunks_mut(self.resolution.width().max(1) as usize).enumerate() {
             let first = y / side * self.across() as usize;
             for (tile, part) in tiles[first..].iter_mut().zip(row.chunks_mut(side)) {
                 tile.push(part);
@@ -137,7 +137,7 @@ impl Tiles {
     /// the lower left corner.
     #[inline(always)]
     pub(super) fn q<N: Number>(&self, [x, y]: [N; 2], [sx, sy]: [N; 2]) -> [N; 2] {
-        let (width, height) = (N::splat(self.resolution.width as f32), N::splat(self.resolution.height as f32));
+        let (width, height) = (N::splat(self.resolution.width() as f32), N::splat(self.resolution.height() as f32));
         let scale = N::splat(self.scale as f32);
         // Rows are counted from the top, the lecture's q_v from the bottom.
         [(x + sx) * scale / width, (height - (y + sy) * scale) / height]
@@ -146,7 +146,7 @@ impl Tiles {
     /// By how much the direction changes from an eye ray to those beside it.
     pub(super) fn steps(&self, sample: u32) -> [Vec3; 2] {
         let share = self.scale as f32 * footprint_share(sample);
-        self.eye_rays.steps(self.resolution.width, self.resolution.height).map(|step| step * share)
+        self.eye_rays.steps(self.resolution.width(), self.resolution.height()).map(|step| step * share)
     }
 }
 

@@ -13,7 +13,7 @@ use std::ops::Range;
 /// Renders the picture with that number of samples of each pixel.
 pub(super) fn render(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Rendered {
     let mut framebuffer = Framebuffer::new(tiles.resolution);
-    let parts = tiles.split(&mut framebuffer.pixels);
+    let parts = tiles.split(framebuffer.pixels_mut());
     let (runs, share) = (Runs::of(0..samples), 1.0 / samples as f32);
     let cost = crew.trace(&Shot::new(scene, tiles, Goal::Reflected), parts, |tile, mut part| {
         let mut sums = [[Eight::ZERO; 3]; PIXELS / LANES];

@@ -45,6 +45,7 @@ impl Display {
 
     pub(super) fn resolution(&self) -> Resolution {
         cell::resolution(self.capabilities.cell_mode, self.size(), self.capabilities.cell_aspect)
+            .expect("the size is bounded, and the aspect was checked when it was found")
     }
 
     /// The window has this size now.

@@ -58,7 +58,7 @@ impl Layer for Explaining {
         }
         let [x, y] = self.pixel;
         let scaled = |at: u32, old: u32, new: u32| (u64::from(at) * u64::from(new) / u64::from(old.max(1))) as u32;
-        self.put(frame, [scaled(x, old.width, new.width), scaled(y, old.height, new.height)]);
+        self.put(frame, [scaled(x, old.width(), new.width()), scaled(y, old.height(), new.height())]);
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
@@ -82,7 +82,7 @@ impl Layer for Explaining {
 impl Explaining {
     /// The pixel in the middle of the frame; none if it has none.
     pub(super) fn new(frame: &Frame) -> Option<Self> {
-        let Resolution { width, height, .. } = frame.resolution();
+        let [width, height] = [frame.resolution().width(), frame.resolution().height()];
         (width > 0 && height > 0).then(|| Self::of(frame, [width / 2, height / 2], 0))
     }
 
@@ -108,7 +108,7 @@ impl Explaining {
 
     /// The cursor goes to that pixel, or the last one before the picture's end.
     pub(super) fn put(&mut self, frame: &Frame, [x, y]: [u32; 2]) {
-        let Resolution { width, height, .. } = frame.resolution();
+        let [width, height] = [frame.resolution().width(), frame.resolution().height()];
         if width > 0 && height > 0 {
             *self = Self::of(frame, [x.min(width - 1), y.min(height - 1)], self.scrolled);
         }

@@ -72,9 +72,9 @@ impl Frame {
     pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
         let resolution = self.resolution();
         match *self.shot.shown.parts(resolution) {
-            [(_, left), (_, right)] if left.width < resolution.width => match x.checked_sub(left.width + 1) {
-                Some(x) if x < right.width => (right, [x, y]),
-                _ => (left, [x.min(left.width - 1), y]),
+            [(_, left), (_, right)] if left.width() < resolution.width() => match x.checked_sub(left.width() + 1) {
+                Some(x) if x < right.width() => (right, [x, y]),
+                _ => (left, [x.min(left.width() - 1), y]),
             },
             _ => (resolution, [x, y]),
         }

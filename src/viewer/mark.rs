@@ -33,7 +33,7 @@ impl Layer for LightMark {
 fn place(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
     let (part, _) = frame.part_at([0, 0]);
     let place = control::place_of(frame.camera(), light, part.aspect_ratio())?;
-    let columns = f32::from(screen.width) * part.width as f32 / frame.resolution().width as f32;
+    let columns = f32::from(screen.width) * part.width() as f32 / frame.resolution().width() as f32;
     Some(area(screen, place.x * columns, place.y * f32::from(screen.height)))
 }
 

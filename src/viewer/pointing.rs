@@ -94,13 +94,13 @@ impl Viewer {
 
     /// A way on the screen, in parts of one picture's width and height.
     fn part_of(&self, way: Vec2) -> Vec2 {
-        way * Vec2::new(self.resolution().width as f32 / self.part().width as f32, 1.0)
+        way * Vec2::new(self.resolution().width() as f32 / self.part().width() as f32, 1.0)
     }
 
     /// The pixel of the picture that is there.
     fn pixel(&self, at: Vec2) -> [u32; 2] {
         let resolution = self.resolution();
-        [(at.x * resolution.width as f32) as u32, (at.y * resolution.height as f32) as u32]
+        [(at.x * resolution.width() as f32) as u32, (at.y * resolution.height() as f32) as u32]
     }
 
     /// The point of the scene that is seen there; where there is nothing, one as far away as the target.
@@ -109,7 +109,7 @@ impl Viewer {
         let (part, [x, y]) = frame.part_at(self.pixel(at));
         let share = |at: u32, of: u32| (at as f32 + 0.5) / of.max(1) as f32;
         let rays = camera.eye_rays(part.aspect_ratio());
-        let ray = rays.through(share(x, part.width), 1.0 - share(y, part.height));
+        let ray = rays.through(share(x, part.width()), 1.0 - share(y, part.height()));
         let pose = camera.pose();
         // Along -w, t is the depth.
         let t = closest_hit(&frame.scene, &ray).map_or(pose.eye.distance(pose.target), |hit| hit.t);

@@ -236,7 +236,7 @@ impl Screen {
     fn can_show(&self, size: Size) -> bool {
         let Some(frame) = self.frame() else { return self.awaits_scene() };
         let wanted = cell::resolution(self.painter.mode(), size, 1.0);
-        (frame.picture.width, frame.picture.height) == (wanted.width, wanted.height)
+        wanted.is_ok_and(|wanted| (frame.picture.width, frame.picture.height) == (wanted.width(), wanted.height()))
     }
 
     /// Appends the bytes that bring the terminal from what it shows to what it should.
@@ -347,7 +347,7 @@ mod tests {
             synchronized_output: false,
         };
         let size = Size::new(40, 12);
-        let resolution = cell::resolution(capabilities.cell_mode, size, 2.0);
+        let resolution = cell::resolution(capabilities.cell_mode, size, 2.0).expect("a small screen");
         let light = crate::render::render(&scene, scene.camera(), resolution, NonZeroU32::MIN);
         let frame = || Frame {
             scene: scene.clone(),

@@ -112,8 +112,8 @@ const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 
 /// What the two sides of a line get of a picture's columns. One that is too narrow has no line, and no right side.
 fn halves(whole: Resolution) -> [Resolution; 2] {
-    let left = if whole.width < 3 { whole.width } else { (whole.width - 1) / 2 };
-    [left, whole.width.saturating_sub(left + 1)].map(|width| Resolution { width, ..whole })
+    let left = if whole.width() < 3 { whole.width() } else { (whole.width() - 1) / 2 };
+    [left, whole.width().saturating_sub(left + 1)].map(|width| whole.with_width(width))
 }
 
 fn beside(left: &Picture, right: &Picture) -> Picture {
@@ -172,11 +172,11 @@ mod tests {
     /// Side by side they have no more pixels than one; a wipe has all of both.
     #[test]
     fn two_pictures_are_as_much_work_as_one_or_two() {
-        let whole = Resolution { width: 80, height: 4, pixel_aspect: 0.5 };
+        let whole = Resolution::square(80, 4).with_pixel_aspect(0.5).expect("a shape of pixels");
         let parts = shown(Map::Shaded, Map::Depth, Split::Beside).parts(whole);
-        let widths: Vec<_> = parts.iter().map(|(_, part)| part.width).collect();
+        let widths: Vec<_> = parts.iter().map(|(_, part)| part.width()).collect();
         assert_eq!(widths, [39, 40]);
-        assert!(parts.iter().all(|(_, part)| part.height == 4 && part.pixel_aspect == 0.5));
+        assert!(parts.iter().all(|(_, part)| part.height() == 4 && part.pixel_aspect() == 0.5));
         let parts = shown(Map::Shaded, Map::Depth, Split::Wipe).parts(whole);
         assert_eq!(parts, [(Map::Shaded, whole), (Map::Depth, whole)]);
     }
@@ -218,7 +218,7 @@ mod tests {
             let whole = Resolution::square(width, 2);
             for split in [Split::Beside, Split::Wipe] {
                 let seen = shown(Map::Shaded, Map::Depth, split);
-                let parts: Vec<_> = seen.parts(whole).iter().map(|(_, part)| flat(part.width, 1)).collect();
+                let parts: Vec<_> = seen.parts(whole).iter().map(|(_, part)| flat(part.width(), 1)).collect();
                 let joined = seen.joined(&parts, 0.5).expect("two");
                 assert_eq!((joined.width, joined.pixels.len()), (width, 2 * width as usize));
             }

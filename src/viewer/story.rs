@@ -170,7 +170,7 @@ impl Driver {
 
     /// A picture that differs from the one before.
     fn flat(&self, resolution: Resolution) -> Picture {
-        let Resolution { width, height, .. } = resolution;
+        let [width, height] = [resolution.width(), resolution.height()];
         let pixel = |at: u32| Srgb8::new(self.frames, at as u8, 7);
         Picture { width, height, pixels: (0..width * height).map(pixel).collect() }
     }

@@ -86,7 +86,7 @@ fn halves_wanted(grid: &Grid) -> Vec<[Option<avt::Color>; 2]> {
 #[track_caller]
 fn assert_shows(cast: &[u8], fps: u32, resolution: Resolution, cameras: &[Camera]) {
     let scene = ball();
-    let (columns, rows) = (resolution.width as usize, resolution.height.div_ceil(2) as usize);
+    let (columns, rows) = (resolution.width() as usize, resolution.height().div_ceil(2) as usize);
     let Played { header, events } = played(cast);
     assert_eq!(header, serde_json::json!({"version": 2, "width": columns, "height": rows}));
     assert_eq!(events.len(), cameras.len(), "one event for each frame");
@@ -115,7 +115,7 @@ fn a_cast_shows_each_frame_of_the_orbit() {
         (
             "--seconds 0.1 --fps 120 --size 30x8 --cell-aspect 1",
             120,
-            Resolution { pixel_aspect: 0.5, ..Resolution::square(30, 16) },
+            Resolution::square(30, 16).with_pixel_aspect(0.5).expect("a shape of pixels"),
             0.1,
             12,
         ),

@@ -36,7 +36,8 @@ fn explains(screen: &Screen, size: Size, pixel: [u32; 2]) -> bool {
         CellMode::HALF_BLOCK,
         termtrace::Size::new(size.columns, size.rows),
         f32::from(size.cell.1) / f32::from(size.cell.0),
-    );
+    )
+    .expect("a size that pictures can have");
     let scene = scene();
     let lines = explain(&scene, scene.camera(), resolution, pixel).lines();
     lines[..12].iter().zip(&screen.text()[1..]).all(|(line, row)| row.contains(line.as_str()))

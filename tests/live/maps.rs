@@ -29,7 +29,7 @@ fn scene() -> Scene {
 /// The whole picture of a map, as fine as it gets.
 fn whole(map: Map) -> Picture {
     let scene = scene();
-    let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size(), 2.0);
+    let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size(), 2.0).expect("a size that pictures can have");
     maps::picture(map, &scene, scene.camera(), resolution, Sampling::BEST)
 }
 
@@ -142,7 +142,7 @@ fn small_screens_have_no_legend() {
     let mut session = started(size, &["--map", "normal"]);
     let scene = scene();
     let grid_size = termtrace::Size::new(size.columns, size.rows);
-    let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size, 2.0);
+    let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size, 2.0).expect("a size that pictures can have");
     let normals = maps::picture(Map::Normal, &scene, scene.camera(), resolution, Sampling::BEST);
     let wanted = cell::grid_from_picture(CellMode::HALF_BLOCK, &normals);
     session.wait_for("the normals and nothing else", SOON, |seen| shows(seen.screen(), &wanted));

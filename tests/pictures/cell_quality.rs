@@ -12,7 +12,8 @@ fn picture(scene: &str, width: u32, height: u32) -> Picture {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{scene}.ron"));
     let scene = Scene::load(&path).expect("the scene is fine");
     let pixel_aspect = 60.0 * 10.0 / width as f32 / (20.0 * 20.0 / height as f32);
-    let resolution = Resolution { width, height, pixel_aspect: 1.0 / pixel_aspect };
+    let resolution =
+        Resolution::square(width, height).with_pixel_aspect(1.0 / pixel_aspect).expect("a shape of pixels");
     tone(&render(&scene, scene.camera(), resolution, std::num::NonZeroU32::MIN), &scene)
 }
 

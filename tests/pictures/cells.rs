@@ -111,19 +111,20 @@ fn trailing_blanks_are_kept() {
 fn pixels_of_a_screen() {
     for mode in [CellMode::HALF_BLOCK, CellMode::RAMP] {
         for (cell_aspect, pixel_aspect) in [(2.0, 1.0), (1.0, 0.5), (3.0, 1.5)] {
-            let expected = Resolution { width: 80, height: 48, pixel_aspect };
+            let expected = Resolution::square(80, 48).with_pixel_aspect(pixel_aspect);
             assert_eq!(resolution(mode, Size::new(80, 24), cell_aspect), expected);
         }
     }
     // 65,535 rows are more pixels than 16 bits can count.
-    assert_eq!(resolution(CellMode::HALF_BLOCK, Size::new(1, 65_535), 2.0).height, 131_070);
+    let high = resolution(CellMode::HALF_BLOCK, Size::new(1, 65_535), 2.0);
+    assert_eq!(high, Resolution::new(1, 131_070));
 }
 
 /// Two by four pixels to a cell of characters by shape.
 #[test]
 fn pixels_of_shapes() {
     let mode = CellMode { glyphs: Glyphs::Shape, colors: Colors::None };
-    let expected = Resolution { width: 160, height: 96, pixel_aspect: 1.0 };
+    let expected = Resolution::new(160, 96);
     assert_eq!(resolution(mode, Size::new(80, 24), 2.0), expected);
     for (width, height, columns, rows) in [(1, 1, 1, 1), (2, 4, 1, 1), (3, 5, 2, 2), (160, 96, 80, 24)] {
         let picture = Picture::from_pixels(width, height, vec![Srgb8::new(255, 255, 255); (width * height) as usize])

@@ -115,7 +115,7 @@ fn inside_of_a_sphere_with_the_light_in_its_middle() {
     // Every point is at distance r, and faces the light: the same light everywhere, rho I / r^2.
     let room = Object::new(Sphere::new(Vec3::new(1.0, 2.0, 3.0), 2.5), GREY);
     let scene = lit(camera([1.5, 2.5, 3.5], [5.0, 2.0, 0.0], 90.0), vec![room], vec![light([1.0, 2.0, 3.0], 5.0)]);
-    for pixel in &picture(&scene, 31, 23).pixels {
+    for pixel in picture(&scene, 31, 23).pixels() {
         assert_close(f64::from(pixel.g), 0.5 * 5.0 / 6.25);
     }
 }
@@ -150,7 +150,7 @@ fn silhouette_of_a_sphere() {
     let mut scene = Scene::new(camera([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()]);
     scene = scene.with_ambient(LinearRgb::grey(1.0));
     let frame = picture(&scene, 800, 600);
-    let covered = frame.pixels.iter().filter(|pixel| pixel.g > 0.0).count() as f64;
+    let covered = frame.pixels().iter().filter(|pixel| pixel.g > 0.0).count() as f64;
     let tan = radius / (distance * distance - radius * radius).sqrt();
     let on_screen = 300.0 * tan / tan_of_degrees(20.0);
     let error = (covered / (std::f64::consts::PI * on_screen * on_screen) - 1.0).abs();
@@ -167,7 +167,7 @@ fn a_sphere_is_as_wide_as_high_with_pixels_of_any_shape() {
     let mut scene = Scene::new(camera([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 40.0), vec![unit_sphere()]);
     scene = scene.with_ambient(LinearRgb::grey(1.0));
     for pixel_aspect in [0.5_f32, 0.95, 1.0, 1.1, 2.0] {
-        let resolution = Resolution { width: 400, height: 300, pixel_aspect };
+        let resolution = Resolution::square(400, 300).with_pixel_aspect(pixel_aspect).expect("a shape of pixels");
         let frame = render(&scene, scene.camera(), resolution, NonZeroU32::MIN);
         let wide = (0..400).filter(|&x| frame.pixel(x, 150).g > 0.0).count() as f32;
         let high = (0..300).filter(|&y| frame.pixel(200, y).g > 0.0).count() as f32 * pixel_aspect;
@@ -263,7 +263,7 @@ fn of_two_surfaces_in_one_place_the_first_is_seen() {
     for (first, second) in [(0.2, 0.7), (0.7, 0.2)] {
         let mut scene = Scene::new(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0), vec![ball(first), ball(second)]);
         scene = scene.with_ambient(LinearRgb::grey(1.0));
-        for pixel in picture(&scene, 21, 21).pixels.iter().filter(|pixel| pixel.g > 0.0) {
+        for pixel in picture(&scene, 21, 21).pixels().iter().filter(|pixel| pixel.g > 0.0) {
             assert_close(pixel.g.into(), f64::from(first));
         }
     }

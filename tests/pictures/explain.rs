@@ -13,14 +13,17 @@ fn shipped_scenes() -> Vec<(PathBuf, Scene)> {
 }
 
 /// Not a whole number of tiles, and pixels that are not square.
-const SIZE: Resolution = Resolution { width: 60, height: 34, pixel_aspect: 1.25 };
+const SIZE: Resolution = match Resolution::square(60, 34).with_pixel_aspect(1.25) {
+    Ok(size) => size,
+    Err(_) => panic!("a shape of pixels"),
+};
 
 fn picture(scene: &Scene) -> Picture {
     tone(&render(scene, scene.camera(), SIZE, NonZeroU32::MIN), scene)
 }
 
 fn pixels() -> impl Iterator<Item = [u32; 2]> {
-    (0..SIZE.height).flat_map(|y| (0..SIZE.width).map(move |x| [x, y]))
+    (0..SIZE.height()).flat_map(|y| (0..SIZE.width()).map(move |x| [x, y]))
 }
 
 /// What the explanation says comes to what it says that it comes to, to the bit.

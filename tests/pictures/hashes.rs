@@ -107,7 +107,7 @@ fn all_differ(hashes: &BTreeMap<String, String>) {
 
 fn picture(width: u32, height: u32, bits: &[u32]) -> Framebuffer {
     let mut framebuffer = Framebuffer::new(Resolution::square(width, height));
-    for (pixel, bits) in framebuffer.pixels.iter_mut().zip(bits.chunks_exact(3)) {
+    for (pixel, bits) in framebuffer.pixels_mut().iter_mut().zip(bits.chunks_exact(3)) {
         *pixel = LinearRgb::new(f32::from_bits(bits[0]), f32::from_bits(bits[1]), f32::from_bits(bits[2]));
     }
     framebuffer

@@ -137,7 +137,7 @@ fn maps_say_what_is_there() {
 }
 
 fn eye_ray(camera: &Camera, resolution: Resolution, at: usize) -> termtrace::internals::ray::Ray {
-    let (width, height) = (resolution.width, resolution.height);
+    let (width, height) = (resolution.width(), resolution.height());
     let (x, y) = (at as u32 % width, at as u32 / width);
     let (qu, qv) = ((x as f32 + 0.5) / width as f32, (height as f32 - (y as f32 + 0.5)) / height as f32);
     camera.eye_rays(resolution.aspect_ratio()).through(qu, qv)

@@ -280,7 +280,7 @@ proptest! {
         let straight = scene.camera().with_rectangle(scene.camera().rectangle().with_shift(Vec2::ZERO).unwrap());
         let turned = straight.with_pose(Pose { up: -pose.up, ..pose }).unwrap();
         let (a, b) = (picture(&scene, &straight, 24, 16), picture(&scene, &turned, 24, 16));
-        let differ = a.pixels.iter().zip(b.pixels.iter().rev()).filter(|(a, b)| (a.g - b.g).abs() > 1e-3 * (1.0 + a.g)).count();
+        let differ = a.pixels().iter().zip(b.pixels().iter().rev()).filter(|(a, b)| (a.g - b.g).abs() > 1e-3 * (1.0 + a.g)).count();
         // A pixel whose ray grazes an edge may fall on its other side.
         prop_assert!(differ <= 4, "{differ} of 384 pixels differ");
     }
@@ -311,7 +311,7 @@ proptest! {
 
     #[test]
     fn every_pixel_is_a_number(scene in scene()) {
-        prop_assert!(picture(&scene, scene.camera(), 40, 30).pixels.iter().all(|pixel| pixel.is_finite()));
+        prop_assert!(picture(&scene, scene.camera(), 40, 30).pixels().iter().all(|pixel| pixel.is_finite()));
     }
 }
 

@@ -183,7 +183,7 @@ fn truth(scene: &Scene, size: f32) -> Framebuffer {
         if (point.x.floor() + point.z.floor()) % 2.0 == 0.0 { 0.9 } else { 0.1 }
     };
     let mut truth = Framebuffer::new(SIZE);
-    for (at, pixel) in (0..).zip(&mut truth.pixels) {
+    for (at, pixel) in (0..).zip(truth.pixels_mut()) {
         let (x, y) = ((at % 80) as f32, (at / 80) as f32);
         let places = (0..32 * 32).map(|s| (x + ((s % 32) as f32 + 0.5) / 32.0, y + ((s / 32) as f32 + 0.5) / 32.0));
         *pixel = LinearRgb::grey(places.map(|(x, y)| shade(x, y)).sum::<f32>() / 1024.0);

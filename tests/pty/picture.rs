@@ -11,7 +11,7 @@ pub(crate) fn picture(scene: &Scene, mode: CellMode, size: Size, aspect: f32) ->
 
 /// The same with other samples.
 pub(crate) fn picture_with(sampling: Sampling, scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {
-    let resolution = cell::resolution(mode, size, aspect);
+    let resolution = cell::resolution(mode, size, aspect).expect("a size that pictures can have");
     let framebuffer = render(scene, scene.camera(), resolution, sampling);
     cell::grid_from_picture(mode, &tone(&framebuffer, scene))
 }

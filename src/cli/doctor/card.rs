@@ -60,9 +60,10 @@ fn turn(cell: &mut Cell) {
 
 fn picture(capabilities: &Capabilities) -> Picture {
     let mode = capabilities.cell_mode;
-    let resolution = cell::resolution(mode, Size::new(COLUMNS, ROWS), capabilities.cell_aspect);
+    let resolution = cell::resolution(mode, Size::new(COLUMNS, ROWS), capabilities.cell_aspect)
+        .expect("the card is small, and the aspect was checked");
     let (across, down) = mode.pixels_per_cell();
-    let pixels = (0..resolution.height).flat_map(|y| (0..resolution.width).map(move |x| (x, y)));
+    let pixels = (0..resolution.height()).flat_map(|y| (0..resolution.width()).map(move |x| (x, y)));
     let color = |(x, y): (u32, u32)| {
         let at = Place {
             column: (x as f32 + 0.5) / across as f32,
@@ -72,7 +73,7 @@ fn picture(capabilities: &Capabilities) -> Picture {
         at.color(capabilities.cell_aspect)
     };
     let pixels = pixels.map(color).collect();
-    Picture::from_pixels(resolution.width, resolution.height, pixels).expect("a pixel for each place")
+    Picture::from_pixels(resolution.width(), resolution.height(), pixels).expect("a pixel for each place")
 }
 
 /// A place on the card, in cells, and the size of a pixel.

@@ -73,7 +73,7 @@ impl Inset {
             return;
         }
         let (across, down) = mode.pixels_per_cell();
-        let cell_aspect = resolution.pixel_aspect * down as f32 / across as f32;
+        let cell_aspect = resolution.pixel_aspect() * down as f32 / across as f32;
         let [x, y] = self.bounds(f32::from(area.width), f32::from(area.height) * cell_aspect);
         let marker = if mode.glyphs.has_blocks() { Marker::Braille } else { Marker::Custom('*') };
         let ink = |color: Color| if mode.colors == Colors::None { Color::Reset } else { color };
