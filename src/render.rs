@@ -85,7 +85,7 @@ pub fn render_by(
 /// its tiles.
 fn units(resolution: Resolution, sampling: Sampling) -> u64 {
     let pixels = resolution.pixel_count() as u64;
-    match sampling {
+    match sampling.bounded() {
         Sampling::Coarse => u64::from(resolution.width().div_ceil(2)) * u64::from(resolution.height().div_ceil(2)),
         Sampling::Each(samples) => pixels * u64::from(samples.get()),
         Sampling::UpTo(samples) => pixels + adaptive::units_of_more(resolution, samples),
@@ -100,7 +100,7 @@ pub(crate) fn render_all(
     resolution: Resolution,
     sampling: Sampling,
 ) -> Rendered {
-    match sampling {
+    match sampling.bounded() {
         Sampling::Coarse => uniform::render(crew, scene, &Tiles::new(camera, resolution, 2), 1),
         Sampling::Each(samples) => uniform::render(crew, scene, &Tiles::new(camera, resolution, 1), samples.get()),
         Sampling::UpTo(samples) => {

@@ -7,6 +7,6 @@ mod alone;
 mod pool;
 
 #[cfg(not(feature = "parallel"))]
-pub(crate) use alone::{count, for_each_chunk, join, map_one_by_one, unzip};
+pub(crate) use alone::{count, for_each_chunk, in_pool_of, join, map_one_by_one, unzip};
 #[cfg(feature = "parallel")]
-pub(crate) use pool::{count, for_each_chunk, join, map_one_by_one, unzip};
+pub(crate) use pool::{count, for_each_chunk, in_pool_of, join, map_one_by_one, unzip};

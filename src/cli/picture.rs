@@ -105,7 +105,7 @@ pub(super) fn parse_samples(text: &str) -> Result<Sampling, String> {
     if text == "best" {
         return Ok(Sampling::BEST);
     }
-    let number = text.parse::<NonZeroU32>().ok().filter(|samples| samples.get() <= 65_536);
+    let number = text.parse::<NonZeroU32>().ok().filter(|samples| *samples <= Sampling::MAX_SAMPLES);
     number.map(Sampling::Each).ok_or_else(|| "expected a whole number from 1 to 65536, or best".to_owned())
 }
 

@@ -1,9 +1,9 @@
 //! The trace stage alone, for those who time it: eye rays -> closest hits -> a shadow ray from each.
 
-use super::Crew;
 use super::sampling::Runs;
 use super::steps::{Buffers, Goal, Shot};
 use super::tiles::Tiles;
+use super::{Crew, Sampling};
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::hit::{self, Kernel};
@@ -39,14 +39,15 @@ impl Add for Counts {
     }
 }
 
-/// Traces the eye rays of [`render`](super::render) by that kernel with that number of samples of each pixel, and, if the scene has
+/// Traces the eye rays of [`render`](super::render) by that kernel with that number of samples of each pixel ([`Sampling::MAX_SAMPLES`] at
+/// most), and, if the scene has
 /// shadows, one ray from each hit to each light, also where the surface faces away from it; on the threads of the current
 /// rayon pool.
 pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
     let tiles = Tiles::new(camera, resolution, 1);
     let goal = if scene.shadows() { Goal::Points } else { Goal::Hits };
     let shot = Shot { kernel, ..Shot::new(scene, &tiles, goal) };
-    let runs = Runs::of(0..samples.get());
+    let runs = Runs::of(0..samples.min(Sampling::MAX_SAMPLES).get());
     let mut counts = vec![Counts::default(); tiles.count()];
     Crew::Pool.trace(&shot, counts.iter_mut().collect(), |tile, counts| {
         tile.trace(&runs, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));

@@ -6,14 +6,15 @@ use crate::camera::Camera;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::progress::{Cancellation, Cancelled};
 use crate::scene::Scene;
+use crate::threads;
 use std::fmt;
 use std::ops::ControlFlow;
 
 /// A receiver of progress reports: parts of the work, from 0 to 1.
-type Hear<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Sync + 'a>;
+type Hear<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Send + Sync + 'a>;
 
 /// A picture to be rendered: of a scene, from its own camera, with 1280 x 720 pixels and [`Sampling::BEST`], unless another
-/// choice is made. It is rendered on the threads of the current rayon pool.
+/// choice is made. It is rendered on the threads of the current rayon pool, or on [some of its own](Self::threads).
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -38,6 +39,7 @@ pub struct Render<'a> {
     camera: Camera,
     resolution: Resolution,
     sampling: Sampling,
+    threads: Option<usize>,
     token: Cancellation,
     hear: Option<Hear<'a>>,
 }
@@ -55,6 +57,9 @@ impl fmt::Debug for Render<'_> {
 }
 
 impl<'a> Render<'a> {
+    /// The most [threads](Self::threads) of a render.
+    pub const MAX_THREADS: usize = 1024;
+
     /// A picture of that scene.
     pub fn new(scene: &'a Scene) -> Self {
         Self {
@@ -62,6 +67,7 @@ impl<'a> Render<'a> {
             camera: *scene.camera(),
             resolution: Resolution::square(1280, 720),
             sampling: Sampling::BEST,
+            threads: None,
             token: Cancellation::default(),
             hear: None,
         }
@@ -82,6 +88,12 @@ impl<'a> Render<'a> {
         Self { sampling: sampling.into(), ..self }
     }
 
+    /// Traces on that number of threads of its own: at least one, and at most [`MAX_THREADS`](Self::MAX_THREADS). Without the
+    /// feature `parallel` it is the calling thread alone. The picture does not depend on it.
+    pub fn threads(self, count: usize) -> Self {
+        Self { threads: Some(count.clamp(1, Self::MAX_THREADS)), ..self }
+    }
+
     /// Gives the render up when this token is cancelled: after the rays that are being traced, 256 for each thread.
     #[doc(hidden)]
     pub fn cancelled_by(self, token: &Cancellation) -> Self {
@@ -91,7 +103,7 @@ impl<'a> Render<'a> {
     /// Reports which part of the work is done: greater than 0 and rising, and 1 at the end. Reports come one at a time, from
     /// any of the threads, every 10 ms or more often; the others wait as long as `hear` takes. When it answers
     /// `Break`, the token is cancelled.
-    pub fn on_progress(self, hear: impl Fn(f32) -> ControlFlow<()> + Sync + 'a) -> Self {
+    pub fn on_progress(self, hear: impl Fn(f32) -> ControlFlow<()> + Send + Sync + 'a) -> Self {
         Self { hear: Some(Box::new(hear)), ..self }
     }
 
@@ -100,7 +112,15 @@ impl<'a> Render<'a> {
     /// # Errors
     /// [`Cancelled`], if the token is, or a report was answered by `Break`. The last report, of 1, cancels nothing.
     pub fn run(self) -> Result<Framebuffer, Cancelled> {
-        let Self { scene, camera, resolution, sampling, token, hear } = self;
+        match self.threads {
+            Some(count) => threads::in_pool_of(count, || self.trace()),
+            None => self.trace(),
+        }
+    }
+
+    /// Traces on the threads of the current rayon pool.
+    fn trace(self) -> Result<Framebuffer, Cancelled> {
+        let Self { scene, camera, resolution, sampling, threads: _, token, hear } = self;
         let render = |crew: Crew<'_>| crew.finish(render_all(crew, scene, &camera, resolution, sampling).framebuffer);
         let Some(hear) = hear else {
             return render(Crew::Cancellable(&token));
@@ -164,6 +184,23 @@ mod tests {
             let render = Render::new(&scene).resolution(resolution).sampling(sampling).on_progress(hear);
             assert_eq!(render.run(), Err(Cancelled), "{sampling:?}");
             assert_eq!(heard.into_inner().expect("no report panics"), 3, "{sampling:?}");
+        }
+    }
+
+    #[cfg(feature = "parallel")]
+    #[test]
+    fn any_number_of_threads_gives_the_same_light() {
+        let (scene, resolution) = (scene(), Resolution::square(61, 41));
+        let wanted = render(&scene, scene.camera(), resolution, Sampling::BEST).hash();
+        for threads in [0, 1, 2, 7] {
+            let used = Mutex::new(0);
+            let hear = |_| {
+                *used.lock().expect("no report panics") = rayon::current_num_threads();
+                ControlFlow::Continue(())
+            };
+            let picture = Render::new(&scene).resolution(resolution).threads(threads).on_progress(hear).run();
+            assert_eq!(picture.expect("nothing cancels it").hash(), wanted, "{threads}");
+            assert_eq!(used.into_inner().expect("no report panics"), threads.max(1));
         }
     }
 

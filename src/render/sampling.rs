@@ -5,13 +5,13 @@ use std::borrow::Cow;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-/// How many rays go through the pixels of a picture.
+/// The number of rays that go through the pixels of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Sampling {
     /// One through the middle of each two by two pixels.
     Coarse,
-    /// So many through each.
+    /// That many through each; of a number beyond [`MAX_SAMPLES`](Self::MAX_SAMPLES), as many as that.
     Each(NonZeroU32),
     /// One through each; 4, 16 and 64 in all where there are edges: of objects, shadows and patterns, or where normals
     /// differ; but never more than so many.
@@ -21,6 +21,17 @@ pub enum Sampling {
 impl Sampling {
     /// As many as are ever taken where there are edges.
     pub const BEST: Self = Self::UpTo(NonZeroU32::new(64).expect("64 is not 0"));
+
+    /// The most rays that go through a pixel, 65,536: more change nothing that 8 bits could show, and take for ever.
+    pub const MAX_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 16).expect("65,536 is not 0");
+
+    /// Returns the sampling with no more than [`MAX_SAMPLES`](Self::MAX_SAMPLES).
+    pub(super) fn bounded(self) -> Self {
+        match self {
+            Self::Each(samples) => Self::Each(samples.min(Self::MAX_SAMPLES)),
+            Self::Coarse | Self::UpTo(_) => self,
+        }
+    }
 }
 
 impl From<NonZeroU32> for Sampling {

@@ -42,3 +42,11 @@ where
 {
     items.par_bridge().map_init(state, work).collect()
 }
+
+/// Works in a pool with that number of threads; where they cannot be started, in the current one.
+pub(crate) fn in_pool_of<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
+    }
+}
