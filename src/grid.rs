@@ -151,23 +151,42 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// All blank.
+    /// The most cells of a grid, 16,777,216: 700 MB. A 4K screen has 100,000 cells of 8 by 10 pixels.
+    pub const MAX_CELLS: usize = 1 << 24;
+
+    /// Returns a grid of that size, all blank.
+    ///
+    /// # Panics
+    /// If it has more than [`MAX_CELLS`](Self::MAX_CELLS).
     pub fn new(size: Size) -> Self {
-        Self { size, cells: vec![Cell::BLANK; size.cell_count()] }
+        Self { size, cells: vec![Cell::BLANK; Self::count(size)] }
     }
 
     /// Makes all of it blank, at that size.
+    ///
+    /// # Panics
+    /// If it has more than [`MAX_CELLS`](Self::MAX_CELLS).
     #[doc(hidden)]
     pub fn clear(&mut self, size: Size) {
+        let count = Self::count(size);
         self.size = size;
         self.cells.clear();
-        self.cells.resize(size.cell_count(), Cell::BLANK);
+        self.cells.resize(count, Cell::BLANK);
     }
 
-    /// All foreign: of a screen of which nothing is known, or on which nothing is wanted.
+    /// Returns a grid of that size, all foreign: of a screen of which nothing is known, or on which nothing is wanted.
+    ///
+    /// # Panics
+    /// If it has more than [`MAX_CELLS`](Self::MAX_CELLS).
     #[doc(hidden)]
     pub fn foreign(size: Size) -> Self {
-        Self { size, cells: vec![Cell::FOREIGN; size.cell_count()] }
+        Self { size, cells: vec![Cell::FOREIGN; Self::count(size)] }
+    }
+
+    fn count(size: Size) -> usize {
+        let count = size.cell_count();
+        assert!(count <= Self::MAX_CELLS, "a grid of {count} cells is too large; it may have {}", Self::MAX_CELLS);
+        count
     }
 
     /// Its size.
@@ -254,7 +273,7 @@ impl Grid {
     /// Outside the grid.
     #[doc(hidden)]
     pub fn put(&mut self, column: u16, row: u16, cell: &Cell, columns: u16) {
-        let end = column + columns.max(1);
+        let end = column.saturating_add(columns.max(1));
         self.split(column, row);
         self.split(end, row);
         for covered in column + 1..end {

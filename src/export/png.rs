@@ -1,6 +1,7 @@
 //! Picture -> PNG.
 
 use super::kind::{Contents, Kind};
+use crate::framebuffer::{Resolution, ResolutionError};
 use crate::tone::Picture;
 use std::{fmt, io};
 
@@ -15,20 +16,29 @@ pub(super) const KIND: Kind = Kind {
     difference: |golden, file, _| difference(golden, file),
 };
 
-/// Each pixel a square of `scale` by `scale`, marked as sRGB; pixels of another shape than square are marked too.
+/// Returns the file of a picture with each pixel a square of `scale` by `scale`, marked as sRGB; pixels of another shape
+/// than square are marked too.
 ///
 /// # Errors
-/// If the picture has no pixels, or too many for the format.
+/// If the picture has no pixels, or more than a [`Resolution`] may have when it is scaled; and unless `pixel_aspect` is
+/// greater than 0 and finite.
 pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, ExportError> {
+    let [width, height] = [picture.width, picture.height].map(|side| side.saturating_mul(scale));
+    Resolution::new(width, height).and_then(|file| file.with_pixel_aspect(pixel_aspect))?;
     let mut bytes = Vec::new();
-    let mut encoder =
-        png::Encoder::new(&mut bytes, picture.width.saturating_mul(scale), picture.height.saturating_mul(scale));
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_pixel_dims(pixel_dimensions(pixel_aspect));
     let written = encoder.write_header().and_then(|mut file| file.write_image_data(&scaled(picture, scale as usize)));
     written.map(|()| bytes).map_err(ExportError)
+}
+
+impl From<ResolutionError> for ExportError {
+    fn from(error: ResolutionError) -> Self {
+        Self(io::Error::new(io::ErrorKind::InvalidInput, error).into())
+    }
 }
 
 /// The reason why a picture cannot be written in a format: it has no pixels, or too many.
