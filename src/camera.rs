@@ -2,17 +2,32 @@
 //!
 //! World space is right-handed. Angles are radians here, degrees where a person writes them.
 
+use crate::checks::{self, TOO_FAR};
 use crate::lanes::{Number, Vector};
 use crate::ray::Ray;
 use glam::{DVec3, Vec2, Vec3};
 use std::fmt;
 
 /// A pose and intrinsic parameters that give a picture: the eye is not at the target, up is not along the view.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct Camera {
     pose: Pose,
     basis: Basis,
     rectangle: ViewRectangle,
+}
+
+/// What it was made of: the basis follows from that.
+impl fmt::Debug for Camera {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pose: Pose { eye, target, up }, rectangle: ViewRectangle { width, height, shift }, .. } = self;
+        // Each vector in one line.
+        let mut camera = f.debug_struct("Camera");
+        camera.field("eye", &format_args!("{eye:?}"));
+        camera.field("target", &format_args!("{target:?}"));
+        camera.field("up", &format_args!("{up:?}"));
+        camera.field("width", &format_args!("{width:?}")).field("height", height);
+        camera.field("shift", &format_args!("{shift:?}")).finish()
+    }
 }
 
 /// How the camera stands in space, as the lecture's user says it.
@@ -52,19 +67,30 @@ pub struct ViewRectangle {
 
 /// Why there is no picture from these numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CameraError {
     /// A coordinate is infinite or not a number.
     NotFinite,
+    /// A coordinate is beyond ±1e9.
+    TooFar,
     /// The eye and the target are one point: there is no direction to look in.
     EyeIsTarget,
     /// The up vector has no length.
     UpIsZero,
+    /// The up vector is shorter than 1e-9.
+    UpTooShort,
     /// The up vector lies along the view: no direction of the picture would be vertical.
     UpAlongView,
     /// A vertical field of view that is not between 0 and 180 degrees.
     FieldOfView,
     /// A view rectangle with a side or a focal length that is not greater than 0.
     ViewRectangle,
+    /// A side of the view rectangle that is not between 1e-6 and 1e6 focal lengths.
+    Sides,
+    /// An aspect ratio that is not between 1e-6 and 1e6.
+    AspectRatio,
+    /// A shift of more than 1000 heights of the view rectangle.
+    Shift,
 }
 
 impl fmt::Display for CameraError {
@@ -72,19 +98,64 @@ impl fmt::Display for CameraError {
         f.write_str(match self {
             Self::NotFinite => "the camera's numbers must be finite",
             Self::EyeIsTarget => "the eye and the target are the same point; the camera has no direction to look in",
-            Self::UpIsZero => "up has no length; it must be a direction",
+            Self::TooFar => TOO_FAR,
+            Self::UpIsZero => "the up vector must have a length; (0, 0, 0) points nowhere",
+            Self::UpTooShort => "the up vector must be longer than 1e-9",
             Self::UpAlongView => "up is parallel to the view (target - eye); it must point to one side of it",
-            Self::FieldOfView => "the vertical field of view must be between 0 and 180 degrees, both excluded",
+            Self::FieldOfView => "the vertical field of view is an angle between 0 and 180 degrees, both excluded",
             Self::ViewRectangle => {
                 "the view rectangle's focal length, width, height and aspect ratio must be greater than 0"
             }
+            Self::Sides => "a side of the view rectangle must lie between 1e-6 and 1e6 focal lengths",
+            Self::AspectRatio => "the aspect ratio must lie between 1e-6 and 1e6",
+            Self::Shift => "the view rectangle can be shifted by at most 1000 of its heights",
         })
     }
 }
 
 impl std::error::Error for CameraError {}
 
+/// The vertical field of view where none is given, in degrees.
+const USUAL_FOV: f64 = 45.0;
+
 impl Camera {
+    /// Returns the camera at `eye` that looks at `target`, with +y up and a vertical field of view of 45 degrees.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use termtrace::Camera;
+    ///
+    /// let camera = Camera::look_at(Vec3::new(0.0, 1.5, 6.0), Vec3::ZERO)?.with_fov_degrees(40.0)?;
+    /// assert!((camera.rectangle().vertical_fov().to_degrees() - 40.0).abs() < 1e-4);
+    ///
+    /// let error = Camera::look_at(Vec3::ONE, Vec3::ONE).unwrap_err();
+    /// assert_eq!(error.to_string(), "the eye and the target are the same point; the camera has no direction to look in");
+    /// # Ok::<(), termtrace::CameraError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If both are one point, or a coordinate is not within ±1e9; and if the camera would look straight up or down, which
+    /// takes another up vector: see [`Camera::new`].
+    pub fn look_at(eye: Vec3, target: Vec3) -> Result<Self, CameraError> {
+        Self::new(Pose { eye, target, up: Vec3::Y }, ViewRectangle::from_vertical_fov(radians(USUAL_FOV))?)
+    }
+
+    /// Returns the camera with another up vector, of any length from 1e-9 to 1e9.
+    ///
+    /// # Errors
+    /// If the up vector has no such length, or lies along the view.
+    pub fn with_up(self, up: Vec3) -> Result<Self, CameraError> {
+        self.with_pose(Pose { up, ..self.pose })
+    }
+
+    /// Returns the camera with another vertical field of view, in degrees; its view rectangle keeps its shape.
+    ///
+    /// # Errors
+    /// Unless the angle is between 0 and 180 degrees, both excluded.
+    pub fn with_fov_degrees(self, degrees: f32) -> Result<Self, CameraError> {
+        Ok(Self { rectangle: self.rectangle.with_vertical_fov(radians(degrees.into()))?, ..self })
+    }
+
     /// The camera with that pose and view rectangle.
     ///
     /// # Errors
@@ -145,7 +216,13 @@ impl Basis {
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
             return Err(CameraError::NotFinite);
         }
+        if ![eye, target, up].into_iter().all(checks::is_near) {
+            return Err(CameraError::TooFar);
+        }
         let w = direction(eye - target).ok_or(CameraError::EyeIsTarget)?;
+        if up != DVec3::ZERO && !checks::is_long(pose.up) {
+            return Err(CameraError::UpTooShort);
+        }
         let up = direction(up).ok_or(CameraError::UpIsZero)?;
         let across = up.cross(w);
         // The sine of the angle between up and the view. What a person wrote as parallel is off by f32's rounding.
@@ -163,7 +240,15 @@ fn direction(v: DVec3) -> Option<DVec3> {
     (largest > 0.0).then(|| v / largest).map(|v| v / v.dot(v).sqrt())
 }
 
+/// Returns the angle in radians, rounded once.
+pub(crate) fn radians(degrees: f64) -> f32 {
+    degrees.to_radians() as f32
+}
+
 impl ViewRectangle {
+    /// The most that the rectangle can be [shifted](Self::with_shift), in its heights.
+    pub(crate) const LARGEST_SHIFT: f32 = 1e3;
+
     /// As wide as the picture; as high as the angle, in radians, that it takes up vertically:
     /// h = 2 f tan(alpha / 2).
     ///
@@ -181,14 +266,16 @@ impl ViewRectangle {
     /// The lecture's f, w and h, in one unit.
     ///
     /// # Errors
-    /// Unless each of them, and each side over the focal length, is greater than 0 and finite.
+    /// Unless each of them is greater than 0 and finite, and each side between 1e-6 and 1e6 focal lengths.
     pub fn from_focal_length(focal_length: f32, width: f32, height: f32) -> Result<Self, CameraError> {
         let (width, height) = (width / focal_length, height / focal_length);
-        if focal_length > 0.0 && is_length(width) && is_length(height) {
-            Ok(Self { width: Some(width), height, shift: Vec2::ZERO })
-        } else {
-            Err(CameraError::ViewRectangle)
+        if !(focal_length > 0.0 && is_length(width) && is_length(height)) {
+            return Err(CameraError::ViewRectangle);
         }
+        if ![width, height].into_iter().all(|side| checks::is_ratio(side.into())) {
+            return Err(CameraError::Sides);
+        }
+        Ok(Self { width: Some(width), height, shift: Vec2::ZERO })
     }
 
     /// The rectangle of the same shape and shift that takes up that angle, in radians, vertically.
@@ -218,9 +305,12 @@ impl ViewRectangle {
     /// The rectangle of the same height with that aspect ratio (width / height) of its own.
     ///
     /// # Errors
-    /// Unless the aspect ratio is greater than 0 and finite.
+    /// Unless the aspect ratio is between 1e-6 and 1e6.
     #[doc(hidden)]
     pub fn with_aspect_ratio(self, aspect_ratio: f32) -> Result<Self, CameraError> {
+        if !checks::is_ratio(aspect_ratio.into()) {
+            return Err(CameraError::AspectRatio);
+        }
         let width = self.height * aspect_ratio;
         if is_length(width) { Ok(Self { width: Some(width), ..self }) } else { Err(CameraError::ViewRectangle) }
     }
@@ -228,9 +318,13 @@ impl ViewRectangle {
     /// The rectangle off centre: its middle to the right of and above the w axis, in heights of the rectangle.
     ///
     /// # Errors
-    /// Unless the shift is finite.
+    /// Unless the shift is finite, and at most 1000 heights either way.
     pub fn with_shift(self, shift: Vec2) -> Result<Self, CameraError> {
-        if shift.is_finite() { Ok(Self { shift, ..self }) } else { Err(CameraError::NotFinite) }
+        if !shift.is_finite() {
+            return Err(CameraError::NotFinite);
+        }
+        let is_far = shift.abs().max_element() > Self::LARGEST_SHIFT;
+        if is_far { Err(CameraError::Shift) } else { Ok(Self { shift, ..self }) }
     }
 
     /// The angle that the rectangle takes up vertically when it is not shifted, in radians.

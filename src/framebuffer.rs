@@ -6,7 +6,7 @@ use std::fmt;
 /// A picture's size in pixels, and their shape: at most [`MAX_PIXELS`](Self::MAX_PIXELS), which may be none.
 ///
 /// ```
-/// use termtrace::framebuffer::Resolution;
+/// use termtrace::Resolution;
 ///
 /// let resolution = Resolution::new(320, 200)?.with_pixel_aspect(1.2)?;
 /// assert_eq!((resolution.width(), resolution.height()), (320, 200));
@@ -14,7 +14,7 @@ use std::fmt;
 ///
 /// let error = Resolution::new(200_000, 200_000).unwrap_err();
 /// assert_eq!(error.to_string(), "a picture of 200000x200000 pixels is too large; at most 33554432 pixels in all");
-/// # Ok::<(), termtrace::framebuffer::ResolutionError>(())
+/// # Ok::<(), termtrace::ResolutionError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {

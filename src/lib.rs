@@ -76,6 +76,7 @@
 //! - `memory`: asked for before it is used
 //! - `progress`: progress reports, and the token by which work is cancelled
 //! - `threads`: work in parallel, on the threads of rayon or without
+//! - `checks`: the rules for the numbers of a scene, from a file or from code
 //! - `named_file`: the bytes of a file that a person names, within bounds
 //!
 //! What was written:
@@ -216,6 +217,7 @@ mod text;
 mod memory;
 mod progress;
 mod threads;
+mod checks;
 #[cfg(feature = "ron")]
 mod named_file;
 mod scene_text;
@@ -285,14 +287,14 @@ pub use color::{LinearRgb, Srgb8};
 pub use light::{Falloff, Light, PointLight};
 pub use material::{Checker, Diffuse, Material};
 pub use mesh_file::MeshError;
-pub use scene::{Background, Object, ToneCurve};
-pub use shape::{Mesh, Plane, Shape, Sphere, Triangle};
+pub use scene::{Background, Object, SceneBuilder, SceneFault, ToneCurve};
+pub use shape::{Mesh, Plane, Shape, ShapeError, Sphere, Triangle};
 
 // Cameras over time.
 pub use camera_path::CameraPath;
 
 // Pictures.
-pub use framebuffer::{Framebuffer, Resolution};
+pub use framebuffer::{Framebuffer, Resolution, ResolutionError};
 pub use hit::Hit;
 pub use maps::Map;
 pub use progress::Cancelled;

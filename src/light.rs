@@ -39,7 +39,7 @@ pub trait LightSource: InSceneFile + Copy {
         None
     }
 
-    /// Returns the light at another place, if it has one.
+    /// Returns the light at another place, if it has one; where no light can be, it stays.
     #[must_use]
     fn moved_to(self, _position: Vec3) -> Self {
         self
@@ -98,7 +98,7 @@ macro_rules! lights {
             #[doc(hidden)]
             pub fn position(&self) -> Option<Vec3> {
                 match self {
-                    $($(#[$on])* Self::$name(light) => light.position(),)*
+                    $($(#[$on])* Self::$name(light) => LightSource::position(light),)*
                 }
             }
 

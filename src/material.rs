@@ -6,6 +6,7 @@
 //! Each material is a file of its own under `material/`. To add one, write that file, with implementations of
 //! [`Reflecting`] and [`InSceneFile`], and give it a line in the table here.
 
+use crate::checks::SceneFault;
 use crate::color::LinearRgb;
 use crate::lanes::Number;
 use crate::scene_text::Node;
@@ -58,6 +59,14 @@ macro_rules! materials {
                 match self {
                     $($(#[$on])* Self::$material(material) => material.reflectance(uv, footprint),)*
                     Self::Own => bands(Self::DEFAULT_REFLECTANCE),
+                }
+            }
+
+            /// Returns its name after an article, and its [pattern](Reflecting::PATTERN), if it has one.
+            pub(crate) fn pattern(&self) -> Option<(&'static str, &'static str)> {
+                match self {
+                    $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
+                    Self::Own => None,
                 }
             }
 
@@ -128,15 +137,26 @@ impl Default for Material {
 
 impl Material {
     /// The material of an object that is given none: a light grey.
-    #[doc(hidden)]
-    pub const DEFAULT: Self = Self::diffuse(Self::DEFAULT_REFLECTANCE);
+    pub const DEFAULT: Self = Self::Diffuse(Diffuse::DEFAULT);
 
     /// The reflectance of [`DEFAULT`](Self::DEFAULT).
     pub(crate) const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
 
-    /// Returns the material with the same reflectance everywhere.
-    pub const fn diffuse(reflectance: LinearRgb) -> Self {
-        Self::Diffuse(Diffuse { reflectance })
+    /// Returns the material with the same reflectance everywhere, linear.
+    ///
+    /// # Errors
+    /// Unless each band lies within 0 and 1.
+    pub fn diffuse(reflectance: LinearRgb) -> Result<Self, SceneFault> {
+        Diffuse::new(reflectance).map(Self::Diffuse)
+    }
+
+    /// Returns the material of squares with two reflectances in turn, linear, whose side has that length. Only a plane can
+    /// have it.
+    ///
+    /// # Errors
+    /// Unless each band lies within 0 and 1, and the size between 1e-9 and 1e9.
+    pub fn checker(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
+        Checker::new(a, b, size).map(Self::Checker)
     }
 }
 

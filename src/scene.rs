@@ -3,6 +3,7 @@
 //! All units are fixed here: world units, radians, linear light, unit vectors. [`Scene::load`] and [`Scene::from_ron`]
 //! are the only way from what was written to what is drawn. A [`Draft`] is checked and has no trees yet.
 
+mod builder;
 #[cfg(feature = "ron")]
 mod checked;
 mod draft;
@@ -16,6 +17,7 @@ mod written_camera;
 #[cfg(feature = "ron")]
 mod written_view;
 
+pub use builder::SceneBuilder;
 pub use draft::Draft;
 #[cfg(feature = "ron")]
 pub use load::LoadError;
@@ -25,10 +27,13 @@ pub use written_view::with_view;
 use crate::accel::Accelerator;
 use crate::bounds::Bounds;
 use crate::camera::Camera;
+use crate::checks;
+pub use crate::checks::SceneFault;
 use crate::color::LinearRgb;
 use crate::light::Light;
 use crate::material::Material;
 use crate::shape::Shape;
+use std::fmt;
 use std::sync::Arc;
 
 /// Everything that a picture depends on, besides its size: what was checked, and the trees that rays go through.
@@ -39,14 +44,29 @@ use std::sync::Arc;
 /// use termtrace::{LinearRgb, Scene};
 ///
 /// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")?;
-/// let brighter = scene.clone().with_ambient(LinearRgb::grey(0.5)).with_exposure(2.0);
+/// let brighter = scene.clone().with_ambient(LinearRgb::grey(0.5))?.with_exposure(2.0)?;
 /// assert_eq!((scene.exposure(), brighter.exposure()), (1.0, 2.0));
-/// # Ok::<(), termtrace::SceneError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Scene {
     checked: Arc<Checked>,
     accelerator: Arc<Accelerator>,
+}
+
+/// What was checked, without the trees over it.
+impl fmt::Debug for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Checked { camera, views, background, ambient, lights, shadows, exposure, tone_curve, objects } =
+            &*self.checked;
+        let mut scene = f.debug_struct("Scene");
+        scene.field("camera", camera).field("views", views);
+        // Each colour in one line.
+        scene.field("background", &format_args!("{background:?}")).field("ambient", &format_args!("{ambient:?}"));
+        scene.field("lights", lights).field("shadows", shadows);
+        scene.field("exposure", exposure).field("tone_curve", tone_curve).field("objects", objects);
+        scene.finish_non_exhaustive()
+    }
 }
 
 /// What was checked. Its fields are assigned by the `with_` methods of [`Scene`] and [`Draft`] only.
@@ -86,7 +106,30 @@ impl Checked {
 }
 
 impl Scene {
-    /// These objects seen by that camera: no light and no other views yet, a black background, shadows, exposure 1 and no tone curve.
+    /// Returns a scene in the making, seen by that camera: no objects and no lights yet, a black background, shadows,
+    /// exposure 1 and no tone curve.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use termtrace::{Camera, LinearRgb, Material, Plane, PointLight, Scene, Sphere};
+    ///
+    /// let camera = Camera::look_at(Vec3::new(0.0, 1.5, 6.0), Vec3::new(0.0, 0.7, 0.0))?;
+    /// let red = Material::diffuse(LinearRgb::new(0.8, 0.1, 0.1))?;
+    /// let scene = Scene::builder(camera)
+    ///     .object(Sphere::new(Vec3::Y, 1.0)?, red)
+    ///     .object(Plane::new(Vec3::ZERO, Vec3::Y)?, Material::DEFAULT)
+    ///     .light(PointLight::new(Vec3::new(3.0, 5.0, 4.0), LinearRgb::grey(45.0))?)
+    ///     .ambient(LinearRgb::grey(0.05))
+    ///     .build()?;
+    /// assert_eq!(scene.objects().len(), 2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn builder(camera: Camera) -> SceneBuilder {
+        SceneBuilder::new(camera)
+    }
+
+    /// [`builder`](Self::builder) with these objects, which are not checked for materials that their shapes cannot have.
+    #[doc(hidden)]
     pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Draft::new(Checked::new(camera, objects)).finish()
     }
@@ -163,13 +206,21 @@ impl Scene {
     }
 
     /// Returns the scene before another [background](Self::background).
-    pub fn with_background(self, background: Background) -> Self {
-        self.with(|checked| checked.background = background)
+    ///
+    /// # Errors
+    /// Unless each band of its light lies within 0 and 1e12.
+    pub fn with_background(self, background: impl Into<Background>) -> Result<Self, SceneFault> {
+        let background = background.into().checked()?;
+        Ok(self.with(|checked| checked.background = background))
     }
 
     /// Returns the scene in other [ambient light](Self::ambient).
-    pub fn with_ambient(self, ambient: LinearRgb) -> Self {
-        self.with(|checked| checked.ambient = ambient)
+    ///
+    /// # Errors
+    /// Unless each band lies within 0 and 1e12.
+    pub fn with_ambient(self, ambient: LinearRgb) -> Result<Self, SceneFault> {
+        let ambient = checks::given_color("ambient", ambient, checks::light)?;
+        Ok(self.with(|checked| checked.ambient = ambient))
     }
 
     /// Returns the scene under other [lights](Self::lights).
@@ -183,8 +234,12 @@ impl Scene {
     }
 
     /// Returns the scene at another [exposure](Self::exposure).
-    pub fn with_exposure(self, exposure: f32) -> Self {
-        self.with(|checked| checked.exposure = exposure)
+    ///
+    /// # Errors
+    /// Unless it is greater than 0 and at most 1e6.
+    pub fn with_exposure(self, exposure: f32) -> Result<Self, SceneFault> {
+        let exposure = checks::given("exposure", exposure, checks::exposure)?;
+        Ok(self.with(|checked| checked.exposure = exposure))
     }
 
     /// Returns the scene with another [tone curve](Self::tone_curve).
@@ -233,6 +288,25 @@ pub enum Background {
         /// What is seen when looking along +y.
         top: LinearRgb,
     },
+}
+
+impl Background {
+    /// Returns the background, if its light is some that can be.
+    fn checked(self) -> Result<Self, SceneFault> {
+        match self {
+            Self::Color(color) => checks::given_color("background", color, checks::light).map(Self::Color),
+            Self::Gradient { bottom, top } => {
+                let bottom = checks::given_color("bottom", bottom, checks::light)?;
+                Ok(Self::Gradient { bottom, top: checks::given_color("top", top, checks::light)? })
+            }
+        }
+    }
+}
+
+impl From<LinearRgb> for Background {
+    fn from(color: LinearRgb) -> Self {
+        Self::Color(color)
+    }
 }
 
 /// How light is fitted to the screen's range.

@@ -18,6 +18,7 @@ use std::sync::Arc;
 pub mod cube;
 pub mod described;
 pub mod equation;
+mod error;
 pub mod mesh;
 pub mod one_by_one;
 pub mod plane;
@@ -29,11 +30,13 @@ mod written;
 pub use cube::Cube;
 pub use described::Described;
 pub use equation::{Equation, Step};
+pub use error::ShapeError;
 pub use mesh::{Facet, Mesh};
 pub use one_by_one::OneByOne;
 pub use plane::Plane;
 pub use sphere::{Balls, Sphere};
 pub use triangle::{Corners, Edges, Triangle};
+pub(crate) use written::without_coordinates;
 pub use written::{CheckedShape, Meshes, WrittenShape};
 
 /// What every surface can answer.

@@ -13,7 +13,6 @@ pub use colors::WrittenColor;
 pub use reader::{Fields, Reader};
 pub(crate) use reader::{description, group_of_values, values};
 pub use validator::Validator;
-pub(crate) use validator::{FARTHEST, SHORTEST};
 
 use crate::scene_text::{Node, Span};
 use std::fmt::Debug;

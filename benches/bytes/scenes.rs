@@ -176,24 +176,27 @@ impl Sequence {
         let sky =
             Background::Gradient { bottom: LinearRgb::new(0.9, 0.95, 1.0), top: LinearRgb::new(0.25, 0.45, 0.85) };
         let mut scene = Scene::new(self.camera(phase, sin, cos), objects);
-        scene = scene.with_background(sky);
-        scene = scene.with_ambient(LinearRgb::grey(self.ambient));
+        scene = scene.with_background(sky).expect("light");
+        scene = scene.with_ambient(LinearRgb::grey(self.ambient)).expect("light");
         scene = scene.with_lights(vec![self.light(sin, cos)]);
         scene
     }
 
     fn floor(&self) -> Object {
         let (dark, light) = (LinearRgb::grey(0.25), LinearRgb::grey(0.7));
-        let checker = Material::from(Checker { a: dark, b: light, size: 1.0 });
-        let material = if self.kind.has_checker() { checker } else { Material::diffuse(light) };
-        Object::new(Plane::new(Vec3::ZERO, Vec3::Y), material)
+        let checker = Material::from(Checker::new(dark, light, 1.0).expect("a pattern"));
+        let material = if self.kind.has_checker() { checker } else { Material::diffuse(light).expect("a reflectance") };
+        Object::new(Plane::new(Vec3::ZERO, Vec3::Y).expect("a plane"), material)
     }
 
     fn objects(&self, sin: f32, cos: f32) -> impl Iterator<Item = Object> {
         let way = Vec3::new(0.0, 0.4 * (1.0 - cos), 1.5 * sin);
         self.balls.iter().enumerate().map(move |(at, ball)| {
             let center = if self.moving == Some(at) { ball.center + way } else { ball.center };
-            Object::new(Sphere::new(center, ball.radius), Material::diffuse(ball.reflectance))
+            Object::new(
+                Sphere::new(center, ball.radius).expect("a sphere"),
+                Material::diffuse(ball.reflectance).expect("a reflectance"),
+            )
         })
     }
 
@@ -201,7 +204,7 @@ impl Sequence {
         let Lamp { position: Vec3 { x, y, z }, circles, intensity, falloff } = self.lamp;
         let around = Vec3::new(cos * x - sin * z, y, sin * x + cos * z);
         let position = if circles { around } else { self.lamp.position };
-        PointLight { position, intensity: LinearRgb::grey(intensity), falloff }
+        PointLight::new(position, LinearRgb::grey(intensity)).expect("a light").with_falloff(falloff)
     }
 
     fn camera(&self, phase: f32, sin: f32, cos: f32) -> Camera {

@@ -81,8 +81,12 @@ fn a_scene_with_another_camera_or_light_keeps_its_trees() {
     let built = builds(|| {
         let pose = Pose { eye: Vec3::X * 9.0, ..scene.camera().pose() };
         let other = scene.clone().with_camera(scene.camera().with_pose(pose).expect("a pose"));
-        let other =
-            other.with_lights([] as [crate::light::Light; 0]).with_ambient(LinearRgb::grey(1.0)).with_exposure(2.0);
+        let other = other
+            .with_lights([] as [crate::light::Light; 0])
+            .with_ambient(LinearRgb::grey(1.0))
+            .expect("some light")
+            .with_exposure(2.0)
+            .expect("an exposure");
         assert!(std::ptr::eq(other.accelerator(), scene.accelerator()));
     });
     assert_eq!(built, 0);

@@ -1,6 +1,7 @@
 //! Point sources.
 
 use super::LightSource;
+use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
 use crate::lanes::{Number, Vector};
 use crate::scene_text::Node;
@@ -10,13 +11,44 @@ use glam::Vec3;
 /// A point source: very small, and alike in all directions (lecture, "Shading", assumptions 1 and 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
-    /// Where it is, in world space.
-    pub position: Vec3,
-    /// Radiant intensity times 1/pi (the diffuse reflection's constant is folded in): a white surface that faces
-    /// the light at distance 1 has this radiance. Not negative.
-    pub intensity: LinearRgb,
-    /// How the light grows weaker.
-    pub falloff: Falloff,
+    position: Vec3,
+    /// Not negative.
+    intensity: LinearRgb,
+    falloff: Falloff,
+}
+
+impl PointLight {
+    /// Returns the light at that point, in world space, which grows weaker by the square of the distance. Its intensity is
+    /// a radiant one times 1/pi (the diffuse reflection's constant is folded in): a white surface that faces the light at
+    /// distance 1 has this radiance.
+    ///
+    /// # Errors
+    /// Unless the coordinates lie within ±1e9, and each band of the intensity within 0 and 1e12.
+    pub fn new(position: Vec3, intensity: LinearRgb) -> Result<Self, SceneFault> {
+        let position = checks::given_point("position", position)?;
+        let intensity = checks::given_color("intensity", intensity, checks::light)?;
+        Ok(Self { position, intensity, falloff: Falloff::default() })
+    }
+
+    /// Returns the light with another falloff.
+    pub fn with_falloff(self, falloff: Falloff) -> Self {
+        Self { falloff, ..self }
+    }
+
+    /// Returns where it is, in world space.
+    pub fn position(&self) -> Vec3 {
+        self.position
+    }
+
+    /// Returns its [intensity](Self::new).
+    pub fn intensity(&self) -> LinearRgb {
+        self.intensity
+    }
+
+    /// Returns how it grows weaker.
+    pub fn falloff(&self) -> Falloff {
+        self.falloff
+    }
 }
 
 /// How a light grows weaker with the distance d.
@@ -55,7 +87,7 @@ impl LightSource for PointLight {
     }
 
     fn moved_to(self, position: Vec3) -> Self {
-        Self { position, ..self }
+        checks::given_point("position", position).map_or(self, |position| Self { position, ..self })
     }
 
     fn check(written: &WrittenPointLight, validator: &mut Validator<'_>) -> Option<Self> {

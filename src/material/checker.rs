@@ -1,6 +1,7 @@
 //! Squares of two reflectances.
 
 use super::{Reflecting, bands};
+use crate::checks::{self, SceneFault};
 use crate::color::{LinearRgb, Srgb8};
 use crate::lanes::Number;
 use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, WrittenNumber};
@@ -8,12 +9,29 @@ use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, Writt
 /// Squares of two reflectances in turn, laid out on the surface's own coordinates (of a plane).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checker {
-    /// Reflectance of the square that begins at the pattern's origin, and of every second one from there.
-    pub a: LinearRgb,
-    /// Reflectance of the others.
-    pub b: LinearRgb,
+    /// Of the square that begins at the pattern's origin, and of every second one from there.
+    a: LinearRgb,
+    /// Of the others.
+    b: LinearRgb,
     /// A square's side in world units, greater than 0.
-    pub size: f32,
+    size: f32,
+}
+
+/// What the length of a square's side is called.
+const SIZE: &str = "size of a square";
+
+impl Checker {
+    /// Returns the material of squares whose side has that length in world units: the one that begins at the pattern's
+    /// origin, and every second one from there, reflect `a`, the others `b`.
+    ///
+    /// # Errors
+    /// Unless each band lies within 0 and 1, and the size between 1e-9 and 1e9.
+    pub fn new(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
+        let a = checks::given_color("a", a, checks::reflectance)?;
+        let b = checks::given_color("b", b, checks::reflectance)?;
+        let size = checks::given("size", size, |size| checks::length(SIZE, size))?;
+        Ok(Self { a, b, size })
+    }
 }
 
 impl Reflecting for Checker {
@@ -39,7 +57,7 @@ impl Reflecting for Checker {
             None => Some(LinearRgb::from_srgb8(Srgb8::new(grey, grey, grey))),
         };
         let (a, b) = (color_or(written.a, 0xdd), color_or(written.b, 0x33));
-        let size = written.size.map_or(Some(1.0), |size| validator.length("size of a square", size));
+        let size = written.size.map_or(Some(1.0), |size| validator.length(SIZE, size));
         Some(Self { a: a?, b: b?, size: size? })
     }
 }

@@ -1,6 +1,7 @@
 //! One reflectance.
 
 use super::{Reflecting, bands};
+use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
 use crate::lanes::Number;
 use crate::scene_text::{Body, Node, Value};
@@ -9,8 +10,20 @@ use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, group
 /// The same reflectance everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse {
-    /// The part of the light that is reflected.
-    pub reflectance: LinearRgb,
+    reflectance: LinearRgb,
+}
+
+impl Diffuse {
+    /// [`Material::DEFAULT`](super::Material::DEFAULT).
+    pub(super) const DEFAULT: Self = Self { reflectance: super::Material::DEFAULT_REFLECTANCE };
+
+    /// Returns the material that reflects that part of the light, band by band.
+    ///
+    /// # Errors
+    /// Unless each band lies within 0 and 1.
+    pub fn new(reflectance: LinearRgb) -> Result<Self, SceneFault> {
+        Ok(Self { reflectance: checks::given_color("reflectance", reflectance, checks::reflectance)? })
+    }
 }
 
 impl Reflecting for Diffuse {

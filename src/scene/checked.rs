@@ -6,17 +6,16 @@
 mod camera;
 pub(super) mod path;
 
-pub(super) use camera::radians;
-
 use super::{Background, Checked, Draft, Object, ToneCurve};
+use crate::checks;
 use crate::color::{LinearRgb, Srgb8};
 use crate::material::{Material, WrittenMaterial};
 use crate::progress::Watcher;
 use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
-use crate::shape::{Meshes, WrittenShape};
+use crate::shape::{Meshes, without_coordinates};
 use crate::text::{closest, listed};
-use crate::written::{Spanned, Validator, WrittenNumber};
+use crate::written::{Spanned, Validator};
 use std::collections::HashMap;
 
 /// The scene, if nothing is wrong with it; else every fault has been added. Once the watcher has gone, objects are left
@@ -33,7 +32,7 @@ pub(super) fn check(
     let background = file.background.as_ref().and_then(|written| validator.background(written));
     let ambient = file.ambient.and_then(|color| validator.light_color(color));
     let lights = file.lights.iter().filter_map(|light| light.check(&mut validator)).collect();
-    let exposure = file.exposure.and_then(|exposure| validator.exposure(exposure));
+    let exposure = file.exposure.and_then(|written| validator.take(written.span, checks::exposure(written.value)));
     let objects = validator.objects(file, meshes, watcher);
     if !faults.is_empty() {
         return None;
@@ -55,18 +54,7 @@ pub(super) fn check(
     }))
 }
 
-const LARGEST_EXPOSURE: f64 = 1e6;
-
 impl Validator<'_> {
-    fn exposure(&mut self, written: WrittenNumber) -> Option<f32> {
-        let Spanned { value, span } = written;
-        if value > 0.0 && value as f32 > 0.0 && value <= LARGEST_EXPOSURE {
-            return Some(value as f32);
-        }
-        let wanted = if value <= 0.0 { "greater than 0" } else { "between 1e-45 and 1e6" };
-        self.fault(span, || format!("the exposure must be {wanted}"))
-    }
-
     fn background(&mut self, written: &WrittenBackground) -> Option<Background> {
         match *written {
             WrittenBackground::Color(color) => self.light_color(color).map(Background::Color),
@@ -110,14 +98,10 @@ impl Validator<'_> {
                 None => return self.fault(*span, || unknown_material(name, file)),
             },
         };
-        if let Some((owner, pattern)) = written.pattern()
+        if let Some(pattern) = written.pattern()
             && !object.shape.has_coordinates()
         {
-            return self.fault(*span, || {
-                let wanted = WrittenShape::with_coordinates().join(" or ");
-                let shape = object.shape.owner();
-                format!("{owner} needs {wanted}, on which {pattern} are laid out; this is {shape}")
-            });
+            return self.fault(*span, || without_coordinates(pattern, object.shape.owner()));
         }
         material
     }

@@ -43,9 +43,9 @@ impl Draft {
         if !(radius > 1e-5 * farthest && radius > 1e-9 && farthest <= 1e9) {
             return None;
         }
-        let floor = Plane::new(Vec3::new(middle.x, bounds.min.y, middle.z), Vec3::Y);
-        let objects =
-            vec![Object::new(Mesh::from(mesh), Material::Own), Object::new(floor, Material::diffuse(grey(0xb0)))];
+        let floor = Plane::new(Vec3::new(middle.x, bounds.min.y, middle.z), Vec3::Y).ok()?;
+        let concrete = Material::diffuse(grey(0xb0)).ok()?;
+        let objects = vec![Object::new(Mesh::of_checked(mesh), Material::Own), Object::new(floor, concrete)];
         Some(Self::new(Checked {
             background: Background::Gradient {
                 bottom: grey(0x90),
@@ -53,8 +53,8 @@ impl Draft {
             },
             ambient: LinearRgb::grey(0.12),
             lights: vec![
-                light(middle + radius * Vec3::new(-2.5, 4.0, 3.0), 0.85),
-                light(middle + radius * Vec3::new(4.0, 2.0, 2.0), 0.2),
+                light(middle + radius * Vec3::new(-2.5, 4.0, 3.0), 0.85)?,
+                light(middle + radius * Vec3::new(4.0, 2.0, 2.0), 0.2)?,
             ],
             ..Checked::new(camera(&bounds, middle)?, objects)
         }))
@@ -77,8 +77,9 @@ fn camera(bounds: &Bounds, middle: Vec3) -> Option<Camera> {
 }
 
 /// As strong everywhere.
-fn light(position: Vec3, strength: f32) -> Light {
-    PointLight { position, intensity: LinearRgb::grey(strength), falloff: Falloff::None }.into()
+fn light(position: Vec3, strength: f32) -> Option<Light> {
+    let light = PointLight::new(position, LinearRgb::grey(strength)).ok()?;
+    Some(light.with_falloff(Falloff::None).into())
 }
 
 fn grey(level: u8) -> LinearRgb {

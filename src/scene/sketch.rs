@@ -19,7 +19,9 @@ impl Draft {
         }
         let details = DETAILS / (meshes().count() as f32).sqrt();
         let sketched = |object: &Object| match mesh_of(&object.shape) {
-            Some(mesh) => mesh.file().coarse(details as u32).map(|mesh| Object::new(Mesh::from(mesh), object.material)),
+            Some(mesh) => {
+                mesh.file().coarse(details as u32).map(|mesh| Object::new(Mesh::of_checked(mesh), object.material))
+            }
             None => Some(object.clone()),
         };
         let objects: Vec<_> = self.checked.objects.iter().filter_map(sketched).collect();

@@ -1,7 +1,6 @@
 //! A camera -> the text that a scene file would have for it.
 
-use super::checked::radians;
-use crate::camera::{Camera, ViewRectangle};
+use crate::camera::{Camera, ViewRectangle, radians};
 use glam::Vec3;
 
 impl Camera {

@@ -84,7 +84,7 @@ mod tests {
     use crate::explain::explain;
     use crate::framebuffer::Resolution;
     use crate::hit::{self, Kernel};
-    use crate::light::{Falloff, PointLight};
+    use crate::light::PointLight;
     use crate::material::Material;
     use crate::ray::EightRays;
     use crate::render::{Sampling, render};
@@ -100,11 +100,7 @@ mod tests {
         let pose = Pose { eye: Vec3::new(0.0, 0.0, 10.0), target: Vec3::ZERO, up: Vec3::Y };
         let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(0.8).expect("an angle")).expect("a pose");
         let cube = |at: u32| Cube::new(Vec3::X * 3.0 * at as f32, 1.0);
-        let light = PointLight {
-            position: Vec3::new(0.0, 0.0, 3.0),
-            intensity: LinearRgb::grey(8.0),
-            falloff: Falloff::InverseSquare,
-        };
+        let light = PointLight::new(Vec3::new(0.0, 0.0, 3.0), LinearRgb::grey(8.0)).expect("a light");
         Scene::new(camera, (0..count).map(|at| Object::new(cube(at), Material::DEFAULT)).collect())
             .with_lights(vec![light])
     }

@@ -1,30 +1,85 @@
 //! A mesh: triangles that share their corners.
 
-use super::{CheckedShape, Meshes, Shape, Surface, SurfacePoint, Triangle};
+use super::{CheckedShape, Meshes, Shape, ShapeError, Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
+use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::{MAX_TRIANGLES, MeshFile};
 use crate::progress::Unfinished;
 use crate::ray::{Interval, Probe, Ray};
 use crate::scene_text::{Node, Value};
-use crate::written::{FARTHEST, Fields, InSceneFile, Reader, SHORTEST, Spanned, Validator, WrittenVector};
+use crate::written::{Fields, InSceneFile, Reader, Spanned, Validator, WrittenVector};
 use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
+use std::fmt;
 use std::ops::{Add, Mul};
 
 /// Many triangles, with what their file says of them: the normals of the smooth surface that they stand for, colours and
 /// textures.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Mesh {
     file: MeshFile,
 }
 
-impl From<MeshFile> for Mesh {
-    fn from(file: MeshFile) -> Self {
-        Self { file }
+/// Only its size: it may have millions of triangles.
+impl fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Mesh").field("triangles", &self.triangle_count()).finish_non_exhaustive()
     }
 }
 
 impl Mesh {
+    /// Returns the mesh that was read from a file.
+    ///
+    /// # Errors
+    /// If it reaches beyond ±1e9.
+    pub fn new(file: MeshFile) -> Result<Self, ShapeError> {
+        if !checks::are_near(file.positions()) {
+            return Err(SceneFault::new("positions", checks::MESH_TOO_FAR).into());
+        }
+        Ok(Self { file })
+    }
+
+    /// Returns the mesh of these triangles, each of which names the positions of its corners by index, counterclockwise
+    /// seen from outside. A triangle may have no area; no ray meets it.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use termtrace::Mesh;
+    ///
+    /// let corners = vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
+    /// let square = Mesh::from_triangles(corners.clone(), vec![[0, 1, 2], [0, 2, 3]])?;
+    /// assert_eq!(square.triangle_count(), 2);
+    ///
+    /// let error = Mesh::from_triangles(corners, vec![[0, 1, 4]]).unwrap_err();
+    /// assert_eq!(error.to_string(), "indices[0] is [0, 1, 4]: position 4 does not exist: there are 4");
+    /// # Ok::<(), termtrace::ShapeError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Unless all coordinates lie within ±1e9, there is at least one triangle and no more than [`MAX_TRIANGLES`], and each
+    /// index has its position.
+    pub fn from_triangles(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> Result<Self, ShapeError> {
+        for (at, &position) in positions.iter().enumerate() {
+            checks::given_point(format_args!("positions[{at}]"), position)?;
+        }
+        for (at, corners) in indices.iter().enumerate() {
+            if let Some(missing) = corners.iter().find(|&&index| index as usize >= positions.len()) {
+                let message = format!("position {missing} does not exist: there are {}", positions.len());
+                return Err(SceneFault::new(format!("indices[{at}] is {corners:?}"), message).into());
+            }
+        }
+        let count = indices.len();
+        let wanted =
+            || SceneFault::new("indices", format!("a mesh has 1 to {MAX_TRIANGLES} triangles; there are {count}"));
+        let file = MeshFile::new(positions, indices).ok_or_else(wanted)?;
+        Ok(Self { file })
+    }
+
+    /// Returns the mesh of a file that was checked, or is made of one that was.
+    pub(crate) fn of_checked(file: MeshFile) -> Self {
+        Self { file }
+    }
+
     /// How many triangles there are; at least one.
     pub(crate) fn triangle_count(&self) -> u32 {
         self.file.triangles().len() as u32
@@ -49,7 +104,7 @@ impl Mesh {
     pub fn facet(&self, index: u32) -> Facet<'_> {
         let corners = self.file.triangles()[index as usize];
         let positions = self.file.positions();
-        Facet { mesh: self, index, triangle: Triangle::new(corners.map(|corner| positions[corner as usize])) }
+        Facet { mesh: self, index, triangle: Triangle::unchecked(corners.map(|corner| positions[corner as usize])) }
     }
 }
 
@@ -167,10 +222,8 @@ impl CheckedShape for Mesh {
         };
         let (scale, turn, translation) = placed?;
         match mesh.transformed(scale, turn, translation) {
-            Some(mesh) if is_near(&mesh) => Some(Self::from(mesh).into()),
-            _ => validator.fault(path.span, || {
-                "this mesh reaches beyond ±1e9; scale it down, or light cannot be followed".to_owned()
-            }),
+            Some(mesh) if checks::are_near(mesh.positions()) => Some(Self { file: mesh }.into()),
+            _ => validator.fault(path.span, || checks::MESH_TOO_FAR.to_owned()),
         }
     }
 }
@@ -220,13 +273,10 @@ fn placement(
 
 /// Along no axis nothing is left of a mesh; it may be mirrored.
 fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3> {
-    let factors = written.components.map(|factor| factor.value);
-    match written.components.iter().find(|factor| !(SHORTEST..=FARTHEST).contains(&factor.value.abs())) {
-        Some(factor) => {
-            validator.fault(factor.span, || "a factor must lie between 1e-9 and 1e9, or be as far below 0".to_owned())
-        }
-        None => Some(DVec3::from_array(factors).as_vec3()),
+    for factor in written.components {
+        validator.take(factor.span, checks::factor(factor.value))?;
     }
+    Some(DVec3::from_array(written.components.map(|factor| factor.value)).as_vec3())
 }
 
 /// About x first, then about y, then about z; counterclockwise for who looks against the axis.
@@ -252,9 +302,4 @@ fn cosine_and_sine(degrees: f64) -> (f64, f64) {
         2 => (-cosine, -sine),
         _ => (sine, -cosine),
     }
-}
-
-/// Whether light can be followed to all of it.
-fn is_near(mesh: &MeshFile) -> bool {
-    mesh.positions().iter().all(|position| f64::from(position.abs().max_element()) <= FARTHEST)
 }

@@ -2,10 +2,11 @@
 
 use super::equation::quotient;
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, Meshes, Points, Shape, Step, Surface,
-    SurfacePoint,
+    AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, Meshes, Points, Shape, ShapeError, Step,
+    Surface, SurfacePoint,
 };
 use crate::bounds::Bounds;
+use crate::checks;
 use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenVector};
@@ -22,13 +23,18 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane through `point`, perpendicular to `normal`.
+    /// Returns the plane through `point`, perpendicular to `normal`, which may have any length but 0.
     ///
-    /// # Panics
-    /// In debug builds, unless the point is finite and the normal has unit length.
-    pub fn new(point: Vec3, normal: Vec3) -> Self {
-        debug_assert!(point.is_finite(), "a plane's point is finite");
-        debug_assert!(normal.is_normalized(), "a plane's normal has unit length");
+    /// # Errors
+    /// Unless all coordinates lie within ±1e9, and the normal has a length.
+    pub fn new(point: Vec3, normal: Vec3) -> Result<Self, ShapeError> {
+        let point = checks::given_point("point", point)?;
+        Ok(Self::unchecked(point, checks::given_direction("normal", normal)?))
+    }
+
+    /// Returns the plane, which is not checked, with a normal of unit length.
+    #[doc(hidden)]
+    pub fn unchecked(point: Vec3, normal: Vec3) -> Self {
         let u = pattern_axis(normal);
         // On a floor (normal +y) u is +x and v is +z.
         Self { point, normal, u, v: u.cross(normal) }
@@ -179,7 +185,7 @@ impl CheckedShape for Plane {
     fn check(written: &WrittenPlane, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let point = written.point.and_then(|point| validator.point(point));
         let normal = written.normal.and_then(|normal| validator.unit_vector("normal", normal));
-        Some(Self::new(point?, normal?.as_vec3()).into())
+        Some(Self::unchecked(point?, normal?.as_vec3()).into())
     }
 }
 
@@ -190,7 +196,7 @@ mod tests {
     #[test]
     fn t_is_where_the_lecture_has_it() {
         let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::new(0.0, 0.0, -2.0) };
-        let equation = |normal| Plane::new(Vec3::new(1.0, 2.0, 1.0), normal).equation(&ray);
+        let equation = |normal| Plane::unchecked(Vec3::new(1.0, 2.0, 1.0), normal).equation(&ray);
         let values = |normal| {
             let value = |step| if let Step::Value(_, value) = step { value } else { f64::NAN };
             equation(normal).steps.into_iter().map(value).collect::<Vec<_>>()

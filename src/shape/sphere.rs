@@ -1,10 +1,11 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SideBySide, Step, Surface,
-    SurfacePoint,
+    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, ShapeError, SideBySide, Step,
+    Surface, SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
+use crate::checks;
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
 use crate::text::number;
@@ -26,13 +27,19 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// The sphere about `center` with that radius.
+    /// Returns the sphere about `center` with that radius.
     ///
-    /// # Panics
-    /// In debug builds, unless the centre is finite and the radius is finite and greater than 0.
-    pub fn new(center: Vec3, radius: f32) -> Self {
-        debug_assert!(center.is_finite(), "a sphere's centre is finite");
-        debug_assert!(radius > 0.0 && radius.is_finite(), "a sphere's radius is greater than 0");
+    /// # Errors
+    /// Unless the centre's coordinates lie within ±1e9, and the radius between 1e-9 and 1e9.
+    pub fn new(center: Vec3, radius: f32) -> Result<Self, ShapeError> {
+        let center = checks::given_point("center", center)?;
+        let radius = checks::given("radius", radius, |radius| checks::length("radius", radius))?;
+        Ok(Self { center, radius })
+    }
+
+    /// Returns the sphere, which is not checked.
+    #[doc(hidden)]
+    pub fn unchecked(center: Vec3, radius: f32) -> Self {
         Self { center, radius }
     }
 
@@ -253,7 +260,7 @@ impl CheckedShape for Sphere {
     fn check(written: &WrittenSphere, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let center = written.center.and_then(|center| validator.point(center));
         let radius = written.radius.and_then(|radius| validator.length("radius", radius));
-        Some(Self::new(center?, radius?).into())
+        Some(Self { center: center?, radius: radius? }.into())
     }
 }
 
@@ -264,7 +271,7 @@ mod tests {
     #[test]
     fn the_quadratic_is_the_lectures() {
         let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::new(0.0, 0.0, -2.0) };
-        let equation = |x| Sphere::new(Vec3::new(x, 0.0, 0.0), 1.0).equation(&ray);
+        let equation = |x| Sphere::unchecked(Vec3::new(x, 0.0, 0.0), 1.0).equation(&ray);
         let steps = |c, roots: &[f64]| {
             [
                 Step::Value("a = d.d", 4.0),

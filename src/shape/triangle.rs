@@ -3,13 +3,14 @@
 use super::described::sides;
 use super::equation::quotient;
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SideBySide, Step, Surface,
-    SurfacePoint,
+    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, ShapeError, SideBySide, Step,
+    Surface, SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
+use crate::checks::{self, SceneFault};
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Pencil, Probe, Ray, Rays, nearest_in, sheared_exactly};
-use crate::scene_text::Node;
+use crate::scene_text::{Node, Span};
 use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenVector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
@@ -250,12 +251,22 @@ impl SideBySide for Corners<Eight> {
 }
 
 impl Triangle {
-    /// The triangle between these corners. If they lie on one line, no ray meets it.
+    /// Returns the triangle between these corners.
     ///
-    /// # Panics
-    /// In debug builds, unless the corners are finite.
-    pub fn new(corners: [Vec3; 3]) -> Self {
-        debug_assert!(corners.iter().all(|corner| corner.is_finite()), "a triangle's corners are finite");
+    /// # Errors
+    /// Unless all coordinates lie within ±1e9, and the corners not on one line.
+    pub fn new(corners: [Vec3; 3]) -> Result<Self, ShapeError> {
+        for (name, corner) in ["corners[0]", "corners[1]", "corners[2]"].into_iter().zip(corners) {
+            checks::given_point(name, corner)?;
+        }
+        let corners = checks::corners(corners).map_err(|message| SceneFault::new("corners", message))?;
+        Ok(Self { corners })
+    }
+
+    /// Returns the triangle, which is not checked. If the corners lie on one line, as in a mesh they may, no ray meets it.
+    #[doc(hidden)]
+    #[inline]
+    pub fn unchecked(corners: [Vec3; 3]) -> Self {
         Self { corners }
     }
 
@@ -368,8 +379,11 @@ impl InSceneFile for Triangle {
 
 impl CheckedShape for Triangle {
     fn check(written: &WrittenTriangle, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
-        let [a, b, c] = written.corners?.map(|corner| validator.point(corner));
-        Some(Self::new([a?, b?, c?]).into())
+        let all = written.corners?;
+        let [a, b, c] = all.map(|corner| validator.point(corner));
+        let whole = Span { start: all[0].span.start, end: all[2].span.end };
+        let corners = validator.take(whole, checks::corners([a?, b?, c?]))?;
+        Some(Self { corners }.into())
     }
 }
 
@@ -392,7 +406,7 @@ mod tests {
     fn the_shares_tell_where_the_plane_is_crossed() {
         let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::new(0.0, 0.0, -2.0) };
         let told = |corners| {
-            let Equation { steps, roots, is_outside, .. } = Triangle::new(corners).equation(&ray);
+            let Equation { steps, roots, is_outside, .. } = Triangle::unchecked(corners).equation(&ray);
             let Some(Step::Values(_, _, shares)) = steps.last().cloned() else { panic!("{steps:?}") };
             (shares, roots, is_outside)
         };

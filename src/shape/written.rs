@@ -93,3 +93,35 @@ macro_rules! written {
 }
 
 surfaces! { written }
+
+/// Makes what is asked of a checked [`Shape`] about its kind from the table of surfaces.
+macro_rules! of_kind {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
+        impl Shape {
+            /// Its name after an article, for messages.
+            pub(crate) fn owner(&self) -> &'static str {
+                match self {
+                    $($(#[$on])* Self::$surface(_) => super::$surface::OWNER,)*
+                    Self::Mesh(_) => super::Mesh::OWNER,
+                }
+            }
+
+            /// Whether patterns can be laid out on it.
+            pub(crate) fn has_coordinates(&self) -> bool {
+                match self {
+                    $($(#[$on])* Self::$surface(_) => super::$surface::HAS_COORDINATES,)*
+                    Self::Mesh(_) => super::Mesh::HAS_COORDINATES,
+                }
+            }
+        }
+    };
+}
+
+surfaces! { of_kind }
+
+/// The message for a material and its [pattern](crate::material::Reflecting::PATTERN) on a shape without coordinates, each
+/// after an article.
+pub(crate) fn without_coordinates((material, pattern): (&str, &str), shape: &str) -> String {
+    let wanted = WrittenShape::with_coordinates().join(" or ");
+    format!("{material} needs {wanted}, on which {pattern} are laid out; this is {shape}")
+}

@@ -3,7 +3,7 @@
 use super::WrittenNumber;
 use super::reader::{Reader, values};
 use crate::color::{LinearRgb, Srgb8};
-use crate::scene_text::{Body, Group, Node, Span, Value, quoted};
+use crate::scene_text::{Body, Group, Node, Value, quoted};
 use crate::text::{ParseError, closest};
 use std::str::FromStr;
 
@@ -19,14 +19,13 @@ pub enum WrittenColor {
 }
 
 impl WrittenColor {
-    /// Where a number in it stands that fails the test, if there is one.
-    pub fn first_band(&self, fails: impl Fn(f64) -> bool) -> Option<Span> {
-        let bands: &[_] = match self {
+    /// Returns the numbers in it.
+    pub fn numbers(&self) -> &[WrittenNumber] {
+        match self {
             Self::Srgb(_) => &[],
             Self::Linear(bands) => bands,
             Self::Grey(band) => std::slice::from_ref(band),
-        };
-        bands.iter().find(|band| fails(band.value)).map(|band| band.span)
+        }
     }
 }
 

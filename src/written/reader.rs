@@ -1,6 +1,7 @@
 //! From nodes of the tree to typed values: what every field's reading has in common.
 
 use super::{Spanned, WrittenNumber, WrittenVector};
+use crate::checks;
 use crate::progress::Watcher;
 use crate::scene_text::{Body, Faults, Field, Group, Name, Node, Span, Value, clipped, quoted};
 use crate::text::{closest, listed};
@@ -217,14 +218,14 @@ impl<'f> Reader<'f> {
 
     /// A finite number.
     pub(crate) fn number(&mut self, node: &Node<'_>) -> Option<WrittenNumber> {
-        match node.value {
-            Value::Number(value) if value.is_finite() => Some(Spanned { value, span: node.span }),
-            Value::Number(_) => {
-                self.fault(node.span, || "the number must be finite".to_owned());
-                None
-            }
-            _ => {
-                self.mismatch(node, "a number");
+        let Value::Number(value) = node.value else {
+            self.mismatch(node, "a number");
+            return None;
+        };
+        match checks::finite(value) {
+            Ok(value) => Some(Spanned { value, span: node.span }),
+            Err(message) => {
+                self.fault(node.span, || message.into_owned());
                 None
             }
         }

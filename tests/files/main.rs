@@ -2,6 +2,7 @@
 
 #[path = "../corpus/mod.rs"]
 mod corpus;
+mod in_code;
 mod invalid;
 mod invalid_mesh_files;
 mod keys;

@@ -98,7 +98,8 @@ fn lights_multiply_color_by_intensity() {
     .lights()
     .to_vec();
     let position = Vec3::new(1.0, 2.0, 3.0);
-    let light = |intensity, falloff| Light::from(PointLight { position, intensity, falloff });
+    let light =
+        |intensity, falloff| Light::from(PointLight::new(position, intensity).expect("a light").with_falloff(falloff));
     let expected =
         [light(LinearRgb::grey(1.0), Falloff::InverseSquare), light(LinearRgb::new(4.0, 2.0, 0.0), Falloff::None)];
     assert_eq!(lights, expected);
@@ -115,13 +116,13 @@ fn objects_and_their_materials() {
             Plane(point: (0, 1, 0), normal: (0, 1e-30, 0), material: \"floor\"),
         ]",
     );
-    let sphere = Sphere::new(Vec3::new(1.0, 2.0, 3.0), 4.0);
-    let checker = Material::from(Checker { a: srgb(0xdd, 0xdd, 0xdd), b: srgb(0x33, 0x33, 0x33), size: 2.0 });
+    let sphere = Sphere::new(Vec3::new(1.0, 2.0, 3.0), 4.0).expect("a sphere");
+    let checker = Material::from(Checker::new(srgb(0xdd, 0xdd, 0xdd), srgb(0x33, 0x33, 0x33), 2.0).expect("a pattern"));
     let expected = [
         Object::new(sphere, Material::DEFAULT),
-        Object::new(sphere, Material::diffuse(srgb(255, 0, 0))),
-        Object::new(sphere, Material::diffuse(LinearRgb::grey(0.5))),
-        Object::new(Plane::new(Vec3::Y, Vec3::Y), checker),
+        Object::new(sphere, Material::diffuse(srgb(255, 0, 0)).expect("a reflectance")),
+        Object::new(sphere, Material::diffuse(LinearRgb::grey(0.5)).expect("a reflectance")),
+        Object::new(Plane::new(Vec3::Y, Vec3::Y).expect("a plane"), checker),
     ];
     assert_eq!(scene.objects(), expected);
 }

@@ -61,7 +61,7 @@ fn every_pixel_of_every_scene_is_explained() {
 fn exposure_and_curve_are_the_frames() {
     let (_, mut scene) = shipped_scenes().swap_remove(0);
     for (exposure, tone_curve) in [(3.0, ToneCurve::None), (0.5, ToneCurve::Reinhard), (2.0, ToneCurve::Filmic)] {
-        scene = scene.with_exposure(exposure).with_tone_curve(tone_curve);
+        scene = scene.with_exposure(exposure).expect("an exposure").with_tone_curve(tone_curve);
         let picture = picture(&scene);
         for (at, pixel) in pixels().enumerate().step_by(7) {
             let explanation = explain(&scene, scene.camera(), SIZE, pixel);

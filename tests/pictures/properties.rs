@@ -28,15 +28,15 @@ fn direction() -> impl Strategy<Value = Vec3> {
 }
 
 fn sphere() -> impl Strategy<Value = Sphere> {
-    (point(5.0), 0.1_f32..3.0).prop_map(|(center, radius)| Sphere::new(center, radius))
+    (point(5.0), 0.1_f32..3.0).prop_map(|(center, radius)| Sphere::new(center, radius).expect("a sphere"))
 }
 
 fn plane() -> impl Strategy<Value = Plane> {
-    (point(5.0), direction()).prop_map(|(point, normal)| Plane::new(point, normal))
+    (point(5.0), direction()).prop_map(|(point, normal)| Plane::new(point, normal).expect("a plane"))
 }
 
 fn triangle() -> impl Strategy<Value = Triangle> {
-    [point(5.0), point(5.0), point(5.0)].prop_map(Triangle::new)
+    [point(5.0), point(5.0), point(5.0)].prop_map(Triangle::unchecked)
 }
 
 fn shape() -> impl Strategy<Value = Shape> {
@@ -75,21 +75,22 @@ fn camera() -> impl Strategy<Value = Camera> {
 }
 
 fn objects() -> impl Strategy<Value = Vec<Object>> {
-    let object =
-        (shape(), 0.1_f32..1.0).prop_map(|(shape, grey)| Object::new(shape, Material::diffuse(LinearRgb::grey(grey))));
+    let object = (shape(), 0.1_f32..1.0)
+        .prop_map(|(shape, grey)| Object::new(shape, Material::diffuse(LinearRgb::grey(grey)).expect("a reflectance")));
     prop::collection::vec(object, 1..8)
 }
 
 fn scene() -> impl Strategy<Value = Scene> {
     (camera(), objects(), prop::collection::vec((point(8.0), 0.0_f32..50.0), 0..3)).prop_map(
         |(camera, objects, lights)| {
-            let light =
-                |(position, i)| PointLight { position, intensity: LinearRgb::grey(i), falloff: Falloff::InverseSquare };
+            let light = |(position, i)| PointLight::new(position, LinearRgb::grey(i)).expect("a light");
             let (bottom, top) = (LinearRgb::grey(0.2), LinearRgb::new(0.3, 0.5, 0.9));
             Scene::new(camera, objects)
                 .with_lights(lights.into_iter().map(light))
                 .with_ambient(LinearRgb::grey(0.1))
+                .expect("light")
                 .with_background(Background::Gradient { bottom, top })
+                .expect("light")
         },
     )
 }
@@ -293,9 +294,9 @@ proptest! {
         let objects = scene.objects().iter().map(|object| Object::new(scaled(&object.shape, s), object.material)).collect();
         let lights = scene.lights().iter().map(|light| {
             let Light::Point(l) = light else { panic!("the scene has only points of light") };
-            PointLight { position: l.position * s, intensity: l.intensity * (s * s), falloff: l.falloff }
+            PointLight::new(l.position() * s, l.intensity() * (s * s)).expect("a light").with_falloff(l.falloff())
         });
-        let large = Scene::new(camera, objects).with_ambient(scene.ambient()).with_background(scene.background()).with_lights(lights);
+        let large = Scene::new(camera, objects).with_ambient(scene.ambient()).expect("light").with_background(scene.background()).expect("light").with_lights(lights);
         prop_assert_eq!(picture(&scene, scene.camera(), 24, 16).hash(), picture(&large, &camera, 24, 16).hash());
     }
 
@@ -317,9 +318,9 @@ proptest! {
 
 fn scaled(shape: &Shape, s: f32) -> Shape {
     match shape.part(0) {
-        Part::Sphere(sphere) => Sphere::new(sphere.center() * s, sphere.radius() * s).into(),
-        Part::Plane(plane) => Plane::new(plane.point() * s, plane.normal()).into(),
-        Part::Triangle(triangle) => Triangle::new(triangle.corners().map(|corner| corner * s)).into(),
+        Part::Sphere(sphere) => Sphere::unchecked(sphere.center() * s, sphere.radius() * s).into(),
+        Part::Plane(plane) => Plane::unchecked(plane.point() * s, plane.normal()).into(),
+        Part::Triangle(triangle) => Triangle::unchecked(triangle.corners().map(|corner| corner * s)).into(),
         Part::Facet(_) => unreachable!("there is no mesh here"),
     }
 }
@@ -350,7 +351,7 @@ fn surfaces_do_not_shadow_themselves() {
     let mut numbers = Numbers(1);
     for scale in [1e-3_f32, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5] {
         let center = Vec3::new(3.0, 4.0, -1.0) * scale;
-        let sphere = Sphere::new(center, scale);
+        let sphere = Sphere::new(center, scale).expect("a sphere");
         let shadowed = (0..100_000)
             .filter(|_| {
                 let origin = center + numbers.direction() * (5.0 * scale);
@@ -358,13 +359,11 @@ fn surfaces_do_not_shadow_themselves() {
                 let ray = Ray { origin, direction };
                 let Some(t) = sphere.closest_crossing(&Probe::new(ray), Interval::IN_FRONT) else { return false };
                 let point = sphere.at_crossing(&ray, t);
-                let lamp = PointLight {
-                    position: center + numbers.direction() * (8.0 * scale),
-                    intensity: LinearRgb::grey(1.0),
-                    falloff: Falloff::None,
-                };
+                let lamp = PointLight::new(center + numbers.direction() * (8.0 * scale), LinearRgb::grey(1.0))
+                    .expect("a light")
+                    .with_falloff(Falloff::None);
                 // Lights that the surface hardly faces are left out: the sphere really is in the way of those.
-                let faces = (lamp.position - point.position).normalize().dot(point.normal) > 1e-3;
+                let faces = (lamp.position() - point.position).normalize().dot(point.normal) > 1e-3;
                 faces
                     && sphere
                         .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::IN_THE_WAY)
@@ -382,17 +381,15 @@ fn planes_do_not_shadow_themselves() {
     for scale in [1e-3_f32, 1.0, 1e3, 1e5] {
         let shadowed = (0..20_000)
             .filter(|_| {
-                let plane = Plane::new(numbers.direction() * (3.0 * scale), numbers.direction());
+                let plane = Plane::new(numbers.direction() * (3.0 * scale), numbers.direction()).expect("a plane");
                 let origin = numbers.direction() * (5.0 * scale);
                 let ray = Ray { origin, direction: numbers.direction() };
                 let Some(t) = plane.closest_crossing(&Probe::new(ray), Interval::IN_FRONT) else { return false };
                 let point = plane.at_crossing(&ray, t);
-                let lamp = PointLight {
-                    position: numbers.direction() * (8.0 * scale),
-                    intensity: LinearRgb::grey(1.0),
-                    falloff: Falloff::None,
-                };
-                let height = (lamp.position - point.position).dot(point.normal);
+                let lamp = PointLight::new(numbers.direction() * (8.0 * scale), LinearRgb::grey(1.0))
+                    .expect("a light")
+                    .with_falloff(Falloff::None);
+                let height = (lamp.position() - point.position).dot(point.normal);
                 height > 1e-3 * scale
                     && plane
                         .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::IN_THE_WAY)
@@ -409,7 +406,7 @@ fn far_spheres_are_hit_where_they_are() {
     let mut numbers = Numbers(3);
     for (distance, limit) in [(2.0_f32, 1e-6), (20.0, 1e-5), (200.0, 5e-5)] {
         for _ in 0..100_000 {
-            let sphere = Sphere::new(numbers.direction() * 3.0, 1.0);
+            let sphere = Sphere::new(numbers.direction() * 3.0, 1.0).expect("a sphere");
             let origin = sphere.center() + numbers.direction() * distance;
             let aim = sphere.center() + numbers.direction() * (1.2 * numbers.next());
             let ray = Ray { origin, direction: (aim - origin).normalize() };

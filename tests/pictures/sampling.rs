@@ -135,9 +135,9 @@ fn a_refinement_can_be_given_up() {
 fn floor(size: f32) -> Scene {
     let pose = Pose { eye: Vec3::new(0.3, 1.0, 0.0), target: Vec3::new(0.9, 0.8, -3.0), up: Vec3::Y };
     let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
-    let material = Material::from(Checker { a: LinearRgb::grey(0.9), b: LinearRgb::grey(0.1), size });
-    let mut scene = Scene::new(camera, vec![Object::new(Plane::new(Vec3::ZERO, Vec3::Y), material)]);
-    scene = scene.with_ambient(LinearRgb::grey(1.0));
+    let material = Material::from(Checker::new(LinearRgb::grey(0.9), LinearRgb::grey(0.1), size).expect("a pattern"));
+    let mut scene = Scene::new(camera, vec![Object::new(Plane::new(Vec3::ZERO, Vec3::Y).expect("a plane"), material)]);
+    scene = scene.with_ambient(LinearRgb::grey(1.0)).expect("light");
     scene
 }
 

@@ -28,7 +28,7 @@ fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
 }
 
 fn mesh(points: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Shape {
-    Mesh::from(MeshFile::new(points, triangles).expect("it is a mesh")).into()
+    Mesh::new(MeshFile::new(points, triangles).expect("it is a mesh")).expect("a mesh nearby").into()
 }
 
 /// The icosahedron, each of whose triangles is cut into four so many times, on the unit sphere.
@@ -151,7 +151,8 @@ fn meshes_do_not_shadow_themselves() {
                 let Some(hit) = closest_hit(&scene, &ray) else { return false };
                 let point = hit.surface(&scene).at_crossing(&ray, hit.t);
                 let position = center + direction() * (8.0 * scale);
-                let lamp = PointLight { position, intensity: LinearRgb::grey(1.0), falloff: Falloff::None };
+                let lamp =
+                    PointLight::new(position, LinearRgb::grey(1.0)).expect("a light").with_falloff(Falloff::None);
                 // Convex: whatever faces the light is lit by it.
                 let faces = (position - point.position).normalize().dot(point.facing) > 1e-3;
                 faces && any_hit(&scene, &shadow_ray(&lamp.into(), &point), PointLight::IN_THE_WAY)
@@ -197,7 +198,7 @@ proptest! {
         let vector = |v: [i128; 3]| Vec3::from(v.map(|x| x as f32 * scale));
         let probe = Probe::new(Ray { origin: vector(origin), direction: vector(direction) });
         let line = Interval { min: f32::MIN, max: f32::MAX };
-        let found = Triangle::new(corners.map(vector)).closest_crossing(&probe, line);
+        let found = Triangle::unchecked(corners.map(vector)).closest_crossing(&probe, line);
         prop_assert_eq!(found.is_some(), expected, "{:?}, {:?}", sides, found);
     }
 }
@@ -205,7 +206,7 @@ proptest! {
 /// One triangle seen from both sides, on its edges, and beside it.
 #[test]
 fn a_triangle_is_between_its_corners() {
-    let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y]);
+    let triangle = Triangle::unchecked([Vec3::ZERO, Vec3::X, Vec3::Y]);
     let hit = |x: f32, y: f32, z: f32| {
         let ray = Ray { origin: Vec3::new(x, y, z), direction: Vec3::new(0.0, 0.0, -z) };
         let t = triangle.closest_crossing(&Probe::new(ray), Interval::IN_FRONT)?;
@@ -224,7 +225,7 @@ fn a_triangle_is_between_its_corners() {
     }
     let edge_on = Ray { origin: Vec3::new(-1.0, 0.25, 0.0), direction: Vec3::X };
     assert_eq!(triangle.closest_crossing(&Probe::new(edge_on), Interval::IN_FRONT), None);
-    let flat = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::X * 2.0]);
+    let flat = Triangle::unchecked([Vec3::ZERO, Vec3::X, Vec3::X * 2.0]);
     let ray = Ray { origin: Vec3::new(0.5, 0.0, 1.0), direction: -Vec3::Z };
     assert_eq!(flat.closest_crossing(&Probe::new(ray), Interval::IN_FRONT), None);
 }
@@ -235,9 +236,10 @@ fn normals_between_corners_are_interpolated() {
     let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     let normals = [Vec3::Z, Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0)];
     let smooth = |normals: [Vec3; 3]| {
-        Shape::from(Mesh::from(
-            MeshFile::new(corners.clone(), vec![[0, 1, 2]]).unwrap().with_normals(normals.into()).unwrap(),
-        ))
+        Shape::from(
+            Mesh::new(MeshFile::new(corners.clone(), vec![[0, 1, 2]]).unwrap().with_normals(normals.into()).unwrap())
+                .expect("a mesh nearby"),
+        )
     };
     let point = |shape: &Shape, z: f32| {
         let ray = Ray { origin: Vec3::new(0.25, 0.5, z), direction: Vec3::new(0.0, 0.0, -z) };
@@ -278,9 +280,9 @@ fn any_mesh() -> impl Strategy<Value = Shape> {
 
 fn shape() -> impl Strategy<Value = Shape> {
     prop_oneof![
-        3 => [place(), place(), place()].prop_map(|corners| Triangle::new(corners).into()),
-        3 => (place(), 0.05_f32..1.5).prop_map(|(center, radius)| Sphere::new(center, radius).into()),
-        1 => place().prop_map(|point| Plane::new(point, Vec3::Y).into()),
+        3 => [place(), place(), place()].prop_map(|corners| Triangle::unchecked(corners).into()),
+        3 => (place(), 0.05_f32..1.5).prop_map(|(center, radius)| Sphere::new(center, radius).expect("a sphere").into()),
+        1 => place().prop_map(|point| Plane::new(point, Vec3::Y).expect("a plane").into()),
         1 => any_mesh(),
     ]
 }
@@ -379,12 +381,12 @@ proptest! {
     /// Things that nobody sees make another tree, and the same picture.
     #[test]
     fn the_tree_does_not_show(shapes in prop::collection::vec(shape(), 1..40), hidden in prop::collection::vec(anywhere(), 1..40)) {
-        let light = PointLight { position: Vec3::new(3.0, 6.0, 5.0), intensity: LinearRgb::grey(40.0), falloff: Falloff::InverseSquare };
+        let light = PointLight::new(Vec3::new(3.0, 6.0, 5.0), LinearRgb::grey(40.0)).expect("a light");
         let picture = |shapes: Vec<Shape>| {
             let scene = scene(shapes).with_lights(vec![light]);
             render(&scene, scene.camera(), Resolution::square(24, 16), NonZeroU32::MIN).hash()
         };
-        let behind = hidden.iter().map(|&place| Sphere::new(place * 3.0 + Vec3::Z * 40.0, 1.0).into());
+        let behind = hidden.iter().map(|&place| Sphere::new(place * 3.0 + Vec3::Z * 40.0, 1.0).expect("a sphere").into());
         let more: Vec<Shape> = shapes.iter().cloned().chain(behind).collect();
         prop_assert_eq!(picture(shapes), picture(more));
     }

@@ -3,8 +3,7 @@
 use clap::ValueEnum;
 use glam::Vec3;
 use termtrace::{
-    Camera, CameraError, Falloff, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Shape, Sphere,
-    ViewRectangle,
+    Camera, CameraError, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Shape, Sphere, ViewRectangle,
 };
 
 /// Which of them.
@@ -21,12 +20,8 @@ pub(super) enum Generated {
 impl Generated {
     /// The scene, under one light.
     pub(super) fn scene(self) -> Result<Scene, CameraError> {
-        let grey = |shape: Shape| Object::new(shape, Material::diffuse(LinearRgb::grey(0.5)));
-        let light = PointLight {
-            position: Vec3::new(4.0, 6.0, 5.0),
-            intensity: LinearRgb::grey(50.0),
-            falloff: Falloff::InverseSquare,
-        };
+        let grey = |shape: Shape| Object::new(shape, Material::diffuse(LinearRgb::grey(0.5)).expect("a reflectance"));
+        let light = PointLight::new(Vec3::new(4.0, 6.0, 5.0), LinearRgb::grey(50.0)).expect("a light");
         let objects = self.shapes().into_iter().map(grey).collect();
         Ok(Scene::new(camera()?, objects).with_lights(vec![light]))
     }
@@ -35,8 +30,9 @@ impl Generated {
         match self {
             Self::Three => {
                 let spheres = [([0.0, 0.7, 0.0], 0.7), ([-1.4, 0.5, 0.4], 0.5), ([1.3, 0.4, 0.7], 0.4)];
-                let spheres = spheres.map(|(center, radius)| Sphere::new(Vec3::from_array(center), radius).into());
-                [&spheres[..], &[Plane::new(Vec3::ZERO, Vec3::Y).into()]].concat()
+                let spheres = spheres
+                    .map(|(center, radius)| Sphere::new(Vec3::from_array(center), radius).expect("a sphere").into());
+                [&spheres[..], &[Plane::new(Vec3::ZERO, Vec3::Y).expect("a plane").into()]].concat()
             }
             Self::S1k => spheres(1_000, 0.06),
             Self::S100k => spheres(100_000, 0.013),
@@ -54,7 +50,7 @@ fn spheres(count: usize, radius: f32) -> Vec<Shape> {
     let mut random = Xorshift(0x9E37_79B9_7F4A_7C15);
     let sphere = |_| {
         let [x, y, z] = [(); 3].map(|()| random.next() * 2.4 - 1.2);
-        Sphere::new(Vec3::new(x, y + 0.4, z), radius * (0.5 + random.next())).into()
+        Sphere::new(Vec3::new(x, y + 0.4, z), radius * (0.5 + random.next())).expect("a sphere").into()
     };
     (0..count).map(sphere).collect()
 }

@@ -1,14 +1,11 @@
 //! The camera, checked: degrees become radians, and what gives no basis is turned away.
 
-use crate::camera::{Camera, CameraError, Pose, ViewRectangle};
+use crate::camera::{Camera, CameraError, Pose, ViewRectangle, radians};
+use crate::checks;
 use crate::scene_file::{WrittenCamera, WrittenLens};
 use crate::scene_text::Span;
-use crate::written::{SHORTEST, Spanned, Validator, WrittenNumber, WrittenVector};
+use crate::written::{Spanned, Validator, WrittenNumber, WrittenVector};
 use glam::{Vec2, Vec3};
-
-/// Of the view rectangle's sides to its focal length and each other.
-const LARGEST_RATIO: f64 = 1e6;
-const LARGEST_SHIFT: f64 = 1e3;
 
 impl Validator<'_> {
     pub(super) fn camera(&mut self, written: &WrittenCamera) -> Option<Camera> {
@@ -79,11 +76,15 @@ impl Validator<'_> {
         })
     }
 
+    fn camera_fault<T>(&mut self, span: Span, error: CameraError) -> Option<T> {
+        self.fault(span, || error.to_string())
+    }
+
     pub(super) fn up(&mut self, written: WrittenVector) -> Option<Vec3> {
         self.unit_vector("up vector", written)?;
         let up = self.point(written)?;
-        if up.abs().max_element() < SHORTEST as f32 {
-            return self.fault(written.span, || "the up vector must be longer than 1e-9".to_owned());
+        if !checks::is_long(up) {
+            return self.camera_fault(written.span, CameraError::UpTooShort);
         }
         Some(up)
     }
@@ -97,7 +98,7 @@ impl Validator<'_> {
                 };
                 match aspect_ratio {
                     Some(ratio) => {
-                        let checked = self.ratio("aspect ratio", ratio);
+                        let checked = self.aspect_ratio(ratio);
                         rectangle?.with_aspect_ratio(checked?).ok()
                     }
                     None => rectangle,
@@ -118,9 +119,7 @@ impl Validator<'_> {
         let Spanned { value, span } = written;
         match from_radians(radians(value)) {
             Ok(rectangle) => Some(rectangle),
-            Err(_) => self.fault(span, || {
-                "the vertical field of view is an angle between 0 and 180 degrees, both excluded".to_owned()
-            }),
+            Err(error) => self.camera_fault(span, error),
         }
     }
 
@@ -135,32 +134,28 @@ impl Validator<'_> {
         let h = height.and_then(|h| self.length("height of the view rectangle", h));
         let (f, w, h) = (f?, w?, h?);
         for (side, written) in [(w, width), (h, height)] {
-            let ratio = f64::from(side) / f64::from(f);
-            if !(1.0 / LARGEST_RATIO..=LARGEST_RATIO).contains(&ratio) {
-                return self.fault(written?.span, || {
-                    "a side of the view rectangle must lie between 1e-6 and 1e6 focal lengths".to_owned()
-                });
+            if !checks::is_ratio(f64::from(side) / f64::from(f)) {
+                return self.camera_fault(written?.span, CameraError::Sides);
             }
         }
         ViewRectangle::from_focal_length(f, w, h).ok()
     }
 
-    fn ratio(&mut self, what: &str, written: WrittenNumber) -> Option<f32> {
+    fn aspect_ratio(&mut self, written: WrittenNumber) -> Option<f32> {
         let Spanned { value, span } = written;
         if value <= 0.0 {
-            return self.fault(span, || format!("the {what} must be greater than 0"));
+            return self.fault(span, || "the aspect ratio must be greater than 0".to_owned());
         }
-        if !(1.0 / LARGEST_RATIO..=LARGEST_RATIO).contains(&value) {
-            return self.fault(span, || format!("the {what} must lie between 1e-6 and 1e6"));
+        if !checks::is_ratio(value) {
+            return self.camera_fault(span, CameraError::AspectRatio);
         }
         Some(value as f32)
     }
 
     fn shift(&mut self, written: &[WrittenNumber; 2]) -> Option<Vec2> {
-        let too_far = |number: &&WrittenNumber| number.value.abs() > LARGEST_SHIFT;
+        let too_far = |number: &&WrittenNumber| number.value.abs() > f64::from(ViewRectangle::LARGEST_SHIFT);
         if let Some(number) = written.iter().find(too_far) {
-            return self
-                .fault(number.span, || "the view rectangle can be shifted by at most 1000 of its heights".to_owned());
+            return self.camera_fault(number.span, CameraError::Shift);
         }
         let [right, up] = written.map(|number| number.value as f32);
         Some(Vec2::new(right, up))
@@ -175,9 +170,4 @@ pub(super) struct Places {
     pub(super) up: Option<Span>,
     /// What up is where none was written.
     pub(super) up_if_none: &'static str,
-}
-
-/// Rounded once.
-pub(in crate::scene) fn radians(degrees: f64) -> f32 {
-    degrees.to_radians() as f32
 }

@@ -123,7 +123,7 @@ mod tests {
             if at == 7 {
                 corners[2] = corners[0].midpoint(corners[1]);
             }
-            triangles.push(Triangle::new(corners.map(|corner| corner * scale)));
+            triangles.push(Triangle::unchecked(corners.map(|corner| corner * scale)));
         }
         let apex = apex * scale;
         let mut aim = |group: usize| {
@@ -179,7 +179,7 @@ mod tests {
             rays[3][5] = other;
             let groups: [Rays<Eight>; LANES] = from_fn(|group| Rays::load(&EightRays::of(&rays[group]), true));
             let pencil = Pencil::of(&groups).expect("all begin in one point");
-            let shapes = Corners::<Eight>::of(&[across, along, close].map(Triangle::new));
+            let shapes = Corners::<Eight>::of(&[across, along, close].map(Triangle::unchecked));
             let edges = shapes.edges(&pencil);
             for lane in 0..3 {
                 let (shape, rough) = (shapes.splat::<Eight>(lane), edges.rough.0[lane]);

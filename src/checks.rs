@@ -1,0 +1,229 @@
+//! The rules for the numbers of a scene, each with its message: the same for what a scene file says and for what code gives.
+//!
+//! A scene file's numbers come here through [`Validator`](crate::written::Validator), which knows where they stand; those of
+//! code through the functions whose names begin with `given`, which know what they are called.
+
+use crate::color::LinearRgb;
+use glam::{DVec3, Vec3};
+use std::borrow::Cow;
+use std::fmt;
+
+/// Coordinates beyond this, squared twice on the light's way, would leave f32.
+const FARTHEST: f64 = 1e9;
+
+/// Lengths below this would vanish in f32 when squared twice.
+const SHORTEST: f64 = 1e-9;
+
+const BRIGHTEST: f64 = 1e12;
+const LARGEST_EXPOSURE: f64 = 1e6;
+
+/// The most that two lengths of a view rectangle may differ by, as a factor.
+const LARGEST_RATIO: f64 = 1e6;
+
+/// What is wrong with a value, and where it can be said what would be right: one line, no full stop.
+pub(crate) type Message = Cow<'static, str>;
+
+/// A value of a scene that is out of its range: what it is called, what it was, and the message that a scene file gets for
+/// the same value.
+///
+/// ```
+/// use termtrace::{LinearRgb, PointLight};
+///
+/// let error = PointLight::new(glam::Vec3::ZERO, LinearRgb::grey(-1.0)).unwrap_err();
+/// assert_eq!(error.to_string(), "intensity is (-1, -1, -1): light must not be negative");
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneFault {
+    place: Message,
+    message: Message,
+}
+
+impl SceneFault {
+    /// A fault of that name, or name and value.
+    pub(crate) fn new(place: impl Into<Message>, message: impl Into<Message>) -> Self {
+        Self { place: place.into(), message: message.into() }
+    }
+
+    /// Returns what is wrong with the value, in the words of a scene file's error.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+}
+
+impl fmt::Display for SceneFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.message)
+    }
+}
+
+impl std::error::Error for SceneFault {}
+
+/// Whether a number is at least `least` and at most `most`, when it is rounded as it will be kept: so that what was read
+/// from a file is accepted again.
+fn is_within(value: f64, least: f64, most: f64) -> bool {
+    (least as f32..=most as f32).contains(&(value as f32))
+}
+
+/// Any number that is finite.
+pub(crate) fn finite(value: f64) -> Result<f64, Message> {
+    if value.is_finite() { Ok(value) } else { Err("the number must be finite".into()) }
+}
+
+/// A coordinate within what f32 can carry through a picture.
+pub(crate) fn coordinate(value: f64) -> Result<f32, Message> {
+    if value.abs() <= FARTHEST { Ok(value as f32) } else { Err(TOO_FAR.into()) }
+}
+
+pub(crate) const TOO_FAR: &str =
+    "coordinates must lie within ±1e9; light cannot be followed farther in single precision";
+
+/// Whether light can be followed to all of these points.
+pub(crate) fn are_near(points: &[Vec3]) -> bool {
+    points.iter().all(|point| f64::from(point.abs().max_element()) <= FARTHEST)
+}
+
+/// The message for a mesh that is not [near](are_near).
+pub(crate) const MESH_TOO_FAR: &str = "this mesh reaches beyond ±1e9; scale it down, or light cannot be followed";
+
+/// A length greater than 0 that f32 can square.
+pub(crate) fn length(what: &str, value: f64) -> Result<f32, Message> {
+    if value <= 0.0 {
+        return Err(format!("the {what} must be greater than 0").into());
+    }
+    if !is_within(value, SHORTEST, FARTHEST) {
+        return Err(format!("the {what} must lie between 1e-9 and 1e9").into());
+    }
+    Ok(value as f32)
+}
+
+/// A factor along an axis, which may mirror. Of a mesh that is scaled by 0 along one, nothing is left.
+pub(crate) fn factor(value: f64) -> Result<f32, Message> {
+    if is_within(value.abs(), SHORTEST, FARTHEST) {
+        Ok(value as f32)
+    } else {
+        Err("a factor must lie between 1e-9 and 1e9, or be as far below 0".into())
+    }
+}
+
+/// An amount of light.
+pub(crate) fn amount(what: &str, value: f64) -> Result<f32, Message> {
+    if value < 0.0 {
+        return Err(format!("{what} must not be negative").into());
+    }
+    if value > BRIGHTEST {
+        return Err(format!("{what} must be at most 1e12").into());
+    }
+    Ok(value as f32)
+}
+
+/// A band of light.
+pub(crate) fn light(band: f64) -> Result<f32, Message> {
+    amount("light", band)
+}
+
+/// A band of a reflectance: a part of the light.
+pub(crate) fn reflectance(band: f64) -> Result<f32, Message> {
+    if (0.0..=1.0).contains(&band) {
+        Ok(band as f32)
+    } else {
+        Err("a reflectance must lie within 0 and 1; no surface reflects more light than it gets".into())
+    }
+}
+
+/// What all light is multiplied by.
+pub(crate) fn exposure(value: f64) -> Result<f32, Message> {
+    if value > 0.0 && value as f32 > 0.0 && value <= LARGEST_EXPOSURE {
+        return Ok(value as f32);
+    }
+    let wanted = if value <= 0.0 { "greater than 0" } else { "between 1e-45 and 1e6" };
+    Err(format!("the exposure must be {wanted}").into())
+}
+
+/// A direction of unit length: of f64's, so that nothing is lost before the one rounding.
+pub(crate) fn unit_vector(what: &str, vector: DVec3) -> Result<DVec3, Message> {
+    let largest = vector.abs().max_element();
+    if largest == 0.0 {
+        return Err(format!("the {what} must have a length; (0, 0, 0) points nowhere").into());
+    }
+    let vector = vector / largest;
+    Ok(vector / vector.dot(vector).sqrt())
+}
+
+/// Three corners that span a triangle.
+pub(crate) fn corners(corners: [Vec3; 3]) -> Result<[Vec3; 3], Message> {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    // Both differences are exact in f64, or off by so little that the product is not 0.
+    if (b - a).cross(c - a) == DVec3::ZERO {
+        return Err("the corners of a triangle must not lie on one line; no ray would meet it".into());
+    }
+    Ok(corners)
+}
+
+/// A length over another one, such as an aspect ratio.
+pub(crate) fn is_ratio(value: f64) -> bool {
+    is_within(value, 1.0 / LARGEST_RATIO, LARGEST_RATIO)
+}
+
+/// Whether an up vector has a length that can be squared.
+pub(crate) fn is_long(vector: Vec3) -> bool {
+    vector.abs().max_element() >= SHORTEST as f32
+}
+
+/// Whether all coordinates are such that light can be followed there.
+pub(crate) fn is_near(vector: DVec3) -> bool {
+    vector.abs().max_element() <= FARTHEST
+}
+
+// What code gives -------------------------------------------------------------------------------------------------------
+
+/// Checks a number that code gives.
+pub(crate) fn given(
+    name: &'static str,
+    value: f32,
+    rule: impl FnOnce(f64) -> Result<f32, Message>,
+) -> Result<f32, SceneFault> {
+    let checked = finite(value.into()).and_then(rule);
+    checked.map_err(|message| SceneFault::new(format!("{name} is {value}"), message))
+}
+
+/// Checks a vector that code gives.
+fn given_vector<T>(
+    name: impl fmt::Display,
+    vector: Vec3,
+    rule: impl FnOnce(DVec3) -> Result<T, Message>,
+) -> Result<T, SceneFault> {
+    let numbers = vector.as_dvec3();
+    let checked = numbers.to_array().into_iter().try_for_each(|number| {
+        finite(number)?;
+        coordinate(number).map(drop)
+    });
+    checked.and_then(|()| rule(numbers)).map_err(|message| {
+        let Vec3 { x, y, z } = vector;
+        SceneFault::new(format!("{name} is ({x}, {y}, {z})"), message)
+    })
+}
+
+/// Checks a point that code gives.
+pub(crate) fn given_point(name: impl fmt::Display, point: Vec3) -> Result<Vec3, SceneFault> {
+    given_vector(name, point, |_| Ok(point))
+}
+
+/// Checks a direction that code gives, of any length but 0. Returns it with unit length.
+pub(crate) fn given_direction(name: &'static str, direction: Vec3) -> Result<Vec3, SceneFault> {
+    given_vector(name, direction, |numbers| unit_vector(name, numbers)).map(DVec3::as_vec3)
+}
+
+/// Checks a colour that code gives, band by band.
+pub(crate) fn given_color(
+    name: &'static str,
+    color: LinearRgb,
+    rule: impl Fn(f64) -> Result<f32, Message>,
+) -> Result<LinearRgb, SceneFault> {
+    let LinearRgb { r, g, b } = color;
+    let checked = [r, g, b].into_iter().try_for_each(|band| {
+        finite(band.into())?;
+        rule(band.into()).map(drop)
+    });
+    checked.map_err(|message| SceneFault::new(format!("{name} is ({r}, {g}, {b})"), message))?;
+    Ok(color)
+}
