@@ -291,15 +291,15 @@ impl ViewRectangle {
     /// The rectangle of the same shape and shift with sides that many times as long.
     ///
     /// # Errors
-    /// Unless both sides stay greater than 0 and finite.
+    /// Unless both sides stay greater than 0 and finite, and the vertical field of view below 180 degrees.
     #[doc(hidden)]
     pub fn scaled(self, factor: f32) -> Result<Self, CameraError> {
         let (width, height) = (self.width.map(|width| width * factor), self.height * factor);
-        if is_length(height) && width.is_none_or(is_length) {
-            Ok(Self { width, height, ..self })
-        } else {
-            Err(CameraError::ViewRectangle)
+        if !(is_length(height) && width.is_none_or(is_length)) {
+            return Err(CameraError::ViewRectangle);
         }
+        let scaled = Self { width, height, ..self };
+        if scaled.vertical_fov() < std::f32::consts::PI { Ok(scaled) } else { Err(CameraError::FieldOfView) }
     }
 
     /// The rectangle of the same height with that aspect ratio (width / height) of its own.

@@ -18,6 +18,26 @@
 //! # Ok::<(), termtrace::SceneError>(())
 //! ```
 //!
+//! The same scene without a file. What no scene may hold is an error of its constructor, in the words of a scene file's
+//! error:
+//!
+//! ```
+//! use termtrace::glam::Vec3;
+//! use termtrace::{Camera, LinearRgb, Material, PointLight, Render, Resolution, Scene, Sphere, tone};
+//!
+//! let camera = Camera::look_at(Vec3::new(0.0, 1.0, 4.0), Vec3::Y)?;
+//! let scene = Scene::builder(camera)
+//!     .light(PointLight::new(Vec3::new(3.0, 4.0, 5.0), LinearRgb::grey(40.0))?)
+//!     .object(Sphere::new(Vec3::Y, 1.0)?, Material::diffuse(LinearRgb::new(0.74, 0.05, 0.03))?)
+//!     .build()?;
+//! let light = Render::new(&scene).resolution(Resolution::new(80, 48)?).run()?;
+//! assert_eq!(light.pixels().len(), tone(&light, &scene).pixels().len());
+//!
+//! let error = Sphere::new(Vec3::Y, 0.0).unwrap_err();
+//! assert_eq!(error.to_string(), "radius is 0: the radius must be greater than 0");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! A library user meets [`Scene`]: all that was checked, together with the trees that rays go through. Loading
 //! one, or building one in code, builds the trees once; copies share them, and no function that takes a scene builds any.
 //!
@@ -25,10 +45,10 @@
 //!
 //! What is promised stands at the crate's root, in [`export`] and in [`live`]; the modules of the route are private.
 //! - Scene files: [`Scene`], its errors [`LoadError`] and [`SceneError`], and [`Progress`] of reading
-//! - Scenes in code: [`Camera`], [`Object`], [`Shape`], [`Material`], [`Light`], [`Background`], [`ToneCurve`],
+//! - Scenes in code: [`Scene::builder`], [`Camera`], [`Object`], [`Shape`], [`Material`], [`Light`], [`Background`], [`ToneCurve`],
 //!   [`LinearRgb`]
 //! - Cameras over time: [`CameraPath`]
-//! - Pictures: [`render()`] and [`Render`] with [`Resolution`] and [`Sampling`] -> [`Framebuffer`], [`tone()`] -> [`Picture`];
+//! - Pictures: [`Render`], and [`render()`] in short, with [`Resolution`] and [`Sampling`] -> [`Framebuffer`], [`tone()`] -> [`Picture`];
 //!   [`Map`]
 //! - Pictures in words: [`describe()`], [`explain()`]
 //! - Cells and text: [`Grid`], [`CellMode`], [`Painter`], [`text_frame`], [`frame_grid`], [`export`]
@@ -297,7 +317,7 @@ pub use camera_path::CameraPath;
 pub use framebuffer::{Framebuffer, Resolution, ResolutionError};
 pub use hit::Hit;
 pub use maps::Map;
-pub use progress::Cancelled;
+pub use progress::{Cancellation, Cancelled};
 pub use render::{Render, Sampling, render};
 pub use tone::{Picture, tone};
 

@@ -11,12 +11,15 @@ use gravel::gravel;
 use mesh_writers::{ball, written};
 use pty::{Answer, Fault, Phases, SOON, Seen, Session, Size, Start, Which, picture_with, shows};
 use rustix::process::Signal;
+use std::num::NonZeroU32;
+use std::ops::ControlFlow;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::ExitStatus;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 use tempfile::NamedTempFile;
-use termtrace::{CellMode, Sampling, Scene};
+use termtrace::{Cancellation, Cancelled, CellMode, Render, Resolution, Sampling, Scene};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
@@ -37,6 +40,8 @@ const VANISHED_TICKS: u64 = 10;
 const REPLIES: [usize; 11] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
 /// A scene that is saved is seen within this.
 const SAVED: Duration = Duration::from_millis(100);
+/// A render is given up within this after its token is cancelled.
+const CANCELLED: Duration = Duration::from_millis(50);
 /// A mesh that is saved is seen within so much of the time that it takes to read and build it.
 const MESH_SAVED: f64 = 1.2;
 
@@ -445,4 +450,30 @@ fn a_terminal_that_has_never_answered_is_left_at_once() {
     session.send(b"q");
     exit_within(SILENT, "never answered", &mut session);
     session.assert_clean();
+}
+
+/// Wherever it is, in a picture of 10 million pixels.
+#[test]
+fn a_cancelled_render_is_given_up_at_once() {
+    let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
+    let each = Sampling::Each(NonZeroU32::new(4).expect("4 is not 0"));
+    for sampling in [Sampling::Coarse, each, Sampling::BEST] {
+        for part in [0.02, 0.3, 0.6, 0.9] {
+            let (token, cancelled) = (Cancellation::default(), OnceLock::new());
+            let cancel = |done| {
+                if done >= part {
+                    cancelled.get_or_init(|| {
+                        token.cancel();
+                        Instant::now()
+                    });
+                }
+                ControlFlow::Continue(())
+            };
+            let render = Render::new(&scene).resolution(Resolution::square(4000, 2500)).sampling(sampling);
+            assert_eq!(render.cancelled_by(&token).on_progress(cancel).run(), Err(Cancelled));
+            let took = cancelled.get().expect("it was cancelled").elapsed();
+            println!("{sampling:?} cancelled at {part}: given up in {took:?}");
+            assert!(took < 3 * CANCELLED, "{sampling:?} at {part}: {took:?}");
+        }
+    }
 }

@@ -35,38 +35,40 @@ impl SceneBuilder {
     }
 
     /// Adds a light.
-    pub fn light(self, light: impl Into<Light>) -> Self {
-        self.with(|rest| rest.lights.push(light.into()))
+    pub fn light(mut self, light: impl Into<Light>) -> Self {
+        self.rest.lights.push(light.into());
+        self
     }
 
     /// Adds a view that is worth a look, besides that of the camera.
-    pub fn view(self, camera: Camera) -> Self {
-        self.with(|rest| rest.views.push(camera))
+    pub fn view(mut self, camera: Camera) -> Self {
+        self.rest.views.push(camera);
+        self
     }
 
     /// Sets the light that comes along rays that meet no object; black, if none is set.
     pub fn background(self, background: impl Into<Background>) -> Self {
-        self.with(|rest| rest.background = background.into())
+        Self { rest: Checked { background: background.into(), ..self.rest }, ..self }
     }
 
     /// Sets the light that arrives at every point from everywhere alike; none, if none is set.
     pub fn ambient(self, ambient: LinearRgb) -> Self {
-        self.with(|rest| rest.ambient = ambient)
+        Self { rest: Checked { ambient, ..self.rest }, ..self }
     }
 
     /// Sets what all light is multiplied by before it is shown; 1, if nothing is set.
     pub fn exposure(self, exposure: f32) -> Self {
-        self.with(|rest| rest.exposure = exposure)
+        Self { rest: Checked { exposure, ..self.rest }, ..self }
     }
 
     /// Sets how light beyond the screen's range is brought into it; not at all, if nothing is set.
     pub fn tone_curve(self, tone_curve: ToneCurve) -> Self {
-        self.with(|rest| rest.tone_curve = tone_curve)
+        Self { rest: Checked { tone_curve, ..self.rest }, ..self }
     }
 
     /// Sets whether objects keep light from each other; they do, if nothing is set.
     pub fn shadows(self, shadows: bool) -> Self {
-        self.with(|rest| rest.shadows = shadows)
+        Self { rest: Checked { shadows, ..self.rest }, ..self }
     }
 
     /// Returns the scene, with the trees over its objects.
@@ -91,10 +93,5 @@ impl SceneBuilder {
             ..rest
         })
         .finish())
-    }
-
-    fn with(mut self, change: impl FnOnce(&mut Checked)) -> Self {
-        change(&mut self.rest);
-        self
     }
 }

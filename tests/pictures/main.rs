@@ -8,6 +8,7 @@ mod explain;
 mod goldens;
 mod hashes;
 mod maps;
+mod odd;
 mod properties;
 mod sampling;
 mod triangles;
