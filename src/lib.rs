@@ -52,7 +52,7 @@
 //!   [`Map`]
 //! - Pictures in words: [`describe()`], [`explain()`]
 //! - Cells and text: [`Grid`], [`CellMode`], [`Painter`], [`text_frame`], [`frame_grid`], [`export`]
-//! - ratatui: [`EncoderBackend`] and its [`Encoder`], [`lay_over`]
+//! - ratatui: `EncoderBackend` (feature `backend`) and its [`Encoder`], [`lay_over`]
 //! - Films: [`Cast`], [`Gif`]
 //! - The live view: [`live`]
 //!
