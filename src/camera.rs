@@ -278,6 +278,16 @@ impl ViewRectangle {
         Ok(Self { width: Some(width), height, shift: Vec2::ZERO })
     }
 
+    /// The rectangle with these sides at focal length 1, in the middle.
+    #[cfg(feature = "serde")]
+    pub(crate) fn of_sides(width: Option<f32>, height: f32) -> Result<Self, CameraError> {
+        if is_length(height) && width.is_none_or(is_length) {
+            Ok(Self { width, height, shift: Vec2::ZERO })
+        } else {
+            Err(CameraError::ViewRectangle)
+        }
+    }
+
     /// The rectangle of the same shape and shift that takes up that angle, in radians, vertically.
     ///
     /// # Errors

@@ -74,7 +74,8 @@
 //! | `ratatui` | ratatui's buffers laid over cells, on `ratatui-core` alone | 33 |
 //! | `underline-color` | the colours of their underlines; all of the program's ratatui backends must have theirs on | 33 |
 //! | `backend` | the encoder as a backend of ratatui; includes `ratatui` | 33 |
-//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif`, `cast` and the last two | 92 |
+//! | `serde` | cameras, colours, sizes, maps and samplings in the formats of serde, checked when they are read | 11 |
+//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif`, `cast` and the last three | 92 |
 //! | `cli` | the program `termtrace`, by default | 107 |
 //!
 //! A program that only uses the library turns the default off:
@@ -133,6 +134,7 @@
 //! - `encode`: wanted grid, shown grid, pen -> bytes
 //! - `export`: grid or picture -> text, ANSI, SVG, HTML, PNG
 //! - `record`: frames over time -> asciicast, GIF
+//! - `serialized`: plain values in the formats of serde
 //! - `output_file`: bytes -> a file that is replaced whole, or not at all
 //!
 //! With a person:
@@ -271,6 +273,8 @@ mod encode;
 pub mod export;
 #[cfg(any(feature = "cast", feature = "gif"))]
 mod record;
+#[cfg(feature = "serde")]
+mod serialized;
 #[cfg(feature = "live")]
 mod output_file;
 #[cfg(feature = "live")]

@@ -58,6 +58,11 @@ impl Attributes {
         Self(bits & Self::all().0)
     }
 
+    /// Returns its bits, [`BOLD`](Self::BOLD) first.
+    pub const fn bits(self) -> u16 {
+        self.0
+    }
+
     /// Returns whether there are none.
     #[doc(hidden)]
     pub const fn is_empty(self) -> bool {

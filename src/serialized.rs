@@ -1,0 +1,186 @@
+//! Plain values in the formats of serde. What a type promises is checked when one is read.
+
+use crate::camera::{Camera, CameraError, Pose, ViewRectangle};
+use crate::color::{LinearRgb, Srgb8};
+use crate::framebuffer::Resolution;
+use crate::grid::{Attributes, Size};
+use crate::maps::Map;
+use crate::render::Sampling;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::convert::Infallible;
+use std::num::NonZeroU32;
+
+/// Implements both traits for types by the form in which each is written: how a value becomes one, and back.
+macro_rules! written_as {
+    ($($Type:ty as $Form:ty: $to:expr, $from:expr;)*) => {
+        $(impl Serialize for $Type {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                let to: fn(&$Type) -> $Form = $to;
+                to(self).serialize(serializer)
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $Type {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let form = <$Form>::deserialize(deserializer)?;
+                ($from)(form).map_err(D::Error::custom)
+            }
+        })*
+    };
+}
+
+written_as! {
+    LinearRgb as [f32; 3]: |light| [light.r, light.g, light.b], |bands| Ok::<_, Infallible>(Self::from(bands));
+    Srgb8 as [u8; 3]: |color| [color.r, color.g, color.b], |bands| Ok::<_, Infallible>(Self::from(bands));
+    Size as SizeForm: |&Size { columns, rows }| SizeForm { columns, rows },
+        |SizeForm { columns, rows }| Ok::<_, Infallible>(Self { columns, rows });
+    Map as String: |map| map.name().to_owned(), |name: String| name.parse::<Self>();
+    Sampling as SamplingForm: |&sampling| sampling.into(), |form: SamplingForm| Ok::<_, Infallible>(form.into());
+    Pose as PoseForm: |&Pose { eye, target, up }| PoseForm { eye: eye.into(), target: target.into(), up: up.into() },
+        |PoseForm { eye, target, up }| Ok::<_, Infallible>(Self { eye: eye.into(), target: target.into(), up: up.into() });
+    ViewRectangle as RectangleForm: RectangleForm::of, RectangleForm::checked;
+    Camera as CameraForm: |camera| CameraForm { pose: camera.pose(), rectangle: camera.rectangle() },
+        |CameraForm { pose, rectangle }| Self::new(pose, rectangle);
+    Resolution as ResolutionForm: ResolutionForm::of, ResolutionForm::checked;
+    Attributes as u16: |attributes| attributes.bits(), attributes_of;
+}
+
+#[derive(Serialize, Deserialize)]
+struct SizeForm {
+    columns: u16,
+    rows: u16,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum SamplingForm {
+    Coarse,
+    Each(NonZeroU32),
+    UpTo(NonZeroU32),
+}
+
+impl From<Sampling> for SamplingForm {
+    fn from(sampling: Sampling) -> Self {
+        match sampling {
+            Sampling::Coarse => Self::Coarse,
+            Sampling::Each(samples) => Self::Each(samples),
+            Sampling::UpTo(samples) => Self::UpTo(samples),
+        }
+    }
+}
+
+impl From<SamplingForm> for Sampling {
+    fn from(form: SamplingForm) -> Self {
+        match form {
+            SamplingForm::Coarse => Self::Coarse,
+            SamplingForm::Each(samples) => Self::Each(samples),
+            SamplingForm::UpTo(samples) => Self::UpTo(samples),
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct PoseForm {
+    eye: [f32; 3],
+    target: [f32; 3],
+    up: [f32; 3],
+}
+
+#[derive(Serialize, Deserialize)]
+struct RectangleForm {
+    width: Option<f32>,
+    height: f32,
+    shift: [f32; 2],
+}
+
+impl RectangleForm {
+    fn of(rectangle: &ViewRectangle) -> Self {
+        Self { width: rectangle.width(), height: rectangle.height(), shift: rectangle.shift().into() }
+    }
+
+    fn checked(self) -> Result<ViewRectangle, CameraError> {
+        ViewRectangle::of_sides(self.width, self.height)?.with_shift(self.shift.into())
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct CameraForm {
+    pose: Pose,
+    rectangle: ViewRectangle,
+}
+
+#[derive(Serialize, Deserialize)]
+struct ResolutionForm {
+    width: u32,
+    height: u32,
+    pixel_aspect: f32,
+}
+
+impl ResolutionForm {
+    fn of(&Resolution { width, height, pixel_aspect }: &Resolution) -> Self {
+        Self { width, height, pixel_aspect }
+    }
+
+    fn checked(self) -> Result<Resolution, &'static str> {
+        let Self { width, height, pixel_aspect } = self;
+        if pixel_aspect > 0.0 && pixel_aspect.is_finite() {
+            Ok(Resolution { width, height, pixel_aspect })
+        } else {
+            Err("a pixel's aspect must be greater than 0 and finite")
+        }
+    }
+}
+
+fn attributes_of(bits: u16) -> Result<Attributes, &'static str> {
+    let attributes = Attributes::from_bits_truncate(bits);
+    if attributes.bits() == bits { Ok(attributes) } else { Err("text attributes have nine bits") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Vec2, Vec3};
+    use serde::de::DeserializeOwned;
+    use std::fmt::Debug;
+
+    fn camera() -> Camera {
+        let rectangle = ViewRectangle::from_vertical_fov(0.7).and_then(|r| r.with_shift(Vec2::new(0.1, 0.0)));
+        let pose = Pose { eye: Vec3::new(0.0, 1.0, 5.0), target: Vec3::ZERO, up: Vec3::Y };
+        Camera::new(pose, rectangle.expect("a rectangle")).expect("a camera")
+    }
+
+    #[track_caller]
+    fn assert_kept<T: Serialize + DeserializeOwned + PartialEq + Debug>(value: T) {
+        let text = serde_json::to_string(&value).expect("it is written");
+        assert_eq!(serde_json::from_str::<T>(&text).expect("it is read"), value, "{text}");
+    }
+
+    fn error<T: DeserializeOwned + Debug>(text: &str) -> String {
+        serde_json::from_str::<T>(text).expect_err("it is wrong").to_string()
+    }
+
+    #[test]
+    fn values_are_kept() {
+        assert_kept(LinearRgb::new(0.1, 2.0, 1e-9));
+        assert_kept(Srgb8::new(1, 2, 255));
+        assert_kept(Size::new(80, 24));
+        assert_kept(Map::ALL.to_vec());
+        assert_kept([Sampling::BEST, Sampling::Coarse, Sampling::Each(NonZeroU32::MIN)]);
+        assert_kept(camera());
+        assert_kept(Resolution { width: 3, height: 2, pixel_aspect: 0.3 });
+        assert_kept(Attributes::BOLD | Attributes::CROSSED_OUT);
+    }
+
+    #[test]
+    fn what_a_type_promises_is_checked() {
+        assert!(error::<Map>("\"dept\"").contains("did you mean \"depth\"?"));
+        assert!(error::<Attributes>("512").contains("nine bits"));
+        assert!(error::<Resolution>(r#"{"width": 1, "height": 1, "pixel_aspect": 0}"#).contains("greater than 0"));
+        assert!(error::<ViewRectangle>(r#"{"width": null, "height": -1, "shift": [0, 0]}"#).contains("greater than 0"));
+        assert!(error::<Sampling>(r#"{"each": 0}"#).contains("nonzero"));
+        let text = serde_json::to_string(&camera()).expect("it is written");
+        let up = text.replace(r#""up":[0.0,1.0,0.0]"#, r#""up":[0.0,0.0,0.0]"#);
+        assert!(error::<Camera>(&up).contains("up has no length"), "{up}");
+    }
+}
