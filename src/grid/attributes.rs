@@ -59,6 +59,7 @@ impl Attributes {
     }
 
     /// Returns its bits, [`BOLD`](Self::BOLD) first.
+    #[doc(hidden)]
     pub const fn bits(self) -> u16 {
         self.0
     }

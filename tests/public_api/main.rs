@@ -17,7 +17,7 @@ use std::{env, fs};
 const MOST: usize = 200;
 
 /// The features that are on: what docs.rs shows.
-const FEATURES: [&str; 2] = ["backend", "serde"];
+const FEATURES: [&str; 1] = ["backend"];
 
 /// The format of rustdoc's JSON that the reader was written for.
 const FORMAT: u64 = 57;
