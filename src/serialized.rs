@@ -2,7 +2,7 @@
 
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle};
 use crate::color::{LinearRgb, Srgb8};
-use crate::framebuffer::Resolution;
+use crate::framebuffer::{Resolution, ResolutionError};
 use crate::grid::{Attributes, Size};
 use crate::maps::Map;
 use crate::render::Sampling;
@@ -118,17 +118,12 @@ struct ResolutionForm {
 }
 
 impl ResolutionForm {
-    fn of(&Resolution { width, height, pixel_aspect }: &Resolution) -> Self {
-        Self { width, height, pixel_aspect }
+    fn of(resolution: &Resolution) -> Self {
+        Self { width: resolution.width(), height: resolution.height(), pixel_aspect: resolution.pixel_aspect() }
     }
 
-    fn checked(self) -> Result<Resolution, &'static str> {
-        let Self { width, height, pixel_aspect } = self;
-        if pixel_aspect > 0.0 && pixel_aspect.is_finite() {
-            Ok(Resolution { width, height, pixel_aspect })
-        } else {
-            Err("a pixel's aspect must be greater than 0 and finite")
-        }
+    fn checked(self) -> Result<Resolution, ResolutionError> {
+        Resolution::new(self.width, self.height)?.with_pixel_aspect(self.pixel_aspect)
     }
 }
 
@@ -168,7 +163,7 @@ mod tests {
         assert_kept(Map::ALL.to_vec());
         assert_kept([Sampling::BEST, Sampling::Coarse, Sampling::Each(NonZeroU32::MIN)]);
         assert_kept(camera());
-        assert_kept(Resolution { width: 3, height: 2, pixel_aspect: 0.3 });
+        assert_kept(Resolution::square(3, 2).with_pixel_aspect(0.3).expect("a shape"));
         assert_kept(Attributes::BOLD | Attributes::CROSSED_OUT);
     }
 
@@ -176,7 +171,7 @@ mod tests {
     fn what_a_type_promises_is_checked() {
         assert!(error::<Map>("\"dept\"").contains("did you mean \"depth\"?"));
         assert!(error::<Attributes>("512").contains("nine bits"));
-        assert!(error::<Resolution>(r#"{"width": 1, "height": 1, "pixel_aspect": 0}"#).contains("greater than 0"));
+        assert!(error::<Resolution>(r#"{"width": 1, "height": 1, "pixel_aspect": 0}"#).contains("aspect"));
         assert!(error::<ViewRectangle>(r#"{"width": null, "height": -1, "shift": [0, 0]}"#).contains("greater than 0"));
         assert!(error::<Sampling>(r#"{"each": 0}"#).contains("nonzero"));
         let text = serde_json::to_string(&camera()).expect("it is written");
