@@ -224,6 +224,9 @@
 //! and the schedule decides that it is to be drawn: cells (`cell`), layers over them, bytes (`encode`) ->
 //! `terminal`.
 
+// Labels on docs.rs: which feature an item needs.
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 #[cfg(all(feature = "live", not(any(target_os = "linux", target_os = "macos"))))]
 compile_error!(
     "the feature `live` of termtrace is for Linux and macOS: it talks to the terminal through POSIX termios, poll and signals"

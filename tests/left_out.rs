@@ -9,9 +9,10 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The other test programs, each with what it tests.
-const LEFT_OUT: [(&str, &str); 12] = [
+const LEFT_OUT: [(&str, &str); 13] = [
     ("cli", "the command line"),
     ("encoder", "cells to bytes, and ratatui's backend"),
+    ("features", "the crates that each feature brings"),
     ("files", "scene files, meshes and textures, right and wrong"),
     ("input_corpus", "a fuzzer's inputs, once more"),
     ("laws", "the order of the modules"),

@@ -1,5 +1,6 @@
 //! The package and what is published beside it: the manifest, the workflows and the README agree.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -25,6 +26,12 @@ fn value(key: &str) -> String {
         (name == key).then(|| value.trim_matches('"').to_owned())
     });
     found.unwrap_or_else(|| panic!("[package] has no {key}"))
+}
+
+/// Returns the names of the features.
+fn features() -> BTreeSet<String> {
+    let names = section("[features]").into_iter().filter_map(|line| Some(line.split_once(" = ")?.0.to_owned()));
+    names.filter(|name| !name.starts_with('#')).collect()
 }
 
 /// Returns all paths of a checkout, without Git's own folder and what builds make.
@@ -79,3 +86,29 @@ fn the_compiler_version_is_the_same_everywhere() {
     let workflow = read(".github/workflows/ci.yml");
     assert!(workflow.contains(&format!("RUST_VERSION: \"{version}\"")), "ci.yml: {version}");
 }
+
+/// Lists of features end in a quote, a blank or a line's end.
+fn named_features(text: &str, flag: &str) -> BTreeSet<String> {
+    let lists = text.split(flag).skip(1).filter_map(|rest| rest.trim_start_matches(['"', '=', ' ']).lines().next());
+    let names = lists.filter_map(|list| list.split(['"', ' ']).next()).flat_map(|list| list.split(','));
+    names.filter(|name| !name.is_empty()).map(str::to_owned).collect()
+}
+
+#[test]
+fn workflows_and_documentation_name_features_that_there_are() {
+    let known = features();
+    let in_workflow = named_features(&read(".github/workflows/ci.yml"), "--features ");
+    assert!(!in_workflow.is_empty(), "ci.yml names features");
+    let in_docs = section("[package.metadata.docs.rs]").into_iter().find(|line| line.starts_with("features = "));
+    let in_docs: BTreeSet<_> =
+        in_docs.iter().flat_map(|line| line.split('"').skip(1).step_by(2)).map(str::to_owned).collect();
+    assert!(!in_docs.is_empty(), "[package.metadata.docs.rs] names features");
+    for name in in_workflow.union(&in_docs) {
+        assert!(known.contains(name), "there is no feature {name}; there are {known:?}");
+    }
+    let undocumented: Vec<_> = known.difference(&in_docs).filter(|name| !UNDOCUMENTED.contains(&&***name)).collect();
+    assert!(undocumented.is_empty(), "not in the documentation on docs.rs: {undocumented:?}");
+}
+
+/// Features without an item of the library.
+const UNDOCUMENTED: [&str; 3] = ["default", "cli", "test-hooks"];
