@@ -18,7 +18,7 @@
 //! |------------|---------------------------------------------|--------------------|---------------------------------------|
 //! | Unasked    | at the rate                                 | none               | nothing                               |
 //! | Unheard    | when a reply or the timeout has come        | each frame, alone  | a reply, the timeout                  |
-//! | Steady     | when the congestion window has room         | each frame, alone  | the timeout, a reply of no query      |
+//! | Steady     | when the congestion window has room         | each frame, alone  | the timeout, a reply to another query |
 //! | Recovering | when a reply or the timeout has come; small | each frame         | a reply, patience                     |
 //! | Settling   | at the rate                                 | none               | no reply for a second                 |
 //! | Silent     | at the rate, 30 a second                    | one at a time      | a reply                               |
@@ -42,6 +42,7 @@
 
 use std::time::Duration;
 
+mod alignment;
 mod blind;
 mod estimates;
 mod ledger;

@@ -28,8 +28,11 @@ pub(super) struct RoundTrip {
 }
 
 impl RoundTrip {
-    pub(super) fn take(&mut self, round_trip: Duration, now: Duration) {
-        if now.saturating_sub(self.since) >= ROUND_TRIP_AGE {
+    /// Takes a round trip, which is the link's own if nothing was sent with the query that took as long as its bytes do. No
+    /// other begins an age: if the replies to all queries alone were lost for a while, the time that frames take to be sent
+    /// would seem to be the link's, and the rate to be that of a link which sends them in no time.
+    pub(super) fn take(&mut self, round_trip: Duration, is_own: bool, now: Duration) {
+        if is_own && now.saturating_sub(self.since) >= ROUND_TRIP_AGE {
             self.shortest = [self.shortest[1], None];
             self.since = now;
         }

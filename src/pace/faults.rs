@@ -256,19 +256,22 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
     }
 }
 
-/// A key that waits for nothing is seen after 310 ms, or 400 ms at worst. Two round trips more, 800 ms, are kept but by
-/// each third reply lost (873 ms with numbers, 937 ms without). Left out is what makes such a link look like another: its
-/// first reply, and silence from the first picture on, for then nothing tells that the link is slow.
+/// A key that waits for nothing is seen after 310 ms, or 400 ms at worst; two round trips more are allowed. They are not
+/// enough where replies without numbers are lost again and again: 936 ms. Left out is what makes such a link look like
+/// another: its first reply, and silence from the first picture on, for then nothing tells that the link is slow.
 #[test]
 fn no_key_waits_much_longer_on_a_slow_link() {
-    each_fault(ms(950), |tags, fault, at| {
+    each_fault(ms(800), |tags, fault, at| {
         let never_tells = matches!(fault, Fault::Held(late) if late > ms(1_000)) || fault == Fault::Stopped;
         if at == 1 || at == 2 && never_tells {
             return Duration::ZERO;
         }
         let mut world = World::new(tags, fault, at).slow();
         world.run(ms(25_000));
-        world.worst_key(ms(4_000), ms(25_000))
+        let worst = world.worst_key(ms(4_000), ms(25_000));
+        let is_excepted = fault == Fault::EachThird && !tags;
+        assert!(!is_excepted || worst <= ms(950), "each third at {at}: {worst:?}");
+        if is_excepted { Duration::ZERO } else { worst }
     });
 }
 
@@ -302,6 +305,20 @@ fn a_lost_reply_is_known_as_soon_as_the_next_one_comes() {
     }
     assert!(link.answer_mode(203, ms(22)));
     assert_eq!((link.replies.ledger.live().count(), link.replies.state), (0, State::Steady));
+}
+
+/// Otherwise each might be lost, one a second, and the round trip would be that of frames.
+#[test]
+fn a_lost_query_without_a_frame_is_sent_again() {
+    let mut link = Link::new(None, None, true);
+    link.replies.tagging = Tagging::Known;
+    assert_ne!(link.probe(ms(0)), b"");
+    link.send(&mut b"frame".to_vec(), ms(0));
+    assert_eq!(link.probe(ms(1)), b"");
+    assert!(link.answer_mode(202, ms(2)), "the reply to the frame");
+    assert_ne!(link.probe(ms(3)), b"");
+    assert!(link.answer_mode(203, ms(4)));
+    assert_eq!(link.probe(ms(5)), b"", "that one was answered");
 }
 
 /// As after a detach, when another terminal takes the place of the first.

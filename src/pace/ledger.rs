@@ -58,6 +58,8 @@ pub(super) struct Matched {
     pub(super) bytes: usize,
     /// The oldest query in flight before it whose reply is lost, and their bytes with its own: all of these have arrived.
     pub(super) run: (Duration, usize),
+    /// Whether the reply to a query without a frame is among those that are lost.
+    pub(super) lost_probe: bool,
     pub(super) trust: Trust,
 }
 
@@ -151,9 +153,9 @@ impl Ledger {
         Some(self.take(at))
     }
 
-    /// The query that a reply without a number belongs to, if none is lost.
-    pub(super) fn oldest_counted(&self) -> Option<&InFlight> {
-        self.queries.iter().find(|query| query.query.is_counted())
+    /// The queries that replies without a number belong to, oldest first.
+    pub(super) fn counted(&self) -> impl Iterator<Item = &InFlight> {
+        self.queries.iter().filter(|query| query.query.is_counted())
     }
 
     /// A reply without a number, if it belongs to the oldest query.
@@ -174,13 +176,15 @@ impl Ledger {
         let InFlight { query, sent, bytes, late, .. } = self.queries[at];
         let mut run = (sent, bytes);
         let mut trust = if late { Trust::Late } else { Trust::Sure };
+        let mut lost_probe = false;
         for older in self.queries.drain(..=at).take(at) {
+            lost_probe |= older.bytes == 0;
             if !older.given_up {
                 run = (run.0.min(older.sent), run.1 + older.bytes);
             } else if !late {
                 trust = Trust::AfterLoss;
             }
         }
-        Matched { query, sent, bytes, run, trust }
+        Matched { query, sent, bytes, run, lost_probe, trust }
     }
 }

@@ -1,5 +1,6 @@
 //! What the replies say, and what follows when they do not come.
 
+use super::alignment::Alignment;
 use super::blind::Blind;
 use super::estimates::{Busy, Rates, RoundTrip};
 use super::ledger::{InFlight, Ledger, Matched, Query, Trust};
@@ -48,6 +49,7 @@ const TRUSTED: f64 = 60_000.0;
 pub(super) struct Replies {
     pub(super) state: State,
     pub(super) ledger: Ledger,
+    alignment: Alignment,
     pub(super) tagging: Tagging,
     /// Whether the second reply to a query of both kinds is to come.
     echo: bool,
@@ -100,6 +102,7 @@ impl Replies {
         Self {
             state: if may_ask { State::Unheard } else { State::Unasked },
             ledger: Ledger::default(),
+            alignment: Alignment::default(),
             tagging: Tagging::Unknown,
             echo: false,
             heard: None,
@@ -231,7 +234,10 @@ impl Replies {
             return;
         }
         // A reply that no query is waiting for, such as one that came twice, tells nothing.
-        let Some(oldest) = self.ledger.oldest_counted().map(|oldest| oldest.sent) else { return };
+        let Some(oldest) = self.ledger.counted().next().map(|oldest| oldest.sent) else { return };
+        if self.is_behind(now) {
+            return self.settle(now);
+        }
         let first = self.heard.replace(now).is_none();
         let in_order =
             !self.ledger.is_ambiguous() || self.state != State::Silent && (first || self.is_first_pictures(now));
@@ -283,6 +289,14 @@ impl Replies {
         matched.is_some()
     }
 
+    /// Whether a reply without a number that comes now shows that one of a slow link was lost. Between frames that follow each
+    /// other no timeout does.
+    fn is_behind(&mut self, now: Duration) -> bool {
+        let Some(rate) = self.rates.best().filter(|_| self.slow && !self.ledger.is_ambiguous()) else { return false };
+        let round_trip = self.round_trip.shortest();
+        self.alignment.is_behind(self.ledger.counted(), round_trip, rate.bytes_per_second, now)
+    }
+
     /// Whether a reply that comes now is that of another query: or the way has become shorter.
     fn is_too_early(&self, sent: Duration, now: Duration) -> bool {
         self.round_trip.is_far_above(now.saturating_sub(sent))
@@ -305,6 +319,9 @@ impl Replies {
         let Some(matched) = matched else { return };
         self.blind = Blind::default();
         self.delivered += matched.run.1 as f64;
+        if matched.lost_probe {
+            self.probed = None;
+        }
         if matched.trust == Trust::Late {
             self.ledger.revive();
         }
@@ -328,7 +345,7 @@ impl Replies {
             Trust::Sure => self.backoff = 0,
             _ => {}
         }
-        self.round_trip.take(round_trip, now);
+        self.round_trip.take(round_trip, matched.bytes == 0 || !self.slow, now);
     }
 
     fn take_rate(&mut self, matched: Matched, now: Duration) {
@@ -344,6 +361,7 @@ impl Replies {
     /// another may be a misunderstanding.
     fn settle(&mut self, now: Duration) {
         self.ledger.clear();
+        self.alignment = Alignment::default();
         if self.slow {
             self.rates.doubt();
         } else {

@@ -1,0 +1,104 @@
+//! Whether replies without a number are counted one query behind, because one of them was lost.
+//!
+//! No timeout notices the loss while frames follow each other: each reply is matched to the query before its own, and every
+//! round trip seems longer by the interval between two frames. The estimated rate is then too low, frames are sent further
+//! apart, and the estimate falls again: from 50 KB/s to 1 KB/s within seconds. The sign is that such replies arrive exactly
+//! when those to the next query are due; on a link that has become slower they do not.
+
+use super::ledger::InFlight;
+use super::{LEAST_BYTES, LONGEST};
+use std::time::Duration;
+
+/// The number of replies in a row that arrive when the next query's is due until one is taken for lost: one more than while
+/// a queue drains (see [`STRICT`]).
+const ENOUGH: u32 = 4;
+/// The error by which a reply to the second oldest query is on time. A queue that drains by a seventh of the interval
+/// between two frames is within it for three of them.
+const STRICT: Duration = Duration::from_millis(5);
+/// The error by which a reply to the oldest query is on time: in doubt the count is right.
+const LENIENT: Duration = Duration::from_millis(10);
+
+/// The evidence that replies without a number are counted one query behind.
+#[derive(Default)]
+pub(super) struct Alignment {
+    /// The last estimate, in bytes per second, by which a reply to the oldest query was on time: that from before the loss.
+    rate: Option<f64>,
+    /// The number of replies in a row that arrived when the one to the second oldest query was due.
+    behind: u32,
+}
+
+impl Alignment {
+    /// Counts a reply that comes now, while these queries are in flight, oldest first. Returns whether this reply and those
+    /// before it show that one is lost.
+    pub(super) fn is_behind<'a>(
+        &mut self,
+        queries: impl IntoIterator<Item = &'a InFlight>,
+        round_trip: Duration,
+        rate: f64,
+        now: Duration,
+    ) -> bool {
+        let is_on_time = |query: &InFlight, rate: f64, tolerance: Duration| {
+            let takes = Duration::try_from_secs_f64(query.bytes as f64 / rate).unwrap_or(LONGEST);
+            (query.sent + takes + round_trip).abs_diff(now) <= tolerance
+        };
+        let mut queries = queries.into_iter();
+        if let Some(oldest) = queries.next() {
+            if is_on_time(oldest, rate, LENIENT) {
+                self.rate = Some(rate);
+            }
+            let fits = |query: &InFlight, tolerance| {
+                // The rate may be known from such replies alone. Then small frames show that it is not the link's.
+                let is_small = query.bytes <= LEAST_BYTES;
+                is_on_time(query, self.rate.unwrap_or(rate), tolerance)
+                    || is_small && is_on_time(query, f64::INFINITY, tolerance)
+            };
+            let is_behind = !fits(oldest, LENIENT) && queries.next().is_some_and(|next| fits(next, STRICT));
+            self.behind = if is_behind { self.behind + 1 } else { 0 };
+        }
+        self.behind >= ENOUGH
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ledger::{Ledger, Query};
+    use super::super::tests::ms;
+    use super::*;
+
+    /// Frames of 1,000 bytes are sent 25 ms apart through 50 KB/s and 200 ms, and the replies to them come this much later
+    /// than they would through an empty link. Which of them shows a loss.
+    fn shows_loss(frames: usize, later: impl Fn(usize) -> u64) -> Option<usize> {
+        let mut alignment = Alignment::default();
+        (0..frames).find(|&number| {
+            let mut ledger = Ledger::default();
+            let sent = (number..number + 8).map(|number| ms(25 * number as u64));
+            sent.for_each(|sent| ledger.ask(Query::Counted, 1_000, sent));
+            let now = ms(25 * number as u64 + 220 + later(number));
+            alignment.is_behind(ledger.counted(), ms(200), 50_000.0, now)
+        })
+    }
+
+    #[test]
+    fn replies_that_come_when_the_next_ones_should_show_a_loss() {
+        assert_eq!(shows_loss(100, |_| 0), None);
+        assert_eq!(shows_loss(100, |number| if number < 10 { 0 } else { 25 }), Some(13));
+    }
+
+    #[test]
+    fn a_queue_that_drains_shows_no_loss() {
+        for drains in 4..=20 {
+            assert_eq!(
+                shows_loss(100, |number| 200_u64.saturating_sub(drains * number as u64)),
+                None,
+                "{drains} ms a frame"
+            );
+        }
+    }
+
+    #[test]
+    fn replies_that_are_later_still_show_no_loss() {
+        for later in [12, 40, 100, 300] {
+            assert_eq!(shows_loss(100, |number| if number < 10 { 0 } else { later }), None, "{later} ms");
+        }
+    }
+}
