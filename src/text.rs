@@ -9,7 +9,7 @@ pub use notice::Notice;
 pub use parse_error::ParseError;
 pub(crate) use parse_error::named;
 pub(crate) use words::number;
-pub use words::{closest, listed};
+pub use words::{any_of, closest, listed};
 
 /// Returns what stands for a character in a message: itself, unless it moves the cursor, starts an escape sequence, turns
 /// the direction of writing, or cannot be seen.

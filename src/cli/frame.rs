@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use termtrace::export::Format;
 use termtrace::internals::cell;
 use termtrace::internals::export::Contents;
-use termtrace::internals::text::listed;
+use termtrace::internals::text::{any_of, listed};
 use termtrace::{CellMode, Colors};
 
 /// What is written where nothing says otherwise.
@@ -160,15 +160,9 @@ pub(super) fn run(args: &FrameArgs) -> Done {
 fn format_by_ending(path: &Path) -> Result<Format, Failure> {
     let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
     ending.and_then(|ending| Format::from_ending(&ending)).ok_or_else(|| {
-        let endings = formats().into_iter().map(|format| format!(".{}", format.ending())).collect();
-        let names = formats().into_iter().map(|format| format.name().to_owned()).collect();
-        let (endings, names) = (any_of(endings), any_of(names));
+        let endings: Vec<_> = formats().into_iter().map(|format| format!(".{}", format.ending())).collect();
+        let names: Vec<_> = formats().into_iter().map(Format::name).collect();
+        let (endings, names) = (any_of(&endings), any_of(&names));
         Failure::Usage(format!("{}: the name does not end in {endings}; say --format {names}", path.display()))
     })
-}
-
-/// The words as alternatives: `a, b or c`.
-fn any_of(mut words: Vec<String>) -> String {
-    let last = words.pop().unwrap_or_default();
-    if words.is_empty() { last } else { format!("{} or {last}", words.join(", ")) }
 }

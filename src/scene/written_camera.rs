@@ -17,6 +17,11 @@ impl Camera {
     /// ```
     #[doc(hidden)]
     pub fn to_ron(&self) -> String {
+        format!("camera: {}", self.value_to_ron())
+    }
+
+    /// The value of that field alone: `(eye: ..., target: ..., ...)`.
+    pub(super) fn value_to_ron(&self) -> String {
         let pose = self.pose();
         let [eye, target, up] = [pose.eye, pose.target, pose.up].map(vector);
         let rectangle = self.rectangle();
@@ -27,7 +32,7 @@ impl Camera {
         } else {
             format!(", shift: ({}, {})", number(shift.x), number(shift.y))
         };
-        format!("camera: (eye: {eye}, target: {target}, up: {up}, {lens}{shift})")
+        format!("(eye: {eye}, target: {target}, up: {up}, {lens}{shift})")
     }
 }
 

@@ -25,13 +25,12 @@ use crate::scene_text::{Body, Faults, Field, Node, Value, parse};
 /// ```
 pub fn with_view(text: &str, camera: &Camera) -> Option<String> {
     let root = parse(text).ok()?;
-    let line = camera.to_ron();
-    let view = line.strip_prefix("camera: ").unwrap_or(&line);
+    let view = camera.value_to_ron();
     let fields = fields(&root)?;
     let field = |name| fields.iter().find(|field: &&Field<'_>| field.name.text == name);
     let additions = match field("views") {
-        Some(views) => to_list(text, &views.value, view)?,
-        None => after(text, field("camera")?, view),
+        Some(views) => to_list(text, &views.value, &view)?,
+        None => after(text, field("camera")?, &view),
     };
     let written = inserted(text, additions);
     (count(&written)? == count(text)? + 1).then_some(written)

@@ -4,6 +4,7 @@ use super::{Shape, surfaces};
 use crate::mesh_file::MeshFile;
 use crate::progress::Unfinished;
 use crate::scene_text::Node;
+use crate::text;
 use crate::written::{Fields, InSceneFile, Reader, Validator};
 
 /// A surface as it is written, and its check.
@@ -122,6 +123,6 @@ surfaces! { of_kind }
 /// The message for a material and its [pattern](crate::material::Reflecting::PATTERN) on a shape without coordinates, each
 /// after an article.
 pub(crate) fn without_coordinates((material, pattern): (&str, &str), shape: &str) -> String {
-    let wanted = WrittenShape::with_coordinates().join(" or ");
+    let wanted = text::any_of(&WrittenShape::with_coordinates());
     format!("{material} needs {wanted}, on which {pattern} are laid out; this is {shape}")
 }

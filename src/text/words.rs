@@ -2,12 +2,21 @@
 
 /// Returns the words as a list in prose: `a`, `a and b`, `a, b and c`.
 pub fn listed(words: &[impl AsRef<str>]) -> String {
+    joined(words, "and")
+}
+
+/// Returns the words as alternatives in prose: `a`, `a or b`, `a, b or c`.
+pub fn any_of(words: &[impl AsRef<str>]) -> String {
+    joined(words, "or")
+}
+
+fn joined(words: &[impl AsRef<str>], conjunction: &str) -> String {
     match words {
         [] => String::new(),
         [only] => only.as_ref().to_owned(),
         [most @ .., last] => {
             let most: Vec<_> = most.iter().map(AsRef::as_ref).collect();
-            format!("{} and {}", most.join(", "), last.as_ref())
+            format!("{} {conjunction} {}", most.join(", "), last.as_ref())
         }
     }
 }
@@ -113,5 +122,6 @@ mod tests {
         assert_eq!(listed(&["a"]), "a");
         assert_eq!(listed(&["a", "b"]), "a and b");
         assert_eq!(listed(&["a", "b", "c"]), "a, b and c");
+        assert_eq!(any_of(&["a", "b", "c"]), "a, b or c");
     }
 }
