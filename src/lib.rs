@@ -301,7 +301,7 @@ pub mod prelude;
 pub mod internals;
 
 // Scene files.
-pub use progress::{Progress, Work};
+pub use progress::{Progress, Unfinished, Work};
 #[cfg(feature = "ron")]
 pub use scene::LoadError;
 pub use scene::Scene;

@@ -128,6 +128,7 @@ pub enum Unfinished<E> {
 
 impl<E> Unfinished<E> {
     /// Converts the failure, if it is one.
+    #[doc(hidden)]
     pub fn map<F>(self, convert: impl FnOnce(E) -> F) -> Unfinished<F> {
         match self {
             Self::Cancelled => Unfinished::Cancelled,

@@ -79,32 +79,27 @@ impl Scene {
     }
 
     /// Loads the scene in that file, as [`Scene::load`] does, and reports what it does and how far it is. When `hear`
-    /// answers `Break`, it gives the scene up and returns `None`. Reports come from any thread.
+    /// answers `Break`, the work is cancelled. Reports come from any thread.
     ///
     /// ```
     /// use std::{ops::ControlFlow, path::Path};
-    /// use termtrace::Scene;
+    /// use termtrace::{LoadError, Scene, Unfinished};
     ///
     /// let path = Path::new("scenes/teapot.obj");
     /// let scene = Scene::load_watched(path, |_| ControlFlow::Continue(()))?;
-    /// assert!(scene.is_some());
-    /// let scene = Scene::load_watched(path, |_| ControlFlow::Break(()))?;
-    /// assert!(scene.is_none());
-    /// # Ok::<(), termtrace::LoadError>(())
+    /// let cancelled = Scene::load_watched(path, |_| ControlFlow::Break(()));
+    /// assert!(matches!(cancelled, Err(Unfinished::Cancelled)));
+    /// # Ok::<(), Unfinished<LoadError>>(())
     /// ```
     ///
     /// # Errors
-    /// As [`Scene::load`].
+    /// As [`Scene::load`], and [`Unfinished::Cancelled`] if the work was cancelled.
     pub fn load_watched(
         path: &Path,
         hear: impl Fn(Progress) -> ControlFlow<()> + Sync,
-    ) -> Result<Option<Self>, LoadError> {
+    ) -> Result<Self, Unfinished<LoadError>> {
         let watcher = Watcher::new(&hear);
-        match Draft::load(path, &watcher) {
-            Ok(draft) => Ok(draft.build_or_cancel(&watcher).ok()),
-            Err(Unfinished::Cancelled) => Ok(None),
-            Err(Unfinished::Failed(error)) => Err(error),
-        }
+        Ok(Draft::load(path, &watcher)?.build_or_cancel(&watcher)?)
     }
 }
 
