@@ -609,7 +609,8 @@ fn writes(session: &Session) -> u64 {
 }
 
 /// Ctrl-L draws a picture that is there already: nothing else is written to anybody. (A pseudo-terminal takes some ten
-/// thousand bytes at once: of a larger frame it takes a part, and the rest in as few writes as it wants.)
+/// thousand bytes at once: of a larger frame it takes a part, and the rest in as few writes as it wants.) Where this
+/// machine is so busy that a reply is late, small frames take the place of one; each ends with a query.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_frame_is_one_write() {
@@ -629,7 +630,8 @@ fn a_frame_is_one_write() {
         if key == b"\x0c" {
             assert!(session.seen().bytes().len() - bytes > 2_000, "a whole frame");
         }
-        assert_eq!(writes(&session) - before, 1, "{}", key.escape_ascii());
+        let frames = session.seen().bytes()[bytes..].windows(3).filter(|bytes| *bytes == b"\x1b[c").count();
+        assert_eq!(writes(&session) - before, frames as u64, "{}", key.escape_ascii());
     }
     session.send(b"q");
     session.wait_exit(SOON);
