@@ -171,11 +171,11 @@ mod tests {
     fn what_a_type_promises_is_checked() {
         assert!(error::<Map>("\"dept\"").contains("did you mean \"depth\"?"));
         assert!(error::<Attributes>("512").contains("nine bits"));
-        assert!(error::<Resolution>(r#"{"width": 1, "height": 1, "pixel_aspect": 0}"#).contains("aspect"));
+        assert!(error::<Resolution>(r#"{"width": 1, "height": 1, "pixel_aspect": 0}"#).contains("height over its width"));
         assert!(error::<ViewRectangle>(r#"{"width": null, "height": -1, "shift": [0, 0]}"#).contains("greater than 0"));
         assert!(error::<Sampling>(r#"{"each": 0}"#).contains("nonzero"));
         let text = serde_json::to_string(&camera()).expect("it is written");
         let up = text.replace(r#""up":[0.0,1.0,0.0]"#, r#""up":[0.0,0.0,0.0]"#);
-        assert!(error::<Camera>(&up).contains("up has no length"), "{up}");
+        assert!(error::<Camera>(&up).contains("the up vector must have a length"), "{up}");
     }
 }
