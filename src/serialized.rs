@@ -171,7 +171,9 @@ mod tests {
     fn what_a_type_promises_is_checked() {
         assert!(error::<Map>("\"dept\"").contains("did you mean \"depth\"?"));
         assert!(error::<Attributes>("512").contains("nine bits"));
-        assert!(error::<Resolution>(r#"{"width": 1, "height": 1, "pixel_aspect": 0}"#).contains("height over its width"));
+        assert!(
+            error::<Resolution>(r#"{"width": 1, "height": 1, "pixel_aspect": 0}"#).contains("height over its width")
+        );
         assert!(error::<ViewRectangle>(r#"{"width": null, "height": -1, "shift": [0, 0]}"#).contains("greater than 0"));
         assert!(error::<Sampling>(r#"{"each": 0}"#).contains("nonzero"));
         let text = serde_json::to_string(&camera()).expect("it is written");
