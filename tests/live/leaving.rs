@@ -609,8 +609,8 @@ fn writes(session: &Session) -> u64 {
 }
 
 /// Ctrl-L draws a picture that is there already: nothing else is written to anybody. (A pseudo-terminal takes some ten
-/// thousand bytes at once: of a larger frame it takes a part, and the rest in as few writes as it wants.) Where this
-/// machine is so busy that a reply is late, small frames take the place of one; each ends with a query.
+/// thousand bytes at once: of a larger frame it takes a part, and the rest in as few writes as it wants.) On a busy machine
+/// replies are late, and small frames take the place of one: then the key is pressed again.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_frame_is_one_write() {
@@ -623,15 +623,17 @@ fn a_frame_is_one_write() {
     session.wait_for("a frame", SOON, |seen| seen.bytes().len() > bytes + 2_000);
     session.wait_for_rest();
     for key in [&b"\x0c"[..], b"i", b"\x0c", b"?"] {
-        let (before, bytes) = (writes(&session), session.seen().bytes().len());
-        session.send(key);
-        session.wait_for("a frame", SOON, |seen| seen.bytes().len() > bytes);
-        session.wait_for_rest();
-        if key == b"\x0c" {
-            assert!(session.seen().bytes().len() - bytes > 2_000, "a whole frame");
-        }
-        let frames = session.seen().bytes()[bytes..].windows(3).filter(|bytes| *bytes == b"\x1b[c").count();
-        assert_eq!(writes(&session) - before, frames as u64, "{}", key.escape_ascii());
+        let is_one = (0..20).any(|_| {
+            let (before, bytes) = (writes(&session), session.seen().bytes().len());
+            session.send(key);
+            session.wait_for("a frame", SOON, |seen| seen.bytes().len() > bytes);
+            session.wait_for_rest();
+            if key == b"\x0c" {
+                assert!(session.seen().bytes().len() - bytes > 2_000, "a whole frame");
+            }
+            writes(&session) - before == 1
+        });
+        assert!(is_one, "{}", key.escape_ascii());
     }
     session.send(b"q");
     session.wait_exit(SOON);

@@ -208,7 +208,7 @@ fn any_quality_is_exact_at_rest() {
 fn an_equal_picture_takes_fewer_bytes_while_it_moves() {
     let [exact, equal] = ["exact", "equal"].map(|quality| {
         let mut session = looking(termtrace().arg("--reduced-motion").arg("--quality").arg(quality));
-        let per_frame = (0..10).find_map(|_| bytes_per_frame(&mut session));
+        let per_frame = (0..40).find_map(|_| bytes_per_frame(&mut session));
         leave(&mut session);
         per_frame.expect("each frame ends with a query")
     });
@@ -223,7 +223,7 @@ fn bytes_per_frame(session: &mut Session) -> Option<usize> {
     for _ in 0..6 {
         let frames = queries(session.seen().bytes());
         session.send(b"a");
-        if !session.sees(SOON / 12, |seen| queries(seen.bytes()) > frames) {
+        if !session.sees(SOON / 60, |seen| queries(seen.bytes()) > frames) {
             return None;
         }
     }
