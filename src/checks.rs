@@ -45,6 +45,7 @@ impl SceneFault {
     }
 
     /// Returns what is wrong with the value, in the words of a scene file's error.
+    #[doc(hidden)]
     pub fn message(&self) -> &str {
         &self.message
     }

@@ -142,6 +142,7 @@ impl Framebuffer {
     }
 
     /// Returns its size.
+    #[doc(hidden)]
     pub fn resolution(&self) -> Resolution {
         self.resolution
     }
@@ -152,6 +153,7 @@ impl Framebuffer {
     }
 
     /// Returns all pixels to change.
+    #[doc(hidden)]
     pub fn pixels_mut(&mut self) -> &mut [LinearRgb] {
         &mut self.pixels
     }

@@ -152,12 +152,13 @@ pub struct Grid {
 
 impl Grid {
     /// The most cells of a grid, 16,777,216: 700 MB. A 4K screen has 100,000 cells of 8 by 10 pixels.
+    #[doc(hidden)]
     pub const MAX_CELLS: usize = 1 << 24;
 
     /// Returns a grid of that size, all blank.
     ///
     /// # Panics
-    /// If it has more than [`MAX_CELLS`](Self::MAX_CELLS).
+    /// If it has more than 16,777,216 cells.
     pub fn new(size: Size) -> Self {
         Self { size, cells: vec![Cell::BLANK; Self::count(size)] }
     }
@@ -165,7 +166,7 @@ impl Grid {
     /// Makes all of it blank, at that size.
     ///
     /// # Panics
-    /// If it has more than [`MAX_CELLS`](Self::MAX_CELLS).
+    /// If it has more than 16,777,216 cells.
     #[doc(hidden)]
     pub fn clear(&mut self, size: Size) {
         let count = Self::count(size);
@@ -177,7 +178,7 @@ impl Grid {
     /// Returns a grid of that size, all foreign: of a screen of which nothing is known, or on which nothing is wanted.
     ///
     /// # Panics
-    /// If it has more than [`MAX_CELLS`](Self::MAX_CELLS).
+    /// If it has more than 16,777,216 cells.
     #[doc(hidden)]
     pub fn foreign(size: Size) -> Self {
         Self { size, cells: vec![Cell::FOREIGN; Self::count(size)] }

@@ -324,7 +324,7 @@ pub use camera_path::CameraPath;
 pub use framebuffer::{Framebuffer, Resolution, ResolutionError};
 pub use hit::Hit;
 pub use maps::Map;
-pub use progress::{Cancellation, Cancelled};
+pub use progress::Cancelled;
 pub use render::{Render, Sampling, render};
 pub use tone::{Picture, tone};
 

@@ -137,6 +137,7 @@ impl Default for Material {
 
 impl Material {
     /// The material of an object that is given none: a light grey.
+    #[doc(hidden)]
     pub const DEFAULT: Self = Self::Diffuse(Diffuse::DEFAULT);
 
     /// The reflectance of [`DEFAULT`](Self::DEFAULT).

@@ -41,10 +41,10 @@ use std::sync::Arc;
 /// Both are built once and never change; copies share them. A scene with other lights, or another camera, shares the trees.
 ///
 /// ```
-/// use termtrace::{LinearRgb, Scene};
+/// use termtrace::Scene;
 ///
 /// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")?;
-/// let brighter = scene.clone().with_ambient(LinearRgb::grey(0.5))?.with_exposure(2.0)?;
+/// let brighter = scene.clone().with_exposure(2.0)?;
 /// assert_eq!((scene.exposure(), brighter.exposure()), (1.0, 2.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -117,7 +117,7 @@ impl Scene {
     /// let red = Material::diffuse(LinearRgb::new(0.8, 0.1, 0.1))?;
     /// let scene = Scene::builder(camera)
     ///     .object(Sphere::new(Vec3::Y, 1.0)?, red)
-    ///     .object(Plane::new(Vec3::ZERO, Vec3::Y)?, Material::DEFAULT)
+    ///     .object(Plane::new(Vec3::ZERO, Vec3::Y)?, Material::default())
     ///     .light(PointLight::new(Vec3::new(3.0, 5.0, 4.0), LinearRgb::grey(45.0))?)
     ///     .ambient(LinearRgb::grey(0.05))
     ///     .build()?;
@@ -145,11 +145,13 @@ impl Scene {
     }
 
     /// Returns the light that comes along rays that meet no object.
+    #[doc(hidden)]
     pub fn background(&self) -> Background {
         self.checked.background
     }
 
     /// Returns the light that arrives at every point from everywhere alike, besides that of the lights.
+    #[doc(hidden)]
     pub fn ambient(&self) -> LinearRgb {
         self.checked.ambient
     }
@@ -160,6 +162,7 @@ impl Scene {
     }
 
     /// Returns whether objects keep light from each other; without, this is the lecture's bare version.
+    #[doc(hidden)]
     pub fn shadows(&self) -> bool {
         self.checked.shadows
     }
@@ -170,6 +173,7 @@ impl Scene {
     }
 
     /// Returns how light beyond the screen's range is brought into it.
+    #[doc(hidden)]
     pub fn tone_curve(&self) -> ToneCurve {
         self.checked.tone_curve
     }
@@ -201,6 +205,7 @@ impl Scene {
     }
 
     /// Returns the scene with other [views](Self::views).
+    #[doc(hidden)]
     pub fn with_views(self, views: Vec<Camera>) -> Self {
         self.with(|checked| checked.views = views)
     }
@@ -209,6 +214,7 @@ impl Scene {
     ///
     /// # Errors
     /// Unless each band of its light lies within 0 and 1e12.
+    #[doc(hidden)]
     pub fn with_background(self, background: impl Into<Background>) -> Result<Self, SceneFault> {
         let background = background.into().checked()?;
         Ok(self.with(|checked| checked.background = background))
@@ -218,6 +224,7 @@ impl Scene {
     ///
     /// # Errors
     /// Unless each band lies within 0 and 1e12.
+    #[doc(hidden)]
     pub fn with_ambient(self, ambient: LinearRgb) -> Result<Self, SceneFault> {
         let ambient = checks::given_color("ambient", ambient, checks::light)?;
         Ok(self.with(|checked| checked.ambient = ambient))
@@ -229,6 +236,7 @@ impl Scene {
     }
 
     /// Returns the scene with or without [shadows](Self::shadows).
+    #[doc(hidden)]
     pub fn with_shadows(self, shadows: bool) -> Self {
         self.with(|checked| checked.shadows = shadows)
     }
@@ -243,6 +251,7 @@ impl Scene {
     }
 
     /// Returns the scene with another [tone curve](Self::tone_curve).
+    #[doc(hidden)]
     pub fn with_tone_curve(self, tone_curve: ToneCurve) -> Self {
         self.with(|checked| checked.tone_curve = tone_curve)
     }
@@ -270,6 +279,7 @@ pub struct Object {
 
 impl Object {
     /// That surface of that material.
+    #[doc(hidden)]
     pub fn new(shape: impl Into<Shape>, material: impl Into<Material>) -> Self {
         Self { shape: shape.into(), material: material.into() }
     }

@@ -19,7 +19,8 @@ use std::process::ExitStatus;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 use tempfile::NamedTempFile;
-use termtrace::{Cancellation, Cancelled, CellMode, Render, Resolution, Sampling, Scene};
+use termtrace::internals::progress::Cancellation;
+use termtrace::{Cancelled, CellMode, Render, Resolution, Sampling, Scene};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");

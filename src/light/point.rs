@@ -36,16 +36,19 @@ impl PointLight {
     }
 
     /// Returns where it is, in world space.
+    #[doc(hidden)]
     pub fn position(&self) -> Vec3 {
         self.position
     }
 
     /// Returns its [intensity](Self::new).
+    #[doc(hidden)]
     pub fn intensity(&self) -> LinearRgb {
         self.intensity
     }
 
     /// Returns how it grows weaker.
+    #[doc(hidden)]
     pub fn falloff(&self) -> Falloff {
         self.falloff
     }

@@ -26,6 +26,7 @@ impl Checker {
     ///
     /// # Errors
     /// Unless each band lies within 0 and 1, and the size between 1e-9 and 1e9.
+    #[doc(hidden)]
     pub fn new(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
         let a = checks::given_color("a", a, checks::reflectance)?;
         let b = checks::given_color("b", b, checks::reflectance)?;

@@ -21,6 +21,7 @@ impl Diffuse {
     ///
     /// # Errors
     /// Unless each band lies within 0 and 1.
+    #[doc(hidden)]
     pub fn new(reflectance: LinearRgb) -> Result<Self, SceneFault> {
         Ok(Self { reflectance: checks::given_color("reflectance", reflectance, checks::reflectance)? })
     }

@@ -58,6 +58,7 @@ impl fmt::Debug for Render<'_> {
 
 impl<'a> Render<'a> {
     /// The most [threads](Self::threads) of a render.
+    #[doc(hidden)]
     pub const MAX_THREADS: usize = 1024;
 
     /// A picture of that scene.
@@ -88,7 +89,7 @@ impl<'a> Render<'a> {
         Self { sampling: sampling.into(), ..self }
     }
 
-    /// Traces on that number of threads of its own: at least one, and at most [`MAX_THREADS`](Self::MAX_THREADS). Without the
+    /// Traces on that number of threads of its own: at least one, and at most 1,024. Without the
     /// feature `parallel` it is the calling thread alone. The picture does not depend on it.
     pub fn threads(self, count: usize) -> Self {
         Self { threads: Some(count.clamp(1, Self::MAX_THREADS)), ..self }

@@ -11,7 +11,7 @@ use std::ops::Range;
 pub enum Sampling {
     /// One through the middle of each two by two pixels.
     Coarse,
-    /// That many through each; of a number beyond [`MAX_SAMPLES`](Self::MAX_SAMPLES), as many as that.
+    /// That many through each; of a number beyond 65,536, as many as that.
     Each(NonZeroU32),
     /// One through each; 4, 16 and 64 in all where there are edges: of objects, shadows and patterns, or where normals
     /// differ; but never more than so many.
@@ -23,6 +23,7 @@ impl Sampling {
     pub const BEST: Self = Self::UpTo(NonZeroU32::new(64).expect("64 is not 0"));
 
     /// The most rays that go through a pixel, 65,536: more change nothing that 8 bits could show, and take for ever.
+    #[doc(hidden)]
     pub const MAX_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 16).expect("65,536 is not 0");
 
     /// Returns the sampling with no more than [`MAX_SAMPLES`](Self::MAX_SAMPLES).

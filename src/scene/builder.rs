@@ -29,6 +29,7 @@ impl SceneBuilder {
     }
 
     /// Adds these objects.
+    #[doc(hidden)]
     pub fn objects(mut self, objects: impl IntoIterator<Item = Object>) -> Self {
         self.objects.extend(objects);
         self
@@ -41,6 +42,7 @@ impl SceneBuilder {
     }
 
     /// Adds a view that is worth a look, besides that of the camera.
+    #[doc(hidden)]
     pub fn view(mut self, camera: Camera) -> Self {
         self.rest.views.push(camera);
         self

@@ -32,6 +32,7 @@ impl Mesh {
     ///
     /// # Errors
     /// If it reaches beyond ±1e9.
+    #[doc(hidden)]
     pub fn new(file: MeshFile) -> Result<Self, ShapeError> {
         if !checks::are_near(file.positions()) {
             return Err(SceneFault::new("positions", checks::MESH_TOO_FAR).into());
