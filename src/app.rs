@@ -1,4 +1,4 @@
-//! The live view: how it is wanted, how it is run, how it ended. `live` is the loop.
+//! The live view: its options, its loop (`live`) and its outcome.
 
 use crate::camera::Camera;
 use crate::memory::OutOfMemory;
@@ -32,9 +32,9 @@ pub use source::Source;
 pub struct Outcome {
     /// Why.
     pub ending: Ending,
-    /// Where the user had moved the camera, if he had.
+    /// The last camera, if the user has moved it.
     pub moved: Option<Camera>,
-    /// Whether the terminal still takes what is written. One that has stopped reading would stop whoever says more.
+    /// Whether the terminal accepted all bytes. If not, it has stopped reading, and printing to it would block.
     pub heard: bool,
 }
 
@@ -44,11 +44,11 @@ pub struct Outcome {
 pub enum Ending {
     /// The user left.
     Left,
-    /// A signal asked for it.
+    /// The signal of this number asked the program to end.
     Signal(i32),
 }
 
-/// Shows the scene until the user leaves. The terminal is as it was when this returns, and also when it panics.
+/// Shows a scene until the user leaves. The terminal is restored when this returns or panics.
 ///
 /// # Errors
 /// If there is no terminal, or it goes away, or there is not enough memory for its window.
@@ -63,16 +63,18 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
     })
 }
 
-/// Shows the scene of the first source until the user leaves, or goes to the next one. What takes longer than a moment
-/// shows how far it is, then a sketch to look around in, and can be left at any time. The terminal is as it was when this
-/// returns, and also when it panics; a first scene that is wrong at once never touches it.
+/// Shows the scenes of these sources, beginning with the first, until the user leaves.
 ///
-/// A scene is read again when one of its files changes. What is wrong with it then is told as a [`Notice`], and with any
-/// but the first; the picture stays as it was.
+/// A scene that takes longer than a moment to load shows its progress, then a coarse sketch to look around in; the user
+/// can leave meanwhile. The terminal is restored when this returns or panics. An error in the first scene that is found
+/// at once is returned without touching the terminal.
+///
+/// A scene is read again when one of its files changes. Errors of a later load are shown as a [`Notice`] over the last
+/// good picture.
 ///
 /// # Errors
-/// If there is no source or no terminal, or that goes away, or there is not enough memory for its window; or what is wrong
-/// with the first scene.
+/// If there is no source or no terminal, the terminal goes away, there is not enough memory for its window, or the first
+/// scene cannot be loaded.
 ///
 /// # Panics
 /// With the payload of a thread that panicked while tracing, or while reading or building a scene.
@@ -85,13 +87,13 @@ pub fn open<E: Into<Notice> + Send + 'static>(
     view(scenes, options, signals)
 }
 
-/// Why there was nothing to see, or nothing more.
+/// The error that kept the live view from starting, or ended it.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Error<E = LoadError> {
-    /// There is no terminal, or it has gone away, or there is not enough memory for its window.
+    /// There is no terminal, it has gone away, or there is not enough memory for its window.
     Terminal(io::Error),
-    /// What is wrong with the scene.
+    /// The first scene could not be loaded.
     Scene(E),
 }
 
@@ -123,7 +125,7 @@ fn view<E: Into<Notice> + Send + 'static>(
     options: Options,
     signals: &mut Signals,
 ) -> Result<Outcome, Error<E>> {
-    // The terminal is declared last, and so is given back first: nothing that comes after can keep it.
+    // Declared last, and therefore dropped first: the terminal is restored even if dropping the others blocks or panics.
     let waker = signals.waker()?;
     let mut renderer = terminal::without_signals(|| Renderer::start(options.threads, waker))?;
     scenes.wait().map_err(Error::Scene)?;
@@ -133,7 +135,7 @@ fn view<E: Into<Notice> + Send + 'static>(
     }
     let terminal = match Terminal::take(signals) {
         Ok(terminal) => terminal,
-        // Perhaps while it waited to be brought to the foreground.
+        // A signal may have arrived while it waited for the foreground.
         Err(error) => return signals.deadly().map(killed).ok_or(Error::Terminal(error)),
     };
     let mut live = Live::new(terminal, options, scenes.named())?;

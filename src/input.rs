@@ -1,8 +1,8 @@
 //! Parser of a terminal's bytes: events and replies. Pure: no I/O and no clock.
 //!
-//! Every source of bytes (a terminal, an SSH channel, a test) is parsed by a [`Parser`]. The user's actions are reported as
-//! crossterm's [`Event`], the terminal's answers to queries as [`Reply`]; a reply is never reported as a key.
-//! crossterm's own reader is not used: it swallows replies, and it spins when the terminal disappears.
+//! Every source of bytes (a terminal, an SSH channel, a test) is parsed by a [`Parser`]. The user's actions are
+//! reported as crossterm's [`Event`], the terminal's answers to queries as [`Reply`]; a reply is never reported as a
+//! key. crossterm's own reader is not used: it swallows replies, and it spins when the terminal disappears.
 //!
 //! ```
 //! use crossterm::event::{Event, KeyCode};
@@ -21,18 +21,19 @@
 //! ```
 //!
 //! # Ambiguities and how they are resolved
-//! - **A lone Escape** is undecided until [`Parser::give_up_waiting`] is called. While a reply is outstanding the caller
-//!   should wait for a round trip, because the reply's first byte may arrive alone.
+//! - **A lone Escape** is undecided until [`Parser::give_up_waiting`] is called. While a reply is outstanding the
+//!   caller should wait for a round trip, because the reply's first byte may arrive alone.
 //! - **`ESC ESC [ A`** is Alt+Up (rxvt, `PuTTY`, Terminal.app). `ESC ESC [ ? 62 c` is the Escape key and a reply.
 //! - **`CSI row ; column R`** is a cursor report, although some terminals send Shift+F3 as `CSI 1 ; 2 R`. F3 itself is
 //!   `SS3 R`, `CSI R` or `CSI 13 ~`, and under the kitty protocol only the last.
-//! - **An incomplete sequence** (`ESC [`, `ESC O`, `ESC ] 1 1`) is dropped at the timeout. Its rest is dropped as well if
-//!   it arrives later, unless it completes a reply, which is then reported. As a consequence Alt+`[` and Alt+O, which look
-//!   like such beginnings, are not recognised. Control characters end a sequence, so Ctrl-C always takes effect.
+//! - **An incomplete sequence** (`ESC [`, `ESC O`, `ESC ] 1 1`) is dropped at the timeout. Its rest is dropped as well
+//!   if it arrives later, unless it completes a reply, which is then reported. As a consequence Alt+`[` and Alt+O,
+//!   which look like such beginnings, are not recognised. Control characters end a sequence, so Ctrl-C always takes
+//!   effect.
 //! - **Invalid UTF-8, U+FFFD and the C1 controls** are not keys.
 //! - **With the kitty keyboard protocol** ([`Parser::set_keys_are_sequences`]) there is no ambiguity: every key is a
-//!   sequence, Escape included. A lone `ESC` then starts a sequence. A plain character is typed text, reported as pressed
-//!   and released at once, because no release follows.
+//!   sequence, Escape included. A lone `ESC` then starts a sequence. A plain character is typed text, reported as
+//!   pressed and released at once, because no release follows.
 //! - **A key release** is reported even if its sequence is completed after the timeout: it can only end a movement.
 //! - **A paste** ends with its closing sequence, or after [`MAX_PASTE_WAITS`] timeouts in a row. Bytes beyond
 //!   [`MAX_PASTE_BYTES`] are dropped.
@@ -56,8 +57,8 @@ pub use reply::Reply;
 use state::{State, Text};
 use token::{Token, Tokeniser};
 
-/// Limit on the bytes of an OSC, DCS or APC string. A longer string is dropped as a whole, because a truncated reply would
-/// be a wrong one. The longest reply that is used has about 40 bytes.
+/// Limit on the bytes of an OSC, DCS or APC string. A longer string is dropped as a whole, because a truncated reply
+/// would be a wrong one. The longest reply that is used has about 40 bytes.
 const MAX_STRING_BYTES: usize = 4096;
 
 /// Limit on the bytes of a CSI or SS3 sequence that are kept.
@@ -121,8 +122,8 @@ impl Parser {
         Self::default()
     }
 
-    /// Sets whether the terminal sends every key as a sequence and reports releases: flags 2 and 8 of the kitty keyboard
-    /// protocol.
+    /// Sets whether the terminal sends every key as a sequence and reports releases: flags 2 and 8 of the kitty
+    /// keyboard protocol.
     pub fn set_keys_are_sequences(&mut self, keys_are_sequences: bool) {
         self.key_encoding = if keys_are_sequences { KeyEncoding::Sequences } else { KeyEncoding::Legacy };
     }

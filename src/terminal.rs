@@ -1,10 +1,10 @@
 //! The single owner of the terminal: every mode that it switches on it switches off again, in reverse order.
 //!
-//! Dropping a [`Terminal`] restores the terminal: on return, on an error, and while a panic unwinds. A signal that would
-//! end the process ends the loop of [`app`](crate::app) instead, which drops the `Terminal` too; `main` then raises the
-//! signal again with its default action. The terminal is also restored before a stop (Ctrl-Z, SIGTSTP) and taken again
-//! afterwards. Panic messages are kept until the terminal is restored (see [`hold_panic_messages`]): printed earlier, they
-//! would vanish with the alternate screen.
+//! Dropping a [`Terminal`] restores the terminal: on return, on an error, and while a panic unwinds. A signal that
+//! would end the process ends the loop of [`app`](crate::app) instead, which drops the `Terminal` too; `main` then
+//! raises the signal again with its default action. The terminal is also restored before a stop (Ctrl-Z, SIGTSTP) and
+//! taken again afterwards. Panic messages are kept until the terminal is restored (see [`hold_panic_messages`]):
+//! printed earlier, they would vanish with the alternate screen.
 //!
 //! `O_NONBLOCK` is a property of the open file description, which the shell shares and would find set after the program
 //! has ended. So it is never set on an inherited descriptor: the terminal is opened a second time for writing. Keys and
@@ -58,8 +58,8 @@ pub struct Readable {
 impl Terminal {
     /// Takes control of the terminal: raw mode, the alternate screen, reports of keys, mouse and focus.
     ///
-    /// Frames go to standard output. Keys come from standard input, or from the controlling terminal if standard input is
-    /// not a terminal. A process in the background waits here until it is in the foreground.
+    /// Frames go to standard output. Keys come from standard input, or from the controlling terminal if standard input
+    /// is not a terminal. A process in the background waits here until it is in the foreground.
     ///
     /// # Errors
     /// If either is not a terminal, or cannot be set up; the terminal is then in its original state.
@@ -103,8 +103,8 @@ impl Terminal {
         self.output.send(bytes)
     }
 
-    /// Switches on a mode that not every terminal supports, until the terminal is restored. Sends nothing if the mode is
-    /// already on.
+    /// Switches on a mode that not every terminal supports, until the terminal is restored. Sends nothing if the mode
+    /// is already on.
     ///
     /// # Errors
     /// If the terminal is gone.
@@ -128,8 +128,8 @@ impl Terminal {
 
     /// Restores the terminal and waits for outstanding replies, which the shell would otherwise read as typed text.
     ///
-    /// Both the last bytes and the replies share a timeout of one second. Returns whether the terminal accepted all bytes:
-    /// if it did not, it has stopped reading, and writing to it would block.
+    /// Both the last bytes and the replies share a timeout of one second. Returns whether the terminal accepted all
+    /// bytes: if it did not, it has stopped reading, and writing to it would block.
     pub fn restore(&mut self, receiver: &mut Receiver, now: Duration) -> bool {
         let is_drained = self.modes.restore(&self.keys, &mut self.output, Some((&mut *receiver, now)), None);
         receiver.forget();
@@ -193,8 +193,8 @@ impl Terminal {
 }
 
 impl Drop for Terminal {
-    /// Restores the terminal without waiting for replies: only a caller with a [`Receiver`] knows of outstanding ones, and
-    /// calls [`restore`](Terminal::restore) first.
+    /// Restores the terminal without waiting for replies: only a caller with a [`Receiver`] knows of outstanding ones,
+    /// and calls [`restore`](Terminal::restore) first.
     fn drop(&mut self) {
         self.modes.restore(&self.keys, &mut self.output, None, None);
     }

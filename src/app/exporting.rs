@@ -1,4 +1,4 @@
-//! The picture that is shown -> a file's contents, and a file of a new name.
+//! Export of the shown picture into a new file.
 
 use crate::capabilities::{Capabilities, CellMode, Colors};
 use crate::cell;
@@ -9,13 +9,14 @@ use crate::tone::Picture;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// A pixel of the screen is so many of a PNG, each way: large enough to be looked at.
+/// Pixels of a PNG per pixel of the screen, in both directions. A picture of 80x24 cells becomes 640 pixels wide.
 const SCALE: u32 = 8;
 
-/// So many names are tried.
+/// Limit on the numbered names that are tried.
 const MOST_NAMES: u32 = 9999;
 
-/// What is shown without panels: as the terminal's cells show it, but in all colours where the format can have them.
+/// Returns the contents of an export without panels: the cells as the terminal shows them, in truecolor if the format
+/// has colours.
 pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabilities) -> io::Result<Vec<u8>> {
     let Capabilities { cell_mode, cell_aspect, .. } = *capabilities;
     match format.contents() {
@@ -30,7 +31,8 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
     }
 }
 
-/// Writes a file of that stem and format, or of the first one with a number that is not there yet; its name.
+/// Writes a new file named after `stem` and `format`, with the first unused number if that name exists. Returns its
+/// name.
 pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u8]) -> io::Result<String> {
     for number in 1..=MOST_NAMES {
         let number = if number == 1 { String::new() } else { format!("-{number}") };
@@ -51,7 +53,7 @@ fn write_unused(path: &Path, contents: &[u8]) -> io::Result<()> {
     file.finish()
 }
 
-/// What a file of a scene of that name is called, without its ending: one plain word.
+/// Returns the stem of an export's file name: the scene's name without folders, extension and special characters.
 pub(super) fn stem(name: &str) -> String {
     let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');

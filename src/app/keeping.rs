@@ -1,4 +1,4 @@
-//! A view is written into its scene's file.
+//! Writing a view into its scene's file.
 
 use super::watching::Needed;
 use crate::camera::Camera;
@@ -8,26 +8,29 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// What the user is asked before anything is written.
+/// A view that the user is asked to confirm before it is written.
 pub(super) struct Asked {
-    /// The file, and what it was like when he was asked.
+    /// The file and its state when the question was put.
     file: Needed,
     camera: Camera,
 }
 
 impl Asked {
-    /// Whether that view is to be written into that file; `None` if it is no plain file.
+    /// Proposes to write a view into `file`. `None` if that is not a plain file.
     pub(super) fn new(file: &Path, camera: Camera) -> Option<Self> {
         Some(Needed::now(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
     }
 
-    /// What the file is called, without its folder.
+    /// Returns the file's name without its folder.
     pub(super) fn file_name(&self) -> String {
         self.file.path().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 
-    /// He says yes. The file is replaced as a whole, with all of its other text as it was; one that has changed since he
-    /// was asked is left alone.
+    /// Adds the view to the file, which is replaced atomically and keeps all other text.
+    ///
+    /// # Errors
+    /// If the file cannot be written, is not a scene file, or has changed since the question was put; it is then left
+    /// as it was.
     pub(super) fn write(&self) -> io::Result<()> {
         let path = self.file.path();
         let text = fs::read_to_string(path)?;
@@ -69,7 +72,7 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).expect("it is there").count(), 2, "nothing is left over");
     }
 
-    /// Who may write everything cannot try it.
+    /// Checks nothing for a user who may write every file, such as root.
     #[test]
     fn a_file_that_may_not_be_written_is_left_alone() {
         let folder = tempfile::tempdir().expect("a folder can be made");

@@ -1,8 +1,8 @@
-//! The loop: one viewer on the terminal.
+//! The loop that drives one viewer on the terminal.
 //!
-//! It sleeps until a key, a signal, a finished frame or the time wakes it, tells the viewer what happened, and does what
-//! the viewer decides. Frames are traced by a thread of their own unless they take next to no time, so that keys and
-//! signals are heard meanwhile; so are scenes read.
+//! It sleeps until a key, a signal, a finished frame or a timeout wakes it, reports the event to the viewer, and
+//! carries out the viewer's decisions. Frames are traced and scenes are read on other threads, so that keys and signals
+//! are handled meanwhile; only frames that take less time than waking a thread are traced here.
 
 use super::exporting;
 use super::keeping::Asked;
@@ -21,7 +21,7 @@ use std::panic::resume_unwind;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// The loop's time: a frame's worth at the start, so that whatever is pressed then may have begun a frame ago.
+/// The loop's clock. It starts at the time of one frame, so that a key pressed at once may have been held for a frame.
 struct Clock {
     start: Instant,
 }
@@ -32,17 +32,18 @@ impl Clock {
     }
 }
 
-/// A viewer on a terminal, which is given back when this is dropped.
+/// A viewer on a terminal, which is restored when this is dropped.
 pub(super) struct Live {
     viewer: Viewer,
     terminal: Terminal,
     clock: Clock,
-    /// Those of the last frame; kept, because to let a buffer grow takes a tenth of the time from a key to its frame.
+    /// The bytes of the last frame. The buffer is reused, because growing a new one takes a tenth of the time from a
+    /// key to its frame.
     bytes: Vec<u8>,
-    /// What the scenes are called.
+    /// The names of the scenes.
     named: Vec<Named>,
     exports: Option<PathBuf>,
-    /// The view that the user was last asked about.
+    /// The view that the user was last asked to confirm.
     proposed: Option<Asked>,
 }
 
@@ -53,7 +54,7 @@ impl Drop for Live {
 }
 
 impl Live {
-    /// Shows nothing yet.
+    /// Returns a loop that has shown nothing yet.
     ///
     /// # Errors
     /// If the terminal is gone, or there is not enough memory for its window.
@@ -64,17 +65,17 @@ impl Live {
         Ok(Self { viewer, terminal, clock, bytes: Vec::new(), named, exports, proposed: None })
     }
 
-    /// The camera, if the user has moved it.
+    /// Returns the camera if the user has moved it.
     pub(super) fn moved(&self) -> Option<Camera> {
         self.viewer.moved()
     }
 
-    /// Gives the terminal back; whether it took all that was sent.
+    /// Restores the terminal and returns whether it accepted all bytes.
     pub(super) fn restore(&mut self) -> bool {
         self.terminal.restore(self.viewer.receiver(), self.clock.now())
     }
 
-    /// Asks the terminal what it is, and goes on until the user leaves.
+    /// Queries the terminal and runs until the user leaves.
     pub(super) fn run<E: Into<Notice> + Send + 'static>(
         &mut self,
         renderer: &mut Renderer,
@@ -87,7 +88,7 @@ impl Live {
                 self.take_news(heard).map_err(Error::Scene)?;
             }
             let until = self.act(renderer)?;
-            // That takes a while: the first picture does not wait for it.
+            // After the first picture, because starting to watch takes milliseconds.
             if self.viewer.has_shown()
                 && !self.terminal.is_sending()
                 && let Some(problem) = scenes.watch()?
@@ -117,7 +118,7 @@ impl Live {
         }
     }
 
-    /// Does what there is to do now; until when there is nothing else.
+    /// Carries out what the viewer decides to do now. Returns the time of its next wake-up.
     fn act(&mut self, renderer: &mut Renderer) -> io::Result<Option<Duration>> {
         loop {
             let busy = Busy { sending: self.terminal.is_sending(), tracing: renderer.tracing() };
@@ -143,8 +144,10 @@ impl Live {
         }
     }
 
-    /// Sleeps until something happens, or until that time; then hears what has come from the terminal, unless a signal
-    /// wants it stopped: that is left to be read with its last replies.
+    /// Sleeps until an event or the time `until`, then passes the terminal's bytes to the viewer.
+    ///
+    /// If the process is to be stopped, the bytes are left to be read with the last replies when the terminal is
+    /// restored.
     fn wait(&mut self, until: Option<Duration>, renderer: &Renderer, signals: &mut Signals) -> io::Result<()> {
         let mut timeout = until.map(|until| until.saturating_sub(self.clock.now()));
         if timeout.is_none() && renderer.tracing().is_none() && !self.terminal.is_sending() {
@@ -158,7 +161,7 @@ impl Live {
             return self.suspend(Some(StopTarget::Process), signals);
         }
         if signals.take_continued() {
-            // Stopped unasked, and another program may have left the terminal in any state.
+            // Continued after SIGSTOP, which cannot be caught: another program may have left the terminal in any state.
             return self.suspend(None, signals);
         }
         let mut buffer = [0; 4096];
@@ -169,7 +172,7 @@ impl Live {
         Ok(self.viewer.hear(bytes, self.clock.now())?)
     }
 
-    /// Does what the viewer asks for; whether the user leaves.
+    /// Carries out the viewer's requests. Returns whether the user leaves.
     fn carry_out_asks<E: Send + 'static>(&mut self, scenes: &mut Scenes<E>, signals: &mut Signals) -> io::Result<bool> {
         while let Some(ask) = self.viewer.ask() {
             match ask {
@@ -197,12 +200,12 @@ impl Live {
         Ok(false)
     }
 
-    /// What the scene is called that is shown.
+    /// Returns the name of the shown scene.
     fn shown(&self) -> Option<&Named> {
         self.named.get(self.viewer.shown_scene()?)
     }
 
-    /// Writes the picture that is there into a new file; its name.
+    /// Writes the shown picture into a new file and returns its name.
     fn export(&self, format: Format) -> io::Result<String> {
         let nothing = || io::Error::other("there is nothing to write, or nowhere");
         let (frame, folder) = self.viewer.frame().zip(self.exports.as_deref()).ok_or_else(nothing)?;
@@ -211,7 +214,7 @@ impl Live {
         exporting::write_new(folder, &stem, format, &contents)
     }
 
-    /// Has the user asked whether that camera is to be written into the scene's file, where it stands in one.
+    /// Asks the user whether to write `camera` into the scene's file, if it has one.
     fn propose(&mut self, camera: Camera) {
         let file = self.shown().and_then(|scene| scene.file.as_deref());
         self.proposed = file.and_then(|file| Asked::new(file, camera));
@@ -221,7 +224,7 @@ impl Live {
         }
     }
 
-    /// What there is of a scene is shown. What is wrong with it is the error where there is nothing to see.
+    /// Shows an event of a load. An error of loading is returned if there is no scene to show it over.
     fn take_news<E: Into<Notice>>(&mut self, Heard { of, news, is_slow }: Heard<E>) -> Result<(), E> {
         let orbits = self.named.get(of).is_some_and(|scene| scene.orbited);
         match news {
@@ -236,9 +239,11 @@ impl Live {
         Ok(())
     }
 
-    /// Gives the terminal back, stops if that is wanted, and takes the terminal again: at its size of then, and with all
-    /// drawn anew. With a signal to end, it stays given back. What was typed is not thrown away where no shell was asked
-    /// for.
+    /// Restores the terminal, stops if `stop` is given, takes the terminal again, and draws everything anew at its
+    /// current size.
+    ///
+    /// After a signal that ends the program the terminal stays restored. Without `stop` no shell has had the terminal,
+    /// and the input read meanwhile is kept.
     fn suspend(&mut self, stop: Option<StopTarget>, signals: &mut Signals) -> io::Result<()> {
         let now = self.clock.now();
         self.viewer.lose_terminal(now);
@@ -253,7 +258,7 @@ impl Live {
             return Ok(());
         }
         self.terminal.take_again(signals)?;
-        // What was on its way then is lost.
+        // Replies to earlier queries are lost.
         self.terminal.send(&self.viewer.questions(self.clock.now()))?;
         self.viewer.resize(self.terminal.window()?)?;
         Ok(self.viewer.hear_typed(typed, self.clock.now())?)

@@ -1,8 +1,8 @@
-//! The scene on its way: read, sketched and built by a thread of its own, so that keys and signals are heard meanwhile.
+//! Loading of scenes on a thread of its own, so that keys and signals are handled meanwhile.
 //!
-//! There is one such thread, and it reads one scene at a time: a save makes the load before it worthless, which is
-//! cancelled, so that however fast a large scene is saved, at most one load takes memory. Only a load that waits on a pipe,
-//! which may never deliver, is left behind for another thread to go on in its place.
+//! One thread reads one scene at a time. A save makes a load in progress worthless and cancels it, so that at most one
+//! load takes memory, however fast a large scene is saved. A load that waits on a pipe may never end: another thread
+//! then takes over the queue.
 
 use super::source::Source;
 use super::watching::Needed;
@@ -22,32 +22,33 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// What there is to say of the scene, in this order: of the last three only one, once.
+/// An event of a load. Events arrive in this order; exactly one of the last three ends the load.
 pub(super) enum News<E> {
-    /// How far it is.
+    /// Progress of reading or building.
     Progress(Progress),
-    /// What it was read from, or should have been.
+    /// The files that the scene was read from, including missing ones.
     Needs(Vec<Needed>),
-    /// Something to look at until it is there.
+    /// A coarse scene to look at while the trees are built.
     Sketch(Scene),
-    /// It is there.
+    /// The complete scene.
     Scene(Scene),
-    /// It will not come: what is wrong with it.
+    /// The error that ended the load.
     Fault(E),
-    /// It will not come: with what the thread panicked.
+    /// The payload of a panic that ended the load.
     Panic(Box<dyn Any + Send>),
 }
 
-/// What is there so soon is shown without a word about it.
+/// Loads that take less time are shown without a progress panel, which would only flash up: 100 ms is the usual limit
+/// of what is felt as immediate.
 pub(super) const MOMENT: Duration = Duration::from_millis(100);
 
-/// Progress is told so often at most: a person sees it move.
+/// Least time between two progress reports: 20 a second look continuous, and each one costs a frame.
 const STEP: Duration = Duration::from_millis(50);
 
-/// Our side of a load. Dropped, the load is cancelled, and nobody waits for its end.
+/// The receiving side of a load. Dropping it cancels the load without waiting for its end.
 pub(super) struct Loading<E> {
     news: Receiver<News<E>>,
-    /// What was heard while we waited.
+    /// Events that arrived during [`wait`](Self::wait).
     heard: VecDeque<News<E>>,
     begun: Instant,
     cancellation: Cancellation,
@@ -60,14 +61,17 @@ impl<E> Drop for Loading<E> {
 }
 
 impl<E> Loading<E> {
-    /// A scene that is there.
+    /// Returns a finished load of `scene`.
     pub(super) fn done(scene: Scene) -> Self {
         let (_, news) = channel();
         let heard = VecDeque::from([News::Scene(scene)]);
         Self { news, heard, begun: Instant::now(), cancellation: Cancellation::default() }
     }
 
-    /// Waits so long for the scene, or for what is wrong with it, which is then the error.
+    /// Waits for the scene, for at most `patience`.
+    ///
+    /// # Errors
+    /// The error that ended the load.
     pub(super) fn wait(&mut self, patience: Duration) -> Result<(), E> {
         let deadline = Instant::now() + patience;
         while let Ok(news) = self.news.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
@@ -84,31 +88,31 @@ impl<E> Loading<E> {
         Ok(())
     }
 
-    /// Whether it has taken longer than a moment: worth a word.
+    /// Returns whether the load has taken longer than [`MOMENT`].
     pub(super) fn is_slow(&self) -> bool {
         self.begun.elapsed() >= MOMENT
     }
 
-    /// What is new since the last call, one by one.
+    /// Returns the next event, if one has arrived.
     pub(super) fn next(&mut self) -> Option<News<E>> {
         self.heard.pop_front().or_else(|| self.news.try_recv().ok())
     }
 }
 
-/// The thread that loads scenes, in the order in which they are asked for.
+/// The thread that loads scenes, in the order of the requests.
 pub(super) struct Loader<E> {
     orders: Sender<Order<E>>,
 }
 
 impl<E: Send + 'static> Loader<E> {
-    /// Starts the thread. It ends when this is gone and its last load has been cancelled.
+    /// Starts the thread. It ends when `self` is dropped and the last load has ended.
     pub(super) fn start(threads: Option<usize>, waker: Waker) -> io::Result<Self> {
         let (orders, queue) = channel();
         Worker { queue: Arc::new(Mutex::new(queue)), threads, waker: Arc::new(Mutex::new(waker)) }.start()?;
         Ok(Self { orders })
     }
 
-    /// Asks for a load, which begins when the one before it has ended.
+    /// Requests a load, which starts when the one before it has ended.
     pub(super) fn load(&self, source: Source<E>) -> io::Result<Loading<E>> {
         let (sender, news) = channel();
         let cancellation = Cancellation::default();
@@ -118,16 +122,16 @@ impl<E: Send + 'static> Loader<E> {
     }
 }
 
-/// A load that is wanted.
+/// A requested load.
 struct Order<E> {
     source: Source<E>,
     news: Sender<News<E>>,
     cancellation: Cancellation,
 }
 
-/// The thread's side.
+/// The state of the loading thread.
 struct Worker<E> {
-    /// Shared with the threads that wait on pipes, which take nothing from it any more.
+    /// Shared with threads that wait on pipes, which no longer receive from it.
     queue: Arc<Mutex<Receiver<Order<E>>>>,
     threads: Option<usize>,
     waker: Arc<Mutex<Waker>>,
@@ -139,7 +143,7 @@ impl<E: Send + 'static> Worker<E> {
         terminal::without_signals(|| thread.spawn(|| self.run())).map(drop)
     }
 
-    /// Loads until nothing more can be asked for, or another thread has taken over.
+    /// Loads scenes until the queue is closed or another thread has taken over.
     fn run(self) {
         let mut pool = None;
         loop {
@@ -161,20 +165,19 @@ impl<E: Send + 'static> Worker<E> {
         }
     }
 
-    /// Starts the thread that takes over.
+    /// Starts another thread on the same queue.
     fn start_another(&self) -> io::Result<()> {
         Self { queue: Arc::clone(&self.queue), threads: self.threads, waker: Arc::clone(&self.waker) }.start()
     }
 
-    /// The threads that the user wants; `None`: Rayon's own, as many as there are cores.
+    /// Returns a pool with the requested number of threads; `None` stands for rayon's global pool.
     fn pool(&self) -> Option<ThreadPool> {
         ThreadPoolBuilder::new().num_threads(self.threads?).build().ok()
     }
 }
 
 impl<E: Send> Order<E> {
-    /// Loads the scene. `relieve` is called before a file is opened that may never deliver; `pool` gives the threads that
-    /// build.
+    /// Loads the scene. Calls `relieve` before opening a file that may block, and builds on the threads of `pool`.
     fn carry_out<'p>(
         self,
         waker: &Mutex<Waker>,
@@ -190,17 +193,17 @@ impl<E: Send> Order<E> {
     }
 }
 
-/// What a load tells of itself.
+/// The sending side of a load's events.
 struct Teller<'w, E> {
     news: Sender<News<E>>,
     waker: &'w Mutex<Waker>,
-    /// When progress was last told.
+    /// Time of the last progress report.
     told: Mutex<Option<Instant>>,
 }
 
 impl<E> Teller<'_, E> {
     fn tell(&self, news: News<E>) {
-        // Who does not listen any more has cancelled the load.
+        // A closed channel means that the load is cancelled.
         if self.news.send(news).is_ok()
             && let Ok(mut waker) = self.waker.lock()
         {
@@ -208,7 +211,7 @@ impl<E> Teller<'_, E> {
         }
     }
 
-    /// Tells of what is soon out of date, every now and then.
+    /// Sends a progress report, unless the last one is less than [`STEP`] ago.
     fn tell_progress(&self, progress: Progress) {
         let now = Instant::now();
         if let Ok(mut told) = self.told.lock() {
@@ -247,7 +250,7 @@ fn load<'p, E: Send>(
     let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
     teller.tell(News::Needs(needed));
     match read {
-        // Whatever came of it: it was cancelled.
+        // The result of a cancelled load is not wanted, whatever it is.
         _ if cancellation.is_cancelled() => {}
         Ok(draft) => match pool() {
             Some(pool) => pool.install(|| build(draft, &watcher, teller)),
@@ -285,12 +288,12 @@ mod tests {
         Draft::from_bytes("x", text, watcher).expect("the scene is fine")
     }
 
-    /// Waits until the load is done; returns whether there is a scene.
+    /// Waits until the load ends and returns whether it gave a scene.
     fn has_scene(loading: &Loading<Infallible>) -> bool {
         loading.news.iter().any(|news| matches!(news, News::Scene(_)))
     }
 
-    /// Loads that are cancelled before they begin are not even begun.
+    /// Loads that are cancelled while queued are never started.
     #[test]
     fn scenes_are_read_one_at_a_time_and_the_newest_next() {
         let (begun, at_work, most) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)), Arc::default());
@@ -320,7 +323,7 @@ mod tests {
         assert_eq!(begun.load(Ordering::SeqCst), 2, "the first and the last");
     }
 
-    /// One that waits on a pipe, which may never deliver, keeps no other from being read.
+    /// A load that waits on a pipe without a writer does not block the next one.
     #[test]
     fn a_load_that_waits_on_a_pipe_is_left_behind() {
         let folder = tempfile::tempdir().expect("a folder can be made");
@@ -341,7 +344,7 @@ mod tests {
         drop(first);
         let second = loader.load(Source::new("x", |watcher| Ok(draft(watcher)))).expect("the thread lives");
         assert!(has_scene(&second));
-        // The thread ends.
+        // Opens the writing end, so that the waiting thread ends.
         drop(fs::OpenOptions::new().write(true).open(&pipe));
     }
 

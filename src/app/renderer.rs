@@ -1,5 +1,6 @@
-//! The thread that traces, so that the loop never waits for a frame. One that takes less time than to wake the thread
-//! and to be woken by it is no wait: the loop traces it by itself.
+//! The tracing thread, so that the loop never waits for a frame.
+//!
+//! The loop itself traces frames that take less time than waking the thread and being woken by it.
 
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
@@ -20,24 +21,24 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// The thread's result: a frame unless it was cancelled, or what it panicked with.
+/// The result of a job: a frame, [`Cancelled`], or the payload of a panic.
 type Traced = Result<Result<Frame, Cancelled>, Box<dyn Any + Send>>;
 
-/// Frames that take no longer are traced by the loop.
+/// Limit on the predicted time of frames that the loop traces itself.
 const SMALL: Duration = Duration::from_micros(1500);
 
-/// Our side of the thread.
+/// The loop's side of the tracing thread.
 pub(super) struct Renderer {
     jobs: Option<Sender<Order>>,
     frames: Receiver<Traced>,
     thread: Option<JoinHandle<()>>,
-    /// In the order in which they will be done.
+    /// Jobs sent and not finished, in the order in which they will finish.
     in_work: VecDeque<InWork>,
-    /// How many seconds a pixel of the last frame of one sample took, all threads together, and what it showed.
+    /// The last frame of one sample per pixel, and its time per pixel in seconds, all threads together.
     seconds_per_pixel: Option<(Shot, f64)>,
 }
 
-/// What is known here of a job.
+/// A job that has been sent to the thread.
 struct InWork {
     refines: bool,
     token: Cancellation,
@@ -50,8 +51,8 @@ impl InWork {
 }
 
 impl Renderer {
-    /// Starts the thread, and the pool of those that it shares the tiles with. It is one of them itself: to wake another
-    /// and to be woken again takes as long as a small frame.
+    /// Starts the thread and the pool that it shares the tiles with. The thread is a member of the pool: handing a
+    /// frame to another thread and waiting for it takes as long as a small frame.
     pub(super) fn start(threads: Option<usize>, mut waker: Waker) -> io::Result<Self> {
         let (jobs, wanted) = channel::<Order>();
         let (begun, started) = channel();
@@ -69,7 +70,7 @@ impl Renderer {
             let _ = begun.send(Ok(()));
             for order in wanted {
                 let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| order(&mut tracer))));
-                // The loop may have ended.
+                // The receiver is gone if the loop has ended.
                 let heard = done.send(traced).is_ok();
                 waker.wake();
                 if !heard {
@@ -82,17 +83,17 @@ impl Renderer {
         Ok(Self { jobs: Some(jobs), frames, thread: Some(thread), in_work, seconds_per_pixel: None })
     }
 
-    /// What is being traced and still wanted.
+    /// Returns what is being traced and not cancelled; a new view before a refinement.
     pub(super) fn tracing(&self) -> Option<Tracing> {
         let wanted = self.in_work.iter().filter(|work| work.is_wanted());
         let tracing = wanted.map(|work| if work.refines { Tracing::Refinement } else { Tracing::NewView });
         tracing.min_by_key(|&tracing| tracing == Tracing::Refinement)
     }
 
-    /// Begins a frame, or traces it at once where that takes next to no time.
+    /// Starts tracing a frame; a small one is traced at once and returned.
     pub(super) fn begin(&mut self, job: Job) -> Option<Frame> {
         if self.is_small(&job) {
-            // The same light as of one sample at most, without what is kept to go on: that is little to trace again.
+            // The same light as `UpTo(1)`, without the accumulator for refining, which is quickly traced again.
             let one = Sampling::Each(NonZeroU32::MIN);
             let see = |map, part| maps::seen(map, Crew::Alone, &job.scene, &job.shot.camera, part, one);
             return frame_of(&job, see).ok().map(|frame| self.noted(frame));
@@ -111,7 +112,7 @@ impl Renderer {
         }
     }
 
-    /// Panics in one of the threads that trace, if a test asks for it.
+    /// Makes a tracing thread panic, if a test has asked for it.
     pub(super) fn panic_if_asked(&mut self) {
         if terminal::take_worker_panic() {
             let work = InWork { refines: false, token: Cancellation::default() };
@@ -122,31 +123,32 @@ impl Renderer {
         }
     }
 
-    /// The view has changed: what refines the last one is given up at once.
+    /// Cancels refinements, because the view has changed.
     pub(super) fn give_up_refining(&self) {
         for work in self.in_work.iter().filter(|work| work.refines) {
             work.token.cancel();
         }
     }
 
-    /// A frame that has been finished since the last call, if one has.
+    /// Returns a frame that has been finished since the last call, if any.
     ///
     /// # Panics
-    /// With what the thread panicked with.
+    /// With the payload of a panic in the thread.
     pub(super) fn finished(&mut self) -> Option<Frame> {
         loop {
             let traced = self.frames.try_recv().ok()?;
             let is_wanted = self.in_work.pop_front().is_some_and(|work| work.is_wanted());
-            // The message is out already, or kept; the panic goes on here, where the terminal is given back.
+            // The panic hook has printed or kept the message. The panic continues here, where the terminal is restored.
             let frame = traced.unwrap_or_else(|panic| resume_unwind(panic));
-            // One may have been given up too late to be stopped.
+            // A frame may have been finished before it noticed that it was cancelled.
             if let (Ok(frame), true) = (frame, is_wanted) {
                 return Some(self.noted(frame));
             }
         }
     }
 
-    /// Whether a frame will take next to no time, going by the last of one sample.
+    /// Returns whether a frame is predicted to take less than [`SMALL`], from the time per pixel of the last one like
+    /// it.
     fn is_small(&self, job: &Job) -> bool {
         let pixels = job.shot.resolution.pixel_count() as f64;
         let is_short = |(shot, seconds): (Shot, f64)| {
@@ -166,7 +168,7 @@ impl Renderer {
 }
 
 impl Drop for Renderer {
-    /// The frame in work is given up at its next tile, so that leaving is quick.
+    /// Cancels all jobs, which end at their next tile, and joins the thread.
     fn drop(&mut self) {
         for work in &self.in_work {
             work.token.cancel();
@@ -178,10 +180,10 @@ impl Drop for Renderer {
     }
 }
 
-/// What the thread is sent.
+/// A job as sent to the thread.
 type Order = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>;
 
-/// Returns what `see` sees of each part of a frame.
+/// Returns the frame of a job, whose pictures `see` traces one by one.
 fn frame_of(job: &Job, mut see: impl FnMut(Map, Resolution) -> Result<Seen, Cancelled>) -> Result<Frame, Cancelled> {
     let start = Instant::now();
     let Job { scene, shot, sampling, refines } = job.clone();
@@ -201,14 +203,14 @@ fn frame_of(job: &Job, mut see: impl FnMut(Map, Resolution) -> Result<Seen, Canc
     Ok(Frame { scene, shot, picture, parts, sampling, legends, refines, cost, trace: start.elapsed() })
 }
 
-/// The thread's side.
+/// The state of the tracing thread.
 #[derive(Default)]
 struct Tracer {
-    /// The last picture, if it can be refined.
+    /// The last picture that can be refined.
     kept: Option<Kept>,
 }
 
-/// A picture that is gone on with where it is of the wanted scene and view.
+/// A picture with its samples, to be refined if the next job is of the same scene and view.
 struct Kept {
     scene: Scene,
     view: (Camera, Resolution),
@@ -228,7 +230,7 @@ impl Kept {
 
 impl Tracer {
     fn trace(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
-        // The last frame may have been traced by the loop, or be of other pictures.
+        // It may be of an older frame, as the loop traces small ones, or of another view.
         let mut kept = self.kept.take();
         frame_of(job, |map, resolution| {
             let last = if map.refines() { kept.take() } else { None };
@@ -237,7 +239,7 @@ impl Tracer {
         })
     }
 
-    /// One of a frame's pictures; the light of the scene is gone on with where that can be.
+    /// Traces one of a frame's pictures, or refines `kept` if it is given.
     fn seen(
         &mut self,
         job: &Job,
@@ -260,7 +262,7 @@ impl Tracer {
     }
 }
 
-/// Whether each pixel has just one.
+/// Returns whether each pixel gets exactly one sample.
 fn has_one_sample(sampling: Sampling) -> bool {
     matches!(sampling, Sampling::Each(NonZeroU32::MIN) | Sampling::UpTo(NonZeroU32::MIN))
 }
@@ -300,7 +302,7 @@ mod tests {
         }
     }
 
-    /// What refines a view that has changed since is not shown, even if it was finished before it heard of it.
+    /// A cancelled refinement is not shown, even if it was finished before it noticed.
     #[test]
     fn a_refinement_given_up_too_late_is_thrown_away() {
         let (done, frames) = channel();
@@ -322,7 +324,7 @@ mod tests {
         assert_eq!(renderer.tracing(), None);
     }
 
-    /// The loop traces what its last frames were small for, and the same picture as the thread does.
+    /// The loop traces frames like the last small one, with the same picture as the thread's.
     #[test]
     fn small_frames_are_done_at_once() {
         let scene = three_spheres();
@@ -343,7 +345,7 @@ mod tests {
         wait_for(&mut renderer);
     }
 
-    /// What was traced already is not traced again; what is of another view is.
+    /// A picture of the same scene and view is refined; any other starts with its first sample.
     #[test]
     fn a_picture_is_gone_on_with_where_it_was_left() {
         let scene = three_spheres();
@@ -361,13 +363,13 @@ mod tests {
         let rest = trace(camera, Sampling::BEST, true);
         assert_eq!(first.cost.rays + rest.cost.rays, best.cost.rays);
         assert!(first.picture != shown && rest.picture == shown);
-        // A new view begins anew, even one as before; so does one whose first frame another has traced.
+        // A frame that does not refine starts anew, and so does a refinement of a view whose first frame was not kept.
         assert!(trace(camera, one, false).picture == first.picture);
         let other = camera.with_pose(Pose { eye: camera.pose().eye + Vec3::X, ..camera.pose() }).expect("a pose");
         trace(other, one, false);
         let anew = trace(camera, Sampling::BEST, true);
         assert!(anew.picture == shown && anew.cost.rays == best.cost.rays);
-        // And of another scene: that of a sketch is not gone on with.
+        // The picture of another scene, such as a sketch, is not refined either.
         trace(camera, one, false);
         let anew = trace_of(&three_spheres(), camera, Sampling::BEST, true);
         assert!(anew.picture == shown && anew.cost.rays == best.cost.rays);

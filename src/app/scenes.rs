@@ -1,4 +1,4 @@
-//! The scenes that there are to look at: which one is wanted, what is on its way, and when it is read again.
+//! The list of scenes: the current one, its load, and when it is read again.
 
 use super::loading::{Loader, Loading, MOMENT, News};
 use super::source::{Named, Source};
@@ -7,39 +7,40 @@ use crate::scene::Scene;
 use crate::terminal::{Signals, Waker};
 use std::io;
 
-/// One of them is wanted at a time.
+/// The scenes that the user can switch between.
 pub(super) struct Scenes<E> {
-    /// None for a scene that was there from the start.
+    /// Empty for a scene that was passed as a value.
     sources: Vec<Source<E>>,
+    /// Index of the current scene.
     wanted: usize,
-    /// None for a scene that was there from the start.
+    /// `None` for a scene that was passed as a value.
     loader: Option<Loader<E>>,
     loading: Loading<E>,
     waker: Waker,
-    /// `None`: nothing is watched yet, or the system does not tell of changes.
+    /// `None` before the first watch, and if the system does not support it.
     watching: Option<Watching>,
-    /// What the wanted scene needs, if that is not watched yet.
+    /// The files of the current scene that are not watched yet.
     unwatched: Option<Vec<Needed>>,
-    /// Why changes are not heard of, as the user was last told.
+    /// The reason why changes are not noticed, as last reported to the user.
     told: Option<String>,
 }
 
-/// What is new of the wanted scene.
+/// An event of the current scene's load.
 pub(super) struct Heard<E> {
-    /// Which one it is.
+    /// Index of the scene.
     pub(super) of: usize,
     pub(super) news: News<E>,
-    /// Whether it has been on its way for longer than a moment.
+    /// Whether the load has taken longer than [`MOMENT`].
     pub(super) is_slow: bool,
 }
 
 impl<E: Send + 'static> Scenes<E> {
-    /// A scene that is there.
+    /// Returns a list of one loaded scene.
     pub(super) fn done(scene: Scene, signals: &Signals) -> io::Result<Self> {
         Self::new(Vec::new(), None, Loading::done(scene), signals)
     }
 
-    /// Begins with the first.
+    /// Starts to load the first scene.
     pub(super) fn start(sources: Vec<Source<E>>, threads: Option<usize>, signals: &Signals) -> io::Result<Self> {
         let first = sources.first().cloned().ok_or_else(|| io::Error::other("there is no scene to look at"))?;
         let loader = Loader::start(threads, signals.waker()?)?;
@@ -57,12 +58,15 @@ impl<E: Send + 'static> Scenes<E> {
         Ok(Self { sources, wanted: 0, loader, loading, waker, watching: None, unwatched: None, told: None })
     }
 
-    /// Waits a moment for the first, or for what is wrong with it, which is then the error.
+    /// Waits for the first scene, for at most [`MOMENT`].
+    ///
+    /// # Errors
+    /// The error of loading it.
     pub(super) fn wait(&mut self) -> Result<(), E> {
         self.loading.wait(MOMENT)
     }
 
-    /// What is new since the last call, one by one. A scene whose files have changed is read again.
+    /// Returns the next event of the load, if one has arrived. Starts to read the scene again if a file has changed.
     pub(super) fn next(&mut self) -> io::Result<Option<Heard<E>>> {
         if self.watching.as_mut().is_some_and(Watching::take_changed) {
             self.read_again()?;
@@ -76,12 +80,12 @@ impl<E: Send + 'static> Scenes<E> {
         Ok(None)
     }
 
-    /// What they are called.
+    /// Returns the names of the scenes.
     pub(super) fn named(&self) -> Vec<Named> {
         self.sources.iter().map(|source| source.named().clone()).collect()
     }
 
-    /// Another one is wanted, so many further on, if there are several; after the last comes the first.
+    /// Switches to the scene `steps` further on, in a cycle. Does nothing if there is only one.
     pub(super) fn go(&mut self, steps: isize) -> io::Result<()> {
         if self.sources.len() < 2 {
             return Ok(());
@@ -91,7 +95,7 @@ impl<E: Send + 'static> Scenes<E> {
         self.read_again()
     }
 
-    /// Whatever was on its way is given up.
+    /// Cancels the load in progress and starts one of the current scene.
     fn read_again(&mut self) -> io::Result<()> {
         if let (Some(source), Some(loader)) = (self.sources.get(self.wanted), &self.loader) {
             self.unwatched = None;
@@ -100,13 +104,14 @@ impl<E: Send + 'static> Scenes<E> {
         Ok(())
     }
 
-    /// Sees to it that changes of the files are heard of from now on, and reads them again if one has changed since.
-    /// Returns why changes will not be heard of, where that is so and has not been told yet.
+    /// Starts to watch the current scene's files, and reads the scene again if one has changed since it was read.
+    ///
+    /// Returns the reason why changes will not be noticed, unless it was returned before.
     pub(super) fn watch(&mut self) -> io::Result<Option<String>> {
         let Some(files) = self.unwatched.take().filter(|files| !files.is_empty()) else { return Ok(None) };
         let problem = match self.started() {
             Ok(watching) => {
-                // What was read is out of date already.
+                // A file has changed between reading and watching.
                 if watching.watch(files) {
                     self.read_again()?;
                 }

@@ -1,4 +1,4 @@
-//! Where a scene comes from.
+//! The source of a scene.
 
 use crate::mesh_file;
 use crate::progress::{Cancelled, Unfinished, Watcher};
@@ -7,28 +7,28 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::{fmt, io};
 
-/// A scene that can be read as often as it is wanted: at the start, when it is come back to, and when one of its files
-/// has changed. See [`open`](super::open).
+/// A scene that can be read repeatedly: at the start, when the user returns to it, and when one of its files has
+/// changed. See [`open`](super::open).
 pub struct Source<E = LoadError> {
     named: Named,
     read: Arc<Read<E>>,
 }
 
-/// What is known of a scene without reading it.
+/// The facts about a scene that are known without reading it.
 #[derive(Clone, Debug)]
 pub(super) struct Named {
-    /// A person knows it by that.
+    /// The name shown to the user.
     pub(super) name: String,
-    /// The scene file that it stands in.
+    /// The scene file, into which views can be written.
     pub(super) file: Option<PathBuf>,
-    /// Whether the eye goes around it at first.
+    /// Whether the live view starts in orbit mode.
     pub(super) orbited: bool,
 }
 
 type Read<E> = dyn Fn(&Watcher<'_>) -> Result<Draft, E> + Send + Sync;
 
 impl Source {
-    /// Returns the scene or mesh in that file. The eye goes around a mesh at first.
+    /// Returns the scene or mesh in the file at `path`. A mesh starts in orbit mode.
     pub fn of_file(path: &Path) -> Self {
         let (name, file) = (path.to_string_lossy().into_owned(), path.to_owned());
         let is_mesh = mesh_file::is_mesh(&name, &[]);
@@ -46,10 +46,11 @@ fn draft(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
 }
 
 impl<E> Source<E> {
-    /// The scene that `read` gives, under a name that a person knows it by. `read` should return soon after its watcher has
-    /// [gone](Watcher::is_gone), with whatever result, because one scene is read at a time, and the next one waits for it;
-    /// only a `read` that has told its watcher of a pipe may wait for ever. What it tells its watcher to
-    /// [need](Watcher::needs) is watched: as files change, the scene is read again.
+    /// Returns a source that calls `read`, with the name shown to the user.
+    ///
+    /// `read` should return soon after its watcher [is gone](Watcher::is_gone), with any result: one scene is read at a
+    /// time, and the next one waits for it. Only after reporting a pipe to its watcher may it block for ever. The files
+    /// that it reports as [needed](Watcher::needs) are watched, and the scene is read again when one changes.
     #[doc(hidden)]
     pub fn new(
         name: impl Into<String>,
@@ -58,13 +59,13 @@ impl<E> Source<E> {
         Self { named: Named { name: name.into(), file: None, orbited: false }, read: Arc::new(read) }
     }
 
-    /// It stands in that scene file, into which views may be written.
+    /// Sets the scene file, into which views can be written.
     #[doc(hidden)]
     pub fn with_file(self, file: PathBuf) -> Self {
         Self { named: Named { file: Some(file), ..self.named }, ..self }
     }
 
-    /// The eye goes around it at first, and does not fly: good for a thing by itself.
+    /// Starts the live view in orbit mode instead of flight, as suits a single object.
     #[doc(hidden)]
     pub fn orbited(self) -> Self {
         Self { named: Named { orbited: true, ..self.named }, ..self }
@@ -74,10 +75,10 @@ impl<E> Source<E> {
         &self.named
     }
 
-    /// Reads it.
+    /// Reads the scene.
     ///
     /// # Errors
-    /// What is wrong with the scene.
+    /// The error of `read`.
     #[doc(hidden)]
     pub fn read(&self, watcher: &Watcher<'_>) -> Result<Draft, E> {
         (self.read)(watcher)

@@ -1,8 +1,8 @@
-//! The files of the scene that is shown: when they change, it is read again.
+//! Watching the files of the shown scene, which is read again when one changes.
 //!
-//! The system tells of changes in folders, because a file that is replaced by another of its name is a new file. A path may
-//! lead through several folders and links: each is watched, and while one of them is missing, what is around it. A thread
-//! sleeps until the system tells something; at rest nothing wakes it, or us.
+//! Folders are watched, not files, because a file that is replaced under its name is a new file. A path may lead
+//! through several folders and links: each is watched, and while one is missing, also the folders around it. A thread
+//! sleeps until the system reports an event; at rest neither that thread nor the loop is woken.
 
 mod needed;
 mod way;
@@ -20,19 +20,19 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use way::Way;
 
-/// Our side of the thread.
+/// The loop's side of the watching thread.
 pub(super) struct Watching {
     watcher: RecommendedWatcher,
-    /// What the scene was read from.
+    /// The files that the scene was read from.
     needed: Vec<Needed>,
-    /// The folders that are watched.
+    /// The watched folders, and which folder each name led to.
     folders: HashMap<PathBuf, Identity>,
-    /// Why some folder is not watched.
+    /// The reason why a folder could not be watched.
     problem: Option<String>,
     shared: Arc<Mutex<Shared>>,
 }
 
-/// What the thread goes by, and what it says.
+/// The state shared with the thread, which fills `told`.
 #[derive(Default)]
 struct Shared {
     /// Folders and links on the way to the files.
@@ -42,31 +42,31 @@ struct Shared {
     told: Told,
 }
 
-/// What has happened, and so what there is to do; the later ones include the earlier ones.
+/// The most significant event since the last look. A later variant includes the earlier ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 enum Told {
     #[default]
     Nothing,
-    /// A file is gone, perhaps for a moment: it may come back by another way.
+    /// A file was removed, perhaps for a moment; it may come back through another folder or link.
     Gone,
-    /// The way to a file has changed: it may be another file now.
+    /// A folder or link on the way to a file has changed, so the path may lead to another file.
     Moved,
-    /// A file has got new contents.
+    /// A file has new contents.
     Written,
 }
 
-/// The way to a file is looked for again this often, where it changes while it is looked for.
+/// Limit on how often the way to a file is resolved again because it has changed meanwhile.
 const MOST_LOOKS: usize = 8;
 
 impl Watching {
-    /// Starts the thread, which watches nothing yet.
+    /// Starts the thread without any folder to watch.
     pub(super) fn start(mut waker: Waker) -> Result<Self, String> {
         terminal::reach("watching").map_err(|error| error.to_string())?;
         let shared = Arc::<Mutex<Shared>>::default();
         let theirs = Arc::clone(&shared);
         let hear = move |event: notify::Result<Event>| {
             let mut shared = lock(&theirs);
-            // Where the system lost count of the changes, there may have been one.
+            // After an overflow of the event queue any file may have changed.
             let told = event.map_or(Told::Written, |event| shared.meaning(&event));
             if told > shared.told {
                 shared.told = told;
@@ -75,8 +75,8 @@ impl Watching {
         };
         let watcher = terminal::without_signals(|| notify::recommended_watcher(hear)).map_err(|e| reason(&e))?;
         let mut watching = Self { watcher, needed: Vec::new(), folders: HashMap::new(), problem: None, shared };
-        // notify does not say whether its thread could be started, and without it panics at every call, also when it is
-        // dropped. This call alone returns an error.
+        // notify does not report a failure to start its thread, and then panics at every call, even when dropped. Only
+        // `configure` returns an error.
         if watching.watcher.configure(Config::default()).is_err() {
             std::mem::forget(watching);
             return Err("no thread can be started".to_owned());
@@ -84,7 +84,7 @@ impl Watching {
         Ok(watching)
     }
 
-    /// From now on these are watched, and no others. Returns whether one has changed since it was read.
+    /// Watches these files instead of the previous ones. Returns whether one has changed since it was read.
     pub(super) fn watch(&mut self, needed: Vec<Needed>) -> bool {
         self.needed = needed;
         self.look(true)
@@ -100,27 +100,27 @@ impl Watching {
             Told::Written => true,
         };
         if has_changed {
-            // Read again once for this change, and not for each event that tells of it.
+            // One change may cause several events, but is to be reported once.
             self.needed.iter_mut().for_each(|needed| *needed = Needed::now(needed.path()));
         }
         has_changed
     }
 
-    /// Returns why changes are not seen, if they are not.
+    /// Returns the reason why changes will not be noticed, if there is one.
     pub(super) fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
 
-    /// Watches the ways to the files as they are now. Returns whether one of the files has changed: of all, or of those whose
-    /// folder has not been watched before. (Of the others the end of writing is told; to read them now might be to read
-    /// half.)
+    /// Watches the current ways to the files. Returns whether a file has changed: any file if `all`, otherwise one
+    /// whose folder was not watched before. (For the others the end of writing is reported; read now, they might be
+    /// incomplete.)
     fn look(&mut self, all: bool) -> bool {
         let mut fresh = HashSet::new();
         for _ in 0..MOST_LOOKS {
             let ways = self.ways();
             self.share(&ways);
             fresh.extend(self.watch_folders(&ways));
-            // A link that was exchanged before its folder was watched leads elsewhere now.
+            // A link may have been replaced before its folder was watched.
             if self.ways() == ways {
                 break;
             }
@@ -141,11 +141,11 @@ impl Watching {
         shared.ends = ways.iter().map(|way| way.end().to_owned()).collect();
     }
 
-    /// Watches the folders of these ways, and no others; returns those that were not watched before.
+    /// Watches the folders of these ways and no others. Returns those that were not watched before.
     fn watch_folders(&mut self, ways: &[Way]) -> Vec<PathBuf> {
         let mut looked_in: HashSet<_> = ways.iter().flat_map(Way::looked_in).map(Path::to_owned).collect();
         if cfg!(not(target_os = "linux")) {
-            // kqueue tells of a folder's names alone, and of contents where the file itself is watched.
+            // kqueue reports only changes of names for a folder; for contents the file itself must be watched.
             looked_in.extend(ways.iter().map(Way::end).map(Path::to_owned));
         }
         let around = ways.iter().flat_map(Way::around).map(Path::to_owned);
@@ -164,7 +164,7 @@ impl Watching {
             match self.watch_folder(&folder) {
                 Ok(true) => fresh.push(folder),
                 Err(error) if looked_in.contains(&folder) => self.problem = Some(reason(&error)),
-                // A folder around that may not be looked into is not told of: it hardly ever changes.
+                // An outer folder without read permission is no problem worth a message: it hardly ever changes.
                 _ => {}
             }
         }
@@ -176,12 +176,12 @@ impl Watching {
         let found = identity(&fs::metadata(folder)?);
         let known = self.folders.get(folder).copied();
         if known.is_some_and(|known| known != found) {
-            // The watch is on the one that was there before.
+            // The watch is on the folder that had this name before.
             let _ = self.watcher.unwatch(folder);
         }
         self.folders.remove(folder);
-        // Also where it is watched already, which costs nothing and loses nothing: notify gives up a folder when it is
-        // told that its name is gone, even if there is another of that name by then.
+        // Repeated even for a watched folder, which is free: notify drops a watch when the folder's name is removed,
+        // even if there is a new folder of that name by then.
         self.watcher.watch(folder, RecursiveMode::NonRecursive)?;
         self.folders.insert(folder.to_owned(), found);
         Ok(known != Some(found))
@@ -210,29 +210,30 @@ impl Shared {
     }
 }
 
-/// What an event means for a file. Its new contents count when they are all there, so that none is read half written.
+/// Returns the meaning of an event for a file. New contents count when the writer closes the file, so that no file is
+/// read half written.
 fn of_file(kind: EventKind, path: &Path) -> Told {
     match kind {
         EventKind::Remove(_) | EventKind::Modify(ModifyKind::Name(RenameMode::From)) => Told::Gone,
-        // (A pipe is written to by whoever feeds it.)
+        // Not for pipes: writing to one is not a change of the scene.
         EventKind::Access(AccessKind::Close(AccessMode::Write)) | EventKind::Modify(ModifyKind::Name(_))
             if path.is_file() =>
         {
             Told::Written
         }
         EventKind::Create(_) if is_about_to_be_written(path) => Told::Nothing,
-        // What else comes into its place. With other permissions, it may be read at last.
+        // Anything else has taken the name; or the permissions have changed, and the file may have become readable.
         EventKind::Create(_) | EventKind::Modify(ModifyKind::Name(_) | ModifyKind::Metadata(_)) => Told::Moved,
         _ => Told::Nothing,
     }
 }
 
-/// Returns whether what was just created is a new file, and neither a folder nor a link of either kind.
+/// Returns whether a path that was just created is a new file, and not a folder, a symbolic or a hard link.
 fn is_about_to_be_written(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|data| data.is_file() && data.nlink() == 1)
 }
 
-/// What an event means for a folder or link on the way to a file.
+/// Returns the meaning of an event for a folder or link on the way to a file.
 fn of_step(kind: EventKind) -> Told {
     match kind {
         EventKind::Access(_) | EventKind::Modify(ModifyKind::Data(_)) => Told::Nothing,
@@ -240,10 +241,10 @@ fn of_step(kind: EventKind) -> Told {
     }
 }
 
-/// Too many open files, on all systems that this runs on.
+/// The error code for too many open files, on Linux and macOS.
 const EMFILE: i32 = 24;
 
-/// Why something is not watched, in words.
+/// Returns the reason why a folder is not watched, in words.
 fn reason(error: &notify::Error) -> String {
     match &error.kind {
         notify::ErrorKind::MaxFilesWatch => {

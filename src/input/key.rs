@@ -217,8 +217,8 @@ impl Press {
         KeyEvent::new_with_kind_and_state(code, self.modifiers | more, self.kind, self.state)
     }
 
-    /// Returns a character key as the legacy encoding would report it: Shift with `w` as `W` with Shift, Shift with `/` as
-    /// `?` without, if the terminal reports the shifted character.
+    /// Returns a character key as the legacy encoding would report it: Shift with `w` as `W` with Shift, Shift with `/`
+    /// as `?` without, if the terminal reports the shifted character.
     fn press_char(self, c: char, shifted: Option<char>) -> KeyEvent {
         if !self.modifiers.contains(KeyModifiers::SHIFT) {
             return self.press(KeyCode::Char(c), KeyModifiers::NONE);

@@ -1,8 +1,8 @@
 //! The tokeniser: `vte`, fed one byte at a time.
 //!
 //! It splits UTF-8 into characters and CSI sequences into parameters. The parser keeps everything else from it:
-//! - a lone ESC, because `vte` continues a sequence over ESC and a control character, DEL or a non-ASCII character, which
-//!   are Alt and a key;
+//! - a lone ESC, because `vte` continues a sequence over ESC and a control character, DEL or a non-ASCII character,
+//!   which are Alt and a key;
 //! - `ESC O`, which `vte` dispatches at once, so that the letter after it would be printed;
 //! - strings, which `vte` keeps without a limit.
 
@@ -31,8 +31,8 @@ impl Tokeniser {
         self.0.advance(&mut Tokens { tokens: Vec::new(), text: &[] }, b"\x1b[");
     }
 
-    /// Returns the tokens that `byte` completes: at most two, where it also shows that the bytes before it are an invalid
-    /// character. `text` holds the bytes since `ESC [`, including this one.
+    /// Returns the tokens that `byte` completes: at most two, where it also shows that the bytes before it are an
+    /// invalid character. `text` holds the bytes since `ESC [`, including this one.
     pub(super) fn take(&mut self, byte: u8, text: &[u8]) -> Vec<Token> {
         let mut performer = Tokens { tokens: Vec::new(), text };
         self.0.advance(&mut performer, &[byte]);

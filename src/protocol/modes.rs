@@ -16,8 +16,8 @@ pub enum Mode {
     BracketedPaste,
     /// Reports of focus changes (1004).
     FocusChange,
-    /// Reports of mouse buttons, wheel and drags (1002). crossterm's command also requests motion without a button (1003),
-    /// which would wake the loop for events without a meaning here.
+    /// Reports of mouse buttons, wheel and drags (1002). crossterm's command also requests motion without a button
+    /// (1003), which would wake the loop for events without a meaning here.
     Mouse,
     /// Mouse reports in SGR form (1006): coordinates of any size, and the button of a release.
     MouseSgr,

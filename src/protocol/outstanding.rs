@@ -84,7 +84,8 @@ mod tests {
         for tag in [first, second, third] {
             outstanding.sent(&tag.query(), NOW);
         }
-        // The replies to the fence and to the first tag are lost, the second arrives twice, and two replies are foreign.
+        // The replies to the fence and to the first tag are lost, the second arrives twice, and two replies are
+        // foreign.
         for reply in [mode(201), mode(201), mode(700), mode(2026), Reply::DeviceAttributes(vec![62])] {
             outstanding.take(&reply);
         }

@@ -4,9 +4,10 @@
 //! reports unknown modes (DECRQM) repeats the mode's number in the reply. So the number of a mode that does not exist
 //! serves as a sequence number, by which a lost, late, duplicated or foreign reply is recognised.
 //!
-//! The numbers have three digits: each digit costs one byte a frame, and no terminal is known to use a private mode from
-//! 200 to 999. (More terminals report the cursor position, CPR. But a position of our choosing takes a cursor move, 10 to
-//! 14 bytes a frame instead of 8, and fails in a window of a single row, where the reply is also that of Shift+F3.)
+//! The numbers have three digits: each digit costs one byte a frame, and no terminal is known to use a private mode
+//! from 200 to 999. (More terminals report the cursor position, CPR. But a position of our choosing takes a cursor
+//! move, 10 to 14 bytes a frame instead of 8, and fails in a window of a single row, where the reply is also that of
+//! Shift+F3.)
 
 use std::ops::RangeInclusive;
 
@@ -24,7 +25,8 @@ impl Tag {
     /// The tag among the queries sent at the start. A terminal that replies to it replies to all tags.
     pub const FIRST: Self = Self(*NUMBERS.start());
 
-    /// Returns the next tag, which is never [`FIRST`](Self::FIRST). The 799 others repeat after 13 s at 60 frames a second.
+    /// Returns the next tag, which is never [`FIRST`](Self::FIRST). The 799 others repeat after 13 s at 60 frames a
+    /// second.
     pub fn next(self) -> Self {
         Self(if self.0 < *NUMBERS.end() { self.0 + 1 } else { Self::FIRST.0 + 1 })
     }

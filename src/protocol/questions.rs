@@ -1,7 +1,7 @@
 //! The queries sent to a terminal at the start, as one batch, and their replies.
 //!
-//! The batch ends with the query that every terminal replies to (DA1). Terminals reply in order: once that reply is here,
-//! no other reply to the batch follows. The first picture does not wait for it.
+//! The batch ends with the query that every terminal replies to (DA1). Terminals reply in order: once that reply is
+//! here, no other reply to the batch follows. The first picture does not wait for it.
 
 use crate::capabilities::{Answers, Asking, Hints, TEST_COLOR};
 use crate::input::Reply;

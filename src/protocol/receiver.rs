@@ -4,8 +4,8 @@ use super::outstanding::Outstanding;
 use crate::input::{Input, Parser};
 use std::time::Duration;
 
-/// Timeout after which a lone `ESC` is the Escape key. 50 ms is the usual choice of editors: longer than the gap within a
-/// sequence on most links, shorter than what is felt as a delay.
+/// Timeout after which a lone `ESC` is the Escape key. 50 ms is the usual choice of editors: longer than the gap within
+/// a sequence on most links, shorter than what is felt as a delay.
 const ESCAPE_TIMEOUT: Duration = Duration::from_millis(50);
 /// Timeout where a lone `ESC` is probably the first byte of a reply, or keys are sequences and it cannot be the key.
 const SEQUENCE_TIMEOUT: Duration = Duration::from_secs(1);
@@ -27,8 +27,8 @@ impl Receiver {
         self.outstanding.sent(bytes, now);
     }
 
-    /// Parses the bytes that arrive at `now` and returns the inputs. Without bytes it handles the timeout of an incomplete
-    /// escape sequence, if that has passed.
+    /// Parses the bytes that arrive at `now` and returns the inputs. Without bytes it handles the timeout of an
+    /// incomplete escape sequence, if that has passed.
     pub fn receive(&mut self, bytes: &[u8], now: Duration) -> Vec<Input> {
         let mut inputs = Vec::new();
         if !bytes.is_empty() {

@@ -25,8 +25,8 @@ pub fn inject_faults(test: UnixStream) {
     let _ = TEST.set(Mutex::new(test));
 }
 
-/// Reports a phase of the loop to the test and obeys the answer: `e` for an error, `p` for a panic, `w` for a panic in a
-/// worker; anything else continues. Continues as well while another thread is held at its own phase.
+/// Reports a phase of the loop to the test and obeys the answer: `e` for an error, `p` for a panic, `w` for a panic in
+/// a worker; anything else continues. Continues as well while another thread is held at its own phase.
 ///
 /// # Errors
 /// If the test asks for one.
@@ -54,8 +54,8 @@ fn report(test: Option<MutexGuard<'_, UnixStream>>, phase: &str) -> io::Result<(
     }
 }
 
-/// Reports that the loop is about to sleep without work or timer, and how many bytes it has read, so that a test need not
-/// wait to know that nothing more happens.
+/// Reports that the loop is about to sleep without work or timer, and how many bytes it has read, so that a test need
+/// not wait to know that nothing more happens.
 ///
 /// Returns the delay after which to call again, if another thread is reporting at the moment.
 pub(crate) fn rest() -> io::Result<Option<Duration>> {

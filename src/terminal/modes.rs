@@ -23,7 +23,8 @@ pub(super) struct Modes {
 const RESTORE_TIMEOUT: Duration = Duration::from_secs(1);
 
 impl Modes {
-    /// Switches on raw mode, the alternate screen, bracketed paste and reports of focus and mouse, and hides the cursor.
+    /// Switches on raw mode, the alternate screen, bracketed paste and reports of focus and mouse, and hides the
+    /// cursor.
     ///
     /// Each mode is recorded before it is switched on, so that a failure half-way is undone as well.
     pub(super) fn switch_on_all(&mut self, keys: &File, output: &mut Output, signals: &Signals) -> io::Result<()> {
@@ -57,8 +58,8 @@ impl Modes {
     /// Switches off all modes, newest first, and waits for the replies that `receiver` knows to be outstanding.
     ///
     /// The unwritten rest of a frame is dropped at a sequence boundary, so that no sequence is cut in two. A step that
-    /// fails does not keep the next ones from running. Unread keys are flushed, or appended to `typed` if given. Returns
-    /// whether the terminal accepted all bytes; `true` if the modes are off already.
+    /// fails does not keep the next ones from running. Unread keys are flushed, or appended to `typed` if given.
+    /// Returns whether the terminal accepted all bytes; `true` if the modes are off already.
     pub(super) fn restore(
         &mut self,
         keys: &File,

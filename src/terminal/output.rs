@@ -22,8 +22,8 @@ pub(super) struct Output {
     written: usize,
 }
 
-/// Largest write to a shared file, in bytes. A terminal that polls as writable accepts this much without blocking: Linux
-/// accounts for the buffer of a pseudo-terminal in blocks of 256 bytes.
+/// Largest write to a shared file, in bytes. A terminal that polls as writable accepts this much without blocking:
+/// Linux accounts for the buffer of a pseudo-terminal in blocks of 256 bytes.
 const MAX_SHARED_WRITE: usize = 256;
 
 impl Output {
@@ -102,8 +102,9 @@ impl Output {
         self.advance(0);
     }
 
-    /// Writes all pending bytes, waiting until the deadline at most, and returns whether the terminal accepts more: then
-    /// the next print does not block. (A terminal that has stopped reading may have had room for exactly these bytes.)
+    /// Writes all pending bytes, waiting until the deadline at most, and returns whether the terminal accepts more:
+    /// then the next print does not block. (A terminal that has stopped reading may have had room for exactly these
+    /// bytes.)
     pub(super) fn drain(&mut self, deadline: Instant) -> bool {
         while self.push().is_ok() && self.is_pending() {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -136,10 +137,11 @@ fn sequences(mut bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 const ESCAPE: u8 = 0x1b;
 
-/// Returns the length of the escape sequence at the start of `bytes`, or `None` if none starts there or it is incomplete.
+/// Returns the length of the escape sequence at the start of `bytes`, or `None` if none starts there or it is
+/// incomplete.
 ///
-/// Knows the forms that the program sends: CSI sequences with their final byte, OSC strings that end with ST, and two-byte
-/// sequences.
+/// Knows the forms that the program sends: CSI sequences with their final byte, OSC strings that end with ST, and
+/// two-byte sequences.
 fn sequence_len(bytes: &[u8]) -> Option<usize> {
     match bytes {
         [ESCAPE, b'[', rest @ ..] => Some(3 + rest.iter().position(|byte| (0x40..=0x7e).contains(byte))?),
@@ -152,7 +154,8 @@ fn sequence_len(bytes: &[u8]) -> Option<usize> {
 /// Returns whether a sequence only moves the cursor, sets colours or erases.
 fn paints(sequence: &[u8]) -> bool {
     let [ESCAPE, b'[', parameters @ .., end] = sequence else { return false };
-    // Private sequences, such as modes and the keyboard protocol, have a marker (`?`, `>`, ...) before their parameters.
+    // Private sequences, such as modes and the keyboard protocol, have a marker (`?`, `>`, ...) before their
+    // parameters.
     let is_plain = parameters.iter().all(|byte| matches!(byte, b'0'..=b'9' | b';' | b':'));
     is_plain && matches!(end, b'm' | b'H' | b'G' | b'A'..=b'D' | b'J')
 }
@@ -163,8 +166,8 @@ fn is_writable(file: &impl AsFd, timeout: Duration) -> bool {
     poll(&mut fds, Some(&timespec(timeout))).is_ok_and(|ready| ready > 0)
 }
 
-/// Returns whether a message to standard error would not block: it is not a terminal, or the terminal accepts bytes within
-/// 250 ms. A terminal that has stopped reading would keep the program from ending.
+/// Returns whether a message to standard error would not block: it is not a terminal, or the terminal accepts bytes
+/// within 250 ms. A terminal that has stopped reading would keep the program from ending.
 pub fn stderr_accepts_message() -> bool {
     let stderr = io::stderr();
     !stderr.is_terminal() || is_writable(&stderr, Duration::from_millis(250))
@@ -199,7 +202,8 @@ mod tests {
     use std::sync::mpsc::channel;
     use std::thread;
 
-    /// Wherever the frame is cut, the bytes written end at a boundary, and all modes, strings and queries follow in order.
+    /// Wherever the frame is cut, the bytes written end at a boundary, and all modes, strings and queries follow in
+    /// order.
     #[test]
     fn a_frame_is_dropped_at_a_sequence_boundary() {
         let picture = "\x1b[?2026h\x1b[2;3H\x1b[38;2;1;2;3m▄é\x1b[58:2::1:2:3mx\x1b[C\x1b[m\x1b[2J\x1b[?2026l\x1b[c";

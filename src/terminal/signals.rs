@@ -1,12 +1,13 @@
 //! Signals as events of the loop, and job control.
 //!
-//! Signals that were ignored when the program was started stay ignored: after a shell's `trap '' HUP`, or in a background
-//! job of a shell without job control.
+//! Signals that were ignored when the program was started stay ignored: after a shell's `trap '' HUP`, or in a
+//! background job of a shell without job control.
 //!
-//! Every other signal whose default action ends the process ends the loop instead, except SIGKILL, and SIGSEGV and SIGBUS,
-//! whose handlers report a stack overflow. SIGTERM, SIGHUP, SIGINT and SIGQUIT are caught. All others are blocked, as
-//! SIGTSTP is, and accepted by one thread: their disposition stays the default, so that [`die_of`] only has to unblock the
-//! signal. (Resetting a disposition takes unsafe code; signal-hook offers it only for a list without real-time signals.)
+//! Every other signal whose default action ends the process ends the loop instead, except SIGKILL, and SIGSEGV and
+//! SIGBUS, whose handlers report a stack overflow. SIGTERM, SIGHUP, SIGINT and SIGQUIT are caught. All others are
+//! blocked, as SIGTSTP is, and accepted by one thread: their disposition stays the default, so that [`die_of`] only has
+//! to unblock the signal. (Resetting a disposition takes unsafe code; signal-hook offers it only for a list without
+//! real-time signals.)
 
 use nix::sys::signal::{SigSet, SigmaskHow, Signal, raise};
 use rustix::fd::{AsFd, BorrowedFd};
@@ -40,8 +41,9 @@ const CAUGHT: [i32; 4] = [SIGTERM, SIGHUP, SIGINT, SIGQUIT];
 
 /// The other signals that end a program by default and whose disposition signal-hook can reset.
 ///
-/// [`before_death`] catches these too, because it is called when threads are running, which would not have them blocked.
-/// Real-time signals, SIGIO, SIGPWR and SIGSTKFLT are not among them; the next run removes the temporary files they leave.
+/// [`before_death`] catches these too: it is called when threads are running, which would not have them blocked.
+/// Real-time signals, SIGIO, SIGPWR and SIGSTKFLT are not among them; the next run removes the temporary files they
+/// leave.
 const CAUGHT_BEFORE_DEATH: [i32; 8] = [SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGSYS, SIGTRAP];
 
 /// Signals that are never blocked.
@@ -71,8 +73,8 @@ const UNBLOCKED: &[Signal] = &[
     Signal::SIGCONT,
 ];
 
-/// Timeout for this process's own copy of a signal that it has sent to its group. Delivery takes well under a millisecond
-/// on an idle machine; the limit only keeps a lost signal from hanging the program.
+/// Timeout for this process's own copy of a signal that it has sent to its group. Delivery takes well under a
+/// millisecond on an idle machine; the limit only keeps a lost signal from hanging the program.
 const GROUP_SIGNAL_TIMEOUT: Duration = Duration::from_millis(100);
 
 /// The processes that [`Signals::stop`] stops.
@@ -162,8 +164,8 @@ impl Signals {
 
     /// Stops the process until it is continued.
     ///
-    /// Must be called by the thread that called [`catch`](Self::catch), after the terminal has been restored. Returns at
-    /// once if SIGTSTP is ignored or the process group is orphaned, so that nothing could continue it.
+    /// Must be called by the thread that called [`catch`](Self::catch), after the terminal has been restored. Returns
+    /// at once if SIGTSTP is ignored or the process group is orphaned, so that nothing could continue it.
     #[doc(hidden)]
     pub fn stop(&mut self, target: StopTarget) {
         let Some(stops) = &self.stops else { return };
@@ -172,12 +174,13 @@ impl Signals {
             // The signal comes to this process too, and would stop it a second time.
             let _ = stops.recv_timeout(GROUP_SIGNAL_TIMEOUT);
         }
-        // Pending for this thread alone, where it is blocked, so that the accepting thread does not get it. A SIGCONT from
-        // here on removes it again.
+        // Pending for this thread alone, where it is blocked, so that the accepting thread does not get it. A SIGCONT
+        // from here on removes it again.
         let stop = stop_signal();
         let _ = raise(Signal::SIGTSTP);
         if self.take_continued() {
-            // The shell has seen the rest of the group stop and has continued it already. Stopping now would be for ever.
+            // The shell has seen the rest of the group stop and has continued it already. Stopping now would be for
+            // ever.
             let _ = raise(Signal::SIGTSTP);
             let _ = stop.wait();
         } else {
@@ -232,12 +235,12 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
     catch_deadly(&CAUGHT_BEFORE_DEATH, ignored, &deadly, &write)
 }
 
-/// Blocks the uncaught signals in all threads and accepts them on one: SIGTSTP goes into the returned channel, any other
-/// signal asks the program to end.
+/// Blocks the uncaught signals in all threads and accepts them on one: SIGTSTP goes into the returned channel, any
+/// other signal asks the program to end.
 ///
-/// SIGTSTP is blocked rather than caught, because only its default action stops a process as its shell expects, and does
-/// nothing in an orphaned process group, where the process could not be continued (a terminal that runs the program
-/// without a shell). SIGSTOP would hang it there for ever.
+/// SIGTSTP is blocked rather than caught, because only its default action stops a process as its shell expects, and
+/// does nothing in an orphaned process group, where the process could not be continued (a terminal that runs the
+/// program without a shell). SIGSTOP would hang it there for ever.
 fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> io::Result<Receiver<()>> {
     let signals = blocked();
     signals.thread_block()?;
@@ -272,8 +275,8 @@ fn blocked() -> SigSet {
     signals
 }
 
-/// The signals pending for the process, one by one. `sigwait` would do, but nix's version returns an enumeration without
-/// the real-time signals.
+/// The signals pending for the process, one by one. `sigwait` would do, but nix's version returns an enumeration
+/// without the real-time signals.
 #[cfg(target_os = "linux")]
 struct PendingSignals(nix::sys::signalfd::SignalFd);
 
@@ -396,8 +399,8 @@ pub fn die_of(signal: i32) {
 /// # Errors
 /// If the operating system refuses.
 pub fn fail_large_writes() -> io::Result<()> {
-    // An empty handler suffices: the write has already failed. Unlike SIG_IGN, a handler is not inherited by programs that
-    // are started.
+    // An empty handler suffices: the write has already failed. Unlike SIG_IGN, a handler is not inherited by programs
+    // that are started.
     signal_hook::flag::register(SIGXFSZ, Arc::default()).map(drop)
 }
 

@@ -1,4 +1,4 @@
-//! The files of a scene, and what each was like when it was read.
+//! The files of a scene and the state of each when it was read.
 
 use std::fs::{self, Metadata};
 use std::os::unix::fs::MetadataExt;
@@ -11,25 +11,24 @@ pub(in crate::app) struct Needed {
     state: State,
 }
 
-/// What a path leads to.
+/// The thing that a path leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Nothing, or nothing that may be reached.
+    /// Nothing, or nothing that the process may reach.
     Missing,
     Plain {
         identity: Identity,
-        /// With the permissions: a file that may be read at last is read.
+        /// The file type and permissions: a file that becomes readable counts as changed.
         mode: u32,
-        /// Seconds and nanoseconds.
+        /// Time of the last modification, in seconds and nanoseconds.
         modified: (i64, i64),
         length: u64,
     },
-    /// A folder, a pipe, a device: it is told from others, but not whether it has changed, as pipes and devices do by
-    /// being read.
+    /// A folder, pipe or device. Only its identity counts: reading alone changes the times of pipes and devices.
     Other(Identity),
 }
 
-/// Device and inode.
+/// Device and inode numbers.
 pub(super) type Identity = (u64, u64);
 
 impl State {
@@ -52,7 +51,7 @@ pub(super) fn identity(data: &Metadata) -> Identity {
 }
 
 impl Needed {
-    /// The file as it is now.
+    /// Returns the file at `path` with its current state.
     pub(in crate::app) fn now(path: &Path) -> Self {
         Self { path: path.to_owned(), state: State::of(path) }
     }
@@ -61,13 +60,13 @@ impl Needed {
         &self.path
     }
 
-    /// Returns whether it was something else than a plain file: reading may wait for ever.
+    /// Returns whether it was neither missing nor a plain file, so that reading may block for ever.
     pub(in crate::app) fn is_other(&self) -> bool {
         matches!(self.state, State::Other(_))
     }
 
-    /// Returns whether the path leads to something new. A file that is gone is on its way to new contents: its coming back
-    /// is told.
+    /// Returns whether the path leads to something new. A missing file does not count: an event reports when it comes
+    /// back.
     pub(in crate::app) fn has_changed(&self) -> bool {
         let now = State::of(&self.path);
         now != State::Missing && now != self.state

@@ -1,20 +1,20 @@
-//! The way that the system goes to find a file: folder by folder, and link by link.
+//! Resolution of a path as the system does it: folder by folder and link by link.
 
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Links in each other are followed this far, as Linux does.
+/// Limit on the links followed, the same as that of Linux.
 const MOST_LINKS: usize = 40;
 
-/// The places that a path leads through. No place has a link in its own path.
+/// The folders and links that a path leads through. None of their own paths contains a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Way {
-    /// The folders and links that the path names, each of which may be exchanged for another.
+    /// The folders and links on the way, each of which may be replaced.
     steps: Vec<Step>,
-    /// The file, or the first thing on the way that is not there.
+    /// The file, or the first missing component.
     end: PathBuf,
-    /// Whether the file is there.
+    /// Whether the file exists.
     is_whole: bool,
 }
 
@@ -25,9 +25,9 @@ struct Step {
 }
 
 impl Way {
-    /// The way to that file as it is now; `None` where the current folder is gone.
+    /// Resolves `path`. `None` if it is relative and the current folder has been removed.
     pub(super) fn to(path: &Path) -> Option<Self> {
-        // The current folder's own path is no part of the way: it stays what it is wherever it is moved.
+        // The path of the current folder is not part of the way: the process stays in it even if it is moved.
         let mut folder = if path.is_absolute() { PathBuf::new() } else { Path::new(".").canonicalize().ok()? };
         let mut steps = Vec::new();
         let mut left = names(path);
@@ -64,15 +64,17 @@ impl Way {
         self.steps.iter().map(|step| &*step.place)
     }
 
-    /// The folders in which the file and the links stand: without them, nothing is seen.
+    /// Returns the folders that contain the file and the links. Watching them is indispensable.
     pub(super) fn looked_in(&self) -> impl Iterator<Item = &Path> {
         let links = self.steps.iter().filter(|step| step.is_link).map(|step| &*step.place);
         links.chain([&*self.end]).filter_map(Path::parent).filter(|folder| !is_made_up(folder))
     }
 
-    /// The other folders of the way. One that is exchanged says so itself; but it may not say that it is removed, as long
-    /// as a process stands in it, so that while the file is missing the folders around are asked too. Those at the root are
-    /// asked only then: they stay, and many programs are busy in them.
+    /// Returns further folders to watch: those on the way, each of which reports when it is replaced.
+    ///
+    /// A removed folder is not reported while a process has it as its current folder. So while the file is missing,
+    /// their parents are watched too. Folders directly below the root are watched only then: they are permanent, and
+    /// busy.
     pub(super) fn around(&self) -> impl Iterator<Item = &Path> {
         let folders = self.steps.iter().filter(|step| !step.is_link).map(|step| &*step.place);
         let own = folders.clone().filter(|folder| folder.components().count() > 2);
@@ -81,12 +83,12 @@ impl Way {
     }
 }
 
-/// Whether the system makes that folder up: nothing is saved there, and all programs open files in it all the time.
+/// Returns whether a folder belongs to a virtual file system, where nothing is saved and events are frequent.
 fn is_made_up(folder: &Path) -> bool {
     ["/proc", "/sys", "/dev"].iter().any(|root| folder.starts_with(root)) && !folder.starts_with("/dev/shm")
 }
 
-/// A part of a path.
+/// A component of a path.
 enum Name {
     Root,
     Parent,
@@ -103,7 +105,7 @@ impl Name {
     }
 }
 
-/// The parts of a path, the last one first.
+/// Returns the components of a path, last first.
 fn names(path: &Path) -> Vec<Name> {
     let name = |part: Component<'_>| match part {
         Component::RootDir => Some(Name::Root),
