@@ -1,13 +1,15 @@
-//! One person's view, without a terminal: what the terminal sends, the window's size, scenes, finished frames and the time
-//! in; bytes, frames to be traced, requests to the driver and the time of the next wake-up out.
+//! One person's view, without a terminal.
 //!
-//! Pure: it reads no clock, file or environment, and starts no thread. A driver (`app` on a terminal, or a test) tells it
-//! what happens, does what [`Viewer::step`] returns until there is nothing to do, and then carries out what
-//! [`Viewer::ask`] asks for.
+//! In go the terminal's bytes, the window's size, scenes, finished frames and the time; out come bytes, frames to
+//! trace, requests to the driver and the time of the next wake-up.
+//!
+//! Pure: it reads no clock, file or environment, and starts no thread. A driver (`app` on a terminal, or a test)
+//! reports events, carries out what [`Viewer::step`] returns until nothing is left to do, and then the requests of
+//! [`Viewer::ask`].
 //!
 //! Each piece of state has one owner: `display` (the terminal), `receiver` (its bytes), `gallery` (the scene and its
-//! lights), `eye` (the camera), `hand` (the mouse), `screen` (frame, layers, cells), `pacing` (what was begun and sent).
-//! `schedule` decides what is done when.
+//! lights), `eye` (the camera), `hand` (the mouse), `screen` (frame, layers, cells), `pacing` (frames begun and sent).
+//! `schedule` decides when each thing is done.
 
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
@@ -77,64 +79,63 @@ pub(crate) use shown::{MIDDLE, Shown};
 #[cfg(feature = "test-hooks")]
 pub use story::tell;
 
-/// For how long the first picture is held back to be refined before it is shown. Up to there it is shown once, whole; a
-/// longer wait is felt. With 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, of which 9 went into
-/// refinement.
+/// Time for which the first picture is held back to be refined. Up to this long it is shown once, complete; a longer
+/// wait is felt. With 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, 9 of which went into refinement.
 const FIRST_REFINEMENT: Duration = Duration::from_millis(4);
 
-/// What the driver is asked to do.
+/// A request to the driver.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Ask {
-    /// End the view.
+    /// Leave the view.
     Leave,
     /// Stop the job, as Ctrl-Z does.
     Suspend,
-    /// Go that many scenes on.
+    /// Switch to the scene that many further on.
     GoOn(isize),
-    /// Give this to the user's clipboard.
+    /// Copy this text to the user's clipboard.
     Copy(String),
     /// Write the picture into a file.
     Export(crate::export::Format),
-    /// Ask the user whether this camera is to be written into the scene's file, where it stands in one.
+    /// Ask the user whether to write this camera into the scene's file, if it has one.
     ProposeView(Camera),
     /// Write the camera that was proposed last.
     KeepView,
 }
 
-/// What the driver is to do next.
+/// The driver's next action.
 pub(crate) enum Step {
-    /// Take what [`Viewer::draw`] draws, and send it.
+    /// Send the bytes that [`Viewer::draw`] appends.
     Draw,
-    /// Send these bytes, if there are any; then trace this frame, and hand it to [`Viewer::take_frame`].
+    /// Send these bytes, if any; then trace this frame and pass it to [`Viewer::take_frame`].
     Trace(Vec<u8>, Job),
-    /// Give up the frame that is being refined.
+    /// Cancel the refinement in progress.
     GiveUp,
-    /// Wait for something to happen, until that time or for ever.
+    /// Wait for an event, until this time if given.
     Wait(Option<Duration>),
 }
 
-/// One person's view.
+/// One person's view of a scene.
 pub(crate) struct Viewer {
     options: Options,
     display: Display,
     receiver: Receiver,
     gallery: Gallery,
     eye: Eye,
-    /// Which maps of the scene are wanted.
+    /// The maps that are wanted.
     shown: Shown,
     hand: Hand,
     screen: Screen,
     pacing: Pacing,
     asks: VecDeque<Ask>,
-    /// The time as it was last told.
+    /// The time of the last call.
     now: Duration,
 }
 
 impl Viewer {
-    /// A view of nothing yet.
+    /// Returns a view without a scene.
     ///
     /// # Errors
-    /// If there is not enough memory for that window.
+    /// If there is not enough memory for the window.
     pub(crate) fn new(mut options: Options, window: Window) -> Result<Self, OutOfMemory> {
         let display = Display::new(options.hints.clone(), window);
         let screen = Screen::new(display.capabilities(), options.order, options.quality);
@@ -162,7 +163,7 @@ impl Viewer {
         self.now = now;
     }
 
-    /// Returns the queries for the terminal: to be sent at the start, and whenever another program has had the terminal.
+    /// Returns the queries to send at the start, and whenever another program has had the terminal.
     pub(crate) fn questions(&mut self, now: Duration) -> Vec<u8> {
         let questions = self.display.questions();
         let bytes = if questions.is_open() { questions.bytes().to_vec() } else { Vec::new() };
@@ -170,10 +171,10 @@ impl Viewer {
         bytes
     }
 
-    /// The window has this size now, or the terminal has moved what it shows to wherever it thought right.
+    /// Sets the window's size. Call this too when the terminal may have moved its contents.
     ///
     /// # Errors
-    /// If there is not enough memory for that window.
+    /// If there is not enough memory for the window.
     pub(crate) fn resize(&mut self, window: Window) -> Result<(), OutOfMemory> {
         let before = *self.display.capabilities();
         self.display.set_window(window);
@@ -183,7 +184,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// More may be known of the terminal than before.
+    /// Adopts new findings about the terminal.
     fn heed_capabilities(&mut self, before: &Capabilities) -> Result<(), OutOfMemory> {
         if self.display.capabilities() != before {
             self.screen.set_capabilities(self.display.capabilities());
@@ -192,7 +193,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// The terminal may show anything: all is drawn anew, and what the picture does not cover is emptied.
+    /// Forgets what the terminal shows: everything is drawn anew, and the part outside the picture is cleared.
     fn redraw(&mut self) {
         let (size, window) = (self.display.size(), self.display.window_size());
         self.screen.redraw(self.display.capabilities().halves_meet, size != window);
@@ -202,13 +203,13 @@ impl Viewer {
         }
     }
 
-    /// How far the scene is that was asked for.
+    /// Shows the progress of a load.
     pub(crate) fn show_progress(&mut self, progress: Progress) {
         self.screen.open(ProgressPanel(progress));
     }
 
-    /// Something of a scene to look at until it is there: better than another scene, but not than what was good until its
-    /// file changed.
+    /// Shows a coarse scene until the complete one is loaded. It replaces a picture of another scene, but not a good
+    /// picture of the same scene before its file changed.
     pub(crate) fn show_sketch(&mut self, sketch: Scene, of: usize, orbits: bool) {
         if self.gallery.shown() != Some(of) {
             self.screen.close::<Fault>();
@@ -216,8 +217,8 @@ impl Viewer {
         }
     }
 
-    /// The scene of that number is there. It is looked at from where it wants to be; from where it was looked at, if it has
-    /// wanted the same before.
+    /// Shows scene number `of`, from its own camera; from where the user left it, if its own camera is the same as
+    /// then.
     pub(crate) fn show(&mut self, scene: Scene, of: usize, orbits: bool) {
         self.screen.close_later::<ProgressPanel>();
         self.screen.close::<Fault>();
@@ -235,25 +236,25 @@ impl Viewer {
         self.eye.set_written(written);
     }
 
-    /// The scene that was asked for will not come: what is wrong with it.
+    /// Shows the error of a load.
     pub(crate) fn show_fault(&mut self, fault: Notice) {
         self.screen.close_later::<ProgressPanel>();
         self.screen.open(Fault(fault));
     }
 
-    /// Says something in the lowest row until the next key.
+    /// Shows a note in the lowest row until the next key.
     pub(crate) fn say(&mut self, text: impl Into<String>) {
         self.screen.open(Note(text.into()));
     }
 
-    /// A frame that was asked for is done.
+    /// Takes a finished frame.
     pub(crate) fn take_frame(&mut self, frame: Frame) {
         self.pacing.took(&frame);
         let moving = self.is_in_motion().then_some(self.now);
         self.screen.take_frame(frame, moving);
     }
 
-    /// The next thing to do.
+    /// Returns the driver's next action.
     pub(crate) fn step(&mut self, busy: Busy, now: Duration) -> Step {
         self.set_time(now);
         self.eye.go_on(now);
@@ -293,7 +294,7 @@ impl Viewer {
         }
     }
 
-    /// Begins a frame of the new view; before it, a query shows the link's own round trip.
+    /// Begins a frame of a new view. A query before it measures the link's round trip without a frame's bytes.
     fn trace(&mut self) -> Step {
         let Some((scene, shot)) = self.scene().zip(self.wanted()) else { return Step::Wait(None) };
         let probe = self.pacing.probe(self.now);
@@ -302,40 +303,39 @@ impl Viewer {
         Step::Trace(probe, Job { scene, shot, sampling: self.shown.sampling(sampling), refines: false })
     }
 
-    /// Begins the next step of the last frame.
+    /// Begins the next refinement of the last frame.
     fn refine(&self) -> Step {
         let wanted = self.scene().zip(self.wanted()).zip(self.next_step());
         let Some(((scene, shot), sampling)) = wanted else { return Step::Wait(None) };
         Step::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })
     }
 
-    /// The scene that is shown, with the lights where they are.
+    /// Returns the shown scene, with its lights as moved by the user.
     fn scene(&self) -> Option<Scene> {
         self.gallery.lights().map(|lights| lights.scene().clone())
     }
 
-    /// What the picture is to show, if there is anything to see.
+    /// Returns the shot that the picture is to show, or `None` without a scene.
     fn wanted(&self) -> Option<Shot> {
         let (lights, camera) = (self.gallery.lights()?, self.eye.camera()?);
         let (scene, resolution) = (self.gallery.count(), self.display.resolution());
         Some(Shot { scene, lights: lights.moves(), camera, resolution, shown: self.shown })
     }
 
-    /// How finely the frame that is on the screen is traced next, if it can be refined.
+    /// Returns the sampling of the next refinement of the shown frame, or `None` if it cannot be refined.
     fn next_step(&self) -> Option<Sampling> {
-        // Refining a sketch would take the time that the scene needs.
+        // Refining a sketch would take time from building the scene.
         let frame = self.screen.frame().filter(|_| !self.screen.awaits_scene())?;
         let next = self.shown.sampling(self.pacing.next_step(frame.sampling)?);
         (next != frame.sampling).then_some(next)
     }
 
-    /// Whether the next frame is likely to be of another view, too.
+    /// Returns whether the next frame will probably be of another view, too.
     fn is_in_motion(&self) -> bool {
         self.eye.is_moving() || self.hand.holds()
     }
 
-    /// Appends the bytes that bring the screen up to date. [`end_frame`](Self::end_frame) is to be called with what it
-    /// appended.
+    /// Appends the bytes that bring the screen up to date. Call [`end_frame`](Self::end_frame) with them afterwards.
     pub(crate) fn draw(&mut self, now: Duration, bytes: &mut Vec<u8>) {
         self.set_time(now);
         let size = self.display.size();
@@ -343,14 +343,15 @@ impl Viewer {
         self.screen.draw(size, &self.options.bindings, limit, now, bytes);
     }
 
-    /// Ends what was drawn with a query; of no bytes, nothing is to be sent. `now` is later than when it was drawn: cells
-    /// and bytes took their time, which is not the link's.
+    /// Appends the query that ends a frame; does nothing if `bytes` is empty.
+    ///
+    /// `now` is later than at [`draw`](Self::draw): the time for cells and bytes must not count as the link's.
     pub(crate) fn end_frame(&mut self, bytes: &mut Vec<u8>, now: Duration) {
         self.screen.took(now.saturating_sub(self.now));
         if bytes.is_empty() {
             return;
         }
-        // Also at rest: a frame's own round trip is longer than the link's, which its rate is judged by.
+        // Also at rest: a frame's round trip is longer than the link's own, which the rate is derived from.
         let probe = self.pacing.probe(now);
         self.receiver.sent(&probe, now);
         self.pacing.send(bytes, now);
@@ -358,27 +359,27 @@ impl Viewer {
         bytes.splice(0..0, probe);
     }
 
-    /// What the driver is asked to do next, if anything.
+    /// Returns the next request to the driver, if any.
     pub(crate) fn ask(&mut self) -> Option<Ask> {
         self.asks.pop_front()
     }
 
-    /// The modes that are to be on besides those that every terminal knows.
+    /// Returns the modes to switch on besides those that every terminal supports.
     pub(crate) fn modes(&self) -> impl Iterator<Item = Mode> {
         self.display.modes()
     }
 
-    /// Whether anything was shown yet.
+    /// Returns whether a frame has been shown.
     pub(crate) fn has_shown(&self) -> bool {
         self.screen.has_shown()
     }
 
-    /// The number of the scene that is shown.
+    /// Returns the number of the shown scene.
     pub(crate) fn shown_scene(&self) -> Option<usize> {
         self.gallery.shown()
     }
 
-    /// The last frame.
+    /// Returns the last frame.
     pub(crate) fn frame(&self) -> Option<&Frame> {
         self.screen.frame()
     }
@@ -387,12 +388,12 @@ impl Viewer {
         self.display.capabilities()
     }
 
-    /// The camera, if the user has moved it.
+    /// Returns the camera if the user has moved it.
     pub(crate) fn moved(&self) -> Option<Camera> {
         self.eye.moved()
     }
 
-    /// What is still to come from the terminal when it is given back.
+    /// Returns the receiver, which knows the outstanding replies when the terminal is restored.
     pub(crate) fn receiver(&mut self) -> &mut Receiver {
         &mut self.receiver
     }

@@ -1,11 +1,12 @@
-//! What leaves the view: the camera as text, the picture as a file, a view into the scene's file. The driver writes.
+//! Requests that leave the view: the camera as text, the picture as a file, a view for the scene's file. The driver
+//! writes.
 
 use super::dialog::{Answer, Dialog};
 use super::{Ask, Viewer};
 use crate::control::Command;
 
 impl Viewer {
-    /// The camera, as a line for a scene file, is to be copied.
+    /// Requests to copy the camera as a line of a scene file.
     pub(super) fn copy_camera(&mut self) {
         if let Some(camera) = self.eye.camera() {
             self.asks.push_back(Ask::Copy(format!("{},", camera.to_ron())));
@@ -13,19 +14,19 @@ impl Viewer {
         }
     }
 
-    /// Asks what the picture is to be written as, where there is a folder for it.
+    /// Asks for the format of an export, if there is a folder for it.
     pub(super) fn ask_export(&mut self) {
         if self.options.exports.is_some() && self.screen.frame().is_some() {
             self.screen.open(Dialog::Export);
         }
     }
 
-    /// Asks whether the proposed camera is to be written into the scene's file of that name.
+    /// Asks whether to write the proposed camera into the scene file of this name.
     pub(crate) fn ask_keep(&mut self, file: String) {
         self.screen.open(Dialog::Keep(file));
     }
 
-    /// Takes what a key means as the answer if something has been asked; whether it has.
+    /// Treats `command` as the answer to an open question. Returns whether there was one.
     pub(super) fn take_answer(&mut self, meant: Option<Command>) -> bool {
         let Some(dialog) = self.screen.close::<Dialog>() else { return false };
         match dialog.answer(meant) {

@@ -1,4 +1,4 @@
-//! What the user is asked: a question, and the keys that answer it.
+//! Questions to the user, and the keys that answer them.
 
 use super::layers::{Canvas, Layer, Level};
 use super::look::Look;
@@ -14,22 +14,22 @@ use ratatui_widgets::clear::Clear;
 use ratatui_widgets::paragraph::Paragraph;
 use unicode_width::UnicodeWidthStr;
 
-/// A question; until it is answered, keys are answers.
+/// An open question. Keys answer it until it is closed.
 pub(super) enum Dialog {
-    /// What the picture is to be written as.
+    /// The format of an export.
     Export,
-    /// Whether a view is to be written into the scene's file, which is called so.
+    /// Whether to write a view into the scene file of this name.
     Keep(String),
-    /// By which number the view is to be saved.
+    /// The number under which to save the view.
     Save,
 }
 
-/// What is to be done.
+/// The answer to a question.
 pub(super) enum Answer {
     Save(u8),
     Export(Format),
     Keep,
-    /// Nothing: he leaves the question.
+    /// The question is dismissed.
     Nothing,
 }
 
@@ -58,17 +58,17 @@ impl Layer for Dialog {
 }
 
 impl Dialog {
-    /// While it is open keys mean this, and nothing else.
+    /// Returns the mode that keys have while the question is open.
     fn keys_are_for(&self) -> Mode {
         match self {
             Self::Export => Mode::Export,
             Self::Keep(_) => Mode::Keep,
-            // The key that will come back to it.
+            // The key that will return to the view.
             Self::Save => Mode::Always,
         }
     }
 
-    /// What a key answers that means this. Any that is not offered leaves the question.
+    /// Returns the answer that a command stands for. A command that is not offered dismisses the question.
     pub(super) fn answer(self, meant: Option<Command>) -> Answer {
         match (self, meant) {
             (Self::Export, Some(Command::Write(format))) => Answer::Export(format),
@@ -86,7 +86,7 @@ impl Dialog {
         }
     }
 
-    /// The keys that answer it.
+    /// Returns the keys that answer the question, with their meanings.
     fn answers<'b>(&self, bindings: &'b Bindings) -> impl Iterator<Item = &'b Binding> {
         let saves = matches!(self, Self::Save);
         bindings.of(self.keys_are_for()).filter(move |row| !saves || matches!(row.command, Command::View(_)))
@@ -107,7 +107,7 @@ impl Dialog {
         self.answers(bindings).map(Binding::label).collect::<Vec<_>>().join(" ")
     }
 
-    /// The question in a line, for where there is no room for more: the keys that answer it, and as few words as will do.
+    /// Returns the question in one line, for small screens: its keys and as few words as possible.
     fn line(&self, bindings: &Bindings) -> String {
         let word = match self {
             Self::Export => "write",
@@ -117,7 +117,7 @@ impl Dialog {
         format!("{word} {}", self.keys(bindings))
     }
 
-    /// In the lower left corner, above the lowest row: most of the picture can be seen.
+    /// Draws the panel in the lower left corner above the lowest row, where it hides little of the picture.
     fn area(&self, bindings: &Bindings, screen: Rect) -> Rect {
         let lines = self.lines(bindings);
         let text = lines.iter().map(|line| line.width() + 4).max().unwrap_or(0);

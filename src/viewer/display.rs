@@ -1,4 +1,4 @@
-//! What is known of the terminal, and so how large the picture on it is and what it is made of.
+//! The terminal's window and capabilities, from which the picture's size and cells follow.
 
 use super::extent;
 use crate::capabilities::{Capabilities, Findings, Hints};
@@ -9,7 +9,7 @@ use crate::input::Reply;
 use crate::memory::OutOfMemory;
 use crate::protocol::{Mode, Questions};
 
-/// A terminal's window, and what is known of it.
+/// A terminal's window, and the findings about it.
 pub(super) struct Display {
     hints: Hints,
     window: Window,
@@ -18,7 +18,7 @@ pub(super) struct Display {
 }
 
 impl Display {
-    /// What is known before the terminal is asked.
+    /// Returns a display with the findings from the environment alone.
     pub(super) fn new(hints: Hints, window: Window) -> Self {
         let questions = Questions::needed(&hints);
         let capabilities = Findings::new(&hints, window.cell, questions.answers()).capabilities();
@@ -33,12 +33,12 @@ impl Display {
         &self.questions
     }
 
-    /// The size of the whole window.
+    /// Returns the size of the whole window.
     pub(super) fn window_size(&self) -> Size {
         self.window.size
     }
 
-    /// How much of the window is the picture's, from its upper left corner on.
+    /// Returns the part of the window that the picture covers, from its upper left corner.
     pub(super) fn size(&self) -> Size {
         extent::covered(self.window.size, self.capabilities.cell_mode)
     }
@@ -48,13 +48,13 @@ impl Display {
             .expect("the size is bounded, and the aspect was checked when it was found")
     }
 
-    /// The window has this size now.
+    /// Sets the window's size.
     pub(super) fn set_window(&mut self, window: Window) {
         self.window = window;
         self.conclude();
     }
 
-    /// Takes a reply, if it is to a question. Replies count all at once, when the last is there: whether this was the last.
+    /// Records a reply to the initial queries. They take effect together: returns whether this was the last.
     pub(super) fn take_reply(&mut self, reply: &Reply) -> bool {
         let was_last = self.questions.take(reply);
         if was_last {
@@ -63,7 +63,7 @@ impl Display {
         was_last
     }
 
-    /// No more replies to the questions will come. Whether any could have come until now.
+    /// Closes the initial queries, as no more replies will come. Returns whether they were open.
     pub(super) fn close_questions(&mut self) -> bool {
         let was_open = self.questions.close();
         if was_open {
@@ -77,20 +77,20 @@ impl Display {
         self.capabilities = findings.capabilities();
     }
 
-    /// Finds out whether there is the memory for pictures of this size.
+    /// Checks that there is memory for pictures of this size.
     ///
     /// # Errors
-    /// If there is not.
+    /// If there is not enough.
     pub(super) fn check_memory(&self) -> Result<(), OutOfMemory> {
         extent::check(self.size(), self.capabilities.cell_mode)
     }
 
-    /// Whether the terminal knows the kitty keyboard protocol.
+    /// Returns whether the terminal supports the kitty keyboard protocol.
     pub(super) fn knows_keyboard(&self) -> bool {
         !self.questions.is_open() && self.questions.answers().kitty_keyboard == Some(true)
     }
 
-    /// A cell's size in pixels, where the terminal tells places of the mouse in them.
+    /// Returns a cell's size in pixels, if the terminal reports mouse positions in pixels.
     pub(super) fn mouse_pixels(&self) -> Option<(u16, u16)> {
         let answers = self.questions.answers();
         let knows = !self.questions.is_open() && answers.pixel_mouse == Some(true);
@@ -98,7 +98,7 @@ impl Display {
         self.window.cell_pixels.or(answers.cell_pixels).filter(is_cell).filter(|_| knows)
     }
 
-    /// The modes that are to be on besides those that every terminal knows.
+    /// Returns the modes to switch on besides those that every terminal supports.
     pub(super) fn modes(&self) -> impl Iterator<Item = Mode> {
         let keyboard = self.knows_keyboard().then_some(Mode::Keyboard);
         keyboard.into_iter().chain(self.mouse_pixels().map(|_| Mode::MousePixels))

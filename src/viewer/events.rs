@@ -1,4 +1,4 @@
-//! What comes from the terminal: keys, the mouse, replies.
+//! Handling of the terminal's bytes: keys, mouse and replies.
 
 use super::dialog::Dialog;
 use super::explain::Explaining;
@@ -14,21 +14,21 @@ use crate::memory::OutOfMemory;
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Duration;
 
-/// The flags of the kitty keyboard protocol without which keys are taken as a plain terminal tells of them: no ambiguity
-/// (1), releases (2), every key as a sequence (8).
+/// Flags of the kitty keyboard protocol that are required before keys are treated as sequences: disambiguation (1),
+/// releases (2) and every key as a sequence (8).
 const KEYBOARD: u16 = 1 | 2 | 8;
 
 impl Viewer {
-    /// These bytes have come from the terminal; without any, time has passed.
+    /// Takes the bytes that have arrived; without any, the passing of time.
     ///
     /// # Errors
-    /// If there is not enough memory for pictures of the size that the terminal turns out to have.
+    /// If there is not enough memory for pictures of the size that the replies imply.
     pub(crate) fn hear(&mut self, bytes: &[u8], now: Duration) -> Result<(), OutOfMemory> {
         let inputs = self.receiver.receive(bytes, now);
         self.take_inputs(&inputs, now)
     }
 
-    /// Another program has the terminal from now on: nothing is held, and no outstanding query will be answered.
+    /// Prepares for another program having the terminal: releases all keys and forgets the outstanding queries.
     pub(crate) fn lose_terminal(&mut self, now: Duration) {
         self.set_time(now);
         self.eye.stand_still(now);
@@ -37,8 +37,8 @@ impl Viewer {
         self.pacing.forget_replies();
     }
 
-    /// Hears what was typed while another program had the terminal. Replies among it are dropped: what was asked is asked
-    /// again.
+    /// Takes the input that was typed while another program had the terminal. Replies among it are dropped, because the
+    /// queries are sent again.
     ///
     /// # Errors
     /// As for [`hear`](Self::hear).
@@ -48,7 +48,7 @@ impl Viewer {
         self.take_inputs(&typed, now)
     }
 
-    /// What comes after a request to leave or to stop is not heard.
+    /// Input after a request to leave or to stop is dropped.
     fn take_inputs(&mut self, inputs: &[Input], now: Duration) -> Result<(), OutOfMemory> {
         self.set_time(now);
         for (at, input) in inputs.iter().enumerate() {
@@ -56,7 +56,7 @@ impl Viewer {
                 input if pointing::is_outdated(input, inputs.get(at + 1)) => {}
                 Input::Event(Event::Mouse(event)) => self.take_mouse(*event),
                 Input::Event(Event::Key(key)) => self.take_key(key),
-                // No event will tell when the keys held now are let go.
+                // No event will report the release of keys held now.
                 Input::Event(Event::FocusLost) => {
                     self.hand.let_go();
                     self.eye.let_go(now);
@@ -71,14 +71,14 @@ impl Viewer {
         Ok(())
     }
 
-    /// Replies to the questions change things all at once, when the last is there.
+    /// Replies to the initial queries take effect together, with the last one.
     fn take_reply(&mut self, reply: &Reply) -> Result<(), OutOfMemory> {
         if let &Reply::KeyboardFlags(flags) = reply {
             self.take_keyboard(flags);
         }
         let (size, capabilities) = (self.size(), *self.display.capabilities());
         match reply {
-            // Terminals answer in order: first the questions of the start, then what ends each frame.
+            // Terminals reply in order: first to the initial queries, then to those at the end of frames.
             Reply::DeviceAttributes(_) if !self.display.questions().is_open() => self.pacing.take_reply(self.now),
             &Reply::Mode { mode, .. } if self.pacing.take_mode(mode, self.now) => drop(self.display.close_questions()),
             reply => drop(self.display.take_reply(reply)),
@@ -90,7 +90,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// The terminal says which flags of the kitty keyboard protocol are on.
+    /// Handles a reply with the flags of the kitty keyboard protocol.
     fn take_keyboard(&mut self, flags: u16) {
         let hears_releases = self.display.knows_keyboard() && flags & KEYBOARD == KEYBOARD;
         self.eye.set_hears_releases(hears_releases, self.now);
@@ -103,7 +103,7 @@ impl Viewer {
             self.screen.close::<Note>();
         }
         let meant = self.bindings().command(&self.screen.modes(self.size()), key);
-        // A question takes all keys but those with Ctrl, which may leave, unless they answer it.
+        // An open question takes all keys, except unrelated ones with Ctrl, which may leave.
         let is_for_all = key.modifiers.contains(KeyModifiers::CONTROL);
         let answer = meant.map(|(command, _)| command).filter(|command| command.answers() || !is_for_all);
         if is_press && (answer.is_some() || !is_for_all) && self.take_answer(answer) {
@@ -117,7 +117,8 @@ impl Viewer {
         }
     }
 
-    /// Does at once what is asked for; with Shift, more of it. What goes on while a key is held is the eye's.
+    /// Carries out a command that takes effect at once; `faster` (Shift) makes it larger. Continuous motion is the
+    /// eye's.
     pub(super) fn obey(&mut self, command: Command, more: bool) {
         match command {
             Command::Quit => self.asks.push_back(Ask::Leave),
@@ -152,7 +153,7 @@ impl Viewer {
             Command::ScrollUp => self.scroll(-1),
             Command::ScrollDown => self.scroll(1),
             Command::Redraw => self.redraw(),
-            // The eye has heard of it; or it is an answer, and nothing was asked.
+            // Motion has been passed to the eye; an answer without a question means nothing.
             Command::Move(_)
             | Command::Look(_)
             | Command::Around(_)
@@ -170,7 +171,7 @@ impl Viewer {
         }
     }
 
-    /// Closes the help, or else lets go of a light, or else closes the explanation.
+    /// Closes the help; without it, releases a light; without one, closes the explanation.
     fn close_topmost(&mut self) {
         if self.screen.close::<HelpPanel>().is_none() && !self.leave_light() {
             self.screen.close::<Explaining>();

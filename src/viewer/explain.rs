@@ -1,6 +1,6 @@
-//! The explanation of a pixel: a cursor on the picture, and a panel beside it.
+//! The explanation of a pixel: a cursor on the picture and a panel beside it.
 //!
-//! It is worked out when a frame comes or the cursor moves, and then drawn as often as the screen is.
+//! The text is computed when a frame arrives or the cursor moves, and drawn whenever the screen is.
 
 mod inset;
 mod place;
@@ -26,17 +26,17 @@ use ratatui_widgets::paragraph::Paragraph;
 
 use place::{marks, panel_area};
 
-/// The pixel that is explained, and what there is to say of it.
+/// The explained pixel and its explanation.
 pub(super) struct Explaining {
-    /// Its place on the screen.
+    /// The pixel's coordinates on the screen.
     pixel: [u32; 2],
-    /// How many pixels the screen has.
+    /// The size of the screen in pixels.
     resolution: Resolution,
     explanation: Explanation,
     inset: Inset,
-    /// How the frame differs from the explanation: more rays.
+    /// The difference between the frame's pixel and the explained ray: more rays.
     notes: Vec<String>,
-    /// The first line that is seen.
+    /// Index of the first visible line.
     scrolled: usize,
 }
 
@@ -49,7 +49,7 @@ impl Layer for Explaining {
         look::has_room(screen).then_some(Mode::Explain)
     }
 
-    /// The frame may be of another view, or of another size.
+    /// Updates the explanation for a frame, which may be of another view or size.
     fn take_frame(&mut self, frame: &Frame) {
         let (old, new) = (self.resolution, frame.resolution());
         if frame.refines && old == new {
@@ -66,7 +66,7 @@ impl Layer for Explaining {
             return;
         }
         let (screen, mode) = (canvas.screen(), canvas.cell_mode);
-        // The panel leaves the lowest row to others, and what the status line takes besides.
+        // The panel leaves the lowest row and the rows of the status line free.
         let above = Rect { height: screen.height - canvas.status_rows.saturating_sub(1), ..screen };
         let scroll = help::keys(canvas.bindings, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
         let scroll = scroll.unwrap_or_default();
@@ -80,7 +80,7 @@ impl Layer for Explaining {
 }
 
 impl Explaining {
-    /// The pixel in the middle of the frame; none if it has none.
+    /// Returns the pixel in the middle of the frame; `None` for an empty frame.
     pub(super) fn new(frame: &Frame) -> Option<Self> {
         let [width, height] = [frame.resolution().width(), frame.resolution().height()];
         (width > 0 && height > 0).then(|| Self::of(frame, [width / 2, height / 2], 0))
@@ -106,7 +106,7 @@ impl Explaining {
         self.put(frame, [x.saturating_add_signed(right), y.saturating_add_signed(down)]);
     }
 
-    /// The cursor goes to that pixel, or the last one before the picture's end.
+    /// Moves the cursor to a pixel, clamped to the picture.
     pub(super) fn put(&mut self, frame: &Frame, [x, y]: [u32; 2]) {
         let [width, height] = [frame.resolution().width(), frame.resolution().height()];
         if width > 0 && height > 0 {
@@ -114,18 +114,18 @@ impl Explaining {
         }
     }
 
-    /// Shows later lines, or with a negative number earlier ones.
+    /// Scrolls by this number of lines; negative numbers scroll back.
     pub(super) fn scroll(&mut self, by: isize) {
         self.scrolled = self.scrolled.saturating_add_signed(by);
     }
 
-    /// The cell in which the pixel is.
+    /// Returns the cell that contains the pixel.
     fn cell(&self, mode: CellMode) -> [u16; 2] {
         let ((across, down), [x, y]) = (mode.pixels_per_cell(), self.pixel);
         [(x / across) as u16, (y / down) as u16]
     }
 
-    /// Which of its cell's rows of pixels it is in, of how many.
+    /// Returns the pixel's row within its cell, and the number of rows in a cell.
     fn row_in_cell(&self, mode: CellMode) -> (u32, u32) {
         let (_, down) = mode.pixels_per_cell();
         (self.pixel[1] % down, down)
@@ -138,7 +138,7 @@ impl Explaining {
         lines
     }
 
-    /// Draws the panel: the text, which these keys scroll, and the view from the side below it.
+    /// Draws the panel: the text, with the keys that scroll it, and below it the view from the side.
     fn paint(&mut self, scroll: &str, look: Look, mode: CellMode, area: Rect, buffer: &mut Buffer) {
         let lines = self.lines(mode);
         let inside = area.inner(Margin::new(2, 1));
@@ -158,9 +158,9 @@ impl Explaining {
     }
 }
 
-/// What the frame has at the pixel where that is not the explanation's.
+/// Returns a line about the frame's colour at the pixel, if it differs from the explanation's.
 fn notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explanation) -> Vec<String> {
-    // Maps are of the same ray, and have their legend.
+    // Maps show the same single ray, and have a legend.
     if !frame.legends.is_empty() {
         return Vec::new();
     }

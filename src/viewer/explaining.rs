@@ -3,14 +3,14 @@
 use super::Viewer;
 use crate::control::Toward;
 
-/// How many pixels the cursor goes at once with Shift.
+/// Pixels that the cursor moves per key press with Shift.
 const FASTER: i32 = 8;
 
-/// How many lines a page of the panel goes on.
+/// Lines that the panel scrolls per page.
 const PAGE: isize = 10;
 
 impl Viewer {
-    /// The cursor goes by a pixel, or more.
+    /// Moves the cursor by one pixel, or by several if `faster`.
     pub(super) fn point(&mut self, toward: Toward, more: bool) {
         let pixels = if more { FASTER } else { 1 };
         let step = match toward {

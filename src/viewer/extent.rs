@@ -1,17 +1,17 @@
-//! How much of a window the picture covers: all of it, unless that would take more memory than a picture is worth.
+//! The part of a window that the picture covers: all of it, up to a limit on memory.
 
 use crate::capabilities::CellMode;
 use crate::grid::Size;
 use crate::memory::{self, OutOfMemory};
 
-/// The most pixels of a live picture: 1,048,576 cells of half blocks or of the ramp, 262,144 of shapes. Of a window with
-/// more cells the picture covers the upper left part, in the window's shape, and the rest stays empty.
+/// Limit on the pixels of a live picture: 1,048,576 cells of half blocks or of the ramp, 262,144 of shapes. In a larger
+/// window the picture covers the upper left part, in the window's shape, and the rest stays empty.
 ///
-/// A picture of this size takes 490 MB at the peak, and one of twice the size 770 MB (in all colours, with a wipe or on a slow link). Windows of
-/// real terminals have less than a tenth of that: a 4K screen has 100,000 cells of 8 by 10 pixels.
+/// A picture of this size takes 490 MB at the peak, one of twice the size 770 MB (in truecolor, with a wipe or on a
+/// slow link). Windows of real terminals have less than a tenth of it: a 4K screen has 100,000 cells of 8 by 10 pixels.
 pub const MAX_PIXELS: u32 = 1 << 21;
 
-/// Returns what the picture covers of a window, counted from its upper left corner.
+/// Returns the size that the picture covers, from the window's upper left corner.
 pub(super) fn covered(window: Size, mode: CellMode) -> Size {
     let (across, down) = mode.pixels_per_cell();
     let (most, cells) = ((MAX_PIXELS / (across * down)) as usize, window.cell_count());
@@ -23,13 +23,13 @@ pub(super) fn covered(window: Size, mode: CellMode) -> Size {
     Size::new(scaled(window.columns), scaled(window.rows))
 }
 
-/// What a picture, its cells and its bytes take at the peak for each pixel: 232 bytes were measured.
+/// Peak memory of a picture, its cells and its bytes per pixel; 232 bytes were measured.
 const BYTES_PER_PIXEL: usize = 256;
 
-/// Finds out whether there is the memory to show pictures of that size.
+/// Checks that there is memory to show pictures of this size.
 ///
 /// # Errors
-/// If there is not.
+/// If there is not enough.
 pub(super) fn check(size: Size, mode: CellMode) -> Result<(), OutOfMemory> {
     let (across, down) = mode.pixels_per_cell();
     let pixels = size.cell_count() * (across * down) as usize;

@@ -1,4 +1,4 @@
-//! Where the scene is looked at from, and how keys move that.
+//! The camera of the shown scene, and its motion by keys.
 
 use crate::camera::{Camera, Pose};
 use crate::control::{self, Command, Mode, Motion, Pace};
@@ -7,39 +7,39 @@ use crossterm::event::{KeyEvent, KeyEventKind};
 use glam::Vec3;
 use std::time::Duration;
 
-/// The first frame after a key already shows so much movement.
+/// The motion in the first frame after a key press: as if the key had been held for the time of a frame.
 pub(crate) const FRAME: Duration = Duration::from_micros(16_667);
 
-/// The eye, and what moves it.
+/// The camera and the motion of it.
 #[derive(Default)]
 pub(super) struct Eye {
-    /// `None` as long as there is nothing to see.
+    /// `None` without a scene.
     view: Option<View>,
     motion: Motion,
-    /// Whether it goes around the target by itself.
+    /// Whether the turntable is on.
     turntable: bool,
-    /// Up to when the motion has been carried out; `None` at rest.
+    /// The time up to which the motion has been carried out; `None` at rest.
     moved_until: Option<Duration>,
-    /// Whether each press is one step at once, and nothing moves by itself.
+    /// Whether motion is reduced: each press is one step at once, and nothing moves by itself.
     steps: bool,
 }
 
-/// How a scene is looked at.
+/// The state of looking at a scene.
 #[derive(Clone)]
 pub(super) struct View {
     home: Camera,
     camera: Camera,
     speed: f32,
-    /// Whether the eye goes around what it looks at; else it flies.
+    /// Whether the eye orbits its target instead of flying.
     orbits: bool,
-    /// What the scene's file has.
+    /// The views of the scene file.
     written: Vec<Camera>,
-    /// What was saved since, and by which number.
+    /// The views saved by the user, by number.
     saved: [Option<Camera>; 9],
 }
 
 impl View {
-    /// As the scene wants to be looked at.
+    /// Returns the initial view of a scene.
     pub(super) fn of(scene: &Scene, orbits: bool) -> Self {
         let home = *scene.camera();
         Self {
@@ -52,56 +52,56 @@ impl View {
         }
     }
 
-    /// From where the scene wanted to be looked at.
+    /// The scene's own camera.
     pub(super) fn home(&self) -> Camera {
         self.home
     }
 }
 
-/// A step is as far as a key moves that is held for so long: a tenth of the way to the target, or nine degrees.
+/// Time for which a held key moves as far as one step: a tenth of the way to the target, or nine degrees.
 const STEP: Duration = Duration::from_millis(200);
 
 impl Eye {
-    /// What keys do at that pace, and whether each press is to be one step at once, and nothing glides: for those whom
-    /// movement makes unwell.
+    /// Returns an eye without a scene. With `reduced_motion` each press is one step at once and nothing glides, for
+    /// people prone to motion sickness.
     pub(super) fn new(pace: Pace, steps: bool) -> Self {
         Self { motion: Motion::at_pace(pace), steps, ..Self::default() }
     }
 
-    /// There is something else to see; how what was seen before was looked at.
+    /// Looks at another scene. Returns the view of the previous one.
     pub(super) fn open(&mut self, view: View) -> Option<View> {
         self.turntable = false;
         self.view.replace(view)
     }
 
-    /// The scene's file has other views now.
+    /// Replaces the views of the scene file.
     pub(super) fn set_written(&mut self, views: Vec<Camera>) {
         if let Some(view) = &mut self.view {
             view.written = views;
         }
     }
 
-    /// `None` as long as there is nothing to see.
+    /// Returns the camera; `None` without a scene.
     pub(super) fn camera(&self) -> Option<Camera> {
         self.view.as_ref().map(|view| view.camera)
     }
 
-    /// Where the camera is, if it is not where it was.
+    /// Returns the camera if it has been moved.
     pub(super) fn moved(&self) -> Option<Camera> {
         self.view.as_ref().filter(|view| view.camera != view.home).map(|view| view.camera)
     }
 
-    /// Up to when the motion has been carried out; `None` at rest.
+    /// Returns the time up to which the motion has been carried out; `None` at rest.
     pub(super) fn moved_until(&self) -> Option<Duration> {
         self.moved_until
     }
 
-    /// Whether anything moves, as far as the motion has been carried out.
+    /// Returns whether anything moves.
     pub(super) fn is_moving(&self) -> bool {
         self.moved_until.is_some()
     }
 
-    /// Carries the motion out up to now.
+    /// Carries out the motion up to `now`.
     pub(super) fn go_on(&mut self, now: Duration) {
         let Some(since) = self.moved_until else { return };
         self.moved_until = (self.turntable || self.motion.is_moving(now)).then_some(now);
@@ -112,7 +112,7 @@ impl Eye {
         }
     }
 
-    /// Does something to the camera, which is told how large the scene is. It stops what moves the eye by itself.
+    /// Changes the camera by `change`, which gets the scene's size, and stops the turntable.
     pub(super) fn change(&mut self, now: Duration, change: impl FnOnce(&Camera, f32) -> Camera) {
         self.go_on(now);
         self.turntable = false;
@@ -121,20 +121,20 @@ impl Eye {
         }
     }
 
-    /// Goes around the target by itself from now on, or no more.
+    /// Starts or stops the turntable.
     pub(super) fn toggle_turntable(&mut self, now: Duration) {
         self.go_on(now);
         self.turntable = !self.turntable;
         self.begin(now);
     }
 
-    /// From rest, the first frame already shows a frame's worth of movement.
+    /// Starts the motion. The first frame already shows the motion of a frame's time.
     fn begin(&mut self, now: Duration) {
         let moves = self.turntable || self.motion.is_moving(now);
         self.moved_until = moves.then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
     }
 
-    /// To the view that was saved by that number, from 1, or that view of the scene's file: `None` if there is none.
+    /// Goes to the view saved as `number`, from 1, or that view of the scene file. `None` if there is none.
     pub(super) fn go_to(&mut self, number: u8, now: Duration) -> Option<()> {
         let view = self.view.as_ref()?;
         let at = usize::from(number).checked_sub(1)?;
@@ -143,7 +143,7 @@ impl Eye {
         Some(())
     }
 
-    /// Saves the view by that number.
+    /// Saves the current view as `number`.
     pub(super) fn save(&mut self, number: u8) {
         if let Some(view) = &mut self.view
             && let Some(saved) = usize::from(number).checked_sub(1).and_then(|at| view.saved.get_mut(at))
@@ -152,13 +152,13 @@ impl Eye {
         }
     }
 
-    /// How it moves.
+    /// Returns whether the eye flies or orbits.
     pub(super) fn mode(&self) -> Mode {
         if self.view.as_ref().is_some_and(|view| view.orbits) { Mode::Orbit } else { Mode::Fly }
     }
 
-    /// To the other way of moving. To go around something, it looks at the point in the middle of its view: the picture
-    /// stays as it is.
+    /// Switches between flight and orbit. Orbit starts around the point seen in the middle of the picture, which leaves
+    /// the picture as it is.
     pub(super) fn change_mode(&mut self, in_the_middle: Option<Vec3>) {
         let Some(view) = &mut self.view else { return };
         view.orbits = !view.orbits;
@@ -167,7 +167,7 @@ impl Eye {
         }
     }
 
-    /// What was going on is carried out before the key, which means something or nothing, changes it.
+    /// Carries out the motion so far, then passes the key to it.
     pub(super) fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
         if self.steps {
             self.take_step(key, meant);
@@ -179,30 +179,30 @@ impl Eye {
         self.begin(now);
     }
 
-    /// A press or a repeat is one step.
+    /// Moves by one step, for a press or a repeat.
     fn take_step(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>) {
         let Some(view) = self.view.as_mut().filter(|_| key.kind != KeyEventKind::Release) else { return };
-        // It holds nothing: steps are all there is.
+        // With reduced motion no key is held: steps are the only motion.
         let mut motion = self.motion.clone();
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
         view.camera = motion.step(&view.camera, view.speed, Duration::ZERO, STEP);
     }
 
-    /// Nothing is held any more.
+    /// Releases all keys.
     pub(super) fn let_go(&mut self, now: Duration) {
         self.go_on(now);
         self.motion.stop();
         self.moved_until = self.moved_until.filter(|_| self.turntable);
     }
 
-    /// Nothing moves any more.
+    /// Stops all motion.
     pub(super) fn stand_still(&mut self, now: Duration) {
         self.let_go(now);
         self.turntable = false;
         self.moved_until = None;
     }
 
-    /// Whether the terminal tells of releases from now on. What is held is let go of when it no longer does.
+    /// Sets whether the terminal reports releases. Held keys are released if it no longer does.
     pub(super) fn set_hears_releases(&mut self, hears_releases: bool, now: Duration) {
         if self.hears_releases() && !hears_releases {
             self.let_go(now);
@@ -214,7 +214,7 @@ impl Eye {
         self.motion.hears_releases()
     }
 
-    /// Back to where it was first.
+    /// Returns to the scene's own camera.
     pub(super) fn reset(&mut self, now: Duration) {
         let home = self.view.as_ref().map(|view| view.home);
         self.change(now, |camera, _| home.unwrap_or(*camera));

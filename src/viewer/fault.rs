@@ -1,4 +1,4 @@
-//! What is wrong with a scene, at the bottom of the picture, until it is mended.
+//! The error panel at the bottom of the picture.
 
 use super::layers::{Canvas, Layer, Level};
 use super::look::Look;
@@ -11,10 +11,10 @@ use ratatui_widgets::clear::Clear;
 use ratatui_widgets::paragraph::Paragraph;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// The most rows that a fault takes; nor does it take more than a third of the screen.
+/// Limit on the panel's rows, besides a third of the screen.
 const MOST_ROWS: u16 = 8;
 
-/// The first fault of a scene, with its line of the file and a caret.
+/// The first error of a scene, with its source line and a caret.
 pub(super) struct Fault(pub(super) Notice);
 
 impl Layer for Fault {
@@ -32,12 +32,12 @@ impl Layer for Fault {
 }
 
 impl Fault {
-    /// What fits into that many columns.
+    /// Returns the lines that fit into `columns`.
     fn lines(&self, width: usize) -> Vec<String> {
         let mut lines = wrapped(&self.0.message, width);
         if let Some(excerpt) = &self.0.excerpt {
             let [_, caret] = excerpt;
-            // So far to the left that the caret can be seen.
+            // Scrolled so far that the caret is visible.
             let cut = caret.width().saturating_sub(width).min(caret.find('^').unwrap_or(0));
             lines.extend(excerpt.iter().map(|line| part(line, cut, width)));
         }
@@ -47,7 +47,7 @@ impl Fault {
         lines
     }
 
-    /// The lowest rows, above that many others.
+    /// Returns the panel's area, above the lowest `taken` rows.
     fn area(&self, screen: Rect, below: u16) -> Rect {
         let lines = self.lines(inner(screen.width)).len() as u16;
         let height = lines.min(MOST_ROWS).min(screen.height / 3);
@@ -62,12 +62,12 @@ impl Fault {
     }
 }
 
-/// With a blank on both sides.
+/// Returns the text with a blank on both sides.
 fn inner(width: u16) -> usize {
     usize::from(width.saturating_sub(2)).max(1)
 }
 
-/// The text in lines of at most that many columns, broken between words where there are some.
+/// Wraps the text at `columns`, between words where possible.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_inclusive([' ', '/']) {
@@ -89,7 +89,7 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The columns from that one on, at most that many.
+/// Returns at most `columns` columns of the text, starting at column `from`.
 fn part(text: &str, from: usize, width: usize) -> String {
     let mut column = 0;
     let within = text.chars().filter(|c| {

@@ -1,4 +1,4 @@
-//! A frame that is wanted, and one that is done.
+//! A requested frame and a finished one.
 
 use super::shown::Shown;
 use crate::camera::Camera;
@@ -8,12 +8,12 @@ use crate::scene::Scene;
 use crate::tone::Picture;
 use std::time::Duration;
 
-/// What a frame is to show: of two that are equal, the pictures are equal.
+/// The content of a frame. Equal shots have equal pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shot {
-    /// Which of the scenes that were shown one after the other.
+    /// Number of the scene among those shown one after the other.
     pub(crate) scene: u32,
-    /// How many times lights of it have been moved.
+    /// Number of times that its lights have been moved.
     pub(crate) lights: u32,
     pub(crate) camera: Camera,
     pub(crate) resolution: Resolution,
@@ -21,54 +21,54 @@ pub(crate) struct Shot {
 }
 
 impl Shot {
-    /// Whether a frame of this takes about as long as one of the other: only the camera or the light may differ.
+    /// Returns whether tracing takes about as long as for `other`: only the camera or the lights may differ.
     pub(super) fn takes_as_long_as(&self, other: &Self) -> bool {
         let about = |shot: &Self| (shot.scene, shot.resolution, shot.shown);
         about(self) == about(other)
     }
 }
 
-/// A frame that is to be traced.
+/// A frame to trace.
 #[derive(Clone)]
 pub(crate) struct Job {
     pub(crate) scene: Scene,
     pub(crate) shot: Shot,
     pub(crate) sampling: Sampling,
-    /// The shot is that of the last frame, which is gone on with if it can be. The job may be given up.
+    /// Whether to refine the last frame, which has the same shot, if that is possible. Such a job may be cancelled.
     pub(crate) refines: bool,
 }
 
-/// A frame that is done.
+/// A finished frame.
 pub(crate) struct Frame {
     pub(crate) scene: Scene,
     pub(crate) shot: Shot,
     pub(crate) picture: Picture,
-    /// The pictures that it is made of, as far as they can be put together in another way.
+    /// The pictures that it was combined from, if they can be combined in another way.
     pub(crate) parts: Vec<Picture>,
     pub(crate) sampling: Sampling,
-    /// What the colours mean, from left to right; nothing where they are light.
+    /// The legends of the maps, from left to right; empty where the picture shows light.
     pub(crate) legends: Vec<String>,
-    /// Whether it shows the same as the one before, only better.
+    /// Whether it shows the same as the frame before, with more samples.
     pub(crate) refines: bool,
-    /// What it took, beside the frame that it refines.
+    /// The cost of tracing, without that of the frame that it refines.
     pub(crate) cost: Cost,
-    /// How long that took on the clock.
+    /// The time that tracing took on the clock.
     pub(crate) trace: Duration,
 }
 
 impl Frame {
-    /// From where it is seen.
+    /// Returns the camera.
     pub(super) fn camera(&self) -> &Camera {
         &self.shot.camera
     }
 
-    /// How many pixels there are.
+    /// Returns the size of the picture in pixels.
     pub(super) fn resolution(&self) -> Resolution {
         self.shot.resolution
     }
 
-    /// Of two maps side by side, each is a picture of its own: how large the one is that has this pixel, and which of its
-    /// pixels it is. (That of the line between them is the last of the left one.)
+    /// Returns the size of the picture that contains a pixel, and the pixel's coordinates there: of two maps side by
+    /// side, each is a picture of its own. (A pixel of the line between them counts as the last one of the left map.)
     pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
         let resolution = self.resolution();
         match *self.shot.shown.parts(resolution) {
@@ -80,7 +80,7 @@ impl Frame {
         }
     }
 
-    /// Moves the line between two maps, if there is one, to that share of the width.
+    /// Moves the line between two maps, if there is one, to this share of the width.
     pub(super) fn wipe(&mut self, share: f32) {
         if let Some(picture) = self.shot.shown.joined(&self.parts, share) {
             self.picture = picture;

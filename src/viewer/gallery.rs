@@ -1,4 +1,4 @@
-//! Which scene is shown, and how the others were looked at.
+//! The shown scene, and the views in which other scenes were left.
 
 use super::eye::View;
 use super::lights::Lights;
@@ -6,28 +6,28 @@ use crate::camera::Camera;
 use crate::scene::Scene;
 use std::collections::HashMap;
 
-/// The scene that is shown, and what is kept of others.
+/// The shown scene and the saved views of the others.
 #[derive(Default)]
 pub(super) struct Gallery {
-    /// `None` as long as there is nothing to see.
+    /// `None` without a scene.
     now: Option<Now>,
-    /// How others were looked at when they were left, by their number.
+    /// The view in which each scene was left, by the scene's number.
     left: HashMap<usize, View>,
-    /// How many scenes were shown up to now.
+    /// Number of scenes shown so far.
     count: u32,
 }
 
 struct Now {
-    /// The scene's number among those that there are to look at.
+    /// The scene's number in the driver's list.
     of: usize,
-    /// From where it wants to be looked at.
+    /// The scene's own camera.
     home: Camera,
     lights: Lights,
 }
 
 impl Gallery {
-    /// Shows a scene. Returns how it is looked at, unless that is as the one before, which wanted to be looked at in the
-    /// same way: as when it was left, if it wants to be looked at as it did then; else as it wants.
+    /// Shows a scene. Returns the view to start from, or `None` to keep the current one because it is of a scene with
+    /// the same camera. A scene with the same camera as when it was left starts from where it was left.
     pub(super) fn show(&mut self, scene: Scene, of: usize, orbits: bool) -> Option<View> {
         let home = *scene.camera();
         let before = self.now.as_ref().map(|now| (now.of, now.home));
@@ -40,27 +40,27 @@ impl Gallery {
         view
     }
 
-    /// The scene of that number was looked at like this when it was left.
+    /// Records the view in which a scene is left.
     pub(super) fn leave(&mut self, of: usize, view: View) {
         self.left.insert(of, view);
     }
 
-    /// The number of the scene that is shown, among those that there are to look at.
+    /// Returns the number of the shown scene in the driver's list.
     pub(super) fn shown(&self) -> Option<usize> {
         self.now.as_ref().map(|now| now.of)
     }
 
-    /// How many scenes were shown up to now.
+    /// Returns the number of scenes shown so far.
     pub(super) fn count(&self) -> u32 {
         self.count
     }
 
-    /// The lights of the scene that is shown.
+    /// Returns the lights of the shown scene.
     pub(super) fn lights(&self) -> Option<&Lights> {
         self.now.as_ref().map(|now| &now.lights)
     }
 
-    /// The lights of the scene that is shown, to be moved.
+    /// Returns the lights of the shown scene, to move them.
     pub(super) fn lights_mut(&mut self) -> Option<&mut Lights> {
         self.now.as_mut().map(|now| &mut now.lights)
     }

@@ -1,4 +1,4 @@
-//! The mouse, and what it has taken hold of.
+//! The mouse pointer and the thing that it drags.
 
 use crate::control::{Gesture, Pointer};
 use crossterm::event::MouseEvent;
@@ -12,20 +12,20 @@ pub(super) struct Hand {
     grasped: Grasped,
 }
 
-/// What the mouse has taken hold of.
+/// The thing that is dragged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Grasped {
     #[default]
     View,
     /// The line between two maps.
     Line,
-    /// The cursor of an explanation.
+    /// The cursor of the explanation.
     Cursor,
     Light,
 }
 
 impl Hand {
-    /// Returns what an event at that place of the screen means.
+    /// Returns the meaning of an event at this position of the screen.
     pub(super) fn take(&mut self, event: MouseEvent, at: Vec2, now: Duration) -> Option<Gesture> {
         self.pointer.take(&event, at, now)
     }
@@ -38,7 +38,7 @@ impl Hand {
         self.grasped
     }
 
-    /// Whether a button is held.
+    /// Returns whether a button is held.
     pub(super) fn holds(&self) -> bool {
         self.pointer.holds()
     }
@@ -47,7 +47,7 @@ impl Hand {
         self.pointer.let_go();
     }
 
-    /// Where the pointer is, as a share of the screen's width and height, if it was seen.
+    /// Returns the pointer's last position, as shares of the screen's width and height, if known.
     pub(super) fn at(&self) -> Option<Vec2> {
         self.pointer.at()
     }

@@ -1,4 +1,4 @@
-//! What is told of keys: the help, and a line of those that matter most. Both are made from the bindings that hold.
+//! The help and the short list of keys in the status line. Both are made from the bindings in force.
 
 use super::layers::{Canvas, Layer, Level};
 use super::look::{self, Look};
@@ -13,25 +13,25 @@ use ratatui_widgets::paragraph::Paragraph;
 use std::collections::HashSet;
 use unicode_width::UnicodeWidthStr;
 
-/// Between two columns.
+/// Space between two columns.
 const GAP: usize = 2;
 
-/// Besides the text: the border, and a blank at each side.
+/// Cells beside the text: the border and a blank on each side.
 const FRAME: (u16, u16) = (4, 2);
 
-/// Keys, and what they do.
+/// Keys and their meaning.
 type Row = (String, &'static str);
 
-/// The page of the help that is open.
+/// The open page of the help.
 pub(super) struct HelpPanel {
     page: usize,
 }
 
 impl HelpPanel {
-    /// The first page.
+    /// Returns the first page.
     pub(super) const FIRST: Self = Self { page: 0 };
 
-    /// The next page; `None` after the last one, and where there is no room for any.
+    /// Returns the next page; `None` after the last one, and where the screen has no room for any.
     pub(super) fn next(&self, bindings: &Bindings, modes: &[Mode], screen: Rect) -> Option<Self> {
         let pages = Help::new(bindings, modes, screen).pages();
         let page = self.page + 1;
@@ -55,27 +55,27 @@ impl Layer for HelpPanel {
     }
 }
 
-/// The help as it is laid out on one screen: in as few columns as hold it all, or else in pages.
+/// The help laid out for a screen size: in as few columns as hold it all, otherwise in pages.
 struct Help {
     title: String,
-    /// Each of columns, each of lines.
+    /// Pages of columns of lines.
     pages: Vec<Vec<Vec<String>>>,
 }
 
 impl Help {
-    /// Of what keys mean in these modes, the topmost first.
+    /// Lays out the keys of these modes, topmost first.
     fn new(bindings: &Bindings, modes: &[Mode], screen: Rect) -> Self {
         let room = [screen.width.saturating_sub(FRAME.0), screen.height.saturating_sub(FRAME.1)].map(usize::from);
         let modes_said: Vec<_> = modes.iter().filter(|mode| **mode != Mode::Always).map(|mode| mode.name()).collect();
         Self { title: modes_said.join(", "), pages: pages(&rows(bindings, modes), room) }
     }
 
-    /// How many pages there are.
+    /// Returns the number of pages.
     fn pages(&self) -> usize {
         self.pages.len()
     }
 
-    /// The page of that number, or the last.
+    /// Returns a page, or the last one if there are fewer.
     fn page(&self, page: usize) -> &[Vec<String>] {
         self.pages.get(page).or(self.pages.last()).map_or(&[], Vec::as_slice)
     }
@@ -87,7 +87,7 @@ impl Help {
         }
     }
 
-    /// In the middle, as large as its text, or as the screen.
+    /// Returns the panel's area: in the middle, as large as its text, at most the screen.
     fn area(&self, page: usize, screen: Rect) -> Rect {
         let columns = self.page(page);
         let text = columns.iter().map(|column| width(column)).sum::<usize>() + GAP * columns.len().saturating_sub(1);
@@ -109,14 +109,14 @@ impl Help {
     }
 }
 
-/// What is said where there is no room for it.
+/// The message where the screen has no room for the help.
 fn no_room() -> String {
     let (columns, rows) = look::LEAST;
     format!("help needs {columns}x{rows}")
 }
 
-/// What keys mean now. What a mode binds is hidden where one above it binds the same key. Of many that do the same, such as
-/// digits, the first and the last stand for all.
+/// Returns the keys in force and their meaning. A key that a higher mode binds is left out below. Of several keys for
+/// one command, such as digits, the first and the last are listed.
 fn rows(bindings: &Bindings, modes: &[Mode]) -> Vec<Row> {
     let mut taken = HashSet::new();
     let mut rows = Vec::new();
@@ -138,7 +138,7 @@ fn joined(rows: &[Row]) -> String {
     }
 }
 
-/// In as few columns as hold all rows on one page; where these are too wide together, in fewer, and in pages.
+/// Breaks the rows into as few columns as fit on one page; if these are too wide together, into fewer, and pages.
 fn pages(rows: &[Row], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
     let lines = lines.max(1);
     let needed = rows.len().div_ceil(lines).max(1);
@@ -151,7 +151,7 @@ fn pages(rows: &[Row], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
     (2..=needed).rev().map(laid_out).find(|pages| pages.iter().all(fits)).unwrap_or_else(|| laid_out(1))
 }
 
-/// A line for each row.
+/// Returns a line for each row.
 fn column(rows: &[Row]) -> Vec<String> {
     let labels = rows.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
     rows.iter().map(|(label, does)| format!("{label}{:1$}  {does}", "", labels - label.width())).collect()
@@ -161,7 +161,7 @@ fn width(lines: &[String]) -> usize {
     lines.iter().map(|line| line.width()).max().unwrap_or(0)
 }
 
-/// The mode, and as many of the keys that matter in it as there is room for.
+/// Returns the mode's name and as many of its important keys as fit.
 pub(super) fn line(bindings: &Bindings, modes: &[Mode], room: usize) -> String {
     let Some(&mode) = modes.first() else { return String::new() };
     let always = [(&[Command::Help][..], "help"), (&[Command::Quit], "leave")];
@@ -177,7 +177,7 @@ pub(super) fn line(bindings: &Bindings, modes: &[Mode], room: usize) -> String {
     line
 }
 
-/// What matters in a mode, in a word each.
+/// Returns the important commands of a mode, with a word for each.
 fn matter(mode: Mode) -> &'static [(&'static [Command], &'static str)] {
     const MOVE: &[Command] = &[
         Command::Move(Direction::Forward),
@@ -234,7 +234,7 @@ fn matter(mode: Mode) -> &'static [(&'static [Command], &'static str)] {
     }
 }
 
-/// A key of each command, if all have one; the four arrows by that name.
+/// Returns a key for each command, if all have one; for the four arrows, the word "arrows".
 pub(super) fn keys(bindings: &Bindings, modes: &[Mode], commands: &[Command]) -> Option<String> {
     let keys: Option<Vec<Key>> = commands.iter().map(|&command| bindings.key_of(modes, command)).collect();
     let keys = keys?;
@@ -255,7 +255,7 @@ mod tests {
         [under(Mode::Fly), under(Mode::Orbit), above(Mode::Explain), above(Mode::Light)]
     }
 
-    /// The text of all pages on a screen of that size.
+    /// Returns the text of all pages on a screen of this size.
     fn shown(bindings: &Bindings, modes: &[Mode], columns: u16, rows: u16) -> String {
         let screen = Rect::new(0, 0, columns, rows);
         let help = Help::new(bindings, modes, screen);
@@ -273,7 +273,7 @@ mod tests {
         text
     }
 
-    /// On one page where there is the usual room.
+    /// Asserts that the help fits on one page of a common screen.
     #[test]
     fn all_of_it_is_shown_wherever_there_is_room_for_panels() {
         let bindings = Bindings::default();
@@ -304,7 +304,7 @@ mod tests {
         assert_eq!(keys(&bindings, &[Mode::Fly, Mode::Always], &[Command::Export]), None);
     }
 
-    /// What the mode above takes is not told of below.
+    /// A key bound in a higher mode is not listed for the lower one.
     #[test]
     fn a_key_is_told_of_once() {
         let text = shown(&Bindings::default(), &[Mode::Explain, Mode::Fly, Mode::Always], 80, 24);

@@ -1,6 +1,6 @@
-//! What lies over the picture: a stack of layers, each drawn from its own state.
+//! The stack of layers over the picture, each drawn from its own state.
 //!
-//! A new panel is one file with a type that implements [`Layer`], and one line where something opens it.
+//! A new panel is one file with a type that implements [`Layer`], and the line that opens it.
 
 use super::frame::Frame;
 use super::look::{self, Look};
@@ -13,88 +13,88 @@ use ratatui_core::layout::Rect;
 use std::any::Any;
 use std::time::Duration;
 
-/// Where a layer lies, from the lowest to the topmost.
+/// The height of a layer in the stack, from the lowest to the topmost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Level {
     /// On a thing in the picture.
     Mark,
-    /// Beside what it speaks of.
+    /// Beside the thing that it describes.
     Side,
     /// In the middle of the lower half.
     Middle,
-    /// In the lowest rows, from the lowest up.
+    /// In the lowest rows, upwards.
     Status,
     Legend,
     Fault,
     /// In the lowest row until the next key.
     Note,
-    /// What has to be answered.
+    /// A question that has to be answered.
     Question,
     Help,
 }
 
-/// Something that lies over the picture.
+/// A panel or mark over the picture.
 pub(super) trait Layer: Any {
     fn level(&self) -> Level;
 
     fn draw(&mut self, canvas: &mut Canvas<'_>);
 
-    /// What keys are for while it is open, on that screen.
+    /// Returns the mode that keys have while the layer is open on a screen of this size.
     fn mode(&self, _screen: Rect) -> Option<Mode> {
         None
     }
 
-    /// Whether it takes all keys.
+    /// Returns whether the layer takes all keys.
     fn takes_all_keys(&self) -> bool {
         false
     }
 
-    /// The picture has another frame.
+    /// Updates the layer for a new frame of the picture.
     fn take_frame(&mut self, _frame: &Frame) {}
 }
 
-/// All that lie over the picture, from the lowest to the topmost; one of each type.
+/// The open layers, from the lowest to the topmost; at most one of each type.
 #[derive(Default)]
 pub(super) struct Layers {
     stack: Vec<Box<dyn Layer>>,
 }
 
 impl Layers {
-    /// Opens a layer, in the place of the one of its type.
+    /// Opens a layer and replaces the open one of its type.
     pub(super) fn open<L: Layer>(&mut self, layer: L) {
         self.close::<L>();
         let at = self.stack.partition_point(|below| below.level() <= layer.level());
         self.stack.insert(at, Box::new(layer));
     }
 
-    /// Closes the layer of that type, and returns it.
+    /// Closes the layer of a type and returns it.
     pub(super) fn close<L: Layer>(&mut self) -> Option<L> {
         let at = self.stack.iter().position(|layer| is::<L>(layer.as_ref()))?;
         let layer: Box<dyn Any> = self.stack.remove(at);
         layer.downcast().ok().map(|layer| *layer)
     }
 
-    /// The layer of that type.
+    /// Returns the layer of a type, if open.
     pub(super) fn get<L: Layer>(&self) -> Option<&L> {
         self.stack.iter().find_map(|layer| (layer.as_ref() as &dyn Any).downcast_ref())
     }
 
-    /// The layer of that type, to be changed.
+    /// Returns the layer of a type, if open, to change it.
     pub(super) fn get_mut<L: Layer>(&mut self) -> Option<&mut L> {
         self.stack.iter_mut().find_map(|layer| (layer.as_mut() as &mut dyn Any).downcast_mut())
     }
 
-    /// What keys are for on that screen, the topmost first, with this below all layers.
+    /// Returns the modes of keys on a screen of this size, topmost first, with `below` under all layers.
     pub(super) fn modes(&self, screen: Rect, moving: Mode) -> Vec<Mode> {
         if let Some(question) = self.stack.iter().find(|layer| layer.takes_all_keys()) {
             return question.mode(screen).into_iter().chain([Mode::Always]).collect();
         }
-        // What is nearest to the things of the picture is nearest at hand.
+        // Layers on things in the picture take precedence over panels.
         let layers = self.stack.iter().filter_map(|layer| layer.mode(screen));
         layers.chain([moving, Mode::Always]).collect()
     }
 
-    /// The picture has another frame.
+    /// Updates all layers for a new frame.
     pub(super) fn take_frame(&mut self, frame: &Frame) {
         for layer in &mut self.stack {
             layer.take_frame(frame);
@@ -112,32 +112,32 @@ fn is<L: Layer>(layer: &dyn Layer) -> bool {
     (layer as &dyn Any).is::<L>()
 }
 
-/// The cells to draw on, and what layers are drawn from besides their own state.
+/// The cells to draw on, and the state that layers share.
 pub(super) struct Canvas<'a> {
     pub(super) grid: &'a mut Grid,
     pub(super) cell_mode: CellMode,
     pub(super) bindings: &'a Bindings,
-    /// What keys are for, the topmost first.
+    /// The modes of keys, topmost first.
     pub(super) modes: &'a [Mode],
     pub(super) frame: Option<&'a Frame>,
     pub(super) figures: Figures,
-    /// How many rows at the foot the status line takes.
+    /// Number of rows at the bottom that the status line takes.
     pub(super) status_rows: u16,
 }
 
-/// Figures of the frames that were shown.
+/// Statistics of the frames shown.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Figures {
-    /// How long cells and bytes of the last one took.
+    /// Time for cells and bytes of the last frame.
     pub(super) encode: Duration,
     /// Frames shown per second, while something moves.
     pub(super) frames_per_second: Option<f32>,
-    /// The rate of the link if it is slow, in bytes per second.
+    /// The rate of a slow link, in bytes per second.
     pub(super) slow: Option<f64>,
 }
 
 impl Canvas<'_> {
-    /// All cells.
+    /// Returns the area of all cells.
     pub(super) fn screen(&self) -> Rect {
         look::area(self.grid.size())
     }
@@ -146,17 +146,17 @@ impl Canvas<'_> {
         Look::of(self.cell_mode)
     }
 
-    /// Whether panels may lie over the picture.
+    /// Returns whether the screen is large enough for panels.
     pub(super) fn has_room(&self) -> bool {
         look::has_room(self.screen())
     }
 
-    /// The lowest row with that many others below it.
+    /// Returns the row that has `below` others under it, counted from the bottom.
     pub(super) fn foot(&self, below: u16) -> Rect {
         look::foot(self.screen(), below)
     }
 
-    /// Draws on these cells.
+    /// Draws on a ratatui buffer over an area of the cells.
     pub(super) fn lay(&mut self, area: Rect, draw: impl FnOnce(Look, Rect, &mut Buffer)) {
         let mut buffer = Buffer::empty(area);
         draw(self.look(), area, &mut buffer);
@@ -174,7 +174,7 @@ mod tests {
     use super::*;
     use crate::grid::Size;
 
-    /// A panel that only this test has: all that it takes is this type, and the line that opens it.
+    /// A panel of this test: all that a panel takes is its type and the line that opens it.
     struct Letter<const LETTER: char>(Level);
 
     impl<const LETTER: char> Layer for Letter<LETTER> {

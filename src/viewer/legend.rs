@@ -1,4 +1,4 @@
-//! What the colours of a map mean: a line at the foot of the picture, under each of two.
+//! The legend of a map in the lowest row; with two maps, one under each.
 
 use super::layers::{Canvas, Layer, Level};
 use super::look::Look;
@@ -7,7 +7,7 @@ use ratatui_core::layout::Rect;
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::paragraph::Paragraph;
 
-/// The legends of the frame that is shown.
+/// The legends of the shown frame.
 pub(super) struct Legends;
 
 impl Layer for Legends {
@@ -23,7 +23,7 @@ impl Layer for Legends {
     }
 }
 
-/// Each text with its place in the line, as wide as it is: the picture goes on beside it.
+/// Returns each text with its area, as wide as the text, so that the picture continues beside it.
 fn shared(texts: &[String], line: Rect) -> impl Iterator<Item = (&str, Rect)> {
     let count = texts.len().max(1) as u16;
     (0..).zip(texts).map(move |(at, text)| {

@@ -1,28 +1,28 @@
-//! A scene, and its lights where the user has moved them.
+//! The scene with the lights where the user has moved them.
 
 use crate::light::Light;
 use crate::scene::Scene;
 use glam::Vec3;
 
-/// The lights of the scene that is shown.
+/// The lights of the shown scene.
 pub(super) struct Lights {
-    /// With the lights where they are.
+    /// The scene with its lights moved.
     scene: Scene,
-    /// As the scene's file has them.
+    /// The scene as in its file.
     written: Vec<Light>,
-    /// Which one the user has taken hold of.
+    /// Index of the held light.
     held: Option<usize>,
-    /// How many times one was moved.
+    /// Number of moves so far.
     moves: u32,
 }
 
 impl Lights {
-    /// As the scene has them.
+    /// Returns the scene with its lights unmoved.
     pub(super) fn of(scene: Scene) -> Self {
         Self { written: scene.lights().to_vec(), scene, held: None, moves: 0 }
     }
 
-    /// The scene, with the lights where they are.
+    /// Returns the scene with its lights moved.
     pub(super) fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -31,13 +31,13 @@ impl Lights {
         self.scene.lights()
     }
 
-    /// How many times one was moved.
+    /// Returns the number of moves so far.
     pub(super) fn moves(&self) -> u32 {
         self.moves
     }
 
-    /// Takes hold of the light after the one that is held, or else of the one that `first` gives, and returns its number.
-    /// A light that is infinitely far cannot be held.
+    /// Takes hold of the light after the held one, or of the one that `first` returns, and returns its index. Lights at
+    /// infinity cannot be held.
     pub(super) fn take_next(&mut self, first: impl FnOnce(&[Light]) -> Option<usize>) -> Option<usize> {
         let lights = self.all();
         let after =
@@ -46,22 +46,22 @@ impl Lights {
         self.held
     }
 
-    /// Lets go; whether there was one that was held.
+    /// Releases the held light. Returns whether there was one.
     pub(super) fn let_go(&mut self) -> bool {
         self.held.take().is_some()
     }
 
-    /// Where the one is that is held.
+    /// Returns the position of the held light.
     pub(super) fn held(&self) -> Option<Vec3> {
         self.all().get(self.held?).and_then(Light::position)
     }
 
-    /// Where the scene has the one that is held.
+    /// Returns the position of the held light in the scene file.
     pub(super) fn home(&self) -> Option<Vec3> {
         self.written.get(self.held?).and_then(Light::position)
     }
 
-    /// Moves the one that is held, if there is one, to a place that is finite.
+    /// Moves the held light, if any, to a finite position.
     pub(super) fn move_held(&mut self, to: Vec3) {
         if let Some(held) = self.held.filter(|_| to.is_finite()) {
             let mut lights = self.all().to_vec();

@@ -1,4 +1,4 @@
-//! How what lies over the picture looks, and where there is room for it.
+//! The appearance of layers, and the room for them.
 
 use crate::capabilities::{CellMode, Colors};
 use crate::grid::Size;
@@ -9,14 +9,14 @@ use ratatui_core::symbols::border;
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::paragraph::Paragraph;
 
-/// Colours and border of panels. Where the picture has neither colour nor block characters, nor have they.
+/// Colours and border of panels. Panels use no colour or block characters if the picture does not.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     style: Style,
-    /// How marks on the picture are written.
+    /// The style of marks on the picture.
     mark: Style,
     border: border::Set<'static>,
-    /// What is done of something, and what is not.
+    /// The characters of a progress bar: done, and left.
     bar: [char; 2],
 }
 
@@ -37,7 +37,7 @@ impl Look {
         Self { style, mark, border, bar }
     }
 
-    /// The characters of a bar for what is done of something, and for what is not.
+    /// Returns the characters of a progress bar: done, and left.
     pub(super) fn bar(self) -> [char; 2] {
         self.bar
     }
@@ -46,12 +46,12 @@ impl Look {
         self.border
     }
 
-    /// How marks on the picture are written.
+    /// Returns the style of marks on the picture.
     pub(super) fn mark(self) -> Style {
         self.mark
     }
 
-    /// How text is written.
+    /// Returns the style of text.
     pub(super) fn style(self) -> Style {
         self.style
     }
@@ -68,25 +68,25 @@ const ASCII_BORDER: border::Set<'static> = border::Set {
     horizontal_bottom: "-",
 };
 
-/// The least screen on which panels lie over the picture.
+/// The smallest screen with panels.
 pub(super) const LEAST: (u16, u16) = (40, 12);
 
-/// The whole screen.
+/// Returns the area of the whole screen.
 pub(super) fn area(size: Size) -> Rect {
     Rect::new(0, 0, size.columns, size.rows)
 }
 
-/// Whether panels may lie over the picture: on a smaller screen they would hide what they speak of.
+/// Returns whether the screen is large enough for panels; on a smaller one they would hide what they describe.
 pub(super) fn has_room(screen: Rect) -> bool {
     screen.width >= LEAST.0 && screen.height >= LEAST.1
 }
 
-/// The lowest row of the screen with that many below it.
+/// Returns the row that has `below` others under it, counted from the bottom.
 pub(super) fn foot(screen: Rect, below: u16) -> Rect {
     Rect { y: screen.bottom().saturating_sub(1 + below), height: screen.height.min(1), ..screen }
 }
 
-/// Text on a row of its own.
+/// Writes text on a row of its own.
 pub(super) fn draw_line(text: &str, look: Look, area: Rect, buffer: &mut Buffer) {
     Paragraph::new(text).style(look.style).render(area, buffer);
 }

@@ -1,9 +1,9 @@
-//! What there is to say, in the lowest row until the next key.
+//! A note in the lowest row until the next key.
 
 use super::layers::{Canvas, Layer, Level};
 use super::legend;
 
-/// One line of text.
+/// A line of text.
 pub(super) struct Note(pub(super) String);
 
 impl Layer for Note {

@@ -1,4 +1,4 @@
-//! How a person wants the view.
+//! The user's options for the view.
 
 use crate::capabilities::Hints;
 use crate::control::{Bindings, Pace};
@@ -7,44 +7,43 @@ use crate::maps::Map;
 use crate::render::Sampling;
 use std::path::PathBuf;
 
-/// How the user wants the live view: made by [`Options::default`], then changed.
+/// Options of the live view. Start from [`Options::default`] and change fields.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Options {
-    /// What is wanted and known of the terminal before it is asked.
+    /// The user's choices for the terminal, and what the environment tells about it.
     #[doc(hidden)]
     pub hints: Hints,
-    /// In which order changed cells are sent; `None`: row by row, which takes the least time, and by colour, which takes
-    /// the fewest bytes, while the link is slow.
+    /// The order in which changed cells are sent. `None` chooses raster order, which takes the least time, and order by
+    /// colour, which takes the fewest bytes, while the link is slow.
     pub order: Option<Order>,
-    /// How near a moving picture is to the wanted one; `None`: exact, and equal while the link is slow.
+    /// The fidelity of a moving picture. `None` chooses `Exact`, and `Equal` while the link is slow.
     pub quality: Option<Quality>,
-    /// The most bytes a second that are sent in the mean; `None`: as many as the link takes.
+    /// Limit on the average number of bytes per second. `None`: as many as the link takes.
     pub max_rate: Option<u32>,
-    /// The most frames a second; `None`: 60. A number above zero.
+    /// Limit on the frames per second, greater than 0. `None`: 60.
     pub max_frames: Option<f32>,
-    /// How finely pictures are traced; `None`: in motion as finely as the time allows, and at rest to the end
-    /// ([`Sampling::BEST`]).
+    /// The sampling. `None`: in motion as many samples as time allows, at rest up to [`Sampling::BEST`].
     pub sampling: Option<Sampling>,
-    /// How many threads trace; `None`: as many as there are cores.
+    /// The number of tracing threads. `None`: one per core.
     pub threads: Option<usize>,
-    /// How fast keys move and turn the view.
+    /// The speed of moving and turning by keys.
     #[doc(hidden)]
     pub pace: Pace,
-    /// Whether each press of a key moves one step at once, and nothing glides or moves by itself.
+    /// Whether motion is reduced: each key press moves one step at once, and nothing glides or moves by itself.
     pub reduced_motion: bool,
-    /// The folder that the user may have the picture written into; `None`: he may not.
+    /// The folder for exports. `None`: the user may not export.
     pub exports: Option<PathBuf>,
-    /// What is said in the lowest row until the first key.
+    /// A note in the lowest row until the first key.
     pub welcome: Option<String>,
-    /// What of the scene is shown at first.
+    /// The first map to show.
     pub map: Map,
-    /// What the keys do.
+    /// The key bindings.
     #[doc(hidden)]
     pub bindings: Bindings,
 }
 
-/// The choices of the terminal and the machine.
+/// Returns the defaults for this terminal and machine.
 impl Default for Options {
     fn default() -> Self {
         Self::new(Hints::default())
@@ -52,7 +51,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// For a terminal of which that is known, on a link that does not compress; the rest as terminal and machine say.
+    /// Returns options for a terminal described by `hints`, on a link without compression.
     #[doc(hidden)]
     pub fn new(hints: Hints) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! What was begun and sent, and so how finely the next picture is traced and what the next bytes may be.
+//! Bookkeeping of the frames begun and bytes sent, from which sampling and byte limits follow.
 
 use super::effort::Effort;
 use super::frame::{Frame, Shot};
@@ -7,18 +7,18 @@ use crate::pace::{Limit, Link};
 use crate::render::Sampling;
 use std::time::Duration;
 
-/// The link, and how the time of a frame is spent.
+/// The link, and the use of a frame's time.
 pub(super) struct Pacing {
     link: Link,
     effort: Effort,
-    /// The last frame of a new view that was begun.
+    /// The last frame of a new view.
     begun: Option<Begun>,
 }
 
 struct Begun {
     shot: Shot,
     at: Duration,
-    /// Whether more was moving then.
+    /// Whether more was moving at that time.
     in_motion: bool,
 }
 
@@ -28,79 +28,79 @@ impl Pacing {
         Self { link, effort: Effort::new(options.sampling), begun: None }
     }
 
-    /// Whether this is what the last frame shows that was begun.
+    /// Returns whether `shot` is that of the last frame begun.
     pub(super) fn has_begun(&self, shot: &Shot) -> bool {
         self.begun.as_ref().is_some_and(|begun| begun.shot == *shot)
     }
 
-    /// When the last frame of a new view was begun.
+    /// Returns the time at which the last frame of a new view was begun.
     pub(super) fn begun_at(&self) -> Option<Duration> {
         self.begun.as_ref().map(|begun| begun.at)
     }
 
-    /// A frame of a new view is begun; returns how finely it is to be traced.
+    /// Records that a frame of a new view is begun, and returns its sampling.
     pub(super) fn begin(&mut self, shot: Shot, in_motion: bool, now: Duration) -> Sampling {
         let before = self.begun.replace(Begun { shot, at: now, in_motion });
         if before.as_ref().is_some_and(|before| !shot.takes_as_long_as(&before.shot)) {
             self.effort.forget_last();
         }
-        // On a slow link the next frame begins when a reply comes: all the time that it takes is the link's.
+        // On a slow link the next frame begins when a reply arrives, so tracing adds to the link's time.
         self.effort.of_new_view(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
     }
 
-    /// How finely a picture is traced next that is traced so finely; `None` at the end.
+    /// Returns the sampling of the next refinement of a picture with this sampling; `None` at the end.
     pub(super) fn next_step(&self, sampling: Sampling) -> Option<Sampling> {
         self.effort.of_next_step(sampling)
     }
 
-    /// Whether the next steps of the last picture are expected to take no longer than that, all together.
+    /// Returns whether all further refinements of the last picture are expected to take at most this long together.
     pub(super) fn ends_within(&self, time: Duration) -> bool {
         self.effort.ends_within(time)
     }
 
-    /// A frame is done.
+    /// Records a finished frame.
     pub(super) fn took(&mut self, frame: &Frame) {
         if !frame.refines {
             self.effort.took(frame.sampling, frame.trace, self.link.frame_time());
         }
     }
 
-    /// How far apart frames are at least.
+    /// Returns the least time between two frames.
     pub(super) fn frame_time(&self) -> Duration {
         self.link.frame_time()
     }
 
-    /// When the link takes the next bytes, if nothing is heard until then.
+    /// Returns the time at which the link takes the next bytes, if no reply arrives before.
     pub(super) fn free_at(&self, now: Duration) -> Duration {
         self.link.free_at(now)
     }
 
-    /// What a frame that is sent now may take, if it may not take as much as it likes.
+    /// Returns the limits for a frame sent now; `None` without limits.
     pub(super) fn limit(&mut self, usual_bytes: usize, now: Duration) -> Option<Limit> {
         self.link.limit(usual_bytes, now)
     }
 
-    /// A query without a frame, if it is time for one, or nothing.
+    /// Returns a query without a frame if one is due; otherwise no bytes.
     pub(super) fn probe(&mut self, now: Duration) -> Vec<u8> {
         self.link.probe(now)
     }
 
-    /// Puts a query behind a frame that is sent now.
+    /// Appends a query to a frame that is sent now.
     pub(super) fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
         self.link.send(frame, now);
     }
 
-    /// A reply has come to a query that every terminal answers.
+    /// Records a reply to the query that every terminal answers.
     pub(super) fn take_reply(&mut self, now: Duration) {
         self.link.answer(now);
     }
 
-    /// A private mode is reported; whether by the reply to a query of a frame.
+    /// Records a report of a private mode, and returns whether it answers a frame's query.
     pub(super) fn take_mode(&mut self, mode: u16, now: Duration) -> bool {
         self.link.answer_mode(mode, now)
     }
 
-    /// What was asked will not be answered: another program had the terminal in between.
+    /// Forgets the outstanding queries, because another program has had the terminal.
     pub(super) fn forget_replies(&mut self) {
         self.link.forget();
     }

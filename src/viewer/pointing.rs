@@ -1,4 +1,4 @@
-//! What the mouse does: with the view, with the line between two maps, with the cursor of an explanation.
+//! Mouse actions on the view, the line between two maps, and the cursor of an explanation.
 
 use super::Viewer;
 use super::hand::Grasped;
@@ -9,10 +9,10 @@ use crate::input::Input;
 use crossterm::event::{Event, MouseEvent, MouseEventKind};
 use glam::{Vec2, Vec3};
 
-/// A press this many columns beside the line between two maps takes hold of the line.
+/// Distance in columns within which a press takes hold of the line between two maps.
 const NEAR: f32 = 2.0;
 
-/// Of ways of the mouse that are heard at once, and lead on from each other, the last one tells all.
+/// Consecutive motions of one drag that arrive together are merged: the last position tells all.
 pub(super) fn is_outdated(input: &Input, next: Option<&Input>) -> bool {
     let way = |input: &Input| match input {
         Input::Event(Event::Mouse(MouseEvent { kind: kind @ MouseEventKind::Drag(_), .. })) => Some(*kind),
@@ -22,7 +22,7 @@ pub(super) fn is_outdated(input: &Input, next: Option<&Input>) -> bool {
 }
 
 impl Viewer {
-    /// Does what the mouse asks for. While something is asked, keys answer.
+    /// Carries out a mouse event. An open question is answered by keys only.
     pub(super) fn take_mouse(&mut self, event: MouseEvent) {
         let at = self.place(event);
         let modes = self.screen.modes(self.size());
@@ -43,7 +43,7 @@ impl Viewer {
         }
     }
 
-    /// The event's place as a part of the screen's width and height: that of the middle of its cell, or of its pixel.
+    /// Returns the event's position as shares of the screen's width and height: the middle of its cell or pixel.
     fn place(&self, event: MouseEvent) -> Vec2 {
         let (width, height) = self.display.mouse_pixels().unwrap_or((1, 1));
         let size = self.size();
@@ -52,7 +52,7 @@ impl Viewer {
         (at / screen).clamp(Vec2::ZERO, Vec2::ONE)
     }
 
-    /// What is there to take hold of.
+    /// Returns the thing under the pointer.
     fn under(&self, at: Vec2, grip: Grip, modes: &[Mode]) -> Grasped {
         let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.size().columns);
         match grip {
@@ -92,18 +92,18 @@ impl Viewer {
         self.eye.change(self.now, wheel);
     }
 
-    /// A way on the screen, in parts of one picture's width and height.
+    /// Converts a way on the screen to parts of one picture's width and height.
     fn part_of(&self, way: Vec2) -> Vec2 {
         way * Vec2::new(self.resolution().width() as f32 / self.part().width() as f32, 1.0)
     }
 
-    /// The pixel of the picture that is there.
+    /// Returns the pixel of the picture at a position.
     fn pixel(&self, at: Vec2) -> [u32; 2] {
         let resolution = self.resolution();
         [(at.x * resolution.width() as f32) as u32, (at.y * resolution.height() as f32) as u32]
     }
 
-    /// The point of the scene that is seen there; where there is nothing, one as far away as the target.
+    /// Returns the point of the scene seen at a position; where nothing is hit, a point as far away as the target.
     fn point_under(&self, at: Vec2) -> Option<Vec3> {
         let (frame, camera) = (self.screen.frame()?, self.eye.camera()?);
         let (part, [x, y]) = frame.part_at(self.pixel(at));

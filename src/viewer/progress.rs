@@ -1,4 +1,4 @@
-//! How far the scene is that is on its way.
+//! The progress panel of a load.
 
 use super::layers::{Canvas, Layer, Level};
 use super::look::Look;
@@ -27,11 +27,11 @@ impl Layer for ProgressPanel {
     }
 }
 
-/// The panel that says how far the scene is takes so much where there is room.
+/// The panel's width where there is room.
 const PROGRESS_WIDTH: u16 = 46;
 const PROGRESS_HEIGHT: u16 = 4;
 
-/// Above the lowest row, in the middle.
+/// Returns the panel's area: in the middle, above the lowest row.
 fn area(screen: Rect) -> Rect {
     let (width, height) = (PROGRESS_WIDTH.min(screen.width), PROGRESS_HEIGHT.min(screen.height));
     let y = (screen.height - height).saturating_sub(1);
@@ -46,7 +46,7 @@ fn draw(progress: &Progress, look: Look, area: Rect, buffer: &mut Buffer) {
     Paragraph::new(lines.map(Line::from).to_vec()).style(look.style()).render(inside, buffer);
 }
 
-/// The work and, where there is room for a part of it, the file's name: its end tells more than its beginning.
+/// Returns the work and, if there is room, the file's name; of a long name its end, which says more than its beginning.
 fn what_is_done(work: &Work, look: Look, width: usize) -> String {
     let (verb, name) = match work {
         Work::Reading(name) => ("reading", name),
@@ -63,7 +63,7 @@ fn what_is_done(work: &Work, look: Look, width: usize) -> String {
     format!("{verb} {name}")
 }
 
-/// A bar as wide as there is room, and the share in per cent; nothing where it is not known.
+/// Returns a bar of this width with the percentage; `None` if the total is unknown.
 fn bar(progress: &Progress, look: Look, width: usize) -> String {
     if progress.total == 0 {
         return String::new();
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
     use crate::capabilities::{CellMode, Glyphs};
 
-    /// The panel's rows on a screen of that size.
+    /// Returns the panel's rows on a screen of this size.
     fn panel(progress: &Progress, cell_mode: CellMode, columns: u16, rows: u16) -> Vec<String> {
         let place = area(Rect::new(0, 0, columns, rows));
         assert!(place.right() <= columns && place.bottom() <= rows);
@@ -113,7 +113,7 @@ mod tests {
         assert_eq!([&*rows[0], &*rows[2]], [format!("+{}+", "-".repeat(44)), format!("| {}.  99 % |", "#".repeat(35))]);
     }
 
-    /// No bar where the total is not known; and no screen is too small.
+    /// Without a total there is no bar; the panel fits every screen.
     #[test]
     fn the_panel_goes_with_any_file_and_screen() {
         let unknown = parsing("x.glb", 0, 0);

@@ -1,79 +1,78 @@
-//! When to draw, to trace, to refine and to wait: one decision, made from one snapshot of facts.
+//! The decision when to draw, trace, refine and wait, made in one function from one snapshot of facts.
 //!
-//! The newest picture wins. A frame of a new view is begun when the last one can be sent; what refines a picture is given
-//! up when its view changes; what is on the screen is made better only while it lasts. When nothing changes, there is
-//! nothing to wait for.
+//! The newest picture wins. A frame of a new view is begun when the last one can be sent; a refinement is cancelled
+//! when its view changes; the shown picture is improved only while it stays. When nothing changes, there is no timer.
 
 use std::time::Duration;
 
-/// What is being traced.
+/// The frame in progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tracing {
     /// A frame of a new view.
     NewView,
-    /// The next step of the last frame.
+    /// A refinement of the last frame.
     Refinement,
 }
 
-/// What a driver knows of its two outputs.
+/// The state of the driver's two outputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Busy {
-    /// Whether bytes that were sent have not been taken yet.
+    /// Whether bytes wait for the terminal to accept them.
     pub(crate) sending: bool,
-    /// What is being traced.
+    /// The frame being traced, if any.
     pub(crate) tracing: Option<Tracing>,
 }
 
-/// How the picture that was last begun stands to the one that is wanted.
+/// The relation of the last picture begun to the wanted one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Picture {
-    /// It is of something else.
+    /// The wanted picture shows something else.
     Stale,
-    /// It is of the same, and can be refined.
+    /// Both show the same, and the picture can be refined.
     Refinable,
-    /// It is the one that is wanted, or there is nothing to see.
+    /// The picture is the wanted one and final, or there is nothing to show.
     Finished,
 }
 
-/// What the decision depends on. Times are those of the viewer's clock.
+/// The facts that the decision depends on. Times are those of the viewer's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Facts {
     pub(super) busy: Busy,
     pub(super) picture: Picture,
-    /// Whether nothing has been shown yet, and the refinement of the first picture would soon be at its end.
+    /// Whether nothing has been shown yet and the first picture is expected to be final soon.
     pub(super) holds_first_back: bool,
-    /// When a frame of a new view was last begun.
+    /// Time at which the last frame of a new view was begun.
     pub(super) begun: Option<Duration>,
-    /// Up to when the eye has moved; `None` at rest.
+    /// Time up to which the eye has moved; `None` at rest.
     pub(super) moved_until: Option<Duration>,
-    /// How far apart frames are at least.
+    /// Least time between two frames.
     pub(super) frame_time: Duration,
-    /// When the link takes the next bytes.
+    /// Time at which the link takes the next bytes.
     pub(super) link_free_at: Duration,
-    /// Whether the screen shows something else than it should.
+    /// Whether the screen differs from the wanted grid.
     pub(super) is_changed: bool,
-    /// When what it shows can be made better, if it can be.
+    /// Time at which the shown colours can be made exact, if they are not.
     pub(super) improvable_at: Option<Duration>,
 }
 
-/// What is to be done next.
+/// The next action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Action {
-    /// Give up what refines a view that has changed.
+    /// Cancel the refinement of a view that has changed.
     GiveUp,
     /// Bring the screen up to date.
     Draw,
     /// Begin a frame of the new view.
     Trace,
-    /// Begin the next step of the last frame.
+    /// Begin the next refinement of the last frame.
     Refine,
-    /// Nothing, until then or until something happens.
+    /// Wait for an event, until this time if given.
     Wait(Option<Duration>),
 }
 
-/// Decides what is to be done at a time, up to which the eye has been moved if it moves.
+/// Decides what to do at `now`, up to which a moving eye has been moved.
 ///
-/// Never returns a time that has passed: a driver would not sleep.
+/// Never returns a time that has passed: the driver would spin.
 pub(super) fn decide(facts: &Facts, now: Duration) -> Action {
     let Facts { busy, picture, .. } = *facts;
     if picture == Picture::Stale && busy.tracing == Some(Tracing::Refinement) {
@@ -95,13 +94,13 @@ pub(super) fn decide(facts: &Facts, now: Duration) -> Action {
 }
 
 impl Facts {
-    /// Whether the first picture is not shown yet because its end is near: to show it twice would take longer.
+    /// Returns whether to hold back the first picture because it is nearly final: showing it twice would take longer.
     fn perfects_first(&self) -> bool {
         self.holds_first_back && self.picture == Picture::Refinable && self.moved_until.is_none()
     }
 
-    /// The earliest time to draw, if nothing else happens. What would make a picture better waits while one of a newer view
-    /// is on its way.
+    /// Returns the earliest time to draw if no event occurs before. An improvement of the shown picture waits while a
+    /// frame of a newer view is in progress.
     fn draw_at(&self) -> Option<Duration> {
         if self.perfects_first() {
             return None;
@@ -111,7 +110,7 @@ impl Facts {
         at.map(|at| at.max(self.link_free_at))
     }
 
-    /// The earliest time for the next frame, and for the next look at what moves.
+    /// Returns the earliest time for the next frame, or for the next step of the motion.
     fn frame_at(&self) -> Duration {
         if self.perfects_first() {
             return Duration::ZERO;
@@ -125,8 +124,8 @@ impl Facts {
         at.max(self.link_free_at)
     }
 
-    /// How long there is nothing to do: for ever when nothing moves and the picture is done, or while bytes are taken, of
-    /// whose end the driver knows.
+    /// Returns the time until which there is nothing to do; `None` when nothing moves and the picture is final, or
+    /// while the terminal accepts bytes, whose end the driver notices.
     fn wake_at(&self, draw_at: Option<Duration>, frame_at: Duration) -> Option<Duration> {
         let Busy { sending, tracing } = self.busy;
         let moves = self.picture == Picture::Stale || self.moved_until.is_some();
@@ -146,7 +145,7 @@ mod tests {
     const LATER: Duration = Duration::from_secs(11);
     const FRAME: Duration = Duration::from_millis(16);
 
-    /// Nothing moves, and all is as it should be.
+    /// Returns the facts at rest: nothing moves, and the screen is up to date.
     const AT_REST: Facts = Facts {
         busy: Busy { sending: false, tracing: None },
         picture: Picture::Finished,
@@ -174,7 +173,7 @@ mod tests {
         assert_eq!(decide(&stale, NOW), Action::Trace);
         let refining = Facts { busy: tracing(Tracing::Refinement), ..stale };
         assert_eq!(decide(&refining, NOW), Action::GiveUp);
-        // One that is being traced is shown first, however old it is then.
+        // A frame in progress is shown first, however old it is by then.
         let behind = Facts { busy: tracing(Tracing::NewView), ..stale };
         assert_eq!(decide(&behind, NOW), Action::Wait(None));
         assert_eq!(decide(&Facts { is_changed: true, ..behind }, NOW), Action::Draw);
@@ -268,7 +267,7 @@ mod tests {
             }
         }
 
-        /// What is to be seen is seen without any other event than the end of what is under way.
+        /// The final picture is reached by the ends of frames and sends alone.
         #[test]
         fn no_work_is_forgotten(facts in facts()) {
             let is_idle = facts.busy == Busy::default();

@@ -1,4 +1,4 @@
-//! The last frame with the layers over it, and the bytes that bring the terminal there.
+//! The last frame with the layers over it, and the bytes that update the terminal.
 
 use super::explain::Explaining;
 use super::frame::Frame;
@@ -18,48 +18,48 @@ use crate::grid::{Grid, Size};
 use crate::pace::Limit;
 use std::time::Duration;
 
-/// How long the terminal is left alone before more is sent that is not waited for: colours become exact in a few steps, of
-/// which tmux throws none away.
+/// Least time between frames that only make colours exact. They become exact in a few frames, of which tmux then drops
+/// none.
 const BREATH: Duration = Duration::from_millis(33);
 
-/// What a frame in which all moves takes for each cell, about.
+/// Approximate bytes per cell of a frame in which everything moves.
 const BYTES_PER_CELL: usize = 8;
 
-/// Erases the whole window (ED 2), which leaves many terminals with the colour that the pen has;
+/// Erases the whole window (ED 2), which many terminals fill with the pen's colour.
 const ERASE: &[u8] = b"\x1b[2J";
-/// the same with the pen laid down before, in the terminal's own colours.
+/// Resets the pen and erases the whole window, in the terminal's own colours.
 const RESET_ERASE: &[u8] = b"\x1b[m\x1b[2J";
 
-/// What the user sees, and what the terminal shows.
+/// The content that the user is to see, and the state of the terminal.
 pub(super) struct Screen {
     content: Tracked<Content>,
     painter: Painter,
     encoder: Encoder,
-    /// What the terminal is to show. Kept, because its memory takes longer to get than to fill.
+    /// The wanted grid. Kept, because allocating it takes longer than filling it.
     grid: Grid,
     order: Option<Order>,
     quality: Option<Quality>,
     /// Whether the next bytes erase the whole window first.
     erases: bool,
-    /// When the last bytes were drawn, if any were.
+    /// Time at which the last bytes were drawn.
     drawn: Option<Duration>,
     rate: FrameRate,
-    /// How long cells and bytes of the last frame took.
+    /// Time for cells and bytes of the last frame.
     encode: Duration,
 }
 
-/// What the user sees.
+/// The content that the user is to see.
 struct Content {
     frame: Option<Frame>,
-    /// Where the line between two maps is, as a share of the width.
+    /// Position of the line between two maps, as a share of the width.
     wipe: f32,
-    /// How the eye moves.
+    /// Whether the eye flies or orbits.
     moving: Mode,
     layers: Layers,
 }
 
 impl Content {
-    /// What keys are for on a screen of that size, the topmost first.
+    /// Returns the modes of keys on a screen of this size, topmost first.
     fn modes(&self, size: Size) -> Vec<Mode> {
         self.layers.modes(look::area(size), self.moving)
     }
@@ -83,12 +83,12 @@ impl Screen {
         }
     }
 
-    /// What a frame in which all moves takes, about.
+    /// Returns the approximate bytes of a frame in which everything moves.
     pub(super) fn usual_bytes(size: Size) -> usize {
         BYTES_PER_CELL * size.cell_count()
     }
 
-    /// More is known of the terminal than before.
+    /// Adopts new findings about the terminal.
     pub(super) fn set_capabilities(&mut self, capabilities: &Capabilities) {
         let mode = self.painter.mode();
         self.painter = painter(capabilities);
@@ -100,7 +100,7 @@ impl Screen {
         self.encoder.set_upper_half(capabilities.halves_meet);
     }
 
-    /// A frame, and the time while something moves.
+    /// Takes a frame, with the time if something moves.
     pub(super) fn take_frame(&mut self, mut frame: Frame, moving: Option<Duration>) {
         let content = &mut *self.content;
         frame.wipe(content.wipe);
@@ -109,7 +109,7 @@ impl Screen {
         self.rate.count(moving);
     }
 
-    /// Moves the line between two maps to that share of the width.
+    /// Moves the line between two maps to this share of the width.
     pub(super) fn wipe_to(&mut self, share: f32) {
         let content = &mut *self.content;
         content.wipe = share.clamp(0.0, 1.0);
@@ -118,33 +118,33 @@ impl Screen {
         }
     }
 
-    /// Where that line is.
+    /// Returns the position of that line.
     pub(super) fn wipe(&self) -> f32 {
         self.content.wipe
     }
 
-    /// Opens a layer, in the place of the one of its type.
+    /// Opens a layer and replaces the open one of its type.
     pub(super) fn open<L: Layer>(&mut self, layer: L) {
         self.content.layers.open(layer);
     }
 
-    /// Closes the layer of that type, if one is open, and returns it.
+    /// Closes the layer of a type, if open, and returns it.
     pub(super) fn close<L: Layer>(&mut self) -> Option<L> {
         self.get::<L>()?;
         self.content.layers.close()
     }
 
-    /// Closes the layer of that type when something else is shown than now.
+    /// Closes the layer of a type when the picture is to show something else.
     pub(super) fn close_later<L: Layer>(&mut self) {
         self.content.quietly().layers.close::<L>();
     }
 
-    /// The layer of that type, if one is open.
+    /// Returns the layer of a type, if open.
     pub(super) fn get<L: Layer>(&self) -> Option<&L> {
         self.content.layers.get()
     }
 
-    /// Opens that layer where it is not open as it is; without one, closes the layer of its type.
+    /// Opens `layer` unless it is open already; closes the layer of its type if `None`.
     pub(super) fn set<L: Layer + PartialEq>(&mut self, layer: Option<L>) {
         match layer {
             Some(layer) if self.get() == Some(&layer) => {}
@@ -153,17 +153,17 @@ impl Screen {
         }
     }
 
-    /// The last frame.
+    /// Returns the last frame.
     pub(super) fn frame(&self) -> Option<&Frame> {
         self.content.frame.as_ref()
     }
 
-    /// Whether anything was shown yet.
+    /// Returns whether a frame has been shown.
     pub(super) fn has_shown(&self) -> bool {
         self.drawn.is_some()
     }
 
-    /// Opens the help, turns to its next page, or closes it after the last.
+    /// Opens the help, turns to its next page, or closes it after the last one.
     pub(super) fn turn_help(&mut self, bindings: &Bindings, size: Size) {
         let page = match self.close::<HelpPanel>() {
             None => Some(HelpPanel::FIRST),
@@ -174,19 +174,19 @@ impl Screen {
         }
     }
 
-    /// What keys are for on a screen of that size, the topmost first.
+    /// Returns the modes of keys on a screen of this size, topmost first.
     pub(super) fn modes(&self, size: Size) -> Vec<Mode> {
         self.content.modes(size)
     }
 
-    /// The eye flies, or goes around something.
+    /// Sets whether the eye flies or orbits.
     pub(super) fn set_moving(&mut self, moving: Mode) {
         if self.content.moving != moving {
             self.content.moving = moving;
         }
     }
 
-    /// A pixel is explained, or none any more.
+    /// Starts or ends the explanation of a pixel.
     pub(super) fn toggle_explaining(&mut self) {
         if self.close::<Explaining>().is_none()
             && let Some(explaining) = self.frame().and_then(Explaining::new)
@@ -195,7 +195,7 @@ impl Screen {
         }
     }
 
-    /// Another pixel is explained, or more is said of it.
+    /// Changes the explanation.
     pub(super) fn explain(&mut self, change: impl FnOnce(&mut Explaining, &Frame)) {
         if self.get::<Explaining>().is_none() {
             return;
@@ -206,8 +206,8 @@ impl Screen {
         }
     }
 
-    /// The terminal may show anything: the next bytes draw everything, with either half block if both meet in one line.
-    /// They erase the whole window before, if the picture covers only a part of it.
+    /// Forgets what the terminal shows: the next bytes draw everything, with either half block if both join seamlessly.
+    /// They erase the window first if the picture covers only a part of it.
     pub(super) fn redraw(&mut self, halves_meet: bool, covers_a_part: bool) {
         self.encoder.forget();
         self.erases = covers_a_part;
@@ -215,31 +215,31 @@ impl Screen {
         self.content.touch();
     }
 
-    /// Whether something else is to be shown than is, as far as that can be shown.
+    /// Returns whether the screen differs from the wanted content and can be updated.
     pub(super) fn is_changed(&self, size: Size) -> bool {
         self.content.is_changed() && self.can_show(size)
     }
 
-    /// When what is shown can be made better, if it can be.
+    /// Returns the time at which the shown colours can be made exact, if they are not.
     pub(super) fn improvable_at(&self, size: Size) -> Option<Duration> {
         let due = self.encoder.due().filter(|_| self.can_show(size))?;
         Some(self.drawn.map_or(due, |drawn| due.max(drawn + BREATH)))
     }
 
-    /// Whether the scene is still on its way: what is seen is a sketch of it at best.
+    /// Returns whether the scene is still loading, so that at best a sketch of it is shown.
     pub(super) fn awaits_scene(&self) -> bool {
         self.get::<ProgressPanel>().is_some()
     }
 
-    /// Whether there is a frame of that size, or none at all while a scene is waited for: there is black then, for panels to
-    /// lie on.
+    /// Returns whether there is a frame of this size. While a scene is loading and there is none, black serves as a
+    /// background for panels.
     fn can_show(&self, size: Size) -> bool {
         let Some(frame) = self.frame() else { return self.awaits_scene() };
         let wanted = cell::resolution(self.painter.mode(), size, 1.0);
         wanted.is_ok_and(|wanted| (frame.picture.width, frame.picture.height) == (wanted.width(), wanted.height()))
     }
 
-    /// Appends the bytes that bring the terminal from what it shows to what it should.
+    /// Appends the bytes that bring the terminal to the wanted content.
     pub(super) fn draw(
         &mut self,
         size: Size,
@@ -282,7 +282,7 @@ impl Screen {
         self.drawn = Some(now);
     }
 
-    /// To make and encode the cells took so long.
+    /// Records the time for making and encoding the cells.
     pub(super) fn took(&mut self, encode: Duration) {
         self.encode = encode;
     }
@@ -297,7 +297,7 @@ fn encoder(encoder: Encoder, capabilities: &Capabilities) -> Encoder {
     encoder.with_colors(has_colors).with_synchronized_output(capabilities.synchronized_output)
 }
 
-/// How many frames are shown per second while something moves.
+/// A count of the frames shown per second while something moves.
 #[derive(Default)]
 struct FrameRate {
     last: Option<Duration>,
@@ -305,21 +305,21 @@ struct FrameRate {
 }
 
 impl FrameRate {
-    /// A frame is shown while something moves, or, without a time, at rest. A pause ends the count: frames of before it
-    /// say nothing of those after.
+    /// Counts a frame shown at `time`, or at rest if `None`. A pause ends the count, because frames before it say
+    /// nothing about those after it.
     fn count(&mut self, moving: Option<Duration>) {
         let between = self.last.zip(moving).map(|(last, now)| now.saturating_sub(last));
         self.last = moving;
         self.frames_per_second =
             between.filter(|&between| between < PAUSE && between > Duration::ZERO).map(|between| {
                 let now = 1.0 / between.as_secs_f32();
-                // A mean over about eight frames, so that the figure can be read.
+                // The mean over about eight frames, so that the figure can be read.
                 self.frames_per_second.map_or(now, |mean| mean + (now - mean) / 8.0)
             });
     }
 }
 
-/// Frames further apart than this are not one movement.
+/// Frames further apart than this do not belong to one motion.
 const PAUSE: Duration = Duration::from_millis(500);
 
 #[cfg(test)]
@@ -334,7 +334,7 @@ mod tests {
     use crate::viewer::shown::Shown;
     use std::num::NonZeroU32;
 
-    /// By colour while the link is slow, row by row otherwise, unless one of them is asked for.
+    /// Returns the order of cells: by colour while the link is slow, raster otherwise, unless the user has chosen one.
     #[test]
     fn the_order_is_the_links() {
         let text = include_str!("../../scenes/three_spheres.ron");

@@ -1,4 +1,4 @@
-//! What of the scene is on the screen: the shaded picture or a map, or two of them to compare.
+//! The layout of maps on the screen: one map, or two to compare. The shaded picture counts as a map here.
 
 use crate::camera::Camera;
 use crate::color::Srgb8;
@@ -9,41 +9,41 @@ use crate::scene::Scene;
 use crate::tone::Picture;
 use std::num::NonZeroU32;
 
-/// Where the line between two maps is at first.
+/// Initial position of the line between two maps.
 pub(crate) const MIDDLE: f32 = 0.5;
 
-/// One map, or two; the shaded picture counts as one.
+/// The maps on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Shown {
-    /// What is seen; of two, what is seen on the left.
+    /// The map shown, or the left one of two.
     map: Map,
-    /// What is compared with it.
+    /// The map compared with it.
     other: Option<Other>,
 }
 
-/// What is seen on the right.
+/// The right map and how it shares the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Other {
     map: Map,
     split: Split,
 }
 
-/// How two maps share the screen.
+/// The way in which two maps share the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Split {
-    /// Each is a picture of its own.
+    /// Side by side, each as a picture of its own.
     Beside,
-    /// They are one picture, with a line between them that can be moved.
+    /// As one picture with a movable line between them.
     Wipe,
 }
 
 impl Shown {
-    /// That map alone.
+    /// Shows a single map.
     pub(super) fn one(map: Map) -> Self {
         Self { map, other: None }
     }
 
-    /// Goes on to the next map, of two the right one: never to that on the left.
+    /// Switches to the next map; of two, the right one, never to the map on the left.
     pub(super) fn go_on(&mut self, step: fn(Map) -> Map) {
         match &mut self.other {
             None => self.map = step(self.map),
@@ -54,7 +54,7 @@ impl Shown {
         }
     }
 
-    /// Side by side with the next map; a wipe between the two; the left one alone again.
+    /// Switches from one map to two side by side, to a wipe, and back.
     pub(super) fn compare(&mut self) {
         self.other = match self.other {
             None => Some(Other { map: self.map.next(), split: Split::Beside }),
@@ -63,17 +63,17 @@ impl Shown {
         };
     }
 
-    /// Whether there is a line to be moved.
+    /// Returns whether there is a line to move.
     pub(crate) fn is_wipe(self) -> bool {
         matches!(self.other, Some(Other { split: Split::Wipe, .. }))
     }
 
-    /// What is seen, from left to right.
+    /// Returns the maps, from left to right.
     pub(super) fn maps(self) -> impl Iterator<Item = Map> {
         [Some(self.map), self.other.map(|other| other.map)].into_iter().flatten()
     }
 
-    /// The pictures that make up one of that resolution.
+    /// Returns the maps and the sizes of the pictures that make up one of this resolution.
     pub(crate) fn parts(self, whole: Resolution) -> Vec<(Map, Resolution)> {
         match self.other {
             Some(Other { split: Split::Beside, .. }) => self.maps().zip(halves(whole)).collect(),
@@ -81,7 +81,7 @@ impl Shown {
         }
     }
 
-    /// What the colours mean, from left to right; nothing where there is but light.
+    /// Returns the legends, from left to right; empty where the picture shows light.
     pub(crate) fn legends(self, scene: &Scene, camera: &Camera) -> Vec<String> {
         if self == Self::default() {
             return Vec::new();
@@ -89,7 +89,7 @@ impl Shown {
         self.maps().map(|map| map.legend(scene, camera)).collect()
     }
 
-    /// How finely it is traced where so much is wanted.
+    /// Returns the sampling for these maps where `wanted` is asked for: one ray per pixel, unless a map refines.
     pub(super) fn sampling(self, wanted: Sampling) -> Sampling {
         if wanted == Sampling::Coarse || self.maps().any(Map::refines) {
             return wanted;
@@ -97,7 +97,7 @@ impl Shown {
         Sampling::UpTo(NonZeroU32::MIN)
     }
 
-    /// One picture of two parts, with the line of a wipe at that share of the width.
+    /// Combines two pictures into one, with the line of a wipe at this share of the width.
     pub(crate) fn joined(self, parts: &[Picture], wipe: f32) -> Option<Picture> {
         match (self.other?.split, parts) {
             (Split::Beside, [left, right]) => Some(beside(left, right)),
@@ -107,10 +107,11 @@ impl Shown {
     }
 }
 
-/// Between two pictures.
+/// The colour of the line between two pictures.
 const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 
-/// What the two sides of a line get of a picture's columns. One that is too narrow has no line, and no right side.
+/// Splits a picture's columns between the two sides of a line. A picture too narrow for both has no line and no right
+/// side.
 fn halves(whole: Resolution) -> [Resolution; 2] {
     let left = if whole.width() < 3 { whole.width() } else { (whole.width() - 1) / 2 };
     [left, whole.width().saturating_sub(left + 1)].map(|width| whole.with_width(width))
@@ -169,7 +170,7 @@ mod tests {
         assert_eq!(seen, Shown::one(Map::Depth));
     }
 
-    /// Side by side they have no more pixels than one; a wipe has all of both.
+    /// Side by side, two maps have no more pixels than one; a wipe traces both in full.
     #[test]
     fn two_pictures_are_as_much_work_as_one_or_two() {
         let whole = Resolution::square(80, 4).with_pixel_aspect(0.5).expect("a shape of pixels");
@@ -181,7 +182,7 @@ mod tests {
         assert_eq!(parts, [(Map::Shaded, whole), (Map::Depth, whole)]);
     }
 
-    /// No more than one ray a pixel where there is no light.
+    /// Maps other than the shaded one get one ray per pixel.
     #[test]
     fn light_alone_is_refined() {
         let one = Sampling::UpTo(NonZeroU32::MIN);
@@ -196,7 +197,7 @@ mod tests {
         Picture { width, height: 2, pixels: vec![Srgb8::new(band, band, band); 2 * width as usize] }
     }
 
-    /// The rows as text: a number for each picture, a bar for the line.
+    /// Returns the rows as text: a digit for each pixel, which tells its picture, and a bar for the line.
     fn rows(picture: &Picture) -> Vec<String> {
         let text = |pixel: &Srgb8| if *pixel == LINE { '|' } else { char::from(b'0' + pixel.r) };
         picture.pixels.chunks(picture.width as usize).map(|row| row.iter().map(text).collect()).collect()

@@ -1,4 +1,4 @@
-//! The status line: figures of the last frame, and below them the keys that matter.
+//! The status line: statistics of the last frame, and below them the important keys.
 
 use super::help;
 use super::layers::{Canvas, Figures, Layer, Level};
@@ -13,7 +13,7 @@ use std::time::Duration;
 pub(super) struct StatusLine;
 
 impl StatusLine {
-    /// How many rows at the foot it takes: below its figures stand the keys, where there is room for panels.
+    /// Returns the number of rows: the statistics, and the keys below them where there is room for panels.
     pub(super) fn rows(screen: Rect) -> u16 {
         1 + u16::from(look::has_room(screen))
     }
@@ -45,18 +45,18 @@ impl Layer for StatusLine {
     }
 }
 
-/// What the status line says.
+/// The content of the status line.
 struct Status {
     cells: Size,
     sampling: Sampling,
-    /// How long tracing took.
+    /// Time for tracing.
     trace: Duration,
-    /// How long cells and bytes took.
+    /// Time for cells and bytes.
     encode: Duration,
     /// Frames shown per second, while something moves.
     shown: Option<f32>,
     rays: u64,
-    /// The rate of the link if it is slow, in bytes per second.
+    /// The rate of a slow link, in bytes per second.
     slow: Option<f64>,
     eye: Vec3,
 }
@@ -65,7 +65,7 @@ impl Status {
     fn text(&self) -> String {
         let Self { cells, eye, .. } = self;
         let shown = self.shown.map_or_else(|| "-".to_owned(), |fps| format!("{fps:.0}"));
-        // What holds the frames up.
+        // The facts that limit the frame rate.
         let stages = match self.slow {
             Some(rate) => format!("slow link {}B/s", short(rate)),
             None => {
@@ -85,7 +85,7 @@ impl Status {
     }
 }
 
-/// How many samples a pixel has, at most.
+/// Returns the largest number of samples of a pixel.
 fn samples(sampling: Sampling) -> String {
     match sampling {
         Sampling::Coarse => "1/4".to_owned(),
@@ -97,7 +97,7 @@ fn per_second(count: f64, time: Duration) -> f64 {
     count / time.as_secs_f64().max(1e-9)
 }
 
-/// Two or three digits and a letter: 812, 3.9k, 12M.
+/// Formats a number in two or three digits and a letter: 812, 3.9k, 12M.
 fn short(value: f64) -> String {
     let (value, unit) = match value {
         v if v >= 1e9 => (v / 1e9, "G"),

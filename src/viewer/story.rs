@@ -1,5 +1,5 @@
-//! A viewer driven by any story: bytes, sizes, frames and time in any order, with the rules that hold after each event.
-//! For the tests below, and for the fuzz target.
+//! A viewer driven by an arbitrary sequence of events, with the rules that hold after each. Used by the tests below and
+//! by the fuzz target.
 
 use super::{Busy, Frame, Job, MIDDLE, Options, Step, Tracing, Viewer};
 use crate::capabilities::{CellShape, Hints};
@@ -15,24 +15,25 @@ use crate::tone::Picture;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-/// The most steps before there is nothing more to do at one time: to give a refinement up, to draw, to begin a frame, to
-/// take a lone Escape for the key, and to draw what comes of that.
+/// Limit on the actions at one time: cancel a refinement, draw, begin a frame, handle the timeout of a lone Escape, and
+/// draw the result.
 const MOST_STEPS: usize = 5;
 
-/// The most wake-ups between the last event and the end of all work. A lossy picture becomes exact in a few steps, and a
-/// glide of 60 frames a second ends in less than a second.
+/// Limit on the wake-ups between the last event and rest. A lossy picture becomes exact in a few frames, and a glide of
+/// 60 frames a second ends within a second.
 const MOST_WAKES: usize = 400;
 
-/// The most bytes of a frame, for each cell and besides: all attributes and both colours of a cell, with its place.
+/// Limits on the bytes of a frame, per cell and in addition: a cell takes all attributes, both colours and a cursor
+/// move.
 const MOST_BYTES: [usize; 2] = [120, 4096];
 
-/// Tells a viewer a story that these bytes are taken for, the last of them for its options, and checks the rules:
+/// Drives a viewer by events decoded from `bytes`, the last of which choose its options, and checks the rules:
 ///
 /// - no frame is drawn or begun while bytes are being sent, and none is begun while another is traced;
-/// - whatever happens, there is soon nothing to do at that time, and the next wake-up is later;
-/// - a frame has a bounded size;
-/// - when nothing happens any more, there is soon no wake-up;
-/// - all modes that are wanted are in one list, and are switched off.
+/// - after every event, there is soon nothing to do at that time, and the next wake-up is later;
+/// - the size of a frame is bounded;
+/// - after the last event, there is soon no wake-up;
+/// - all modes that are on are in one list, and are switched off.
 ///
 /// # Panics
 /// If a rule is broken.
@@ -59,7 +60,7 @@ struct Driver {
     modes: Modes,
     job: Option<Job>,
     is_sending: bool,
-    /// What was sent since the terminal last replied.
+    /// The bytes sent since the terminal last replied.
     sent: Vec<u8>,
     frames: u8,
 }
@@ -140,7 +141,7 @@ impl Driver {
         }
     }
 
-    /// The terminal replies to all that it was asked.
+    /// The terminal replies to all outstanding queries.
     fn reply(&mut self) {
         let mut replies = Vec::new();
         for (at, _) in self.sent.iter().enumerate().filter(|(_, byte)| **byte == 0x1b) {
@@ -168,20 +169,20 @@ impl Driver {
         self.viewer.take_frame(Frame { scene, shot, picture, parts, sampling, legends, refines, cost, trace });
     }
 
-    /// A picture that differs from the one before.
+    /// Returns a picture that differs from the previous one.
     fn flat(&self, resolution: Resolution) -> Picture {
         let [width, height] = [resolution.width(), resolution.height()];
         let pixel = |at: u32| Srgb8::new(self.frames, at as u8, 7);
         Picture { width, height, pixels: (0..width * height).map(pixel).collect() }
     }
 
-    /// Does what there is to do now; when there is more.
+    /// Carries out the viewer's actions at this time. Returns the next wake-up.
     fn act(&mut self) -> Option<Duration> {
         for _ in 0..=MOST_STEPS {
             let tracing = self.job.as_ref().map(|job| if job.refines { Tracing::Refinement } else { Tracing::NewView });
             match self.viewer.step(Busy { sending: self.is_sending, tracing }, self.now) {
                 Step::Wait(until) if until.is_none_or(|until| until > self.now) => return until,
-                // The rest of an escape sequence is overdue.
+                // The timeout of an incomplete escape sequence has passed.
                 Step::Wait(_) => self.hear(&[]),
                 Step::GiveUp => {
                     assert!(self.job.take().is_some_and(|job| job.refines), "only a refinement is given up");
@@ -218,7 +219,7 @@ impl Driver {
         self.is_sending = !bytes.is_empty();
     }
 
-    /// No event comes any more, and the terminal takes and answers everything: soon there is nothing to do.
+    /// Lets the terminal accept and answer everything without further events, and checks that the viewer comes to rest.
     fn come_to_rest(&mut self) {
         self.viewer.lose_terminal(self.now);
         for _ in 0..MOST_WAKES {
@@ -237,7 +238,7 @@ impl Driver {
         panic!("it does not come to rest: next at {:?}, now {:?}", self.act(), self.now);
     }
 
-    /// What was switched on is switched off.
+    /// Checks that every mode that is on is switched off.
     fn give_back(mut self) {
         let mut off = Vec::new();
         self.modes.switch_all_off(&mut off);
@@ -250,7 +251,7 @@ impl Driver {
     }
 }
 
-/// The digits of a query for a mode (DECRQM), from its number on.
+/// Returns the digits of a mode query (DECRQM) at the start of `bytes`.
 fn mode_asked_for(query: &[u8]) -> Option<&[u8]> {
     let (digits, rest) = query.split_at(query.iter().position(|byte| !byte.is_ascii_digit())?);
     rest.starts_with(b"$p").then_some(digits)
@@ -274,7 +275,7 @@ mod tests {
             tell(&story);
         }
 
-        /// Keys that mean something, in a scene that is there.
+        /// Keys with a meaning, in a loaded scene.
         #[test]
         fn the_rules_hold_whatever_keys_are_pressed(
             keys in vec((prop::sample::select(&b"wasdqezxhjklfogtvVcnNpPimLr?1[]<>\t\x1b 5"[..]), 0_u8..9, any::<u8>()), 0..60),
@@ -285,7 +286,7 @@ mod tests {
         }
     }
 
-    /// What a story tells is what happens: a scene is drawn once its frame is done, and again when it moves.
+    /// A scene is drawn once its frame is finished, and again when it moves.
     #[test]
     fn a_scene_is_drawn_and_moves() {
         let mut driver = Driver::new(0);

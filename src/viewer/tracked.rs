@@ -1,36 +1,36 @@
-//! A value that knows whether it was changed.
+//! A value that records whether it was changed.
 
 use std::ops::{Deref, DerefMut};
 
-/// A value, and whether anything had the right to change it since it was last seen to. So no method that changes the value
-/// has to say so, and none can forget it.
+/// A value, and whether it was borrowed mutably since the last [`settle`](Tracked::settle). So no method that changes
+/// the value has to set a flag, and none can forget it.
 pub(super) struct Tracked<T> {
     value: T,
     is_changed: bool,
 }
 
 impl<T> Tracked<T> {
-    /// A new value counts as changed.
+    /// Returns a value that counts as changed.
     pub(super) fn new(value: T) -> Self {
         Self { value, is_changed: true }
     }
 
-    /// Whether the value may have been changed since [`settle`](Self::settle).
+    /// Returns whether the value may have been changed since [`settle`](Self::settle).
     pub(super) fn is_changed(&self) -> bool {
         self.is_changed
     }
 
-    /// Counts as changed from now on: what the value is seen by has changed.
+    /// Marks the value as changed, because something outside it that it is drawn with has changed.
     pub(super) fn touch(&mut self) {
         self.is_changed = true;
     }
 
-    /// The value, to be changed without a word.
+    /// Returns the value for a change that does not count.
     pub(super) fn quietly(&mut self) -> &mut T {
         &mut self.value
     }
 
-    /// Counts as unchanged from now on.
+    /// Marks the value as unchanged.
     pub(super) fn settle(&mut self) {
         self.is_changed = false;
     }

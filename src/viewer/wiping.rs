@@ -3,11 +3,11 @@
 use super::Viewer;
 use crate::control::Side;
 
-/// How far a press moves the line, in parts of the width.
+/// Distance that a key press moves the line, as a share of the width.
 const STEP: f32 = 1.0 / 32.0;
 
 impl Viewer {
-    /// Moves the line between two maps, if there is one: nothing is traced for it.
+    /// Moves the line between two maps, if there is one. Nothing is traced for it.
     pub(super) fn move_wipe(&mut self, side: Side) {
         let step = if side == Side::Left { -STEP } else { STEP };
         self.wipe_to(self.screen.wipe() + step);

@@ -1,4 +1,4 @@
-//! The view from the side, as the lecture draws it: the eye, the view rectangle, the ray and what it meets.
+//! The view from the side, as the lecture draws it: the eye, the view rectangle, the ray and its hit.
 
 use crate::camera::{Basis, Camera};
 use crate::capabilities::{CellMode, Colors};
@@ -16,27 +16,27 @@ use ratatui_core::text::Line as Text;
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::canvas::{Canvas, Circle, Line};
 
-/// What is drawn, in the plane of the view and the vertical: along -w and v from the eye.
+/// The drawing's geometry, in the plane of the view direction and the vertical: along -w and v from the eye.
 pub(super) struct Inset {
     /// The ends of the view rectangle.
     rectangle: [Vec2; 2],
-    /// Where the ray goes through it.
+    /// The point where the ray passes through it.
     q: Vec2,
-    /// Where the ray ends: what it meets, or far away.
+    /// The end of the ray: its hit, or a point far away.
     end: Vec2,
-    /// Whether it meets anything there.
+    /// Whether the ray hits anything.
     is_met: bool,
-    /// The sphere that it meets.
+    /// The sphere that is hit.
     ball: Option<(Vec2, f32)>,
-    /// From there to the lights, and whether they are seen.
+    /// The ways from there to the lights, and whether each light is visible.
     lights: Vec<(Vec2, bool)>,
 }
 
-/// How far a ray is drawn that meets nothing, in distances of the eye from the target.
+/// Length of a ray without a hit, in distances of the eye from the target.
 const FAR: f32 = 1.5;
 
-/// The view rectangle is drawn so far from the eye, in parts of the ray: as only the ratios of its distance and its sides
-/// count, it may be drawn wherever it is seen well.
+/// Distance at which the view rectangle is drawn, as a share of the ray. Only the ratios of its distance and sides
+/// matter, so it is drawn where it is seen well.
 const NEAR: f32 = 0.3;
 
 impl Inset {
@@ -51,7 +51,7 @@ impl Inset {
         let ball = seen.and_then(|seen| seen.hit.surface(scene).circle());
         let ball = ball.map(|(center, radius)| (from_side(center), radius));
         let lights = seen.map_or(Vec::new(), |seen| {
-            // Of a light that is infinitely far, its direction is shown, for as long a way as the ray's own.
+            // For a light at infinity its direction is drawn, as long as the ray.
             let far = |lit: &Lit| seen.point.position + lit.incidence.l * t;
             let end = |(light, lit): (&Light, &Lit)| from_side(light.position().unwrap_or_else(|| far(lit)));
             let ends = scene.lights().iter().zip(&seen.lights).map(end);
@@ -67,7 +67,7 @@ impl Inset {
         }
     }
 
-    /// Draws it, all in one scale.
+    /// Draws everything at one scale.
     pub(super) fn draw(&self, look: Look, mode: CellMode, resolution: Resolution, area: Rect, buffer: &mut Buffer) {
         if area.is_empty() {
             return;
@@ -103,7 +103,8 @@ impl Inset {
         buffer.set_style(area, Style { fg: None, ..style });
     }
 
-    /// What part of the plane is drawn in so much room: all but spheres and lights, in the middle, and some more.
+    /// Returns the part of the plane to draw in this much room: everything but spheres and lights, centred, with a
+    /// margin.
     fn bounds(&self, width: f32, height: f32) -> [[f64; 2]; 2] {
         let points = [Vec2::ZERO, self.rectangle[0], self.rectangle[1], self.end];
         let min = points.into_iter().reduce(Vec2::min).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Where the explanation's cursor and panel are: never on the pixel that they explain.
+//! Areas of the explanation's cursor and panel, which never cover the explained pixel.
 
 use super::Explaining;
 use crate::capabilities::CellMode;
@@ -7,31 +7,31 @@ use crate::viewer::look::Look;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
 
-/// How wide the panel is, with its border and a blank at each side.
+/// Width of the panel, with its border and a blank on each side.
 const PANEL: u16 = WIDTH as u16 + 4;
 
-/// The rows at the foot of the screen that are for others.
+/// Rows at the bottom of the screen that are reserved for others.
 const FOOT: u16 = 2;
 
-/// Of the inside of the panel, the least height of the inset, and the most.
+/// Least and greatest height of the inset within the panel.
 const INSET: [u16; 2] = [6, 16];
 
-/// Where the panel is: on the side of the screen where the cell is not.
+/// Returns the panel's area, on the side of the screen away from the cell.
 pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
     let (middle, height) = (screen.width / 2, screen.height.saturating_sub(FOOT));
-    // The cursor's mark beside the cell has a column, too.
+    // The cursor's mark beside the cell takes a column as well.
     if middle > PANEL {
         let x = if column < middle { screen.width - PANEL } else { 0 };
         return Rect::new(x, 0, PANEL, height);
     }
-    // Too narrow for that: above or below.
+    // A narrow screen has it above or below.
     let (half, width) = (screen.height / 2, PANEL.min(screen.width));
     let x = (screen.width - width) / 2;
     if row < half { Rect::new(x, half + 1, width, height - half - 1) } else { Rect::new(x, 0, width, half - 1) }
 }
 
-/// The place of the text in the panel, which has that many lines, and that of the inset below it, which is empty where there
-/// is no room for it.
+/// Returns the areas within the panel of the text, which has `lines` lines, and of the inset below it, which is empty
+/// if there is no room for it.
 pub(super) fn split(inside: Rect, lines: u16) -> [Rect; 2] {
     let [least, most] = INSET;
     let inset = if inside.height < 2 * least { 0 } else { inside.height.saturating_sub(lines + 1).clamp(least, most) };
@@ -39,7 +39,7 @@ pub(super) fn split(inside: Rect, lines: u16) -> [Rect; 2] {
     [text, Rect { y: inside.bottom() - inset, height: inset, ..inside }]
 }
 
-/// The cursor: marks beside the cell, above and below it, with nothing on the cell itself.
+/// Draws the cursor: marks beside, above and below the cell, with nothing on the cell itself.
 pub(super) fn marks(explaining: &Explaining, look: Look, mode: CellMode, screen: Rect) -> Vec<Buffer> {
     let [column, row] = explaining.cell(mode);
     let [beside, above] = match explaining.row_in_cell(mode) {
@@ -68,7 +68,7 @@ pub(super) fn marks(explaining: &Explaining, look: Look, mode: CellMode, screen:
 mod tests {
     use super::*;
 
-    /// The cell and the marks around it are beside the panel, wherever it is, and the panel is on the screen.
+    /// The panel never covers the cell or the marks around it, and is on the screen.
     #[test]
     fn the_panel_is_never_on_the_cursor() {
         for (columns, rows) in [(40, 12), (41, 13), (79, 24), (80, 24), (81, 25), (200, 60), (65_535, 12), (40, 65_535)]
