@@ -1,7 +1,7 @@
-//! What is drawn, checked, with the trees over it: a [`Scene`] cannot be wrong, and rays can be sent into it.
+//! The checked scene with the trees over it. A [`Scene`] is always valid, and rays can be traced in it.
 //!
-//! All units are fixed here: world units, radians, linear light, unit vectors. [`Scene::load`] and [`Scene::from_ron`]
-//! are the only way from what was written to what is drawn. A [`Draft`] is checked and has no trees yet.
+//! All units are fixed here: world units, radians, linear light, unit vectors. [`Scene::load`], [`Scene::from_ron`] and
+//! [`Scene::builder`] are the only ways to a scene. A [`Draft`] is checked but has no trees yet.
 
 mod builder;
 #[cfg(feature = "ron")]
@@ -36,9 +36,10 @@ use crate::shape::Shape;
 use std::fmt;
 use std::sync::Arc;
 
-/// Everything that a picture depends on, besides its size: what was checked, and the trees that rays go through.
+/// A scene: everything that a picture depends on besides its size, and the trees that rays are traced in.
 ///
-/// Both are built once and never change; copies share them. A scene with other lights, or another camera, shares the trees.
+/// The checked values and the trees are built once, never change, and are shared by clones. A scene with other lights
+/// or another camera shares the trees.
 ///
 /// ```
 /// use termtrace::Scene;
@@ -54,7 +55,7 @@ pub struct Scene {
     accelerator: Arc<Accelerator>,
 }
 
-/// What was checked, without the trees over it.
+/// Shows the checked values, without the trees.
 impl fmt::Debug for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Checked { camera, views, background, ambient, lights, shadows, exposure, tone_curve, objects } =
@@ -69,7 +70,7 @@ impl fmt::Debug for Scene {
     }
 }
 
-/// What was checked. Its fields are assigned by the `with_` methods of [`Scene`] and [`Draft`] only.
+/// The checked values. Only the `with_` methods of [`Scene`] and [`Draft`] assign its fields.
 #[derive(Clone, Debug, PartialEq)]
 struct Checked {
     camera: Camera,
@@ -80,12 +81,12 @@ struct Checked {
     shadows: bool,
     exposure: f32,
     tone_curve: ToneCurve,
-    /// Shared, so that a copy with other lights costs little.
+    /// Shared, so that a copy with other lights is cheap.
     objects: Arc<[Object]>,
 }
 
 impl Checked {
-    /// These objects seen by that camera, as [`Scene::new`] has them.
+    /// Returns these objects seen by `camera`, with the defaults of [`Scene::builder`].
     fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Self {
             camera,
@@ -106,7 +107,7 @@ impl Checked {
 }
 
 impl Scene {
-    /// Returns a scene in the making, seen by that camera: no objects and no lights yet, a black background, shadows,
+    /// Returns a builder of a scene seen by `camera`, with no objects and no lights, a black background, shadows,
     /// exposure 1 and no tone curve.
     ///
     /// ```
@@ -128,29 +129,30 @@ impl Scene {
         SceneBuilder::new(camera)
     }
 
-    /// [`builder`](Self::builder) with these objects, which are not checked for materials that their shapes cannot have.
+    /// Returns a scene with these objects and the defaults of [`builder`](Self::builder), without checking that their
+    /// shapes can have their materials.
     #[doc(hidden)]
     pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Draft::new(Checked::new(camera, objects)).finish()
     }
 
-    /// Returns where the scene wants to be looked at from.
+    /// Returns the scene's own camera.
     pub fn camera(&self) -> &Camera {
         &self.checked.camera
     }
 
-    /// Returns other views of the scene that are worth a look, in the order of the scene file.
+    /// Returns further views of the scene, in the order of the scene file.
     pub fn views(&self) -> &[Camera] {
         &self.checked.views
     }
 
-    /// Returns the light that comes along rays that meet no object.
+    /// Returns the light along rays that hit no object.
     #[doc(hidden)]
     pub fn background(&self) -> Background {
         self.checked.background
     }
 
-    /// Returns the light that arrives at every point from everywhere alike, besides that of the lights.
+    /// Returns the ambient light, which arrives at every point equally from all directions.
     #[doc(hidden)]
     pub fn ambient(&self) -> LinearRgb {
         self.checked.ambient
@@ -161,18 +163,18 @@ impl Scene {
         &self.checked.lights
     }
 
-    /// Returns whether objects keep light from each other; without, this is the lecture's bare version.
+    /// Returns whether objects cast shadows; without, this is the lecture's first version.
     #[doc(hidden)]
     pub fn shadows(&self) -> bool {
         self.checked.shadows
     }
 
-    /// Returns what all light is multiplied by before it is shown; greater than 0.
+    /// Returns the factor of all light before display; greater than 0.
     pub fn exposure(&self) -> f32 {
         self.checked.exposure
     }
 
-    /// Returns how light beyond the screen's range is brought into it.
+    /// Returns the tone curve.
     #[doc(hidden)]
     pub fn tone_curve(&self) -> ToneCurve {
         self.checked.tone_curve
@@ -183,23 +185,23 @@ impl Scene {
         &self.checked.objects
     }
 
-    /// Returns the smallest box around all objects that have an end; nothing if there are none.
+    /// Returns the smallest box around all bounded objects; `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
         self.accelerator.bounds()
     }
 
-    /// Returns how much memory the trees over the parts of all objects take, in bytes.
+    /// Returns the size of the trees over the primitives of all objects, in bytes.
     #[doc(hidden)]
     pub fn tree_bytes(&self) -> usize {
         self.accelerator.bytes()
     }
 
-    /// Returns what the scene's rays are tested against.
+    /// Returns the acceleration structure.
     pub(crate) fn accelerator(&self) -> &Accelerator {
         &self.accelerator
     }
 
-    /// Returns the scene looked at from somewhere else.
+    /// Returns the scene with another camera.
     pub fn with_camera(self, camera: Camera) -> Self {
         self.with(|checked| checked.camera = camera)
     }
@@ -210,27 +212,27 @@ impl Scene {
         self.with(|checked| checked.views = views)
     }
 
-    /// Returns the scene before another [background](Self::background).
+    /// Returns the scene with another [background](Self::background).
     ///
     /// # Errors
-    /// Unless each band of its light lies within 0 and 1e12.
+    /// Unless each channel of its light is within 0 and 1e12.
     #[doc(hidden)]
     pub fn with_background(self, background: impl Into<Background>) -> Result<Self, SceneFault> {
         let background = background.into().checked()?;
         Ok(self.with(|checked| checked.background = background))
     }
 
-    /// Returns the scene in other [ambient light](Self::ambient).
+    /// Returns the scene with another [ambient light](Self::ambient).
     ///
     /// # Errors
-    /// Unless each band lies within 0 and 1e12.
+    /// Unless each channel is within 0 and 1e12.
     #[doc(hidden)]
     pub fn with_ambient(self, ambient: LinearRgb) -> Result<Self, SceneFault> {
         let ambient = checks::given_color("ambient", ambient, checks::light)?;
         Ok(self.with(|checked| checked.ambient = ambient))
     }
 
-    /// Returns the scene under other [lights](Self::lights).
+    /// Returns the scene with other [lights](Self::lights).
     pub fn with_lights(self, lights: impl IntoIterator<Item: Into<Light>>) -> Self {
         self.with(|checked| checked.lights = lights.into_iter().map(Into::into).collect())
     }
@@ -241,7 +243,7 @@ impl Scene {
         self.with(|checked| checked.shadows = shadows)
     }
 
-    /// Returns the scene at another [exposure](Self::exposure).
+    /// Returns the scene with another [exposure](Self::exposure).
     ///
     /// # Errors
     /// Unless it is greater than 0 and at most 1e6.
@@ -256,7 +258,7 @@ impl Scene {
         self.with(|checked| checked.tone_curve = tone_curve)
     }
 
-    /// Returns whether both are copies of one scene, which nothing has changed since.
+    /// Returns whether both are clones of one scene, unchanged since.
     #[cfg(feature = "live")]
     pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.checked, &other.checked) && Arc::ptr_eq(&self.accelerator, &other.accelerator)
@@ -268,40 +270,40 @@ impl Scene {
     }
 }
 
-/// A surface and what it is made of.
+/// A surface and its material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// The surface.
     pub shape: Shape,
-    /// Its reflectance.
+    /// The material.
     pub material: Material,
 }
 
 impl Object {
-    /// That surface of that material.
+    /// Returns an object of this shape and material.
     #[doc(hidden)]
     pub fn new(shape: impl Into<Shape>, material: impl Into<Material>) -> Self {
         Self { shape: shape.into(), material: material.into() }
     }
 }
 
-/// The light that arrives along rays that meet no object.
+/// The light along rays that hit no object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Background {
-    /// The same from everywhere.
+    /// The same light from every direction.
     Color(LinearRgb),
-    /// From `bottom`, straight down, to `top`, straight up, linear in the direction's y.
+    /// A gradient from `bottom`, straight down, to `top`, straight up, linear in the direction's y.
     Gradient {
-        /// What is seen when looking along -y.
+        /// The light when looking along -y.
         bottom: LinearRgb,
-        /// What is seen when looking along +y.
+        /// The light when looking along +y.
         top: LinearRgb,
     },
 }
 
 impl Background {
-    /// Returns the background, if its light is some that can be.
+    /// Returns the background if its light is within range.
     fn checked(self) -> Result<Self, SceneFault> {
         match self {
             Self::Color(color) => checks::given_color("background", color, checks::light).map(Self::Color),
@@ -319,15 +321,15 @@ impl From<LinearRgb> for Background {
     }
 }
 
-/// How light is fitted to the screen's range.
+/// A mapping of light beyond the screen's range into it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ToneCurve {
-    /// As it is; what is brighter than white is white.
+    /// None: light brighter than white is clipped.
     #[default]
     None,
-    /// Reinhard's: x / (1 + x), of the luminance; never quite white.
+    /// Reinhard's curve x / (1 + x), applied to the luminance; it never reaches white.
     Reinhard,
-    /// A film's shoulder and toe, band by band (Narkowicz's fit to ACES).
+    /// A film-like curve with shoulder and toe, per channel (Narkowicz's fit to ACES).
     Filmic,
 }

@@ -1,10 +1,10 @@
-//! What the author wrote, typed, in his own units: degrees, sRGB strings, normals of any length.
+//! Scene files as the author wrote them, typed, in the author's units: degrees, sRGB strings, normals of any length.
 //!
-//! [`SceneFile::read`] knows the grammar of scenes, [`PathFile::read`] that of camera paths: which fields there are, of which types, which must be given. It
-//! goes on after a fault, so that one run tells of all. Whether a radius is greater than 0, whether a material exists,
-//! is asked by the next stage that knows, [`scene`](crate::scene); for that each value keeps its place in the text.
+//! [`SceneFile::read`] knows the grammar of scenes, [`PathFile::read`] that of camera paths: the fields, their types,
+//! and which are required. They continue after a fault, so that one run reports all. Whether a radius is positive or a
+//! material exists is checked by [`scene`](crate::scene), for which each value keeps its position.
 //!
-//! What is missing or faulty is `None`, and its fault has been noted; nobody need complain a second time.
+//! A missing or faulty value is `None`, and its fault has been reported; later stages do not report it again.
 
 mod camera;
 mod objects;
@@ -23,27 +23,27 @@ use crate::written::{Fields, Reader, Spanned, WrittenColor, WrittenNumber};
 /// A whole scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneFile {
-    /// From where it is seen.
+    /// The camera.
     pub camera: Option<WrittenCamera>,
-    /// Other views of it, in the order of the file.
+    /// Further views, in the order of the file.
     pub views: Vec<WrittenCamera>,
-    /// What is seen where nothing is.
+    /// The background.
     pub background: Option<WrittenBackground>,
-    /// Light from everywhere.
+    /// The ambient light.
     pub ambient: Option<WrittenColor>,
     /// The light sources.
     pub lights: Vec<WrittenLight>,
     /// The named materials, in the order of the file.
     pub materials: Vec<NamedMaterial>,
-    /// Whether `materials` is all that the author wanted to name; else nobody can say that a name is unknown.
+    /// Whether all entries of `materials` could be read. If not, an unknown name of a material is not reported.
     pub materials_complete: bool,
     /// The objects.
     pub objects: Vec<WrittenObject>,
-    /// Whether objects throw shadows.
+    /// Whether objects cast shadows.
     pub shadows: Option<bool>,
-    /// The factor of all light before it is shown.
+    /// The factor of all light before display.
     pub exposure: Option<WrittenNumber>,
-    /// How bright light is brought into the screen's range.
+    /// The tone curve.
     pub tone_curve: Option<WrittenToneCurve>,
 }
 
@@ -54,14 +54,14 @@ pub enum WrittenBackground {
     Color(WrittenColor),
     /// Two colours.
     Gradient {
-        /// Straight down.
+        /// The colour straight down.
         bottom: Option<WrittenColor>,
-        /// Straight up.
+        /// The colour straight up.
         top: Option<WrittenColor>,
     },
 }
 
-/// How bright light is brought into the screen's range.
+/// A tone curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrittenToneCurve {
     /// `None`
@@ -75,33 +75,32 @@ pub enum WrittenToneCurve {
 /// An entry of `materials`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedMaterial {
-    /// The name that objects use.
+    /// The name.
     pub name: Box<str>,
-    /// What it names.
+    /// The material.
     pub material: Option<WrittenMaterial>,
 }
 
-/// An object's material.
+/// The material of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialUse {
-    /// Written where it is used.
+    /// A material written in place.
     Inline(WrittenMaterial),
-    /// By the name of an entry of `materials`.
+    /// The name of an entry of `materials`.
     Named(Box<str>),
 }
 
 /// An object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenObject {
-    /// Its surface.
+    /// The surface.
     pub shape: WrittenShape,
-    /// Its material, and where; a light grey if none is given.
+    /// The material and its position; light grey if not given.
     pub material: Option<Spanned<MaterialUse>>,
 }
 
 impl SceneFile {
-    /// What the tree says, as far as it is a scene; the rest goes to `faults`. Once the watcher has gone, the lists end
-    /// early.
+    /// Reads a scene from its tree; anything else is added to `faults`. After a cancel the lists end early.
     pub fn read(root: &Node<'_>, watcher: &Watcher<'_>, faults: &mut Faults) -> Self {
         let mut reader = Reader::new(faults, watcher);
         let Some(fields) = reader.root(root) else {

@@ -1,9 +1,8 @@
-//! Values as an author writes them, each with its place in the text: how they are read from the syntax tree, and how they are
-//! checked.
+//! Values as written, each with its position: reading from the syntax tree, and checking.
 //!
-//! A [`Reader`] goes on after a fault, so that one run tells of all. What is missing or faulty is `None`, and its fault has
-//! been noted; nothing complains a second time. A [`Validator`] asks what is no question of type: whether a radius is greater
-//! than 0, or a coordinate near enough for light to be followed.
+//! A [`Reader`] continues after a fault, so that one run reports all. A missing or faulty value is `None`, and its
+//! fault has been reported. A [`Validator`] checks what types do not: that a radius is positive, or that a coordinate
+//! is small enough for rays to be traced.
 
 mod colors;
 mod reader;
@@ -17,12 +16,12 @@ pub use validator::Validator;
 use crate::scene_text::{Node, Span};
 use std::fmt::Debug;
 
-/// A value and where it was written.
+/// A value and its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
-    /// Its bytes.
+    /// Its range in the text.
     pub span: Span,
 }
 
@@ -34,31 +33,31 @@ pub type WrittenNumber = Spanned<f64>;
 pub struct WrittenVector {
     /// x, y and z.
     pub components: [WrittenNumber; 3],
-    /// All of it.
+    /// The range of the whole value.
     pub span: Span,
 }
 
-/// A value that a scene file has as a name with fields, such as `Sphere(center: ..., radius: ...)`.
+/// A value that a scene file writes as a name with fields, such as `Sphere(center: ..., radius: ...)`.
 pub trait InSceneFile {
-    /// What the author wrote, typed.
+    /// The value as written.
     type Written: Clone + Debug + PartialEq;
 
-    /// The word before the fields: "Sphere".
+    /// The name before the fields: "Sphere".
     const NAME: &'static str;
 
-    /// The same after an article, for messages.
+    /// The name with an article, for messages.
     const OWNER: &'static str;
 
-    /// How all of it is written: "Sphere(center: ..., radius: ...)".
+    /// The full form: "Sphere(center: ..., radius: ...)".
     const FORM: &'static str;
 
-    /// The names of its fields; those of a surface end with `material`, which every object has.
+    /// The names of its fields; a surface's end with `material`, which every object has.
     const FIELDS: &'static [&'static str];
 
     /// Reads its fields.
     fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> Self::Written;
 
-    /// Reads all of it, name and fields.
+    /// Reads the whole value, name and fields.
     fn read_node(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Self::Written> {
         let fields = reader.fields(node, Self::OWNER, Self::FORM, Self::FIELDS)?;
         Some(Self::read(reader, &fields))

@@ -1,4 +1,4 @@
-//! A scene that code makes, piece by piece.
+//! The builder of a scene in code.
 
 use super::{Background, Checked, Draft, Object, Scene, SceneFault, ToneCurve};
 use crate::camera::Camera;
@@ -8,12 +8,12 @@ use crate::light::Light;
 use crate::material::Material;
 use crate::shape::{Shape, without_coordinates};
 
-/// A scene in the making: see [`Scene::builder`]. What stands in it has been checked, or is by [`build`](Self::build).
+/// A builder of a scene: see [`Scene::builder`]. Its values are checked already, or by [`build`](Self::build).
 #[derive(Clone, Debug)]
 #[must_use = "there is no scene before `build`"]
 pub struct SceneBuilder {
     objects: Vec<Object>,
-    /// Without objects. Its background, its ambient light and its exposure are not checked yet.
+    /// Returns a builder without objects. Background, ambient light and exposure are not checked yet.
     rest: Checked,
 }
 
@@ -22,7 +22,7 @@ impl SceneBuilder {
         Self { objects: Vec::new(), rest: Checked::new(camera, Vec::new()) }
     }
 
-    /// Adds an object of that shape and material.
+    /// Adds an object of this shape and material.
     pub fn object(mut self, shape: impl Into<Shape>, material: impl Into<Material>) -> Self {
         self.objects.push(Object::new(shape, material));
         self
@@ -41,43 +41,43 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds a view that is worth a look, besides that of the camera.
+    /// Adds a view besides that of the camera.
     #[doc(hidden)]
     pub fn view(mut self, camera: Camera) -> Self {
         self.rest.views.push(camera);
         self
     }
 
-    /// Sets the light that comes along rays that meet no object; black, if none is set.
+    /// Sets the light along rays that hit no object; black by default.
     pub fn background(self, background: impl Into<Background>) -> Self {
         Self { rest: Checked { background: background.into(), ..self.rest }, ..self }
     }
 
-    /// Sets the light that arrives at every point from everywhere alike; none, if none is set.
+    /// Sets the ambient light; none by default.
     pub fn ambient(self, ambient: LinearRgb) -> Self {
         Self { rest: Checked { ambient, ..self.rest }, ..self }
     }
 
-    /// Sets what all light is multiplied by before it is shown; 1, if nothing is set.
+    /// Sets the factor of all light before display; 1 by default.
     pub fn exposure(self, exposure: f32) -> Self {
         Self { rest: Checked { exposure, ..self.rest }, ..self }
     }
 
-    /// Sets how light beyond the screen's range is brought into it; not at all, if nothing is set.
+    /// Sets the tone curve; none by default.
     pub fn tone_curve(self, tone_curve: ToneCurve) -> Self {
         Self { rest: Checked { tone_curve, ..self.rest }, ..self }
     }
 
-    /// Sets whether objects keep light from each other; they do, if nothing is set.
+    /// Sets whether objects cast shadows; `true` by default.
     pub fn shadows(self, shadows: bool) -> Self {
         Self { rest: Checked { shadows, ..self.rest }, ..self }
     }
 
-    /// Returns the scene, with the trees over its objects.
+    /// Builds the scene and the trees over its objects.
     ///
     /// # Errors
-    /// Unless each band of the background and of the ambient light lies within 0 and 1e12, and the exposure is greater than
-    /// 0 and at most 1e6; and if an object has a pattern and is no plane.
+    /// Unless each channel of the background and of the ambient light is within 0 and 1e12, and the exposure is greater
+    /// than 0 and at most 1e6; or if an object that is not a plane has a pattern.
     pub fn build(self) -> Result<Scene, SceneFault> {
         let Self { objects, rest } = self;
         for (at, Object { shape, material }) in objects.iter().enumerate() {

@@ -1,7 +1,7 @@
-//! Written -> checked, once: every change of unit and colour space is here, and every question about a value that is
-//! not one of type.
+//! The one conversion from written to checked values: every change of unit and colour space, and every check of a value
+//! beyond its type.
 //!
-//! Nothing stops at a fault. What is missing has its fault already, and is left out.
+//! It continues after a fault. A missing value has its fault already and is left out.
 
 mod camera;
 pub(super) mod path;
@@ -18,8 +18,7 @@ use crate::text::{closest, listed};
 use crate::written::{Spanned, Validator};
 use std::collections::HashMap;
 
-/// The scene, if nothing is wrong with it; else every fault has been added. Once the watcher has gone, objects are left
-/// out.
+/// Returns the checked scene; if `None`, every fault has been added. After a cancel, objects are left out.
 pub(super) fn check(
     file: &SceneFile,
     meshes: &mut dyn Meshes,
@@ -107,11 +106,11 @@ impl Validator<'_> {
     }
 }
 
-/// A material, and what was written of it.
+/// A material and its written form.
 #[derive(Clone, Copy)]
 struct Made<'f> {
     written: &'f WrittenMaterial,
-    /// Nothing if it is faulty.
+    /// `None` if it is faulty.
     material: Option<Material>,
 }
 

@@ -1,4 +1,4 @@
-//! A scene on its way: read and checked, but not built.
+//! A scene that is read and checked but not built.
 
 use super::{Checked, Scene};
 use crate::accel::Accelerator;
@@ -6,8 +6,8 @@ use crate::camera::Camera;
 use crate::progress::{Cancelled, Watcher};
 use std::sync::Arc;
 
-/// A scene of which all is known, and which no ray can be sent into yet: for that it is
-/// [built](Self::build_or_cancel). In the meantime a [sketch](Self::sketch) can be looked at.
+/// A scene whose trees are not built yet, so that no ray can be traced in it.
+/// [`build_or_cancel`](Self::build_or_cancel) builds them; meanwhile a [sketch](Self::sketch) can be shown.
 #[derive(Clone, Debug)]
 pub struct Draft {
     pub(super) checked: Arc<Checked>,
@@ -18,27 +18,27 @@ impl Draft {
         Self { checked: checked.into() }
     }
 
-    /// Where the scene wants to be looked at from.
+    /// Returns the scene's own camera.
     pub fn camera(&self) -> &Camera {
         &self.checked.camera
     }
 
-    /// The same scene, looked at from somewhere else.
+    /// Returns the draft with another camera.
     pub fn with_camera(mut self, camera: Camera) -> Self {
         Arc::make_mut(&mut self.checked).camera = camera;
         self
     }
 
-    /// The scene, built on all threads of the current rayon pool, until the watcher cancels it.
+    /// Builds the trees on all threads of the current rayon pool, until the watcher cancels it.
     ///
     /// # Errors
-    /// [`Cancelled`], if the watcher cancels it.
+    /// [`Cancelled`], if the watcher cancels.
     pub fn build_or_cancel(self, watcher: &Watcher<'_>) -> Result<Scene, Cancelled> {
         let accelerator = Accelerator::new_or_cancel(self.checked.shapes(), watcher)?.into();
         Ok(Scene { checked: self.checked, accelerator })
     }
 
-    /// The scene, however long it takes.
+    /// Builds the trees without a way to cancel.
     pub fn finish(self) -> Scene {
         let accelerator = Accelerator::new(self.checked.shapes()).into();
         Scene { checked: self.checked, accelerator }

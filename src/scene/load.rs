@@ -1,4 +1,4 @@
-//! File, bytes or text -> scene or camera path.
+//! Loading of scenes and camera paths from files, bytes and text.
 
 use super::{Draft, Scene, checked};
 use crate::camera::Camera;
@@ -18,8 +18,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 impl Scene {
-    /// The scene that the text describes. The name is used in messages, and the meshes that the scene names are looked
-    /// for from its folder.
+    /// Returns the scene of a text in RON. `name` is used in messages, and meshes are looked up in its folder.
     ///
     /// ```
     /// use termtrace::Scene;
@@ -39,12 +38,12 @@ impl Scene {
     ///
     /// # Errors
     /// The first fault of the syntax; if there is none, all others: unknown and missing fields, wrong types, and values
-    /// that make no picture.
+    /// out of range.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
         draft(name, text, &Watcher::patient()).map(Draft::finish).map_err(Unfinished::failure)
     }
 
-    /// The scene that the bytes describe, which should be UTF-8 text.
+    /// Returns the scene of a file's bytes, which should be UTF-8 text.
     ///
     /// ```
     /// use termtrace::Scene;
@@ -54,13 +53,13 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// As [`Scene::from_ron`], and for bytes that are no text.
+    /// As [`Scene::from_ron`], and for bytes that are not text.
     #[doc(hidden)]
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, SceneError> {
         Self::from_ron(name, text_from(name, bytes)?)
     }
 
-    /// The scene in that file, or the mesh, with light, a floor and a good view.
+    /// Loads a scene file, or a mesh file with default lights, a floor and a view of the whole mesh.
     ///
     /// ```no_run
     /// use std::path::Path;
@@ -78,8 +77,8 @@ impl Scene {
         load(path, &Watcher::patient()).map(Draft::finish).map_err(Unfinished::failure)
     }
 
-    /// Loads the scene in that file, as [`Scene::load`] does, and reports what it does and how far it is. When `hear`
-    /// answers `Break`, the work is cancelled. Reports come from any thread.
+    /// Loads as [`Scene::load`] does and reports progress to `hear`, from any thread. The load is cancelled when `hear`
+    /// returns `Break`.
     ///
     /// ```
     /// use std::{ops::ControlFlow, path::Path};
@@ -104,20 +103,20 @@ impl Scene {
 }
 
 impl Draft {
-    /// [`Scene::from_bytes`] without building, until the watcher cancels it.
+    /// Reads as [`Scene::from_bytes`] does without building trees, until the watcher cancels it.
     ///
     /// # Errors
-    /// As [`Scene::from_bytes`], and if the watcher cancels it.
+    /// As [`Scene::from_bytes`], and if the watcher cancels.
     pub fn from_bytes(name: &str, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Self, Unfinished<SceneError>> {
         draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, watcher)
     }
 
-    /// [`Scene::load`] without building, until the watcher cancels it.
+    /// Reads as [`Scene::load`] does without building trees, until the watcher cancels it.
     ///
     /// # Errors
-    /// As [`Scene::load`], and if the watcher cancels it.
+    /// As [`Scene::load`], and if the watcher cancels.
     pub fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Self, Unfinished<LoadError>> {
-        // A file may have been opened for nothing: a pipe that is waited for fails when the watcher has gone.
+        // A cancelled read may end with another error: waiting for a pipe fails when the watcher is gone.
         load(path, watcher).map_err(|unfinished| if watcher.is_gone() { Unfinished::Cancelled } else { unfinished })
     }
 }
@@ -147,8 +146,8 @@ fn draft(name: &str, text: &str, watcher: &Watcher<'_>) -> Result<Draft, Unfinis
 }
 
 impl CameraPath {
-    /// The camera path that the text describes. What a keyframe does not say, `up` or the field of view, is as `camera`
-    /// has it. The name is used in messages only.
+    /// Returns the camera path of a text in RON. A keyframe without `up` or a field of view takes it from `camera`.
+    /// `name` is used in messages only.
     ///
     /// ```
     /// use termtrace::{CameraPath, Scene};
@@ -164,23 +163,23 @@ impl CameraPath {
     /// ```
     ///
     /// # Errors
-    /// As [`Scene::from_ron`], and for times that do not rise.
+    /// As [`Scene::from_ron`], and for times that do not increase.
     #[doc(hidden)]
     pub fn from_ron(name: &str, text: &str, camera: &Camera) -> Result<Self, SceneError> {
         let smallest = "camera path is (keyframes: [(time: 0, eye: (0, 0, 5), target: (0, 0, 0))])";
         read(name, text, smallest, |root, faults| checked::path::check(&PathFile::read(root, faults), camera, faults))
     }
 
-    /// The camera path that the bytes describe, which should be UTF-8 text.
+    /// Returns the camera path of a file's bytes, which should be UTF-8 text.
     ///
     /// # Errors
-    /// As [`CameraPath::from_ron`], and for bytes that are no text.
+    /// As [`CameraPath::from_ron`], and for bytes that are not text.
     #[doc(hidden)]
     pub fn from_bytes(name: &str, bytes: &[u8], camera: &Camera) -> Result<Self, SceneError> {
         Self::from_ron(name, text_from(name, bytes)?, camera)
     }
 
-    /// The camera path in that file.
+    /// Loads a camera path file.
     ///
     /// # Errors
     /// If the file cannot be read, or as [`CameraPath::from_bytes`].
@@ -190,24 +189,24 @@ impl CameraPath {
     }
 }
 
-/// Why a file gave no scene, or no camera path.
+/// The error of loading a scene or camera path.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// It could not be read.
+    /// The file could not be read.
     CannotRead {
-        /// Which file.
+        /// Its path.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         error: io::Error,
     },
-    /// What it says is none.
+    /// The text is not a scene or camera path.
     Scene(SceneError),
-    /// It is none of the meshes that can be read.
+    /// The file is not a mesh that can be read.
     Mesh(MeshError),
-    /// It is a mesh that nobody could see.
+    /// The mesh is too small or too far away to be shown.
     Unseen {
-        /// Which file.
+        /// Its path.
         path: PathBuf,
     },
 }
@@ -273,7 +272,7 @@ fn around_mesh(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Draft
     Draft::of_mesh(mesh).ok_or_else(|| LoadError::Unseen { path: path.to_owned() }.into())
 }
 
-/// The meshes that a scene names, each read once.
+/// The meshes named by a scene, each read once.
 struct Meshes<'w> {
     folder: PathBuf,
     read: HashMap<PathBuf, MeshFile>,
@@ -300,11 +299,11 @@ impl shape::Meshes for Meshes<'_> {
     }
 }
 
-/// How many bytes of memory each byte of a scene file may take, with all that its objects are built into: 26 were measured,
-/// of 300,000 spheres.
+/// Limit on the memory per byte of a scene file, including the trees of its objects; 26 bytes were measured for 300,000
+/// spheres.
 const PEAK: usize = 32;
 
-/// The bytes of a file that the user names.
+/// Reads the bytes of a file named by the user.
 fn bytes_of(path: &Path, most: impl Fn(&[u8]) -> usize, watcher: &Watcher<'_>) -> Result<Vec<u8>, LoadError> {
     named_file::read(path, Accepted::FilesAndPipes, most, watcher)
         .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error })

@@ -1,4 +1,4 @@
-//! A scene around a mesh that comes without one.
+//! The default scene around a mesh file.
 
 use super::{Background, Checked, Draft, Object, Scene};
 use crate::bounds::Bounds;
@@ -10,22 +10,22 @@ use crate::mesh_file::MeshFile;
 use crate::shape::{Mesh, Plane};
 use glam::{BVec3, Vec3};
 
-/// Where the eye is, from the middle of the mesh: a little to the right, and above.
+/// Direction of the eye from the middle of the mesh: slightly to the right, and above.
 const TOWARDS_EYE: Vec3 = Vec3::new(0.45, 0.4, 1.0);
 
-/// The vertical field of view, in radians: 40 degrees.
+/// Vertical field of view in radians: 40 degrees.
 const FIELD_OF_VIEW: f32 = 0.698_131_7;
 
-/// The tangent of half of it, less a margin.
+/// Tangent of half the field of view, less a margin.
 const WITHIN: f32 = 0.95 * 0.363_970_23;
 
-/// Pictures are at least so much wider than high.
+/// Least aspect ratio of a picture that shows the whole mesh.
 const ASPECT_RATIO: f32 = 4.0 / 3.0;
 
 impl Scene {
-    /// The mesh on a floor, seen whole from in front and above, lit from the left by a strong light and from the right by a
-    /// weak one. Up is +y. `None` if it has no size, is too small for where it is, or reaches beyond ±1e9: a scene file can
-    /// bring it nearer.
+    /// Returns a scene with the mesh on a floor, seen whole from the front and above, lit by a strong light from the
+    /// left and a weak one from the right. Up is +y. `None` if the mesh has no extent, is too small for its position,
+    /// or exceeds ±1e9: a scene file can move or scale it.
     #[doc(hidden)]
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
         Draft::of_mesh(mesh).map(Draft::finish)
@@ -33,13 +33,13 @@ impl Scene {
 }
 
 impl Draft {
-    /// [`Scene::of_mesh`], not built.
+    /// Returns the draft of [`Scene::of_mesh`].
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
         let bounds = Bounds::of(mesh.positions().iter().copied());
         let middle = bounds.min + 0.5 * bounds.extent();
         let radius = 0.5 * bounds.extent().length();
         let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
-        // (The negation turns NaN and infinity away too.)
+        // Negated, so that NaN and infinity fail as well.
         if !(radius > 1e-5 * farthest && radius > 1e-9 && farthest <= 1e9) {
             return None;
         }
@@ -61,7 +61,7 @@ impl Draft {
     }
 }
 
-/// The box's corners just fit into the picture.
+/// Distance at which the corners of the box just fit into the picture.
 fn camera(bounds: &Bounds, middle: Vec3) -> Option<Camera> {
     let w = TOWARDS_EYE.normalize();
     let u = Vec3::Y.cross(w).normalize();
@@ -76,7 +76,7 @@ fn camera(bounds: &Bounds, middle: Vec3) -> Option<Camera> {
     ViewRectangle::from_vertical_fov(FIELD_OF_VIEW).and_then(|rectangle| Camera::new(pose, rectangle)).ok()
 }
 
-/// As strong everywhere.
+/// Without falloff, so that its strength does not depend on the mesh's size.
 fn light(position: Vec3, strength: f32) -> Option<Light> {
     let light = PointLight::new(position, LinearRgb::grey(strength)).ok()?;
     Some(light.with_falloff(Falloff::None).into())

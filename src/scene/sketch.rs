@@ -1,17 +1,16 @@
-//! A scene to look at while its large meshes are built.
+//! A coarse scene to show while the trees of large meshes are built.
 
 use super::{Checked, Draft, Object, Scene};
 use crate::shape::{Mesh, Shape};
 
-/// Of so many triangles and more the scene is sketched: fewer are built as quickly.
+/// Least number of triangles for which a sketch is made: building fewer is as fast.
 const MANY: u32 = 1 << 17;
 
-/// A sketched mesh has about so many details along its longest side: as many as a screen shows.
+/// Approximate number of details along a sketched mesh's longest side: as many as a screen resolves.
 const DETAILS: f32 = 64.0;
 
 impl Draft {
-    /// The scene with coarse meshes, which take a moment to build: something to look at until the scene itself is there.
-    /// `None` if it will be there as soon.
+    /// Returns the scene with coarse meshes, which are built in a moment; `None` if the scene itself is built as fast.
     pub fn sketch(&self) -> Option<Scene> {
         let meshes = || self.checked.objects.iter().filter_map(|object| mesh_of(&object.shape));
         if meshes().map(Mesh::triangle_count).fold(0, u32::saturating_add) < MANY {

@@ -1,11 +1,11 @@
-//! A camera -> the text that a scene file would have for it.
+//! The text of a camera in a scene file.
 
 use crate::camera::{Camera, ViewRectangle, radians};
 use glam::Vec3;
 
 impl Camera {
-    /// The camera as it stands in a scene file: `camera: (eye: ..., target: ..., ...)`, each number as short as it can
-    /// be to be read back with the same bits.
+    /// Returns the camera as in a scene file: `camera: (eye: ..., target: ..., ...)`, each number with the fewest
+    /// digits that are read back with the same bits.
     ///
     /// ```
     /// use termtrace::Scene;
@@ -20,7 +20,7 @@ impl Camera {
         format!("camera: {}", self.value_to_ron())
     }
 
-    /// The value of that field alone: `(eye: ..., target: ..., ...)`.
+    /// Returns the value of that field alone: `(eye: ..., target: ..., ...)`.
     pub(super) fn value_to_ron(&self) -> String {
         let pose = self.pose();
         let [eye, target, up] = [pose.eye, pose.target, pose.up].map(vector);
@@ -40,11 +40,11 @@ fn vector(v: Vec3) -> String {
     format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
 }
 
-/// The shortest decimal that is read back as `x`.
+/// Returns the shortest decimal that is read back as `x`.
 fn number(x: f32) -> String {
     let plain = x.to_string();
     let short = if plain.len() > 16 { format!("{x:e}") } else { plain };
-    // The reader rounds twice, to f64 and then to f32; for all but a few numbers that is the same.
+    // The reader rounds twice, to f64 and then to f32. For all but a few numbers that makes no difference.
     if reads_as(&short, |value| value as f32 == x) { short } else { f64::from(x).to_string() }
 }
 
@@ -52,14 +52,14 @@ fn reads_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
     text.parse().is_ok_and(is_right)
 }
 
-/// In degrees where that says it all; else as the lecture's f, w and h, with f = 1.
+/// Returns the lens in degrees if that gives the same bits; otherwise as the lecture's f, w and h, with f = 1.
 fn lens(rectangle: &ViewRectangle) -> String {
     let Some(width) = rectangle.width() else {
         let degrees = degrees(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());
         return format!("vertical_fov: {degrees}");
     };
     match (degrees(rectangle), aspect_ratio(rectangle, width)) {
-        // An angle with all digits was no angle when it was written.
+        // An angle that needs all digits was not written as an angle.
         (Some(degrees), Some(ratio)) if degrees.len() <= 6 && ratio.len() <= 9 => {
             format!("vertical_fov: {degrees}, aspect_ratio: {ratio}")
         }
@@ -74,7 +74,7 @@ fn approximate_degrees(rectangle: &ViewRectangle) -> f64 {
     (2.0 * libm::atan(0.5 * f64::from(rectangle.height()))).to_degrees()
 }
 
-/// The angle with the fewest digits that gives the same height.
+/// Returns the angle with the fewest digits that gives the same height.
 fn degrees(rectangle: &ViewRectangle) -> Option<String> {
     let gives_the_height = |value: f64| {
         ViewRectangle::from_vertical_fov(radians(value)).is_ok_and(|read| read.height() == rectangle.height())
@@ -82,7 +82,7 @@ fn degrees(rectangle: &ViewRectangle) -> Option<String> {
     shortest(approximate_degrees(rectangle), gives_the_height)
 }
 
-/// The aspect ratio with the fewest digits that gives the same width.
+/// Returns the aspect ratio with the fewest digits that gives the same width.
 fn aspect_ratio(rectangle: &ViewRectangle, width: f32) -> Option<String> {
     let gives_the_width = |value: f64| rectangle.height() * value as f32 == width;
     shortest(f64::from(width) / f64::from(rectangle.height()), gives_the_width)

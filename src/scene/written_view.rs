@@ -1,11 +1,11 @@
-//! A scene file's text with one more view in it, and nothing else changed: comments and blanks stay, byte for byte.
+//! Insertion of a view into a scene file's text, which keeps all other bytes, comments and blanks included.
 
 use crate::camera::Camera;
 use crate::progress::Watcher;
 use crate::scene_file::SceneFile;
 use crate::scene_text::{Body, Faults, Field, Node, Value, parse};
 
-/// The text of a scene file with that camera as the last of its `views`. `None` if the text is no scene's.
+/// Returns the text of a scene file with `camera` added as the last of its `views`. `None` if the text is not a scene.
 ///
 /// ```
 /// use termtrace::Scene;
@@ -36,10 +36,10 @@ pub fn with_view(text: &str, camera: &Camera) -> Option<String> {
     (count(&written)? == count(text)? + 1).then_some(written)
 }
 
-/// Something to be put in at a byte of the text.
+/// A text to insert at a byte.
 type Addition = (usize, String);
 
-/// Into the list of views, on a line of its own if the bracket that closes it has one.
+/// Returns the insertion into an existing list of views, on a line of its own if the closing bracket has one.
 fn to_list(text: &str, list: &Node<'_>, view: &str) -> Option<Vec<Addition>> {
     let items = items(list)?;
     let close = list.span.end as usize - 1;
@@ -57,7 +57,7 @@ fn to_list(text: &str, list: &Node<'_>, view: &str) -> Option<Vec<Addition>> {
     Some(comma.into_iter().chain([(before, format!("{}{indent}{view},", line_end(text)))]).collect())
 }
 
-/// As a list after that field: on lines of its own, if the field's line ends with it.
+/// Returns the insertion of a new list after a field, on lines of its own if the field's line ends with it.
 fn after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
     let end = field.value.span.end as usize;
     let comma = Some(skip_blanks(text, end)).filter(|&at| text[at..].starts_with(','));
@@ -75,7 +75,7 @@ fn after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
     missing.into_iter().chain([(next + line.trim_end().len(), list)]).collect()
 }
 
-/// With all additions, which are in order.
+/// Returns the text with all insertions, which are in order.
 fn inserted(text: &str, additions: Vec<Addition>) -> String {
     let mut written = String::with_capacity(text.len() + 200);
     let mut from = 0;
@@ -88,7 +88,7 @@ fn inserted(text: &str, additions: Vec<Addition>) -> String {
     written
 }
 
-/// How many views the text has.
+/// Returns the number of views in a text.
 fn count(text: &str) -> Option<usize> {
     let root = parse(text).ok()?;
     Some(SceneFile::read(&root, &Watcher::patient(), &mut Faults::default()).views.len())
@@ -115,19 +115,20 @@ fn items<'n, 'a>(node: &'n Node<'a>) -> Option<&'n [Node<'a>]> {
     }
 }
 
-/// The blanks at the beginning of the line in which that byte is.
+/// Returns the blanks at the start of the line that contains a byte.
 fn indent_of(text: &str, at: usize) -> &str {
     let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
     let line = &text[start..];
     &line[..line.len() - line.trim_start_matches([' ', '\t']).len()]
 }
 
-/// How the text's lines end.
+/// Returns the line ending that the text uses.
 fn line_end(text: &str) -> &'static str {
     if text.contains("\r\n") { "\r\n" } else { "\n" }
 }
 
-/// The first place from there on that is neither blank nor comment. The text has been parsed: every comment ends.
+/// Returns the first index at or after `from` that is neither blank nor comment. The text has been parsed, so every
+/// comment ends.
 fn skip_blanks(text: &str, mut at: usize) -> usize {
     loop {
         let rest = &text[at..];
@@ -142,7 +143,7 @@ fn skip_blanks(text: &str, mut at: usize) -> usize {
     }
 }
 
-/// The length of the comment at the beginning, with those inside it.
+/// Returns the length of the comment at the start of the text, with nested ones.
 fn block_comment(text: &str) -> usize {
     let (mut depth, mut at) = (0_usize, 0);
     while at < text.len() {
@@ -165,7 +166,7 @@ mod tests {
 
     const VIEW: &str = "(eye: (3, 1, 2), target: (0, 0, 0), up: (0, 1, 0), vertical_fov: 45)";
 
-    /// What becomes of `text`, with `+` for the new view's text.
+    /// Returns the result for `text`, with `+` for the new view's text.
     fn added(text: &str) -> String {
         let camera = *Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera();
         let text = text
@@ -202,7 +203,7 @@ mod tests {
             ("// \"é\" ☃\nScene(C, ambient: 1)", "// \"é\" ☃\nScene(C, views: [+], ambient: 1)"),
         ] {
             assert_eq!(added(text), wanted, "{text}");
-            // And another.
+            // A second insertion into the result.
             added(&wanted.replace('+', "V"));
         }
     }

@@ -1,34 +1,34 @@
-//! Cameras as they are written: the scene's, and other views of it.
+//! Cameras as written: the scene's camera and further views.
 
 use crate::scene_text::{Node, Span, quoted};
 use crate::text::listed;
 use crate::written::{Fields, Reader, WrittenNumber, WrittenVector};
 
-/// The camera, or another view.
+/// The camera or a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenCamera {
-    /// Where to point when it is wrong as a whole.
+    /// Position to point at when it is wrong as a whole.
     pub span: Span,
     /// The eye point.
     pub eye: Option<WrittenVector>,
     /// The target point.
     pub target: Option<WrittenVector>,
-    /// The up vector; +y if none is given, or for a view the camera's.
+    /// The up vector; if not given, +y, or for a view the camera's.
     pub up: Option<WrittenVector>,
-    /// The intrinsic parameters; for a view the camera's, if nothing is said of them.
+    /// The intrinsic parameters; if not given for a view, the camera's.
     pub lens: WrittenLens,
-    /// The view rectangle off centre: to the right and up, in its heights.
+    /// The shift of the view rectangle off centre, to the right and up, in heights of the rectangle.
     pub shift: Option<[WrittenNumber; 2]>,
 }
 
-/// The intrinsic parameters, in either of the lecture's forms.
+/// The intrinsic parameters in either of the lecture's forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WrittenLens {
-    /// By angle.
+    /// By field of view.
     FieldOfView {
-        /// In degrees; 45 if none is given.
+        /// The vertical field of view in degrees; 45 if not given.
         vertical_fov: Option<WrittenNumber>,
-        /// Width over height; the picture's own if none is given.
+        /// Width divided by height; the picture's if not given.
         aspect_ratio: Option<WrittenNumber>,
     },
     /// By the lecture's f, w and h.
@@ -43,7 +43,7 @@ pub enum WrittenLens {
 }
 
 impl WrittenCamera {
-    /// Whether nothing is said of the intrinsic parameters.
+    /// Returns whether no intrinsic parameter is given.
     pub fn is_without_lens(&self) -> bool {
         let nothing = WrittenLens::FieldOfView { vertical_fov: None, aspect_ratio: None };
         self.lens == nothing && self.shift.is_none()
@@ -55,7 +55,7 @@ impl Reader<'_> {
         self.camera_called(node, "a camera", "a camera (eye: ..., target: ...)")
     }
 
-    /// The other views of a scene, each with the fields of a camera.
+    /// Reads the views of a scene, each with the fields of a camera.
     pub(super) fn views(&mut self, node: &Node<'_>) -> Option<Vec<WrittenCamera>> {
         let items = self.list(node, "a list of views [(eye: ..., target: ...), ...]")?;
         Some(self.each(items, |reader, item| reader.camera_called(item, "a view", "a view (eye: ..., target: ...)")))

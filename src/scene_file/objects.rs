@@ -1,4 +1,4 @@
-//! Objects and materials as they are written.
+//! Objects and materials as written.
 
 use super::{MaterialUse, NamedMaterial, WrittenObject};
 use crate::material::WrittenMaterial;
@@ -28,7 +28,7 @@ impl Reader<'_> {
         Some(Spanned { value, span: node.span })
     }
 
-    /// All entries of `materials`; false if a name may be lacking that the author meant to give.
+    /// Reads the entries of `materials`. Returns `false` with them if a name may be missing because an entry is faulty.
     pub(super) fn materials(&mut self, node: &Node<'_>, materials: &mut Vec<NamedMaterial>) -> bool {
         let Value::Map(entries) = &node.value else {
             let is_empty = values(node).is_some_and(<[_]>::is_empty);
@@ -53,7 +53,7 @@ impl Reader<'_> {
         complete
     }
 
-    /// A bare word is a fault, but one that says which name was meant.
+    /// Reports a bare word as a fault that names the quoted material.
     fn material_name<'n>(&mut self, key: &'n Node<'n>) -> Option<&'n str> {
         match &key.value {
             Value::String(name) => return Some(name),

@@ -1,35 +1,35 @@
-//! Camera paths as they are written.
+//! Camera paths as written.
 
 use crate::progress::Watcher;
 use crate::scene_text::{Faults, Node, Span};
 use crate::written::{Reader, WrittenNumber, WrittenVector};
 
-/// A whole file of a camera path.
+/// A camera path file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathFile {
-    /// The keyframes, in the order of the file, and where they stand.
+    /// The keyframes, in the order of the file, with their positions.
     pub keyframes: Option<(Vec<WrittenKeyframe>, Span)>,
 }
 
-/// Where the camera is to be at a time.
+/// A keyframe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenKeyframe {
-    /// Where to point when it is wrong as a whole.
+    /// Position to point at when it is wrong as a whole.
     pub span: Span,
-    /// In seconds from the film's beginning.
+    /// The time in seconds from the start of the film.
     pub time: Option<WrittenNumber>,
     /// The eye point.
     pub eye: Option<WrittenVector>,
     /// The target point.
     pub target: Option<WrittenVector>,
-    /// The up vector; the scene's own if none is given.
+    /// The up vector; the scene's if not given.
     pub up: Option<WrittenVector>,
-    /// In degrees; the scene's own if none is given.
+    /// The vertical field of view in degrees; the scene's if not given.
     pub vertical_fov: Option<WrittenNumber>,
 }
 
 impl PathFile {
-    /// What the tree says, as far as it is a camera path; the rest goes to `faults`.
+    /// Reads a camera path from its tree; anything else is added to `faults`.
     pub fn read(root: &Node<'_>, faults: &mut Faults) -> Self {
         const FORM: &str = "a camera path (keyframes: [(time: ..., eye: ..., target: ...), ...])";
         let watcher = Watcher::patient();

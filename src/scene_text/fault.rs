@@ -1,4 +1,4 @@
-//! Faults, and how a person is shown them: all at once, in the order of the text, as compilers do.
+//! Faults and their presentation: all at once, in the order of the text, as compilers do.
 
 use super::Span;
 use crate::progress::Unfinished;
@@ -6,12 +6,12 @@ use crate::text::{Notice, visible, visible_char};
 use std::fmt;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// Something wrong with a text, and where.
+/// A fault of a text and its position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// What is wrong, and where it can be said what would be right: one line, no full stop.
+    /// The message, which says what would be right where possible: one line without a full stop.
     pub message: String,
-    /// The bytes it is about.
+    /// The range it refers to.
     pub span: Span,
 }
 
@@ -21,7 +21,7 @@ impl From<Fault> for Unfinished<Fault> {
     }
 }
 
-/// The faults found so far. Of a text that is wrong everywhere only the first thousand are kept, the others counted.
+/// The faults found so far. The first thousand are kept, the others only counted.
 #[derive(Clone, Debug, Default)]
 pub struct Faults {
     kept: Vec<Fault>,
@@ -31,7 +31,7 @@ pub struct Faults {
 impl Faults {
     const KEPT: usize = 1000;
 
-    /// One more; the message is made only if it will be kept.
+    /// Adds a fault. `message` is called only if the fault is kept.
     pub fn add(&mut self, span: Span, message: impl FnOnce() -> String) {
         if self.kept.len() < Self::KEPT {
             let message = message();
@@ -41,7 +41,7 @@ impl Faults {
         }
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no faults.
     pub fn is_empty(&self) -> bool {
         self.kept.is_empty()
     }
@@ -53,7 +53,8 @@ impl From<Fault> for Faults {
     }
 }
 
-/// Why a text is no scene, or no camera path: every fault that was found in it. Printed, it reads like a compiler's message:
+/// The error of a text that is not a scene or camera path, with every fault found in it. Its `Display` reads like a
+/// compiler's message:
 ///
 /// ```text
 /// scenes/x.ron:3:32: unknown field "radus"; did you mean "radius"?
@@ -67,33 +68,33 @@ pub struct SceneError {
     more: usize,
 }
 
-/// One fault as it is shown. No character of it controls a terminal.
+/// A fault prepared for display. None of its characters controls a terminal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
     /// The line, counted from 1.
     pub line: usize,
     /// The column, in characters, counted from 1.
     pub column: usize,
-    /// What is wrong.
+    /// The message.
     pub message: String,
-    /// The bytes it is about.
+    /// The range it refers to.
     pub span: Span,
-    /// The line of the text, or the part of a long one around the fault.
+    /// The line of the text, or the part of a long line around the fault.
     pub source: String,
-    /// How many terminal columns stand before the fault in `source`.
+    /// Number of terminal columns before the fault in `source`.
     pub caret: usize,
-    /// How many terminal columns of `source` the fault takes; at least 1.
+    /// Number of terminal columns of the fault in `source`, at least 1.
     pub caret_width: usize,
 }
 
 impl Report {
-    /// What is wrong, after the file's name and the place in it.
+    /// Returns the message after the file's name and the position.
     fn message_in(&self, name: &str) -> String {
         let Self { line, column, message, .. } = self;
         format!("{name}:{line}:{column}: {message}")
     }
 
-    /// The line of the text with its number, and carets below it; `None` if no line is worth showing.
+    /// Returns the line of the text with its number and carets below it; `None` if no line is worth showing.
     fn excerpt(&self) -> Option<[String; 2]> {
         let Self { line, source, caret, caret_width, .. } = self;
         let number = line.to_string();
@@ -106,7 +107,7 @@ impl Report {
 impl SceneError {
     const PRINTED: usize = 50;
 
-    /// These faults of that text. The name is the file's, for messages only.
+    /// Returns the error with these faults of a text. `name` is the file's, for messages only.
     #[doc(hidden)]
     pub fn new(name: &str, text: &str, faults: impl Into<Faults>) -> Self {
         let Faults { mut kept, more } = faults.into();
@@ -126,7 +127,7 @@ impl SceneError {
         self.reports.first().map_or(1, |report| report.column)
     }
 
-    /// Returns what is wrong there, in one line without a full stop.
+    /// Returns the message of the first fault: one line without a full stop.
     ///
     /// ```
     /// use termtrace::Scene;
@@ -140,13 +141,13 @@ impl SceneError {
         self.reports.first().map_or("", |report| &report.message)
     }
 
-    /// The faults in the order of the text; of more than a thousand, a thousand.
+    /// Returns the faults in the order of the text, at most a thousand.
     #[doc(hidden)]
     pub fn reports(&self) -> &[Report] {
         &self.reports
     }
 
-    /// The first fault, in parts.
+    /// Returns the first fault in parts.
     #[doc(hidden)]
     pub fn notice(&self) -> Notice {
         let has_more = self.count() > 1;
@@ -154,7 +155,7 @@ impl SceneError {
         Notice { message: first.message_in(&self.name), excerpt: first.excerpt(), has_more }
     }
 
-    /// How many faults there are.
+    /// Returns the number of faults.
     #[doc(hidden)]
     pub fn count(&self) -> usize {
         self.reports.len() + self.more
@@ -180,7 +181,8 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// A walk through the text, from fault to fault, that counts lines and columns: together they take one pass.
+/// A position in the text that moves from fault to fault and counts lines and columns, so that all of them take one
+/// pass.
 struct Walk<'a> {
     text: &'a str,
     at: usize,
@@ -224,20 +226,20 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Where the character begins that the byte belongs to.
+/// Returns the start of the character that contains a byte.
 fn character_at(text: &str, place: usize) -> usize {
     let place = place.min(text.len());
     (0..=place).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
 }
 
-/// Line and column, counted from 1, of a byte of the text.
+/// Returns the line and column of a byte, counted from 1.
 pub fn line_and_column(text: &str, place: usize) -> (usize, usize) {
     let mut walk = Walk::new(text);
     walk.go_to(place);
     (walk.line, walk.column)
 }
 
-/// As much of a line as is shown.
+/// The part of a line that is shown.
 struct Excerpt {
     source: String,
     caret: usize,
@@ -245,14 +247,14 @@ struct Excerpt {
 }
 
 impl Excerpt {
-    /// Columns that are shown at most.
+    /// Limit on the columns shown.
     const WIDTH: usize = 100;
-    /// A fault so near the line's beginning is shown with all that stands before it,
+    /// A fault this near the start of the line is shown with the whole start of the line;
     const NEAR: usize = 75;
-    /// and any other with so many columns.
+    /// any other with this many columns before it.
     const BEFORE: usize = 50;
 
-    /// `text` begins with the line; the fault takes its bytes from `start` to `end`.
+    /// Returns the part to show of `text`, which starts with the line; the fault is at bytes `start` to `end`.
     fn new(text: &str, start: usize, end: usize) -> Self {
         let is_long = text.chars().take(Self::WIDTH + 1).take_while(|&c| c != '\n').count() > Self::WIDTH;
         let is_far = is_long && back_by(text, start, Self::NEAR) > 0;
@@ -293,7 +295,7 @@ impl Excerpt {
     }
 }
 
-/// The place so many columns before `place`, or 0 where the line has not so many.
+/// Returns the index of the character `columns` terminal columns before `place`, at least 0.
 fn back_by(text: &str, place: usize, columns: usize) -> usize {
     let mut left = columns;
     for (i, c) in text[..place].char_indices().rev() {
@@ -306,7 +308,7 @@ fn back_by(text: &str, place: usize, columns: usize) -> usize {
     0
 }
 
-/// A piece of the file for a message, cut off where it is long.
+/// Returns a piece of the file for a message, truncated if long.
 pub(crate) fn clipped(text: &str) -> String {
     const LONGEST: usize = 40;
     let mut shown: String = text.chars().take(LONGEST).map(visible_char).collect();
@@ -316,7 +318,7 @@ pub(crate) fn clipped(text: &str) -> String {
     shown
 }
 
-/// A piece of the file in quotes.
+/// Returns a piece of the file in quotes.
 pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", clipped(text))
 }

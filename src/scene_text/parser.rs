@@ -1,19 +1,19 @@
-//! Tokens -> the tree. The first fault ends it: what a text means after that is guesswork.
+//! The parser: tokens to the tree. It stops at the first fault, because the meaning of the text after it is guesswork.
 
 use super::fault::{clipped, line_and_column, quoted};
 use super::tokens::{Token, Tokens};
 use super::{Body, Fault, Field, Group, MAX_DEPTH, Name, Node, Span, Value};
 use crate::progress::{Meter, Unfinished, Watcher};
 
-/// The one value that the text holds, or its first fault.
+/// Parses the single value of a text.
 ///
 /// # Errors
-/// Where the text is not RON.
+/// The first fault, if the text is not RON.
 pub fn parse(text: &str) -> Result<Node<'_>, Fault> {
     parse_or_cancel(text, Meter::new(&Watcher::patient(), "", text.len())).map_err(Unfinished::failure)
 }
 
-/// [`parse`], until the meter's watcher cancels it.
+/// Parses as [`parse`] does, until the meter's watcher cancels it.
 pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<Node<'a>> {
     let mut tokens = Tokens::new(text);
     tokens.skip_attributes()?;
@@ -34,14 +34,14 @@ struct Parser<'a, 'm> {
     text: &'a str,
     meter: Meter<'m>,
     tokens: Tokens<'a>,
-    /// The token to be read next, and its bytes.
+    /// The next token and its range.
     next: Token<'a>,
     span: Span,
     previous_end: u32,
-    /// The brackets that are open, and where they stand.
+    /// The open brackets and their positions.
     open: Vec<(char, Span)>,
-    /// The first bracket whose closing one stands first on its line and further left or right than the opening one's
-    /// line: the likeliest to lack its own, where one is lacking in the end.
+    /// The first bracket whose closing bracket is the first on its line but indented differently from the opening
+    /// bracket's line. If a closing bracket is missing at the end of the text, it is most likely this one's.
     misaligned: Option<(char, Span)>,
 }
 
@@ -55,7 +55,7 @@ impl<'a> Parser<'a, '_> {
         Ok(std::mem::replace(&mut self.next, next))
     }
 
-    /// The token after the next one is a colon: the next one is a field's name.
+    /// Returns whether the token after the next one is a colon, so that the next one is a field's name.
     fn colon_follows(&self) -> bool {
         let mut tokens = self.tokens;
         matches!(tokens.next(), Ok((Token::Colon, _)))
@@ -123,7 +123,7 @@ impl<'a> Parser<'a, '_> {
         Ok(self.node(name.span.start, Value::Group(Box::new(group))))
     }
 
-    /// `(...)`: fields if it begins with one, else values.
+    /// Parses `(...)`: fields if it starts with one, otherwise values.
     fn body(&mut self) -> Parsed<Body<'a>> {
         self.open()?;
         let body = if matches!(self.next, Token::Word(_)) && self.colon_follows() {
@@ -211,7 +211,7 @@ impl<'a> Parser<'a, '_> {
         Ok(())
     }
 
-    /// Past the bracket that closes the innermost open one.
+    /// Moves past the bracket that closes the innermost open one.
     fn close(&mut self) -> Parsed<()> {
         let Some(&(bracket, opened)) = self.open.last() else {
             return Ok(());
@@ -227,10 +227,10 @@ impl<'a> Parser<'a, '_> {
         Ok(())
     }
 
-    /// Whether the next token stands first on a line of its own that is indented otherwise than the bracket's line.
+    /// Returns whether the next token is the first on its line and indented differently from the bracket's line.
     fn is_misaligned(&self, opened: Span) -> bool {
         let line_before = |at: u32| self.text[..at as usize].rsplit('\n').next().unwrap_or_default();
-        // A very long line is nobody's indentation, and looking through it each time would take its square.
+        // A very long line is not indented by hand, and scanning it for every token would take quadratic time.
         if self.span.start - opened.end < 2 || self.span.start - self.previous_end > 1000 {
             return false;
         }
@@ -243,7 +243,7 @@ impl<'a> Parser<'a, '_> {
         indentation != line_before(self.span.start).len()
     }
 
-    // What to say -----------------------------------------------------------------------------------------------------
+    // Messages --------------------------------------------------------------------------------------------------------
 
     fn here(&self, message: String) -> Unfinished<Fault> {
         Fault { message, span: self.span }.into()
@@ -287,7 +287,7 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Something else stands where a comma or the closing bracket should.
+    /// Reports another token where a comma or the closing bracket is expected.
     fn not_closed(&self, bracket: char, opened: Span) -> Unfinished<Fault> {
         let right = closing(bracket);
         match self.next {
@@ -322,7 +322,7 @@ fn closing(bracket: char) -> char {
     }
 }
 
-/// A word of the file, in backticks.
+/// Returns a word of the file in backticks.
 fn quoted_word(word: &str) -> String {
     format!("`{}`", clipped(word))
 }

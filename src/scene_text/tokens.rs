@@ -1,9 +1,9 @@
-//! Characters -> tokens.
+//! The lexer: characters to tokens.
 
 use super::fault::quoted;
 use super::{Fault, Span};
 
-/// The smallest things that mean something.
+/// A token.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token<'a> {
     /// `(`, `[` or `{`.
@@ -15,13 +15,13 @@ pub(super) enum Token<'a> {
     Word(&'a str),
     Number(f64),
     String(Box<str>),
-    /// A character that RON has no use for in that place.
+    /// A character that RON does not allow there.
     Other(char),
     /// The end of the text.
     End,
 }
 
-/// Where the next token begins. Copied to look ahead.
+/// The position of the next token. Copy it to look ahead.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tokens<'a> {
     text: &'a str,
@@ -33,7 +33,7 @@ impl<'a> Tokens<'a> {
         Self { text, at: 0 }
     }
 
-    /// The next token and the bytes it takes.
+    /// Returns the next token and its range.
     pub(super) fn next(&mut self) -> Result<(Token<'a>, Span), Fault> {
         self.skip_space()?;
         let start = self.at;
@@ -41,7 +41,7 @@ impl<'a> Tokens<'a> {
         Ok((token, Span::new(start, self.at)))
     }
 
-    /// Attributes of the whole text: `#![enable(implicit_some)]` and the like. They change nothing here.
+    /// Skips attributes of the whole text, such as `#![enable(implicit_some)]`, which have no effect here.
     pub(super) fn skip_attributes(&mut self) -> Result<(), Fault> {
         if self.rest().starts_with(BYTE_ORDER_MARK) {
             self.at += BYTE_ORDER_MARK.len_utf8();
@@ -102,7 +102,7 @@ impl<'a> Tokens<'a> {
         &rest[..end]
     }
 
-    /// All that looks like a part of a number is taken, so that what is wrong with it is shown whole.
+    /// Takes every character that may belong to a number, so that a malformed number is reported as a whole.
     fn number(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         self.at += 1;
@@ -122,7 +122,7 @@ impl<'a> Tokens<'a> {
         })
     }
 
-    /// A scene's strings are names and colours: one that does not end on its line is one whose quote was forgotten.
+    /// A scene's strings are names and colours: a string that does not end on its line lacks its closing quote.
     fn string(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         let mut value = String::new();
@@ -165,7 +165,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// White space and comments.
+    /// Skips white space and comments.
     fn skip_space(&mut self) -> Result<(), Fault> {
         loop {
             self.take_while(is_space);
@@ -184,10 +184,10 @@ impl<'a> Tokens<'a> {
     }
 }
 
-/// Some editors begin a file with it.
+/// The byte order mark, with which some editors begin a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// What RON takes for white space.
+/// Returns whether RON treats a character as white space.
 fn is_space(c: char) -> bool {
     matches!(
         c,
@@ -195,7 +195,7 @@ fn is_space(c: char) -> bool {
     )
 }
 
-/// Block comments may lie in each other.
+/// Skips a block comment, which may contain others.
 fn block_comment_length(text: &str) -> Option<usize> {
     let mut depth = 0_usize;
     let mut at = 0;
@@ -217,14 +217,14 @@ fn block_comment_length(text: &str) -> Option<usize> {
     None
 }
 
-/// `r"`, `r#"`, `r##"`...: how many hashes.
+/// Returns the number of hashes of a raw string's start: `r"`, `r#"`, `r##"`...
 fn raw_string_hashes(text: &str) -> Option<usize> {
     let after = text.strip_prefix('r')?;
     let unhashed = after.trim_start_matches('#');
     unhashed.starts_with('"').then(|| after.len() - unhashed.len())
 }
 
-/// What the backslash, which has been read, and the characters after it stand for.
+/// Returns the character of an escape sequence whose backslash has been read.
 fn unescaped(chars: &mut std::str::CharIndices<'_>) -> Option<char> {
     let (_, kind) = chars.next()?;
     Some(match kind {
@@ -246,16 +246,16 @@ fn unescaped(chars: &mut std::str::CharIndices<'_>) -> Option<char> {
     })
 }
 
-/// Whether the number is written with another base than 10.
+/// Returns whether a number is written in another base than 10.
 fn is_prefixed(number: &str) -> bool {
     let digits = number.trim_start_matches(['+', '-']).as_bytes();
     matches!(digits, [b'0', b'x' | b'X' | b'o' | b'O' | b'b' | b'B', ..])
 }
 
-/// The types that a number may name in Rust and RON.
+/// Suffixes with which Rust and RON mark a number's type.
 const SUFFIXES: [&str; 12] = ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "u8", "u16", "u32", "u64", "u128"];
 
-/// Decimal or with a prefix, with underscores and Rust's suffixes.
+/// Parses a number: decimal or with a base prefix, with underscores and Rust's suffixes.
 fn number_from(text: &str) -> Option<f64> {
     if is_prefixed(text) {
         return prefixed_number(text);
@@ -272,7 +272,7 @@ fn prefixed_number(text: &str) -> Option<f64> {
         _ => 2,
     };
     let digits = digits[2..].replace('_', "");
-    // `from_str_radix` would take a second sign.
+    // `from_str_radix` would accept a second sign.
     if digits.starts_with(['+', '-']) {
         return None;
     }

@@ -1,14 +1,15 @@
-//! A whole file's bytes -> text -> its tree -> whatever is made of that; what is no text is told as well as what is no RON.
+//! Reading of a whole file: bytes to text to tree to a checked value, with a fault for bytes that are not text.
 
 use super::parser::parse_or_cancel;
 use super::{Fault, Faults, MAX_BYTES, Node, SceneError, Span};
 use crate::progress::{Meter, Unfinished, Watcher};
 
-/// What the text describes: the first fault of its syntax, or all that `check` finds. An empty text is told what the
-/// `smallest` could be. The name is the file's, for messages only.
+/// Returns what `check` makes of a text's tree.
+///
+/// `smallest` is the example shown for an empty text, `name` the file's name for messages.
 ///
 /// # Errors
-/// What is wrong with the text, where `check` gives `None` or it is no RON.
+/// The first fault of the syntax; if there is none, all faults that `check` reports when it returns `None`.
 pub fn read<T>(
     name: &str,
     text: &str,
@@ -19,12 +20,13 @@ pub fn read<T>(
     read_or_cancel(name, text, smallest, &Watcher::patient(), check).map_err(Unfinished::failure)
 }
 
-/// [`read`], until the watcher cancels it, which is told of progress. `check` owns the tree, so that it can free it before
-/// it is done: of a scene of 400,000 spheres the peak is 394 MB instead of 462. Once the watcher has cancelled, its result
-/// does not count.
+/// Reads as [`read`] does and reports progress to the watcher, which may cancel it.
+///
+/// `check` owns the tree, so that it can free it before it has finished: for a scene of 400,000 spheres the peak is 394
+/// MB instead of 462. After a cancel its result is ignored.
 ///
 /// # Errors
-/// As [`read`], and if the watcher cancels it.
+/// As [`read`], and if the watcher cancels.
 pub(crate) fn read_or_cancel<'a, T>(
     name: &str,
     text: &'a str,
@@ -46,13 +48,13 @@ pub(crate) fn read_or_cancel<'a, T>(
     checked.ok_or_else(|| Unfinished::Failed(SceneError::new(name, text, faults)))
 }
 
-/// The bytes as text, if they are that.
+/// Returns the bytes as text.
 ///
 /// # Errors
-/// If they are more than [`MAX_BYTES`], not UTF-8, or plainly no text.
+/// If there are more than [`MAX_BYTES`], they are not UTF-8, or they are evidently not text.
 pub fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError> {
     decoded(bytes).map_err(|fault| {
-        // Of a file that is no text from its first byte, no line is worth showing.
+        // For a file that is not text from its first byte on, no line is worth showing.
         let shown = if fault.span.start == 0 { &[] } else { bytes };
         SceneError::new(name, &String::from_utf8_lossy(shown), fault)
     })
@@ -85,12 +87,12 @@ fn not_empty(text: &str, smallest: &str) -> Result<(), Fault> {
     Ok(())
 }
 
-/// A NUL stands in no text, and near the beginning of nearly everything else.
+/// Text contains no NUL, and nearly every binary format has one near its start.
 fn no_nul(bytes: &[u8]) -> Result<(), Fault> {
     let Some(place) = bytes.iter().position(|&byte| byte == 0) else {
         return Ok(());
     };
-    // Places in the text as it will be shown are those in the file only as far as it is UTF-8.
+    // Positions in the text as shown agree with those in the file only as far as it is UTF-8.
     let is_text = std::str::from_utf8(&bytes[..place]).is_ok();
     let message = format!("this is not a text file: byte {place} is a NUL");
     Err(fault_at(if is_text { place } else { 0 }, message))

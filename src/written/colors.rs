@@ -1,4 +1,4 @@
-//! Colours as they are written.
+//! Colours as written.
 
 use super::WrittenNumber;
 use super::reader::{Reader, values};
@@ -10,16 +10,16 @@ use std::str::FromStr;
 /// A colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WrittenColor {
-    /// `"#rgb"`, `"#rrggbb"`, or a name of CSS.
+    /// `"#rgb"`, `"#rrggbb"`, or the name of a CSS colour.
     Srgb(Srgb8),
-    /// `(r, g, b)`, linear.
+    /// `(r, g, b)`, linear light.
     Linear([WrittenNumber; 3]),
-    /// One number: the same in each band, linear.
+    /// One number, the same for each channel, linear light.
     Grey(WrittenNumber),
 }
 
 impl WrittenColor {
-    /// Returns the numbers in it.
+    /// Returns the numbers of the colour.
     pub fn numbers(&self) -> &[WrittenNumber] {
         match self {
             Self::Srgb(_) => &[],
@@ -55,7 +55,7 @@ impl Reader<'_> {
     }
 }
 
-/// `#rgb`, `#rrggbb`, or a name of CSS, as in scene files.
+/// Parses `#rgb`, `#rrggbb`, or the name of a CSS colour, as scene files do.
 ///
 /// ```
 /// use termtrace::LinearRgb;
@@ -72,7 +72,7 @@ impl FromStr for LinearRgb {
     }
 }
 
-/// A name of CSS whose quotes were forgotten.
+/// Reports the name of a CSS colour without quotes.
 fn is_color_word(group: &Group<'_>) -> bool {
     group.body == Body::Nothing && group.name.is_some_and(|name| Srgb8::from_name(name.text).is_some())
 }
@@ -93,7 +93,7 @@ fn from_hex(digits: &str) -> Option<Srgb8> {
     let [_, r, g, b] = number.to_be_bytes();
     match digits.len() {
         6 => Some(Srgb8::new(r, g, b)),
-        // #f80 is #ff8800: each digit twice.
+        // #f80 is short for #ff8800.
         3 => {
             let twice = |shift: u32| ((number >> shift & 15) * 17) as u8; // at most 255
             Some(Srgb8::new(twice(8), twice(4), twice(0)))

@@ -1,4 +1,4 @@
-//! From nodes of the tree to typed values: what every field's reading has in common.
+//! The reader of typed values from nodes of the tree.
 
 use super::{Spanned, WrittenNumber, WrittenVector};
 use crate::checks;
@@ -6,25 +6,25 @@ use crate::progress::Watcher;
 use crate::scene_text::{Body, Faults, Field, Group, Name, Node, Span, Value, clipped, quoted};
 use crate::text::{closest, listed};
 
-/// Reads values, and notes what is wrong with them.
+/// Reads values and reports faults.
 pub struct Reader<'f> {
     faults: &'f mut Faults,
     watcher: &'f Watcher<'f>,
 }
 
-/// The fields of one group, found by name.
+/// The fields of a group, found by name.
 pub struct Fields<'n> {
     entries: &'n [Field<'n>],
-    /// "a Sphere", for messages.
+    /// The group's owner for messages: "a Sphere".
     owner: &'static str,
-    /// Where to point when a field is missing.
+    /// Position to point at when a field is missing.
     head: Span,
-    /// Fields that were given under a slightly wrong name: they are not missing as well.
+    /// Fields given under a misspelt name, which are not reported as missing too.
     misspelt: Vec<&'static str>,
 }
 
 impl<'n> Fields<'n> {
-    /// The field of that name, as it stands first in the group.
+    /// Returns the first field of this name in the group.
     pub(crate) fn field(&self, name: &str) -> Option<&'n Field<'n>> {
         self.entries.iter().find(|field| field.name.text == name)
     }
@@ -34,7 +34,7 @@ impl<'n> Fields<'n> {
         self.field(name).map(|field| &field.value)
     }
 
-    /// Whether the author gave it, under its name or one much like it.
+    /// Returns whether the field is given, under its name or a misspelt one.
     pub(crate) fn is_given(&self, name: &str) -> bool {
         self.misspelt.contains(&name) || self.field(name).is_some()
     }
@@ -49,14 +49,14 @@ impl<'f> Reader<'f> {
         self.faults.add(span, message);
     }
 
-    /// Of another type than it should be.
+    /// Reports a value of a wrong type.
     pub(crate) fn mismatch(&mut self, node: &Node<'_>, wanted: &str) {
         self.fault(node.span, || format!("expected {wanted}, found {}", description(node)));
     }
 
     // Groups ------------------------------------------------------------------------------------------------------
 
-    /// The node's fields, each known and given once. `form` shows how the whole is written.
+    /// Returns the fields of a node, each known and given once. `form` shows the full form.
     pub(crate) fn fields<'n>(
         &mut self,
         node: &'n Node<'n>,
@@ -80,7 +80,7 @@ impl<'f> Reader<'f> {
         Some(Fields { entries, owner, head: node.head(), misspelt: self.check_names(entries, owner, known) })
     }
 
-    /// Notes unknown and duplicate fields; returns those that the unknown ones were probably meant to be.
+    /// Reports unknown and duplicate fields. Returns the fields that the unknown ones were probably meant to be.
     fn check_names(&mut self, entries: &[Field<'_>], owner: &str, known: &[&'static str]) -> Vec<&'static str> {
         let mut seen = vec![false; known.len()];
         let mut misspelt = Vec::new();
@@ -98,7 +98,7 @@ impl<'f> Reader<'f> {
         misspelt
     }
 
-    /// The value of a field that must be there.
+    /// Reads a required field.
     pub(crate) fn required<T>(
         &mut self,
         fields: &Fields<'_>,
@@ -115,7 +115,7 @@ impl<'f> Reader<'f> {
         read(self, node)
     }
 
-    /// The value of a field that need not be there; `None` says the same as leaving it out.
+    /// Reads an optional field, where `None` in the file means the same as leaving it out.
     pub(crate) fn optional<T>(
         &mut self,
         fields: &Fields<'_>,
@@ -129,7 +129,7 @@ impl<'f> Reader<'f> {
         read(self, node)
     }
 
-    /// The same, where `None` is a value of its own.
+    /// Reads an optional field for which the word `None` is a value.
     pub(crate) fn optional_word<T>(
         &mut self,
         fields: &Fields<'_>,
@@ -139,7 +139,7 @@ impl<'f> Reader<'f> {
         read(self, fields.get(name)?)
     }
 
-    /// The group's name, which is to be one of these.
+    /// Reads the group's name, which must be one of `names`.
     pub(crate) fn variant<'n>(
         &mut self,
         node: &'n Node<'n>,
@@ -162,7 +162,7 @@ impl<'f> Reader<'f> {
         found
     }
 
-    /// One of a few words.
+    /// Reads one of several words.
     pub(crate) fn choice<T: Copy>(&mut self, node: &Node<'_>, kind: &str, all: &[(&'static str, T)]) -> Option<T> {
         let words: Vec<_> = all.iter().map(|&(word, _)| word).collect();
         let wanted = format!("{kind} ({})", listed(&words).replace(" and ", " or "));
@@ -182,7 +182,7 @@ impl<'f> Reader<'f> {
         None
     }
 
-    /// The values of all items that can be read; fewer once the watcher has gone.
+    /// Returns the values of all items that can be read; fewer after a cancel.
     pub(crate) fn each<'n, T>(
         &mut self,
         items: &'n [Node<'n>],
@@ -192,7 +192,7 @@ impl<'f> Reader<'f> {
         items.iter().take_while(|_| !watcher.is_gone()).filter_map(|item| read(self, item)).collect()
     }
 
-    /// `[...]`, or `(...)` without names.
+    /// Returns the items of `[...]`, or of `(...)` without names.
     pub(crate) fn list<'n>(&mut self, node: &'n Node<'n>, wanted: &str) -> Option<&'n [Node<'n>]> {
         if let Some(items) = values(node) {
             return Some(items);
@@ -216,7 +216,7 @@ impl<'f> Reader<'f> {
         None
     }
 
-    /// A finite number.
+    /// Reads a finite number.
     pub(crate) fn number(&mut self, node: &Node<'_>) -> Option<WrittenNumber> {
         let Value::Number(value) = node.value else {
             self.mismatch(node, "a number");
@@ -244,7 +244,7 @@ impl<'f> Reader<'f> {
         Some(WrittenVector { components, span: node.span })
     }
 
-    /// So many numbers, in parentheses or brackets.
+    /// Reads exactly `N` numbers in parentheses or brackets.
     pub(crate) fn numbers<const N: usize>(&mut self, node: &Node<'_>, wanted: &str) -> Option<[WrittenNumber; N]> {
         let Some(items) = values(node).filter(|items| items.len() == N) else {
             self.mismatch(node, wanted);
@@ -256,7 +256,7 @@ impl<'f> Reader<'f> {
     }
 }
 
-/// The values of `[...]` or of `(...)` without names.
+/// Returns the values of `[...]` or of `(...)` without names.
 pub(crate) fn values<'n>(node: &'n Node<'n>) -> Option<&'n [Node<'n>]> {
     match &node.value {
         Value::List(items) => Some(items),
@@ -273,7 +273,8 @@ fn is_word(node: &Node<'_>, word: &str) -> bool {
         if group.body == Body::Nothing && group.name.is_some_and(|name| name.text == word))
 }
 
-/// The field that was meant by a name that is none: one spelt much like it, or what others call the same thing.
+/// Returns the field that an unknown name was probably meant to be: one spelt much like it, or known elsewhere by that
+/// name.
 fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
     const ALSO_CALLED: [(&str, &str); 8] = [
         ("look_at", "target"),
@@ -309,7 +310,7 @@ fn unknown_variant(name: Name<'_>, kind: &str, known: &[&str]) -> String {
     }
 }
 
-/// What was found, for a message.
+/// Describes what was found, for a message.
 pub(crate) fn description(node: &Node<'_>) -> String {
     match &node.value {
         Value::Bool(value) => value.to_string(),
@@ -326,7 +327,7 @@ pub(crate) fn description(node: &Node<'_>) -> String {
     }
 }
 
-/// The same for what stands in brackets.
+/// Describes what was found in brackets, for a message.
 pub(crate) fn group_of_values(items: &[Node<'_>], a_group_of: &str) -> String {
     let numbers = items.iter().all(|item| matches!(item.value, Value::Number(_)));
     match (items.len(), numbers) {

@@ -1,4 +1,4 @@
-//! What is asked of every number that a scene file has, with its place there. The rules are those of [`checks`].
+//! The checks of values in scene files, with their positions. The rules are those of [`checks`].
 
 use super::{WrittenColor, WrittenNumber, WrittenVector};
 use crate::checks::{self, Message};
@@ -6,7 +6,7 @@ use crate::color::LinearRgb;
 use crate::scene_text::{Faults, Span};
 use glam::{DVec3, Vec3};
 
-/// Checks values, and notes what is wrong with them.
+/// Checks values and reports faults.
 pub struct Validator<'f> {
     pub(crate) faults: &'f mut Faults,
 }
@@ -17,7 +17,7 @@ impl Validator<'_> {
         None
     }
 
-    /// Returns what a rule of [`checks`] let pass; else notes its message.
+    /// Returns a value that passes a rule of [`checks`]; otherwise reports the rule's message.
     pub(crate) fn take<T>(&mut self, span: Span, checked: Result<T, Message>) -> Option<T> {
         match checked {
             Ok(value) => Some(value),
@@ -25,7 +25,7 @@ impl Validator<'_> {
         }
     }
 
-    /// All three coordinates within what f32 can carry through a picture.
+    /// Checks that all three coordinates are within the range that a picture can be traced in.
     pub(crate) fn coordinates(&mut self, written: WrittenVector) -> Option<DVec3> {
         let near = written.components.map(|number| self.take(number.span, checks::coordinate(number.value)).is_some());
         (near == [true; 3]).then(|| DVec3::from_array(written.components.map(|component| component.value)))
@@ -35,22 +35,22 @@ impl Validator<'_> {
         Some(self.coordinates(written)?.as_vec3())
     }
 
-    /// A length greater than 0 that f32 can square.
+    /// Checks that a length is positive and can be squared in f32.
     pub(crate) fn length(&mut self, what: &str, written: WrittenNumber) -> Option<f32> {
         self.take(written.span, checks::length(what, written.value))
     }
 
-    /// An amount of light.
+    /// Checks an amount of light.
     pub(crate) fn amount(&mut self, what: &str, written: WrittenNumber) -> Option<f32> {
         self.take(written.span, checks::amount(what, written.value))
     }
 
-    /// A colour of light: any amount.
+    /// Checks a colour of light, which may have any amount.
     pub(crate) fn light_color(&mut self, written: WrittenColor) -> Option<LinearRgb> {
         self.color(written, checks::light)
     }
 
-    /// A colour of a surface: a part of the light.
+    /// Checks a reflectance, each channel of which is at most 1.
     pub(crate) fn reflectance(&mut self, written: WrittenColor) -> Option<LinearRgb> {
         self.color(written, checks::reflectance)
     }
@@ -62,14 +62,14 @@ impl Validator<'_> {
         Some(linear(written))
     }
 
-    /// The direction, of unit length: of f64's, so that nothing is lost before the one rounding.
+    /// Returns the direction at unit length, computed in f64 so that only one rounding is left.
     pub(crate) fn unit_vector(&mut self, what: &str, written: WrittenVector) -> Option<DVec3> {
         let vector = self.coordinates(written)?;
         self.take(written.span, checks::unit_vector(what, vector))
     }
 }
 
-/// A colour as light.
+/// Returns a colour as linear light.
 fn linear(written: WrittenColor) -> LinearRgb {
     match written {
         WrittenColor::Srgb(color) => LinearRgb::from_srgb8(color),

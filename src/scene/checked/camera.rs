@@ -1,4 +1,4 @@
-//! The camera, checked: degrees become radians, and what gives no basis is turned away.
+//! Checking of cameras: degrees to radians, and errors for values without a basis.
 
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle, radians};
 use crate::checks;
@@ -13,7 +13,8 @@ impl Validator<'_> {
         self.camera_with(written, (Vec3::Y, "its up vector (0, 1, 0)"), rectangle)
     }
 
-    /// Another view: what it does not say is as the camera has it. (Where that is wrong, this is checked all the same.)
+    /// Checks a view. Parameters that it does not give are the camera's; if those are faulty, the view is still
+    /// checked.
     pub(super) fn view(&mut self, written: &WrittenCamera, camera: Option<&Camera>) -> Option<Camera> {
         let rectangle = match camera {
             Some(camera) if written.is_without_lens() => Some(camera.rectangle()),
@@ -23,7 +24,7 @@ impl Validator<'_> {
         self.camera_with(written, (up, "the camera's up vector"), rectangle)
     }
 
-    /// With that up vector, and its name, if none was written.
+    /// Returns the up vector, or `default` under its name if none is written.
     fn camera_with(
         &mut self,
         written: &WrittenCamera,
@@ -43,7 +44,7 @@ impl Validator<'_> {
             up: written.up.map(|up| up.span),
             up_if_none: name,
         };
-        // Where the lens is wrong, the pose may be wrong as well: any rectangle tells.
+        // If the lens is faulty the pose is checked with any lens, so that its faults are reported too.
         let any = || ViewRectangle::from_vertical_fov(1.0).ok();
         let camera = self.camera_of(pose, rectangle.or_else(any)?, places)?;
         rectangle.and(Some(camera))
@@ -58,7 +59,7 @@ impl Validator<'_> {
         rectangle?.with_shift(shift?).ok()
     }
 
-    /// The camera, or a fault where its pose was written.
+    /// Returns the camera, or reports a fault at the pose's position.
     pub(super) fn camera_of(&mut self, pose: Pose, rectangle: ViewRectangle, places: Places) -> Option<Camera> {
         let error = match Camera::new(pose, rectangle) {
             Ok(camera) => return Some(camera),
@@ -110,7 +111,7 @@ impl Validator<'_> {
         }
     }
 
-    /// The rectangle that is made from the angle.
+    /// Returns the view rectangle of a field of view.
     pub(super) fn rectangle_from_degrees(
         &mut self,
         written: WrittenNumber,
@@ -162,12 +163,12 @@ impl Validator<'_> {
     }
 }
 
-/// Where a pose was written, to point there when it is wrong.
+/// Positions of a pose's parts, to point at when one is wrong.
 #[derive(Clone, Copy)]
 pub(super) struct Places {
     pub(super) whole: Span,
     pub(super) target: Option<Span>,
     pub(super) up: Option<Span>,
-    /// What up is where none was written.
+    /// The default of `up`.
     pub(super) up_if_none: &'static str,
 }

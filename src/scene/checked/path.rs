@@ -1,4 +1,4 @@
-//! A camera path, checked: times rise, and every keyframe is a camera.
+//! Checking of camera paths: times increase, and every keyframe is a camera.
 
 use super::camera::Places;
 use crate::camera::{Camera, Pose};
@@ -7,11 +7,11 @@ use crate::scene_file::{PathFile, WrittenKeyframe};
 use crate::scene_text::Faults;
 use crate::written::{Spanned, Validator, WrittenNumber};
 
-/// In seconds; more than eleven days.
+/// Limit on times in seconds: more than eleven days.
 const LATEST: f64 = 1e6;
 
-/// The path, if nothing is wrong with it; else every fault has been added. What a keyframe does not say is as `camera`
-/// has it.
+/// Returns the path; if `None`, every fault has been added. Parameters that a keyframe does not give are those of
+/// `camera`.
 pub(in crate::scene) fn check(file: &PathFile, camera: &Camera, faults: &mut Faults) -> Option<CameraPath> {
     let mut validator = Validator { faults };
     let (written, span) = file.keyframes.as_ref()?;
@@ -45,7 +45,7 @@ impl Validator<'_> {
             up: written.up.map(|up| up.span),
             up_if_none: "the scene's up vector",
         };
-        // Where the angle is wrong, the pose may be wrong as well.
+        // If the angle is faulty the pose is checked without it.
         let camera = self.camera_of(pose, rectangle.unwrap_or(camera.rectangle()), places)?;
         rectangle.and(Some(Keyframe { time: time?, camera }))
     }
@@ -58,7 +58,7 @@ impl Validator<'_> {
         self.fault(span, || "the time must lie between 0 and 1e6 seconds".to_owned())
     }
 
-    /// Notes each time that is not after the one before.
+    /// Reports each time that is not after the one before.
     fn rising(&mut self, written: &[WrittenKeyframe]) {
         let times: Vec<WrittenNumber> = written.iter().filter_map(|keyframe| keyframe.time).collect();
         for pair in times.windows(2).filter(|pair| pair[1].value <= pair[0].value) {
