@@ -1,9 +1,9 @@
-//! What vertices have besides a position.
+//! Attributes of vertices besides the position.
 
-/// Normals, texture coordinates or colours of a mesh: values, and which of them each triangle's corners have.
+/// The normals, texture coordinates or colours of a mesh: values, and the indices of each triangle's corners.
 ///
-/// PLY and glTF give a vertex one of each; OBJ lets every corner choose. So corners have indices of their own only where
-/// they differ from those of the positions; otherwise nothing is stored but the values.
+/// PLY and glTF give each vertex one value; OBJ lets every corner choose. So corners have indices of their own only
+/// where these differ from those of the positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribute<T> {
     values: Vec<T>,
@@ -12,19 +12,19 @@ pub struct Attribute<T> {
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 enum Corners {
-    /// No triangle has it.
+    /// No triangle has the attribute.
     #[default]
     Absent,
-    /// Every triangle has it, at the indices of its positions.
+    /// Every triangle has it, with the indices of its positions.
     OfPositions,
-    /// Every triangle has indices of its own, `NONE` among them.
+    /// Every triangle has its own indices, or [`NONE`].
     Own(Vec<[u32; 3]>),
 }
 
-/// The indices of a triangle that has no values.
+/// The indices of a triangle without values.
 const NONE: [u32; 3] = [u32::MAX; 3];
 
-/// Exchanges the last two corners of each.
+/// Exchanges the last two corners of each triangle.
 pub(super) fn turn(triangles: &mut [[u32; 3]]) {
     for corners in triangles {
         corners.swap(1, 2);
@@ -38,17 +38,17 @@ impl<T> Default for Attribute<T> {
 }
 
 impl<T: Copy> Attribute<T> {
-    /// One for each position.
+    /// Returns the attribute with one value for each position.
     pub(super) fn of_positions(values: Vec<T>) -> Self {
         Self { values, corners: Corners::OfPositions }
     }
 
-    /// Others in the places of these.
+    /// Returns the attribute with other values at the same indices.
     pub(super) fn map(self, change: impl FnMut(T) -> T) -> Self {
         Self { values: self.values.into_iter().map(change).collect(), ..self }
     }
 
-    /// The same of triangles whose last two corners are exchanged.
+    /// Returns the attribute of triangles whose last two corners are exchanged.
     pub(super) fn turned(mut self) -> Self {
         if let Corners::Own(corners) = &mut self.corners {
             turn(corners);
@@ -56,17 +56,17 @@ impl<T: Copy> Attribute<T> {
         self
     }
 
-    /// All values, in the order of the file.
+    /// Returns all values, in the order of the file.
     pub fn values(&self) -> &[T] {
         &self.values
     }
 
-    /// The values that can still be added to.
+    /// Returns the values, to add more.
     pub(super) fn values_mut(&mut self) -> &mut Vec<T> {
         &mut self.values
     }
 
-    /// The indices of the values at a triangle's corners; `None` if it has none.
+    /// Returns the indices of the values at a triangle's corners; `None` if it has none.
     pub fn indices_of(&self, triangle: usize, triangles: &[[u32; 3]]) -> Option<[u32; 3]> {
         match &self.corners {
             Corners::Absent => None,
@@ -75,19 +75,19 @@ impl<T: Copy> Attribute<T> {
         }
     }
 
-    /// The values at a triangle's corners.
+    /// Returns the values at a triangle's corners.
     pub(super) fn of(&self, triangle: usize, triangles: &[[u32; 3]]) -> Option<[T; 3]> {
         self.indices_of(triangle, triangles).map(|corners| corners.map(|index| self.values[index as usize]))
     }
 
-    /// Adds the values of a triangle's corners, and answers their indices.
+    /// Adds the values of a triangle's corners and returns their indices.
     pub(super) fn add(&mut self, values: [T; 3]) -> [u32; 3] {
         let first = self.values.len() as u32; // three for each of `MAX_TRIANGLES` at most
         self.values.extend(values);
         [first, first + 1, first + 2]
     }
 
-    /// Says which values the triangle has that is the next after `triangles`, and whose positions are `positions`.
+    /// Sets the indices of the next triangle, which is number `triangles` and has the given `positions`.
     pub(super) fn push(&mut self, triangles: &[[u32; 3]], positions: [u32; 3], corner: Option<[u32; 3]>) {
         match (&mut self.corners, corner) {
             (Corners::Absent, None) => {}
@@ -109,7 +109,7 @@ impl<T: Copy> Attribute<T> {
         }
     }
 
-    /// Gives back what memory was reserved in vain, and all of it if no triangle has a value.
+    /// Frees unused capacity, and everything if no triangle has a value.
     pub(super) fn shrink(&mut self) {
         match &mut self.corners {
             Corners::Absent => self.values = Vec::new(),
@@ -119,7 +119,7 @@ impl<T: Copy> Attribute<T> {
         self.values.shrink_to_fit();
     }
 
-    /// Whether each corner has a value, and each value is as it should be.
+    /// Returns whether each corner has a value and each value passes the check.
     pub(super) fn is_valid(&self, triangles: &[[u32; 3]], is_valid_value: impl Fn(&T) -> bool) -> bool {
         let in_range = |corner: &[u32; 3]| corner.iter().all(|&index| (index as usize) < self.values.len());
         let corners_are_valid = match &self.corners {
@@ -140,7 +140,7 @@ mod tests {
     const A: [u32; 3] = [0, 1, 2];
     const B: [u32; 3] = [2, 1, 3];
 
-    /// What was pushed, as it is found again, and how it is kept.
+    /// Asserts the indices found again after pushing, and the representation.
     fn pushed(corners: &[Option<[u32; 3]>]) -> (Vec<Option<[u32; 3]>>, Corners) {
         let mut attribute = Attribute { values: vec![0.0; 9], corners: Corners::Absent };
         let triangles: Vec<_> = [A, B].into_iter().cycle().take(corners.len()).collect();

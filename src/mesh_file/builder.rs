@@ -1,4 +1,4 @@
-//! A mesh that grows, triangle by triangle.
+//! A mesh under construction.
 
 use super::attribute::Attribute;
 use super::fault::Fault;
@@ -7,7 +7,7 @@ use super::{MeshFile, MeshMaterial};
 use crate::color::LinearRgb;
 use glam::{DVec3, Vec2, Vec3};
 
-/// What has been read so far.
+/// The triangles and attributes read so far.
 #[derive(Default)]
 pub(super) struct Builder {
     pub(super) positions: Vec<Vec3>,
@@ -19,7 +19,7 @@ pub(super) struct Builder {
     pub(super) material_runs: Vec<(u32, Option<u32>)>,
 }
 
-/// A triangle: indices of what its corners have.
+/// A triangle: the indices of its corners' attributes.
 #[derive(Clone, Copy)]
 pub(super) struct Triangle {
     pub(super) positions: [u32; 3],
@@ -29,14 +29,14 @@ pub(super) struct Triangle {
 }
 
 impl Triangle {
-    /// A triangle without more than positions.
+    /// Returns a triangle with positions only.
     pub(super) fn new(positions: [u32; 3]) -> Self {
         Self { positions, normals: None, texture_coordinates: None, colors: None }
     }
 }
 
 impl Builder {
-    /// The next triangle. Its indices must be in range.
+    /// Adds a triangle, whose indices must be in range.
     pub(super) fn push(&mut self, triangle: Triangle) -> Result<(), Fault> {
         if self.triangles.len() >= MAX_TRIANGLES {
             return Err(Fault::of_file(too_many()));
@@ -49,7 +49,7 @@ impl Builder {
         Ok(())
     }
 
-    /// The triangles from here on are made of that one of the materials.
+    /// Sets the material of the triangles added from here on.
     pub(super) fn set_material(&mut self, material: Option<u32>) {
         let from = self.triangles.len() as u32; // at most MAX_TRIANGLES
         if self.material_runs.last().is_some_and(|&(start, _)| start == from) {
@@ -60,7 +60,7 @@ impl Builder {
         }
     }
 
-    /// The mesh; `nothing` says what a file without triangles has in their place.
+    /// Returns the mesh. `nothing` describes the contents of a file without triangles, for the message.
     pub(super) fn finish(mut self, nothing: &str) -> Result<MeshFile, Fault> {
         if self.triangles.is_empty() {
             return Err(Fault::of_file(format!("there are no triangles in this file: {nothing}")));
@@ -68,7 +68,7 @@ impl Builder {
         self.shrink();
         let Self { positions, triangles, normals, texture_coordinates, colors, materials, material_runs } = self;
         let mesh = MeshFile { positions, triangles, normals, texture_coordinates, colors, materials, material_runs };
-        // Readers have said so with the place already: this is the lock on the door.
+        // Readers report these faults with their positions before; this is the last line of defence.
         if mesh.is_valid() { Ok(mesh) } else { Err(Fault::of_file("this mesh has numbers or indices out of range")) }
     }
 
@@ -81,14 +81,14 @@ impl Builder {
     }
 }
 
-/// What is said of a mesh with more triangles than may be.
+/// The message about a mesh with too many triangles.
 pub(super) fn too_many() -> String {
     format!("there are more than {MAX_TRIANGLES} triangles in this file, which is the most that are read")
 }
 
-/// The direction as a vector of length 1; zero if it has no length.
+/// Returns the direction as a unit vector; zero for a vector without length.
 pub(super) fn unit(direction: DVec3) -> Vec3 {
-    // Scaled first, so that no square leaves the range of numbers.
+    // Scaled first, so that no square overflows or underflows.
     let direction = direction / direction.abs().max_element();
     let length = direction.length();
     if length > 0.0 { (direction / length).as_vec3() } else { Vec3::ZERO }

@@ -1,4 +1,4 @@
-//! A mesh as it looks from afar.
+//! Decimation of a mesh, for a coarse sketch.
 
 use super::MeshFile;
 use super::builder::{Builder, Triangle};
@@ -6,17 +6,17 @@ use crate::bounds::Bounds;
 use glam::{DVec3, Vec3};
 use std::collections::HashSet;
 
-/// No more triangles are kept.
+/// Marks a triangle that is dropped.
 const MOST: usize = 128 << 10;
 
-/// No vertex has come here yet.
+/// Marks a cube without a vertex.
 const EMPTY: u32 = u32::MAX;
 
 impl MeshFile {
-    /// What is left of the mesh when it is cut into cubes, of which `cubes` (at most 256) lie along its longest side, and
-    /// the vertices of each become one, in their middle (Rossignac and Borrel, Multi-resolution 3D approximations for
-    /// rendering complex scenes, 1993). Its holes and edges are where they were, give or take a cube. `None` if nothing
-    /// is left.
+    /// Returns the mesh decimated by vertex clustering: space is cut into cubes, `cubes` (at most 256) along the mesh's
+    /// longest side, and the vertices of each become one, at their mean (Rossignac and Borrel, Multi-resolution 3D
+    /// approximations for rendering complex scenes, 1993). Holes and edges stay within a cube's size. `None` if no
+    /// triangle is left.
     pub fn coarse(&self, cubes: u32) -> Option<Self> {
         let (corner_of, positions) = self.merged(cubes.clamp(1, 256));
         let mut mesh = Builder { positions, materials: self.materials.clone(), ..Builder::default() };
@@ -35,7 +35,7 @@ impl MeshFile {
         mesh.finish("").ok()
     }
 
-    /// For each vertex the number of its cube, and the middle of each cube's vertices.
+    /// Returns for each vertex the index of its cube, and the mean of each cube's vertices.
     fn merged(&self, cubes: u32) -> (Vec<u32>, Vec<Vec3>) {
         let bounds = Bounds::of(self.positions.iter().copied());
         let start = bounds.min.as_dvec3();
@@ -60,7 +60,7 @@ impl MeshFile {
         (corner_of, sums.into_iter().map(|(sum, count)| (sum / f64::from(count)).as_vec3()).collect())
     }
 
-    /// A triangle with these corners, otherwise like that one of this mesh.
+    /// Returns a triangle with these corners and the other attributes of triangle `at`.
     fn push_like(&self, index: usize, positions: [u32; 3], mesh: &mut Builder) -> Result<(), super::fault::Fault> {
         mesh.set_material(self.material_of(index).map(|material| material as u32)); // as many as there were
         let triangle = Triangle {
@@ -82,7 +82,7 @@ fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
 mod tests {
     use super::*;
 
-    /// A square of so many squares a side, with a normal at each vertex.
+    /// Returns a square of `side` by `side` squares, with a normal at each vertex.
     fn square(side: u32) -> MeshFile {
         let vertices = (0..=side).flat_map(|y| (0..=side).map(move |x| Vec3::new(x as f32, y as f32, 0.0)));
         let vertices: Vec<Vec3> = vertices.collect();
@@ -110,7 +110,7 @@ mod tests {
         let coarse = mesh.coarse(10).expect("something is left");
         assert_eq!(coarse.positions.len(), 100);
         assert_eq!(coarse.triangles.len(), 2 * 9 * 9);
-        // It ends in the middle of the outermost cubes.
+        // Ends in the middle of the outermost cubes.
         assert!((area(&coarse) - 90.0 * 90.0).abs() < 200.0, "{}", area(&coarse));
         assert!((0..coarse.triangles.len()).all(|i| coarse.normals_of(i) == Some([Vec3::Z; 3])));
     }

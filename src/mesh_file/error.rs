@@ -1,9 +1,9 @@
-//! Why a file is no mesh, and how a person is told: one line with the place in it.
+//! The error of a file that is not a mesh: one line with the position.
 
 use crate::text::visible;
 use std::fmt;
 
-/// Why a file gave no mesh: its first fault. Printed, it is one line that controls no terminal:
+/// The error of reading a mesh: its first fault. Its `Display` is one line without control characters:
 ///
 /// ```text
 /// bunny.obj:1042:9: vertex 35948 does not exist: 35947 stand above this line
@@ -16,10 +16,10 @@ pub struct MeshError {
     message: String,
 }
 
-/// Where in a file a fault lies.
+/// The position of a fault in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// In all of it, or where its message says.
+    /// The whole file, or as the message says.
     File,
     /// In a text: line and column, counted from 1, the column in characters.
     Text {
@@ -33,7 +33,7 @@ pub enum Place {
 }
 
 impl MeshError {
-    /// A fault of that file as a whole.
+    /// Returns an error of a file as a whole.
     pub(super) fn of_file(name: &str, message: &str) -> Self {
         Self::at(name, Place::File, message)
     }
@@ -42,19 +42,19 @@ impl MeshError {
         Self { name: visible(name), place, message: visible(message) }
     }
 
-    /// The file that the fault is in: the mesh, or one that it names.
+    /// Returns the file with the fault: the mesh, or a side file.
     #[doc(hidden)]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Where the fault is.
+    /// Returns the position of the fault.
     #[doc(hidden)]
     pub fn place(&self) -> Place {
         self.place
     }
 
-    /// What is wrong: one line, no full stop.
+    /// Returns the message: one line without a full stop.
     #[doc(hidden)]
     pub fn message(&self) -> &str {
         &self.message

@@ -4,8 +4,8 @@ use super::{MeshError, Place};
 use crate::progress::{Cancelled, Unfinished};
 use crate::scene_text::clipped;
 
-/// A fault, or that there is none to be found, on its way up to where the file's name is known. In a box, because a result of eight bytes keeps the
-/// reading of numbers fast.
+/// A fault, or a cancel, before the file's name is added. Boxed, because a result of eight bytes keeps the parsing of
+/// numbers fast.
 #[derive(Debug)]
 pub(super) struct Fault(Box<Cause>);
 
@@ -15,13 +15,13 @@ enum Cause {
         place: FaultPlace,
         message: String,
     },
-    /// In another file, whose name is known.
+    /// A fault in a side file, whose name is known.
     Elsewhere(MeshError),
-    /// There is none: the work was given up.
+    /// Not a fault: the work was cancelled.
     Cancelled,
 }
 
-/// A place as readers know it: by the bytes before it.
+/// A position as readers know it: the number of bytes before it.
 #[derive(Clone, Copy, Debug)]
 enum FaultPlace {
     File,
@@ -30,25 +30,25 @@ enum FaultPlace {
 }
 
 impl Fault {
-    /// A fault of the whole file, or one whose message says where it is.
+    /// Returns a fault of the whole file, or one whose message gives the position.
     #[cold]
     pub(super) fn of_file(message: impl Into<String>) -> Self {
         Self(Box::new(Cause::Here { place: FaultPlace::File, message: message.into() }))
     }
 
-    /// A fault at that byte of a text.
+    /// Returns a fault at a byte of a text.
     #[cold]
     pub(super) fn in_text(at: usize, message: impl Into<String>) -> Self {
         Self(Box::new(Cause::Here { place: FaultPlace::Text(at), message: message.into() }))
     }
 
-    /// A fault at that byte of a binary file.
+    /// Returns a fault at a byte of a binary file.
     #[cold]
     pub(super) fn at_byte(at: usize, message: impl Into<String>) -> Self {
         Self(Box::new(Cause::Here { place: FaultPlace::Byte(at), message: message.into() }))
     }
 
-    /// The error of the file with these bytes.
+    /// Returns the error of the file with these bytes.
     pub(super) fn into_error(self, name: &str, bytes: &[u8]) -> Unfinished<MeshError> {
         Unfinished::Failed(match *self.0 {
             Cause::Here { place: FaultPlace::File, message } => MeshError::of_file(name, &message),
@@ -85,7 +85,7 @@ impl From<Cancelled> for Fault {
     }
 }
 
-/// Lines end with a line feed, a carriage return, or both.
+/// Counts lines, which end with a line feed, a carriage return, or both.
 fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
     let before = &bytes[..at.min(bytes.len())];
     let ends_line =
@@ -98,9 +98,9 @@ fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
     (line, 1 + text.utf8_chunks().map(characters).sum::<usize>())
 }
 
-/// A piece of a file, as a message shows it.
+/// Returns a piece of a file as shown in messages.
 pub(super) fn shown(bytes: &[u8]) -> String {
-    // Of a long piece only the beginning is shown, and only that is decoded.
+    // Only the shown beginning of a long piece is decoded.
     format!("\"{}\"", clipped(&String::from_utf8_lossy(&bytes[..bytes.len().min(200)])))
 }
 

@@ -1,8 +1,8 @@
-//! glTF 2.0, as JSON and as GLB: the triangles of the default scene, where its nodes put them, with normals, colours,
-//! base colours and their textures.
+//! glTF 2.0, as JSON and as GLB: the triangles of the default scene, transformed by their nodes, with normals, colours,
+//! base colours and base-colour textures.
 //!
-//! What is not read: skins and morph targets (a mesh stands as it was modelled), cameras and lights, everything of a
-//! material but its base colour, samplers (textures repeat).
+//! Not read: skins and morph targets (a mesh is in its modelled pose), cameras and lights, other properties of
+//! materials than the base colour, and samplers (textures repeat).
 
 mod accessor;
 mod buffers;
@@ -23,7 +23,7 @@ pub(super) fn read_json(bytes: &[u8], neighbours: &mut Neighbours<'_>, meter: Me
     read(bytes, 0, None, neighbours, meter)
 }
 
-/// GLB: a header of 12 bytes and chunks, of which the first is JSON and the second may be a buffer.
+/// Splits a GLB: a header of 12 bytes and chunks, the first of which is JSON and the second may be a buffer.
 pub(super) fn read_binary(bytes: &[u8], neighbours: &mut Neighbours<'_>, meter: Meter<'_>) -> Result<MeshFile, Fault> {
     const HEADER: usize = 12;
     let word = |at: usize| bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes);
@@ -65,7 +65,7 @@ pub(super) fn read_binary(bytes: &[u8], neighbours: &mut Neighbours<'_>, meter: 
     read(json, HEADER + 8, buffer, neighbours, meter)
 }
 
-/// The JSON, which in a GLB file begins at byte `at`.
+/// Parses the JSON, which starts at byte `at` of a GLB file.
 fn read(
     json: &[u8],
     at: usize,
@@ -83,8 +83,8 @@ fn read(
     nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, neighbours), &mut meter)
 }
 
-/// The most objects, and the most items of lists and objects, in a document: as values they take 600 and 32 bytes each,
-/// many times what they take as text.
+/// Limits on the objects, and on the items of lists and objects, in a document: as values they take 600 and 32 bytes
+/// each, many times their size as text.
 const MAX_OBJECTS: usize = 1 << 20;
 const MAX_ITEMS: usize = 16 << 20;
 
@@ -97,11 +97,11 @@ fn check_count(json: &[u8]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Where the JSON has its fault: in a text its line, in a GLB file its byte.
+/// Returns the fault of the JSON: with its line in a text, with its byte in a GLB file.
 fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], at: usize) -> Fault {
     let line_start = text.split_inclusive(|&byte| byte == b'\n').take(error.line().saturating_sub(1)).map(<[u8]>::len);
     let place = json.len() - text.len() + line_start.sum::<usize>() + error.column().saturating_sub(1);
-    // serde_json ends its message with the place, which is told in another way here.
+    // serde_json ends its message with the position, which is given differently here.
     let (full, told) = (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
     let message = format!("this is not JSON: {}", full.strip_suffix(&told).unwrap_or(&full));
     if at == 0 { Fault::in_text(place, message) } else { Fault::at_byte(at + place, message) }
@@ -118,7 +118,7 @@ fn check_version(root: Json<'_>) -> Result<(), Fault> {
     Err(version.fault(format!("this is glTF {}; only 2.0 is read", version.string()?)))
 }
 
-/// A file that needs what is not known here would be drawn wrong.
+/// A file that requires an unsupported extension would be drawn wrong.
 fn check_extensions(root: Json<'_>) -> Result<(), Fault> {
     for extension in root.list("extensionsRequired")? {
         let name = extension.string()?;

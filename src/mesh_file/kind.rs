@@ -1,10 +1,10 @@
-//! Which format a file has, told by its content.
+//! Recognition of a file's format by its content.
 
 use super::fault::{Fault, shown};
 use super::{obj, stl};
 use std::path::Path;
 
-/// The formats that are read.
+/// The formats that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Obj,
@@ -15,7 +15,7 @@ pub(super) enum Kind {
     Glb,
 }
 
-/// What begins like this is something else, and what can be done about it.
+/// Signatures of other formats, with a hint for each.
 const OTHERS: [(&[u8], &str); 17] = [
     (b"\x1f\x8b", "is gzip-compressed: unpack it first (gunzip)"),
     (b"BZh", "is bzip2-compressed: unpack it first (bunzip2)"),
@@ -41,7 +41,7 @@ const OTHERS: [(&[u8], &str); 17] = [
 
 const READ: &str = "OBJ, STL, PLY, glTF and GLB files are read";
 
-/// The format of the bytes; the name's ending has a say only where the content has none.
+/// Returns the format of the bytes. The file name's extension counts only where the content does not decide.
 pub(super) fn of(name: &str, bytes: &[u8]) -> Result<Kind, Fault> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     if text.is_empty() {
@@ -60,7 +60,7 @@ fn by_content(bytes: &[u8], text: &[u8]) -> Option<Kind> {
     match bytes {
         [b'p', b'l', b'y', b'\r' | b'\n', ..] => Some(Kind::Ply),
         _ if bytes.starts_with(b"glTF") => Some(Kind::Glb),
-        // Before text: the header of a binary file may begin with anything, "solid" too.
+        // Binary formats before text: the header of a binary STL file may contain anything, even "solid".
         _ if stl::size_fits(bytes) => Some(Kind::StlBinary),
         _ if text.starts_with(b"{") => Some(Kind::Gltf),
         _ if is_stl_text(text) => Some(Kind::StlText),
@@ -69,14 +69,14 @@ fn by_content(bytes: &[u8], text: &[u8]) -> Option<Kind> {
     }
 }
 
-/// `solid`, and no byte in the beginning that is in no text.
+/// Returns whether the bytes start with `solid` and contain no byte near the start that text never has.
 fn is_stl_text(text: &[u8]) -> bool {
     let begins = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let ends_word = text.get(5).is_none_or(u8::is_ascii_whitespace);
     begins && ends_word && !text.iter().take(512).any(|&byte| byte == 0 || byte >= 0xf8)
 }
 
-/// Whether the first line that says something begins with a word of OBJ.
+/// Returns whether the first line with content starts with an OBJ keyword.
 fn is_obj(text: &[u8]) -> bool {
     let lines = text.split(|byte| b"\r\n".contains(byte)).map(<[u8]>::trim_ascii);
     let mut statements = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#")).map(first_word);

@@ -1,4 +1,4 @@
-//! MTL, the materials of OBJ files: `Kd` and `map_Kd`. All other lines are passed over.
+//! MTL, the materials of OBJ files: `Kd` and `map_Kd`. All other lines are skipped.
 
 use super::MeshMaterial;
 use super::fault::{Fault, shown};
@@ -11,7 +11,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// All materials of the MTL files that an OBJ file names.
+/// The materials of all MTL files that an OBJ file names.
 #[derive(Default)]
 pub(super) struct Library {
     materials: Vec<MeshMaterial>,
@@ -30,13 +30,13 @@ impl Library {
         self.by_name.get(name).copied()
     }
 
-    /// Whether that file was read already.
+    /// Returns whether a file was read already.
     pub(super) fn has_file(&self, path: &Path) -> bool {
         self.files.contains(path)
     }
 }
 
-/// Reads one MTL file, whose path is relative to the mesh.
+/// Reads an MTL file, whose path is relative to the mesh.
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
@@ -47,7 +47,7 @@ pub(super) fn read(
     let folder = path.parent().unwrap_or(Path::new(""));
     let name = neighbours.name_of(path);
     let mut reader = Reader { text: Text::new(bytes), folder, neighbours, library };
-    // The fault lies in this file, not in the one that names it.
+    // The fault is in this file, not in the one that names it.
     reader.statements().map_err(|fault| Fault::from(fault.into_error(&name, bytes)))
 }
 
@@ -58,7 +58,8 @@ struct Reader<'a, 'b> {
     library: &'a mut Library,
 }
 
-/// What a material is that says nothing: all of the light that its texture reflects; without a texture a light grey.
+/// The material without any property: it reflects all the light that its texture does; without a texture it is light
+/// grey.
 const UNSAID: LinearRgb = LinearRgb::grey(0.8);
 
 impl Reader<'_, '_> {
@@ -91,7 +92,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Of two materials with one name, the later one is meant.
+    /// Of two materials with one name, the later one counts.
     fn new_material(&mut self) {
         let name = self.text.rest_of_line();
         let index = self.library.materials.len() as u32; // fewer than bytes
@@ -104,7 +105,7 @@ impl Reader<'_, '_> {
         last.ok_or_else(|| Fault::in_text(at, "this line belongs to no material: newmtl must stand above it"))
     }
 
-    /// `Kd r g b`, or `Kd r` for a grey. Values beyond 0..=1 reflect nothing or everything.
+    /// Reads `Kd r g b`, or `Kd r` for a grey. Values are clamped to 0..=1.
     fn reflectance(&mut self) -> Result<LinearRgb, Fault> {
         let r = self.text.number()?.clamp(0.0, 1.0);
         if self.text.is_at_line_end() {
@@ -138,7 +139,7 @@ impl Reader<'_, '_> {
         Ok(texture)
     }
 
-    /// What stands before the file's name: `-s` (scale) and `-o` (offset) count, others are passed over.
+    /// Reads the options before the file name: `-s` (scale) and `-o` (offset) take effect, others are skipped.
     fn options(&mut self) -> Result<[Vec3; 2], Fault> {
         let (mut scale, mut offset) = ([1.0; 2], [0.0; 2]);
         loop {
@@ -171,7 +172,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// One to three numbers, of which the first two count.
+    /// Reads one to three numbers, of which the first two count.
     fn two_of_three(&mut self, values: &mut [f32; 2]) -> Result<(), Fault> {
         values[0] = self.text.number()?;
         for i in 1..3 {

@@ -1,4 +1,4 @@
-//! The files that a mesh names.
+//! The side files of a mesh.
 
 use super::fault::shown;
 use super::limits::MAX_BYTES;
@@ -6,27 +6,27 @@ use crate::named_file;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-/// The one way to other files, with a limit on all that is read.
+/// The one way to side files, with a limit on the total number of bytes read.
 pub(super) struct Neighbours<'a> {
     open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     bytes_left: usize,
-    /// Where the mesh is, for messages.
+    /// The folder of the mesh, for messages.
     folder: PathBuf,
 }
 
 impl<'a> Neighbours<'a> {
-    /// Those of the mesh of that name.
+    /// Returns the side files of the mesh of this name.
     pub(super) fn new(name: &str, open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>) -> Self {
         let folder = Path::new(name).parent().unwrap_or(Path::new("")).to_owned();
         Self { open, bytes_left: MAX_BYTES, folder }
     }
 
-    /// The file's name in messages: as the mesh's own, seen from where the person is.
+    /// Returns a side file's name for messages: relative to the user's current folder, like the mesh's own.
     pub(super) fn name_of(&self, path: &Path) -> String {
         self.folder.join(path).to_string_lossy().into_owned()
     }
 
-    /// The bytes of the file, or what is wrong with it.
+    /// Returns the bytes of a side file, or the message of a fault.
     pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>, String> {
         let name = self.name_of(path);
         let say = |what: &str| format!("{}: {what}", shown(name.as_bytes()));
@@ -37,11 +37,11 @@ impl<'a> Neighbours<'a> {
     }
 }
 
-/// No system that termtrace runs on has names of more bytes; and no message grows beyond what can be read.
+/// Limit on the length of a path: no supported system allows more, and messages stay readable.
 const LONGEST: usize = 255;
 
-/// The path that a file in `folder` means, relative to the mesh; `\` separates too, as Windows writes it. `Err` says what is wrong: it
-/// is a URL, absolute, or nothing.
+/// Returns the path that a file in `folder` refers to, relative to the mesh. `\` is a separator too, as Windows writes
+/// it. An `Err` says why it is refused: it is a URL, absolute, or empty.
 pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String> {
     let name = shown(written.as_bytes());
     let say = |what: &str| Err(format!("{name} {what}"));
@@ -60,7 +60,7 @@ pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String
     if has_drive || path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_))) {
         return say("is an absolute path; write it relative to this file");
     }
-    // One name for each file, without `./`.
+    // One spelling for each file, without `./`.
     Ok(folder.join(path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>()))
 }
 

@@ -1,5 +1,5 @@
 //! Wavefront OBJ: polygons, normals, texture coordinates, the colours that some programs write after a position, and
-//! materials of MTL files. Lines, points, curves and surfaces are passed over.
+//! materials of MTL files. Lines, points, curves and surfaces are skipped.
 
 use super::builder::{Builder, Triangle, unit};
 use super::fault::{Fault, shown};
@@ -32,12 +32,12 @@ struct Reader<'a, 'b> {
     mesh: Builder,
     /// The materials of the MTL files named so far; `None` before the first one.
     library: Option<Library>,
-    /// The corners of the face that is read, kept for its memory.
+    /// The corners of the current face, kept for its allocation.
     corners: Corners,
     neighbours: &'a mut Neighbours<'b>,
 }
 
-/// The indices of a face's corners. Those of texture coordinates and normals are there for each corner or for none.
+/// The indices of a face's corners. Each corner has texture coordinates or none has; the same for normals.
 #[derive(Default)]
 struct Corners {
     positions: Vec<u32>,
@@ -64,7 +64,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// `v x y z`, `v x y z w` or `v x y z r g b`.
+    /// Reads `v x y z`, `v x y z w` or `v x y z r g b`.
     fn vertex(&mut self) -> Result<(), Fault> {
         let position = self.numbers()?;
         self.mesh.positions.push(Vec3::from(position));
@@ -82,7 +82,7 @@ impl Reader<'_, '_> {
         Ok([self.text.number()?, self.text.number()?, self.text.number()?])
     }
 
-    /// The colour of the last vertex. Vertices that have none among others that do are white.
+    /// Adds the colour of the last vertex. Vertices without a colour among others with one are white.
     fn color(&mut self, encoded: [f32; 3]) {
         let [r, g, b] = encoded.map(|band| linear_from_srgb(f64::from(band.clamp(0.0, 1.0))) as f32);
         self.pad_colors(self.mesh.positions.len() - 1);
@@ -99,7 +99,7 @@ impl Reader<'_, '_> {
         self.text.end_line()
     }
 
-    /// `vt u`, `vt u v` or `vt u v w`; v is measured from the bottom.
+    /// Reads `vt u`, `vt u v` or `vt u v w`; v is measured from the bottom.
     fn texture_coordinate(&mut self) -> Result<(), Fault> {
         let u = self.text.number()?;
         let v = if self.text.is_at_line_end() { 0.0 } else { self.text.number()? };
@@ -130,7 +130,7 @@ impl Reader<'_, '_> {
         self.triangles()
     }
 
-    /// The triangles of the face that was read.
+    /// Adds the triangles of the current face.
     fn triangles(&mut self) -> Result<(), Fault> {
         let has_colors = !self.mesh.colors.values().is_empty();
         if has_colors {
@@ -151,7 +151,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     fn corner(&mut self) -> Result<(), Fault> {
         let start = self.text.at();
         let vertex = self.index("vertex", self.mesh.positions.len())?;
@@ -181,7 +181,7 @@ impl Reader<'_, '_> {
         self.text.expected("a corner (v, v/vt, v//vn or v/vt/vn)")
     }
 
-    /// An index from 0, of one from 1 or, where it is negative, from the last one back.
+    /// Returns a zero-based index from one that counts from 1 or, if negative, back from the last.
     #[inline]
     fn index(&mut self, what: &str, count: usize) -> Result<u32, Fault> {
         let at = self.text.at();
@@ -202,7 +202,7 @@ impl Reader<'_, '_> {
             Some(library) if !is_no_material(name) => Some(library.index_of(name).ok_or_else(|| {
                 Fault::in_text(at, format!("material {} is in no MTL file that was named above", shown(name)))
             })?),
-            // A model that came without its colours.
+            // Texture coordinates without any `vt`: a model exported without them.
             _ => None,
         };
         self.mesh.set_material(material);
@@ -242,12 +242,12 @@ fn no_such_index(what: &str, written: i64, count: usize) -> String {
     }
 }
 
-/// What programs write where a face has no material.
+/// Names that programs write for a face without a material.
 fn is_no_material(name: &[u8]) -> bool {
     [&b""[..], b"None", b"(null)", b"null"].contains(&name)
 }
 
-/// Several names stand on one line, and names with blanks in them too: a name ends with `.mtl`.
+/// Splits the names of a line. Several names may be on one line, and a name may contain blanks: it ends with `.mtl`.
 fn library_names(text: &str) -> Vec<&str> {
     let mut names = Vec::new();
     let mut start = 0;
@@ -265,12 +265,12 @@ fn library_names(text: &str) -> Vec<&str> {
     names
 }
 
-/// Whether a line of an OBJ file may begin with that word.
+/// Returns whether a line of an OBJ file may start with this word.
 pub(super) fn is_statement(word: &[u8]) -> bool {
     [&b"v"[..], b"vn", b"vt", b"f", b"fo", b"usemtl", b"mtllib"].contains(&word) || is_passed_over(word)
 }
 
-/// Words of OBJ that make no triangles.
+/// Keywords of OBJ that make no triangles.
 fn is_passed_over(word: &[u8]) -> bool {
     const WORDS: [&str; 38] = [
         "g",

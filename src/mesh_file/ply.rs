@@ -1,5 +1,5 @@
-//! PLY, as text and binary of either byte order: faces and triangle strips, normals and colours of vertices. Other
-//! elements and properties are passed over, whatever their type and order.
+//! PLY, as text and as binary in either byte order: faces and triangle strips, normals and colours of vertices. Other
+//! elements and properties are skipped, whatever their type and order.
 
 mod header;
 mod rows;
@@ -32,7 +32,7 @@ fn read_body(header: &Header<'_>, mut rows: impl Rows) -> Result<MeshFile, Fault
             ("vertex", _) => read_vertices(element, &mut rows, &mut mesh)?,
             ("face", Some(at)) => read_faces(element, at, vertex_count, &mut rows, &mut mesh)?,
             ("tristrips", Some(at)) => read_strips(element, at, vertex_count, &mut rows, &mut mesh)?,
-            // However many rows of nothing there are.
+            // Any number of rows without properties takes no time.
             _ if element.properties.is_empty() => {}
             _ => each_row(element, &mut rows, |rows| skip(&element.properties, rows))?,
         }
@@ -41,7 +41,7 @@ fn read_body(header: &Header<'_>, mut rows: impl Rows) -> Result<MeshFile, Fault
     mesh.finish(if is_cloud { "it has vertices but no faces (a cloud of points?)" } else { "it has no faces" })
 }
 
-/// The rows of an element, each with its beginning and its end.
+/// Calls back at the start and end of each row of an element.
 fn each_row<R: Rows>(
     element: &Element<'_>,
     rows: &mut R,
@@ -65,13 +65,13 @@ fn skip(properties: &[Property<'_>], rows: &mut impl Rows) -> Result<(), Fault> 
     })
 }
 
-/// What a vertex is read into: three bands each of these, and one for what is passed over.
+/// The slots that a vertex is read into: three components each of these, and one for skipped values.
 const POSITION: usize = 0;
 const NORMAL: usize = 3;
 const COLOR: usize = 6;
 const NOTHING: usize = 9;
 
-/// Which number of a vertex a property is.
+/// Returns the slot of a vertex property.
 fn slot(property: &Property<'_>) -> usize {
     match property.name {
         _ if matches!(property.shape, Shape::List { .. }) => NOTHING,
@@ -120,13 +120,13 @@ fn read_vertices(element: &Element<'_>, rows: &mut impl Rows, mesh: &mut Builder
     })
 }
 
-/// How many rows there can be, at most as many as the element claims.
+/// Returns the number of rows that the file can hold, at most what the element claims.
 fn room(element: &Element<'_>, rows: &impl Rows) -> usize {
     let least = rows.least_size(&element.properties).max(1);
     (element.count as usize).min(rows.left() / least)
 }
 
-/// Whole numbers go from 0 to the largest of their type, others from 0 to 1.
+/// Returns the scale of a colour: integers range from 0 to the largest of their type, floats from 0 to 1.
 fn color(bands: [f32; 3], shape: Shape) -> LinearRgb {
     let white = match shape {
         Shape::Scalar(Type::U8) => {
@@ -144,7 +144,7 @@ fn color(bands: [f32; 3], shape: Shape) -> LinearRgb {
     LinearRgb::new(r, g, b)
 }
 
-/// The element's `at`th property holds each face's corners.
+/// Reads faces, whose corners are in property `at` of the element.
 fn read_faces(
     element: &Element<'_>,
     at: usize,
@@ -199,7 +199,7 @@ fn no_such_vertex(index: i64, count: u32) -> String {
     }
 }
 
-/// Triangle strips, as the older files of the Stanford repository have them: -1 ends one.
+/// Reads triangle strips, as in the older files of the Stanford repository: -1 ends a strip.
 fn read_strips(
     element: &Element<'_>,
     at: usize,
@@ -228,7 +228,7 @@ fn read_strips(
     })
 }
 
-/// The last two corners of a strip, and how many there have been.
+/// The last two corners of a strip, and the number of corners so far.
 #[derive(Default)]
 struct Strip {
     last: [u32; 2],
@@ -236,7 +236,7 @@ struct Strip {
 }
 
 impl Strip {
-    /// Every second triangle goes round the other way.
+    /// Every second triangle has the opposite orientation.
     fn next(&mut self, corner: u32) -> Option<[u32; 3]> {
         let [a, b] = self.last;
         self.last = [b, corner];
@@ -246,7 +246,7 @@ impl Strip {
     }
 }
 
-/// What vertices have, their triangles have.
+/// Triangles have the attributes of their vertices.
 fn push(mesh: &mut Builder, positions: [u32; 3]) -> Result<(), Fault> {
     let (normals, colors) = (!mesh.normals.values().is_empty(), !mesh.colors.values().is_empty());
     mesh.push(Triangle {

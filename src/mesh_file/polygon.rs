@@ -1,13 +1,13 @@
-//! Polygons -> triangles.
+//! Triangulation of polygons.
 
 use glam::{DVec2, DVec3, Vec3};
 
-/// Polygons of more corners are cut into a fan, whatever their shape: ears are looked for in cubic time.
+/// Polygons with more corners become a fan, whatever their shape: ear clipping takes cubic time.
 const MAX_EARS: usize = 64;
 
-/// Cuts a polygon into triangles of the same orientation, each three places in `corners`, whose entries are indices
-/// into `positions`. A convex polygon becomes a fan; from any other, ears are cut off one by one. Where the positions
-/// are not known, or no ear is left (the outline crosses itself), the rest becomes a fan.
+/// Triangulates a polygon. `corners` are indices into `positions`; each triangle is three indices into `corners`, with
+/// the polygon's orientation. A convex polygon becomes a fan; any other is cut by ear clipping. If the positions are
+/// unknown, or no ear is left because the outline crosses itself, the rest becomes a fan.
 pub(super) fn cut(corners: &[u32], positions: &[Vec3]) -> impl Iterator<Item = [usize; 3]> + use<> {
     let may_be_concave = (4..=MAX_EARS).contains(&corners.len());
     let outline = if may_be_concave { projected(corners, positions) } else { None };
@@ -16,13 +16,13 @@ pub(super) fn cut(corners: &[u32], positions: &[Vec3]) -> impl Iterator<Item = [
     if let Some(outline) = outline.filter(|outline| !is_convex(outline)) {
         (ears, fan) = cut_ears(&outline);
     }
-    // Of a fan of all corners no list is kept.
+    // A fan of all corners needs no list.
     let corner = move |i: usize| fan.get(i).copied().unwrap_or(i);
     let fan_length = corners.len() - ears.len();
     ears.into_iter().chain((2..fan_length).map(move |i| [corner(0), corner(i - 1), corner(i)]))
 }
 
-/// The outline in the plane that the polygon is broadest in, counterclockwise.
+/// Returns the outline, counterclockwise, in the coordinate plane where the polygon is largest.
 fn projected(corners: &[u32], positions: &[Vec3]) -> Option<Vec<DVec2>> {
     let points: Vec<DVec3> =
         corners.iter().map(|&i| positions.get(i as usize).map(|p| p.as_dvec3())).collect::<Option<_>>()?;
@@ -38,19 +38,20 @@ fn projected(corners: &[u32], positions: &[Vec3]) -> Option<Vec<DVec2>> {
     Some(points.iter().map(flat).collect())
 }
 
-/// Twice the area of a triangle, negative where it is clockwise.
+/// Returns twice the area of a triangle, negative if it is clockwise.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Whether the fan around the first corner covers the polygon: every triangle of it has the polygon's orientation.
+/// Returns whether the fan around the first corner covers the polygon: all its triangles have the polygon's
+/// orientation.
 fn is_convex(outline: &[DVec2]) -> bool {
     let n = outline.len();
     let turns_left = (0..n).all(|i| area(outline[i], outline[(i + 1) % n], outline[(i + 2) % n]) >= 0.0);
     turns_left && (2..n).all(|i| area(outline[0], outline[i - 1], outline[i]) >= 0.0)
 }
 
-/// The ears, and the corners that are left.
+/// Returns the ears and the remaining corners.
 fn cut_ears(outline: &[DVec2]) -> (Vec<[usize; 3]>, Vec<usize>) {
     let mut ears = Vec::new();
     let mut left: Vec<usize> = (0..outline.len()).collect();
@@ -62,13 +63,13 @@ fn cut_ears(outline: &[DVec2]) -> (Vec<[usize; 3]>, Vec<usize>) {
     (ears, left)
 }
 
-/// A corner with those before and after it.
+/// A corner with its neighbours.
 fn around(left: &[usize], i: usize) -> [usize; 3] {
     let n = left.len();
     [left[(i + n - 1) % n], left[i], left[(i + 1) % n]]
 }
 
-/// Whether the corner can be cut off: it turns left, and no other corner lies in the triangle.
+/// Returns whether a corner is an ear: it turns left, and no other corner lies in its triangle.
 fn is_ear(outline: &[DVec2], left: &[usize], i: usize) -> bool {
     let corners = around(left, i);
     let [a, b, c] = corners.map(|corner| outline[corner]);
@@ -101,7 +102,7 @@ mod tests {
         assert_eq!(triangles(&vec![Vec3::ZERO; 200]).len(), 198);
     }
 
-    /// Whatever the plane and the first corner, the triangles of an L have its orientation and its area in sum.
+    /// For every plane and first corner, the triangles of an L have its orientation and their areas sum up to its area.
     #[test]
     fn a_concave_polygon_is_covered_once() {
         let l = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];

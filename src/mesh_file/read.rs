@@ -1,4 +1,4 @@
-//! Bytes of any format, or a file -> a mesh.
+//! Reading of a mesh from bytes in any format, or from a file.
 
 use super::fault::Fault;
 use super::kind::{self, Kind};
@@ -11,11 +11,11 @@ use std::io;
 use std::path::Path;
 
 impl MeshFile {
-    /// The mesh that the bytes describe. The name is used in messages, and its ending where the content does not say
-    /// what it is; `open` gives the bytes of a file that the mesh names, by its path relative to the mesh.
+    /// Returns the mesh of a file's bytes. `name` is used in messages, and its extension where the content does not
+    /// tell the format; `open` returns the bytes of a side file by its path relative to the mesh.
     ///
     /// # Errors
-    /// The first fault that is found.
+    /// The first fault.
     pub fn from_bytes(
         name: &str,
         bytes: &[u8],
@@ -33,7 +33,7 @@ impl MeshFile {
         read(name, bytes, &mut Neighbours::new(name, open), watcher).map_err(|fault| fault.into_error(name, bytes))
     }
 
-    /// The mesh in that file.
+    /// Loads a mesh file.
     ///
     /// ```no_run
     /// use std::path::Path;
@@ -51,7 +51,7 @@ impl MeshFile {
         Self::load_or_cancel(path, &Watcher::patient()).map_err(Unfinished::failure)
     }
 
-    /// [`load`](Self::load), until the watcher cancels it.
+    /// Loads as [`load`](Self::load) does, until the watcher cancels it.
     ///
     /// # Errors
     /// As [`MeshFile::load`], and if the watcher cancels it.
@@ -59,7 +59,7 @@ impl MeshFile {
         Self::read_whole(path, Accepted::FilesAndPipes, watcher)
     }
 
-    /// The mesh in that file, if it is of an accepted kind.
+    /// Loads a mesh file if it is of an accepted kind.
     pub(crate) fn read_whole(
         path: &Path,
         accepted: Accepted,
@@ -75,7 +75,7 @@ impl MeshFile {
         Self::of_file(path, &bytes, watcher)
     }
 
-    /// The mesh in the file at that path, of which these are the bytes. The files that it names are read from beside it.
+    /// Returns the mesh of these bytes of the file at `path`. Side files are read from the same folder.
     pub(crate) fn of_file(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Self, Unfinished<MeshError>> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut open = |relative: &Path| {
@@ -87,12 +87,12 @@ impl MeshFile {
     }
 }
 
-/// Whether a file of that name, or with that beginning, is meant to be a mesh.
+/// Returns whether a file with this name, or with this beginning, is meant to be a mesh.
 pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
     kind::by_ending(name).is_some() || bytes.starts_with(b"ply") || bytes.starts_with(b"glTF")
 }
 
-/// The one place where formats part.
+/// The one place where the formats are told apart.
 fn read(name: &str, bytes: &[u8], neighbours: &mut Neighbours<'_>, watcher: &Watcher<'_>) -> Result<MeshFile, Fault> {
     if bytes.len() > MAX_BYTES {
         return Err(Fault::of_file("the file is larger than 2 GiB, too large to be read"));
@@ -112,12 +112,12 @@ fn read(name: &str, bytes: &[u8], neighbours: &mut Neighbours<'_>, watcher: &Wat
     Ok(mesh)
 }
 
-/// How many bytes of memory each byte of a file may take while it is read, besides itself. (PLY has the fewest bytes for a
-/// triangle.)
+/// Limit on the memory per byte of a file while it is read, besides the file itself. PLY has the fewest bytes per
+/// triangle.
 const PEAK_PER_BYTE: usize = 8;
 
-/// How many bytes of memory a triangle may take while trees are built over all of them: 230 (PLY) to 290 (STL) were
-/// measured, with the file.
+/// Limit on the memory per triangle while trees are built; 230 (PLY) to 290 bytes (STL) were measured, including the
+/// file.
 const PEAK_PER_TRIANGLE: usize = 320;
 
 fn has_memory(bytes: usize, what_for: &str) -> Result<(), Fault> {

@@ -1,5 +1,5 @@
-//! STL, text and binary: triangles without shared vertices. The facets' normals are not read: the corners say the same
-//! with more digits. Neither are the colours that some programs put into the attribute bytes, each in its own way.
+//! STL, text and binary: triangles without shared vertices. The facets' normals are not read, because the corners give
+//! them with more digits; nor are the colours that some programs put into the attribute bytes, each in its own way.
 
 use super::MeshFile;
 use super::builder::{Builder, Triangle, too_many};
@@ -10,19 +10,19 @@ use super::text::Text;
 use crate::progress::Meter;
 use glam::Vec3;
 
-/// 80 bytes of anything and a count of 4 bytes.
+/// Size of the header: 80 arbitrary bytes and a count of 4 bytes.
 const HEADER: usize = 84;
-/// A normal, three corners, two bytes of attributes.
+/// Size of a triangle: a normal, three corners, two attribute bytes.
 const FACET: usize = 50;
 
-/// The bytes that a binary file of so many triangles has, by its own count.
+/// Returns the size of a binary file with as many triangles as it claims.
 fn claimed_size(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(HEADER - 4..HEADER)?.try_into().map(u32::from_le_bytes).ok()?;
     Some(HEADER as u64 + u64::from(count) * FACET as u64)
 }
 
-/// Whether the bytes are a binary file of exactly as many triangles as it says. A text, whose count would be made of
-/// letters, is never so large.
+/// Returns whether the bytes are a binary file of exactly the size that its count implies. A text never is: its count
+/// would consist of letters and be huge.
 pub(super) fn size_fits(bytes: &[u8]) -> bool {
     claimed_size(bytes) == Some(bytes.len() as u64)
 }
@@ -55,7 +55,7 @@ pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile
     mesh.finish("its count is 0")
 }
 
-/// Twelve bytes, and where they stand.
+/// Reads twelve bytes with their position.
 fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, Fault> {
     let band = |axis: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * axis + i]));
     let vertex = Vec3::new(band(0), band(1), band(2));
@@ -81,7 +81,7 @@ pub(super) fn read_text(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, 
 struct TextReader<'a> {
     text: Text<'a>,
     mesh: Builder,
-    /// The first vertex of the loop that is open.
+    /// Index of the first vertex of the open loop.
     open: Option<u32>,
 }
 
@@ -112,7 +112,7 @@ impl TextReader<'_> {
         self.text.end_line()
     }
 
-    /// The corners become triangles; some programs write polygons.
+    /// Adds the triangles of a loop; some programs write polygons.
     fn end_loop(&mut self, at: usize) -> Result<(), Fault> {
         let corners: Vec<u32> = (self.open.take().unwrap_or_default()..self.mesh.positions.len() as u32).collect();
         if corners.len() < 3 {

@@ -1,34 +1,34 @@
 //! Words, numbers and line ends of a text, in one pass over its bytes.
 //!
-//! OBJ, MTL, STL and PLY agree in this much: words stand between blanks, a line is a statement. What only OBJ knows, a
-//! comment after `#` and a line that goes on after `\`, does not occur in the others.
+//! OBJ, MTL, STL and PLY have in common that words are separated by blanks and a line is a statement. Comments after
+//! `#` and lines continued by `\`, which only OBJ has, do not occur in the others.
 
 use super::fault::{Fault, shown};
 
-/// A place in a text, and what is read from there on.
+/// A position in a text, and the reading from there.
 pub(super) struct Text<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
 impl<'a> Text<'a> {
-    /// From the beginning of the text; its byte order mark, if it has one, is passed over.
+    /// Starts at the beginning of a text, after its byte order mark if it has one.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Self { bytes, at }
     }
 
-    /// From that byte.
+    /// Starts at a byte.
     pub(super) fn from(bytes: &'a [u8], at: usize) -> Self {
         Self { bytes, at }
     }
 
-    /// The place, in bytes.
+    /// Returns the position in bytes.
     pub(super) fn at(&self) -> usize {
         self.at
     }
 
-    /// How many bytes are left.
+    /// Returns the number of bytes left.
     pub(super) fn left(&self) -> usize {
         self.bytes.len() - self.at
     }
@@ -37,7 +37,7 @@ impl<'a> Text<'a> {
         self.bytes.get(self.at).copied()
     }
 
-    /// Passes over blanks, and over a line's end after a backslash.
+    /// Skips blanks, and line ends after a backslash.
     pub(super) fn skip_blanks(&mut self) {
         loop {
             match self.peek() {
@@ -51,24 +51,24 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Whether the text is at its end.
+    /// Returns whether the end of the text is reached.
     pub(super) fn is_at_end(&self) -> bool {
         self.at >= self.bytes.len()
     }
 
-    /// Whether nothing but blanks or a comment is left of the line.
+    /// Returns whether only blanks or a comment are left on the line.
     pub(super) fn is_at_line_end(&mut self) -> bool {
         self.skip_blanks();
         matches!(self.peek(), None | Some(b'\n' | b'\r' | b'#'))
     }
 
-    /// Goes to the beginning of the next line.
+    /// Moves to the start of the next line.
     pub(super) fn skip_line(&mut self) {
         self.rest_of_line();
         self.at += line_end(&self.bytes[self.at..]);
     }
 
-    /// Goes to the next line that says something; false if there is none.
+    /// Moves to the next line with content; `false` if there is none.
     pub(super) fn go_to_statement(&mut self) -> bool {
         while self.is_at_line_end() {
             if self.is_at_end() {
@@ -79,7 +79,7 @@ impl<'a> Text<'a> {
         true
     }
 
-    /// The end of a statement.
+    /// Checks that the statement ends here.
     pub(super) fn end_line(&mut self) -> Result<(), Fault> {
         if self.is_at_line_end() {
             self.skip_line();
@@ -88,7 +88,7 @@ impl<'a> Text<'a> {
         Err(self.expected("the end of the line"))
     }
 
-    /// What is left of the line, without the blanks around it; the place is then the line's end.
+    /// Returns the rest of the line without surrounding blanks, and moves to the line's end.
     pub(super) fn rest_of_line(&mut self) -> &'a [u8] {
         self.skip_blanks();
         let start = self.at;
@@ -98,7 +98,7 @@ impl<'a> Text<'a> {
         self.bytes[start..self.at].trim_ascii_end()
     }
 
-    /// The next word of the line; empty at its end.
+    /// Returns the next word of the line; empty at its end.
     pub(super) fn word(&mut self) -> &'a [u8] {
         self.skip_blanks();
         let start = self.at;
@@ -116,18 +116,18 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Whether a word ends here.
+    /// Returns whether a word ends here.
     #[inline]
     pub(super) fn is_at_word_end(&self) -> bool {
         self.is_word_end(self.at)
     }
 
-    /// The same text at an earlier place.
+    /// Returns a reader at an earlier position of the same text.
     pub(super) fn back_at(&self, at: usize) -> Self {
         Self { bytes: self.bytes, at }
     }
 
-    /// The next word, which must be a finite number. It is rounded correctly.
+    /// Reads a word that must be a finite number, correctly rounded.
     #[inline]
     pub(super) fn number(&mut self) -> Result<f32, Fault> {
         self.skip_blanks();
@@ -157,7 +157,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// The next word, which must be a whole number.
+    /// Reads a word that must be an integer.
     #[inline]
     pub(super) fn integer(&mut self) -> Result<i64, Fault> {
         self.skip_blanks();
@@ -172,7 +172,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// A whole number that may end inside a word; at most 18 digits.
+    /// Reads an integer that may end inside a word, of at most 18 digits.
     #[inline]
     pub(super) fn digits(&mut self) -> Option<i64> {
         let negative = self.take(b'-');
@@ -191,7 +191,7 @@ impl<'a> Text<'a> {
         (self.at > start).then_some(if negative { -value } else { value })
     }
 
-    /// Passes over that byte, if it is the next one.
+    /// Skips a byte if it is the next one. Returns whether it was.
     #[inline]
     pub(super) fn take(&mut self, byte: u8) -> bool {
         let is_next = self.peek() == Some(byte);
@@ -199,7 +199,7 @@ impl<'a> Text<'a> {
         is_next
     }
 
-    /// The fault that something else stands here.
+    /// Returns the fault that something else was expected here.
     #[cold]
     pub(super) fn expected(&mut self, wanted: &str) -> Fault {
         let is_line_end = self.is_at_line_end();
@@ -213,7 +213,7 @@ impl<'a> Text<'a> {
     }
 }
 
-/// The length of the line's end that the bytes begin with; 0 if they begin with none.
+/// Returns the length of the line end at the start of the bytes; 0 if there is none.
 fn line_end(bytes: &[u8]) -> usize {
     match bytes {
         [b'\r', b'\n', ..] => 2,

@@ -1,4 +1,4 @@
-//! Pictures on meshes: PNG and JPEG.
+//! Textures of meshes.
 
 #[cfg(feature = "mesh")]
 mod decoded;
@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use std::fmt;
 use std::sync::Arc;
 
-/// A picture as its file has it: sRGB, 8 bits, without its transparency.
+/// An image as in its file: sRGB, 8 bits, without transparency.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Texture {
     width: u32,
@@ -19,18 +19,18 @@ pub struct Texture {
     texels: Vec<Srgb8>,
 }
 
-/// A texture and where it lies on a surface. It repeats without end.
+/// A texture and its placement on a surface. It repeats without end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TexturePlacement {
-    /// The picture.
+    /// The image.
     pub texture: Arc<Texture>,
-    /// The way from the mesh's texture coordinates to the picture's: u' and v' are the dot products of these with
+    /// The transform from the mesh's texture coordinates to the image's: u' and v' are the dot products of these with
     /// (u, v, 1). Finite.
     pub transform: [Vec3; 2],
 }
 
 impl TexturePlacement {
-    /// The picture's coordinates: (0, 0) is its top left corner, (1, 1) its bottom right one.
+    /// Returns the image's coordinates: (0, 0) is the top left corner, (1, 1) the bottom right one.
     pub fn at(&self, uv: Vec2) -> Vec2 {
         let uv1 = uv.extend(1.0);
         Vec2::new(self.transform[0].dot(uv1), self.transform[1].dot(uv1))
@@ -38,23 +38,23 @@ impl TexturePlacement {
 }
 
 impl Texture {
-    /// Columns of texels; at least 1.
+    /// Returns the number of columns, at least 1.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows of texels; at least 1.
+    /// Returns the number of rows, at least 1.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// The colour at these coordinates, as linear light: between the middles of four texels, each has its share
-    /// (bilinear). Any coordinates; the picture repeats.
+    /// Returns the colour at these coordinates as linear light, bilinearly interpolated between the centres of four
+    /// texels. Takes any coordinates; the image repeats.
     pub fn color_at(&self, at: Vec2) -> LinearRgb {
         let place = |coordinate: f32, length: u32| {
             let place = (coordinate - coordinate.floor()) * length as f32 - 0.5;
             let first = place.floor();
-            // The one before the first is the last.
+            // The texel before the first is the last.
             let index = (first as i64).rem_euclid(length.into()) as u32;
             ([index, (index + 1) % length], place - first)
         };
@@ -66,13 +66,13 @@ impl Texture {
         row(rows[0]).lerp(row(rows[1]), down)
     }
 
-    /// The texels row by row, from the top left one.
+    /// Returns the texels row by row, from the top left one.
     pub fn texels(&self) -> &[Srgb8] {
         &self.texels
     }
 }
 
-/// Millions of texels say nothing to a person.
+/// Shows the size only: millions of texels would be unreadable.
 impl fmt::Debug for Texture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Texture({} x {})", self.width, self.height)

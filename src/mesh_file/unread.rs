@@ -1,4 +1,4 @@
-//! Meshes where they are not read: without the feature `mesh`, they are told by their names and first bytes only, and each
+//! Replacement of the readers without the feature `mesh`: mesh files are recognised by names and first bytes, and each
 //! is an error.
 
 use super::{MeshError, MeshFile};
@@ -7,19 +7,19 @@ use crate::progress::{Unfinished, Watcher};
 use std::path::Path;
 
 impl MeshFile {
-    /// No mesh.
+    /// Always fails.
     pub(crate) fn read_whole(path: &Path, _: Accepted, watcher: &Watcher<'_>) -> Result<Self, Unfinished<MeshError>> {
         Self::of_file(path, &[], watcher)
     }
 
-    /// No mesh.
+    /// Always fails.
     pub(crate) fn of_file(path: &Path, _: &[u8], _: &Watcher<'_>) -> Result<Self, Unfinished<MeshError>> {
         let message = "meshes are read with the feature `mesh` of the crate termtrace, which is off in this program";
         Err(Unfinished::Failed(MeshError::of_file(&path.to_string_lossy(), message)))
     }
 }
 
-/// Whether a file of that name, or with that beginning, is meant to be a mesh.
+/// Returns whether a file with this name, or with this beginning, is meant to be a mesh.
 pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
     let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
     let is_known = ending.is_some_and(|ending| ["obj", "stl", "ply", "gltf", "glb"].contains(&&*ending));

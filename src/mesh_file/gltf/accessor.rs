@@ -1,29 +1,29 @@
-//! Accessors: bytes of a buffer as numbers.
+//! Accessors: typed views of a buffer's bytes.
 
 use super::buffers::{Buffers, View};
 use super::json::Json;
 use crate::mesh_file::fault::Fault;
 
-/// So many elements of so many components each.
+/// An accessor: `count` elements of several components each.
 pub(super) struct Accessor<'a> {
     json: Json<'a>,
     component: Component,
     width: usize,
     pub(super) count: usize,
     normalized: bool,
-    /// None: all are zero.
+    /// No buffer view: all components are zero.
     elements: Option<Elements<'a>>,
     sparse: Option<Sparse<'a>>,
 }
 
-/// Where the elements are.
+/// The bytes of the elements.
 struct Elements<'a> {
     view: View<'a>,
     offset: usize,
     stride: usize,
 }
 
-/// Elements that stand in for some of the others.
+/// Elements that replace some of the others.
 struct Sparse<'a> {
     indices: Elements<'a>,
     index_component: Component,
@@ -67,7 +67,7 @@ impl Component {
         matches!(self, Self::U8 | Self::U16 | Self::U32)
     }
 
-    /// The number in these bytes, of which there are enough.
+    /// Returns the number in these bytes, which must be enough.
     fn number(self, b: &[u8], normalized: bool) -> f32 {
         let (value, largest) = match self {
             Self::F32 => return f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
@@ -80,7 +80,7 @@ impl Component {
         if normalized { (value / largest).max(-1.0) } else { value }
     }
 
-    /// The index in these bytes, of which there are enough.
+    /// Returns the index in these bytes, which must be enough.
     fn index(self, b: &[u8]) -> u32 {
         match self {
             Self::I8 | Self::U8 => u32::from(b[0]),
@@ -91,7 +91,7 @@ impl Component {
 }
 
 impl<'a> Elements<'a> {
-    /// `count` elements of `size` bytes; that they lie in the view is checked here.
+    /// Returns `count` elements of `size` bytes, after checking that they lie in the view.
     fn new(json: Json<'a>, size: usize, count: usize, buffers: &mut Buffers<'a, '_>) -> Result<Option<Self>, Fault> {
         let Some(view) = json.field("bufferView")? else { return Ok(None) };
         let view = buffers.view(view)?;
@@ -116,7 +116,7 @@ impl<'a> Elements<'a> {
 }
 
 impl<'a> Accessor<'a> {
-    /// The accessor that an index means.
+    /// Returns the accessor with this index.
     pub(super) fn read(index: Json<'a>, buffers: &mut Buffers<'a, '_>) -> Result<Self, Fault> {
         let (_, json) = index.item_of(buffers.root(), "accessors")?;
         let component = Component::read(json)?;
@@ -140,12 +140,12 @@ impl<'a> Accessor<'a> {
         Ok(Self { json, component, width, count, normalized: json.is_true("normalized")?, elements, sparse })
     }
 
-    /// A fault of this accessor.
+    /// Returns a fault of this accessor.
     pub(super) fn fault(&self, message: impl std::fmt::Display) -> Fault {
         self.json.fault(message)
     }
 
-    /// The elements' first N components, which are finite.
+    /// Returns the first N components of the elements, which must be finite.
     pub(super) fn vectors<const N: usize>(&self) -> Result<Vec<[f32; N]>, Fault> {
         if self.width < N {
             return Err(self.fault(format!("elements of {N} numbers should be here, not of {}", self.width)));
@@ -160,7 +160,7 @@ impl<'a> Accessor<'a> {
         }
     }
 
-    /// The elements as indices.
+    /// Returns the elements as indices.
     pub(super) fn indices(&self) -> Result<Vec<u32>, Fault> {
         if self.width != 1 || !self.component.is_index() {
             return Err(self.fault("indices are SCALAR and of component type 5121, 5123 or 5125"));

@@ -1,4 +1,4 @@
-//! Where the bytes are: in the GLB file, in a file beside it, or in a `data:` URI.
+//! Buffers: in the GLB file, in a side file, or in a `data:` URI.
 
 use super::json::Json;
 use crate::mesh_file::MAX_TRIANGLES;
@@ -10,18 +10,18 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// All buffers of a file, each read when it is first asked for.
+/// All buffers of a file, each read when it is first used.
 pub(super) struct Buffers<'a, 'b> {
     root: Json<'a>,
     glb: Option<&'a [u8]>,
     neighbours: &'a mut Neighbours<'b>,
     read: HashMap<usize, Bytes<'a>>,
     files: HashMap<PathBuf, Rc<[u8]>>,
-    /// How many bytes the JSON, its buffers and its pictures have so far.
+    /// Number of bytes that the JSON, its buffers and its images have so far.
     size: usize,
 }
 
-/// The bytes of a buffer or of a picture.
+/// The bytes of a buffer or an image.
 #[derive(Clone)]
 pub(super) enum Bytes<'a> {
     Glb(&'a [u8]),
@@ -38,13 +38,13 @@ impl std::ops::Deref for Bytes<'_> {
     }
 }
 
-/// A part of a buffer.
+/// A buffer view.
 #[derive(Clone)]
 pub(super) struct View<'a> {
     buffer: Bytes<'a>,
     start: usize,
     end: usize,
-    /// From one element to the next, where the elements do not follow on each other.
+    /// The distance between elements, if they are not contiguous.
     pub(super) stride: Option<usize>,
 }
 
@@ -55,7 +55,7 @@ impl View<'_> {
 }
 
 impl<'a, 'b> Buffers<'a, 'b> {
-    /// Those of a document of `size` bytes.
+    /// Returns the buffers of a document of `size` bytes.
     pub(super) fn new(root: Json<'a>, size: usize, glb: Option<&'a [u8]>, neighbours: &'a mut Neighbours<'b>) -> Self {
         let size = size + glb.map_or(0, <[u8]>::len);
         Self { root, glb, neighbours, read: HashMap::new(), files: HashMap::new(), size }
@@ -65,13 +65,13 @@ impl<'a, 'b> Buffers<'a, 'b> {
         self.root
     }
 
-    /// How many triangles or vertices a document of this size may make: more would be a small file that fills the
-    /// memory.
+    /// Returns the limit on the triangles or vertices that a document of this size may make, so that a small file
+    /// cannot exhaust memory.
     pub(super) fn most(&self) -> usize {
         self.size.saturating_add(1 << 20).min(MAX_TRIANGLES)
     }
 
-    /// The buffer view that an index, a field of something, means.
+    /// Returns the buffer view whose index is in a field of `value`.
     pub(super) fn view(&mut self, index: Json<'a>) -> Result<View<'a>, Fault> {
         let (_, view) = index.item_of(self.root, "bufferViews")?;
         if view.extension("EXT_meshopt_compression")?.is_some() {
@@ -111,7 +111,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
         Ok(bytes)
     }
 
-    /// The bytes that a URI means: its own, or those of a file beside the mesh.
+    /// Returns the bytes of a URI: a `data:` URI's own, or those of a side file.
     pub(super) fn resource(&mut self, uri: Json<'a>) -> Result<Bytes<'a>, Fault> {
         let text = uri.string()?;
         if let Some(data) = text.strip_prefix("data:") {
@@ -129,7 +129,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
     }
 }
 
-/// The bytes after `data:`.
+/// Returns the bytes after `data:`.
 fn data_of(data: &str) -> Result<Vec<u8>, String> {
     const LENIENT: GeneralPurposeConfig =
         GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
@@ -142,7 +142,7 @@ fn data_of(data: &str) -> Result<Vec<u8>, String> {
         .map_err(|error| format!("the data: URI is not base64: {}", error.to_string().trim_end_matches('.')))
 }
 
-/// `%20` is a blank.
+/// Decodes percent escapes: `%20` is a blank.
 fn percent_decoded(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();
@@ -159,7 +159,7 @@ fn percent_decoded(uri: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// What stands in front of a picture's message.
+/// The start of an image's messages.
 pub(super) fn described(uri: Option<&str>) -> String {
     match uri.filter(|uri| !uri.starts_with("data:")) {
         Some(uri) => shown(uri.as_bytes()),

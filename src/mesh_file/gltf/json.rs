@@ -1,18 +1,18 @@
-//! Values of a JSON document that know their path in it, so that a fault can say where it is.
+//! JSON values with their path in the document, for the positions of faults.
 
 use crate::mesh_file::fault::{Fault, shown};
 use serde_json::{Map, Value};
 use std::fmt::{self, Write};
 
-/// A value, and the way to it.
+/// A value and its path.
 #[derive(Clone, Copy)]
 pub(super) struct Json<'a> {
     value: &'a Value,
     path: Path<'a>,
 }
 
-/// `meshes[2].primitives`: as much of a path as is kept without memory of its own. glTF is four steps deep where it
-/// matters.
+/// A path such as `meshes[2].primitives`, as much of it as fits without an allocation. The relevant parts of glTF are
+/// at most four steps deep.
 #[derive(Clone, Copy)]
 struct Path<'a> {
     steps: [Option<Step<'a>>; 6],
@@ -52,7 +52,7 @@ impl<'a> Json<'a> {
         root.object().map(|_| root)
     }
 
-    /// A fault of this value.
+    /// Returns a fault of this value.
     #[cold]
     pub(super) fn fault(self, message: impl fmt::Display) -> Fault {
         let mut text = self.path.to_string();
@@ -81,23 +81,23 @@ impl<'a> Json<'a> {
         self.value.as_object().ok_or_else(|| self.mismatch("an object"))
     }
 
-    /// The field of that name, if there is one.
+    /// Returns a field, if it exists.
     pub(super) fn field(self, name: &'static str) -> Result<Option<Self>, Fault> {
         let path = self.path.and(Step::Field(name));
         Ok(self.object()?.get(name).map(|value| Self { value, path }))
     }
 
-    /// The field of that name.
+    /// Returns a required field.
     pub(super) fn required(self, name: &'static str) -> Result<Self, Fault> {
         self.field(name)?.ok_or_else(|| self.fault(format!("the field {name} is missing")))
     }
 
-    /// The fields of that field's object, name by name; none if it is not there.
+    /// Returns the fields of an object in a field, by name; none if it is missing.
     pub(super) fn extension(self, name: &'static str) -> Result<Option<Self>, Fault> {
         self.field("extensions")?.map_or(Ok(None), |extensions| extensions.field(name))
     }
 
-    /// The items of the list in that field; none if it is not there.
+    /// Returns the items of a list in a field; none if it is missing.
     pub(super) fn list(self, name: &'static str) -> Result<impl Iterator<Item = Self> + use<'a>, Fault> {
         let list = self.field(name)?;
         let items = list.map_or(Ok(&[][..]), Self::items)?;
@@ -111,12 +111,12 @@ impl<'a> Json<'a> {
         self.value.as_array().map(Vec::as_slice).ok_or_else(|| self.mismatch("a list"))
     }
 
-    /// How many items the list in that field has; 0 if it is not there.
+    /// Returns the number of items of a list in a field; 0 if it is missing.
     pub(super) fn count(self, name: &'static str) -> Result<usize, Fault> {
         self.field(name)?.map_or(Ok(0), |list| list.items().map(<[Value]>::len))
     }
 
-    /// The item of the root's list `name` that this value, an index, means.
+    /// Returns the item of the root's list `name` whose index is this value.
     pub(super) fn item_of(self, root: Json<'a>, name: &'static str) -> Result<(usize, Self), Fault> {
         let index = self.index()?;
         let list = root.field(name)?;
@@ -128,13 +128,13 @@ impl<'a> Json<'a> {
         Ok((index, Self { value, path }))
     }
 
-    /// A whole number that is not negative.
+    /// Returns the value as a non-negative integer.
     pub(super) fn index(self) -> Result<usize, Fault> {
         let number = self.value.as_u64().and_then(|number| usize::try_from(number).ok());
         number.ok_or_else(|| self.mismatch("a whole number that is not negative"))
     }
 
-    /// The same of a field, which may be missing.
+    /// Returns an optional field as a non-negative integer.
     pub(super) fn index_or(self, name: &'static str, default: usize) -> Result<usize, Fault> {
         self.field(name)?.map_or(Ok(default), Self::index)
     }
@@ -152,7 +152,7 @@ impl<'a> Json<'a> {
         self.value.as_f64().filter(|number| number.is_finite()).ok_or_else(|| self.mismatch("a finite number"))
     }
 
-    /// So many numbers of a field, which may be missing.
+    /// Returns an optional field as exactly `N` numbers.
     pub(super) fn numbers<const N: usize>(self, name: &'static str) -> Result<Option<[f64; N]>, Fault> {
         let Some(list) = self.field(name)? else { return Ok(None) };
         let wanted = || list.fault(format!("{N} numbers should be here"));

@@ -10,7 +10,7 @@ use glam::Vec3;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A material, and which of the texture coordinates it wants.
+/// A material and the texture coordinate set that it uses.
 pub(super) struct Material {
     pub(super) material: MeshMaterial,
     pub(super) texture_coordinates: usize,
@@ -24,14 +24,14 @@ pub(super) fn read(buffers: &mut Buffers<'_, '_>) -> Result<Vec<Material>, Fault
 
 struct Reader<'r, 'a, 'b> {
     buffers: &'r mut Buffers<'a, 'b>,
-    /// By the index of the image.
+    /// The images read so far, by their index.
     textures: HashMap<usize, Arc<Texture>>,
     budget: Budget,
 }
 
 impl<'a> Reader<'_, 'a, '_> {
     fn material(&mut self, json: Json<'a>) -> Result<Material, Fault> {
-        // The older way of glTF, which only says it in an extension.
+        // The specular-glossiness extension, which older files use instead of a base colour.
         let (base, factor, texture) = match json.extension("KHR_materials_pbrSpecularGlossiness")? {
             Some(older) => (Some(older), "diffuseFactor", "diffuseTexture"),
             None => (json.field("pbrMetallicRoughness")?, "baseColorFactor", "baseColorTexture"),
@@ -52,7 +52,7 @@ impl<'a> Reader<'_, 'a, '_> {
         Ok(material)
     }
 
-    /// The texture that a material names, where it puts it, and by which of the texture coordinates.
+    /// Returns the texture that a material names, with its placement and its texture coordinate set.
     fn placement(&mut self, info: Json<'a>) -> Result<(TexturePlacement, usize), Fault> {
         let (_, texture) = info.required("index")?.item_of(self.buffers.root(), "textures")?;
         let Some(source) = texture.field("source")? else {
@@ -84,7 +84,7 @@ impl<'a> Reader<'_, 'a, '_> {
     }
 }
 
-/// `KHR_texture_transform`: scaled, turned, moved.
+/// Reads `KHR_texture_transform`: scaled, rotated, translated.
 fn transform_of(json: Json<'_>) -> Result<[Vec3; 2], Fault> {
     let [offset_u, offset_v] = json.numbers("offset")?.unwrap_or([0.0; 2]);
     let [scale_u, scale_v] = json.numbers("scale")?.unwrap_or([1.0; 2]);

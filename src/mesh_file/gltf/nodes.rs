@@ -1,4 +1,4 @@
-//! The tree of nodes: which meshes stand where.
+//! The tree of nodes, which transform meshes.
 
 use super::buffers::Buffers;
 use super::json::Json;
@@ -8,7 +8,7 @@ use crate::mesh_file::fault::Fault;
 use crate::progress::Meter;
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
-/// The triangles of the scene that is to be shown.
+/// Reads the triangles of the scene to show.
 pub(super) fn read<'a>(
     root: Json<'a>,
     buffers: &mut Buffers<'a, '_>,
@@ -16,7 +16,7 @@ pub(super) fn read<'a>(
 ) -> Result<MeshFile, Fault> {
     let mut is_visited = vec![false; root.count("nodes")?];
     let mut primitives = Primitives::new(buffers)?;
-    // A stack of our own: trees may be deep.
+    // An explicit stack: trees may be deep.
     let mut open: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
     while let Some(((number, node), parent)) = open.pop() {
         meter.step()?;
@@ -37,12 +37,13 @@ pub(super) fn read<'a>(
 /// A node and its index.
 type Node<'a> = (usize, Json<'a>);
 
-/// The nodes whose indices stand in that list.
+/// Returns the nodes whose indices are in a list.
 fn nodes_in<'a>(json: Json<'a>, list: &'static str, root: Json<'a>) -> Result<Vec<Node<'a>>, Fault> {
     json.list(list)?.map(|index| index.item_of(root, "nodes")).collect()
 }
 
-/// The roots of the default scene, or else of the first one; in a file without scenes, all nodes that are no children.
+/// Returns the roots of the default scene, or of the first one; in a file without scenes, all nodes that are not
+/// children.
 fn roots(root: Json<'_>) -> Result<Vec<Node<'_>>, Fault> {
     let scene = match root.field("scene")? {
         Some(index) => Some(index.item_of(root, "scenes")?.1),
@@ -60,7 +61,7 @@ fn roots(root: Json<'_>) -> Result<Vec<Node<'_>>, Fault> {
     Ok(root.list("nodes")?.enumerate().filter(|&(number, _)| !is_child[number]).collect())
 }
 
-/// Where a node stands in its parent.
+/// Returns the transform of a node in its parent.
 fn local_transform(node: Json<'_>) -> Result<DMat4, Fault> {
     if let Some(matrix) = node.numbers::<16>("matrix")? {
         return Ok(DMat4::from_cols_array(&matrix));

@@ -1,4 +1,4 @@
-//! Primitives -> triangles where their node stands.
+//! Primitives: triangles transformed by their node.
 
 use super::accessor::Accessor;
 use super::buffers::Buffers;
@@ -11,16 +11,16 @@ use crate::mesh_file::fault::Fault;
 use glam::{DMat3, DMat4, Vec2, Vec3};
 use std::collections::HashMap;
 
-/// What has been read so far.
+/// The triangles and attributes read so far.
 pub(super) struct Primitives<'r, 'a, 'b> {
     buffers: &'r mut Buffers<'a, 'b>,
     mesh: Builder,
-    /// Which of the texture coordinates each material wants.
+    /// The texture coordinate set that each material uses.
     texture_coordinate_sets: Vec<usize>,
-    /// Positions and normals by their accessors, where the current node stands.
+    /// Positions and normals of the current node, by their accessors.
     positions: Ranges,
     normals: Ranges,
-    /// Texture coordinates and colours by their accessors: they are the same at all nodes.
+    /// Texture coordinates and colours by their accessors, which are the same at all nodes.
     texture_coordinates: Ranges,
     colors: Ranges,
 }
@@ -28,14 +28,14 @@ pub(super) struct Primitives<'r, 'a, 'b> {
 /// The elements of accessors that were read already. Primitives share them.
 type Ranges = HashMap<usize, Range>;
 
-/// Where the elements of an accessor are among a mesh's.
+/// The range of an accessor's elements among a mesh's.
 #[derive(Clone, Copy)]
 struct Range {
     start: u32,
     count: usize,
 }
 
-/// The names of the texture coordinates.
+/// The names of the texture coordinate sets.
 const TEXTURE_COORDINATES: [&str; 8] =
     ["TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3", "TEXCOORD_4", "TEXCOORD_5", "TEXCOORD_6", "TEXCOORD_7"];
 
@@ -59,7 +59,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         self.mesh.finish("its scene shows no mesh of triangles")
     }
 
-    /// The primitives of a mesh at a node.
+    /// Reads the primitives of a mesh at a node.
     pub(super) fn add_mesh(&mut self, mesh: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), Fault> {
         self.positions.clear();
         self.normals.clear();
@@ -186,7 +186,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         Ok(Some(range))
     }
 
-    /// The indices, each below `count`; `None` if the vertices follow on each other.
+    /// Returns the indices, each below `count`; `None` for a primitive without indices.
     fn indices(&mut self, primitive: Json<'a>, count: usize) -> Result<Option<Vec<u32>>, Fault> {
         let Some(index) = primitive.field("indices")? else { return Ok(None) };
         let accessor = Accessor::read(index, self.buffers)?;
@@ -206,7 +206,7 @@ fn range_after(length: usize, count: usize) -> Range {
     Range { start: length as u32, count }
 }
 
-/// The corners of each triangle, as places among the indices; `None` if there is no such mode.
+/// Returns the corners of each triangle as positions among the indices; `None` for an unknown mode.
 fn triangles(mode: usize, length: usize) -> Option<impl Iterator<Item = [usize; 3]>> {
     let count = match mode {
         4 => length / 3,
@@ -215,14 +215,14 @@ fn triangles(mode: usize, length: usize) -> Option<impl Iterator<Item = [usize; 
     };
     Some((0..count).map(move |i| match mode {
         4 => [3 * i, 3 * i + 1, 3 * i + 2],
-        // Every second triangle of a strip goes round the other way.
+        // Every second triangle of a strip has the opposite orientation.
         5 => [i, i + 1 + i % 2, i + 2 - i % 2],
         _ => [i + 1, i + 2, 0],
     }))
 }
 
-/// What turns normals as the matrix turns surfaces: its inverse transposed, but for a factor greater than 0; also of
-/// matrices that have no inverse.
+/// Returns the transform of normals: the inverse transpose of the matrix, but for a positive factor; also for singular
+/// matrices.
 fn cofactors(matrix: DMat3) -> DMat3 {
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = matrix;
     let sign = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };

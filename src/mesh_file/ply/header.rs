@@ -1,13 +1,13 @@
-//! The header: which elements there are, and what each of their rows holds.
+//! The header: the elements and the properties of their rows.
 
 use crate::mesh_file::fault::{Fault, shown};
 use crate::mesh_file::text::Text;
 
-/// All of it.
+/// A header.
 pub(super) struct Header<'a> {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element<'a>>,
-    /// Where the body begins.
+    /// The start of the body.
     pub(super) end: usize,
 }
 
@@ -18,12 +18,12 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// So many rows of the same properties.
+/// An element: rows with the same properties.
 pub(super) struct Element<'a> {
     pub(super) name: &'a str,
     pub(super) count: u32,
     pub(super) properties: Vec<Property<'a>>,
-    /// Where it is named.
+    /// The position of its declaration.
     pub(super) at: usize,
 }
 
@@ -33,14 +33,14 @@ pub(super) struct Property<'a> {
 }
 
 impl Property<'_> {
-    /// Whether these are the corners of a face.
+    /// Returns whether the property lists the corners of a face.
     pub(super) fn is_indices(&self) -> bool {
         let is_list = matches!(self.shape, Shape::List { item, .. } if !item.is_float());
         is_list && ["vertex_indices", "vertex_index"].contains(&self.name)
     }
 }
 
-/// One number, or a list of them that begins with its length.
+/// The form of a property: a number, or a list that starts with its length.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     Scalar(Type),
@@ -78,7 +78,7 @@ impl Type {
         matches!(self, Self::F32 | Self::F64)
     }
 
-    /// Bytes in a binary file.
+    /// Size in a binary file, in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -97,7 +97,8 @@ impl<'a> Header<'a> {
         }
         reader.text.skip_line();
         while reader.statement()? {}
-        // A body may begin with a byte that looks like the second half of a line's end: it is one only where it has
+        // A body may start with a byte that looks like the second half of a line end. It counts as one only if line
+        // ends in the header have two bytes.
         // been one before.
         let line_end = if bytes.get(3..5) == Some(b"\r\n") { 2 } else { 1 };
         let end = (reader.text.at() + line_end).min(bytes.len());
@@ -118,7 +119,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// One line; false if it was the last one, whose end is not passed over.
+    /// Reads a line. Returns `false` after the last one, whose end is not skipped.
     fn statement(&mut self) -> Result<bool, Fault> {
         if !self.text.go_to_statement() {
             return Err(self.text.expected("end_header"));

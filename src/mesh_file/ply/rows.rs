@@ -1,32 +1,32 @@
-//! The numbers of the body, as text or as bytes.
+//! The numbers of the body, as text or binary.
 
 use super::header::{Element, Property, Shape, Type};
 use crate::mesh_file::fault::Fault;
 use crate::mesh_file::text::Text;
 use crate::progress::Meter;
 
-/// A body: rows, and in them numbers, one after the other.
+/// A body: rows of numbers.
 pub(super) trait Rows {
-    /// Before a row; `row` counts from 0.
+    /// Starts a row; `row` counts from 0.
     fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), Fault>;
-    /// After all numbers of a row.
+    /// Ends a row after all its numbers.
     fn end(&mut self, element: &Element<'_>) -> Result<(), Fault>;
-    /// A finite number.
+    /// Reads a finite number.
     fn number(&mut self, kind: Type) -> Result<f32, Fault>;
-    /// A whole number, of a type that is no float.
+    /// Reads an integer, whose type is not a float.
     fn integer(&mut self, kind: Type) -> Result<i64, Fault>;
-    /// Passes over so many numbers.
+    /// Skips numbers.
     fn skip(&mut self, kind: Type, count: usize) -> Result<(), Fault>;
-    /// The place, for `fault`.
+    /// Returns the position, for `fault`.
     fn place(&self) -> usize;
-    /// A fault at that place.
+    /// Returns a fault at a position.
     fn fault(&self, place: usize, message: String) -> Fault;
-    /// How many bytes are left.
+    /// Returns the number of bytes left.
     fn left(&self) -> usize;
-    /// How many bytes a row takes at least.
+    /// Returns the least size of a row in bytes.
     fn least_size(&self, properties: &[Property<'_>]) -> usize;
 
-    /// The length of a list, not negative.
+    /// Reads the length of a list, which must not be negative.
     fn length(&mut self, kind: Type) -> Result<usize, Fault> {
         let place = self.place();
         let length = self.integer(kind)?;
@@ -34,7 +34,7 @@ pub(super) trait Rows {
     }
 }
 
-/// A row is a line.
+/// A text body, where a row is a line.
 pub(super) struct Ascii<'a> {
     text: Text<'a>,
     meter: Meter<'a>,
@@ -98,13 +98,13 @@ impl Rows for Ascii<'_> {
         self.text.left()
     }
 
-    /// A digit and a blank each.
+    /// A digit and a blank for each number.
     fn least_size(&self, properties: &[Property<'_>]) -> usize {
         2 * properties.len()
     }
 }
 
-/// Rows follow on each other; numbers have the size of their type.
+/// A binary body, where rows are contiguous and numbers have the size of their type.
 pub(super) struct Binary<'a, const BIG_ENDIAN: bool> {
     bytes: &'a [u8],
     at: usize,
@@ -180,7 +180,7 @@ impl<const BIG_ENDIAN: bool> Rows for Binary<'_, BIG_ENDIAN> {
             Type::U16 => i64::from(u16::from_le_bytes(self.take()?)),
             Type::I32 => i64::from(i32::from_le_bytes(self.take()?)),
             Type::U32 => i64::from(u32::from_le_bytes(self.take()?)),
-            // No float reaches this: the header turns them away where whole numbers are meant.
+            // Floats never get here: the header refuses them where an integer is required.
             Type::F32 => f32::from_le_bytes(self.take()?) as i64,
             Type::F64 => f64::from_le_bytes(self.take()?) as i64,
         })

@@ -1,4 +1,4 @@
-//! The files of textures: PNG and JPEG.
+//! Decoding of texture files: PNG and JPEG.
 
 use super::{Texture, TexturePlacement};
 use crate::color::Srgb8;
@@ -13,13 +13,13 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 impl TexturePlacement {
-    /// The picture where the texture coordinates say.
+    /// Returns the texture with its placement.
     pub(in crate::mesh_file) fn plain(texture: Arc<Texture>) -> Self {
         Self { texture, transform: [Vec3::X, Vec3::Y] }
     }
 }
 
-/// How many texels may still be unpacked.
+/// The number of texels that may still be decoded.
 pub(in crate::mesh_file) struct Budget(usize);
 
 impl Default for Budget {
@@ -41,7 +41,7 @@ impl Budget {
     }
 }
 
-/// The picture in a file; `Err` says what the file is, as in "is neither PNG nor JPEG".
+/// Decodes an image. An `Err` describes the file, as in "is neither PNG nor JPEG".
 pub(in crate::mesh_file) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
     if bytes.starts_with(b"\x89PNG") {
         decode_png(bytes, budget)
@@ -80,7 +80,7 @@ fn decode_jpeg(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
     let options = DecoderOptions::default()
         .set_max_width(MAX_TEXELS)
         .set_max_height(MAX_TEXELS)
-        // Otherwise what is missing of a picture would be grey.
+        // Otherwise the missing part of an image would be grey.
         .set_strict_mode(true)
         .jpeg_set_out_colorspace(ColorSpace::RGB);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
@@ -93,8 +93,8 @@ fn decode_jpeg(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
     complete(width as u32, height as u32, texels, "JPEG") // sizes of JPEG have 16 bits
 }
 
-/// Whether the file can hold as many texels as it claims, before they cost time and memory: a byte of PNG unpacks to at
-/// most 1032 bytes of one bit a texel; in JPEG every block of 64 texels takes at least a bit.
+/// Returns whether the file can hold as many texels as it claims, before they cost time and memory: a byte of PNG
+/// decodes to at most 1032 bytes of one bit per texel; in JPEG each block of 64 texels takes at least a bit.
 fn check_plausible(texels: usize, bytes: &[u8], most_per_byte: usize, format: &str) -> Result<(), String> {
     if texels / most_per_byte > bytes.len() { Err(cut_short(format)) } else { Ok(()) }
 }
@@ -103,7 +103,7 @@ fn cut_short(format: &str) -> String {
     format!("is a {format} picture that is cut short")
 }
 
-/// The decoders promise as many texels as the header; nothing here trusts them.
+/// The decoders promise the header's number of texels; that is checked here all the same.
 fn complete(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
     if texels.len() != width as usize * height as usize {
         return Err(cut_short(format));
