@@ -1,30 +1,30 @@
-//! The rules for the numbers of a scene, each with its message: the same for what a scene file says and for what code gives.
+//! The rules for the numbers of a scene, each with its message: the same for scene files and for code.
 //!
-//! A scene file's numbers come here through [`Validator`](crate::written::Validator), which knows where they stand; those of
-//! code through the functions whose names begin with `given`, which know what they are called.
+//! Numbers of a scene file come through [`Validator`](crate::written::Validator), which knows their positions; numbers
+//! from code come through the functions whose names begin with `given`, which know the names of the parameters.
 
 use crate::color::LinearRgb;
 use glam::{DVec3, Vec3};
 use std::borrow::Cow;
 use std::fmt;
 
-/// Coordinates beyond this, squared twice on the light's way, would leave f32.
+/// Limit on coordinates: beyond it, squaring twice on a ray's way would exceed f32.
 const FARTHEST: f64 = 1e9;
 
-/// Lengths below this would vanish in f32 when squared twice.
+/// Limit on lengths: below it, squaring twice would underflow f32.
 const SHORTEST: f64 = 1e-9;
 
 const BRIGHTEST: f64 = 1e12;
 const LARGEST_EXPOSURE: f64 = 1e6;
 
-/// The most that two lengths of a view rectangle may differ by, as a factor.
+/// Limit on the ratio of two lengths of a view rectangle.
 const LARGEST_RATIO: f64 = 1e6;
 
-/// What is wrong with a value, and where it can be said what would be right: one line, no full stop.
+/// The message for a value, which says what would be right where possible: one line without a full stop.
 pub(crate) type Message = Cow<'static, str>;
 
-/// A value of a scene that is out of its range: what it is called, what it was, and the message that a scene file gets for
-/// the same value.
+/// An error about a value of a scene that is out of range: its name, the value, and the message that a scene file gets
+/// for the same value.
 ///
 /// ```
 /// use termtrace::{LinearRgb, PointLight};
@@ -39,12 +39,12 @@ pub struct SceneFault {
 }
 
 impl SceneFault {
-    /// A fault of that name, or name and value.
+    /// Returns an error with a name, or a name and a value.
     pub(crate) fn new(place: impl Into<Message>, message: impl Into<Message>) -> Self {
         Self { place: place.into(), message: message.into() }
     }
 
-    /// Returns what is wrong with the value, in the words of a scene file's error.
+    /// Returns the message in the words of a scene file's error.
     #[doc(hidden)]
     pub fn message(&self) -> &str {
         &self.message
@@ -59,18 +59,18 @@ impl fmt::Display for SceneFault {
 
 impl std::error::Error for SceneFault {}
 
-/// Whether a number is at least `least` and at most `most`, when it is rounded as it will be kept: so that what was read
-/// from a file is accepted again.
+/// Returns whether a number, rounded as it will be stored, is within `least` and `most`, so that a value written back
+/// to a file is accepted again.
 fn is_within(value: f64, least: f64, most: f64) -> bool {
     (least as f32..=most as f32).contains(&(value as f32))
 }
 
-/// Any number that is finite.
+/// Checks that a number is finite.
 pub(crate) fn finite(value: f64) -> Result<f64, Message> {
     if value.is_finite() { Ok(value) } else { Err("the number must be finite".into()) }
 }
 
-/// A coordinate within what f32 can carry through a picture.
+/// Checks that a coordinate is within the range that rays can be traced in.
 pub(crate) fn coordinate(value: f64) -> Result<f32, Message> {
     if value.abs() <= FARTHEST { Ok(value as f32) } else { Err(TOO_FAR.into()) }
 }
@@ -78,15 +78,15 @@ pub(crate) fn coordinate(value: f64) -> Result<f32, Message> {
 pub(crate) const TOO_FAR: &str =
     "coordinates must lie within ±1e9; light cannot be followed farther in single precision";
 
-/// Whether light can be followed to all of these points.
+/// Returns whether all these points are within the range that rays can be traced in.
 pub(crate) fn are_near(points: &[Vec3]) -> bool {
     points.iter().all(|point| f64::from(point.abs().max_element()) <= FARTHEST)
 }
 
-/// The message for a mesh that is not [near](are_near).
+/// Returns the message for a mesh that is not [near](are_near).
 pub(crate) const MESH_TOO_FAR: &str = "this mesh reaches beyond ±1e9; scale it down, or light cannot be followed";
 
-/// A length greater than 0 that f32 can square.
+/// Checks that a length is positive and can be squared in f32.
 pub(crate) fn length(what: &str, value: f64) -> Result<f32, Message> {
     if value <= 0.0 {
         return Err(format!("the {what} must be greater than 0").into());
@@ -97,7 +97,7 @@ pub(crate) fn length(what: &str, value: f64) -> Result<f32, Message> {
     Ok(value as f32)
 }
 
-/// A factor along an axis, which may mirror. Of a mesh that is scaled by 0 along one, nothing is left.
+/// Checks a scale factor along an axis. A negative factor mirrors; 0 would leave nothing of a mesh.
 pub(crate) fn factor(value: f64) -> Result<f32, Message> {
     if is_within(value.abs(), SHORTEST, FARTHEST) {
         Ok(value as f32)
@@ -106,7 +106,7 @@ pub(crate) fn factor(value: f64) -> Result<f32, Message> {
     }
 }
 
-/// An amount of light.
+/// Checks an amount of light.
 pub(crate) fn amount(what: &str, value: f64) -> Result<f32, Message> {
     if value < 0.0 {
         return Err(format!("{what} must not be negative").into());
@@ -117,12 +117,12 @@ pub(crate) fn amount(what: &str, value: f64) -> Result<f32, Message> {
     Ok(value as f32)
 }
 
-/// A band of light.
+/// Checks a channel of light.
 pub(crate) fn light(band: f64) -> Result<f32, Message> {
     amount("light", band)
 }
 
-/// A band of a reflectance: a part of the light.
+/// Checks a channel of a reflectance, at most 1.
 pub(crate) fn reflectance(band: f64) -> Result<f32, Message> {
     if (0.0..=1.0).contains(&band) {
         Ok(band as f32)
@@ -131,7 +131,7 @@ pub(crate) fn reflectance(band: f64) -> Result<f32, Message> {
     }
 }
 
-/// What all light is multiplied by.
+/// Checks an exposure.
 pub(crate) fn exposure(value: f64) -> Result<f32, Message> {
     if value > 0.0 && value as f32 > 0.0 && value <= LARGEST_EXPOSURE {
         return Ok(value as f32);
@@ -140,7 +140,7 @@ pub(crate) fn exposure(value: f64) -> Result<f32, Message> {
     Err(format!("the exposure must be {wanted}").into())
 }
 
-/// A direction of unit length: of f64's, so that nothing is lost before the one rounding.
+/// Returns the direction at unit length, computed in f64 so that only one rounding is left.
 pub(crate) fn unit_vector(what: &str, vector: DVec3) -> Result<DVec3, Message> {
     let largest = vector.abs().max_element();
     if largest == 0.0 {

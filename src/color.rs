@@ -1,9 +1,8 @@
-//! Light as numbers: linear RGB, 8-bit sRGB, the transfer function between them, and OKLab for how different two colours
-//! look.
+//! Colours: linear RGB, 8-bit sRGB, the transfer function between them, and OKLab for perceived differences.
 //!
-//! Every colour in the crate is one of two types, because a mix-up would give a picture that looks plausible and is
-//! wrong: [`LinearRgb`] is an amount of light, which may be added and scaled; [`Srgb8`] is what a file or a terminal
-//! is told, which may not. The way from the first to the second is the picture's last step (see [`tone`](crate::tone)).
+//! Colours have two types, because a mix-up would give a picture that looks plausible and is wrong: [`LinearRgb`] is an
+//! amount of light, which may be added and scaled; [`Srgb8`] is a code for a file or terminal, which may not. The
+//! conversion from the first to the second is the last step of a picture (see [`tone`](crate::tone)).
 //!
 //! The primaries are those of sRGB (IEC 61966-2-1), the white is D65.
 
@@ -11,8 +10,8 @@ mod names;
 
 use std::ops::{Add, AddAssign, Mul};
 
-/// An amount of light in three bands, linear, in sRGB's primaries. 1 is the screen's white at exposure 1; values
-/// above 1 are legal light.
+/// Linear light in the three channels of sRGB's primaries. 1 is the screen's white at exposure 1; larger values are
+/// valid light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinearRgb {
     /// Red, linear.
@@ -27,50 +26,50 @@ impl LinearRgb {
     /// No light.
     pub const BLACK: Self = Self::new(0.0, 0.0, 0.0);
 
-    /// The three bands, linear.
+    /// Returns light with these three channels, linear.
     pub const fn new(r: f32, g: f32, b: f32) -> Self {
         Self { r, g, b }
     }
 
-    /// The same amount in each band.
+    /// Returns light with the same amount in each channel.
     pub const fn grey(amount: f32) -> Self {
         Self::new(amount, amount, amount)
     }
 
-    /// What an 8-bit sRGB colour means as light, each band in 0..=1.
+    /// Returns the light of an 8-bit sRGB colour, each channel in 0..=1.
     #[doc(hidden)]
     pub fn from_srgb8(color: Srgb8) -> Self {
         let table = &TRANSFER.linear_from_srgb8;
         Self::new(table[usize::from(color.r)], table[usize::from(color.g)], table[usize::from(color.b)])
     }
 
-    /// The relative luminance Y of CIE 1931 (the second row of sRGB's matrix; IEC 61966-2-1).
+    /// Returns the relative luminance Y of CIE 1931 (the second row of sRGB's matrix; IEC 61966-2-1).
     #[doc(hidden)]
     pub fn luminance(self) -> f32 {
         0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
     }
 
-    /// The mix of `self` (at `t` = 0) and `other` (at `t` = 1).
+    /// Interpolates linearly from `self` (at `t` = 0) to `other` (at `t` = 1).
     #[doc(hidden)]
     pub fn lerp(self, other: Self, t: f32) -> Self {
         self * (1.0 - t) + other * t
     }
 
-    /// Whether no band is infinite or NaN.
+    /// Returns whether no channel is infinite or NaN.
     #[doc(hidden)]
     pub fn is_finite(self) -> bool {
         self.r.is_finite() && self.g.is_finite() && self.b.is_finite()
     }
 }
 
-/// The three bands, linear.
+/// Takes the three channels, linear.
 impl From<[f32; 3]> for LinearRgb {
     fn from([r, g, b]: [f32; 3]) -> Self {
         Self::new(r, g, b)
     }
 }
 
-/// What an 8-bit sRGB colour means as light, each band in 0..=1.
+/// Returns the light of an 8-bit sRGB colour, each channel in 0..=1.
 impl From<Srgb8> for LinearRgb {
     fn from(color: Srgb8) -> Self {
         Self::from_srgb8(color)
@@ -90,7 +89,7 @@ impl AddAssign for LinearRgb {
     }
 }
 
-/// Light through a filter, or off a surface of that reflectance: band by band.
+/// Multiplies per channel: light through a filter, or off a surface with that reflectance.
 impl Mul for LinearRgb {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
@@ -105,7 +104,7 @@ impl Mul<f32> for LinearRgb {
     }
 }
 
-/// A colour as files and terminals take it: sRGB, 8 bits a band, transfer function applied.
+/// A colour as files and terminals take it: sRGB, 8 bits per channel, transfer function applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Srgb8 {
     /// Red, 0..=255.
@@ -117,12 +116,12 @@ pub struct Srgb8 {
 }
 
 impl Srgb8 {
-    /// The three bands.
+    /// Returns a colour with these three channels.
     pub const fn new(r: u8, g: u8, b: u8) -> Self {
         Self { r, g, b }
     }
 
-    /// The nearest 8-bit colour: each band clamped to 0..=1, put through the transfer function and rounded.
+    /// Returns the nearest 8-bit colour: each channel clamped to 0..=1, encoded by the transfer function, and rounded.
     /// NaN counts as no light.
     #[inline]
     #[doc(hidden)]
@@ -130,36 +129,36 @@ impl Srgb8 {
         TRANSFER.color(light)
     }
 
-    /// The same of all in a row.
+    /// Converts a sequence of colours as [`from_linear`](Self::from_linear) does.
     pub(crate) fn all_from_linear(lights: impl Iterator<Item = LinearRgb>) -> impl Iterator<Item = Self> {
         lights.map(|light| TRANSFER.color(light))
     }
 }
 
-/// The three bands.
+/// Takes the three channels.
 impl From<[u8; 3]> for Srgb8 {
     fn from([r, g, b]: [u8; 3]) -> Self {
         Self::new(r, g, b)
     }
 }
 
-/// The three bands.
+/// Returns the three channels.
 impl From<Srgb8> for [u8; 3] {
     fn from(Srgb8 { r, g, b }: Srgb8) -> Self {
         [r, g, b]
     }
 }
 
-/// The nearest 8-bit colour: each band clamped to 0..=1, put through the transfer function and rounded. NaN counts as no
-/// light.
+/// Returns the nearest 8-bit colour: each channel clamped to 0..=1, encoded by the transfer function, and rounded. NaN
+/// counts as no light.
 impl From<LinearRgb> for Srgb8 {
     fn from(light: LinearRgb) -> Self {
         Self::from_linear(light)
     }
 }
 
-/// A colour in OKLab (Björn Ottosson, "A perceptual color space for image processing", 2020): equal distances look about
-/// equally different. It only ever judges what a screen shows; nothing is painted with it.
+/// A colour in OKLab (Björn Ottosson, "A perceptual color space for image processing", 2020), in which equal distances
+/// look about equally different. It is used to compare colours only, never to mix them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Oklab {
     /// Lightness: 0 is black, 1 the screen's white.
@@ -171,7 +170,7 @@ pub struct Oklab {
 }
 
 impl Oklab {
-    /// The colour of a screen, by the matrices of the source.
+    /// Returns the OKLab colour of a screen colour, by the matrices of the source.
     pub fn from_srgb8(color: Srgb8) -> Self {
         let LinearRgb { r, g, b } = LinearRgb::from_srgb8(color);
         let l = libm::cbrtf(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);
@@ -184,36 +183,37 @@ impl Oklab {
         }
     }
 
-    /// How different two colours look: the distance between them, of which black and white have 1.
+    /// Returns the perceived difference of two colours: their distance, which is 1 for black and white.
     pub fn distance(self, other: Self) -> f32 {
         let (l, a, b) = (self.l - other.l, self.a - other.a, self.b - other.b);
         (l * l + a * a + b * b).sqrt()
     }
 }
 
-/// sRGB's transfer function, linear to encoded (IEC 61966-2-1), both in 0..=1.
+/// Encodes by sRGB's transfer function: linear to encoded (IEC 61966-2-1), both in 0..=1.
 pub fn srgb_from_linear(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
 }
 
-/// sRGB's transfer function, encoded to linear (IEC 61966-2-1), both in 0..=1.
+/// Decodes by sRGB's transfer function: encoded to linear (IEC 61966-2-1), both in 0..=1.
 pub fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// So many floats that follow each other are a bucket: they share the upper half of their bits, which is the sign, the
-/// exponent and the first 7 bits of the mantissa. It is so short that it holds at most one of the 255 steps.
+/// Number of consecutive floats in a bucket: those with the same upper half of their bits, which is the sign, the
+/// exponent and the first 7 bits of the mantissa. A bucket is short enough to contain at most one of the 255 steps.
 const BUCKET: u32 = 1 << 16;
 const BUCKETS: usize = 1 << 16;
 
 /// The transfer function, tabulated.
 struct Transfer {
-    /// Light of each 8-bit code.
+    /// The light of each 8-bit code.
     linear_from_srgb8: [f32; 256],
-    /// `bits_at_step[k]`: the least light that rounds to code k + 1, as bits, whose order is the same. Nothing does to 256.
+    /// `bits_at_step[k]` holds the bits of the least light that rounds to code k + 1; the order of the bits is that of
+    /// the floats. No light rounds to 256.
     bits_at_step: [u32; 256],
-    /// The code of the least light in each bucket. Most of them are never looked at, as they are of nothing that a screen
-    /// shows: with them, light need not be brought into bounds first.
+    /// The code of the least light in each bucket. Buckets beyond what a screen can show are never used in practice;
+    /// with them, light need not be clamped first.
     first_code: [u8; BUCKETS],
 }
 
@@ -223,21 +223,21 @@ impl Transfer {
         Srgb8::new(self.srgb8(light.r), self.srgb8(light.g), self.srgb8(light.b))
     }
 
-    /// One band: clamp, encode, round.
+    /// Clamps, encodes and rounds a channel.
     ///
-    /// Calling `pow` for each band of each pixel would cost more than tracing it. Rounding has only 255 steps, so the
-    /// light at which each step is taken is kept instead; a band lies in the step that its exponent and first mantissa
-    /// bits lead to, or in the one above it.
+    /// Calling `pow` for each channel of each pixel would cost more than tracing it. Rounding has only 255 steps, so
+    /// the table holds the light at each step: a channel is in the step of its bucket, which its exponent and first
+    /// mantissa bits give, or in the next one.
     #[inline]
     fn srgb8(&self, linear: f32) -> u8 {
-        // Below zero the order of bits is another. NaN is black, too.
+        // Negative floats order differently by their bits. NaN becomes black, too.
         let bits = if linear > 0.0 { linear } else { 0.0 }.to_bits();
         let code = self.first_code[(bits / BUCKET) as usize];
         code + u8::from(bits >= self.bits_at_step[usize::from(code)])
     }
 }
 
-/// The compiler reckons it: to do so at each start would take longer than to read a small scene.
+/// Evaluated at compile time: doing so at each start would take longer than reading a small scene.
 static TRANSFER: Transfer = Transfer::new();
 
 impl Transfer {
@@ -267,13 +267,13 @@ impl Transfer {
     }
 }
 
-/// [`linear_from_srgb`] as the compiler can reckon it.
+/// [`linear_from_srgb`] as a `const fn`.
 const fn decoded(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { to_the_2_4((encoded + 0.055) / 1.055) }
 }
 
-/// The power of a number above 0 and up to 1: its square times the fifth root of that, by Newton's method, which comes
-/// down to it from 1.
+/// Returns x^2.4 for x in (0, 1]: x squared times the fifth root of x squared, by Newton's method, which converges from
+/// 1 downwards.
 const fn to_the_2_4(number: f64) -> f64 {
     let square = number * number;
     let mut root = 1.0;
@@ -287,7 +287,7 @@ const fn to_the_2_4(number: f64) -> f64 {
     }
 }
 
-/// Casting rounds to nearest, which may be below.
+/// The cast rounds to nearest, which may be below.
 const fn least_f32_at_or_above(value: f64) -> f32 {
     let nearest = value as f32;
     if (nearest as f64) < value { nearest.next_up() } else { nearest }
@@ -297,7 +297,7 @@ const fn least_f32_at_or_above(value: f64) -> f32 {
 mod tests {
     use super::*;
 
-    /// Values of the standard's own formula, worked out with 40 digits.
+    /// Values of the standard's formula, computed with 40 digits.
     #[test]
     fn transfer_function_has_the_standards_values() {
         for (linear, encoded) in [
@@ -321,7 +321,7 @@ mod tests {
         }
     }
 
-    /// What the compiler has reckoned is what the formula says, to the bit.
+    /// The values computed at compile time equal the formula to the bit.
     #[test]
     fn the_table_is_the_formulas() {
         for code in 0..=255_u8 {
@@ -334,7 +334,7 @@ mod tests {
         }
     }
 
-    /// The table against the formula in f64: at every step's two sides, and over the whole range.
+    /// The table agrees with the formula in f64 at both sides of each step, and over the whole range.
     #[test]
     fn quantising_is_the_formula_rounded() {
         let by_formula = |x: f32| (srgb_from_linear(f64::from(x)) * 255.0).round() as u8;
@@ -355,7 +355,7 @@ mod tests {
         }
     }
 
-    /// Values worked out in f64 from the source's formulas.
+    /// Values computed in f64 from the source's formulas.
     #[test]
     fn oklab_has_the_sources_values() {
         for (color, [l, a, b]) in [

@@ -1,9 +1,10 @@
-//! The picture as light: what arrives at the eye through each pixel.
+//! The picture as linear light: the light that arrives at the eye through each pixel.
 
 use crate::color::LinearRgb;
 use std::fmt;
 
-/// A picture's size in pixels, and their shape: at most [`MAX_PIXELS`](Self::MAX_PIXELS), which may be none.
+/// The size of a picture in pixels and the shape of a pixel. At most [`MAX_PIXELS`](Self::MAX_PIXELS) pixels, possibly
+/// none.
 ///
 /// ```
 /// use termtrace::Resolution;
@@ -24,8 +25,8 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// The most pixels of a picture, 33,554,432: more than 8K. Rendering a picture of that size takes some 900 MB at one
-    /// sample of each pixel.
+    /// Limit on the pixels of a picture: 33,554,432, more than 8K. Rendering that many takes some 900 MB at one sample
+    /// per pixel.
     pub const MAX_PIXELS: u32 = 1 << 25;
 
     /// Returns the size of a picture of square pixels.
@@ -39,7 +40,7 @@ impl Resolution {
         Ok(Self { width, height, pixel_aspect: 1.0 })
     }
 
-    /// Returns the size of a picture of square pixels, for sizes that stand in the source.
+    /// Returns the size of a picture of square pixels, for constant sizes.
     ///
     /// # Panics
     /// If there are more than [`MAX_PIXELS`](Self::MAX_PIXELS).
@@ -50,8 +51,8 @@ impl Resolution {
         }
     }
 
-    /// Returns the same number of pixels of another shape: a pixel's height over its width. A half cell of the usual
-    /// terminal is square: 1.
+    /// Returns the same size with another pixel shape: a pixel's height divided by its width. With the usual cell
+    /// aspect of 2 a half cell is square: 1.
     ///
     /// # Errors
     /// [`ResolutionError::PixelAspect`], unless it is greater than 0 and finite.
@@ -73,12 +74,12 @@ impl Resolution {
         self.height
     }
 
-    /// Returns a pixel's height over its width.
+    /// Returns a pixel's height divided by its width.
     pub const fn pixel_aspect(&self) -> f32 {
         self.pixel_aspect
     }
 
-    /// Returns the picture's aspect ratio as it is seen: width over height.
+    /// Returns the picture's aspect ratio as seen: width divided by height.
     #[doc(hidden)]
     pub fn aspect_ratio(&self) -> f32 {
         self.width as f32 / (self.height as f32 * self.pixel_aspect)
@@ -89,14 +90,14 @@ impl Resolution {
         self.width as usize * self.height as usize
     }
 
-    /// Returns the size of a part of the picture that is no wider.
+    /// Returns the size of a part of the picture with `width` columns.
     #[cfg(feature = "live")]
     pub(crate) fn with_width(self, width: u32) -> Self {
         Self { width: width.min(self.width), ..self }
     }
 }
 
-/// The reason why no picture has that size.
+/// The error of a size that no picture has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ResolutionError {
@@ -107,7 +108,7 @@ pub enum ResolutionError {
         /// Rows of pixels.
         height: u32,
     },
-    /// A pixel's height over its width is not greater than 0 and finite.
+    /// A pixel's height divided by its width is not positive and finite.
     PixelAspect(f32),
 }
 
@@ -127,7 +128,7 @@ impl fmt::Display for ResolutionError {
 
 impl std::error::Error for ResolutionError {}
 
-/// Linear light per pixel, row by row from the top; pixel (0, 0) is top left.
+/// Linear light for each pixel, row by row from the top; pixel (0, 0) is the top left one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Framebuffer {
     resolution: Resolution,
@@ -141,7 +142,7 @@ impl Framebuffer {
         Self { resolution, pixels: vec![LinearRgb::BLACK; resolution.pixel_count()] }
     }
 
-    /// Returns its size.
+    /// Returns the size.
     #[doc(hidden)]
     pub fn resolution(&self) -> Resolution {
         self.resolution
@@ -152,7 +153,7 @@ impl Framebuffer {
         &self.pixels
     }
 
-    /// Returns all pixels to change.
+    /// Returns all pixels for writing.
     #[doc(hidden)]
     pub fn pixels_mut(&mut self) -> &mut [LinearRgb] {
         &mut self.pixels
@@ -168,8 +169,8 @@ impl Framebuffer {
         self.pixels[y as usize * self.resolution.width as usize + x as usize]
     }
 
-    /// Returns a 64-bit hash of the exact bits of all pixels and of the size (FNV-1a over 32-bit words, little end first):
-    /// equal pictures, and as good as only those, have equal hashes, on every machine.
+    /// Returns a 64-bit hash of the exact bits of all pixels and of the size (FNV-1a over 32-bit little-endian words):
+    /// the same on every machine for equal pictures, and practically unique.
     #[doc(hidden)]
     pub fn hash(&self) -> u64 {
         let size = [self.resolution.width, self.resolution.height];

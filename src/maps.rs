@@ -1,8 +1,8 @@
-//! Scene -> the shaded picture, or a map: what there is to see besides light, from the same camera.
+//! The shaded picture of a scene, and maps: pictures of other things than light, from the same camera.
 //!
-//! A map is made of one ray through the middle of each pixel and has a fixed colour scale: equal values have equal colours
-//! in every picture, and the legend says which. Only the scale of depths depends on the camera, on the distance of its
-//! target. A *view* is something else: a camera position, as in a scene's [`views`](Scene::views).
+//! A map is made of one ray through the centre of each pixel and has a fixed colour scale, which its legend gives:
+//! equal values have equal colours in every picture. Only the scale of depths depends on the camera, by the distance of
+//! its target. A *view* is something else: a camera position, as in a scene's [`views`](Scene::views).
 
 use crate::camera::{Camera, Pose};
 use crate::color::{LinearRgb, Srgb8};
@@ -22,48 +22,48 @@ mod contrast;
 mod cost;
 mod shaded;
 
-/// What a picture shows of a scene: its light, or one of the maps.
+/// The content of a picture: the scene's light, or one of the maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Map {
-    /// Its light.
+    /// The light.
     #[default]
     Shaded,
-    /// The sum of n.l over all lights that the surface faces, at most 1, as light off white surfaces: no colours, no
-    /// distances, no shadows.
+    /// The sum of n.l over all lights that the surface faces, at most 1, as light off white surfaces: without colours,
+    /// distances and shadows.
     Lambert,
-    /// How far away surfaces are along the direction of view, t: the lightness 1 / (1 + (t / d)^2), where d is the distance
-    /// from the eye to the target.
+    /// The depth t along the direction of view, as the lightness 1 / (1 + (t / d)^2), where d is the distance from the
+    /// eye to the target.
     Depth,
-    /// The normal on the seen side, (n + 1) / 2 as red, green and blue.
+    /// The normal on the visible side, as (n + 1) / 2 in red, green and blue.
     Normal,
-    /// Which object it is: a colour for each number.
+    /// The object, by a colour for each number.
     Object,
-    /// How many lights arrive: none is dark grey, all are white.
+    /// The number of lights that reach the surface, from dark grey for none to white for all.
     Shadow,
-    /// What the pixel's rays are tested against, each by itself: surfaces and nodes of the tree, counted for the eye ray
-    /// and its shadow rays; from blue over green to red and white, a colour for each power of four.
+    /// The number of tests of the pixel's eye ray and shadow rays, each traced singly: surfaces, and nodes of the tree;
+    /// from blue over green to red and white, with a colour for each power of four.
     Cost,
-    /// Which side of the surface is seen.
+    /// The visible side of the surface.
     Facing,
-    /// The light as black and white, cut in the middle, with a line where two objects of the same ink meet: for those who
-    /// see outlines better than colours.
+    /// The light in black and white, thresholded in the middle, with a line where two objects of the same colour meet:
+    /// for people who see outlines better than colours.
     Contrast,
 }
 
-/// Where a ray meets nothing, in every picture but those of light, of costs, and of high contrast.
+/// The colour of rays without a hit, in all maps except costs and high contrast.
 const NOTHING: Srgb8 = Srgb8::new(16, 20, 56);
-/// The side of a surface to which its normal points,
+/// The colour of the side of a surface to which its normal points,
 const FRONT: Srgb8 = Srgb8::new(70, 150, 230);
-/// and the other one.
+/// and of the other side.
 const BACK: Srgb8 = Srgb8::new(235, 80, 50);
 
-/// A picture, and what it took.
+/// A picture and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// The picture.
     pub picture: Picture,
-    /// What it took. Nothing in the picture depends on it.
+    /// The cost, which has no influence on the picture.
     pub cost: Cost,
 }
 
@@ -81,8 +81,8 @@ impl Map {
         Self::Contrast,
     ];
 
-    /// Returns the picture that `camera` takes of `scene`: a function of these arguments alone. Samples refine the shaded
-    /// picture; of the maps only [`Sampling::Coarse`] changes anything.
+    /// Returns the picture of `scene` from `camera`, a function of these arguments alone. Samples refine the shaded
+    /// picture; of maps only [`Sampling::Coarse`] changes anything.
     pub fn picture(
         self,
         scene: &Scene,
@@ -109,7 +109,7 @@ impl Map {
         }
     }
 
-    /// Returns the map of that name.
+    /// Returns the map with this name.
     #[doc(hidden)]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|map| map.name() == name)
@@ -121,7 +121,7 @@ impl Map {
         self.after(1)
     }
 
-    /// Returns the map before; before the first, the last.
+    /// Returns the previous map; before the first, the last.
     #[doc(hidden)]
     pub fn back(self) -> Self {
         self.after(Self::ALL.len() - 1)
@@ -132,13 +132,13 @@ impl Map {
         Self::ALL[(at + steps) % Self::ALL.len()]
     }
 
-    /// Returns whether more samples make it better: the others have one ray for each pixel.
+    /// Returns whether more samples improve the picture: maps have one ray per pixel.
     #[doc(hidden)]
     pub const fn refines(self) -> bool {
         matches!(self, Self::Shaded)
     }
 
-    /// Returns the name and what the colours mean in that picture, in at most 38 characters of ASCII.
+    /// Returns the name and the meaning of the colours in this picture, in at most 38 ASCII characters.
     #[doc(hidden)]
     pub fn legend(self, scene: &Scene, camera: &Camera) -> String {
         let meaning = match self {
@@ -162,7 +162,7 @@ impl fmt::Display for Map {
     }
 }
 
-/// The value of that name.
+/// Parses the name of a map.
 ///
 /// ```
 /// use termtrace::Map;
@@ -179,7 +179,7 @@ impl FromStr for Map {
     }
 }
 
-/// Returns the [picture](Map::picture) of that map.
+/// Returns the [picture](Map::picture) of a map.
 pub fn picture(
     map: Map,
     scene: &Scene,
@@ -190,10 +190,10 @@ pub fn picture(
     all_seen(map, Crew::Pool, scene, camera, resolution, sampling.into()).picture
 }
 
-/// [`picture`], traced by that crew.
+/// Traces as [`picture`] does on the threads of `crew`.
 ///
 /// # Errors
-/// [`Cancelled`], if the crew's token is.
+/// [`Cancelled`], if the crew's token is cancelled.
 pub fn seen(
     map: Map,
     crew: Crew<'_>,
@@ -244,14 +244,14 @@ fn all_seen(
     }
 }
 
-/// The lecture's n.l of all lights, as light.
+/// Returns the sum of the lecture's n.l over all lights, as light.
 fn lambert(scene: &Scene, sight: &Sight) -> Srgb8 {
     let Some(surface) = sight.surface(scene) else { return NOTHING };
     let cosine = |light| shade::incidence(light, &surface).map_or(0.0, |incidence| incidence.cosine);
     Srgb8::from_linear(LinearRgb::grey(scene.lights().iter().map(cosine).sum()))
 }
 
-/// From the eye to the target.
+/// Returns the distance from the eye to the target.
 fn distance(camera: &Camera) -> f32 {
     let Pose { eye, target, .. } = camera.pose();
     eye.distance(target)

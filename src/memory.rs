@@ -1,22 +1,22 @@
-//! Memory, asked for before it is used, where its amount depends on a window or a file.
+//! Checks for memory whose amount depends on a window or a file, before it is used.
 //!
-//! What depends on them is allocated piece by piece, by stages that have no error to return: to make each of them fail
-//! would put a `Result` into every signature from the readers to the encoder. So the sum is reserved once, before the work
-//! begins, and given back untouched. Where the address space or the memory that may be committed is limited, that fails as
-//! the pieces would, while there still is a way to say so; it costs two system calls. (An allocation that fails is the end
-//! of the process, with the terminal as it is.)
+//! The memory is then allocated piece by piece by stages that return no error: making each of them fallible would put a
+//! `Result` into every signature from the readers to the encoder. So the sum is reserved once before the work starts,
+//! and freed untouched. Where the address space or the committed memory is limited, this reservation fails as the
+//! pieces would, while an error can still be reported; it costs two system calls. (A failed allocation elsewhere aborts
+//! the process without restoring the terminal.)
 
 use std::{error, fmt, io};
 
-/// There is not enough memory.
+/// The error of too little memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutOfMemory {
-    /// For what, such as "for a picture of 80x24 cells"; may be empty.
+    /// The purpose, such as "for a picture of 80x24 cells"; may be empty.
     what_for: String,
 }
 
 impl OutOfMemory {
-    /// The same error, which also tells for what there is not enough.
+    /// Returns the error with a purpose.
     #[must_use]
     pub fn when(self, what_for: impl Into<String>) -> Self {
         Self { what_for: what_for.into() }
@@ -33,16 +33,16 @@ impl fmt::Display for OutOfMemory {
 impl error::Error for OutOfMemory {}
 
 impl From<OutOfMemory> for io::Error {
-    /// Of the kind [`OutOfMemory`](io::ErrorKind::OutOfMemory).
+    /// The kind is [`OutOfMemory`](io::ErrorKind::OutOfMemory).
     fn from(error: OutOfMemory) -> Self {
         Self::new(io::ErrorKind::OutOfMemory, error.to_string())
     }
 }
 
-/// What everything else takes that is allocated meanwhile, and what an allocator wastes.
+/// Allowance for everything else that is allocated meanwhile, and for the allocator's overhead.
 const HEADROOM: usize = 32 << 20;
 
-/// Finds out whether so many bytes can be allocated.
+/// Checks that this many bytes can be allocated.
 ///
 /// # Errors
 /// If they cannot.

@@ -1,8 +1,8 @@
-//! Files that a person names, read within bounds of kind, size and time.
+//! Reading of files that the user names, within limits on kind, size and time.
 //!
-//! A name on the command line, in the environment or in a scene may lead anywhere: to a device that never ends, to a pipe
-//! that nothing is written to, to more bytes than there is memory. [`read`] is the one way to the bytes behind a name.
-//! Standard input is not named: it is read as it comes, up to a size, by the command line.
+//! A name on the command line, in the environment or in a scene may refer to anything: an endless device, a pipe
+//! without a writer, more bytes than there is memory. [`read`] is the only way to the bytes behind a name. Standard
+//! input has no name: the command line reads it, up to a size.
 
 use crate::progress::{Progress, Watcher, Work};
 use std::fs::File;
@@ -22,27 +22,27 @@ use posix::{open, wait};
 pub use refusal::reason;
 use refusal::refused;
 
-/// What may stand behind a name.
+/// The kinds of files that are accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Accepted {
-    /// Plain files: for names that a file gives, which may come from a stranger.
+    /// Plain files: for names given in a file, which may come from a stranger.
     Files,
-    /// Plain files, pipes (`<(...)` of a shell is one) and `/dev/null`: for names that the user gives.
+    /// Plain files, pipes (such as `<(...)` in a shell) and `/dev/null`: for names given by the user.
     FilesAndPipes,
 }
 
-/// From one report to the watcher to the next: 1 MiB, which a disk delivers in about a millisecond.
+/// Bytes between two reports to the watcher: 1 MiB, which a disk delivers in about a millisecond.
 const STRIDE: u64 = 1 << 20;
 
-/// Returns all bytes of the file at `path`, at most `most` of them, which may depend on how they begin.
+/// Returns all bytes of the file at `path`, limited to `most(bytes so far)`, which may depend on the file's beginning.
 ///
-/// The watcher is told how many bytes have been read; it is not told that the file is needed. If it has gone, reading ends
-/// with [`ErrorKind::Interrupted`]. A pipe is waited for at most a second at a time. Memory grows with the bytes that are
-/// there, not with the size that is claimed for them.
+/// Reports the number of bytes read to the watcher, but not that the file is needed. After a cancel reading ends with
+/// [`ErrorKind::Interrupted`]. Waits for a pipe for a second at a time. Memory grows with the bytes read, not with the
+/// size that is claimed for them.
 ///
 /// # Errors
-/// Whatever the system says, and what is not accepted: other kinds of files, a pipe that delivers nothing for a second
-/// ([`ErrorKind::TimedOut`]), more than `most` bytes ([`ErrorKind::FileTooLarge`]). [`reason`] puts it into words.
+/// The system's error; another kind of file than accepted; a pipe that delivers nothing for a second
+/// ([`ErrorKind::TimedOut`]); or too many bytes ([`ErrorKind::FileTooLarge`]). [`reason`] puts it into words.
 pub fn read(
     path: &Path,
     accepted: Accepted,
@@ -61,7 +61,7 @@ pub fn read(
         if read_on(&mut file, &mut bytes)? {
             return Ok(bytes);
         }
-        // Checked before the size is reserved: files without contents claim up to 2^63 bytes.
+        // Checked before memory is reserved: virtual files claim up to 2^63 bytes.
         let most = most(&bytes);
         if bytes.len().max(size) > most {
             return Err(too_large(most));
@@ -70,12 +70,12 @@ pub fn read(
     }
 }
 
-/// Reads the next bytes, up to [`STRIDE`], and returns whether these were all.
+/// Reads the next bytes, up to [`STRIDE`], and returns whether the file ended.
 fn read_on(file: &mut File, bytes: &mut Vec<u8>) -> io::Result<bool> {
     wait(file)?;
     match file.take(STRIDE).read_to_end(bytes) {
         Ok(count) => Ok(count == 0),
-        // What the pipe has held so far is in `bytes`.
+        // `bytes` holds what the pipe has delivered so far.
         Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(false),
         Err(error) => Err(error),
     }
@@ -111,16 +111,16 @@ mod tests {
         assert_eq!(read_up_to(size, &path, Accepted::Files).map(|bytes| bytes.len()), Ok(size));
         assert_eq!(read_up_to(size - 1, &path, Accepted::Files), too_large("3145727 bytes"));
         assert_eq!(read_up_to(2 << 20, &path, Accepted::Files), too_large("2 MiB"));
-        // What the first bytes are says how many there may be.
+        // The first bytes determine the limit.
         let most = |bytes: &[u8]| if bytes.starts_with(&[7]) { 64 << 10 } else { usize::MAX };
         let error = read(&path, Accepted::Files, most, &Watcher::patient()).expect_err("too large");
         assert_eq!(Err(reason(&error)), too_large("64 KiB"));
-        // Its size alone is enough.
+        // The claimed size alone is enough.
         File::create(&path).and_then(|file| file.set_len(1 << 42)).expect("a sparse file can be made");
         assert_eq!(read_up_to(1 << 30, &path, Accepted::Files), too_large("1 GiB"));
     }
 
-    /// Between two waits the watcher is asked.
+    /// The watcher is asked between two waits.
     #[test]
     fn reading_ends_when_the_watcher_has_gone() {
         let folder = tempfile::tempdir().expect("a folder can be made");

@@ -1,4 +1,4 @@
-//! Progress reports on work that takes a while, and the token by which it is cancelled.
+//! Progress reports of long work, and the token that cancels it.
 
 #[cfg(feature = "ron")]
 mod meter;
@@ -13,31 +13,31 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What is being done, and how much of it is done.
+/// A progress report.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct Progress {
-    /// What is being done.
+    /// The kind of work.
     pub work: Work,
-    /// How much of it is done: bytes of a file, boxes of a tree.
+    /// The amount done: bytes of a file, or boxes of a tree.
     pub done: usize,
-    /// How much there is to do; 0 where that is not known.
+    /// The total amount; 0 if unknown.
     pub total: usize,
 }
 
-/// What takes time on the way from a file to a scene.
+/// A kind of work between a file and a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Work {
-    /// The file of that name comes from the disk.
+    /// Reading a file with this name from disk.
     Reading(String),
-    /// The bytes of the file of that name become triangles.
+    /// Parsing the bytes of a file with this name.
     Parsing(String),
-    /// A tree is built over all that is in the scene.
+    /// Building the trees of the scene.
     Building,
 }
 
-/// A receiver of progress reports, which come now and then and from any thread, and by which the work can be cancelled.
+/// A receiver of progress reports, which may come from any thread, and through which the work can be cancelled.
 pub struct Watcher<'w> {
     hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
     hear_need: Option<&'w (dyn Fn(&Path) + Sync)>,
@@ -45,12 +45,12 @@ pub struct Watcher<'w> {
 }
 
 impl<'w> Watcher<'w> {
-    /// Reports progress to this function, and cancels the work when it answers `Break`.
+    /// Reports progress to `hear`, and cancels the work when it returns `Break`.
     pub fn new(hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
         Self { hear, hear_need: None, cancellation: Cancellation::default() }
     }
 
-    /// Reports each file to that function, too, before it is opened.
+    /// Reports each file to `hear_need` as well, before it is opened.
     pub fn with_needs(self, hear_need: &'w (dyn Fn(&Path) + Sync)) -> Self {
         Self { hear_need: Some(hear_need), ..self }
     }
@@ -60,7 +60,7 @@ impl<'w> Watcher<'w> {
         Self { cancellation: cancellation.clone(), ..self }
     }
 
-    /// A watcher that hears nothing and cancels nothing.
+    /// Returns a watcher that ignores reports and never cancels.
     pub fn patient() -> Watcher<'static> {
         Watcher::new(&|_| ControlFlow::Continue(()))
     }
@@ -68,7 +68,7 @@ impl<'w> Watcher<'w> {
     /// Reports progress.
     ///
     /// # Errors
-    /// [`Cancelled`], if the work is to be given up.
+    /// [`Cancelled`], if the work is cancelled.
     pub fn tell(&self, progress: Progress) -> Result<(), Cancelled> {
         if (self.hear)(progress).is_break() {
             self.cancellation.cancel();
@@ -76,36 +76,36 @@ impl<'w> Watcher<'w> {
         if self.is_gone() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Reports a file that the work needs, which may not be there.
+    /// Reports a file that the work needs, which may be missing.
     pub fn needs(&self, file: &Path) {
         if let Some(hear) = self.hear_need {
             hear(file);
         }
     }
 
-    /// Returns whether the work is to be given up.
+    /// Returns whether the work is cancelled.
     pub fn is_gone(&self) -> bool {
         self.cancellation.is_cancelled()
     }
 }
 
-/// A token shared by whoever waits for work and whoever does it. All clones are one token; once cancelled, it stays so.
+/// A cancellation token, shared by all its clones. Once cancelled, it stays cancelled.
 #[derive(Clone, Debug, Default)]
 pub struct Cancellation(Arc<AtomicBool>);
 
 impl Cancellation {
-    /// Asks for the work to be given up at its next check.
+    /// Cancels the work at its next check.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Returns whether the work is to be given up.
+    /// Returns whether the work is cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// The error of work that was given up because its token was cancelled.
+/// The error of cancelled work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cancelled;
 
@@ -117,17 +117,17 @@ impl fmt::Display for Cancelled {
 
 impl std::error::Error for Cancelled {}
 
-/// Why work that may be cancelled, and may fail, has no result.
+/// The reason why fallible, cancellable work has no result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unfinished<E> {
-    /// It was given up because its token was cancelled.
+    /// The work was cancelled.
     Cancelled,
-    /// It failed.
+    /// The work failed.
     Failed(E),
 }
 
 impl<E> Unfinished<E> {
-    /// Converts the failure, if it is one.
+    /// Converts the error of a failure.
     #[doc(hidden)]
     pub fn map<F>(self, convert: impl FnOnce(E) -> F) -> Unfinished<F> {
         match self {
@@ -136,7 +136,7 @@ impl<E> Unfinished<E> {
         }
     }
 
-    /// Returns the failure of work that nothing could cancel.
+    /// Returns the error of work that has no token.
     ///
     /// # Panics
     /// If it was cancelled.

@@ -1,11 +1,11 @@
-//! Scene -> framebuffer, tile by tile: eye rays -> hits -> shadow rays -> shade.
+//! Rendering of a scene to a framebuffer, tile by tile: eye rays, hits, shadow rays, shading.
 //!
-//! What crosses a tile goes together: each step is a function over arrays of its rays, 256 at most, so that tracing them
-//! as packets, looking at a tile's edges or explaining one ray is a choice inside a step.
+//! Each step is a function over arrays of up to 256 rays of a tile, so that tracing packets, looking for edges in a
+//! tile, or explaining one ray is a choice inside a step.
 //!
 //! A frame is a pure function of scene, camera, resolution and [`Sampling`]. Tiles run on the threads of the current
-//! rayon pool; as no pixel's light depends on another's, neither their number nor their order shows. Which pixels get
-//! more samples does depend on others: that is decided after a first pass over the whole picture.
+//! rayon pool; as no pixel's light depends on another's, neither their number nor their order matters. Which pixels get
+//! more samples does depend on other pixels, and is decided after a first pass over the whole picture.
 
 use crate::camera::Camera;
 use crate::framebuffer::{Framebuffer, Resolution};
@@ -37,26 +37,26 @@ pub use schedule::Crew;
 pub(crate) use sights::all_sights;
 pub use sights::{Reach, Sight, Sighted, sights};
 
-/// The picture of `scene` that `camera` sees. The first ray of a pixel goes through its centre.
+/// Returns the picture of `scene` seen by `camera`. The first ray of a pixel goes through its centre.
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Framebuffer {
     render_all(Crew::Pool, scene, camera, resolution, sampling.into()).framebuffer
 }
 
-/// A frame, and what it took.
+/// A frame and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendered {
     /// The picture.
     pub framebuffer: Framebuffer,
-    /// What it took. Nothing in the picture depends on it.
+    /// The cost of tracing it, which has no influence on the picture.
     pub cost: Cost,
 }
 
-/// What tracing took.
+/// The cost of tracing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// How many rays were traced: eye rays and shadow rays.
+    /// The number of rays traced: eye rays and shadow rays.
     pub rays: u64,
-    /// How long that took, all threads together.
+    /// The time spent, all threads together.
     pub work: Duration,
 }
 
@@ -67,10 +67,10 @@ impl AddAssign for Cost {
     }
 }
 
-/// [`render`] by that crew.
+/// Renders as [`render`] does on the threads of `crew`.
 ///
 /// # Errors
-/// [`Cancelled`], if the crew's token is.
+/// [`Cancelled`], if the crew's token is cancelled.
 pub fn render_by(
     crew: Crew<'_>,
     scene: &Scene,
@@ -81,8 +81,8 @@ pub fn render_by(
     crew.finish(render_all(crew, scene, camera, resolution, sampling.into()))
 }
 
-/// Returns the units in which a [`Report`](report::Report) counts such a render: those of [`Unit`](steps::Unit) for all of
-/// its tiles.
+/// Returns the total in which a [`Report`](report::Report) counts such a render: the sum of [`Unit`](steps::Unit) over
+/// all of its tiles.
 fn units(resolution: Resolution, sampling: Sampling) -> u64 {
     let pixels = resolution.pixel_count() as u64;
     match sampling.bounded() {
@@ -92,7 +92,7 @@ fn units(resolution: Resolution, sampling: Sampling) -> u64 {
     }
 }
 
-/// [`render`] by that crew; one that is cancelled passes over what is left.
+/// Renders as [`render`] does on the threads of `crew`; after a cancel the rest is skipped.
 pub(crate) fn render_all(
     crew: Crew<'_>,
     scene: &Scene,
@@ -106,7 +106,8 @@ pub(crate) fn render_all(
         Sampling::UpTo(samples) => {
             let mut picture = Refining::new(camera, resolution);
             let cost = picture.refine(crew, scene, samples);
-            // A cancelled picture is thrown away: to fill millions of pixels takes longer than the answer to a cancel may.
+            // The picture of a cancelled render is dropped: filling millions of pixels would exceed the limit for the
+            // answer to a cancel.
             let is_lost = crew.is_cancelled();
             let framebuffer = if is_lost { Framebuffer::new(Resolution::square(0, 0)) } else { picture.framebuffer() };
             Rendered { framebuffer, cost }

@@ -1,7 +1,7 @@
-//! Tables: a type with a row for each of its values, and one constant for all that is particular to a row.
+//! Tables: an enum with a row for each of its values, and one constant with everything particular to a row.
 
-/// Writes a table as an enum whose variants are the rows, with the list of them and the constant of each: what else is to
-/// be known of a row follows from that constant, so that a new one is a line here and the file with the constant.
+/// Defines an enum whose variants are the rows of a table, with the list of them and the constant of each. Everything
+/// else about a row follows from its constant, so that a new row is one line here and one file with the constant.
 macro_rules! table {
     (
         $(#[doc = $about:literal])*
@@ -17,10 +17,10 @@ macro_rules! table {
         }
 
         impl $Table {
-            /// All of them, in the order of the table.
+            /// All values, in the order of the table.
             pub const ALL: &[Self] = &[$($(#[cfg($condition)])? Self::$Row,)*];
 
-            /// All that is particular to it.
+            /// Returns the constant of the row.
             const fn row(self) -> &'static $Kind {
                 match self {
                     $($(#[cfg($condition)])? Self::$Row => const { &$kind },)*

@@ -1,5 +1,5 @@
-//! Text for messages: printable, whatever comes from outside (names, arguments, files, environment variables); lists in
-//! prose; the word that was probably meant; an error in parts.
+//! Text for messages: printable text from outside sources (names, arguments, files, environment variables), lists in
+//! prose, spelling suggestions, and errors in parts.
 
 mod notice;
 mod parse_error;
@@ -11,13 +11,13 @@ pub(crate) use parse_error::named;
 pub(crate) use words::number;
 pub use words::{any_of, closest, listed};
 
-/// Returns what stands for a character in a message: itself, unless it moves the cursor, starts an escape sequence, turns
-/// the direction of writing, or cannot be seen.
+/// Returns the replacement of a character in a message: itself, unless it moves the cursor, starts an escape sequence,
+/// changes the direction of writing, or is invisible.
 pub(crate) fn visible_char(c: char) -> char {
     match c {
         '\t' => ' ',
-        // Zero width, marks of direction, separators of lines and paragraphs; embeddings and overrides; the word joiner,
-        // isolates and what Unicode has withdrawn; the Arabic letter mark; the byte order mark.
+        // Zero-width characters, direction marks, line and paragraph separators; embeddings and overrides; the word
+        // joiner, isolates and deprecated format characters; the Arabic letter mark; the byte order mark.
         '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{61c}' | '\u{feff}' => {
             char::REPLACEMENT_CHARACTER
         }
@@ -26,12 +26,12 @@ pub(crate) fn visible_char(c: char) -> char {
     }
 }
 
-/// Returns the text in one line, with nothing in it that controls a terminal.
+/// Returns the text as one line without control characters.
 pub fn visible(text: &str) -> String {
     text.chars().map(visible_char).collect()
 }
 
-/// Returns the text with its line feeds, and nothing else in it that controls a terminal.
+/// Returns the text without control characters except its line feeds.
 pub fn visible_lines(text: &str) -> String {
     text.chars().map(|c| if c == '\n' { c } else { visible_char(c) }).collect()
 }

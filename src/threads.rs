@@ -1,5 +1,5 @@
-//! Work that may be done in parallel: on the threads of the current rayon pool with the feature `parallel`, and without it on
-//! the calling thread. Results are the same, and in the same order.
+//! Parallel work: on the threads of the current rayon pool with the feature `parallel`, on the calling thread without
+//! it. Results are the same and in the same order.
 
 #[cfg(not(feature = "parallel"))]
 mod alone;

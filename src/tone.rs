@@ -1,11 +1,11 @@
-//! Light -> picture: exposure, tone curve, transfer function, rounding to 8 bits. Light is linear up to here.
+//! Tone mapping: exposure, tone curve, transfer function, rounding to 8 bits. Light is linear up to here.
 
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Framebuffer;
 use crate::scene::{Scene, ToneCurve};
 use crate::threads;
 
-/// The picture as files and terminals take it.
+/// A picture as files and terminals take it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Picture {
     pub(crate) width: u32,
@@ -15,7 +15,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Returns the picture with these pixels, row by row from the top; `None`, unless there are `width * height`.
+    /// Returns the picture with these pixels, row by row from the top; `None` unless there are `width * height`.
     ///
     /// ```
     /// use termtrace::{Picture, Srgb8};
@@ -47,13 +47,13 @@ impl Picture {
         &self.pixels
     }
 
-    /// Returns red, green and blue of each pixel, row by row from the top, as other crates take pictures.
+    /// Returns the red, green and blue bytes of each pixel, row by row from the top, as image crates take them.
     pub fn to_bytes(&self) -> Vec<u8> {
         self.pixels.iter().flat_map(|pixel| [pixel.r, pixel.g, pixel.b]).collect()
     }
 }
 
-/// The framebuffer as `scene` wants its light shown.
+/// Returns the framebuffer as a picture, with the exposure and tone curve of `scene`.
 pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     let [width, height] = [framebuffer.resolution().width(), framebuffer.resolution().height()];
     let (curve, exposure) = (scene.tone_curve(), scene.exposure());
@@ -70,27 +70,27 @@ pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     Picture { width, height, pixels }
 }
 
-/// To wake another thread for fewer pixels takes longer than it saves.
+/// Least number of pixels for which other threads are woken: for fewer, waking takes longer than it saves.
 const ALONE: usize = 1 << 16;
 
-/// The light as `scene` wants it shown: exposed, then after the tone curve. 1 is white, and so is more.
+/// Returns light with the exposure and tone curve of `scene` applied. 1 and more is white.
 pub fn shown(light: LinearRgb, scene: &Scene) -> LinearRgb {
     bend(scene.tone_curve(), light * scene.exposure())
 }
 
-/// The light after the tone curve.
+/// Returns light after the tone curve.
 fn bend(curve: ToneCurve, light: LinearRgb) -> LinearRgb {
     match curve {
         ToneCurve::None => light,
-        // Reinhard, Stark, Shirley and Ferwerda 2002, equation 3, on the luminance, so that hues stay.
+        // Reinhard, Stark, Shirley and Ferwerda 2002, equation 3, applied to the luminance, which keeps hues.
         ToneCurve::Reinhard => light * (1.0 / (1.0 + light.luminance())),
         ToneCurve::Filmic => LinearRgb::new(filmic(light.r), filmic(light.g), filmic(light.b)),
     }
 }
 
-/// Krzysztof Narkowicz's fit (2015) to the ACES reference rendering and output transforms.
+/// Returns Krzysztof Narkowicz's fit (2015) to the ACES reference rendering and output transforms.
 fn filmic(x: f32) -> f32 {
-    // Far beyond where it is white already; the square of more may be beyond f32.
+    // Clamped far beyond white: the square of more could exceed f32.
     let x = x.min(1e6);
     (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)
 }

@@ -1,4 +1,4 @@
-//! The names of colours.
+//! CSS colour names.
 
 use super::Srgb8;
 
@@ -155,7 +155,7 @@ const CSS: [(&str, [u8; 3]); 148] = [
 ];
 
 impl Srgb8 {
-    /// Returns the colour of that CSS name, such as `steelblue`, in upper or lower case.
+    /// Returns the colour of a CSS name, such as `steelblue`, in upper or lower case.
     pub(crate) fn from_name(name: &str) -> Option<Self> {
         let name = name.to_ascii_lowercase();
         let at = CSS.binary_search_by_key(&&*name, |&(known, _)| known).ok()?;

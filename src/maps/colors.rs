@@ -1,9 +1,9 @@
-//! Numbers -> colours, each by a scale that is the same for every picture.
+//! Colour scales, the same for every picture.
 
 use crate::color::Srgb8;
 use glam::Vec3;
 
-/// From 0 to 1 to a band of a colour.
+/// Converts 0..=1 to a channel of a colour.
 fn band(share: f32) -> u8 {
     (share * 255.0 + 0.5) as u8
 }
@@ -13,31 +13,31 @@ fn grey(share: f32) -> Srgb8 {
     Srgb8::new(band, band, band)
 }
 
-/// White at 0, half as light at `middle`, black at infinity; the change is greatest near the middle.
+/// Returns white at 0, half the light at `middle`, black at infinity; the slope is greatest near `middle`.
 pub(super) fn depth(t: f32, middle: f32) -> Srgb8 {
     let part = t / middle;
     grey(1.0 / (1.0 + part * part))
 }
 
-/// A unit normal's coordinates, from -1 to 1, as bands from 0 to 255.
+/// Converts a unit normal's coordinates from -1..=1 to channels.
 pub(super) fn normal(n: Vec3) -> Srgb8 {
     let [r, g, b] = n.to_array().map(|coordinate| band(0.5 * coordinate + 0.5));
     Srgb8::new(r, g, b)
 }
 
-/// Dark grey for none of so many, white for all.
+/// Returns dark grey for none of `all`, white for all.
 pub(super) fn share(count: u32, of: u32) -> Srgb8 {
     const DARK: f32 = 0.22;
     grey(DARK + (1.0 - DARK) * count.min(of) as f32 / of.max(1) as f32)
 }
 
-/// A colour for each number: hues a golden section of the circle apart, so that neighbours differ as much as they can
-/// however many there are, in three lightnesses.
+/// Returns a colour for each number: hues a golden section of the circle apart, which keeps neighbours distinct for any
+/// count, in three lightnesses.
 pub(super) fn object(number: u32) -> Srgb8 {
     const GOLDEN: u32 = 2_654_435_769; // 2^32 / 1.618...
     const BRIGHTEST: [f32; 3] = [1.0, 0.72, 0.86];
     const LEAST: [f32; 3] = [0.2, 0.08, 0.5];
-    // The first is a warm red.
+    // The first hue is a warm red.
     let hue = 6.0 * (number.wrapping_mul(GOLDEN) >> 8) as f32 / 16_777_216.0;
     let level = (number % 3) as usize;
     let of_band = |middle: f32| {
@@ -52,11 +52,11 @@ pub(super) fn object(number: u32) -> Srgb8 {
 const HEAT: [[f32; 3]; 6] =
     [[0.1, 0.1, 0.5], [0.12, 0.5, 0.88], [0.2, 0.72, 0.3], [0.96, 0.86, 0.22], [0.87, 0.2, 0.16], [1.0, 1.0, 1.0]];
 
-/// From blue, for 1 or nothing, over green and red to white, for 1024 and more: each power of four has its own, and what
-/// lies between is mixed.
+/// Returns blue for 0 and 1, over green and red, to white for 1024 and more: each power of four has a colour, and
+/// values between are interpolated.
 pub(super) fn heat(count: u32) -> Srgb8 {
     let power = count.max(1).ilog2();
-    // How many times a half of such a power, as a straight line from each power of two to the next.
+    // The logarithm to base 4, interpolated linearly between powers of two.
     let halves = power as f32 + (count.max(1) as f32 / (1_u64 << power) as f32 - 1.0);
     let place = (0.5 * halves).min((HEAT.len() - 1) as f32);
     let first = (place as usize).min(HEAT.len() - 2);
@@ -65,7 +65,7 @@ pub(super) fn heat(count: u32) -> Srgb8 {
     Srgb8::new(r, g, b)
 }
 
-/// A length in a few characters: three digits, and a power of ten where they are not enough.
+/// Formats a length in a few characters: three digits, and an exponent where they are not enough.
 pub(super) fn short(length: f32) -> String {
     match length {
         l if !(0.01..1e4).contains(&l) => format!("{l:.1e}"),
@@ -111,7 +111,7 @@ mod tests {
         assert!(heat(8) != heat(4) && heat(8) != heat(16) && heat(9) != heat(8), "and others between");
     }
 
-    /// Objects that stand in a row in the file are told apart at a glance, and of a thousand no two are the same.
+    /// Objects that are neighbours in the file differ clearly, and of a thousand no two have the same colour.
     #[test]
     fn objects_have_colours_of_their_own() {
         let colors: Vec<_> = (0..1000).map(object).collect();

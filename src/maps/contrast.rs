@@ -1,7 +1,7 @@
-//! Black and white, with lines between objects.
+//! Black and white with lines between objects.
 //!
-//! Light alone, cut at a threshold, loses an object on one of its own kind: two white ones become one. So where two that
-//! have the same ink meet, a line of the other ink parts them.
+//! A threshold alone loses an object in front of one of the same kind: two white ones merge. So a line of the other
+//! colour separates two neighbours with the same colour.
 
 use super::{Seen, shaded};
 use crate::camera::Camera;
@@ -15,13 +15,13 @@ use std::num::NonZeroU32;
 const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
 const WHITE: Srgb8 = Srgb8::new(255, 255, 255);
 
-/// What is at least so bright is white: half of white as the eye sees it, of CIE 1976 L* 50.
+/// Threshold for white: half of white as perceived, CIE 1976 L* 50.
 const MIDDLE: f32 = 0.184;
 
 pub(super) fn seen(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: Resolution, sampling: Sampling) -> Seen {
     let sampling = if sampling == Sampling::Coarse { sampling } else { Sampling::Each(NonZeroU32::MIN) };
     let light = shaded::seen(crew, scene, camera, resolution, sampling);
-    // Counted from 1; 0: none.
+    // Counted from 1; 0 for none.
     let objects = all_sights(crew, scene, camera, resolution, sampling, Reach::Surfaces, |sight| {
         sight.hit.map_or(0, |hit| hit.object + 1)
     });
@@ -30,7 +30,7 @@ pub(super) fn seen(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: R
     Seen { picture: drawn(&light.picture, &objects.pixels), cost }
 }
 
-/// The picture in two inks, where each pixel shows the object of that number.
+/// Returns the picture in two colours, where each pixel shows the object with this number.
 fn drawn(picture: &Picture, objects: &[u32]) -> Picture {
     let width = picture.width as usize;
     let is_white: Vec<_> =
@@ -49,7 +49,7 @@ fn drawn(picture: &Picture, objects: &[u32]) -> Picture {
 mod tests {
     use super::*;
 
-    /// A line between two of the same ink, none between two that differ, and none around the picture.
+    /// There is a line between two objects of the same colour, none between two that differ, and none at the border.
     #[test]
     fn lines_part_what_would_run_together() {
         let [light, dark] = [Srgb8::new(200, 200, 200), Srgb8::new(90, 90, 90)];

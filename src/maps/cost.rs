@@ -1,11 +1,11 @@
-//! What the rays of a pixel are tested against, each by itself: the eye ray, and the shadow rays from where it ends.
+//! The tests of a pixel's rays, each traced singly: the eye ray, and the shadow rays from its hit.
 
 use crate::hit::{Test, Witness, any_hit_witnessed, closest_hit_witnessed};
 use crate::render::Sight;
 use crate::scene::Scene;
 use crate::shade;
 
-/// How many tests there were: surfaces, and nodes of the tree, whose boxes are tested at once.
+/// The number of tests: of surfaces, and of nodes of the tree, whose boxes are tested together.
 #[derive(Default)]
 struct Count(u32);
 

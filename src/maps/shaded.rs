@@ -1,4 +1,4 @@
-//! The picture itself: light, toned.
+//! The shaded picture: tone-mapped light.
 
 use super::Seen;
 use crate::camera::Camera;

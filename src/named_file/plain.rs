@@ -1,4 +1,4 @@
-//! Plain files, on any system.
+//! Plain files on any system.
 
 use super::Accepted;
 use super::refusal::refused;
@@ -6,10 +6,11 @@ use std::fs::{File, Metadata};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-/// Returns the open file and its size. No way to wait for a pipe is the same on all systems: only files are accepted.
+/// Opens a file and returns its size. Only plain files are accepted: waiting for pipes works differently on each
+/// system.
 pub(super) fn open(path: &Path, _: Accepted) -> io::Result<(File, u64)> {
-    // Looked at before it is opened, because opening a device can do something to it; and once more after that, because
-    // something else may have taken the name.
+    // Checked before it is opened, because opening a device may have an effect, and again afterwards, because the name
+    // may have been replaced.
     check(&path.metadata()?)?;
     let file = File::open(path)?;
     let data = file.metadata()?;
@@ -27,7 +28,7 @@ fn check(data: &Metadata) -> io::Result<()> {
     }
 }
 
-/// Returns at once: there always is something to read in a plain file, or its end.
+/// Returns at once: a plain file always has bytes to read, or its end.
 #[expect(clippy::unnecessary_wraps, reason = "a pipe may fail, where pipes are read")]
 pub(super) fn wait(_: &File) -> io::Result<()> {
     Ok(())

@@ -1,4 +1,4 @@
-//! Files and pipes as POSIX has them.
+//! Files and pipes on POSIX systems.
 
 use super::Accepted;
 use super::refusal::refused;
@@ -10,16 +10,16 @@ use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// The longest time that a pipe may deliver nothing. A program that writes into `<(...)` has started by then; and a view
-/// that waits for longer looks as if it hung.
+/// Limit on the time without bytes from a pipe. A program that writes into `<(...)` has started by then, and a longer
+/// wait looks like a hang.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// The open file, and its size as far as that is known: a pipe has none, and a file may grow.
+/// Opens a file and returns its size, if known: a pipe has none, and a file may grow.
 pub(super) fn open(path: &Path, accepted: Accepted) -> io::Result<(File, u64)> {
-    // Looked at before it is opened, because opening a device can do something to it; and once more after that, because
-    // something else may have taken the name.
+    // Checked before it is opened, because opening a device may have an effect, and again afterwards, because the name
+    // may have been replaced.
     check(&path.metadata()?, accepted)?;
-    // Opening a FIFO waits for its writer otherwise.
+    // Without this flag, opening a FIFO waits for its writer.
     let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
     let file = OpenOptions::new().read(true).custom_flags(flags.bits().cast_signed()).open(path)?;
     let data = file.metadata()?;
@@ -41,13 +41,13 @@ fn check(data: &Metadata, accepted: Accepted) -> io::Result<()> {
     Err(refused(ErrorKind::InvalidInput, format!("this is {what}, not {wanted}")))
 }
 
-/// Whether this is `/dev/null`, under any name.
+/// Returns whether this is `/dev/null`, under any name.
 fn is_null(data: &Metadata) -> bool {
     let is_same = |null: Metadata| data.file_type().is_char_device() && data.rdev() == null.rdev();
     Path::new("/dev/null").metadata().is_ok_and(is_same)
 }
 
-/// Waits until there is something to read, or an end. There always is in a plain file.
+/// Waits until there are bytes to read, or the end. A plain file is always ready.
 pub(super) fn wait(file: &File) -> io::Result<()> {
     let deadline = Instant::now() + PATIENCE;
     loop {
@@ -55,7 +55,7 @@ pub(super) fn wait(file: &File) -> io::Result<()> {
         match poll(&mut [PollFd::new(file, PollFlags::IN)], left.as_ref()) {
             Ok(0) => return Err(refused(ErrorKind::TimedOut, "this pipe delivered nothing for a second".to_owned())),
             Err(rustix::io::Errno::INTR) => {}
-            // Where it cannot be waited for, reading says why.
+            // If polling fails, reading reports the reason.
             _ => return Ok(()),
         }
     }
@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// The writer waits until its last bytes have been taken: the reader has found the pipe empty then, or is about to.
+    /// The writer waits until its last bytes have been read: the reader then has found the pipe empty, or is about to.
     #[test]
     fn a_pipe_is_read_to_its_end_however_slowly_it_comes() {
         let folder = tempfile::tempdir().expect("a folder can be made");

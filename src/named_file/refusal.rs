@@ -1,9 +1,9 @@
-//! Why a file was not read, in words.
+//! The reason why a file was not read, in words.
 
 use std::fmt;
 use std::io::{self, ErrorKind};
 
-/// An error whose words are our own.
+/// An error with a message of our own.
 pub(super) fn refused(kind: ErrorKind, message: String) -> io::Error {
     io::Error::new(kind, Refusal(message))
 }
@@ -19,7 +19,7 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// Why a file could not be read: the words that follow its name and a colon in a message.
+/// Returns the reason in the words that follow a file's name and a colon in a message.
 pub fn reason(error: &io::Error) -> String {
     match error.kind() {
         _ if error.get_ref().and_then(|inner| inner.downcast_ref::<Refusal>()).is_some() => error.to_string(),

@@ -6,34 +6,34 @@ use super::{Cancelled, Progress, Watcher, Work};
 pub(crate) struct Meter<'a> {
     watcher: &'a Watcher<'a>,
     name: &'a str,
-    /// The file's length in bytes.
+    /// The size of the file in bytes.
     total: usize,
-    /// The first position that is to be reported.
+    /// The next position to report.
     next: usize,
 }
 
-/// How many bytes lie between two reports: one or two milliseconds of parsing.
+/// Bytes between two reports: one or two milliseconds of parsing.
 const STRIDE: usize = 256 << 10;
 
 impl<'a> Meter<'a> {
-    /// A meter at the start of the file `name`, which has `total` bytes.
+    /// Returns a meter at the start of a file called `name` with `total` bytes.
     pub(crate) fn new(watcher: &'a Watcher<'a>, name: &'a str, total: usize) -> Self {
         Self { watcher, name, total, next: 0 }
     }
 
-    /// Notes that the parser is at byte `at`.
+    /// Reports that the parser has reached byte `at`, if a report is due.
     ///
     /// # Errors
-    /// If the file is no longer wanted.
+    /// If the work is cancelled.
     #[inline]
     pub(crate) fn reach(&mut self, at: usize) -> Result<(), Cancelled> {
         if at < self.next { Ok(()) } else { self.tell(at, self.total) }
     }
 
-    /// Notes progress of a parser that does not read its file from front to back: the report has no position.
+    /// Reports progress without a position, for a parser that does not read its file from front to back.
     ///
     /// # Errors
-    /// If the file is no longer wanted.
+    /// If the work is cancelled.
     #[cfg(feature = "mesh")]
     pub(crate) fn step(&mut self) -> Result<(), Cancelled> {
         self.tell(0, 0)

@@ -1,4 +1,4 @@
-//! More samples where a picture has edges, pass by pass.
+//! Adaptive refinement: more samples where a picture has edges, pass by pass.
 
 use super::pixel::{First, Watched};
 use super::sampling::{PASSES, Runs};
@@ -15,31 +15,31 @@ use crate::shade;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-/// A picture in work, which gets more samples where it has edges, as long as that is wanted. Whatever the steps in which
-/// it is made, its light is the same to the bit as if it had been made in one.
+/// A picture in progress, which gets more samples where it has edges. Its light does not depend on the steps in which
+/// it is refined, to the bit.
 #[derive(Clone, Debug)]
 pub struct Refining {
     tiles: Tiles,
-    /// What the first sample of each pixel saw, tile by tile.
+    /// The G-buffer: the first sample of each pixel, tile by tile.
     first: Vec<Vec<First>>,
-    /// All samples of each pixel, once there are more.
+    /// All samples of each pixel, once there are more than one.
     watched: Vec<Vec<Watched>>,
-    /// How many of the passes are done.
+    /// Number of passes done.
     passes: usize,
 }
 
 impl Refining {
-    /// Nothing of it is traced yet.
+    /// Returns a picture without samples.
     pub fn new(camera: &Camera, resolution: Resolution) -> Self {
         let tiles = Tiles::new(camera, resolution, 1);
         Self { tiles, first: vec![Vec::new(); tiles.count()], watched: vec![Vec::new(); tiles.count()], passes: 0 }
     }
 
-    /// Traces what is lacking to [`Sampling::UpTo`](super::Sampling::UpTo) that number of samples of the scene, which has to be the same each time.
-    /// Returns what that took.
+    /// Traces what is missing up to [`Sampling::UpTo`](super::Sampling::UpTo) that number of samples, and returns the
+    /// cost. The scene must be the same each time.
     ///
     /// # Errors
-    /// [`Cancelled`], if the token is; then the picture cannot be refined any further.
+    /// [`Cancelled`], if the token is cancelled; the picture cannot be refined any further then.
     pub fn refine_or_cancel(
         &mut self,
         token: &Cancellation,
@@ -53,8 +53,8 @@ impl Refining {
     pub(super) fn refine(&mut self, crew: Crew<'_>, scene: &Scene, samples: NonZeroU32) -> Cost {
         let wanted = PASSES.iter().filter(|pass| pass.end <= samples.get()).count();
         let mut cost = Cost::default();
-        // Where edges are is seen in the whole picture of the first pass. Then each pixel by itself tells whether it needs
-        // more, and nobody waits for another tile.
+        // Finding edges takes the whole first pass. After it each pixel decides by itself whether it needs more
+        // samples, and no tile waits for another.
         if self.passes == 0 && wanted > 0 {
             cost += self.trace_first(crew, scene);
             self.passes = 1;
@@ -75,7 +75,7 @@ impl Refining {
         })
     }
 
-    /// The next passes.
+    /// Traces the remaining passes.
     fn trace_more(&mut self, crew: Crew<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
         let white = 1.0 / scene.exposure();
         let runs: Vec<_> = passes.map(|pass| (pass, Runs::of(PASSES[pass].clone()))).collect();
@@ -96,12 +96,12 @@ impl Refining {
         })
     }
 
-    /// Whether no more samples will be taken anywhere.
+    /// Returns whether no pixel will get more samples.
     pub fn is_final(&self) -> bool {
         self.passes == PASSES.len()
     }
 
-    /// The mean light of each pixel's samples.
+    /// Returns the mean light of each pixel's samples.
     pub fn framebuffer(&self) -> Framebuffer {
         let mut framebuffer = Framebuffer::new(self.tiles.resolution);
         let parts = self.tiles.split(framebuffer.pixels_mut());
@@ -116,8 +116,8 @@ impl Refining {
     }
 }
 
-/// The [units](Unit) of a tile in all passes but the first; how many samples it gets is not known before. In the pictures of
-/// `scenes/` these passes take 8 to 25 times the instructions of the first.
+/// The progress [units](Unit) of a tile in all passes but the first, whose number of samples is not known beforehand.
+/// For the pictures of `scenes/` these passes take 8 to 25 times the instructions of the first.
 const UNITS_OF_MORE: u64 = 16 * PIXELS as u64;
 
 /// Returns the units of all passes but the first.
@@ -126,7 +126,7 @@ pub(super) fn units_of_more(resolution: Resolution, samples: NonZeroU32) -> u64 
     if is_refined { UNITS_OF_MORE * Tiles::count_of(resolution) as u64 } else { 0 }
 }
 
-/// Whether an edge may run beside that pixel of a tile; `white` is the light that is shown as white.
+/// Returns whether an edge may run beside a pixel of a tile; `white` is the light that is displayed as white.
 fn is_at_edge(tiles: &Tiles, first: &[Vec<First>], tile: usize, pixel: usize, white: f32) -> bool {
     let own = &first[tile][pixel];
     let [columns, rows] = tiles.around(tile, pixel);
@@ -138,18 +138,18 @@ fn is_at_edge(tiles: &Tiles, first: &[Vec<First>], tile: usize, pixel: usize, wh
     })
 }
 
-/// Puts down what a batch's rays, one through each pixel, saw.
+/// Records the hits and light of a batch with one ray per pixel.
 fn see_first(first: &mut [First], buffers: &Buffers) {
     for (ray, &pixel) in buffers.pixels.iter().enumerate() {
         let (group, lane) = (ray / LANES, ray % LANES);
-        // As a sum of one, which is never -0.
+        // Stored as a sum of one sample, which is never -0.
         let light = LinearRgb::BLACK + shade::light_of(&buffers.lights[group], lane);
         let lit_by = buffers.arriving[group].lit_by[lane];
         first[usize::from(pixel)] = First::new(light, buffers.points[group].seen(lane), lit_by);
     }
 }
 
-/// Adds a batch's samples, `each` of a pixel, to those of the tile's pixels.
+/// Adds a batch's samples, `each` for every pixel, to the tile's pixels.
 fn add_samples(watched: &mut [Watched], buffers: &Buffers, each: usize) {
     let bands = buffers.bands();
     for (first, &pixel) in buffers.pixels.iter().enumerate().step_by(each) {

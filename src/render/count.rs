@@ -1,4 +1,4 @@
-//! The trace stage alone, for those who time it: eye rays -> closest hits -> a shadow ray from each.
+//! The trace stage alone, for benchmarks: eye rays, closest hits, and a shadow ray from each.
 
 use super::sampling::Runs;
 use super::steps::{Buffers, Goal, Shot};
@@ -13,17 +13,18 @@ use crate::shade::{self, ShadowRays};
 use std::num::NonZeroU32;
 use std::ops::Add;
 
-/// What a picture's rays met.
+/// Counts of a picture's rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
-    /// How many rays were traced: eye rays and shadow rays.
+    /// Number of rays traced: eye rays and shadow rays.
     pub rays: u64,
-    /// How many eye rays met an object.
+    /// Number of eye rays with a hit.
     pub hits: u64,
-    /// How many of the points that they met nothing keeps from a light, counted for each light. Light that comes from
-    /// behind the surface counts: nothing but the tracing is looked at here.
+    /// Number of pairs of a hit and a light without an occluder between them. Light from behind the surface counts as
+    /// well: only tracing is measured here.
     pub lit: u64,
-    /// The sum of the depths of all hits: t, as an eye ray's direction has the length 1 along the view.
+    /// The sum of the depths of all hits: t, because the component of an eye ray's direction along the view has length
+    /// 1.
     pub depths: f64,
 }
 
@@ -39,10 +40,9 @@ impl Add for Counts {
     }
 }
 
-/// Traces the eye rays of [`render`](super::render) by that kernel with that number of samples of each pixel ([`Sampling::MAX_SAMPLES`] at
-/// most), and, if the scene has
-/// shadows, one ray from each hit to each light, also where the surface faces away from it; on the threads of the current
-/// rayon pool.
+/// Traces the eye rays of [`render`](super::render) with this kernel and number of samples per pixel
+/// ([`Sampling::MAX_SAMPLES`] at most). If the scene has shadows, traces a ray from each hit to each light as well,
+/// even if the surface faces away from it. Runs on the threads of the current rayon pool.
 pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
     let tiles = Tiles::new(camera, resolution, 1);
     let goal = if scene.shadows() { Goal::Points } else { Goal::Hits };
@@ -52,17 +52,17 @@ pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolut
     Crew::Pool.trace(&shot, counts.iter_mut().collect(), |tile, counts| {
         tile.trace(&runs, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));
     });
-    // Tile by tile: a sum of floats depends on the order.
+    // Summed tile by tile, because a sum of floats depends on the order.
     counts.into_iter().fold(Counts::default(), Add::add)
 }
 
-/// Counts a batch's rays and their hits, and the shadow rays that begin there, which it traces.
+/// Counts a batch's rays and hits, and traces and counts its shadow rays.
 fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
     let Buffers { rays, hits, points, shadows: ShadowRays { rays: shadow_rays, blocked, .. }, .. } = buffers;
     let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
     for hits in hits.iter() {
         counts.hits += u64::from(hits.met.count_ones());
-        // Nothing for those without a hit: a sum without branches.
+        // Zero for rays without a hit: a sum without branches.
         let depths = Eight::select(Eight::answers(hits.met), hits.t, Eight::ZERO);
         counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
     }

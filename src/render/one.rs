@@ -1,4 +1,4 @@
-//! One pixel on its own way through the steps, with what stands between them.
+//! The steps for a single pixel, with the values between them.
 
 use super::sampling::{Run, sample_position};
 use super::steps::{Buffers, Goal, Shot};
@@ -13,26 +13,26 @@ use crate::scene::Scene;
 use crate::shade;
 use glam::Vec2;
 
-/// What the steps of [`render`](super::render) make of the first sample of a pixel.
+/// The values of the steps of [`render`](super::render) for the first sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
-    /// The lecture's (qu, qv): where in the picture the sample lies, (0, 0) being the lower left corner and (1, 1) the
-    /// upper right one.
+    /// The lecture's (qu, qv): the sample's position in the picture, from (0, 0) at the lower left corner to (1, 1) at
+    /// the upper right one.
     pub q: Vec2,
     /// The eye ray.
     pub ray: Ray,
-    /// What it meets.
+    /// The hit.
     pub hit: Option<Hit>,
-    /// The light that arrives there: the ambient light and that of all lights.
+    /// The arriving light: the ambient light and that of all lights.
     pub arriving: LinearRgb,
-    /// How much of that is reflected, each band in 0..=1.
+    /// The reflectance, each channel in 0..=1.
     pub reflectance: LinearRgb,
-    /// What goes to the eye: from there, or from the background.
+    /// The light towards the eye, from the hit or from the background.
     pub light: LinearRgb,
 }
 
 impl Scene {
-    /// Returns what the eye ray through the middle of a pixel meets first, counted from the top left; `None` where it meets
+    /// Returns the hit of the eye ray through the centre of a pixel, counted from the top left; `None` if the ray hits
     /// nothing, and outside the picture.
     ///
     /// ```
@@ -52,8 +52,8 @@ impl Scene {
     }
 }
 
-/// The steps of [`render`](super::render) for one pixel of a picture, counted from the top left: what that does for all,
-/// done by the same functions for one.
+/// Carries out the steps of [`render`](super::render) for one pixel, counted from the top left, with the same
+/// functions.
 ///
 /// # Panics
 /// Outside the picture.
@@ -65,7 +65,7 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     let mut buffers = Buffers { wanted: vec![pixel as u8], ..Buffers::default() };
     buffers.trace(&shot, tile, &run, 0..1);
     let [arriving, light] = [&buffers.arriving[0].light, &buffers.lights[0]].map(|lights| shade::light_of(lights, 0));
-    // The reflectance is what is reflected where light of 1 arrives.
+    // The reflectance is the reflected light where the arriving light is 1.
     buffers.arriving[0].light = [Eight([1.0; LANES]); 3];
     buffers.reflect(&shot, &run);
     Steps {

@@ -1,4 +1,4 @@
-//! A picture to be rendered, with all that may be chosen about it.
+//! The builder of a render.
 
 use super::report::Report;
 use super::{Crew, Sampling, render_all, units};
@@ -10,11 +10,11 @@ use crate::threads;
 use std::fmt;
 use std::ops::ControlFlow;
 
-/// A receiver of progress reports: parts of the work, from 0 to 1.
+/// A receiver of progress reports: the part of the work done, from 0 to 1.
 type Hear<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Send + Sync + 'a>;
 
-/// A picture to be rendered: of a scene, from its own camera, with 1280 x 720 pixels and [`Sampling::BEST`], unless another
-/// choice is made. It is rendered on the threads of the current rayon pool, or on [some of its own](Self::threads).
+/// A render of a scene: from its own camera, with 1280 x 720 pixels and [`Sampling::BEST`], on the threads of the
+/// current rayon pool, unless set otherwise.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -57,11 +57,11 @@ impl fmt::Debug for Render<'_> {
 }
 
 impl<'a> Render<'a> {
-    /// The most [threads](Self::threads) of a render.
+    /// Limit on the number of [threads](Self::threads).
     #[doc(hidden)]
     pub const MAX_THREADS: usize = 1024;
 
-    /// A picture of that scene.
+    /// Returns a render of `scene`.
     pub fn new(scene: &'a Scene) -> Self {
         Self {
             scene,
@@ -74,36 +74,36 @@ impl<'a> Render<'a> {
         }
     }
 
-    /// Looks at the scene from somewhere else.
+    /// Sets the camera.
     pub fn camera(self, camera: &Camera) -> Self {
         Self { camera: *camera, ..self }
     }
 
-    /// Gives the picture another size.
+    /// Sets the size of the picture.
     pub fn resolution(self, resolution: Resolution) -> Self {
         Self { resolution, ..self }
     }
 
-    /// Gives its pixels other samples.
+    /// Sets the sampling.
     pub fn sampling(self, sampling: impl Into<Sampling>) -> Self {
         Self { sampling: sampling.into(), ..self }
     }
 
-    /// Traces on that number of threads of its own: at least one, and at most 1,024. Without the
-    /// feature `parallel` it is the calling thread alone. The picture does not depend on it.
+    /// Traces on a pool of this many threads, clamped to 1 and [`MAX_THREADS`](Self::MAX_THREADS), which does not
+    /// change the picture. Without the feature `parallel` the calling thread alone traces.
     pub fn threads(self, count: usize) -> Self {
         Self { threads: Some(count.clamp(1, Self::MAX_THREADS)), ..self }
     }
 
-    /// Gives the render up when this token is cancelled: after the rays that are being traced, 256 for each thread.
+    /// Sets a token that cancels the render, within the time of 256 rays on each thread.
     #[doc(hidden)]
     pub fn cancelled_by(self, token: &Cancellation) -> Self {
         Self { token: token.clone(), ..self }
     }
 
-    /// Reports which part of the work is done: greater than 0 and rising, and 1 at the end. Reports come one at a time, from
-    /// any of the threads, every 10 ms or more often; the others wait as long as `hear` takes. When it answers
-    /// `Break`, the token is cancelled.
+    /// Reports the part of the work done to `hear`: positive and increasing, at the end 1. Reports come one at a time,
+    /// from any of the threads, at least every 10 ms; the threads wait for `hear`. The render is cancelled when it
+    /// returns `Break`.
     pub fn on_progress(self, hear: impl Fn(f32) -> ControlFlow<()> + Send + Sync + 'a) -> Self {
         Self { hear: Some(Box::new(hear)), ..self }
     }
@@ -111,7 +111,8 @@ impl<'a> Render<'a> {
     /// Renders the picture: the light of [`render`](super::render), to the bit.
     ///
     /// # Errors
-    /// [`Cancelled`], if the token is, or a report was answered by `Break`. The last report, of 1, cancels nothing.
+    /// [`Cancelled`], if the token was cancelled or a report answered by `Break`. The answer to the last report, of 1,
+    /// has no effect.
     pub fn run(self) -> Result<Framebuffer, Cancelled> {
         match self.threads {
             Some(count) => threads::in_pool_of(count, || self.trace()),
@@ -119,7 +120,7 @@ impl<'a> Render<'a> {
         }
     }
 
-    /// Traces on the threads of the current rayon pool.
+    /// Renders on the threads of the current rayon pool.
     fn trace(self) -> Result<Framebuffer, Cancelled> {
         let Self { scene, camera, resolution, sampling, threads: _, token, hear } = self;
         let render = |crew: Crew<'_>| crew.finish(render_all(crew, scene, &camera, resolution, sampling).framebuffer);

@@ -6,20 +6,21 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The longest time between two reports, as far as batches end in it: by its answer to a report the receiver can cancel, and
-/// is to be asked often enough.
+/// Limit on the time between two reports, as far as batches end within it: the receiver can cancel only when it is
+/// called.
 const PERIOD: Duration = Duration::from_millis(10);
 
-/// How much more has to be done for a report before that time, as a part of all: so a short render has its reports, too.
+/// Progress after which a report is made before that time, as a part of the whole, so that a short render has reports
+/// too.
 const STEP: f32 = 0.005;
 
-/// A receiver of reports, and how much of the work is done.
+/// A receiver of progress reports, and the amount of work done.
 pub struct Report<'a> {
     hear: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync),
     token: Cancellation,
-    /// All units of the work.
+    /// The total number of units.
     total: u64,
-    /// Held during a report, so that reports come one at a time and in order, whichever threads they come from.
+    /// Locked during a report, so that reports come one at a time and in order, from whichever thread.
     done: Mutex<Done>,
 }
 
@@ -37,7 +38,7 @@ struct Done {
 }
 
 impl<'a> Report<'a> {
-    /// Reports to `hear`, from 0 on, parts of that number of units. The token is cancelled when it answers `Break`.
+    /// Reports to `hear` the parts of a number of units, from 0 on. The token is cancelled when it returns `Break`.
     pub(super) fn new(hear: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync), token: Cancellation, total: u64) -> Self {
         Self { hear, token, total, done: Mutex::new(Done { units: 0, told: 0.0, at: Instant::now() }) }
     }
@@ -46,10 +47,10 @@ impl<'a> Report<'a> {
         self.token.is_cancelled()
     }
 
-    /// Notes that more units are done, and tells of it when it is time to. The whole is not told of here: only who gathers
-    /// the results knows when all is done.
+    /// Adds finished units, and reports if it is time. The end is not reported here: only the caller that gathers the
+    /// results knows when all is done.
     pub(super) fn add(&self, units: u64) {
-        // A receiver that panics ends the render; other threads may come here once more before that.
+        // A receiver that panics ends the render; other threads may still get here before that.
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         done.units += units;
         let part = done.units as f32 / self.total as f32;

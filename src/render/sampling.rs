@@ -1,32 +1,32 @@
-//! How many samples a pixel gets, and where they lie.
+//! The number and positions of a pixel's samples.
 
 use crate::lanes::{Eight, LANES};
 use std::borrow::Cow;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-/// The number of rays that go through the pixels of a picture.
+/// The number of rays through the pixels of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Sampling {
-    /// One through the middle of each two by two pixels.
+    /// One ray for every two by two pixels.
     Coarse,
-    /// That many through each; of a number beyond 65,536, as many as that.
+    /// This many rays through each pixel, at most [`MAX_SAMPLES`](Self::MAX_SAMPLES).
     Each(NonZeroU32),
-    /// One through each; 4, 16 and 64 in all where there are edges: of objects, shadows and patterns, or where normals
-    /// differ; but never more than so many.
+    /// One ray through each pixel; in total 4, 16 or 64 where there are edges: of objects, shadows and patterns, or
+    /// where normals differ; at most this many.
     UpTo(NonZeroU32),
 }
 
 impl Sampling {
-    /// As many as are ever taken where there are edges.
+    /// The largest number of samples at edges: 64.
     pub const BEST: Self = Self::UpTo(NonZeroU32::new(64).expect("64 is not 0"));
 
-    /// The most rays that go through a pixel, 65,536: more change nothing that 8 bits could show, and take for ever.
+    /// Limit on the rays through a pixel: 65,536. More would not change any 8-bit colour, and take very long.
     #[doc(hidden)]
     pub const MAX_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 16).expect("65,536 is not 0");
 
-    /// Returns the sampling with no more than [`MAX_SAMPLES`](Self::MAX_SAMPLES).
+    /// Returns the sampling with at most [`MAX_SAMPLES`](Self::MAX_SAMPLES).
     pub(super) fn bounded(self) -> Self {
         match self {
             Self::Each(samples) => Self::Each(samples.min(Self::MAX_SAMPLES)),
@@ -41,28 +41,28 @@ impl From<NonZeroU32> for Sampling {
     }
 }
 
-/// The samples of each pass over a picture: each makes four out of one.
+/// The total number of samples after each pass over a picture: four times that of the pass before.
 pub(super) const PASSES: [Range<u32>; 4] = [0..1, 1..4, 4..16, 16..64];
 
-/// Samples that are traced together, those of one pixel after those of another: rays through one pixel meet the same things
-/// more often than rays through those beside it. All have one [`footprint_share`].
+/// A batch of samples that are traced together, pixel by pixel: rays through one pixel hit the same things more often
+/// than rays through neighbours. All have the same [`footprint_share`].
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     pub(super) samples: Range<u32>,
-    /// Where the rays of a batch go through their pixels, eight by eight.
+    /// Positions of the batch's samples in their pixels, in groups of eight.
     pub(super) positions: [[Eight; 2]; MOST_RAYS / LANES],
 }
 
-/// The most rays that go through the steps at once: what is kept of them fits the nearest caches.
+/// Limit on the rays in a batch: their arrays fit the first-level cache.
 pub(super) const MOST_RAYS: usize = 256;
 
-/// The most samples of a pixel among them.
+/// Limit on the samples of one pixel in a batch.
 const MOST_SAMPLES: u32 = 64;
 
-/// Some samples in runs.
+/// A range of samples, divided into batches.
 pub(super) struct Runs {
     samples: Range<u32>,
-    /// The first of them. Others are made anew for each tile: that is little beside what tracing so many takes.
+    /// The first batch. The others are computed again for each tile, which is cheap compared with tracing them.
     kept: Vec<Run>,
 }
 
@@ -72,7 +72,7 @@ impl Runs {
         Self { samples, kept }
     }
 
-    /// One after the other.
+    /// Returns the batches in order.
     pub(super) fn iter(&self) -> impl Iterator<Item = Cow<'_, Run>> {
         cut(self.samples.clone()).enumerate().map(|(at, samples)| match self.kept.get(at) {
             Some(run) => Cow::Borrowed(run),
@@ -81,7 +81,7 @@ impl Runs {
     }
 }
 
-/// Cut at the ends of passes, and where there are more than are traced at once.
+/// Divides a range of samples at the ends of passes and by the limit on a batch.
 fn cut(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
     std::iter::from_fn(move || {
         let Range { start, end } = samples;
@@ -102,18 +102,18 @@ impl Run {
         run
     }
 
-    /// How many there are of each pixel.
+    /// Returns the number of samples per pixel.
     pub(super) fn each(&self) -> usize {
         self.samples.len()
     }
 
-    /// Cuts that number of pixels into batches, each of which goes through the steps at once.
+    /// Divides this many pixels into chunks, each of which makes one batch of rays.
     pub(super) fn batches(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> {
         let at_once = MOST_RAYS / self.each();
         (0..pixels).step_by(at_once).map(move |first| first..pixels.min(first + at_once))
     }
 
-    /// Puts down which pixel each of the rays through these goes through.
+    /// Writes the pixel of each ray of a batch.
     pub(super) fn spread(&self, pixels: &[u8], of_rays: &mut Vec<u8>) {
         of_rays.clear();
         if self.each() == 1 {
@@ -124,9 +124,9 @@ impl Run {
     }
 }
 
-/// Where in the pixel a sample lies, as parts of its width and height from the top left corner: the centre first, then
-/// on through Roberts' R2 sequence (multiples of the inverses of the plastic number and its square, modulo 1), whose
-/// every beginning covers the pixel evenly. Counted in integers, so that it is exact.
+/// Returns the position of a sample in its pixel, as parts of the width and height from the top left corner: first the
+/// centre, then Roberts' R2 sequence (multiples of the inverses of the plastic number and its square, modulo 1), every
+/// prefix of which covers the pixel evenly. Computed in integers, so that it is exact.
 pub(super) fn sample_position(sample: u32) -> (f32, f32) {
     let part = |step: u32| {
         let position = 0x8000_0000_u32.wrapping_add(sample.wrapping_mul(step));
@@ -135,8 +135,8 @@ pub(super) fn sample_position(sample: u32) -> (f32, f32) {
     (part(3_242_174_889), part(2_447_445_414))
 }
 
-/// How much of the pixel a sample stands for, along each side: all of it if it is the only one, half if it is one of
-/// four.
+/// Returns the side of the area that a sample stands for, as a share of the pixel's: the whole for a single sample,
+/// half for one of four.
 pub(super) fn footprint_share(sample: u32) -> f32 {
     match sample {
         0 => 1.0,
@@ -150,8 +150,8 @@ pub(super) fn footprint_share(sample: u32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Whatever is asked for, each sample of each pixel is traced once, in its order, where it lies; and those that go
-    /// together stand for the same share of a pixel.
+    /// For any range each sample of each pixel is traced exactly once, in order, at its position, and the samples of a
+    /// batch stand for the same share of a pixel.
     #[test]
     fn runs_and_batches_leave_nothing_out() {
         for samples in [0..1, 0..3, 0..16, 1..4, 4..16, 16..64, 0..64, 0..65, 0..300, 5..7] {

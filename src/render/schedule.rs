@@ -1,4 +1,4 @@
-//! The way over a picture: which thread takes which tile, and the batches of each tile in their order.
+//! The scheduling of a picture's tiles on threads, and of the batches of each tile.
 
 use super::Cost;
 use super::report::Report;
@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 /// The threads that trace.
 #[derive(Clone, Copy, Debug)]
 pub enum Crew<'a> {
-    /// The calling thread alone: to wake others for a frame of less than about a millisecond takes longer than they save.
+    /// The calling thread alone, for frames of less than about a millisecond: waking other threads takes longer than
+    /// they save.
     Alone,
     /// The threads of the current rayon pool.
     Pool,
@@ -22,8 +23,7 @@ pub enum Crew<'a> {
     Reporting(&'a Report<'a>),
 }
 
-/// What takes no longer, going by the tiles so far, is traced by the calling thread alone: to wake another one takes 16 us,
-/// and 80 after a pause.
+/// Predicted time up to which the calling thread traces alone: waking another one takes 16 us, and 80 us after a pause.
 const SHORT: Duration = Duration::from_micros(300);
 
 impl Crew<'_> {
@@ -35,14 +35,14 @@ impl Crew<'_> {
         }
     }
 
-    /// Returns what was traced. A crew that is cancelled passes over what is left, so this is asked when it is through: a
-    /// token that is not cancelled then never was.
+    /// Returns the result if the crew's token is not cancelled. A cancelled crew skips the rest, so this is called at
+    /// the end: a token that is not cancelled by then never was.
     pub(crate) fn finish<T>(self, traced: T) -> Result<T, Cancelled> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(traced) }
     }
 
-    /// Traces each tile of a shot on one of the threads, each of which keeps its buffers from tile to tile: `trace` is
-    /// given the tile and what is made of it, one of `parts`. Returns what all took.
+    /// Traces each tile of a shot on one of the threads, each of which reuses its buffers: `trace` gets the tile and
+    /// its part of the result. Returns the cost.
     pub(super) fn trace<T: Send>(
         self,
         shot: &Shot<'_>,
@@ -69,7 +69,7 @@ impl Crew<'_> {
         for (done, tile) in (1..).zip(tiles.by_ref()) {
             costs.push(work(&mut buffers, tile));
             if !is_alone && !is_short(done) {
-                // Not asked before: it may start rayon's own threads.
+                // Queried late, because it may start rayon's global pool.
                 is_alone = threads::count() == 1;
                 if !is_alone {
                     break;
@@ -87,19 +87,19 @@ impl Crew<'_> {
     }
 }
 
-/// A tile of a shot, on the thread that traces it.
+/// A tile of a shot on the thread that traces it.
 pub(super) struct Tile<'t> {
     crew: Crew<'t>,
     shot: &'t Shot<'t>,
-    /// Its place among the tiles.
+    /// Its index.
     pub(super) number: usize,
     pub(super) buffers: &'t mut Buffers,
     cost: Cost,
 }
 
 impl Tile<'_> {
-    /// Traces samples of the wanted pixels, and gives `sink` the buffers after each batch, with its run and the places of
-    /// its pixels among the wanted ones, until the crew is cancelled.
+    /// Traces samples of the active pixels, and calls `sink` after each batch with the buffers, the batch, and the
+    /// range of its pixels among the active ones, until the crew is cancelled.
     pub(super) fn trace(&mut self, runs: &Runs, mut sink: impl FnMut(&mut Buffers, &Run, Range<usize>)) {
         let Self { crew, shot, number, ref mut buffers, ref mut cost } = *self;
         let start = Instant::now();

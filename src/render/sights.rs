@@ -1,4 +1,4 @@
-//! What the rays through a picture's pixels meet, for pictures of something else than light.
+//! G-buffers: the hits of the rays through a picture's pixels, for pictures of something other than light.
 
 use super::sampling::Runs;
 use super::steps::{Buffers, Goal, Shot};
@@ -13,48 +13,48 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shape::{Surface, SurfacePoint};
 
-/// How far rays are followed.
+/// The depth of tracing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
-    /// To the surfaces that they meet.
+    /// To the closest hits.
     Surfaces,
-    /// And from there to the lights.
+    /// To the lights as well.
     Lights,
 }
 
-/// What was found through the middle of a pixel.
+/// The G-buffer sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
     /// The eye ray.
     pub ray: Ray,
-    /// What it meets first.
+    /// The closest hit.
     pub hit: Option<Hit>,
-    /// Which lights arrive there, a bit for each; the thirty-third shares its bit with the first, and so on. None where
-    /// nothing was followed so far.
+    /// Mask of the lights that reach the hit; light 32 shares its bit with light 0, and so on. Empty if shadow rays
+    /// were not traced.
     pub lit_by: u32,
 }
 
 impl Sight {
-    /// The surface that is met.
+    /// Returns the surface point of the hit.
     pub fn surface(&self, scene: &Scene) -> Option<SurfacePoint> {
         self.hit.map(|hit| hit.surface(scene).at_crossing(&self.ray, hit.t))
     }
 }
 
-/// What was made of sights, and what that took.
+/// The results for all pixels, and their cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sighted<T> {
-    /// One for each pixel, row by row from the top.
+    /// One result per pixel, row by row from the top.
     pub pixels: Vec<T>,
-    /// What it took.
+    /// The cost.
     pub cost: Cost,
 }
 
-/// What `see` makes of the sight through each pixel: the eye rays of [`render`](super::render), one for each pixel, or for
-/// two by two where the sampling is [`Coarse`](Sampling::Coarse).
+/// Returns the results of `see` for the G-buffer sample of each pixel: with the eye rays of [`render`](super::render),
+/// one per pixel, or one for two by two pixels if the sampling is [`Coarse`](Sampling::Coarse).
 ///
 /// # Errors
-/// [`Cancelled`], if the crew's token is.
+/// [`Cancelled`], if the crew's token is cancelled.
 pub fn sights<T: Copy + Default + Send>(
     crew: Crew<'_>,
     scene: &Scene,
@@ -67,7 +67,7 @@ pub fn sights<T: Copy + Default + Send>(
     crew.finish(all_sights(crew, scene, camera, resolution, sampling, reach, see))
 }
 
-/// [`sights`], the rest of which a crew that is cancelled passes over.
+/// Traces as [`sights`] does; after a cancel the rest is skipped.
 pub(crate) fn all_sights<T: Copy + Default + Send>(
     crew: Crew<'_>,
     scene: &Scene,

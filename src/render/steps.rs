@@ -1,5 +1,5 @@
-//! The five steps for one batch of rays, and the arrays between them: eye rays -> closest hits -> surface points ->
-//! arriving light -> reflected light.
+//! The five steps for a batch of rays and the arrays between them: eye rays, closest hits, surface points, arriving
+//! light, reflected light.
 
 use super::sampling::{MOST_RAYS, Run};
 use super::tiles::Tiles;
@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
 use std::ops::Range;
 
-/// The last step that a batch goes through.
+/// The last step of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Goal {
     /// The closest hits.
@@ -18,25 +18,25 @@ pub(super) enum Goal {
     Points,
     /// The light that arrives at these.
     Arriving,
-    /// The light that goes from there to the eye.
+    /// The light towards the eye.
     Reflected,
 }
 
-/// What counts as progress of a picture.
+/// The unit in which progress of a picture is counted.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Unit {
     /// Each eye ray.
     Ray,
-    /// Each tile, as that number of units.
+    /// Each tile, as this many units.
     Tile(u64),
 }
 
-/// A scene, the tiles of a picture of it, and how its rays are traced.
+/// A scene, the tiles of a picture of it, and the way of tracing.
 #[derive(Clone, Copy)]
 pub(super) struct Shot<'a> {
     pub(super) scene: &'a Scene,
     pub(super) tiles: &'a Tiles,
-    /// The way in which the closest hits are found.
+    /// The kernel for closest hits.
     pub(super) kernel: Kernel,
     pub(super) goal: Goal,
     pub(super) unit: Unit,
@@ -48,10 +48,10 @@ impl<'a> Shot<'a> {
     }
 }
 
-/// The arrays between the steps, kept from tile to tile. Those after the shot's goal stay empty.
+/// The arrays between the steps, reused from tile to tile. Those after the shot's last step stay empty.
 #[derive(Default)]
 pub(super) struct Buffers {
-    /// The pixels of the tile that get samples.
+    /// The active pixels of the tile.
     pub(super) wanted: Vec<u8>,
     /// The pixel of each ray.
     pub(super) pixels: Vec<u8>,
@@ -64,8 +64,8 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Takes the run's samples of a batch of the wanted pixels through the steps, up to the shot's goal. Returns the number
-    /// of rays traced.
+    /// Takes the samples of a batch for some of the active pixels through the steps, up to the shot's last one. Returns
+    /// the number of rays traced.
     pub(super) fn trace(&mut self, shot: &Shot<'_>, tile: usize, run: &Run, batch: Range<usize>) -> u64 {
         let &Shot { scene, tiles, kernel, goal, .. } = shot;
         let Self { wanted, pixels, rays, hits, points, shadows, arriving, .. } = self;
@@ -85,13 +85,13 @@ impl Buffers {
         traced
     }
 
-    /// The last step, for whatever light is said to arrive.
+    /// The last step, for any arriving light.
     pub(super) fn reflect(&mut self, &Shot { scene, tiles, .. }: &Shot<'_>, run: &Run) {
         let Self { rays, hits, points, arriving, lights, .. } = self;
         shade::reflect(scene, rays, tiles.steps(run.samples.start), hits, points, arriving, lights);
     }
 
-    /// The reflected light of all rays, band by band.
+    /// Returns the reflected light of all rays, per channel.
     pub(super) fn bands(&self) -> [[f32; MOST_RAYS]; 3] {
         let mut bands = [[0.0; MOST_RAYS]; 3];
         for (number, band) in bands.iter_mut().enumerate() {

@@ -1,8 +1,8 @@
-//! A picture in tiles: where each pixel is, and the eye rays through it.
+//! The tiles of a picture: the order of pixels, and the eye rays through them.
 //!
-//! Tile by tile, and in a tile square by square of 8 by 8 and group by group of 4 by 2, pixels that lie side by side are
-//! neighbours in memory: a group's eye rays are eight that go together, a square's are a packet. Of several samples those of
-//! one pixel are neighbours.
+//! Pixels are stored tile by tile, within a tile in squares of 8 by 8, and within a square in groups of 4 by 2. A
+//! group's eye rays are the eight lanes of a vector, and a square's are a packet. Multiple samples of a pixel are
+//! consecutive.
 
 use super::sampling::{Run, footprint_share};
 use crate::camera::{Camera, EyeRays};
@@ -13,18 +13,18 @@ use crate::simd::{self, Work};
 use glam::Vec3;
 use std::ops::Range;
 
-/// A tile's side in pixels.
+/// The side of a tile in pixels.
 const SIDE: u32 = 16;
 
-/// How many pixels a tile has; those of the last ones lie outside the picture.
+/// The number of pixels in a tile; those of tiles at the border may be outside the picture.
 pub(super) const PIXELS: usize = (SIDE * SIDE) as usize;
 
-/// The tiles of a picture, or of one of larger pixels.
+/// The tiles of a picture, at full or reduced resolution.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tiles {
-    /// Of the picture.
+    /// The resolution of the picture.
     pub(super) resolution: Resolution,
-    /// How many pixels of the picture each of these covers in either direction.
+    /// Number of the picture's pixels per traced pixel, along each axis.
     pub(super) scale: u32,
     pub(super) columns: u32,
     pub(super) rows: u32,
@@ -37,7 +37,7 @@ impl Tiles {
         Self { resolution, scale, columns, rows, eye_rays: camera.eye_rays(resolution.aspect_ratio()) }
     }
 
-    /// Returns how many tiles a picture of that resolution has at full scale.
+    /// Returns the number of tiles of a picture at full resolution.
     pub(super) fn count_of(resolution: Resolution) -> usize {
         resolution.width().div_ceil(SIDE) as usize * resolution.height().div_ceil(SIDE) as usize
     }
@@ -46,18 +46,18 @@ impl Tiles {
         self.columns.div_ceil(SIDE)
     }
 
-    /// How many there are.
+    /// Returns the number of tiles.
     pub(super) fn count(&self) -> usize {
         self.across() as usize * self.rows.div_ceil(SIDE) as usize
     }
 
-    /// The upper left pixel of a tile.
+    /// Returns the upper left pixel of a tile.
     fn corner(&self, tile: usize) -> [u32; 2] {
         let tile = tile as u32;
         [tile % self.across() * SIDE, tile / self.across() * SIDE]
     }
 
-    /// A picture's pixels by tiles: each gets its part of every row that it covers.
+    /// Splits a picture's pixels by tiles: each gets its part of every row that it covers.
     pub(super) fn split<'p, T>(&self, pixels: &'p mut [T]) -> Vec<Vec<&'p mut [T]>> {
         let side = (SIDE * self.scale) as usize;
         let mut tiles: Vec<_> = (0..self.count()).map(|_| Vec::with_capacity(side)).collect();
@@ -70,16 +70,16 @@ impl Tiles {
         tiles
     }
 
-    /// Puts what these pixels of a tile show, by their place in the list, into the tile's part of a picture; what is outside
-    /// is left out.
+    /// Writes the values of a tile's pixels, given by their index in the tile, to the tile's part of a picture; pixels
+    /// outside are skipped.
     pub(super) fn show<T: Copy>(&self, pixels: &[u8], shown: impl Fn(usize) -> T, part: &mut [&mut [T]]) {
         if pixels.len() == PIXELS && self.scale == 1 {
-            // The same as what follows, row by row: four neighbours at a time.
+            // The same as below row by row, but four neighbours at a time.
             for (row, pixels) in part.iter_mut().zip(&IN_ROW) {
                 let (fours, rest) = row.as_chunks_mut::<4>();
                 let left = &pixels[4 * fours.len()..];
                 for (four, &[first, ..]) in fours.iter_mut().zip(pixels.as_chunks::<4>().0) {
-                    // It is a multiple of 4, which the compiler is told so.
+                    // A multiple of 4, which this tells the compiler.
                     *four = std::array::from_fn(|at| shown(usize::from(first) & !3 | at));
                 }
                 rest.iter_mut().zip(left).for_each(|(place, &pixel)| *place = shown(pixel.into()));
@@ -91,7 +91,7 @@ impl Tiles {
         }
     }
 
-    /// Puts what one pixel shows there.
+    /// Writes the value of one pixel.
     pub(super) fn put<T: Copy>(&self, pixel: u8, shown: T, part: &mut [&mut [T]]) {
         let scale = self.scale as usize;
         let [x, y] = in_tile(pixel.into()).map(|at| at as usize * scale);
@@ -100,20 +100,20 @@ impl Tiles {
         }
     }
 
-    /// A pixel's column and those beside it, and the same of its row; none outside the picture.
+    /// Returns a pixel's column and its neighbours, and the same for its row; `None` outside the picture.
     pub(super) fn around(&self, tile: usize, pixel: usize) -> [Range<u32>; 2] {
         let ([left, top], [x, y]) = (self.corner(tile), in_tile(pixel));
         let beside = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
         [beside(left + x, self.columns), beside(top + y, self.rows)]
     }
 
-    /// In which tile a pixel of the picture is, and its number in it.
+    /// Returns the tile of a pixel and the pixel's index in it.
     pub(super) fn at(&self, [x, y]: [u32; 2]) -> (usize, usize) {
         let tile = y / SIDE * self.across() + x / SIDE;
         (tile as usize, IN_ROW[(y % SIDE) as usize][(x % SIDE) as usize].into())
     }
 
-    /// Which pixels of a tile are in the picture, by their number in it.
+    /// Returns the indices of a tile's pixels that are in the picture.
     pub(super) fn inside(&self, tile: usize, pixels: &mut Vec<u8>) {
         pixels.clear();
         pixels.extend_from_slice(&ALL_PIXELS);
@@ -127,14 +127,14 @@ impl Tiles {
         }
     }
 
-    /// Makes the eye rays of a batch, one for each of these pixels of the tile.
+    /// Computes the eye rays of a batch, one for each of these pixels of the tile.
     pub(super) fn make_eye_rays(&self, tile: usize, pixels: &[u8], run: &Run, rays: &mut Vec<EightRays>) {
         rays.clear();
         simd::run(MakeEyeRays { tiles: self, tile, pixels, run, rays });
     }
 
-    /// Where a pixel's sample, which has that place in the pixel, lies in the picture: the lecture's (qu, qv), (0, 0) being
-    /// the lower left corner.
+    /// Returns the position of a sample in the picture: the lecture's (qu, qv), with (0, 0) at the lower left corner.
+    /// The sample's position in its pixel is given.
     #[inline(always)]
     pub(super) fn q<N: Number>(&self, [x, y]: [N; 2], [sx, sy]: [N; 2]) -> [N; 2] {
         let (width, height) = (N::splat(self.resolution.width() as f32), N::splat(self.resolution.height() as f32));
@@ -143,14 +143,14 @@ impl Tiles {
         [(x + sx) * scale / width, (height - (y + sy) * scale) / height]
     }
 
-    /// By how much the direction changes from an eye ray to those beside it.
+    /// Returns the change of direction from an eye ray to its neighbours.
     pub(super) fn steps(&self, sample: u32) -> [Vec3; 2] {
         let share = self.scale as f32 * footprint_share(sample);
         self.eye_rays.steps(self.resolution.width(), self.resolution.height()).map(|step| step * share)
     }
 }
 
-/// The numbers of all of them.
+/// Returns the indices of all pixels in a tile.
 pub(super) static ALL_PIXELS: [u8; PIXELS] = {
     let mut all = [0; PIXELS];
     let mut pixel = 0;
@@ -161,13 +161,13 @@ pub(super) static ALL_PIXELS: [u8; PIXELS] = {
     all
 };
 
-/// How far to the right and down a pixel is in its tile.
+/// Returns the column and row of a pixel in its tile.
 pub(super) const fn in_tile(pixel: usize) -> [u32; 2] {
     let at = pixel as u32;
     [at & 3 | (at >> 3 & 1) << 2 | (at >> 6 & 1) << 3, at >> 2 & 1 | (at >> 4 & 3) << 1 | (at >> 7 & 1) << 3]
 }
 
-/// The same of all, as numbers to reckon with.
+/// The columns and rows of all pixels in a tile, as floats.
 static IN_TILE: [[f32; PIXELS]; 2] = {
     let mut all = [[0.0; PIXELS]; 2];
     let mut pixel = 0;
@@ -179,7 +179,7 @@ static IN_TILE: [[f32; PIXELS]; 2] = {
     all
 };
 
-/// The pixels of a tile, row by row.
+/// Returns the pixels of a tile row by row.
 static IN_ROW: [[u8; SIDE as usize]; SIDE as usize] = {
     let mut rows = [[0; SIDE as usize]; SIDE as usize];
     let mut pixel = 0;

@@ -1,4 +1,4 @@
-//! The same number of samples for each pixel.
+//! Uniform sampling: the same number of samples for each pixel.
 
 use super::sampling::{MOST_RAYS, Run, Runs};
 use super::steps::{Buffers, Goal, Shot};
@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::shade::{self, EightLights};
 use std::ops::Range;
 
-/// Renders the picture with that number of samples of each pixel.
+/// Renders the picture with this many samples per pixel.
 pub(super) fn render(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Rendered {
     let mut framebuffer = Framebuffer::new(tiles.resolution);
     let parts = tiles.split(framebuffer.pixels_mut());
@@ -23,7 +23,7 @@ pub(super) fn render(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32)
     Rendered { framebuffer, cost }
 }
 
-/// Adds the light of a batch to the sums of its pixels, that of each pixel in the order of its samples.
+/// Adds the light of a batch to the sums of its pixels, for each pixel in the order of its samples.
 fn add_lights(sums: &mut [EightLights], buffers: &Buffers, run: &Run, pixels: Range<usize>) {
     let each = run.each();
     if each == 1 {

@@ -1,21 +1,21 @@
-//! An error message in parts, for where there is little room for it.
+//! An error message in parts, for places with little room.
 
 use super::visible;
 use std::convert::Infallible;
 
-/// What is wrong, and what of it can be shown. No character of it controls a terminal.
+/// An error message and the source line that it refers to. None of its characters controls a terminal.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Notice {
-    /// What is wrong, after its place if it has one: one line.
+    /// The message, after its position if it has one: one line.
     pub message: String,
-    /// The line of a file that it is about, and one with carets below what is wrong in it.
+    /// The source line, and a line with carets below the fault in it.
     pub excerpt: Option<[String; 2]>,
-    /// Whether more is wrong than this.
+    /// Whether there are further errors.
     pub has_more: bool,
 }
 
 impl From<String> for Notice {
-    /// A message of one line.
+    /// Returns a notice of one line.
     fn from(message: String) -> Self {
         Self { message: visible(&message), ..Self::default() }
     }

@@ -1,16 +1,16 @@
-//! The error of `FromStr`.
+//! The error of `FromStr` implementations.
 
 use super::{closest, listed, visible};
 use std::fmt;
 
-/// The reason why a text is not the value that it was to be read as: what was found, and what would be right.
+/// The reason why a text could not be parsed: what was found, and what would be right.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParseError {
     message: String,
 }
 
 impl ParseError {
-    /// An error with that message: one line, no full stop.
+    /// Returns an error with this message: one line without a full stop.
     pub(crate) fn new(message: impl Into<String>) -> Self {
         Self { message: message.into() }
     }
@@ -24,10 +24,10 @@ impl fmt::Display for ParseError {
 
 impl std::error::Error for ParseError {}
 
-/// Returns the value of that name among all values of a kind.
+/// Returns the value with this name.
 ///
 /// # Errors
-/// If none has it, with the name that was meant, or all of them.
+/// If no value has it, with the name that was probably meant, or all names.
 pub(crate) fn named<T: Copy>(kind: &str, text: &str, all: &[T], name: fn(T) -> &'static str) -> Result<T, ParseError> {
     all.iter().copied().find(|&value| name(value) == text).ok_or_else(|| {
         let names: Vec<_> = all.iter().map(|&value| name(value)).collect();

@@ -1,4 +1,4 @@
-//! Words for messages: lists, and the word that was probably meant.
+//! Lists in prose and spelling suggestions.
 
 /// Returns the words as a list in prose: `a`, `a and b`, `a, b and c`.
 pub fn listed(words: &[impl AsRef<str>]) -> String {
@@ -21,11 +21,11 @@ fn joined(words: &[impl AsRef<str>], conjunction: &str) -> String {
     }
 }
 
-/// Returns the word of the list that was probably meant: one that differs in few letters, or of which a part was written
-/// (`fov` for `vertical_fov`).
+/// Returns the word that was probably meant: one with few different letters, or one that contains the written word
+/// (`vertical_fov` for `fov`).
 pub fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
-    // The distance takes the product of the lengths; a name this long is no slip of the pen. And among thousands of
-    // names something is always close.
+    // The distance takes time proportional to the product of the lengths, and a name this long is no misspelling. Among
+    // thousands of names, one is always close.
     const LONGEST: usize = 64;
     const MOST: usize = 1000;
     if word.len() > LONGEST {
@@ -41,7 +41,7 @@ pub fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Opti
         .map(|(_, known)| known)
 }
 
-/// How far off, if it is a slip at all.
+/// Returns the distance if it is small enough for a misspelling.
 fn distance(written: &str, known: &str) -> Option<usize> {
     let distance = slips(written, known);
     let is_part = written.len() >= 3 && known.split('_').any(|part| part == written);
@@ -52,12 +52,13 @@ fn distance(written: &str, known: &str) -> Option<usize> {
     (distance <= allowed || is_part).then_some(distance)
 }
 
-/// Returns how many letters were left out, added, changed or exchanged with their neighbours, at least: the distance of
-/// optimal string alignment (Damerau, A technique for computer detection and correction of spelling errors, 1964, with no
-/// letter changed twice).
+/// Returns the distance of two words by optimal string alignment: the least number of letters added, removed, changed,
+/// or exchanged with their neighbours, where no letter is changed twice (Damerau, A technique for computer detection
+/// and correction of spelling errors, 1964).
 fn slips(written: &str, known: &str) -> usize {
     let known: Vec<_> = known.chars().collect();
-    // Rows of the table of distances between beginnings: up to the letter before the last, the last, and this one.
+    // Three rows of the table of distances between prefixes: for the letter before the last, the last, and the current
+    // one.
     let mut earlier = vec![0; known.len() + 1];
     let mut before: Vec<_> = (0..=known.len()).collect();
     let mut row = before.clone();
@@ -78,7 +79,7 @@ fn slips(written: &str, known: &str) -> usize {
     before[known.len()]
 }
 
-/// Returns a number in prose: three digits, without noughts at the end.
+/// Formats a number with three digits, without trailing zeros.
 pub(crate) fn number(value: f32) -> String {
     let digits = match value.abs() {
         v if v >= 100.0 => 0,

@@ -1,21 +1,21 @@
-//! The calling thread alone. The bounds on types are those of the other way, so that all code compiles for both.
+//! The calling thread only. The bounds on types are those of `pool`, so that all code compiles with both.
 
 /// Returns 1.
 pub(crate) fn count() -> usize {
     1
 }
 
-/// Calls both functions, one after the other.
+/// Calls both functions one after the other.
 pub(crate) fn join<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
     (first(), second())
 }
 
-/// Returns both parts of what `make` returns for each number below `count`.
+/// Returns both parts of the result of `make` for each number below `count`.
 pub(crate) fn unzip<A: Send, B: Send>(count: usize, make: impl Fn(usize) -> (A, B) + Send + Sync) -> (Vec<A>, Vec<B>) {
     (0..count).map(make).unzip()
 }
 
-/// Calls `work` with chunks of `length` values of both slices, which are at the same place.
+/// Calls `work` with corresponding chunks of `length` values of both slices.
 pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written: &mut [A],
     read: &[B],
@@ -25,7 +25,7 @@ pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written.chunks_mut(length).zip(read.chunks(length)).for_each(|(written, read)| work(written, read));
 }
 
-/// Returns what `work` returns for each item.
+/// Returns the result of `work` for each item.
 pub(crate) fn map_one_by_one<I, S, T>(
     items: I,
     state: impl Fn() -> S + Send + Sync,
@@ -39,7 +39,7 @@ where
     items.map(|item| work(&mut state, item)).collect()
 }
 
-/// Works on the calling thread.
+/// Runs `work` on the calling thread.
 pub(crate) fn in_pool_of<T>(_threads: usize, work: impl FnOnce() -> T) -> T {
     work()
 }

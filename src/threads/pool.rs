@@ -2,24 +2,24 @@
 
 use rayon::prelude::*;
 
-/// Returns how many threads there are. This may start rayon's own.
+/// Returns the number of threads. This may start rayon's global pool.
 pub(crate) fn count() -> usize {
     rayon::current_num_threads()
 }
 
-/// Calls both functions, perhaps at the same time.
+/// Calls both functions, possibly at the same time.
 pub(crate) fn join<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
     rayon::join(first, second)
 }
 
-/// Returns both parts of what `make` returns for each number below `count`.
+/// Returns both parts of the result of `make` for each number below `count`.
 pub(crate) fn unzip<A: Send, B: Send>(count: usize, make: impl Fn(usize) -> (A, B) + Send + Sync) -> (Vec<A>, Vec<B>) {
     let (mut first, mut second) = (Vec::new(), Vec::new());
     (0..count).into_par_iter().map(make).unzip_into_vecs(&mut first, &mut second);
     (first, second)
 }
 
-/// Calls `work` with chunks of `length` values of both slices, which are at the same place.
+/// Calls `work` with corresponding chunks of `length` values of both slices.
 pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written: &mut [A],
     read: &[B],
@@ -29,8 +29,8 @@ pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written.par_chunks_mut(length).zip(read.par_chunks(length)).for_each(|(written, read)| work(written, read));
 }
 
-/// Returns what `work` returns for each item, in any order. Items are taken one by one, so that a thread that has had the
-/// easy ones takes more; each thread keeps a state of its own.
+/// Returns the result of `work` for each item, in any order. Threads take items one by one, which balances the load;
+/// each keeps a state of its own.
 pub(crate) fn map_one_by_one<I, S, T>(
     items: I,
     state: impl Fn() -> S + Send + Sync,
@@ -43,7 +43,7 @@ where
     items.par_bridge().map_init(state, work).collect()
 }
 
-/// Works in a pool with that number of threads; where they cannot be started, in the current one.
+/// Runs `work` in a pool with that number of threads, or in the current one if they cannot be started.
 pub(crate) fn in_pool_of<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(work),
