@@ -1,4 +1,5 @@
-//! What a terminal can show: plain values, and how the environment and its own answers tell them.
+//! The capabilities of a terminal, as plain values, and their detection from the environment and the terminal's
+//! replies.
 
 mod answers;
 mod detection;
@@ -6,7 +7,7 @@ mod findings;
 #[cfg(feature = "live")]
 mod terminfo;
 
-// What a terminal can show is said in the words of what shows it.
+// Capabilities are expressed in the types of the stages that use them.
 pub use crate::cell::{CellMode, Colors, Glyphs};
 pub use crate::grid::CellShape;
 pub use answers::{Answers, TEST_COLOR};
@@ -17,56 +18,56 @@ pub use terminfo::terminfo_colors;
 
 use std::ops::RangeInclusive;
 
-/// What the screen's cells can be made of.
+/// The capabilities that cells depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capabilities {
     /// How pixels become cells.
     pub cell_mode: CellMode,
-    /// A cell's height over its width, greater than 0.
+    /// The cell aspect: a cell's height divided by its width, greater than 0.
     pub cell_aspect: f32,
     /// Whether the upper and the lower half block meet in the same line: only then may a picture mix them.
     pub halves_meet: bool,
-    /// Whether the terminal writes dark on light: where its own colours are all there are, more ink is then less light.
+    /// Whether the terminal writes dark on light: without other colours more ink then is less light.
     pub light_background: bool,
-    /// Whether it knows synchronized output: each frame is then shown at once.
+    /// Whether it supports synchronized output, which shows each frame at once.
     pub synchronized_output: bool,
 }
 
-/// The aspect of a cell of which nothing is known.
+/// The cell aspect of an unknown terminal.
 pub const USUAL_CELL_ASPECT: f32 = 2.0;
 
-/// The aspects of cells in which anybody could read. Others are not what a person or a program means.
+/// The range of plausible cell aspects. Values outside it are errors of a user or a program.
 pub const CELL_ASPECTS: RangeInclusive<f32> = 0.1..=10.0;
 
-/// Whether pictures may be coloured, and how, as the user says it.
+/// The user's choice of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorChoice {
-    /// As the terminal is likely to show them.
+    /// As many as the terminal probably has.
     #[default]
     Auto,
     /// At least sixteen, whatever `NO_COLOR` says.
     Always,
-    /// None at all.
+    /// None.
     Never,
     /// Exactly these.
     Exactly(Colors),
 }
 
-/// A cell's height over its width from a window's size in cells and in pixels, where it gives a sensible one.
+/// Returns the cell aspect from a window's size in cells and in pixels, if it is plausible.
 pub fn cell_aspect(columns: u16, rows: u16, width: u16, height: u16) -> Option<f32> {
     // Cells have whole pixels; a window may be a few pixels larger than its cells.
     let cell_width = width.checked_div(columns)?;
     let cell_height = height.checked_div(rows)?;
     let aspect = f32::from(cell_height) / f32::from(cell_width);
-    // Some terminals fill the fields with anything.
+    // Some terminals fill these fields with garbage.
     (0.25..=8.0).contains(&aspect).then_some(aspect)
 }
 
-/// Whether the two half blocks meet in the same line, from a window's height in cells and in pixels: where a cell has an
-/// even number of pixel rows. With an odd number, some terminals give the middle one to either half, others to the
-/// glyph, and their mix would show.
+/// Returns whether the two half blocks meet in the same line, from a window's height in cells and in pixels: if a cell
+/// has an even number of pixel rows. With an odd number, some terminals give the middle row to either half, others to
+/// the glyph, and a mix would be visible.
 pub fn halves_meet(rows: u16, height: u16) -> bool {
-    // A remainder may be a border, or say that the figure is no cell's.
+    // A remainder may be a border, or show that the size is not a multiple of cells.
     let cell_height = height.checked_div(rows).filter(|cell_height| cell_height * rows == height);
     cell_height.is_some_and(|cell_height| cell_height > 0 && cell_height % 2 == 0)
 }

@@ -1,6 +1,6 @@
-//! Picture -> cell grid.
+//! Cells from pixels: a picture to a grid.
 //!
-//! A kind of cells is one file here, with its `mod` line, and one row of the table of [`Glyphs`].
+//! A cell kind is one file here, with its `mod` line, and one row of the table of [`Glyphs`].
 
 use crate::color::Srgb8;
 use crate::framebuffer::{Resolution, ResolutionError};
@@ -29,56 +29,56 @@ pub use colors::Colors;
 pub(crate) use colors::xterm_color;
 pub use ramp::RAMP;
 
-/// How pixels become cells: what stands in them, and in which colours.
+/// The mode in which pixels become cells: glyphs and colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CellMode {
-    /// What stands in a cell.
+    /// The kind of glyphs.
     pub glyphs: Glyphs,
-    /// What it may be coloured with.
+    /// The colours.
     pub colors: Colors,
 }
 
 crate::table::table! {
-    /// What stands in a cell of the picture.
+    /// A kind of glyphs in the cells of a picture.
     pub enum Glyphs: Kind {
         /// Half blocks: two pixels, one above the other.
         Half = half::KIND;
-        /// The printable character of ASCII that has its ink where the picture has its light.
+        /// The printable ASCII character whose ink lies where the picture has its light.
         Shape = shape::KIND;
         /// A character of a fixed ramp, by lightness alone.
         Ramp = ramp::KIND;
-        /// A dot or none: a kind that only tests have.
+        /// A dot or nothing; exists in tests only.
         #[cfg(test)]
         Dots = dots::KIND;
     }
 }
 
 impl Glyphs {
-    /// The word by which people choose them.
+    /// Returns the name by which users choose the kind.
     #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// The glyphs of that name.
+    /// Returns the kind with this name.
     #[doc(hidden)]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|glyphs| glyphs.name() == name)
     }
 
-    /// What they are, for the help of the command line.
+    /// Returns a description for the help of the command line.
     #[doc(hidden)]
     pub const fn help(self) -> &'static str {
         self.row().help
     }
 
-    /// What a report calls them, in a few words.
+    /// Returns a short description for reports.
     #[doc(hidden)]
     pub const fn title(self) -> &'static str {
         self.row().title
     }
 
-    /// Whether they are block characters: where a terminal can show these, panels have their like.
+    /// Returns whether the glyphs are block characters; panels use block characters if a terminal can show them.
     #[doc(hidden)]
     pub const fn has_blocks(self) -> bool {
         self.row().has_blocks
@@ -91,7 +91,7 @@ impl fmt::Display for Glyphs {
     }
 }
 
-/// The value of that name.
+/// Parses the name of a kind.
 ///
 /// ```
 /// use termtrace::Glyphs;
@@ -111,10 +111,11 @@ impl FromStr for Glyphs {
 impl CellMode {
     /// Half blocks in truecolor.
     pub const HALF_BLOCK: Self = Self { glyphs: Glyphs::Half, colors: Colors::Truecolor };
-    /// The ramp in the terminal's own colours: the text that people compare.
+    /// The ramp in the terminal's own colours: the text of golden frames.
     pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
 
-    /// Returns the resolution at which to render for a screen of that size whose cells have that aspect (height / width).
+    /// Returns the resolution to render for a screen of this size whose cells have this aspect (height divided by
+    /// width).
     ///
     /// # Errors
     /// If the screen has more pixels than a picture may have, or the aspect is not greater than 0 and finite.
@@ -122,20 +123,20 @@ impl CellMode {
         resolution(self, size, cell_aspect)
     }
 
-    /// How many pixels a cell wants, across and down.
+    /// Returns the number of pixels per cell, across and down.
     #[doc(hidden)]
     pub const fn pixels_per_cell(self) -> (u32, u32) {
         self.glyphs.row().pixels_per_cell
     }
 
-    /// The mode in which text without colours shows the same pixels.
+    /// Returns the mode in which text without colours shows the same pixels.
     #[doc(hidden)]
     pub fn plain(self) -> Self {
         Self { glyphs: self.glyphs.row().plain.unwrap_or(self.glyphs), colors: Colors::None }
     }
 }
 
-/// Returns the resolution at which to render for a screen of that size whose cells have that aspect (height / width).
+/// Returns the resolution to render for a screen of this size whose cells have this aspect (height divided by width).
 ///
 /// # Errors
 /// If the screen has more pixels than a picture may have, or the aspect is not greater than 0 and finite.
@@ -145,7 +146,7 @@ pub fn resolution(mode: CellMode, size: Size, cell_aspect: f32) -> Result<Resolu
         .with_pixel_aspect(cell_aspect * across as f32 / down as f32)
 }
 
-/// The cells that show the picture, as a new [`Painter`] paints them.
+/// Returns the cells of a picture, as a new [`Painter`] paints them.
 ///
 /// # Panics
 /// If the picture needs more than 65,535 columns or rows.
@@ -153,7 +154,7 @@ pub fn grid_from_picture(mode: CellMode, picture: &Picture) -> Grid {
     Painter::new(mode).grid(picture)
 }
 
-/// Turns pictures into cells, and keeps what it has found out about few colours from frame to frame.
+/// A converter of pictures into cells, which caches mixes of few colours from frame to frame.
 pub struct Painter {
     mode: CellMode,
     light_background: bool,
@@ -169,24 +170,24 @@ impl fmt::Debug for Painter {
 }
 
 impl Painter {
-    /// For a terminal that writes light on dark, where it is asked to write in its own colours.
+    /// Returns a painter for a terminal that writes light on dark, which matters where its own colours are used.
     pub fn new(mode: CellMode) -> Self {
         Self { mode, light_background: false, inks: Inks::of(mode.colors) }
     }
 
-    /// Whether it writes dark on light instead: what is light is then left blank.
+    /// Sets whether the terminal writes dark on light: light pixels then are left blank.
     pub fn with_light_background(self, light_background: bool) -> Self {
         Self { light_background, ..self }
     }
 
-    /// How it turns pixels into cells.
+    /// Returns the mode.
     #[doc(hidden)]
     pub fn mode(&self) -> CellMode {
         self.mode
     }
 
-    /// The cells that show the picture: a function of nothing else. At its right and lower edge a cell may be filled
-    /// only in part.
+    /// Returns the cells of a picture, a function of nothing else. Cells at the right and lower edge may be filled in
+    /// part only.
     ///
     /// # Panics
     /// If the picture needs more than 65,535 columns or rows.
@@ -196,7 +197,7 @@ impl Painter {
         grid
     }
 
-    /// Makes a grid the one that [`grid`](Self::grid) returns, in the memory that it has.
+    /// Fills a grid as [`grid`](Self::grid) does, reusing its memory.
     ///
     /// # Panics
     /// If the picture needs more than 65,535 columns or rows.
@@ -224,7 +225,7 @@ fn size_in_cells(picture: &Picture, (across, down): (u32, u32)) -> Size {
     Size::new(cells(picture.width, across), cells(picture.height, down))
 }
 
-/// Dark where the picture is light.
+/// Returns an inverted picture: dark where the picture is light.
 fn negative(picture: &Picture) -> Picture {
     let turned = |pixel: &Srgb8| Srgb8::new(255 - pixel.r, 255 - pixel.g, 255 - pixel.b);
     Picture { pixels: picture.pixels.iter().map(turned).collect(), ..*picture }
@@ -239,7 +240,7 @@ mod tests {
     const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
     const BLUE: Srgb8 = Srgb8::new(0, 0, 255);
 
-    /// That file, its `mod` line and its row are all that it took.
+    /// The file, its `mod` line and its row are all that this kind takes.
     #[test]
     fn a_kind_that_only_tests_have_is_found_and_painted() {
         let glyphs = Glyphs::from_name("dots").expect("by its name");

@@ -1,5 +1,4 @@
-//! Scene + camera -> text, for those who cannot see the picture: what is where in it, what hides what, and where the
-//! light comes from.
+//! A picture in words, for people who cannot see it: what is where, what hides what, and where the light comes from.
 
 use crate::camera::{Camera, Pose};
 use crate::color::LinearRgb;
@@ -19,10 +18,10 @@ use words::{color, distance, percent, place, points};
 mod survey;
 mod words;
 
-/// So many objects are told of one by one, and so many lights.
+/// Limit on the objects, and on the lights, that are described one by one.
 const MOST: usize = 10;
 
-/// What a picture of that resolution shows: sentences in English, in lines. The `name` is the scene's.
+/// Returns a description in English of a picture of this resolution, as lines of sentences. `name` is the scene's.
 pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resolution) -> String {
     let told = Told { scene, camera, survey: Survey::of(scene, camera, resolution) };
     let mut text = told.beginning(name);
@@ -35,7 +34,7 @@ pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resoluti
     text
 }
 
-/// What is told of.
+/// The subject of the description.
 struct Told<'s> {
     scene: &'s Scene,
     camera: &'s Camera,
@@ -56,7 +55,7 @@ impl Told<'_> {
         )
     }
 
-    /// What is in the picture, the largest first.
+    /// Describes the objects in the picture, largest first.
     fn seen(&self, resolution: Resolution) -> String {
         let covered = &self.survey.covered;
         let mut order: Vec<_> = covered.keys().copied().collect();
@@ -86,7 +85,7 @@ impl Told<'_> {
         text
     }
 
-    /// A colour, a kind and a size.
+    /// Returns an object's colour, kind and size.
     fn what(&self, object: u32, part: &Covered) -> String {
         let object = &self.scene.objects()[object as usize];
         let own = || color(part.mean_reflectance()).to_owned();
@@ -94,7 +93,7 @@ impl Told<'_> {
         object.shape.described(&color)
     }
 
-    /// What it stands before and behind; what has no end is behind everything.
+    /// Describes the objects in front of and behind an object; unbounded objects are behind everything.
     fn hides(&self, object: u32) -> String {
         let is_endless = |object: &u32| self.scene.objects()[*object as usize].shape.bounds().is_none();
         if is_endless(&object) {
@@ -110,13 +109,13 @@ impl Told<'_> {
         told + self.around(object)
     }
 
-    /// Whether the eye is inside it.
+    /// Returns whether the eye is inside the object.
     fn around(&self, object: u32) -> &'static str {
         let shape = &self.scene.objects()[object as usize].shape;
         if shape.encloses(self.camera.pose().eye) { "; the eye is inside it" } else { "" }
     }
 
-    /// What is not in the picture, and why.
+    /// Describes the objects that are not in the picture, and why.
     fn unseen(&self, resolution: Resolution) -> String {
         let count = self.scene.objects().len() as u32;
         let unseen: Vec<_> = (0..count).filter(|object| !self.survey.covered.contains_key(object)).collect();
@@ -149,7 +148,7 @@ impl Told<'_> {
         if along <= 0.0 {
             return "behind the eye".to_owned();
         }
-        // Where on the picture it would be: from 0 to 1 if it is inside.
+        // Its position in the picture, from 0 to 1 if inside.
         let corner = eye_rays.through(0.0, 0.0).direction;
         let part = |qu, qv| {
             let side = eye_rays.through(qu, qv).direction - corner;
@@ -162,7 +161,7 @@ impl Told<'_> {
         told.unwrap_or("too small to be seen, or hidden").to_owned()
     }
 
-    /// What is seen where nothing is.
+    /// Describes the background.
     fn nothing(&self) -> String {
         let share = self.survey.nothing;
         if share == 0 {
@@ -178,7 +177,7 @@ impl Told<'_> {
         format!("The background, {}, is seen in {} of the picture.\n", colors, percent(share, self.survey.pixels))
     }
 
-    /// The lights, the strongest first.
+    /// Describes the lights, strongest first.
     fn lights(&self) -> String {
         let target = self.camera.pose().target;
         let mut lights: Vec<_> = self.scene.lights().iter().collect();
@@ -212,11 +211,11 @@ impl Told<'_> {
         text
     }
 
-    /// Where something is, from the target, as who looks at it says it.
+    /// Describes a position relative to the target, as seen by the viewer.
     fn comes_from(&self, away: Vec3) -> String {
         let basis = self.camera.basis();
         let away = away.normalize_or_zero();
-        // A third of a right angle off an axis counts.
+        // Directions more than 30 degrees off an axis are mentioned.
         let side = |along: Vec3, words: [&'static str; 2]| match away.dot(along) {
             part if part > 0.3 => Some(words[0]),
             part if part < -0.3 => Some(words[1]),
@@ -231,7 +230,7 @@ impl Told<'_> {
         if sides.is_empty() { "at the target".to_owned() } else { format!("from {}", listed(&sides)) }
     }
 
-    /// How many of each kind.
+    /// Returns the number of objects of each kind.
     fn kinds(&self, objects: impl Iterator<Item = u32>) -> String {
         let mut counts = BTreeMap::new();
         for object in objects {
@@ -243,7 +242,7 @@ impl Told<'_> {
     }
 }
 
-/// Its middle; nothing of what has no end.
+/// Returns the object's middle; `None` for an unbounded one.
 fn middle(shape: &Shape) -> Option<Vec3> {
     let bounds = shape.bounds()?;
     Some(0.5 * (bounds.min + bounds.max))
@@ -254,7 +253,7 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { many })
 }
 
-/// The objects' numbers in the file, from 1 on; of many the first few.
+/// Lists the objects' numbers in the file, from 1; of many, the first few.
 fn numbers(objects: &[u32]) -> String {
     const FEW: usize = 4;
     let names: Vec<_> = objects.iter().take(FEW).map(|object| format!("object {}", object + 1)).collect();

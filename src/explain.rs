@@ -1,7 +1,7 @@
-//! One pixel explained: all that its light came from, in the lecture's symbols.
+//! The explanation of one pixel in the lecture's symbols.
 //!
-//! What is said of the pixel was done for it by the functions that make the picture: its ray, what that was tested
-//! against, the point that it met, the lights, the sum. Beside it stand the lecture's formulas, as [`Equation`]s.
+//! Its numbers come from the functions that make the picture: the ray, the surfaces that it was tested against, the
+//! hit, the lights, the sum. Beside them are the lecture's formulas, as [`Equation`]s.
 
 mod text;
 
@@ -21,93 +21,94 @@ use crate::shape::{Surface, SurfacePoint};
 use crate::tone::{shown, tone};
 use glam::{Vec2, Vec3};
 
-/// What a picture's pixel comes from: the first of its samples, which goes through its centre.
+/// The explanation of a pixel: of its first sample, through its centre.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Explanation {
-    /// The picture's size.
+    /// The size of the picture.
     pub resolution: Resolution,
     /// The lecture's (i, j): the column and the row, from the top left.
     pub pixel: [u32; 2],
-    /// The lecture's (qu, qv): where in the picture that is, from the lower left corner (0, 0) to the upper right (1, 1).
+    /// The lecture's (qu, qv): the position in the picture, from (0, 0) at the lower left corner to (1, 1) at the upper
+    /// right.
     pub q: Vec2,
     /// The eye ray: **o** and **d**. As d reaches from the eye to the view rectangle, **q** is o + d.
     #[doc(hidden)]
     pub ray: Ray,
-    /// How many nodes of trees, of up to eight boxes each, it was tested against.
+    /// Number of tree nodes, with up to eight boxes each, that the ray was tested against.
     #[doc(hidden)]
     pub nodes: u32,
-    /// What surfaces it was tested against: those that it crosses by rising t, then the others.
+    /// The surfaces that the ray was tested against: those that it crosses by increasing t, then the others.
     #[doc(hidden)]
     pub tested: Vec<Tested>,
-    /// What it met; nothing: its light is the background's.
+    /// The hit; `None` if the light is the background's.
     #[doc(hidden)]
     pub seen: Option<Seen>,
-    /// What goes to the eye.
+    /// The light towards the eye.
     pub light: LinearRgb,
-    /// What the scene multiplies that by,
+    /// The scene's factor for that light,
     pub exposure: f32,
-    /// and how it fits it to the screen's range.
+    /// and its tone curve.
     pub tone_curve: ToneCurve,
     /// The light after both.
     pub shown: LinearRgb,
-    /// What files and terminals are told.
+    /// The colour as files and terminals get it.
     pub bytes: Srgb8,
 }
 
 /// A surface that the ray was tested against.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tested {
-    /// What it is called.
+    /// Its name.
     pub name: Name,
-    /// Where the ray crosses it first, in front of the eye.
+    /// The t of the first crossing in front of the eye.
     pub t: Option<f32>,
-    /// How the lecture puts it.
+    /// The lecture's equation.
     pub equation: Equation,
 }
 
-/// The point that the ray met, and its light.
+/// The hit and its light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
-    /// The closest crossing in front of the eye.
+    /// The t of the closest crossing in front of the eye.
     pub hit: Hit,
-    /// What it was called.
+    /// The name of the surface.
     pub name: Name,
-    /// The lecture's **p** and **n**, and which side is seen.
+    /// The lecture's **p** and **n**, and the visible side.
     pub point: SurfacePoint,
-    /// The light that arrives from everywhere alike.
+    /// The ambient light.
     pub ambient: LinearRgb,
-    /// What each light does there.
+    /// The contribution of each light.
     pub lights: Vec<Lit>,
-    /// All that arrives.
+    /// The sum of the arriving light.
     pub arriving: LinearRgb,
-    /// How much of it is reflected.
+    /// The reflectance.
     pub reflectance: LinearRgb,
 }
 
-/// What one light does at the point.
+/// The contribution of one light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lit {
-    /// **l**, the distance, n.l, and what arrives if nothing is in the way.
+    /// **l**, the distance, n.l, and the arriving light if nothing is in the way.
     pub incidence: Incidence,
-    /// What is in the way, if a surface is, and where on the way: 0 is the point, 1 the light. There may be more.
+    /// A surface in the way, if any, and its position on the way: 0 is the hit, 1 the light. There may be more.
     pub blocker: Option<(Name, f32)>,
 }
 
 impl Lit {
-    /// Whether the surface faces the light.
+    /// Returns whether the surface faces the light.
     pub fn faces(&self) -> bool {
         0.0 < self.incidence.cosine
     }
 
-    /// What it adds to the light that arrives.
+    /// Returns the light that it contributes.
     pub fn contribution(&self) -> LinearRgb {
         if self.faces() && self.blocker.is_none() { self.incidence.light } else { LinearRgb::BLACK }
     }
 }
 
-/// Explains a pixel of the picture of `scene` that `camera` sees; (0, 0) is top left. Its light and its bytes are those of
-/// a picture with one sample of each pixel. Of more samples, this is the first.
+/// Explains a pixel of the picture of `scene` seen by `camera`, counted from the top left. Its light and its colour are
+/// those of a picture with one sample per pixel; with more samples, this is the first.
 ///
 /// # Panics
 /// Outside the picture.
@@ -155,7 +156,7 @@ fn lit(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lit {
     Lit { incidence, blocker: blocker.map(|hit| (Name::of(scene, hit.object, hit.part), hit.t)) }
 }
 
-/// Keeps what a ray is tested against.
+/// The observer that records what a ray is tested against.
 #[derive(Default)]
 struct Listener {
     nodes: u32,
@@ -187,7 +188,7 @@ impl Listener {
 }
 
 impl Explanation {
-    /// The lecture's **q**: where the ray goes through the view rectangle.
+    /// Returns the lecture's **q**: the point where the ray passes through the view rectangle.
     pub(crate) fn q_in_space(&self) -> Vec3 {
         self.ray.at(1.0)
     }

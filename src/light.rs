@@ -1,7 +1,7 @@
 //! Light sources.
 //!
-//! Each kind of light is a file of its own under `light/`. To add one, write that file, with implementations of
-//! [`LightSource`] and [`InSceneFile`], and give it a line in the table here.
+//! Each kind of light is a file under `light/`. To add one, write that file with implementations of [`LightSource`] and
+//! [`InSceneFile`], and add a line to the table here.
 
 use crate::color::LinearRgb;
 use crate::lanes::{Number, Vector};
@@ -18,41 +18,42 @@ pub use point::{Falloff, PointLight, WrittenPointLight};
 #[cfg(test)]
 pub use sun::Sun;
 
-/// What every light can answer.
+/// A light source.
 pub trait LightSource: InSceneFile + Copy {
-    /// Where on a ray from a point along [`to_light`](Self::to_light) an object is in the light's way. Not at t = 0: at the
-    /// origin of the coordinates a clearance in proportion to them is nothing, and the point lies in its surface exactly.
+    /// The interval on a ray from a point along [`to_light`](Self::to_light) in which an object is in the light's way.
+    /// Not from t = 0: at the coordinates' origin an offset in proportion to them vanishes, and the point is exactly in
+    /// its surface.
     const IN_THE_WAY: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 };
 
-    /// Returns the vectors from points to the light; of a light that is infinitely far, the unit vector towards it.
+    /// Returns the vectors from points to the light; for a light at infinity, the unit vector towards it.
     fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N>;
 
-    /// Returns what arrives at surfaces, times 1/pi: where the unit vector to the light is `l`, the squared length of
-    /// [`to_light`](Self::to_light) `distance_squared`, and n.l `cosine`.
+    /// Returns the light that arrives at surfaces, times 1/pi: `l` is the unit vector to the light, `distance_squared`
+    /// the squared length of [`to_light`](Self::to_light), `cosine` is n.l.
     fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3];
 
-    /// Returns its colour, as bright as it likes.
+    /// Returns its colour with its brightness.
     fn color(&self) -> LinearRgb;
 
-    /// Returns where it is, in world space; nothing if it is infinitely far.
+    /// Returns its position in world space; `None` at infinity.
     fn position(&self) -> Option<Vec3> {
         None
     }
 
-    /// Returns the light at another place, if it has one; where no light can be, it stays.
+    /// Returns the light at another position, if it has one; unchanged if no light can be there.
     #[must_use]
     fn moved_to(self, _position: Vec3) -> Self {
         self
     }
 
-    /// Returns the light, if nothing is wrong with it; else faults are added, or were.
+    /// Returns the checked light; if `None`, a fault has been reported.
     fn check(written: &Self::Written, validator: &mut Validator<'_>) -> Option<Self>;
 }
 
-/// Makes [`Light`] and [`WrittenLight`] from the table of lights.
+/// Defines [`Light`] and [`WrittenLight`] by the table of lights.
 macro_rules! lights {
     ($($(#[$on:meta])* $name:ident: $light:ident, $of:literal;)*) => {
-        /// Any of the lights. It hands every question on to [`LightSource`].
+        /// Any kind of light. Its methods call those of [`LightSource`].
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Light {
@@ -60,7 +61,7 @@ macro_rules! lights {
         }
 
         impl Light {
-            /// [`LightSource::IN_THE_WAY`].
+            /// See [`LightSource::IN_THE_WAY`].
             #[doc(hidden)]
             pub fn in_the_way(&self) -> Interval {
                 match self {
@@ -68,7 +69,7 @@ macro_rules! lights {
                 }
             }
 
-            /// [`LightSource::to_light`].
+            /// See [`LightSource::to_light`].
             #[doc(hidden)]
             #[inline(always)]
             pub fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N> {
@@ -77,7 +78,7 @@ macro_rules! lights {
                 }
             }
 
-            /// [`LightSource::irradiance`].
+            /// See [`LightSource::irradiance`].
             #[doc(hidden)]
             #[inline(always)]
             pub fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
@@ -86,7 +87,7 @@ macro_rules! lights {
                 }
             }
 
-            /// [`LightSource::color`].
+            /// See [`LightSource::color`].
             #[doc(hidden)]
             pub fn color(&self) -> LinearRgb {
                 match self {
@@ -94,7 +95,7 @@ macro_rules! lights {
                 }
             }
 
-            /// [`LightSource::position`].
+            /// See [`LightSource::position`].
             #[doc(hidden)]
             pub fn position(&self) -> Option<Vec3> {
                 match self {
@@ -102,7 +103,7 @@ macro_rules! lights {
                 }
             }
 
-            /// [`LightSource::moved_to`].
+            /// See [`LightSource::moved_to`].
             #[doc(hidden)]
             #[must_use]
             pub fn moved_to(self, position: Vec3) -> Self {
@@ -118,7 +119,7 @@ macro_rules! lights {
             }
         })*
 
-        /// A light as it is written.
+        /// A light as written.
         #[derive(Clone, Debug, PartialEq)]
         pub enum WrittenLight {
             $(#[doc = $of] $(#[$on])* $name(<$light as InSceneFile>::Written),)*
@@ -126,10 +127,10 @@ macro_rules! lights {
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenLight {
-            /// The words that name lights.
+            /// The names of lights.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $light::NAME,)*];
 
-            /// Reads the light of that name.
+            /// Reads the light with this name.
             pub(crate) fn read(name: &str, reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $light::NAME {
                     return $light::read_node(reader, node).map(Self::$name);
@@ -137,7 +138,7 @@ macro_rules! lights {
                 None
             }
 
-            /// Returns the light, if nothing is wrong with it; else faults are added, or were.
+            /// Returns the checked light; if `None`, a fault has been reported.
             pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Light> {
                 match self {
                     $($(#[$on])* Self::$name(written) => $light::check(written, validator).map(Light::from),)*

@@ -1,10 +1,10 @@
-//! Materials: how much of the light that arrives is reflected.
+//! Materials: the reflected share of the arriving light.
 //!
-//! All of them reflect diffusely (lecture, "Shading", assumption 3): equally in all directions, so that a point has
-//! the same colour from every viewpoint.
+//! All materials are diffuse (lecture, "Shading", assumption 3): they reflect equally in all directions, so that a
+//! point has the same colour from every viewpoint.
 //!
-//! Each material is a file of its own under `material/`. To add one, write that file, with implementations of
-//! [`Reflecting`] and [`InSceneFile`], and give it a line in the table here.
+//! Each material is a file under `material/`. To add one, write that file with implementations of [`Reflecting`] and
+//! [`InSceneFile`], and add a line to the table here.
 
 use crate::checks::SceneFault;
 use crate::color::LinearRgb;
@@ -22,37 +22,36 @@ pub use diffuse::Diffuse;
 #[cfg(test)]
 pub use stripes::Stripes;
 
-/// A diffuse surface, plain or patterned. Reflectances are linear, each band in 0..=1.
+/// A diffuse surface, plain or patterned. Reflectances are linear, each channel in 0..=1.
 pub trait Reflecting: InSceneFile + Copy {
     /// Its pattern after a pronoun, for messages: "its squares". Only surfaces with coordinates can have it.
     const PATTERN: Option<&'static str> = None;
 
-    /// Returns the diffuse reflectances of red, green and blue, where the surface has the coordinates `uv` and a pixel
-    /// reaches over `footprint` of them: zero for a point alone.
+    /// Returns the diffuse reflectances of red, green and blue at the surface coordinates `uv`, filtered over
+    /// `footprint`, the extent of a pixel there; zero for a point sample.
     fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3];
 
-    /// Returns what is said of it before the name of a shape, such as "red", with a function that names colours.
+    /// Returns an adjective for the name of a shape, such as "red"; the function names colours.
     fn described(&self, name: fn(LinearRgb) -> &'static str) -> String;
 
-    /// Returns the material, if nothing is wrong with it; else faults are added, or were.
+    /// Returns the checked material; if `None`, a fault has been reported.
     fn check(written: &Self::Written, validator: &mut Validator<'_>) -> Option<Self>;
 }
 
-/// Makes [`Material`] and [`WrittenMaterial`] from the table of materials.
+/// Defines [`Material`] and [`WrittenMaterial`] by the table of materials.
 macro_rules! materials {
     ($($(#[$on:meta])* $material:ident, $of:literal;)*) => {
-        /// Any of the materials, or what a surface brings itself.
+        /// Any material, or the surface's own.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Material {
             $(#[doc = $of] $(#[$on])* $material($material),)*
-            /// What the surface brings itself: the colours and textures of a mesh's file; where there are none, as
-            /// [`DEFAULT`](Self::DEFAULT).
+            /// The surface's own: the colours and textures of a mesh's file; without any, [`DEFAULT`](Self::DEFAULT).
             Own,
         }
 
         impl Material {
-            /// [`Reflecting::reflectance`]; for what is [`Own`](Self::Own), that of a surface that brings nothing.
+            /// See [`Reflecting::reflectance`]; for [`Own`](Self::Own), that of a surface without colours.
             #[doc(hidden)]
             #[inline(always)]
             pub fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
@@ -62,7 +61,7 @@ macro_rules! materials {
                 }
             }
 
-            /// Returns its name after an article, and its [pattern](Reflecting::PATTERN), if it has one.
+            /// Returns its name with an article, and its [pattern](Reflecting::PATTERN), if it has one.
             pub(crate) fn pattern(&self) -> Option<(&'static str, &'static str)> {
                 match self {
                     $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
@@ -70,7 +69,7 @@ macro_rules! materials {
                 }
             }
 
-            /// [`Reflecting::described`]; nothing for what is [`Own`](Self::Own).
+            /// See [`Reflecting::described`]; empty for [`Own`](Self::Own).
             pub(crate) fn described(&self, name: fn(LinearRgb) -> &'static str) -> Option<String> {
                 match self {
                     $($(#[$on])* Self::$material(material) => Some(material.described(name)),)*
@@ -85,7 +84,7 @@ macro_rules! materials {
             }
         })*
 
-        /// A material as it is written.
+        /// A material as written.
         #[derive(Clone, Debug, PartialEq)]
         pub enum WrittenMaterial {
             $(#[doc = $of] $(#[$on])* $material(<$material as InSceneFile>::Written),)*
@@ -93,10 +92,10 @@ macro_rules! materials {
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenMaterial {
-            /// The words that name materials.
+            /// The names of materials.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $material::NAME,)*];
 
-            /// Reads the material of that name.
+            /// Reads the material with this name.
             pub(crate) fn read(name: &str, reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $material::NAME {
                     return $material::read_node(reader, node).map(Self::$material);
@@ -104,14 +103,14 @@ macro_rules! materials {
                 None
             }
 
-            /// Returns the material, if nothing is wrong with it; else faults are added, or were.
+            /// Returns the checked material; if `None`, a fault has been reported.
             pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Material> {
                 match self {
                     $($(#[$on])* Self::$material(written) => $material::check(written, validator).map(Material::from),)*
                 }
             }
 
-            /// Returns its name after an article, and its [pattern](Reflecting::PATTERN), if it has one.
+            /// Returns its name with an article, and its [pattern](Reflecting::PATTERN), if it has one.
             pub(crate) fn pattern(&self) -> Option<(&'static str, &'static str)> {
                 match self {
                     $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
@@ -128,7 +127,7 @@ materials! {
     Stripes, "Stripes of two reflectances in turn.";
 }
 
-/// The material of an object that is given none: a light grey.
+/// Returns the material of an object without one: a light grey.
 impl Default for Material {
     fn default() -> Self {
         Self::DEFAULT
@@ -136,32 +135,33 @@ impl Default for Material {
 }
 
 impl Material {
-    /// The material of an object that is given none: a light grey.
+    /// The material of an object without one: a light grey.
     #[doc(hidden)]
     pub const DEFAULT: Self = Self::Diffuse(Diffuse::DEFAULT);
 
     /// The reflectance of [`DEFAULT`](Self::DEFAULT).
     pub(crate) const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
 
-    /// Returns the material with the same reflectance everywhere, linear.
+    /// Returns a material with the same reflectance everywhere, linear.
     ///
     /// # Errors
-    /// Unless each band lies within 0 and 1.
+    /// Unless each channel is within 0 and 1.
     pub fn diffuse(reflectance: LinearRgb) -> Result<Self, SceneFault> {
         Diffuse::new(reflectance).map(Self::Diffuse)
     }
 
-    /// Returns the material of squares with two reflectances in turn, linear, whose side has that length. Only a plane can
+    /// Returns a material of squares with alternating reflectances, linear, and sides of this length. Only a plane can
     /// have it.
     ///
     /// # Errors
+    /// Unless each channel is within 0 and 1, and the size between 1e-9 and 1e9.
     /// Unless each band lies within 0 and 1, and the size between 1e-9 and 1e9.
     pub fn checker(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
         Checker::new(a, b, size).map(Self::Checker)
     }
 }
 
-/// Returns the bands of a colour, the same in every place.
+/// Returns the channels of a colour as constants.
 #[inline(always)]
 fn bands<N: Number>(LinearRgb { r, g, b }: LinearRgb) -> [N; 3] {
     [N::splat(r), N::splat(g), N::splat(b)]

@@ -1,26 +1,27 @@
-//! Output files that are replaced whole, or not at all.
+//! Output files that are replaced atomically.
 //!
-//! An [`OutputFile`] is written under a temporary name in the folder of its target. [`OutputFile::finish`] sends it to the
-//! disk (`sync_all`) and renames it; dropped before that, it is removed, and what stands under the target's name is as it
-//! was. So of two processes that write one name, the later one's file is there, whole.
+//! An [`OutputFile`] is written under a temporary name in the folder of its target. [`OutputFile::finish`] syncs it to
+//! disk (`sync_all`) and renames it; dropped before that, it is removed, and the target is unchanged. If two processes
+//! write one name, the result is the later one's file, whole.
 //!
-//! - **Symbolic links** are followed, also one whose target does not exist yet: the link stays a link.
+//! - **Symbolic links** are followed, even if their target does not exist yet: the link stays a link.
 //! - **A new file** gets the mode that the umask gives; **an existing one** keeps its owner and mode, and is refused if
-//!   this process may not write it. Access control lists and extended attributes are not copied.
+//! this process may not write it. Access control lists and extended attributes are not copied.
 //! - **Devices, pipes and descriptors** (`/dev/stdout`) cannot be replaced: [`open_stream`] opens them.
-//! - **In place**, over its old bytes, an existing file is written only if nothing else keeps what it is: it has another
-//!   hard link (a new file would cut it), its owner cannot be given back, its folder takes no new file, or it is a
-//!   mount point. The contents are finished first, and a lock keeps other writers out. If writing fails, as on a full
-//!   disk, the old bytes are put back; but a crash of the machine or SIGKILL in these milliseconds leaves a mixture.
-//! - **Leftovers**: a process that is killed leaves its temporary file. [`OutputFile::remove_stale`] removes those that
-//!   have exactly our pattern of name, belong to our user, and are not locked by a process that still writes them.
+//! - **In place**, over its old bytes, an existing file is written only if its identity cannot be kept otherwise: it
+//! has another hard link (which a new file would break), its owner cannot be restored, its folder does not allow new
+//! files, or it is a mount point. The contents are finished first, and a lock keeps other writers out. If writing
+//! fails, as on a full disk, the old bytes are written back; but a crash of the machine or SIGKILL within these
+//! milliseconds leaves a mixture.
+//! - **Leftovers**: a killed process leaves its temporary file. [`OutputFile::remove_stale`] removes those with exactly
+//! our pattern of name that belong to our user and are not locked by a living writer.
 //!
-//! The rename itself is not awaited on the disk: after a power failure there is the old file or the new one.
+//! The rename itself is not synced: after a power failure there is the old file or the new one.
 //!
-//! The crate `tempfile` was weighed: its `NamedTempFile` would replace some thirty lines (unused name, removal on drop,
-//! rename), but neither the locks by which a leftover is told from a living writer's file, nor links, owners and what is
-//! written in place. `O_TMPFILE`, which leaves nothing even when killed, is missing on macOS and several file
-//! systems, so that all of this would be needed beside it.
+//! The crate `tempfile` was considered: its `NamedTempFile` would replace some thirty lines (unused name, removal on
+//! drop, rename), but not the locks that tell a leftover from a living writer's file, nor links, owners and writing in
+//! place. `O_TMPFILE`, which leaves nothing even when killed, is missing on macOS and several file systems, so that all
+//! of this would be needed beside it.
 
 mod in_place;
 mod target;
@@ -33,33 +34,33 @@ use std::path::{Path, PathBuf};
 pub use target::open_stream;
 use temporary::Temporary;
 
-/// A file that has its name once it is finished.
+/// A file that gets its name when it is finished.
 #[derive(Debug)]
 pub struct OutputFile {
-    /// Where symbolic links lead to.
+    /// The path after following symbolic links.
     target: PathBuf,
     place: Place,
 }
 
-/// Where the contents are until the file is finished, and what becomes of them.
+/// The place of the contents until the file is finished, and how they get to the target.
 #[derive(Debug)]
 enum Place {
     /// Takes the name, whether or not a file has got it meanwhile.
     New(Temporary),
     /// Takes the name if it is still unused.
     Unused(Temporary),
-    /// Takes the place, owner and mode of a file that was like this.
+    /// Takes the name, owner and mode of an existing file with this metadata.
     Over(Temporary, Metadata),
-    /// Goes over the bytes of a file whose folder takes no other.
+    /// Overwrites the bytes of an existing file.
     Within(Vec<u8>),
 }
 
 impl OutputFile {
-    /// Begins a file that replaces what the path leads to, if there is something.
+    /// Starts a file that replaces what the path leads to, if anything.
     ///
     /// # Errors
-    /// If there is a folder, a stream (see [`open_stream`]) or a file that may not be written; if the folder of a new file
-    /// takes none.
+    /// If that is a folder, a stream (see [`open_stream`]) or a file that may not be written, or the folder does not
+    /// allow a new file.
     pub fn create(path: &Path) -> io::Result<Self> {
         let target = target::followed(path);
         let place = match fs::metadata(path) {
@@ -73,11 +74,11 @@ impl OutputFile {
         Ok(Self { target, place })
     }
 
-    /// Begins a file of a name that is not used yet, not even by a link.
+    /// Starts a file with an unused name.
     ///
     /// # Errors
-    /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), here or from [`finish`](Self::finish), if the name is used; if the
-    /// folder takes no file.
+    /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), here or from [`finish`](Self::finish), if the name is used,
+    /// even by a link; or if the folder does not allow a new file.
     pub fn create_new(path: &Path) -> io::Result<Self> {
         match fs::symlink_metadata(path) {
             Ok(_) => Err(io::ErrorKind::AlreadyExists.into()),
@@ -86,8 +87,8 @@ impl OutputFile {
         }
     }
 
-    /// Removes the temporary files that killed processes of this user left in the folder. It reads the whole folder: once
-    /// is enough for many files.
+    /// Removes the temporary files that killed processes of this user left in the folder. It reads the whole folder:
+    /// once is enough for many files.
     pub fn remove_stale(&self) {
         if let Place::New(temporary) | Place::Unused(temporary) | Place::Over(temporary, _) = &self.place {
             temporary.remove_stale();
@@ -97,7 +98,7 @@ impl OutputFile {
     /// Gives the file its name.
     ///
     /// # Errors
-    /// If it cannot be written or renamed; what stands under the name is then as it was.
+    /// If it cannot be written or renamed; the target is then unchanged.
     pub fn finish(self) -> io::Result<()> {
         let target = &self.target;
         match self.place {
@@ -122,7 +123,7 @@ impl Write for OutputFile {
     }
 }
 
-/// Where the contents go while this file is there.
+/// Returns how to write the contents over this existing file.
 fn over(target: &Path, existing: Metadata) -> io::Result<Place> {
     target::check_writable(target, &existing)?;
     match Temporary::private(target) {
@@ -132,8 +133,8 @@ fn over(target: &Path, existing: Metadata) -> io::Result<Place> {
     }
 }
 
-/// The name is reserved first, by an empty file: what would leave an existing file alone (`link`, `renameat2`) is not
-/// known to all file systems.
+/// Reserves the name first by an empty file: system calls that leave an existing file alone (`link`, `renameat2`) are
+/// not supported by all file systems.
 fn take_name(temporary: &mut Temporary, target: &Path) -> io::Result<()> {
     File::create_new(target)?;
     temporary.rename(target).inspect_err(|_| {
@@ -141,7 +142,7 @@ fn take_name(temporary: &mut Temporary, target: &Path) -> io::Result<()> {
     })
 }
 
-/// By a rename; in place where that would change more than the contents.
+/// Replaces by a rename, or in place where a rename would change more than the contents.
 fn replace(temporary: &mut Temporary, existing: &Metadata, target: &Path) -> io::Result<()> {
     if existing.nlink() == 1 && temporary.become_like(existing).is_ok() {
         temporary.sync()?;
@@ -153,8 +154,8 @@ fn replace(temporary: &mut Temporary, existing: &Metadata, target: &Path) -> io:
     in_place::write(target, &temporary.contents()?)
 }
 
-/// Whether a folder takes no new file, or keeps a name (somebody else's in a sticky folder, a mount point's): the file
-/// itself may be writable nevertheless.
+/// Returns whether a folder does not allow a new file or a replaced name (another user's file in a sticky folder, a
+/// mount point), although the file itself may be writable.
 fn is_refused(error: &io::Error) -> bool {
     use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem, ResourceBusy};
     matches!(error.kind(), PermissionDenied | ReadOnlyFilesystem | ResourceBusy)

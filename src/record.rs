@@ -1,7 +1,7 @@
-//! Frames over time -> a film: asciicast or GIF.
+//! Films of frames over time: asciicast and GIF.
 //!
-//! Each frame is written as it comes; no film is ever held whole. A film is a pure function of its frames: nothing of
-//! the clock and nothing of the environment is in it.
+//! Each frame is written as it comes; a film is never held in memory. A film is a pure function of its frames: it
+//! contains nothing from the clock or the environment.
 
 #[cfg(feature = "cast")]
 mod cast;

@@ -1,35 +1,35 @@
-//! What a terminal has answered to questions, as plain values.
+//! A terminal's answers to queries, as plain values.
 
 use crate::color::{LinearRgb, Srgb8};
 
-/// The answers so far. `None`: it has not said.
+/// The answers so far. `None`: no answer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Answers {
-    /// Whether it has kept [`TEST_COLOR`] as its background colour (DECRQSS of SGR).
+    /// Whether it kept [`TEST_COLOR`] as its background colour (DECRQSS of SGR).
     pub truecolor: Option<bool>,
-    /// Whether it knows synchronized output (DECRQM of mode 2026).
+    /// Whether it supports synchronized output (DECRQM of mode 2026).
     pub synchronized_output: Option<bool>,
-    /// Whether it knows the kitty keyboard protocol: there is no answer for "no".
+    /// Whether it supports the kitty keyboard protocol; there is no reply for "no".
     pub kitty_keyboard: Option<bool>,
-    /// Whether it knows SGR mouse reports (DECRQM of mode 1006).
+    /// Whether it supports SGR mouse reports (DECRQM of mode 1006).
     pub sgr_mouse: Option<bool>,
-    /// Whether it knows mouse reports in pixels (DECRQM of mode 1016).
+    /// Whether it supports mouse reports in pixels (DECRQM of mode 1016).
     pub pixel_mouse: Option<bool>,
     /// A cell's width and height in pixels (`CSI 16 t`).
     pub cell_pixels: Option<(u16, u16)>,
     /// The colour of the background (OSC 11).
     pub background: Option<Srgb8>,
-    /// How the first sixteen colours look (OSC 4).
+    /// The values of the first sixteen colours (OSC 4).
     pub sixteen: [Option<Srgb8>; 16],
-    /// How many columns a half block takes, by a cursor report after one.
+    /// The number of columns of a half block, from a cursor position report after one.
     pub block_width: Option<u16>,
 }
 
-/// What a terminal is told to use for its background before it is asked which colour that is: none of the 256.
+/// The background colour that is set before the colour is queried: none of the 256.
 pub const TEST_COLOR: Srgb8 = Srgb8::new(1, 2, 3);
 
 impl Answers {
-    /// How a private mode stands, as DECRPM tells it: 0 not known, 4 off for good.
+    /// Records the state of a private mode as reported by DECRPM: 0 not recognised, 4 permanently reset.
     pub fn take_mode(&mut self, mode: u16, state: u16) {
         let known = Some(matches!(state, 1..=3));
         match mode {
@@ -40,7 +40,7 @@ impl Answers {
         }
     }
 
-    /// A colour, such as `11;rgb:1e1e/1e1e/1e1e`: what stands between the ends of an operating-system command.
+    /// Records a colour, such as `11;rgb:1e1e/1e1e/1e1e`: the contents of an operating system command.
     pub fn take_osc(&mut self, text: &[u8]) {
         let Ok(text) = std::str::from_utf8(text) else { return };
         if let Some(color) = text.strip_prefix("11;") {
@@ -52,34 +52,34 @@ impl Answers {
         }
     }
 
-    /// The rendition in use, such as `1$r0;48:2::1:2:3m`. A refusal (`0$r`) says nothing.
+    /// Records the current rendition, such as `1$r0;48:2::1:2:3m`. A refusal (`0$r`) gives no answer.
     pub fn take_dcs(&mut self, text: &[u8]) {
         let rendition = std::str::from_utf8(text).ok().and_then(|text| text.strip_prefix("1$r")?.strip_suffix('m'));
         if let Some(rendition) = rendition {
             let Srgb8 { r, g, b } = TEST_COLOR;
-            // Separated in either way, with a colour space or without one.
+            // Separated in either way, with or without a colour space.
             let numbers: Vec<u8> = rendition.split([';', ':']).filter_map(|number| number.parse().ok()).collect();
             self.truecolor = Some(numbers.windows(5).any(|numbers| numbers == [48, 2, r, g, b]));
         }
     }
 
-    /// Where the cursor stands after a half block in the first column, both from 1.
+    /// Records the cursor's column after a half block in the first column, both from 1.
     pub fn take_cursor(&mut self, column: u16) {
-        // A screen of one column holds it back.
+        // On a screen of one column the cursor cannot move past the block.
         self.block_width = column.checked_sub(1).filter(|&width| width > 0);
     }
 
-    /// Whether it writes on a light background.
+    /// Returns whether the background is light.
     pub fn light_background(&self) -> Option<bool> {
         // Mid-grey reflects 18 % of the light.
         self.background.map(|color| LinearRgb::from_srgb8(color).luminance() > 0.18)
     }
 }
 
-/// `rgb:R/G/B` or `rgba:R/G/B/A` of one to four hexadecimal digits each, as X11 writes it, or `#rrggbb`.
+/// Parses `rgb:R/G/B` or `rgba:R/G/B/A` with one to four hexadecimal digits each, as X11 writes it, or `#rrggbb`.
 fn color_named(text: &str) -> Option<Srgb8> {
     let [r, g, b] = if let Some(digits) = text.strip_prefix('#') {
-        // By bytes, so that no character is cut.
+        // By bytes, so that no character is split.
         let pair = |at: usize| digits.get(at..at + 2).filter(|_| digits.len() == 6);
         [pair(0)?, pair(2)?, pair(4)?]
     } else {
@@ -90,7 +90,7 @@ fn color_named(text: &str) -> Option<Srgb8> {
     Some(Srgb8::new(band(r)?, band(g)?, band(b)?))
 }
 
-/// A share of the highest number with as many digits, to 8 bits.
+/// Scales a number from its digits' largest value to 8 bits.
 fn band(digits: &str) -> Option<u8> {
     let is_hex = matches!(digits.len(), 1..=4) && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
     let value = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex)?;

@@ -1,22 +1,22 @@
-//! What the environment tells of a terminal: pure functions, each answer with where it came from.
+//! Detection from the environment: pure functions, each answer with its source.
 
 use super::{ColorChoice, Colors, Glyphs};
 
-/// An answer, and who gave it.
+/// An answer and its source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found<T> {
     /// The answer.
     pub value: T,
-    /// Who gave it.
+    /// The source.
     pub source: Source,
 }
 
-/// Who has told something of the terminal.
+/// A source of answers about a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The user, by a flag or a setting.
     User,
-    /// The environment variable of that name.
+    /// The environment variable with this name.
     Variable(&'static str),
     /// The window, by its size in cells and in pixels.
     Window,
@@ -24,27 +24,29 @@ pub enum Source {
     Reply,
     /// The terminfo database.
     Terminfo,
-    /// Nobody: it is so nearly everywhere.
+    /// A default that holds nearly everywhere.
     Assumed,
 }
 
-/// All that can be asked for what a terminal shows.
+/// The sources that detection may query.
 pub struct Clues<'a> {
-    /// The value of an environment variable.
+    /// Returns the value of an environment variable.
     pub variable: &'a dyn Fn(&str) -> Option<String>,
-    /// Whether the terminal has kept a 24-bit colour that it was given, if it has said so (DECRQSS of SGR).
+    /// Whether the terminal kept a 24-bit colour, if it has replied (DECRQSS of SGR).
     pub truecolor_reply: Option<bool>,
-    /// What terminfo says of a terminal of that name, if it is there: see [`terminfo_colors`](super::terminfo_colors).
+    /// Returns terminfo's number of colours of a terminal with this name, if known: see
+    /// [`terminfo_colors`](super::terminfo_colors).
     pub terminfo: &'a dyn Fn(&str) -> Option<Colors>,
 }
 
-/// What the user chooses the glyphs to be; `None` leaves it to the terminal.
+/// The user's choice of glyphs; `None` leaves it to detection.
 pub type GlyphChoice = Option<Glyphs>;
 
-/// The colours to use.
+/// Returns the colours to use.
 ///
-/// In this order, and the first to answer is believed: the flag; `NO_COLOR`; `COLORTERM`; the terminal's own reply;
-/// terminfo's flags; the name in `TERM`, where it is known for truecolor; terminfo's number; the name. `CLICOLOR_FORCE`, `FORCE_COLOR` and `--color=always` say the least that it has to be.
+/// The first of these that answers decides: the flag; `NO_COLOR`; `COLORTERM`; the terminal's own reply; terminfo's
+/// flags; the name in `TERM`, if it is known for truecolor; terminfo's number; the name. `CLICOLOR_FORCE`,
+/// `FORCE_COLOR` and `--color=always` set a minimum.
 pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Found<Colors> {
     let least = match choice {
         ColorChoice::Never => return Found { value: Colors::None, source: Source::User },
@@ -59,7 +61,7 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Found<Colors> {
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
-/// What stands in cells: half blocks, unless they would be garbage, or there is no colour to tell one from another.
+/// Returns the glyphs to use: half blocks, unless they would be garbage, or there is no colour to distinguish them.
 pub fn glyphs(choice: GlyphChoice, colors: Found<Colors>, clues: &Clues<'_>) -> Found<Glyphs> {
     if let Some(value) = choice {
         return Found { value, source: Source::User };
@@ -72,27 +74,27 @@ pub fn glyphs(choice: GlyphChoice, colors: Found<Colors>, clues: &Clues<'_>) -> 
             let value = if is_utf8(&locale) { Glyphs::Half } else { Glyphs::Shape };
             Found { value, source: Source::Variable(name) }
         }
-        // Nobody has said anything against UTF-8, and a terminal of today shows it.
+        // Without a contrary sign UTF-8 is assumed: current terminals show it.
         None => Found { value: Glyphs::Half, source: Source::Assumed },
     }
 }
 
-/// The variable's value, if it is set and not empty.
+/// Returns the variable's value, if it is set and not empty.
 fn value(clues: &Clues<'_>, name: &str) -> Option<String> {
     (clues.variable)(name).filter(|value| !value.is_empty())
 }
 
-/// What the user's own variables ask for; what is forced is only the least that it has to be.
+/// Returns the request of the user's variables; a forced level is a minimum.
 pub(super) fn asked_for(clues: &Clues<'_>) -> Option<Found<Colors>> {
     refused(clues).or_else(|| forced(clues))
 }
 
-/// The custom of no-color.org: set, and not empty.
+/// The convention of no-color.org: set, and not empty.
 fn refused(clues: &Clues<'_>) -> Option<Found<Colors>> {
     value(clues, "NO_COLOR").map(|_| Found { value: Colors::None, source: Source::Variable("NO_COLOR") })
 }
 
-/// The customs of bixense.com/clicolors and of Node: a level, or just that there is to be colour.
+/// The conventions of bixense.com/clicolors and of Node: a level, or just that there is to be colour.
 fn forced(clues: &Clues<'_>) -> Option<Found<Colors>> {
     let found = |value, name| Some(Found { value, source: Source::Variable(name) });
     if value(clues, "CLICOLOR_FORCE").is_some_and(|force| force != "0") {
@@ -107,21 +109,21 @@ fn forced(clues: &Clues<'_>) -> Option<Found<Colors>> {
     found(value, "FORCE_COLOR")
 }
 
-/// Other values than these two tell of colour, but not of how many.
+/// Other values than these two announce colour, but not how many.
 pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Found<Colors>> {
     let colorterm = value(clues, "COLORTERM")?.to_ascii_lowercase();
     let is_truecolor = colorterm == "truecolor" || colorterm == "24bit";
     is_truecolor.then_some(Found { value: Colors::Truecolor, source: Source::Variable("COLORTERM") })
 }
 
-/// A terminal that has not kept the colour may have any other number of them.
+/// A terminal that did not keep the colour may have any smaller number.
 fn replied(clues: &Clues<'_>) -> Option<Found<Colors>> {
     let kept = clues.truecolor_reply?;
     kept.then_some(Found { value: Colors::Truecolor, source: Source::Reply })
 }
 
-/// terminfo's flags, then what is known of the name, then terminfo's number, which says less than the terminal can where it
-/// stands for a name that has truecolor.
+/// terminfo's flags, then what is known of the name, then terminfo's number, which is too low for names of truecolor
+/// terminals.
 fn by_term(clues: &Clues<'_>) -> Found<Colors> {
     let (terminfo, name) = (by_terminfo(clues), by_name(clues));
     match terminfo {
@@ -135,7 +137,7 @@ fn by_terminfo(clues: &Clues<'_>) -> Option<Found<Colors>> {
     Some(Found { value, source: Source::Terminfo })
 }
 
-/// By the customs of names; every emulator of the last twenty years has 256 colours.
+/// By conventions of names; every emulator of the last twenty years has 256 colours.
 fn by_name(clues: &Clues<'_>) -> Found<Colors> {
     let Some(term) = value(clues, "TERM") else {
         return Found { value: Colors::Indexed256, source: Source::Assumed };
@@ -156,7 +158,7 @@ fn by_name(clues: &Clues<'_>) -> Found<Colors> {
     Found { value, source: Source::Variable("TERM") }
 }
 
-/// The locale's character set is named in the first of these that is set, by POSIX's order.
+/// The variables that name the locale's character set, in POSIX's order; the first one set counts.
 pub(super) fn locale(clues: &Clues<'_>) -> Option<(&'static str, String)> {
     ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, value(clues, name)?)))
 }
@@ -174,7 +176,7 @@ mod tests {
 
     const SIXTEEN: Colors = Colors::SIXTEEN;
 
-    /// A terminfo that knows some terminals.
+    /// A terminfo database that knows some terminals.
     fn terminfo(term: &str) -> Option<Colors> {
         match term {
             "xterm-256color" | "alacritty" => Some(Indexed256),
@@ -204,7 +206,7 @@ mod tests {
             // NO_COLOR.
             (Auto, &[truecolor, ("NO_COLOR", "1"), ("FORCE_COLOR", "3")], None, NoColors, variable("NO_COLOR")),
             (Auto, &[truecolor, ("NO_COLOR", "")], None, Truecolor, variable("COLORTERM")),
-            // What is forced is the least.
+            // A forced level is a minimum.
             (Auto, &[dumb, ("CLICOLOR_FORCE", "1")], None, SIXTEEN, variable("CLICOLOR_FORCE")),
             (Auto, &[dumb, ("CLICOLOR_FORCE", "0")], None, NoColors, Source::Terminfo),
             (Auto, &[xterm, ("CLICOLOR_FORCE", "1")], None, Indexed256, Source::Terminfo),
@@ -223,7 +225,7 @@ mod tests {
             // terminfo.
             (Auto, &[("TERM", "xterm-direct")], None, Truecolor, Source::Terminfo),
             (Auto, &[("TERM", "vt100")], None, NoColors, Source::Terminfo),
-            // A name that says more than terminfo's number.
+            // A name that implies more than terminfo's number.
             (Auto, &[("TERM", "alacritty")], None, Truecolor, variable("TERM")),
             // The name.
             (Auto, &[("TERM", "st-256color")], None, Truecolor, variable("TERM")),

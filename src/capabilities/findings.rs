@@ -1,71 +1,71 @@
-//! All that is known of a terminal, from whoever knows it: the user, the environment, the window, its own answers.
+//! The findings about a terminal from all sources: the user, the environment, the window, its own replies.
 
 use super::detection::{asked_for, colorterm, locale};
 use super::{Answers, Capabilities, CellMode, Clues, ColorChoice, Colors, Found, GlyphChoice, Glyphs, Source};
 use super::{CELL_ASPECTS, USUAL_CELL_ASPECT, colors, glyphs};
 use crate::grid::CellShape;
 
-/// What the user wants and the environment says, read once, to be judged again with each answer.
+/// The user's choices and the environment, read once and evaluated again with each reply.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hints {
-    /// Which colours the user wants.
+    /// The user's choice of colours.
     pub color: ColorChoice,
-    /// Which glyphs the user wants.
+    /// The user's choice of glyphs.
     pub glyphs: GlyphChoice,
-    /// The shape of a cell, if the user says it: its height over its width. One outside [`CELL_ASPECTS`] says nothing.
+    /// The cell aspect, if the user gives it. A value outside [`CELL_ASPECTS`] is ignored.
     pub cell_aspect: Option<f32>,
     variables: Vec<(&'static str, String)>,
     terminfo: Option<Colors>,
 }
 
-/// All environment variables that say something of the terminal.
+/// All environment variables that tell something about the terminal.
 pub const VARIABLES: [&str; 10] =
     ["TERM", "COLORTERM", "NO_COLOR", "CLICOLOR_FORCE", "FORCE_COLOR", "LC_ALL", "LC_CTYPE", "LANG", "TMUX", "STY"];
 
-/// What a terminal may be asked without writing garbage, or confusing what lies between.
+/// The queries that a terminal tolerates without printing garbage or confusing a multiplexer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asking {
-    /// Nothing: it is dumb, or of a kind that may print what it does not know.
+    /// None: it is dumb, or of a kind that may print unknown sequences.
     Nothing,
-    /// What the Linux console has understood from its beginnings: where the cursor is.
+    /// The cursor position, which the Linux console has always supported.
     Console,
-    /// What GNU screen answers. It hands device-control strings on to the terminal outside, which would print them, and
-    /// answers nothing else.
+    /// Those that GNU screen answers. It passes device control strings on to the outer terminal, which would print
+    /// them, and answers nothing else.
     Screen,
-    /// What tmux understands. It answers for itself; a cell's size and the colours are those of the terminal outside.
+    /// Those that tmux answers by itself; a cell's size and the colours are those of the outer terminal.
     Tmux,
-    /// Everything.
+    /// All.
     Everything,
 }
 
 impl Hints {
-    /// What the environment says, where the user leaves all to it.
+    /// Returns hints from the environment alone.
     pub fn gather(variable: &dyn Fn(&str) -> Option<String>, terminfo: &dyn Fn(&str) -> Option<Colors>) -> Self {
         let variables: Vec<_> = VARIABLES.into_iter().filter_map(|name| Some((name, variable(name)?))).collect();
         let mut hints = Self { variables, ..Self::default() };
-        // Where COLORTERM says it, nobody asks the database: to read it takes longer than to trace a small frame.
+        // Where COLORTERM decides, terminfo is not read: that takes longer than tracing a small frame.
         if hints.judge(None, colorterm).is_none() {
             hints.terminfo = hints.variable("TERM").and_then(terminfo);
         }
         hints
     }
 
-    /// Exactly this, of a terminal of which nothing is known.
+    /// Returns exactly these choices for an unknown terminal.
     pub fn exactly(mode: CellMode) -> Self {
         Self { color: ColorChoice::Exactly(mode.colors), glyphs: Some(mode.glyphs), ..Self::default() }
     }
 
-    /// The value of an environment variable, if it is one of [`VARIABLES`], set, and not empty.
+    /// Returns the value of an environment variable, if it is one of [`VARIABLES`], set, and not empty.
     pub fn variable(&self, name: &str) -> Option<&str> {
         self.raw(name).filter(|value| !value.is_empty())
     }
 
-    /// The locale, and the variable that names it, if one does.
+    /// Returns the locale and the variable that names it, if one does.
     pub fn locale(&self) -> Option<(&'static str, String)> {
         self.judge(None, locale)
     }
 
-    /// The variable by which the user asks for colours, or for none, if he does: `NO_COLOR`, `CLICOLOR_FORCE` or
+    /// Returns the variable by which the user asks for colours or for none, if any: `NO_COLOR`, `CLICOLOR_FORCE` or
     /// `FORCE_COLOR`.
     pub fn color_variable(&self) -> Option<&'static str> {
         match self.judge(None, asked_for)?.source {
@@ -78,7 +78,7 @@ impl Hints {
         self.variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.as_str())
     }
 
-    /// The colours, with that answer to whether there is truecolor.
+    /// Returns the colours, given the answer about truecolor.
     fn colors(&self, truecolor_reply: Option<bool>) -> Found<Colors> {
         self.judge(truecolor_reply, |clues| colors(self.color, clues))
     }
@@ -88,7 +88,7 @@ impl Hints {
         judge(&Clues { variable: &variable, truecolor_reply, terminfo: &|_| self.terminfo })
     }
 
-    /// What the terminal may be asked.
+    /// Returns the queries that the terminal tolerates.
     pub fn asking(&self) -> Asking {
         let Some(term) = self.variable("TERM") else { return Asking::Nothing };
         let begins = |names: &[&str]| names.iter().any(|name| term.starts_with(name));
@@ -105,54 +105,54 @@ impl Hints {
         }
     }
 
-    /// Whether an answer about truecolor would change anything. Where there is to be no colour, nothing is said of any,
-    /// not even to ask.
+    /// Returns whether an answer about truecolor would matter. If there is to be no colour, no sequence about colour is
+    /// sent, not even a query.
     pub fn wonders_about_truecolor(&self) -> bool {
         self.colors(Some(true)).value != self.colors(None).value
     }
 
-    /// Whether there may be colours at all.
+    /// Returns whether there may be colours at all.
     pub fn allows_color(&self) -> bool {
         self.colors(Some(true)).value != Colors::None
     }
 
-    /// Whether the values of the sixteen colours matter.
+    /// Returns whether the values of the sixteen colours matter.
     pub fn wonders_about_sixteen(&self) -> bool {
         matches!(self.colors(None).value, Colors::Indexed16(_))
     }
 
-    /// Whether the width of the block characters matters.
+    /// Returns whether the width of block characters matters.
     pub fn wonders_about_blocks(&self) -> bool {
         self.glyphs.is_none()
             && self.judge(None, |clues| glyphs(None, colors(self.color, clues), clues)).value == Glyphs::Half
     }
 }
 
-/// What is known of a terminal, and from where.
+/// The findings about a terminal, each with its source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Findings {
-    /// The colours to use.
+    /// The colours.
     pub colors: Found<Colors>,
-    /// What stands in cells.
+    /// The glyphs.
     pub glyphs: Found<Glyphs>,
-    /// A cell's height over its width.
+    /// The cell aspect.
     pub cell_aspect: Found<f32>,
     /// Whether both half blocks meet in the same line.
     pub halves_meet: Found<bool>,
     /// Whether it writes dark on light.
     pub light_background: Found<bool>,
-    /// Whether it knows synchronized output.
+    /// Whether it supports synchronized output.
     pub synchronized_output: Found<bool>,
-    /// Whether it knows the kitty keyboard protocol.
+    /// Whether it supports the kitty keyboard protocol.
     pub kitty_keyboard: Found<bool>,
-    /// Whether it knows SGR mouse reports.
+    /// Whether it supports SGR mouse reports.
     pub sgr_mouse: Found<bool>,
-    /// Whether it knows mouse reports in pixels.
+    /// Whether it supports mouse reports in pixels.
     pub pixel_mouse: Found<bool>,
 }
 
 impl Findings {
-    /// From all who know something.
+    /// Combines all sources.
     pub fn new(hints: &Hints, window: CellShape, answers: &Answers) -> Self {
         let colors = with_answered_values(hints.colors(answers.truecolor), answers);
         let answered = |answer: Option<bool>| found(answer, Source::Reply, false);
@@ -180,7 +180,7 @@ impl Findings {
         }
     }
 
-    /// What the picture is made by.
+    /// Returns the capabilities that the picture depends on.
     pub fn capabilities(&self) -> Capabilities {
         Capabilities {
             cell_mode: CellMode { glyphs: self.glyphs.value, colors: self.colors.value },
@@ -199,7 +199,7 @@ fn found<T>(answer: Option<T>, source: Source, otherwise: T) -> Found<T> {
     }
 }
 
-/// Of sixteen colours, those that the terminal has told look as it says.
+/// Returns sixteen colours with the values that the terminal has reported.
 fn with_answered_values(mut found: Found<Colors>, answers: &Answers) -> Found<Colors> {
     if let Colors::Indexed16(values) = &mut found.value {
         for (value, answer) in values.iter_mut().zip(answers.sixteen) {
@@ -209,7 +209,7 @@ fn with_answered_values(mut found: Found<Colors>, answers: &Answers) -> Found<Co
     found
 }
 
-/// Blocks that take two columns, or come out as several letters, are no pixels.
+/// Blocks that take two columns, or are shown as several characters, cannot be pixels.
 fn with_answered_width(glyphs: Found<Glyphs>, answers: &Answers) -> Found<Glyphs> {
     let is_broken = glyphs.value == Glyphs::Half && answers.block_width.is_some_and(|width| width != 1);
     if is_broken && glyphs.source != Source::User {

@@ -1,12 +1,12 @@
-//! What the terminfo database says of a terminal's colours.
+//! The terminfo database's number of colours.
 
 use super::Colors;
 use termini::{NumberCapability, TermInfo};
 
-/// The colours of a terminal of that name, if the database has it: truecolor by the capabilities `RGB` and `Tc`, else by
-/// their number. The database is looked for where ncurses does, which the environment may say.
+/// Returns the colours of a terminal with this name, if the database has it: truecolor by the capabilities `RGB` and
+/// `Tc`, otherwise by their number. The database is searched where ncurses does, which the environment may set.
 pub fn terminfo_colors(term: &str) -> Option<Colors> {
-    // A name is no path: the file to be read is one of the database's.
+    // A name is not a path: only files of the database are read.
     if term.contains('/') {
         return None;
     }
@@ -18,7 +18,7 @@ fn entry_colors(entry: &TermInfo) -> Colors {
     match entry.number_cap(NumberCapability::MaxColors) {
         _ if has("RGB") || has("Tc") => Colors::Truecolor,
         Some(256..) => Colors::Indexed256,
-        // The bright ones of a terminal that says it has eight are there too, or look as the others.
+        // A terminal with eight colours has the bright ones as well, or shows them like the others.
         Some(8..) => Colors::SIXTEEN,
         _ => Colors::None,
     }
@@ -28,7 +28,7 @@ fn entry_colors(entry: &TermInfo) -> Colors {
 mod tests {
     use super::*;
 
-    /// An entry as term(5) says: that number of colours, and that extended flag beside an extended string.
+    /// Returns an entry as in term(5) with this number of colours, and this extended flag beside an extended string.
     fn entry(colors: Option<i16>, flag: &str) -> Vec<u8> {
         let len = |text: &str| i16::try_from(text.len()).expect("it is short");
         let shorts = |numbers: &[i16]| -> Vec<u8> { numbers.iter().flat_map(|number| number.to_le_bytes()).collect() };
@@ -60,7 +60,7 @@ mod tests {
         }
     }
 
-    /// Every entry cut short, and every entry with one byte another: an answer or none, and no panic.
+    /// Every truncated entry, and every entry with one byte changed, gives an answer or none, and no panic.
     #[test]
     fn broken_entries_are_no_answer() {
         let whole = entry(Some(256), "Tc");

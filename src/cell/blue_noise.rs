@@ -1,15 +1,15 @@
-//! Blue noise: thresholds that never clump, for dithering.
+//! Blue noise: thresholds for dithering that never clump.
 //!
-//! Made by void and cluster (Robert Ulichney, "The void-and-cluster method for dither array generation", 1993) in whole
-//! numbers from a fixed seed: the same on every machine, and the first time it is asked for.
+//! Made by void and cluster (Robert Ulichney, "The void-and-cluster method for dither array generation", 1993) in
+//! integers from a fixed seed, so that it is the same on every machine, when it is first needed.
 
 use std::sync::LazyLock;
 
-/// The tile repeats after so many pixels each way.
+/// Side of the tile in pixels, after which the pattern repeats.
 const SIDE: usize = 32;
 const PLACES: usize = SIDE * SIDE;
 
-/// The threshold of a place on the screen. Over a tile each of 0..=255 comes as often.
+/// Returns the threshold of a pixel. In a tile each of 0..=255 occurs equally often.
 pub(super) fn threshold(x: usize, y: usize) -> u8 {
     TILE[y % SIDE * SIDE + x % SIDE]
 }
@@ -22,12 +22,13 @@ static TILE: LazyLock<[u8; PLACES]> = LazyLock::new(|| {
     thresholds
 });
 
-/// The places in the order in which they light up as a flat grey gets lighter: each time the one farthest from all lit.
+/// Returns the pixels in the order in which they light up as a flat grey gets lighter: each time the one farthest from
+/// all lit ones.
 fn order() -> Vec<usize> {
     let mut lit = evenly_lit();
     let mut dark = lit.clone();
     let mut order: Vec<usize> = Vec::with_capacity(PLACES);
-    // Downwards from there: the last to light up was the most crowded.
+    // Backwards from there: the last one to light up was the most crowded.
     while let Some(place) = dark.most_crowded() {
         dark.turn(place);
         order.push(place);
@@ -40,10 +41,10 @@ fn order() -> Vec<usize> {
     order
 }
 
-/// A tenth of the places, moved from where they crowd to where it is empty until none has a better place.
+/// Returns a tenth of the pixels, moved from clusters into voids until no move helps.
 fn evenly_lit() -> Pattern {
     let mut pattern = Pattern { is_lit: [false; PLACES], crowd: [0; PLACES] };
-    // Numerical Recipes' quick and dirty generator: any start will do.
+    // The quick and dirty generator of Numerical Recipes: any start will do.
     let mut state = 1_u32;
     for _ in 0..PLACES / 10 {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -63,7 +64,7 @@ fn evenly_lit() -> Pattern {
     }
 }
 
-/// Which places are lit, and how crowded each place is with them.
+/// The lit pixels, and how crowded each pixel is by them.
 #[derive(Clone)]
 struct Pattern {
     is_lit: [bool; PLACES],
@@ -71,7 +72,7 @@ struct Pattern {
 }
 
 impl Pattern {
-    /// Lights a place or puts it out.
+    /// Sets or clears a pixel.
     fn turn(&mut self, place: usize) {
         self.is_lit[place] ^= true;
         let sign = if self.is_lit[place] { 1 } else { -1 };
@@ -90,13 +91,13 @@ impl Pattern {
     }
 }
 
-/// How far two columns or rows of the endless pattern are apart.
+/// Returns the distance of two columns or rows of the repeating pattern.
 fn apart(a: usize, b: usize) -> usize {
     let apart = a.abs_diff(b);
     apart.min(SIDE - apart)
 }
 
-/// A Gaussian of 1.5 pixels, Ulichney's choice: `10,000 exp(-d^2 / 4.5)`.
+/// Returns a Gaussian of 1.5 pixels, Ulichney's choice: `10,000 exp(-d^2 / 4.5)`.
 const NEARNESS: [i32; SIDE / 2 + 1] = [10_000, 8_007, 4_111, 1_353, 286, 39, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 
 #[cfg(test)]
@@ -110,7 +111,7 @@ mod tests {
         assert_eq!(counts, [PLACES / 256; 256]);
     }
 
-    /// Noise is blue if it has next to nothing in the means of blocks: white noise has 74 / 4 = 18 there.
+    /// Blue noise has almost nothing in the means of blocks; white noise has 74 / 4 = 18 there.
     #[test]
     fn the_noise_is_blue() {
         let mean = |x: usize, y: usize| {

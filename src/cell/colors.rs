@@ -1,26 +1,26 @@
-//! The colours that a cell may have.
+//! The sets of colours that cells may have.
 
 use crate::color::Srgb8;
 
-/// The colours that a cell may have, fewer before more.
+/// A set of colours, fewer before more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Colors {
-    /// The terminal's own two: nothing is said of colours at all.
+    /// The terminal's own two: no colour is sent.
     None,
-    /// Sixteen, which look like this; users choose them.
+    /// Sixteen colours with these values, which users choose in their terminals.
     Indexed16([Srgb8; 16]),
-    /// The 240 of 256 that are the same in every terminal: a cube of six levels to a band, and 24 greys.
+    /// The 240 of 256 colours that are the same in every terminal: a cube of six levels per channel, and 24 greys.
     Indexed256,
-    /// Any 8-bit sRGB.
+    /// Every 8-bit sRGB colour.
     Truecolor,
 }
 
 impl Colors {
-    /// Sixteen colours, taken to be xterm's own.
+    /// Sixteen colours with xterm's default values.
     pub const SIXTEEN: Self = Self::Indexed16(XTERM_16);
 }
 
-/// The sixteen colours of xterm where nobody has changed them.
+/// xterm's defaults for the sixteen colours.
 const XTERM_16: [Srgb8; 16] = [
     Srgb8::new(0, 0, 0),
     Srgb8::new(205, 0, 0),
@@ -40,7 +40,8 @@ const XTERM_16: [Srgb8; 16] = [
     Srgb8::new(255, 255, 255),
 ];
 
-/// The colour of that number, of 256, in xterm: sixteen that users change, a cube of six levels to a band, and greys.
+/// Returns the colour with this number, of 256, in xterm: sixteen that users change, a cube of six levels per channel,
+/// and greys.
 pub(crate) fn xterm_color(index: u8) -> Srgb8 {
     const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
     match index {

@@ -1,5 +1,5 @@
-//! A dot for each light pixel: a kind of cells that only tests have, to show that this file and its row in the table are
-//! all that one takes.
+//! A dot for each light pixel: a cell kind for tests, which shows that a file and a row in the table are all that one
+//! takes.
 
 use super::kind::{Fill, Kind};
 use crate::grid::{Cell, Grid, Ink};

@@ -14,14 +14,14 @@ pub(super) const KIND: Kind = Kind {
     title: "half blocks",
     pixels_per_cell: (1, 2),
     has_blocks: true,
-    // Lit or not would not tell much.
+    // Without colours a half could only be on or off, which shows little.
     plain: Some(Glyphs::Ramp),
     fill: Fill::Colored(fill),
 };
 
-/// The lower half block, coloured by the lower pixel, on the upper one. (The upper half block would do as well, but
-/// where the font draws it, it covers a pixel row of the wrong half at odd cell heights; one glyph everywhere keeps
-/// the split straight.) Two equal halves are a space: a full block shows hairlines in some fonts.
+/// Returns a lower half block in the lower pixel's colour on the upper pixel's. The upper half block would do as well,
+/// but where the font draws it, it covers a pixel row of the wrong half at odd cell heights; a single glyph everywhere
+/// keeps the split straight. Two equal halves are a space: a full block shows hairlines in some fonts.
 fn fill(grid: &mut Grid, picture: &Picture, inks: &mut Inks) {
     if let Inks::Own(palette) = inks {
         return fill_own(grid, picture, palette);
@@ -41,7 +41,7 @@ fn fill(grid: &mut Grid, picture: &Picture, inks: &mut Inks) {
     }
 }
 
-/// Without colours a half is lit or not.
+/// Returns the glyph without colours, where each half is on or off.
 fn fill_own(grid: &mut Grid, picture: &Picture, palette: &mut Palette) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {

@@ -1,4 +1,4 @@
-//! A pixel's colour -> one that the terminal has.
+//! Conversion of a pixel's colour to one that the terminal has.
 
 use super::colors::Colors;
 use super::palette::Palette;
@@ -7,11 +7,11 @@ use crate::grid::Ink;
 
 /// The colours of a terminal.
 pub(super) enum Inks {
-    /// Its own two, dark and light, as a palette's numbers 0 and 1.
+    /// Its own two, dark and light, as numbers 0 and 1 of a palette.
     Own(Palette),
-    /// Some of the 256, and which of them is black.
+    /// Some of the 256 colours, and which of them is black.
     Indexed(Palette, u8),
-    /// All.
+    /// All colours.
     Truecolor,
 }
 
@@ -25,7 +25,7 @@ impl Inks {
         }
     }
 
-    /// What a pixel of the screen is painted with.
+    /// Returns the ink for a pixel of the screen.
     pub(super) fn ink(&mut self, color: Srgb8, x: usize, y: usize) -> Ink {
         match self {
             Self::Own(_) => Ink::Default,
@@ -34,7 +34,7 @@ impl Inks {
         }
     }
 
-    /// What lies behind characters.
+    /// Returns the ink behind characters.
     pub(super) fn black(&self) -> Ink {
         match self {
             Self::Own(_) => Ink::Default,

@@ -1,26 +1,26 @@
-//! What there is to say of a kind of cells.
+//! The properties of a cell kind.
 
 use super::Glyphs;
 use super::inks::Inks;
 use crate::grid::Grid;
 use crate::tone::Picture;
 
-/// All that is particular to a kind of cells.
+/// Everything particular to a cell kind.
 pub(super) struct Kind {
     pub(super) name: &'static str,
     pub(super) help: &'static str,
     pub(super) title: &'static str,
     pub(super) pixels_per_cell: (u32, u32),
     pub(super) has_blocks: bool,
-    /// What is in its place where there are no colours, of as many pixels in a cell; `None`: it is as good without.
+    /// The kind used without colours, with the same number of pixels per cell; `None` if this one works without.
     pub(super) plain: Option<Glyphs>,
     pub(super) fill: Fill,
 }
 
-/// How cells are filled: once for each frame.
+/// The way to fill cells, once per frame.
 pub(super) enum Fill {
-    /// Glyphs and their colours together.
+    /// Fills glyphs and colours together.
     Colored(fn(&mut Grid, &Picture, &mut Inks)),
-    /// Glyphs that say how light it is; where there are colours, they are given to them later.
+    /// Fills glyphs that show lightness; colours, if any, are added afterwards.
     Lightness(fn(&mut Grid, &Picture)),
 }

@@ -1,25 +1,25 @@
-//! Few colours: each pixel's is mixed from those that there are, which lie side by side on the screen.
+//! Dithering to few colours.
 //!
-//! A mix is sixteen colours of the palette whose light has nearly the wanted mean (after Thomas Knoll's pattern dithering,
-//! US patent 6,606,166, expired), because light is what the eye adds up. They go from dark to light, and which of them a
-//! pixel gets is decided by the blue noise at its place: a picture that stands still stays as it is.
+//! A mix is sixteen colours of the palette whose light has nearly the wanted mean (after Thomas Knoll's pattern
+//! dithering, US patent 6,606,166, expired), because the eye adds light. They are sorted from dark to light, and the
+//! blue noise at a pixel decides which of them it gets, so that a still picture does not flicker.
 
 use super::blue_noise::threshold;
 use super::colors::xterm_color;
 use crate::color::{LinearRgb, Srgb8, linear_from_srgb};
 
-/// Colours with a number, and what has been mixed from them so far.
+/// A palette, with a cache of mixes.
 pub(super) struct Palette {
     candidates: Candidates,
-    /// By the three steps of the colour, once it has been needed.
+    /// Mixes by the three quantised channels of the colour, computed when first needed.
     mixes: Vec<Option<Mix>>,
 }
 
-/// The colours that a mix may be made of.
+/// The colours that mixes may use.
 enum Candidates {
-    /// The cube and the greys of 256 colours.
+    /// The cube and the greys of the 256 colours.
     Cube(Cube),
-    /// Those that there are, from number 0 on.
+    /// A list of colours, numbered from 0.
     Few(Vec<Candidate>),
 }
 
@@ -36,19 +36,19 @@ impl Candidate {
     }
 }
 
-/// Indices of the palette, from dark to light.
+/// Indices into the palette, from dark to light.
 type Mix = [u8; 16];
 
-/// Mixes are kept for so many values of a band; a value between two is dithered to them.
+/// Number of levels per channel for which mixes are cached; a value between two levels is dithered to them.
 const STEPS: usize = 32;
 
 impl Palette {
-    /// The colours of 256 that users do not change.
+    /// Returns the palette of the 240 colours that users do not change.
     pub(super) fn cube() -> Self {
         Self::of(Candidates::Cube(Cube::new()))
     }
 
-    /// These colours, with the numbers of their places.
+    /// Returns a palette of these colours, numbered by their index.
     pub(super) fn few(colors: &[Srgb8]) -> Self {
         Self::of(Candidates::Few((0..).zip(colors).map(|(index, &color)| Candidate::new(index, color)).collect()))
     }
@@ -57,9 +57,9 @@ impl Palette {
         Self { candidates, mixes: vec![None; STEPS * STEPS * STEPS] }
     }
 
-    /// The number of the colour that stands for this one in that pixel of the screen.
+    /// Returns the number of the colour for this pixel of the screen.
     pub(super) fn index(&mut self, color: Srgb8, x: usize, y: usize) -> u8 {
-        // Far enough away in the tile to have nothing to do with the other threshold.
+        // Far enough away in the tile to be independent of the other threshold.
         let between = usize::from(threshold(x + 13, y + 19)).min(254);
         let step = |code: u8| (usize::from(code) * (STEPS - 1) + between) / 255;
         let steps = [color.r, color.g, color.b].map(step);
@@ -81,11 +81,11 @@ impl Candidates {
     }
 }
 
-/// How much of what a mix lacks the next colour makes up for. All of it would give the exact mean by colours far from it,
-/// which is seen before it is.
+/// Share of a mix's remaining error that the next colour compensates. The full error would give the exact mean, by
+/// colours far from it, which look worse than a slightly wrong mean.
 const MADE_UP: f32 = 0.6;
 
-/// Colours whose mean is near the light.
+/// Returns colours whose mean is near the light.
 fn mix(light: LinearRgb, candidates: &[Candidate]) -> Mix {
     let mut lacks = LinearRgb::BLACK;
     let mut chosen = [candidates[0]; 16];
@@ -97,7 +97,7 @@ fn mix(light: LinearRgb, candidates: &[Candidate]) -> Mix {
     chosen.map(|candidate| candidate.index)
 }
 
-/// There is one candidate at least.
+/// There is at least one candidate.
 fn nearest(wanted: LinearRgb, candidates: &[Candidate]) -> Candidate {
     let distance = |candidate: &Candidate| {
         let LinearRgb { r, g, b } = wanted + candidate.light * -1.0;
@@ -112,11 +112,11 @@ fn nearest(wanted: LinearRgb, candidates: &[Candidate]) -> Candidate {
     nearest
 }
 
-/// The cube of six levels to a band (16..=231) and the greys between black and white (232..=255).
+/// The cube of six levels per channel (16..=231) and the greys between black and white (232..=255).
 struct Cube {
     levels: [f32; 6],
     greys: [f32; 24],
-    /// From number 16 on.
+    /// The colours from number 16 on.
     colors: Vec<Candidate>,
 }
 
@@ -130,8 +130,8 @@ impl Cube {
         }
     }
 
-    /// The eight corners of the box of levels that the light is in, and the two greys about its luminance: what is mixed
-    /// from colours near each other is the least grainy.
+    /// Returns the eight corners of the cell of levels around the light, and the two greys around its luminance: mixes
+    /// of near colours have the least grain.
     fn around(&self, light: LinearRgb) -> [Candidate; 10] {
         let [r, g, b] = [light.r, light.g, light.b].map(|band| below(&self.levels, band));
         let grey = below(&self.greys, light.luminance());
@@ -142,7 +142,7 @@ impl Cube {
     }
 }
 
-/// The last level that is not above the band, but the highest, so that another follows.
+/// Returns the highest level not above the channel, except the last one, so that another follows.
 fn below(levels: &[f32], band: f32) -> usize {
     levels[1..levels.len() - 1].iter().take_while(|&&level| level <= band).count()
 }

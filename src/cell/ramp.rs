@@ -1,4 +1,4 @@
-//! The ASCII ramp: a plain character by lightness, for terminals without colour and for text that people compare.
+//! The ASCII ramp: a character by lightness, for terminals without colour and for golden text frames.
 
 use super::kind::{Fill, Kind};
 use super::pair;
@@ -17,10 +17,10 @@ pub(super) const KIND: Kind = Kind {
     fill: Fill::Lightness(fill),
 };
 
-/// The characters from dark to light. Snapshots of users depend on it: a change is a breaking change.
+/// The characters from dark to light. Users' snapshots depend on them: changing them is a breaking change.
 pub const RAMP: &[u8; 10] = b" .:-=+*#%@";
 
-/// Each cell by the mean light of its pixels.
+/// Fills each cell by the mean light of its pixels.
 fn fill(grid: &mut Grid, picture: &Picture) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
@@ -35,17 +35,17 @@ fn luminance(pixel: Srgb8) -> f32 {
     LinearRgb::from_srgb8(pixel).luminance()
 }
 
-/// Equal steps of lightness, so that equal steps of the ramp look equal.
+/// Steps are equal in lightness, so that equal steps of the ramp look equal.
 fn glyph(luminance: f32) -> char {
     let step = LUMINANCE_AT_STEP.iter().take_while(|&&least| luminance >= least).count();
     char::from(RAMP[step])
 }
 
-/// The luminance from which on each character but the first is used: lightness L* = 100 k / 10.
+/// The luminance from which each character but the first is used: lightness L* = 100 k / 10.
 static LUMINANCE_AT_STEP: LazyLock<[f32; RAMP.len() - 1]> =
     LazyLock::new(|| std::array::from_fn(|k| luminance_from_lightness((k + 1) as f64 / RAMP.len() as f64) as f32));
 
-/// CIE 1976: Y of L*, both with 1 for white.
+/// Returns CIE 1976 Y of L*; white is 1 for both.
 fn luminance_from_lightness(lightness: f64) -> f64 {
     if lightness > 0.08 { libm::pow((lightness + 0.16) / 1.16, 3.0) } else { lightness * 27.0 / 24_389.0 * 100.0 }
 }
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn grey_of_each_tenth_of_lightness_has_its_character() {
-        // L* of these sRGB greys is 5, 15, ... 95 (CIE's formula, worked out by hand).
+        // L* of these sRGB greys is 5, 15, ... 95 (CIE's formula, computed by hand).
         let greys = [17, 38, 59, 82, 106, 131, 157, 184, 212, 240];
         let text: String = greys.iter().map(|&grey| glyph(luminance(Srgb8::new(grey, grey, grey)))).collect();
         assert_eq!(text.as_bytes(), RAMP);

@@ -1,8 +1,8 @@
 //! ASCII by shape: the character whose ink lies where the picture has its light.
 //!
-//! Cell and glyphs are compared as they look from some way off, where a character is a spot that runs into its
-//! neighbours: eight samples of each, after a blur. Without the blur, a glyph that fits a cell in detail wins over one
-//! that is as light as it, and the picture gets dark and spotty.
+//! Cells and glyphs are compared as seen from some distance, where a character blurs into its neighbours: by eight
+//! samples of each after a blur. Without the blur, a glyph that fits a cell in detail wins over one of the right
+//! lightness, and the picture gets dark and spotty.
 
 use super::kind::{Fill, Kind};
 use crate::color::Srgb8;
@@ -25,10 +25,10 @@ pub(super) const KIND: Kind = Kind {
 };
 
 const SAMPLES: usize = ACROSS * DOWN;
-/// One for each part of a cell, row by row from the top.
+/// One sample for each part of a cell, row by row from the top.
 type Samples = [f32; SAMPLES];
 
-/// Each cell by the samples in it.
+/// Fills each cell by its samples.
 fn fill(grid: &mut Grid, picture: &Picture) {
     let matcher = &*MATCHER;
     for row in 0..grid.size().rows {
@@ -39,7 +39,7 @@ fn fill(grid: &mut Grid, picture: &Picture) {
     }
 }
 
-/// The lightness of a cell's pixels; beyond the picture's edge lies more of what is at the edge.
+/// Returns the lightness of a cell's pixels; beyond the picture's edge the edge is continued.
 fn samples(picture: &Picture, column: u16, row: u16) -> Samples {
     let (left, top) = (usize::from(column) * ACROSS, usize::from(row) * DOWN);
     let (last_x, last_y) = (picture.width as usize - 1, picture.height as usize - 1);
@@ -49,24 +49,24 @@ fn samples(picture: &Picture, column: u16, row: u16) -> Samples {
     })
 }
 
-/// How light a pixel looks, near enough: the luminance of the encoded bands (luma, of 0..=1).
+/// Returns the approximate lightness of a pixel: the luma of the encoded channels, in 0..=1.
 fn lightness(pixel: Srgb8) -> f32 {
     (0.2126 * f32::from(pixel.r) + 0.7152 * f32::from(pixel.g) + 0.0722 * f32::from(pixel.b)) / 255.0
 }
 
 const GLYPHS: usize = INK.len();
 
-/// All glyphs, made ready to be compared with cells. After the blur, the square of a glyph's distance from samples `x` is
-/// its `square - weights * x`, and something that is the same for all glyphs.
+/// All glyphs, prepared for matching. After the blur, the squared distance of a glyph from samples `x` is its `square -
+/// weights * x`, plus a term that is the same for all glyphs.
 struct Matcher {
-    /// For each sample those of all glyphs, which are compared side by side.
+    /// For each sample, the weights of all glyphs, so that glyphs are compared in SIMD.
     weights: [[f32; GLYPHS]; SAMPLES],
     squares: [f32; GLYPHS],
 }
 
 static MATCHER: LazyLock<Matcher> = LazyLock::new(|| {
     let inks = INK.map(|ink| ink.map(|part| f32::from(part) / 255.0));
-    // The densest glyph is white.
+    // Scaled so that the densest glyph is white.
     let white = inks.iter().map(|ink| ink.iter().sum::<f32>() / SAMPLES as f32).fold(0.0, f32::max);
     let seen = inks.map(|ink| blurred(&blurred(&ink)));
     Matcher {
@@ -93,7 +93,8 @@ impl Matcher {
     }
 }
 
-/// Samples after a Gaussian blur whose standard deviation is 0.35 of the cell's width, on a screen full of such cells.
+/// Returns samples after a Gaussian blur whose standard deviation is 0.35 of the cell's width, on a screen full of such
+/// cells.
 fn blurred(samples: &Samples) -> Samples {
     let across: [f32; ACROSS] = shares(0.35 * ACROSS as f64);
     let down: [f32; DOWN] = shares(0.175 * DOWN as f64);
@@ -106,7 +107,7 @@ fn blurred(samples: &Samples) -> Samples {
     })
 }
 
-/// What a sample gets of itself, of the next one and so on, in a row of them that begins again at its end.
+/// Returns the weights of a sample itself, the next one and so on, in a row that wraps around.
 fn shares<const N: usize>(deviation: f64) -> [f32; N] {
     let mut shares = [0.0; N];
     shares[0] = 1.0;
@@ -125,7 +126,7 @@ fn shares<const N: usize>(deviation: f64) -> [f32; N] {
 mod tests {
     use super::*;
 
-    /// The character for a cell of so many rows of two pixels, each a letter from a (black) to z (white).
+    /// Returns the character for a cell of rows of two pixels, each a letter from a (black) to z (white).
     fn character(pixels: &str) -> String {
         let grey = |letter: char| ((letter as u32 - 'a' as u32) * 255 / 25) as u8;
         let pixels = pixels.chars().map(|letter| Srgb8::new(grey(letter), grey(letter), grey(letter)));
@@ -135,7 +136,7 @@ mod tests {
         grid.cell(0, 0).glyph.to_string()
     }
 
-    /// A cell that is lit as a glyph's ink is shown by it, or by one with as much ink in the same places.
+    /// A cell lit like a glyph's ink gets that glyph, or one with as much ink in the same places.
     #[test]
     fn a_glyph_stands_for_itself() {
         let white = INK.iter().map(|ink| ink.iter().map(|&part| u32::from(part)).sum::<u32>()).max().expect("95");

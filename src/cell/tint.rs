@@ -1,11 +1,11 @@
-//! Colour for characters: the glyph says how light a cell is, its colour says which light.
+//! Colours for characters: the glyph shows the lightness of a cell, its colour the hue.
 
 use super::inks::Inks;
 use crate::color::{LinearRgb, Srgb8};
 use crate::grid::Grid;
 use crate::tone::Picture;
 
-/// Each pixel as the grey of its brightest band: what glyphs have to show whose colour has a band at its brightest.
+/// Returns each pixel as the grey of its brightest channel, for glyphs whose colour has a channel at full brightness.
 pub(super) fn brightness(picture: &Picture) -> Picture {
     let grey = |pixel: &Srgb8| {
         let brightest = pixel.r.max(pixel.g).max(pixel.b);
@@ -14,8 +14,8 @@ pub(super) fn brightness(picture: &Picture) -> Picture {
     Picture { pixels: picture.pixels.iter().map(grey).collect(), ..*picture }
 }
 
-/// Colours each cell's character by the mean of its pixels, as bright as it can be, on black: where the terminal's own
-/// background is light, its ink is dark.
+/// Colours each cell's character by the mean of its pixels at full brightness, on black. Where the terminal's own
+/// background is light, the ink is dark.
 pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u32), inks: &mut Inks) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
@@ -29,7 +29,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u3
     }
 }
 
-/// The mean of the light of a cell's pixels.
+/// Returns the mean light of a cell's pixels.
 fn mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) -> Srgb8 {
     let (left, top) = (u32::from(column) * across, u32::from(row) * down);
     let (right, bottom) = ((left + across).min(picture.width), (top + down).min(picture.height));
@@ -42,7 +42,7 @@ fn mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) ->
     Srgb8::from_linear(light * (1.0 / ((right - left) * (bottom - top)) as f32))
 }
 
-/// The same hue with its brightest band at full; black stays black.
+/// Returns the same hue with its brightest channel at the maximum; black stays black.
 fn brightest(color: Srgb8) -> Srgb8 {
     let most = u32::from(color.r.max(color.g).max(color.b).max(1));
     let scaled = |band: u8| (u32::from(band) * 255 / most) as u8; // no band is above the most

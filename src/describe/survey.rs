@@ -1,4 +1,4 @@
-//! What covers which part of the picture, and what stands behind what.
+//! A survey of a picture: which object covers which part of it, and what is behind what.
 
 use crate::camera::Camera;
 use crate::color::LinearRgb;
@@ -11,40 +11,40 @@ use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
 
-/// What is seen in one pixel.
+/// The content of a pixel.
 #[derive(Clone, Copy)]
 struct Spot {
     object: u32,
-    /// From the eye.
+    /// The distance from the eye.
     distance: f32,
     reflectance: LinearRgb,
     /// The next objects behind it.
     behind: [Option<u32>; DEEP],
 }
 
-/// An object's part of the picture.
+/// The part of the picture that an object covers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Covered {
-    /// How many pixels.
+    /// Number of pixels.
     pub(super) pixels: usize,
-    /// The distances from the eye of its nearest and its farthest point there.
+    /// Distances of its nearest and farthest visible point from the eye.
     pub(super) nearest: f32,
     pub(super) farthest: f32,
-    /// The sums of its pixels' columns and rows,
+    /// Sums of its pixels' columns and rows,
     sum: [u64; 2],
     /// the first of them and those after the last,
     columns: [u32; 2],
     rows: [u32; 2],
-    /// and of their reflectances.
+    /// and the sum of their reflectances.
     reflectance: LinearRgb,
 }
 
-/// Where in the picture something is: parts of its width and height, from the upper left.
+/// A rectangle in the picture, in parts of its width and height, from the upper left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inside {
     /// Its middle.
     pub(super) middle: [f32; 2],
-    /// How much of the width and the height it reaches over.
+    /// Its width and height.
     pub(super) extent: [f32; 2],
 }
 
@@ -78,13 +78,13 @@ impl Covered {
     }
 }
 
-/// What there is to see.
+/// The survey of a picture.
 pub(super) struct Survey {
-    /// Of each object that is seen.
+    /// The part covered by each visible object.
     pub(super) covered: BTreeMap<u32, Covered>,
-    /// In how many pixels the first object stands before the second.
+    /// Number of pixels in which the first object is in front of the second.
     hides: BTreeMap<(u32, u32), usize>,
-    /// How many pixels show no object, and how many there are.
+    /// Number of pixels without an object, and of all pixels.
     pub(super) nothing: usize,
     pub(super) pixels: usize,
 }
@@ -109,7 +109,7 @@ impl Survey {
         survey
     }
 
-    /// What that object hides a part of.
+    /// Returns the objects that an object partly hides.
     pub(super) fn behind(&self, object: u32) -> Vec<u32> {
         let of_object = self.hides.range((object, 0)..=(object, u32::MAX));
         of_object
@@ -118,14 +118,14 @@ impl Survey {
             .collect()
     }
 
-    /// What hides a part of that object.
+    /// Returns the objects that partly hide an object.
     pub(super) fn before(&self, object: u32) -> Vec<u32> {
         let of_object =
             self.hides.iter().filter(|&(&(_, behind), &pixels)| behind == object && self.is_much(object, pixels));
         of_object.map(|(&(before, _), _)| before).collect()
     }
 
-    /// Whether so many pixels are a part of the object that is worth a word: a twentieth of what is seen of it.
+    /// Returns whether this many pixels are worth mentioning: a twentieth of the object's visible part.
     fn is_much(&self, object: u32, pixels: usize) -> bool {
         20 * pixels >= self.covered.get(&object).map_or(0, |covered| covered.pixels)
     }
@@ -142,18 +142,18 @@ fn spot(scene: &Scene, sight: &Sight) -> Option<Spot> {
     })
 }
 
-/// So many objects are looked for behind what is seen,
+/// Limits on the number of objects that are found behind the visible one,
 const DEEP: usize = 3;
-/// behind so many surfaces.
+/// and on the surfaces that are passed on the way.
 const LAYERS: usize = 12;
 
-/// The next objects that the ray would meet if what is seen were not there.
+/// Returns the next objects that the ray would hit without the visible one.
 fn behind(scene: &Scene, mut sight: Sight) -> [Option<u32>; DEEP] {
     let seen = sight.hit.map(|hit| hit.object);
     let (mut found, mut count) = ([None; DEEP], 0);
     for _ in 0..LAYERS {
         let Some(surface) = sight.surface(scene) else { break };
-        // As far behind the surface as a shadow ray begins before it.
+        // Starts as far behind the surface as a shadow ray starts in front of it.
         let origin = surface.position - surface.facing * surface.clearance;
         sight.ray = Ray { origin, ..sight.ray };
         sight.hit = closest_hit(scene, &sight.ray);

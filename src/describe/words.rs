@@ -1,11 +1,11 @@
-//! Numbers, colours and places as words.
+//! Numbers, colours and positions in words.
 
 use super::survey::Inside;
 use crate::color::{LinearRgb, Oklab, Srgb8};
 use crate::text::number;
 use glam::Vec3;
 
-/// Colours that have a name of their own in everyday language, light and dark.
+/// Colours with a common name, light and dark.
 const COLORS: [(&str, Srgb8); 32] = [
     ("black", Srgb8::new(0, 0, 0)),
     ("dark grey", Srgb8::new(72, 72, 72)),
@@ -41,10 +41,10 @@ const COLORS: [(&str, Srgb8); 32] = [
     ("light purple", Srgb8::new(190, 150, 235)),
 ];
 
-/// The name of the nearest colour that has one.
+/// Returns the common name of the nearest colour.
 pub(super) fn color(light: LinearRgb) -> &'static str {
     let seen = Oklab::from_srgb8(Srgb8::from_linear(light));
-    // A little colour makes more of a difference to the name than a little light.
+    // A small change of colour affects the name more than a small change of lightness.
     let away = |color: Srgb8| {
         let Oklab { l, a, b } = Oklab::from_srgb8(color);
         let (l, a, b) = (seen.l - l, 2.0 * (seen.a - a), 2.0 * (seen.b - b));
@@ -58,7 +58,7 @@ pub(super) fn points(point: Vec3) -> String {
     format!("({}, {}, {})", number(point.x), number(point.y), number(point.z))
 }
 
-/// From where to where, if that makes a difference.
+/// Formats a range; a single number if both ends look the same.
 pub(super) fn distance(nearest: f32, farthest: f32) -> String {
     if farthest > 1.5 * nearest {
         format!("from {} away on", number(nearest))
@@ -74,10 +74,10 @@ pub(super) fn percent(part: usize, of: usize) -> String {
     }
 }
 
-/// Where in the picture it is.
+/// Returns where in the picture a rectangle is.
 pub(super) fn place(inside: Inside) -> &'static str {
     const MOST: f32 = 0.8;
-    /// Left or above, in the middle, right or below; or all over.
+    /// Returns left or top, middle, right or bottom, or across all.
     fn third(middle: f32, extent: f32) -> usize {
         match middle {
             _ if extent > MOST => 3,

@@ -8,15 +8,15 @@ use crate::shape::{Shape, Side};
 use glam::Vec3;
 use std::fmt;
 
-/// No line is longer, in columns, unless a number has more digits than is usual.
+/// Limit on the width of a line in columns, unless a number has unusually many digits.
 pub const WIDTH: usize = 35;
 
-/// What a surface is called: the number of its object in the scene file, counted from 1, and what it is.
+/// The name of a surface: the number of its object in the scene file, from 1, and its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Name {
     object: u32,
     kind: &'static str,
-    /// Which of a mesh's triangles, counted from 1.
+    /// The number of a mesh's triangle, from 1.
     face: Option<u32>,
 }
 
@@ -41,7 +41,7 @@ impl fmt::Display for Name {
 }
 
 impl Explanation {
-    /// All of it, line by line, without control characters and in ASCII.
+    /// Returns the whole explanation as lines of ASCII without control characters.
     pub fn lines(&self) -> Vec<String> {
         let [i, j] = self.pixel;
         let mut lines = vec![
@@ -108,7 +108,7 @@ impl Explanation {
     }
 }
 
-/// Which cell of a screen shows a pixel, and where in it.
+/// Returns the screen cell that shows a pixel, and the pixel's position in it.
 pub fn cell([x, y]: [u32; 2], mode: CellMode) -> String {
     let (across, down) = mode.pixels_per_cell();
     let place = match (across, down) {
@@ -118,7 +118,7 @@ pub fn cell([x, y]: [u32; 2], mode: CellMode) -> String {
     format!("cell ({}, {}), {place}", x / across, y / down)
 }
 
-/// The t of a tested surface, as the picture has it and then as the equation has the rest.
+/// Returns the t of a tested surface, first as in the picture, then the other roots of the equation.
 fn crossings(Tested { t, equation, .. }: &Tested) -> String {
     let Equation { roots, without_root, is_outside, .. } = equation;
     if roots.is_empty() {
@@ -170,7 +170,7 @@ fn light(name: &str, LinearRgb { r, g, b }: LinearRgb) -> String {
     format!("{name:<9}{r} {g} {b}")
 }
 
-/// Nine columns, or more where that says too little.
+/// Formats a number in nine columns, or more if that loses too much.
 fn number(x: f32) -> String {
     let size = x.abs();
     match size {

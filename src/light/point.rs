@@ -8,7 +8,7 @@ use crate::scene_text::Node;
 use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, WrittenNumber, WrittenVector};
 use glam::Vec3;
 
-/// A point source: very small, and alike in all directions (lecture, "Shading", assumptions 1 and 2).
+/// A point source: very small, and the same in all directions (lecture, "Shading", assumptions 1 and 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
     position: Vec3,
@@ -18,12 +18,12 @@ pub struct PointLight {
 }
 
 impl PointLight {
-    /// Returns the light at that point, in world space, which grows weaker by the square of the distance. Its intensity is
-    /// a radiant one times 1/pi (the diffuse reflection's constant is folded in): a white surface that faces the light at
-    /// distance 1 has this radiance.
+    /// Returns a light at a point in world space, with inverse square falloff. The intensity is the radiant intensity
+    /// times 1/pi (the constant of diffuse reflection is folded in): a white surface that faces the light at distance 1
+    /// has this radiance.
     ///
     /// # Errors
-    /// Unless the coordinates lie within ±1e9, and each band of the intensity within 0 and 1e12.
+    /// Unless the coordinates are within ±1e9, and each channel of the intensity within 0 and 1e12.
     pub fn new(position: Vec3, intensity: LinearRgb) -> Result<Self, SceneFault> {
         let position = checks::given_point("position", position)?;
         let intensity = checks::given_color("intensity", intensity, checks::light)?;
@@ -35,7 +35,7 @@ impl PointLight {
         Self { falloff, ..self }
     }
 
-    /// Returns where it is, in world space.
+    /// Returns its position in world space.
     #[doc(hidden)]
     pub fn position(&self) -> Vec3 {
         self.position
@@ -47,21 +47,21 @@ impl PointLight {
         self.intensity
     }
 
-    /// Returns how it grows weaker.
+    /// Returns its falloff.
     #[doc(hidden)]
     pub fn falloff(&self) -> Falloff {
         self.falloff
     }
 }
 
-/// How a light grows weaker with the distance d.
+/// The falloff of a light with the distance d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Falloff {
-    /// By 1 / d^2, as light does.
+    /// 1 / d^2, as of real light.
     #[default]
     InverseSquare,
-    /// Not at all: the same at every distance, the lecture's simplest picture.
+    /// None: the same at every distance, the lecture's first version.
     None,
 }
 
@@ -111,13 +111,13 @@ impl LightSource for PointLight {
 /// `Point(position: ...)`
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenPointLight {
-    /// Where it is.
+    /// The position.
     pub position: Option<WrittenVector>,
-    /// Its colour; white if none is given.
+    /// The colour; white if not given.
     pub color: Option<WrittenColor>,
-    /// The factor of its colour; 1 if none is given.
+    /// The factor of the colour; 1 if not given.
     pub intensity: Option<WrittenNumber>,
-    /// How it grows weaker; by the inverse square if nothing is given.
+    /// The falloff; inverse square if not given.
     pub falloff: Option<Falloff>,
 }
 

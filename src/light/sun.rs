@@ -1,4 +1,4 @@
-//! Light from infinitely far: for tests, a light that is one file, and one line in the table of lights.
+//! Light from infinity: a light for tests, which shows that a file and a line in the table are all that one takes.
 
 use super::LightSource;
 use crate::color::LinearRgb;
@@ -7,10 +7,10 @@ use crate::ray::Interval;
 use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenVector};
 use glam::Vec3;
 
-/// White light of one direction, as bright everywhere: a white surface that faces it has the radiance 1.
+/// White light from one direction, of the same strength everywhere: a white surface that faces it has the radiance 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
-    /// From where it comes. Unit length.
+    /// The direction that it comes from. Unit length.
     pub direction: Vec3,
 }
 
@@ -59,7 +59,7 @@ mod tests {
     use crate::render::{Sampling, render};
     use crate::scene::Scene;
 
-    /// A floor seen from above, with other objects.
+    /// Returns a floor seen from above, with other objects.
     fn scene(sun: &str, objects: &str) -> String {
         let camera = "camera: (eye: (0, 5, 0.01), target: (0, 0, 0))";
         let floor = "Plane(point: (0, 0, 0), normal: (0, 1, 0), material: Diffuse(0.5))";
@@ -70,7 +70,7 @@ mod tests {
         Scene::from_ron("sun.ron", &scene(sun, objects)).expect("a scene")
     }
 
-    /// The light of the floor is 0.5 times the cosine, 0.8, everywhere, and none where something is in the way: however far.
+    /// The floor's light is 0.5 times the cosine, 0.8, everywhere, and none where something is in the way, however far.
     #[test]
     fn its_light_is_that_of_the_closed_form() {
         let resolution = Resolution::square(9, 9);

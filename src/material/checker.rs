@@ -6,26 +6,26 @@ use crate::color::{LinearRgb, Srgb8};
 use crate::lanes::Number;
 use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, WrittenNumber};
 
-/// Squares of two reflectances in turn, laid out on the surface's own coordinates (of a plane).
+/// Squares of two alternating reflectances, on the surface's own coordinates (of a plane).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checker {
-    /// Of the square that begins at the pattern's origin, and of every second one from there.
+    /// Reflectance of the square that starts at the pattern's origin, and of every second one from there.
     a: LinearRgb,
-    /// Of the others.
+    /// Reflectance of the others.
     b: LinearRgb,
-    /// A square's side in world units, greater than 0.
+    /// Side of a square in world units, greater than 0.
     size: f32,
 }
 
-/// What the length of a square's side is called.
+/// Name of the side's length in messages.
 const SIZE: &str = "size of a square";
 
 impl Checker {
-    /// Returns the material of squares whose side has that length in world units: the one that begins at the pattern's
+    /// Returns a material of squares with sides of this length in world units: the one that starts at the pattern's
     /// origin, and every second one from there, reflect `a`, the others `b`.
     ///
     /// # Errors
-    /// Unless each band lies within 0 and 1, and the size between 1e-9 and 1e9.
+    /// Unless each channel is within 0 and 1, and the size between 1e-9 and 1e9.
     #[doc(hidden)]
     pub fn new(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
         let a = checks::given_color("a", a, checks::reflectance)?;
@@ -66,11 +66,11 @@ impl Reflecting for Checker {
 /// `Checker(a: ..., b: ..., size: ...)`
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenChecker {
-    /// The reflectance of the first square; `"#dddddd"` if none is given.
+    /// The reflectance of the first square; `"#dddddd"` if not given.
     pub a: Option<WrittenColor>,
-    /// The reflectance of the others; `"#333333"` if none is given.
+    /// The reflectance of the others; `"#333333"` if not given.
     pub b: Option<WrittenColor>,
-    /// A square's side; 1 if none is given.
+    /// The side of a square; 1 if not given.
     pub size: Option<WrittenNumber>,
 }
 
@@ -91,25 +91,25 @@ impl InSceneFile for Checker {
     }
 }
 
-/// The mean over an interval of what is 1 from each even whole number to the next, and -1 in between. So a pattern too
-/// fine for its pixels turns grey, instead of into another one (a box filter; in a plane that is the product of the two
-/// axes' means).
+/// Returns the mean over an interval of a square wave, which is 1 from each even integer to the next integer and -1
+/// otherwise. A pattern too fine for its pixels then turns grey instead of into a moiré (a box filter; in a plane it is
+/// the product of the two axes' means).
 #[inline(always)]
 fn mean_sign<N: Number>(middle: N, width: N) -> N {
     let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5) * width);
     let (start, end) = (middle - half, middle + half);
     let (first, last) = (start.floor(), end.floor());
     let sign = N::select(is_even(first), one, -one);
-    // Over one edge: what lies before it less what lies behind it.
+    // Across a single edge: the part before it less the part after it.
     let over_one = sign * ((last - start) - (end - last)) / (end - start);
     let over_more = (integrated_sign(end) - integrated_sign(start)) / (end - start);
     let over_edges = N::select((last - first).same(one), over_one, over_more);
     let mean = N::select(first.same(last), sign, over_edges);
-    // Beyond, the mean is as good as zero, and intervals may be infinite, or not a number.
+    // Beyond this width the mean is practically zero, and intervals may be infinite or NaN.
     N::select(width.lt(N::splat(1e6)), mean, zero)
 }
 
-/// The integral of that sign from 0: up and down again.
+/// Returns the integral of the square wave from 0: a triangle wave.
 #[inline(always)]
 fn integrated_sign<N: Number>(x: N) -> N {
     let (one, two) = (N::splat(1.0), N::splat(2.0));
@@ -117,7 +117,7 @@ fn integrated_sign<N: Number>(x: N) -> N {
     one - (in_period - one).abs()
 }
 
-/// For whole numbers of any size; those above 2^24 are all even in f32.
+/// Returns whether an integer of any size is odd; those above 2^24 are all even in f32.
 #[inline(always)]
 fn is_even<N: Number>(whole: N) -> N::Mask {
     let half = whole * N::splat(0.5);

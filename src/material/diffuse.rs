@@ -17,10 +17,10 @@ impl Diffuse {
     /// [`Material::DEFAULT`](super::Material::DEFAULT).
     pub(super) const DEFAULT: Self = Self { reflectance: super::Material::DEFAULT_REFLECTANCE };
 
-    /// Returns the material that reflects that part of the light, band by band.
+    /// Returns a material with this reflectance.
     ///
     /// # Errors
-    /// Unless each band lies within 0 and 1.
+    /// Unless each channel is within 0 and 1.
     #[doc(hidden)]
     pub fn new(reflectance: LinearRgb) -> Result<Self, SceneFault> {
         Ok(Self { reflectance: checks::given_color("reflectance", reflectance, checks::reflectance)? })

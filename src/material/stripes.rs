@@ -1,4 +1,5 @@
-//! Stripes of two reflectances: for tests, a material that is one file, and one line in the table of materials.
+//! Stripes of two reflectances: a material for tests, which shows that a file and a line in the table are all that one
+//! takes.
 
 use super::{Reflecting, bands};
 use crate::color::LinearRgb;
@@ -8,7 +9,7 @@ use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor};
 /// Stripes of width 1 across the first of the surface's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripes {
-    /// Reflectance of the stripe that begins at the pattern's origin, and of every second one from there.
+    /// Reflectance of the stripe that starts at the pattern's origin, and of every second one from there.
     pub a: LinearRgb,
     /// Reflectance of the others.
     pub b: LinearRgb,
@@ -57,7 +58,7 @@ mod tests {
     use crate::scene::Scene;
     use std::num::NonZeroU32;
 
-    /// Seen from straight above, of a width of 4 in a picture of 4 pixels, in a light of 1 from everywhere.
+    /// Seen from straight above, 4 units wide in a picture of 4 pixels, in an ambient light of 1.
     fn scene(objects: &str) -> String {
         let camera = "camera: (eye: (0.0, 1.0, 0.0), target: (0.0, 0.0, 0.0), up: (0.0, 0.0, -1.0), vertical_fov: 126.86989764584402)";
         format!("({camera}, ambient: 1.0, objects: [{objects}])")

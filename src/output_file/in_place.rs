@@ -1,4 +1,4 @@
-//! New contents over a file's old bytes, where it cannot be replaced.
+//! Writing over a file's old bytes, where it cannot be replaced.
 
 use rustix::fs::{FlockOperation, fcntl_lock};
 use rustix::io::retry_on_intr;
@@ -7,12 +7,12 @@ use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
-/// Writes all of the contents. The old bytes are overwritten before the length changes: where the file does not grow, no
-/// space is needed, and where it cannot, all old ones can be put back.
+/// Writes the whole contents. The old bytes are overwritten before the length changes: a file that does not grow needs
+/// no space, and if the space for growing is missing, all old bytes can be written back.
 pub(super) fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
     let file = open(path)?;
-    // Closing the file unlocks it. Not `flock`: `flock FILE termtrace frame ... -o FILE` would wait for itself. Some file
-    // systems have no locks.
+    // Closing the file unlocks it. Not `flock`: `flock FILE termtrace frame ... -o FILE` would wait for itself. Some
+    // file systems have no locks.
     let _ = retry_on_intr(|| fcntl_lock(&file, FlockOperation::LockExclusive));
     let old = Old::read(&file, contents.len())?;
     put(&file, contents).map_err(|error| match old.put_back(&file) {
@@ -21,7 +21,7 @@ pub(super) fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
     })
 }
 
-/// One that may be written and not read has its old bytes put back by nobody.
+/// The old bytes of a file that can be written but not read are lost on failure.
 fn open(path: &Path) -> io::Result<File> {
     File::options().read(true).write(true).open(path).or_else(|_| File::options().write(true).open(path))
 }
@@ -33,9 +33,9 @@ fn put(mut file: &File, contents: &[u8]) -> io::Result<()> {
     file.sync_all()
 }
 
-/// What is to be put back.
+/// The old contents, to be restored on failure.
 struct Old {
-    /// The first bytes: those that are overwritten.
+    /// The first bytes, which are overwritten.
     start: io::Result<Vec<u8>>,
     length: u64,
 }
@@ -47,7 +47,7 @@ impl Old {
         Ok(Self { start: read.map(|_| start), length: file.metadata()?.len() })
     }
 
-    /// Only what was overwritten: where writing failed, it would fail again.
+    /// Restores only what was overwritten: where writing failed, it would fail again.
     fn put_back(self, mut file: &File) -> io::Result<()> {
         let written = file.stream_position()? as usize;
         let start = self.start?;

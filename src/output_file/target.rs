@@ -1,4 +1,4 @@
-//! Where a path leads to, and whether it may be written.
+//! The target of a path, and whether it may be written.
 
 use rustix::fs::{Access, access};
 use rustix::io::Errno;
@@ -7,13 +7,14 @@ use std::io;
 use std::iter::successors;
 use std::path::{Path, PathBuf};
 
-/// As many as Linux follows. The system has followed them before we do, and found no loop.
+/// Limit on links followed, as in Linux. The system has followed them before, and found no loop.
 const MOST_LINKS: usize = 40;
 
-/// Opens what can only be written directly: a device, a pipe, a file of the system (`/proc/...`), or a descriptor
-/// (`/dev/stdout`), behind which may stand a plain file that somebody else has open. `None` for everything else.
+/// Opens a target that can only be written directly: a device, a pipe, a system file (`/proc/...`), or a descriptor
+/// (`/dev/stdout`), which may refer to a plain file that another process has open. `None` for everything else.
 ///
 /// # Errors
+/// If it cannot be opened, or the path cannot be followed.
 /// If it cannot be opened, or the path cannot be followed.
 pub fn open_stream(path: &Path) -> io::Result<Option<File>> {
     let is_stream = match fs::metadata(path) {
@@ -25,13 +26,13 @@ pub fn open_stream(path: &Path) -> io::Result<Option<File>> {
     is_stream.then(|| File::options().write(true).truncate(true).open(path)).transpose()
 }
 
-/// The path at the end of all symbolic links, whether or not there is something.
+/// Returns the path after all symbolic links, whether or not something exists there.
 pub(super) fn followed(path: &Path) -> PathBuf {
     chain(path).last().unwrap_or_else(|| path.to_owned())
 }
 
-/// An error unless there is a plain file that this process may write. It is asked, not opened: whoever watches the
-/// file would take a closed one for a new one.
+/// Checks that there is a plain file that this process may write. Checked by `access`, not by opening it: a watcher
+/// would take the closed file for a new one.
 pub(super) fn check_writable(path: &Path, data: &Metadata) -> io::Result<()> {
     if data.is_dir() {
         return Err(Errno::ISDIR.into());
@@ -42,7 +43,7 @@ pub(super) fn check_writable(path: &Path, data: &Metadata) -> io::Result<()> {
     Ok(access(path, Access::WRITE_OK)?)
 }
 
-/// An error for a new name that no file can have: renaming would find out when all is written.
+/// Checks that a file can have this name; otherwise the rename would fail after everything is written.
 pub(super) fn check_names_a_file(path: &Path) -> io::Result<()> {
     match path.as_os_str().as_encoded_bytes() {
         [] => Err(Errno::NOENT.into()),
@@ -55,13 +56,13 @@ pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."))
 }
 
-/// The path, and what each symbolic link leads to.
+/// Returns the path and the target of each symbolic link.
 fn chain(path: &Path) -> impl Iterator<Item = PathBuf> {
     let next = |place: &PathBuf| fs::read_link(place).ok().map(|to| folder_of(place).join(to));
     successors(Some(path.to_owned()), next).take(MOST_LINKS + 1)
 }
 
-/// Whether a name is one of the system's: a descriptor's, a kernel's file. (Below `/dev` there are folders for
+/// Returns whether a name belongs to the system: a descriptor or a kernel file. (Below `/dev` there are folders for
 /// everybody, such as `/dev/shm`.)
 fn is_the_systems(place: &Path) -> bool {
     let folder = folder_of(place).canonicalize();

@@ -1,7 +1,7 @@
-//! Files under a temporary name: made, renamed, and found again when their process was killed.
+//! Temporary files: created, renamed, and found again if their process was killed.
 //!
-//! Each is locked (`flock`) for as long as its process lives. Making and locking are two steps; if another process takes
-//! an unlocked one for a leftover between them, the maker sees that it lost the file and makes another.
+//! Each is locked (`flock`) while its process lives. Creating and locking are two steps; if another process takes an
+//! unlocked file for a leftover in between, the creator notices that the file is gone and creates another.
 
 use super::target::folder_of;
 use rustix::fs::{FlockOperation, flock};
@@ -16,24 +16,24 @@ use std::path::{Path, PathBuf};
 const START: &str = ".termtrace-";
 const END: &str = ".tmp";
 
-/// As many names are tried: more than a process writes at once, or than can be left by earlier ones of its number.
+/// Limit on the names tried: more than a process writes at once, or than earlier processes with its number can leave.
 const MOST_NAMES: u32 = 1000;
 
-/// A locked file of our own, removed when dropped.
+/// A locked temporary file, removed when dropped.
 #[derive(Debug)]
 pub(super) struct Temporary {
-    /// `None`: it has another name, or is gone.
+    /// `None` after it was renamed or removed.
     path: Option<PathBuf>,
     file: File,
 }
 
 impl Temporary {
-    /// For a new file: with the mode that the umask gives.
+    /// Creates one for a new file, with the mode that the umask gives.
     pub(super) fn new_file(target: &Path) -> io::Result<Self> {
         Self::beside(target, 0o666)
     }
 
-    /// For a file that has a mode already, and may be secret.
+    /// Creates one for a file that already has a mode and may be secret.
     pub(super) fn private(target: &Path) -> io::Result<Self> {
         Self::beside(target, 0o600)
     }
@@ -48,7 +48,7 @@ impl Temporary {
                         return Ok(temporary);
                     }
                 }
-                // It is another process's of this number, in a container, or a leftover.
+                // Used by a process with the same number in a container, or a leftover.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
@@ -56,9 +56,9 @@ impl Temporary {
         Err(io::Error::other("its folder is full of temporary files"))
     }
 
-    /// Locks a file just made; `None` if another process takes it for a leftover.
+    /// Locks a file just created; `None` if another process takes it for a leftover.
     fn claim(path: PathBuf, file: File) -> io::Result<Option<Self>> {
-        // Where the file system has no locks, nobody else gets one to remove it either.
+        // Where the file system has no locks, no other process gets one to remove it either.
         let is_taken = try_lock(&file) == Err(Errno::WOULDBLOCK);
         if is_taken || !is_at(&file, &path)? {
             return Ok(None);
@@ -66,13 +66,13 @@ impl Temporary {
         Ok(Some(Self { path: Some(path), file }))
     }
 
-    /// Gives it another's owner and mode.
+    /// Sets the owner and mode of another file.
     pub(super) fn become_like(&self, other: &Metadata) -> io::Result<()> {
         let own = self.file.metadata()?;
         if (own.uid(), own.gid()) != (other.uid(), other.gid()) {
             fchown(&self.file, Some(other.uid()), Some(other.gid()))?;
         }
-        // After the owner: a change of owner takes the set-user-id bit away.
+        // After the owner, because changing the owner clears the set-user-id bit.
         if own.mode() != other.mode() {
             self.file.set_permissions(other.permissions())?;
         }
@@ -91,7 +91,7 @@ impl Temporary {
         Ok(())
     }
 
-    /// All that was written.
+    /// Returns everything written.
     pub(super) fn contents(&mut self) -> io::Result<Vec<u8>> {
         let mut contents = Vec::new();
         self.file.rewind()?;
@@ -99,7 +99,7 @@ impl Temporary {
         Ok(contents)
     }
 
-    /// Removes its like in its folder, of its owner, whose processes have ended.
+    /// Removes the files like this one in its folder, of the same owner, whose processes have ended.
     pub(super) fn remove_stale(&self) {
         let Some((path, own)) = self.path.as_deref().zip(self.file.metadata().ok()) else { return };
         for entry in fs::read_dir(folder_of(path)).into_iter().flatten().flatten() {
@@ -129,12 +129,12 @@ impl Drop for Temporary {
     }
 }
 
-/// Its writer holds a lock. With the lock ours, the file is nobody's, and if it still has the name, nobody else can take
-/// the name from it.
+/// A living writer holds the lock. With the lock ours, the file has no writer; and if it still has the name, no other
+/// process can take the name from it.
 fn remove_if_stale(path: &Path, owner: u32) -> io::Result<()> {
     let data = fs::symlink_metadata(path)?;
     if data.is_file() && data.uid() == owner {
-        // Writable, because some network file systems lock no others.
+        // Opened for writing, because some network file systems lock only such files.
         let file = File::options().write(true).open(path)?;
         if try_lock(&file).is_ok() && is_at(&file, path)? {
             fs::remove_file(path)?;
@@ -143,12 +143,12 @@ fn remove_if_stale(path: &Path, owner: u32) -> io::Result<()> {
     Ok(())
 }
 
-/// Locks the file if no other has it locked. (The standard library's function came with Rust 1.89.)
+/// Locks the file unless another process has. (The standard library's function requires Rust 1.89.)
 fn try_lock(file: &File) -> rustix::io::Result<()> {
     flock(file, FlockOperation::NonBlockingLockExclusive)
 }
 
-/// Whether the file has this name.
+/// Returns whether the file has this name.
 fn is_at(file: &File, path: &Path) -> io::Result<bool> {
     let own = file.metadata()?;
     match fs::symlink_metadata(path) {
@@ -158,7 +158,7 @@ fn is_at(file: &File, path: &Path) -> io::Result<bool> {
     }
 }
 
-/// Whether a name is exactly one of ours.
+/// Returns whether a name matches our pattern exactly.
 fn is_temporary(name: &OsStr) -> bool {
     let numbers = name.to_str().and_then(|name| name.strip_prefix(START)?.strip_suffix(END)?.split_once('-'));
     let is_number = |text: &str| text.parse::<u32>().is_ok_and(|number| number.to_string() == text);
@@ -188,7 +188,7 @@ mod tests {
         }
     }
 
-    /// Another process may look at the folder between the making of a file and its lock.
+    /// Another process may look at the folder between the creation of a file and its lock.
     #[test]
     fn a_file_taken_for_a_leftover_is_not_written() {
         let folder = tempfile::tempdir().expect("a folder can be made");

@@ -6,22 +6,22 @@ use std::fmt;
 use std::io::{self, Write};
 use std::time::Duration;
 
-/// An asciicast (version 2, as asciinema plays it) of what an encoder sends to a terminal: one output event for each
-/// frame, empty where nothing is to be sent, at the frame's number over the frames per second. The last frame, which stays,
+/// An asciicast (version 2, as asciinema plays it) of an encoder's bytes: one output event for each frame, empty if
+/// nothing is to be sent, at the frame's number divided by the frame rate. The last frame, which stays on the screen,
 /// is exact whatever the quality.
 ///
-/// Only frames are in it: nothing that switches a mode or asks the viewer's terminal a question.
+/// It contains frames only: no modes are switched, and no queries are sent to the viewer's terminal.
 pub struct Cast<W: Write> {
     out: W,
     encoder: Encoder,
     quality: Quality,
-    /// Bytes per second.
+    /// Limit on the bytes per second.
     max_rate: Option<u32>,
     frames_per_second: u32,
     frame: u64,
-    /// When all that was sent is through, at the highest rate.
+    /// Time at which everything sent has arrived at that rate.
     free_at: Duration,
-    /// The last frame and its bytes, which may not be all yet.
+    /// The last frame and its bytes, which may be incomplete.
     last: Option<(Grid, Vec<u8>)>,
 }
 
@@ -34,10 +34,10 @@ impl<W: Write> fmt::Debug for Cast<W> {
 }
 
 impl<W: Write> Cast<W> {
-    /// For a terminal of that size.
+    /// Starts a film for a terminal of this size.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If writing fails.
     pub fn begin(mut out: W, size: Size, encoder: Encoder, frames_per_second: u32) -> io::Result<Self> {
         let Size { columns, rows } = size;
         writeln!(out, r#"{{"version":2,"width":{columns},"height":{rows}}}"#)?;
@@ -53,23 +53,23 @@ impl<W: Write> Cast<W> {
         })
     }
 
-    /// Of that quality.
+    /// Sets the quality.
     #[doc(hidden)]
     pub fn with_quality(self, quality: Quality) -> Self {
         Self { quality, ..self }
     }
 
-    /// For a link that takes so many bytes a second: while they are on their way, frames are left out (their events are
-    /// empty). But for the last frame, which waits for nothing.
+    /// Sets the rate of the link in bytes per second: while bytes are on their way, frames are dropped (their events
+    /// are empty), except the last frame, which does not wait.
     #[doc(hidden)]
     pub fn with_max_rate(self, max_rate: Option<u32>) -> Self {
         Self { max_rate, ..self }
     }
 
-    /// The next frame.
+    /// Adds a frame.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If writing fails.
     pub fn frame(&mut self, grid: Grid) -> io::Result<()> {
         self.write_last()?;
         let mut bytes = Vec::new();
@@ -86,10 +86,10 @@ impl<W: Write> Cast<W> {
         Ok(())
     }
 
-    /// Writes the rest after the last frame, and returns the writer.
+    /// Finishes the film and returns the writer.
     ///
     /// # Errors
-    /// If the rest cannot be written.
+    /// If writing fails.
     pub fn end(mut self) -> io::Result<W> {
         if let Some((grid, bytes)) = &mut self.last {
             self.encoder.encode(grid, bytes);
@@ -99,7 +99,7 @@ impl<W: Write> Cast<W> {
         Ok(self.out)
     }
 
-    /// When the next frame is shown, in seconds.
+    /// Returns the time of the next frame in seconds.
     fn time(&self) -> f64 {
         self.frame as f64 / f64::from(self.frames_per_second)
     }

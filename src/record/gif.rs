@@ -6,11 +6,11 @@ use gif::{EncodingError, Repeat};
 use std::fmt;
 use std::io::{self, Write};
 
-/// A GIF that plays for ever. Its pixels are square, as all viewers take them to be: where the picture's are not, they
-/// are repeated the longer way, so that the picture has the right shape.
+/// A GIF that repeats for ever. Viewers take its pixels as square: where the picture's are not, they are repeated along
+/// the longer axis, so that the picture has the right shape.
 ///
-/// Each frame has its own 256 colours. Delays are whole hundredths of a second; their rounding is carried on from frame
-/// to frame, so that the whole takes its right time. (Viewers show delays of less than two hundredths much longer.)
+/// Each frame has its own 256 colours. Delays are whole hundredths of a second; the rounding error is carried over to
+/// the next frame, so that the total time is right. (Viewers show delays of less than two hundredths much longer.)
 pub struct Gif<W: Write> {
     encoder: gif::Encoder<W>,
     resolution: Resolution,
@@ -29,10 +29,10 @@ impl<W: Write> fmt::Debug for Gif<W> {
 }
 
 impl<W: Write> Gif<W> {
-    /// For pictures of that resolution, each pixel `scale` times as large.
+    /// Starts a film of pictures of this resolution, each pixel `scale` times as large.
     ///
     /// # Errors
-    /// If it cannot be written; if [`gif_size`] is more than 65,535 either way.
+    /// If writing fails, or a side of the GIF would exceed 65,535 pixels.
     pub fn begin(out: W, resolution: Resolution, scale: u32, frames_per_second: u32) -> io::Result<Self> {
         let (width, height) = gif_size(resolution, scale);
         let size = match (width.try_into(), height.try_into()) {
@@ -44,17 +44,17 @@ impl<W: Write> Gif<W> {
         Ok(Self { encoder, resolution, size, frames_per_second, frame: 0 })
     }
 
-    /// The next frame.
+    /// Adds a frame.
     ///
     /// # Errors
-    /// If it cannot be written, or is of another size.
+    /// If writing fails, or the picture has another size.
     pub fn frame(&mut self, picture: &Picture) -> io::Result<()> {
         let [width, height] = [self.resolution.width(), self.resolution.height()];
         if (picture.width, picture.height, picture.pixels.len()) != (width, height, self.resolution.pixel_count()) {
             return Err(invalid("all frames of a film have one size"));
         }
         let rgb = picture.to_bytes();
-        // The colours are chosen from the picture's own pixels; neither side is more than the GIF's.
+        // The palette is chosen from the picture's own pixels; neither of its sides exceeds the GIF's.
         let mut frame = gif::Frame::from_rgb_speed(width as u16, height as u16, &rgb, haste(picture.pixels.len()));
         frame.buffer = self.enlarged(&frame.buffer).into();
         (frame.width, frame.height) = self.size;
@@ -63,17 +63,17 @@ impl<W: Write> Gif<W> {
         self.encoder.write_frame(&frame).map_err(io_error)
     }
 
-    /// Writes the rest after the last frame, and returns the writer.
+    /// Finishes the film and returns the writer.
     ///
     /// # Errors
-    /// If the rest cannot be written.
+    /// If writing fails.
     pub fn end(self) -> io::Result<W> {
         let mut out = self.encoder.into_inner().map_err(io_error)?;
         out.flush()?;
         Ok(out)
     }
 
-    /// The picture's pixels repeated until they fill the GIF's.
+    /// Returns the picture's pixels repeated to fill the GIF.
     fn enlarged(&self, pixels: &[u8]) -> Vec<u8> {
         let (across, down) = (usize::from(self.size.0), usize::from(self.size.1));
         let (width, height) = (self.resolution.width() as usize, self.resolution.height() as usize);
@@ -85,7 +85,7 @@ impl<W: Write> Gif<W> {
         enlarged
     }
 
-    /// How long the frame is shown, in hundredths of a second: up to where the next one begins.
+    /// Returns the delay of a frame in hundredths of a second, up to the start of the next one.
     fn delay(&self) -> u16 {
         let second = u64::from(self.frames_per_second.max(1));
         let hundredths = |frame: u64| (100 * frame + second / 2) / second;
@@ -94,7 +94,7 @@ impl<W: Write> Gif<W> {
     }
 }
 
-/// How many pixels a GIF has, across and down, for pictures of that resolution with each pixel `scale` times as large.
+/// Returns the width and height of a GIF of pictures of this resolution with each pixel `scale` times as large.
 pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
     let pixel_aspect = resolution.pixel_aspect();
     let [width, height] = [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(scale));
@@ -102,7 +102,8 @@ pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
     if pixel_aspect < 1.0 { (longer(width, 1.0 / pixel_aspect), height) } else { (width, longer(height, pixel_aspect)) }
 }
 
-/// How coarsely the quantiser looks at a picture of so many pixels, from 1 (at each) to 30: at some 50,000 of them.
+/// Returns the quantiser's sampling step for a picture of this many pixels, from 1 (every pixel) to 30, for some 50,000
+/// samples.
 fn haste(pixels: usize) -> i32 {
     i32::try_from(pixels / 50_000).map_or(30, |haste| haste.clamp(1, 30))
 }
