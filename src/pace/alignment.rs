@@ -1,35 +1,36 @@
-//! Whether replies without a number are counted one query behind, because one of them was lost.
+//! Detection of a misalignment: replies without a number are counted one query behind, because one of them was lost.
 //!
-//! No timeout notices the loss while frames follow each other: each reply is matched to the query before its own, and every
-//! round trip seems longer by the interval between two frames. The estimated rate is then too low, frames are sent further
-//! apart, and the estimate falls again: from 50 KB/s to 1 KB/s within seconds. The sign is that such replies arrive exactly
-//! when those to the next query are due; on a link that has become slower they do not.
+//! No timeout notices the loss while frames follow each other: each reply is matched to the query before its own, and
+//! every round trip seems longer by the interval between two frames. The estimated rate is then too low, frames are
+//! sent further apart, and the estimate falls again: from 50 KB/s to 1 KB/s within seconds. The sign of it is that
+//! replies arrive exactly when those to the next query are due; on a link that has become slower they do not.
 
 use super::ledger::InFlight;
 use super::{LEAST_BYTES, LONGEST};
 use std::time::Duration;
 
-/// The number of replies in a row that arrive when the next query's is due until one is taken for lost: one more than while
-/// a queue drains (see [`STRICT`]).
+/// Number of consecutive replies at the time of the next query's until one is considered lost: one more than occur
+/// while a queue drains (see [`STRICT`]).
 const ENOUGH: u32 = 4;
-/// The error by which a reply to the second oldest query is on time. A queue that drains by a seventh of the interval
-/// between two frames is within it for three of them.
+/// Tolerance for a reply to the second oldest query. A queue that drains by a seventh of the interval between two
+/// frames stays within it for three of them.
 const STRICT: Duration = Duration::from_millis(5);
-/// The error by which a reply to the oldest query is on time: in doubt the count is right.
+/// Tolerance for a reply to the oldest query: in doubt the count is right.
 const LENIENT: Duration = Duration::from_millis(10);
 
-/// The evidence that replies without a number are counted one query behind.
+/// The evidence for a misalignment.
 #[derive(Default)]
 pub(super) struct Alignment {
-    /// The last estimate, in bytes per second, by which a reply to the oldest query was on time: that from before the loss.
+    /// The last estimate in bytes per second by which a reply to the oldest query was on time: that from before the
+    /// loss.
     rate: Option<f64>,
-    /// The number of replies in a row that arrived when the one to the second oldest query was due.
+    /// Number of consecutive replies at the time of the one to the second oldest query.
     behind: u32,
 }
 
 impl Alignment {
-    /// Counts a reply that comes now, while these queries are in flight, oldest first. Returns whether this reply and those
-    /// before it show that one is lost.
+    /// Counts a reply that arrives now while these queries are in flight, oldest first. Returns whether this and the
+    /// previous replies show that one is lost.
     pub(super) fn is_behind<'a>(
         &mut self,
         queries: impl IntoIterator<Item = &'a InFlight>,
@@ -47,7 +48,8 @@ impl Alignment {
                 self.rate = Some(rate);
             }
             let fits = |query: &InFlight, tolerance| {
-                // The rate may be known from such replies alone. Then small frames show that it is not the link's.
+                // The rate may be known from misaligned replies alone. Small frames then show that it is not the
+                // link's.
                 let is_small = query.bytes <= LEAST_BYTES;
                 is_on_time(query, self.rate.unwrap_or(rate), tolerance)
                     || is_small && is_on_time(query, f64::INFINITY, tolerance)
@@ -65,8 +67,8 @@ mod tests {
     use super::super::tests::ms;
     use super::*;
 
-    /// Frames of 1,000 bytes are sent 25 ms apart through 50 KB/s and 200 ms, and the replies to them come this much later
-    /// than they would through an empty link. Which of them shows a loss.
+    /// Frames of 1,000 bytes are sent every 25 ms through 50 KB/s and 200 ms, and their replies arrive this much later
+    /// than through an empty link. The expected value tells which reply shows a loss.
     fn shows_loss(frames: usize, later: impl Fn(usize) -> u64) -> Option<usize> {
         let mut alignment = Alignment::default();
         (0..frames).find(|&number| {

@@ -1,4 +1,4 @@
-//! A terminal that loses, doubles, garbles and delays replies, on a virtual clock.
+//! A terminal that loses, duplicates, garbles and delays replies, on a virtual clock.
 
 use super::replies::Tagging;
 use super::tests::ms;
@@ -6,21 +6,21 @@ use super::*;
 use crate::protocol::FENCE;
 use std::collections::VecDeque;
 
-/// What happens to a reply.
+/// A fault of a reply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     Lost,
     Doubled,
-    /// Another one comes in its place, of nothing that was asked.
+    /// A reply to an unsent query arrives instead.
     Foreign,
     Late(Duration),
-    /// It is late, and all behind it.
+    /// It is late, and so are all after it.
     Held(Duration),
-    /// It is lost, and each third behind it.
+    /// It is lost, and so is each third after it.
     EachThird,
-    /// It is late, and each third behind it.
+    /// It is late, and so is each third after it.
     EachThirdLate(Duration),
-    /// It is lost, and all behind it.
+    /// It is lost, and so are all after it.
     Stopped,
 }
 
@@ -46,7 +46,7 @@ enum Reply {
     Mode(u16),
 }
 
-/// A program that always has something to show, and a terminal with a fault.
+/// A program that always has something to send, and a terminal with a fault.
 struct World {
     link: Link,
     /// Whether the terminal reports modes.
@@ -54,21 +54,21 @@ struct World {
     rate: f64,
     round_trip: Duration,
     fault: Fault,
-    /// Which reply it is about, from 1.
+    /// Number of the faulty reply, from 1.
     at: usize,
     replies: usize,
     now: Duration,
     begun: Duration,
-    /// When the link has passed on all bytes.
+    /// Time at which the link has transmitted all bytes.
     free_at: Duration,
-    /// When frames were sent, their bytes, and when they are seen.
+    /// The frames: when each was sent, its bytes, and when it is visible.
     frames: Vec<(Duration, usize, Duration)>,
     due: Vec<(Duration, Reply)>,
     held_until: Duration,
     first_reply: Option<Duration>,
-    /// The bytes of a frame, if it may take as many as it likes.
+    /// Bytes of a frame without a limit.
     wanted: usize,
-    /// How much later the first reply comes, because the terminal is busy with its start.
+    /// Delay of the first reply, because the terminal is busy starting.
     start: Duration,
 }
 
@@ -136,7 +136,7 @@ impl World {
         self.frames.push((self.now, frame.len(), seen));
     }
 
-    /// The link passes bytes on, and the terminal replies to what it is asked. When they are seen.
+    /// Transmits bytes and replies to queries. Returns the time at which the bytes are visible.
     fn pass_on(&mut self, bytes: &[u8]) -> Duration {
         self.free_at = self.free_at.max(self.now) + Duration::from_secs_f64(bytes.len() as f64 / self.rate);
         let at = self.free_at + self.round_trip;
@@ -172,7 +172,7 @@ impl World {
         self.due.sort_by_key(|(at, _)| *at);
     }
 
-    /// The longest that a key pressed in that time waits until it is seen.
+    /// Returns the longest time until a key pressed in this interval is visible.
     fn worst_key(&self, from: Duration, to: Duration) -> Duration {
         let keys = (from.as_millis()..to.as_millis()).map(|at| ms(at as u64));
         let mut frames: VecDeque<_> = self.frames.iter().collect();
@@ -187,7 +187,7 @@ impl World {
     }
 }
 
-/// All faults, of each of the first 40 replies, with and without numbers.
+/// Every fault, of each of the first 40 replies, with and without numbers.
 fn each_fault(limit: Duration, mut worst: impl FnMut(bool, Fault, usize) -> Duration) {
     let mut late = Vec::new();
     for tags in [true, false] {
@@ -220,8 +220,8 @@ fn no_key_waits_longer_than_500_ms_before_a_local_terminal_has_replied() {
     });
 }
 
-/// The first round trip is longer than the others, and frames are small: a reply that might be an older frame's tells
-/// nothing of the rate.
+/// The first round trip is longer than the others, and frames are small: a reply that may belong to an older frame
+/// gives no rate.
 #[test]
 fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
     each_fault(ms(250), |tags, fault, at| {
@@ -243,7 +243,7 @@ fn little_is_sent_between_the_first_picture_and_the_first_reply() {
     }
 }
 
-/// A first picture that takes 800 ms is not taken for a lost reply.
+/// A first picture that takes 800 ms does not count as a lost reply.
 #[test]
 fn the_first_picture_of_a_slow_link_is_waited_for() {
     for tags in [true, false] {
@@ -256,9 +256,10 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
     }
 }
 
-/// A key that waits for nothing is seen after 310 ms, or 400 ms at worst; two round trips more are allowed. They are not
-/// enough where replies without numbers are lost again and again: 936 ms. Left out is what makes such a link look like
-/// another: its first reply, and silence from the first picture on, for then nothing tells that the link is slow.
+/// A key without a wait is visible after 310 ms, or 400 ms at worst; two more round trips are allowed. They do not
+/// suffice where replies without numbers are lost again and again: 936 ms. Left out are faults that make the link look
+/// like another one: its first reply, and silence from the first picture on, because then nothing shows that the link
+/// is slow.
 #[test]
 fn no_key_waits_much_longer_on_a_slow_link() {
     each_fault(ms(800), |tags, fault, at| {
@@ -299,7 +300,7 @@ fn a_lost_reply_is_known_as_soon_as_the_next_one_comes() {
     assert_eq!(link.replies.ledger.live().count(), 3);
     assert!(link.answer_mode(202, ms(12)));
     assert_eq!(link.replies.ledger.live().count(), 1);
-    // Late, foreign, and of a mode that exists.
+    // Late, foreign, and of an existing mode.
     for mode in [201, 202, 700, 2026] {
         assert!(!link.answer_mode(mode, ms(13)));
     }
@@ -307,7 +308,7 @@ fn a_lost_reply_is_known_as_soon_as_the_next_one_comes() {
     assert_eq!((link.replies.ledger.live().count(), link.replies.state), (0, State::Steady));
 }
 
-/// Otherwise each might be lost, one a second, and the round trip would be that of frames.
+/// Otherwise each of them might be lost, one a second, and the round trip would be that of frames.
 #[test]
 fn a_lost_query_without_a_frame_is_sent_again() {
     let mut link = Link::new(None, None, true);

@@ -1,26 +1,27 @@
-//! The ledger of queries in flight: which reply belongs to which query, and which replies are missing.
+//! The ledger of queries in flight: matches replies to queries and finds missing replies.
 //!
-//! Terminals reply in order. So a reply with a number (a [`Tag`]'s) shows that those to all older queries are lost, and one
-//! whose number is not in the ledger is late, doubled or foreign, and ignored. Replies without one (DA1's) are counted: each
-//! belongs to the oldest query, until one was given up. A reply may then be that query's, late, or a newer one's (in TCP's
-//! terms, retransmission ambiguity). The shortest round trip decides, and no estimate is made from it (Karn's algorithm).
+//! Terminals reply in order. So a reply with a number (a [`Tag`]'s) shows that the replies to all older queries are
+//! lost; one whose number is not in the ledger is late, a duplicate or foreign, and is ignored. Replies without a
+//! number (DA1's) are counted: each belongs to the oldest query, unless one has timed out. A reply may then be that
+//! query's, late, or a newer one's (retransmission ambiguity in TCP). The shortest round trip decides, and no estimate
+//! is derived from it (Karn's algorithm).
 
 use crate::protocol::Tag;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// The most queries that are remembered after they were given up: those sent while the first picture is on its way through
-/// a very slow link, one each 150 to 200 ms for 10 s.
+/// Limit on the queries kept after their timeout: those sent while the first picture is on its way through a very slow
+/// link, one every 150 to 200 ms for 10 s.
 const MOST_GIVEN_UP: usize = 64;
 
-/// What asks for the reply to a frame.
+/// The kind of query behind a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Query {
     /// DA1.
     Counted,
-    /// DECRQM of a mode that does not exist.
+    /// DECRQM of a nonexistent mode.
     Tagged(Tag),
-    /// Both, and one reply suffices: whether the terminal answers the second kind is to be found out.
+    /// Both, either of which may be answered, to find out whether the terminal answers the second kind.
     Both(Tag),
 }
 
@@ -37,46 +38,47 @@ impl Query {
     }
 }
 
-/// A query that has no reply yet.
+/// A query without a reply so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InFlight {
     pub(super) query: Query,
     pub(super) sent: Duration,
-    /// How many bytes it ends: of a query alone, none that count.
+    /// Number of bytes that it ends; 0 for a query alone.
     pub(super) bytes: usize,
-    /// Whether a timeout has passed, and nothing was heard of it since.
+    /// Whether its timeout has passed, and no later reply has shown that to be spurious.
     given_up: bool,
-    /// Whether one ever has.
+    /// Whether its timeout has ever passed.
     late: bool,
 }
 
-/// The query that a reply belongs to.
+/// The match of a reply to a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Matched {
     pub(super) query: Query,
     pub(super) sent: Duration,
     pub(super) bytes: usize,
-    /// The oldest query in flight before it whose reply is lost, and their bytes with its own: all of these have arrived.
+    /// Sending time of the oldest query in flight before it whose reply is lost, and the bytes up to this one: all of
+    /// them have arrived.
     pub(super) run: (Duration, usize),
-    /// Whether the reply to a query without a frame is among those that are lost.
+    /// Whether the reply to a query without a frame is among the lost ones.
     pub(super) lost_probe: bool,
     pub(super) trust: Trust,
 }
 
-/// What may be concluded from a match.
+/// The conclusions that a match allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Trust {
-    /// The reply is that query's, and nothing before it was given up: round trip and rate.
+    /// The reply is this query's, and no query before it has timed out: it gives round trip and rate.
     Sure,
-    /// The reply is that query's, but older bytes may have been before it on a slow link: the round trip.
+    /// The reply is this query's, but older bytes may precede it on a slow link: it gives the round trip.
     AfterLoss,
-    /// The reply is that query's, which had been given up: the timeout was spurious.
+    /// The reply is this query's, after its timeout, which was spurious.
     Late,
-    /// The reply may be an older query's: nothing but that the terminal replies.
+    /// The reply may be an older query's: it shows only that the terminal replies.
     Doubtful,
 }
 
-/// The queries in flight, oldest first, and those given up.
+/// The queries in flight, oldest first, and those that have timed out.
 #[derive(Debug)]
 pub(super) struct Ledger {
     queries: VecDeque<InFlight>,
@@ -90,43 +92,43 @@ impl Default for Ledger {
 }
 
 impl Ledger {
-    /// A tag that was not used for a while.
+    /// Returns a tag that has not been used for a while.
     pub(super) fn next_tag(&mut self) -> Tag {
         self.last = self.last.next();
         self.last
     }
 
-    /// A query is sent now, behind so many bytes.
+    /// Records a query that is sent now behind this many bytes.
     pub(super) fn ask(&mut self, query: Query, bytes: usize, now: Duration) {
         self.queries.push_back(InFlight { query, sent: now, bytes, given_up: false, late: false });
     }
 
-    /// Those that are not given up, oldest first.
+    /// Returns the queries that have not timed out, oldest first.
     pub(super) fn live(&self) -> impl Iterator<Item = &InFlight> {
         self.queries.iter().filter(|query| !query.given_up)
     }
 
-    /// The oldest that is not given up.
+    /// Returns the oldest query that has not timed out.
     pub(super) fn oldest(&self) -> Option<&InFlight> {
         self.live().next()
     }
 
-    /// Whether a reply may belong to one that was given up.
+    /// Returns whether a reply may belong to a query that has timed out.
     pub(super) fn is_ambiguous(&self) -> bool {
         self.queries.iter().any(|query| query.given_up && query.query.is_counted())
     }
 
-    /// When the last one was sent.
+    /// Returns the time at which the last query was sent.
     pub(super) fn newest(&self) -> Option<Duration> {
         self.queries.back().map(|query| query.sent)
     }
 
-    /// The bytes that no reply has confirmed and no timeout has given up.
+    /// Returns the bytes that are neither confirmed by a reply nor timed out.
     pub(super) fn in_flight(&self) -> f64 {
         self.live().map(|query| query.bytes as f64).sum()
     }
 
-    /// The timeout: what is in flight is not waited for any longer.
+    /// Records a timeout: all queries in flight time out.
     pub(super) fn give_up(&mut self) {
         for query in &mut self.queries {
             (query.given_up, query.late) = (true, true);
@@ -135,43 +137,43 @@ impl Ledger {
         self.queries.drain(..surplus);
     }
 
-    /// The timeout was spurious: what is left is in flight after all (as after Eifel detection).
+    /// Records that the timeout was spurious: the remaining queries are in flight after all (as after Eifel detection).
     pub(super) fn revive(&mut self) {
         for query in &mut self.queries {
             query.given_up = false;
         }
     }
 
-    /// No reply will be matched to what was asked.
+    /// Forgets all queries.
     pub(super) fn clear(&mut self) {
         self.queries.clear();
     }
 
-    /// A reply with a number. `None`: it belongs to none of the queries.
+    /// Matches a reply with a number. `None` if it belongs to no query.
     pub(super) fn take_tagged(&mut self, tag: Tag) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.tag() == Some(tag))?;
         Some(self.take(at))
     }
 
-    /// The queries that replies without a number belong to, oldest first.
+    /// Returns the queries that replies without a number may belong to, oldest first.
     pub(super) fn counted(&self) -> impl Iterator<Item = &InFlight> {
         self.queries.iter().filter(|query| query.query.is_counted())
     }
 
-    /// A reply without a number, if it belongs to the oldest query.
+    /// Matches a reply without a number to the oldest query, if it belongs to that.
     pub(super) fn take_oldest(&mut self) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.is_counted())?;
         Some(self.take(at))
     }
 
-    /// A reply without a number, taken for that to the newest query that was sent by then.
+    /// Matches a reply without a number to the newest query sent by `sent`.
     pub(super) fn take_newest_sent_by(&mut self, latest: Duration) -> Option<Matched> {
         let fits = |query: &InFlight| query.query.is_counted() && query.sent <= latest;
         let at = self.queries.iter().rposition(fits)?;
         Some(Matched { trust: Trust::Doubtful, ..self.take(at) })
     }
 
-    /// Takes out the query and all older ones.
+    /// Removes the query at this index and all older ones.
     fn take(&mut self, at: usize) -> Matched {
         let InFlight { query, sent, bytes, late, .. } = self.queries[at];
         let mut run = (sent, bytes);

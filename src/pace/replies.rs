@@ -1,4 +1,4 @@
-//! What the replies say, and what follows when they do not come.
+//! The state of the terminal's replies: what they show, and what follows if they are missing.
 
 use super::alignment::Alignment;
 use super::blind::Blind;
@@ -8,90 +8,91 @@ use super::{FRAME, LONGEST};
 use crate::protocol::{FENCE, Tag};
 use std::time::Duration;
 
-/// How much later than expected a reply may come before a frame is sent without it. A local terminal replies within some
-/// milliseconds, and within 100 while it is busy; with this a key that waits for the timeout is seen within 250 ms.
+/// Timeout beyond the expected time of a reply, after which a frame is sent without it. A local terminal replies within
+/// milliseconds, or within 100 ms while it is busy; with this timeout a key that waits for it is visible within 250 ms.
 const TIMEOUT: Duration = Duration::from_millis(150);
-/// The same for a slow link, where a frame sent too early queues behind others: a link that becomes ten times slower
-/// has its replies 280 ms apart.
+/// The same timeout for a slow link, where a frame sent too early queues behind others: a link that becomes ten times
+/// slower has its replies 280 ms apart.
 const SLOW_TIMEOUT: Duration = Duration::from_millis(300);
-/// How many times this is doubled while it is not known whether it was too short: 2.4 s.
+/// Limit on doublings of the timeout while it may have been too short: 2.4 s.
 const MOST_BACKOFF: u32 = 3;
-/// The same after the first frame, if nothing was heard before: a key pressed at once is seen within 500 ms.
+/// Timeout after the first frame, before any reply: a key pressed at once is visible within 500 ms.
 const FIRST_TIMEOUT: Duration = Duration::from_millis(400);
-/// How long the terminal may be silent after a timeout until it is taken for one that does not reply: two timeouts more.
+/// Time without replies after a timeout until the terminal is considered silent: two more timeouts.
 const PATIENCE: Duration = Duration::from_millis(300);
-/// The same for a slow link. What is sent without replies to one that only stands still for a moment queues there.
+/// The same time for a slow link. Frames sent without replies to a terminal that pauses for a moment queue there.
 const SLOW_PATIENCE: Duration = Duration::from_secs(1);
-/// The same if nothing was ever heard: with [`FIRST_TIMEOUT`] a second after the first frame.
+/// The same time if no reply has ever arrived: with [`FIRST_TIMEOUT`] a second after the first frame.
 const FIRST_PATIENCE: Duration = Duration::from_millis(600);
-/// The same if the rate is not known yet: the first picture may be on its way through a link of 2 KB/s, which full frames
-/// without replies would fill for minutes. Until then small ones show keys (see [`Blind`]).
+/// The same time if the rate is unknown: the first picture may be on its way through a link of 2 KB/s, which full
+/// frames without replies would fill for minutes. Until then small frames show keys (see [`Blind`]).
 const BLIND_PATIENCE: Duration = Duration::from_secs(10);
-/// How long a query waits for its reply in a terminal that is silent.
+/// Interval between queries to a silent terminal.
 const SILENT_TIMEOUT: Duration = Duration::from_millis(500);
-/// How long no reply may come until all are in.
+/// Time without replies after which all outstanding ones count as received or lost.
 const SETTLED: Duration = Duration::from_secs(1);
-/// A terminal whose shortest round trip is below this is near: which of several late replies comes first does not matter.
+/// A terminal with a shortest round trip below this is near: the order of several late replies does not matter.
 const NEAR: Duration = Duration::from_millis(20);
-/// So much later than its shortest round trip a reply comes at once.
+/// Tolerance by which a reply may exceed the shortest round trip and count as immediate.
 const AT_ONCE: Duration = Duration::from_millis(10);
-/// A reply that comes so late is of a terminal that stood still, and no round trip.
+/// A reply later than this comes from a terminal that was suspended, and gives no round trip.
 const STOOD_STILL: Duration = Duration::from_secs(1);
 
-/// How much later than expected a reply of a slow link is when the link must have become slower.
+/// Delay of a reply on a slow link that shows that the link has become slower.
 const LATE: Duration = Duration::from_millis(50);
-/// How far apart queries alone are, while frames are sent.
+/// Interval between queries alone while frames are sent.
 const PROBE: Duration = Duration::from_secs(1);
-/// After so many bytes a rate is relied on that was never found to be the link's limit: four frames.
+/// Number of bytes after which a rate that was never the limit is relied on: four frames.
 const TRUSTED: f64 = 60_000.0;
 
-/// What was asked, what the replies tell of the link, and what follows when they do not come.
+/// The queries and the conclusions from their replies.
 pub(super) struct Replies {
     pub(super) state: State,
     pub(super) ledger: Ledger,
     alignment: Alignment,
     pub(super) tagging: Tagging,
-    /// Whether the second reply to a query of both kinds is to come.
+    /// Whether the second reply to a query of both kinds is outstanding.
     echo: bool,
-    /// When a reply last came, if one ever did.
+    /// Time of the last reply, if any.
     pub(super) heard: Option<Duration>,
-    /// How many times in a row a timeout may have been too short.
+    /// Number of consecutive timeouts that may have been too short.
     backoff: u32,
-    /// When a query was last sent without a frame.
+    /// Time of the last query without a frame.
     probed: Option<Duration>,
     pub(super) round_trip: RoundTrip,
     pub(super) rates: Rates,
     busy: Busy,
-    /// How many bytes are known to have arrived since the terminal was silent (slow start).
+    /// Number of bytes known to have arrived since the terminal was silent (slow start).
     pub(super) delivered: f64,
-    /// Whether the link was slow when that was last found out.
+    /// Whether the link was slow at the last check.
     slow: bool,
     pub(super) blind: Blind,
 }
 
-/// What is known of the terminal's replies.
+/// The state of the terminal's replies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum State {
-    /// The terminal is not to be asked: it might print the query.
+    /// Queries are not sent: the terminal might print them.
     Unasked,
-    /// No reply has come yet, and none is late.
+    /// No reply has arrived yet, and none is late.
     Unheard,
-    /// Replies come when they should.
+    /// Replies arrive in time.
     Steady,
-    /// A reply is late: a frame at a time. When the terminal is taken for silent.
+    /// A reply is late: frames are sent one at a time. Holds the time at which the terminal is considered silent.
     Recovering { until: Duration },
-    /// Which replies belong to which queries is not known: none is asked until no more replies come. When the last came.
+    /// The match of replies to queries is unknown: no query is sent until replies stop. Holds the time of the last
+    /// reply.
     Settling { heard: Duration },
-    /// The terminal is taken for one that does not reply.
+    /// The terminal is considered silent.
     Silent,
 }
 
-/// Whether the terminal repeats the number of a mode that does not exist.
+/// Whether the terminal repeats the number of a nonexistent mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tagging {
-    /// It has reported no mode at all, and might print the query.
+    /// It has reported no mode, and might print the query.
     Unknown,
-    /// It reports modes; this one is asked for when in doubt.
+    /// It reports modes; a query of both kinds finds out.
     Possible,
     /// It does.
     Known,
@@ -125,23 +126,23 @@ impl Replies {
         self.slow = slow;
     }
 
-    /// Puts a query behind nothing: its round trip is the link's own.
+    /// Returns a query without a frame: its round trip is the link's own.
     pub(super) fn probe(&mut self, bytes: &mut Vec<u8>, now: Duration) {
         self.probed = Some(now);
         self.ask(bytes, false, now);
     }
 
-    /// Whether a frame that is sent now ends with a query.
+    /// Returns whether a frame sent now ends with a query.
     pub(super) fn asks(&self) -> bool {
         match self.state {
             State::Unheard | State::Steady | State::Recovering { .. } => true,
-            // The next one only when the last is given up.
+            // The next query only after the timeout of the last one.
             State::Silent => self.ledger.oldest().is_none(),
             State::Unasked | State::Settling { .. } => false,
         }
     }
 
-    /// Notes bytes that are sent, if that is done without knowing how much the link takes.
+    /// Counts bytes that are sent now, if the rate is unknown.
     pub(super) fn spend(&mut self, bytes: usize, now: Duration) {
         if self.is_blind() {
             self.blind.spend(bytes, now);
@@ -152,38 +153,38 @@ impl Replies {
         !matches!(self.state, State::Unasked | State::Silent)
     }
 
-    /// Whether what is sent now is sent without knowing how much the link takes.
+    /// Returns whether bytes sent now are sent without knowing the rate.
     pub(super) fn is_blind(&self) -> bool {
         matches!(self.state, State::Recovering { .. } | State::Settling { .. }) && !self.knows_rate()
     }
 
-    /// Whether the rate may be relied on: a rate that was never reached is, when enough has arrived at it.
+    /// Returns whether the rate can be relied on: one that was never reached can be after enough bytes have arrived.
     pub(super) fn knows_rate(&self) -> bool {
         self.rates.best().is_some_and(|rate| rate.is_limit || self.delivered >= TRUSTED)
     }
 
-    /// Whether a reply of a slow link is late: the link is slower than it seemed, and what is sent before it is known
-    /// how much would only wait.
+    /// Returns whether a reply on a slow link is late: the link is slower than estimated, and more bytes would only
+    /// queue.
     pub(super) fn is_late(&self, now: Duration) -> bool {
         self.slow && self.ledger.oldest().is_some_and(|oldest| now > self.due(oldest) + LATE)
     }
 
-    /// When the reply to the oldest query in flight should come.
+    /// Returns the expected time of the reply to the oldest query in flight.
     pub(super) fn due(&self, oldest: &InFlight) -> Duration {
         self.passes(self.busy.until(), oldest) + self.round_trip.expected()
     }
 
-    /// When the link has passed on all that is in flight, as far as the replies tell.
+    /// Returns the time at which the link has transmitted everything in flight, as far as replies show.
     pub(super) fn passed_at(&self) -> Duration {
         self.ledger.live().fold(self.busy.until(), |free_at, query| self.passes(free_at, query))
     }
 
-    /// When the link, if it is free then, has passed on what ends with a query.
+    /// Returns the time at which the link, if idle by then, has transmitted the bytes up to a query.
     pub(super) fn passes(&self, free_at: Duration, query: &InFlight) -> Duration {
         free_at.max(query.sent) + self.takes(query.bytes)
     }
 
-    /// How long the link takes over so many bytes; no time if its rate is not known.
+    /// Returns the transmission time of this many bytes; zero if the rate is unknown.
     pub(super) fn takes(&self, bytes: usize) -> Duration {
         let rate = self.rates.best().map_or(f64::INFINITY, |rate| rate.bytes_per_second);
         Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(LONGEST)
@@ -194,7 +195,7 @@ impl Replies {
         asks && self.probed.is_none_or(|last| now >= last + PROBE)
     }
 
-    /// Puts a query behind bytes that are sent now, and takes note of it, with how many they are if they are a frame.
+    /// Appends a query to bytes that are sent now, and records it with their number if they are a frame.
     pub(super) fn ask(&mut self, bytes: &mut Vec<u8>, is_frame: bool, now: Duration) {
         let query = self.query();
         if let Query::Tagged(tag) | Query::Both(tag) = query {
@@ -206,7 +207,8 @@ impl Replies {
         self.ledger.ask(query, if is_frame { bytes.len() } else { 0 }, now);
     }
 
-    /// The next query. In doubt it is of both kinds: another terminal may have taken the place of the one that was there.
+    /// Returns the next query. In doubt it is of both kinds: another terminal may have taken the place of the previous
+    /// one.
     pub(super) fn query(&mut self) -> Query {
         let doubts = matches!(self.state, State::Recovering { .. } | State::Silent);
         match self.tagging {
@@ -216,7 +218,7 @@ impl Replies {
         }
     }
 
-    /// What was asked will not be answered: another program had the terminal in between.
+    /// Forgets the queries in flight, because another program has had the terminal.
     pub(super) fn forget(&mut self) {
         self.ledger.clear();
         self.echo = false;
@@ -225,7 +227,7 @@ impl Replies {
         }
     }
 
-    /// The terminal has answered DA1.
+    /// Records a reply to DA1.
     pub(super) fn answer(&mut self, now: Duration) {
         if let State::Settling { heard } = &mut self.state {
             *heard = now;
@@ -233,7 +235,7 @@ impl Replies {
         if std::mem::take(&mut self.echo) {
             return;
         }
-        // A reply that no query is waiting for, such as one that came twice, tells nothing.
+        // A reply without an outstanding query, such as a duplicate, shows nothing.
         let Some(oldest) = self.ledger.counted().next().map(|oldest| oldest.sent) else { return };
         if self.is_behind(now) {
             return self.settle(now);
@@ -251,27 +253,27 @@ impl Replies {
         let matched = if in_order {
             self.ledger.take_oldest()
         } else {
-            // The shortest round trip of one that is near may be that of the start, while it was busy.
+            // The shortest round trip of a near terminal may be that of its busy start.
             let least =
                 if self.is_near() { Duration::ZERO } else { self.round_trip.shortest().mul_f64(0.9).min(FRAME) };
             let latest = now.saturating_sub(least);
             self.ledger.take_newest_sent_by(latest)
         };
         if matched.is_some_and(|matched| matches!(matched.query, Query::Both(_))) {
-            // It has passed over the tag.
+            // It has skipped the tag.
             self.tagging = Tagging::Possible;
         }
         self.take(matched, now);
     }
 
-    /// The way may be another: the window grows from nothing.
+    /// Drops the estimates because the route may have changed: the window grows from its start.
     fn start_slowly(&mut self) {
         self.round_trip.doubt();
         self.delivered = 0.0;
     }
 
-    /// The terminal has reported a mode. Whether it is the reply to a query in flight: one that comes twice, or too late,
-    /// or that something else has asked for is none.
+    /// Records a report of a mode. Returns whether it is the reply to a query in flight: a duplicate, a late one, or
+    /// one to another query is not.
     pub(super) fn answer_mode(&mut self, mode: u16, now: Duration) -> bool {
         if self.tagging == Tagging::Unknown {
             self.tagging = Tagging::Possible;
@@ -289,21 +291,21 @@ impl Replies {
         matched.is_some()
     }
 
-    /// Whether a reply without a number that comes now shows that one of a slow link was lost. Between frames that follow each
-    /// other no timeout does.
+    /// Returns whether a reply without a number that arrives now shows that one of a slow link was lost, which no
+    /// timeout does between consecutive frames.
     fn is_behind(&mut self, now: Duration) -> bool {
         let Some(rate) = self.rates.best().filter(|_| self.slow && !self.ledger.is_ambiguous()) else { return false };
         let round_trip = self.round_trip.shortest();
         self.alignment.is_behind(self.ledger.counted(), round_trip, rate.bytes_per_second, now)
     }
 
-    /// Whether a reply that comes now is that of another query: or the way has become shorter.
+    /// Returns whether a reply that arrives now belongs to another query, or the route has become shorter.
     fn is_too_early(&self, sent: Duration, now: Duration) -> bool {
         self.round_trip.is_far_above(now.saturating_sub(sent))
     }
 
-    /// Whether a reply that comes now, and may be late, is that to the first picture rather than to what was sent last:
-    /// through a slow link it takes long, and the reply of a terminal that is near comes at once.
+    /// Returns whether a reply that arrives now, and may be late, is the one to the first picture rather than to the
+    /// last bytes: through a slow link it takes long, and a near terminal replies at once.
     fn is_first_pictures(&self, now: Duration) -> bool {
         let comes_at_once = |sent: Duration| now <= sent + self.round_trip.shortest() + AT_ONCE;
         let is_lasts = self.is_near() && self.ledger.newest().is_some_and(comes_at_once);
@@ -314,7 +316,7 @@ impl Replies {
         self.round_trip.is_known() && self.round_trip.shortest() < NEAR
     }
 
-    /// The terminal replies, to this query if to one.
+    /// Handles a reply, with its query if it matches one.
     fn take(&mut self, matched: Option<Matched>, now: Duration) {
         let Some(matched) = matched else { return };
         self.blind = Blind::default();
@@ -325,13 +327,13 @@ impl Replies {
         if matched.trust == Trust::Late {
             self.ledger.revive();
         }
-        // What has arrived is not known in doubt, and without a rate too much might be on its way.
+        // In doubt it is unknown what has arrived, and without a rate too much might be in flight.
         let is_blind = matched.trust == Trust::Doubtful && !self.knows_rate();
         self.state = if is_blind { State::Recovering { until: self.silent_at(now) } } else { State::Steady };
         let had_round_trip = self.round_trip.is_known();
         self.take_round_trip(matched, now);
         let tells_rate = matches!(matched.trust, Trust::Sure | Trust::Late);
-        // The first round trip of a link whose rate is known says nothing more of the rate.
+        // The first round trip of a link with a known rate adds nothing to the estimate of the rate.
         if tells_rate && (had_round_trip || self.rates.best().is_none()) {
             self.take_rate(matched, now);
         }
@@ -349,7 +351,7 @@ impl Replies {
     }
 
     fn take_rate(&mut self, matched: Matched, now: Duration) {
-        // Frames are close together on a slow link, so that what is known of the last is known of all.
+        // Frames are close together on a slow link, so that the last one's state is that of all.
         let (sent, bytes) = if self.slow { matched.run } else { (matched.sent, matched.bytes) };
         let passed = now.saturating_sub(self.round_trip.shortest());
         let is_late = self.slow && passed > self.busy.until().max(sent) + self.takes(bytes) + LATE;
@@ -357,8 +359,8 @@ impl Replies {
         self.rates.take(bytes, service, is_late, now);
     }
 
-    /// Begins anew when all replies are in. Until then what is sent goes by the rate alone, if it is that of a slow link;
-    /// another may be a misunderstanding.
+    /// Starts anew when all replies are in. Until then bytes are sent by the rate alone if that is a slow link's;
+    /// another rate may stem from a mismatch.
     fn settle(&mut self, now: Duration) {
         self.ledger.clear();
         self.alignment = Alignment::default();
@@ -371,7 +373,7 @@ impl Replies {
         self.state = State::Settling { heard: now };
     }
 
-    /// When the oldest query in flight is given up, if there is one (the retransmission timeout).
+    /// Returns the time at which the oldest query in flight times out, if any (the retransmission timeout).
     pub(super) fn times_out_at(&self) -> Option<Duration> {
         let oldest = self.ledger.oldest()?;
         Some(match self.heard {
@@ -381,12 +383,12 @@ impl Replies {
         })
     }
 
-    /// How much later than expected a reply may come.
+    /// Returns the timeout beyond the expected time of a reply.
     fn timeout(&self) -> Duration {
         if self.slow { SLOW_TIMEOUT * (1 << self.backoff) } else { TIMEOUT }
     }
 
-    /// When a terminal that has not replied in time, which is seen then, is taken for silent.
+    /// Returns the time at which a terminal that has missed a timeout is considered silent.
     fn silent_at(&self, since: Duration) -> Duration {
         let round_trip = self.round_trip.expected();
         since
@@ -398,7 +400,7 @@ impl Replies {
             }
     }
 
-    /// Waits no longer for replies that do not come.
+    /// Stops waiting for missing replies.
     pub(super) fn look_at_clock(&mut self, now: Duration) {
         match self.state {
             State::Unheard | State::Steady | State::Recovering { .. } => {

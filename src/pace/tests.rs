@@ -1,4 +1,4 @@
-//! The link against a simulated one: a rate, a round trip, and a terminal that answers or not.
+//! The link against a simulated one with a rate, a round trip, and a terminal that replies or does not.
 
 use super::*;
 use crate::protocol::FENCE;
@@ -14,29 +14,29 @@ pub(super) const fn ms(milliseconds: u64) -> Duration {
 pub(super) struct Sent {
     pub(super) at: Duration,
     pub(super) bytes: usize,
-    /// How many of them the link has not passed on yet.
+    /// Number of its bytes that have not been transmitted yet.
     pub(super) left: f64,
-    /// When its last byte came to the terminal.
+    /// Time at which its last byte arrived.
     pub(super) seen: Option<Duration>,
     pub(super) is_frame: bool,
     pub(super) asks: bool,
 }
 
-/// A sender that always has something to show, and what it sends through.
+/// A sender that always has something to send, and its simulated link.
 pub(super) struct World {
     pub(super) link: Link,
     pub(super) rate: f64,
     pub(super) round_trip: Duration,
     pub(super) answers: bool,
-    /// How large frames are, unless the link is slow and they are to fit.
+    /// Size of frames, unless the link is slow and they are to fit.
     pub(super) frame: usize,
     pub(super) fits: bool,
-    /// How much of what they may take they do.
+    /// Share of their limit that frames use.
     pub(super) fill: f64,
     pub(super) now: Duration,
     pub(super) begun: Duration,
     pub(super) sent: Vec<Sent>,
-    /// When answers come, and to how many bytes.
+    /// Arrival times of replies, with the bytes that they confirm.
     pub(super) answers_due: VecDeque<(Duration, usize)>,
     pub(super) in_flight: usize,
     /// The most bytes in flight beyond the link's rate times its round trip and one frame.
@@ -76,7 +76,7 @@ impl World {
         self.now.saturating_sub(ms(milliseconds))
     }
 
-    /// Nothing is sent.
+    /// Sends nothing for a while.
     pub(super) fn rest(&mut self, time: Duration) {
         let end = self.now + time;
         while self.now < end {
@@ -86,7 +86,7 @@ impl World {
         }
     }
 
-    /// The link passes on, in the order of sending.
+    /// Transmits bytes in the order of sending.
     fn pass_on(&mut self) {
         let mut room = self.rate / 1_000.0;
         for sent in self.sent.iter_mut().filter(|sent| sent.seen.is_none()) {
@@ -139,14 +139,14 @@ impl World {
         self.sent.push(Sent { at: self.now, bytes, left: bytes as f64, seen: None, is_frame, asks });
     }
 
-    /// How long after it was pressed a key is seen.
+    /// Returns the time from a key press until its frame is visible.
     pub(super) fn key(&self, pressed: Duration) -> Duration {
         let heard = pressed + self.round_trip / 2;
         let frame = self.sent.iter().find(|sent| sent.is_frame && sent.at > heard);
         frame.and_then(|frame| frame.seen).map_or(Duration::MAX, |seen| seen.saturating_sub(pressed))
     }
 
-    /// The median and the worst of a hundred.
+    /// Returns the median and the maximum of a hundred keys.
     pub(super) fn keys(&self, from: Duration, to: Duration) -> [Duration; 2] {
         let mut times: Vec<_> =
             (from.as_millis()..to.as_millis()).step_by(7).map(|at| self.key(ms(at as u64))).collect();
@@ -154,7 +154,7 @@ impl World {
         [times[times.len() / 2], times[times.len() * 99 / 100]]
     }
 
-    /// Frames per second, and the share of the link that was used.
+    /// Returns the frames per second, and the used share of the link.
     pub(super) fn throughput(&self, from: Duration, to: Duration) -> [f64; 2] {
         let seconds = to.saturating_sub(from).as_secs_f64();
         let sent = || self.sent.iter().filter(|sent| (from..to).contains(&sent.at));
@@ -180,7 +180,7 @@ fn keys_are_soon_seen_at_full_throughput() {
     }
 }
 
-/// As the encoder leaves them: what does not fit is left out in steps.
+/// Frames as the encoder leaves them: parts that do not fit are left out in steps.
 #[test]
 fn frames_below_their_share_fill_the_link_too() {
     for fill in [0.75, 0.8, 0.83, 0.9] {
@@ -209,7 +209,7 @@ fn any_link_is_used_and_never_overfilled() {
             let [fps, share] = world.throughput(from, to);
             let what = format!("{rate} B/s, {round_trip} ms: p99 {worst:?}, {fps} fps, {share}");
             assert!(worst <= ms(round_trip + 200), "{what}");
-            // Frames are whole: where the round trip is about as long as one, only every other may be in flight.
+            // Frames are whole: where the round trip is about as long as one, only every second one may be in flight.
             assert!(fps >= 9.0 && share >= 0.58, "{what}");
             assert!(world.excess <= 0.0, "{what}: {} too many", world.excess);
         }
@@ -229,8 +229,8 @@ fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
     };
     let mut late: Vec<_> = (0..70).step_by(5).map(late).collect();
     late.sort_unstable();
-    // What goes out before anything is heard of the drop runs off at the new rate: 86 % of the old one for the round trip
-    // and a frame, in 2 s.
+    // The bytes sent before the drop is noticed drain at the new rate: 86 % of the old rate for the round trip and a
+    // frame, in 2 s.
     assert!(late[late.len() / 2] <= 1_850 && late[late.len() - 1] <= 2_000, "{late:?} ms");
 }
 
@@ -246,7 +246,7 @@ fn a_link_that_becomes_fast_is_fast_soon() {
     assert!(fps > 55.0, "{fps} fps");
 }
 
-/// Few bytes in a frame, and a terminal that answers only when it draws.
+/// Small frames, and a terminal that replies only when it draws.
 #[test]
 fn a_fast_link_is_never_slow() {
     for frame in [40, 700, SCREEN] {
@@ -271,7 +271,7 @@ fn a_pause_does_not_make_a_link_slow_for_long() {
     assert_eq!(world.link.slow(SCREEN), None);
 }
 
-/// The first picture comes at once, what follows .4 s later, and from the first second on thirty times a second.
+/// The first picture arrives at once, the next bytes .4 s later, and from the first second on thirty times a second.
 #[test]
 fn a_terminal_that_never_answers_gets_thirty_frames_a_second() {
     let mut world = World { answers: false, ..World::new(1e7, ms(2)) };
@@ -282,7 +282,7 @@ fn a_terminal_that_never_answers_gets_thirty_frames_a_second() {
     assert!((28.0..=30.1).contains(&fps), "{fps} fps");
     assert_eq!(world.link.slow(SCREEN), None);
     assert!(world.link.replies.ledger.live().count() <= 8, "nobody waits for many answers");
-    // It has been slow to start with.
+    // It was slow at the start.
     world.answers = true;
     world.run(ms(2_000));
     let [fps, _] = world.throughput(world.ago(1_000), world.now);
@@ -310,7 +310,7 @@ fn a_lost_answer_is_forgotten() {
     assert!(fps > 25.0, "{fps} fps");
 }
 
-/// The first answer comes when the terminal is taken for one that does not answer.
+/// The first reply arrives when the terminal is already considered silent.
 #[test]
 fn a_very_long_way_is_taken_for_silence_only_at_first() {
     let mut world = World::new(200_000.0, ms(900));
@@ -327,7 +327,7 @@ fn a_very_long_way_is_taken_for_silence_only_at_first() {
     assert!(fps >= 10.0 && share >= 0.8, "{fps} fps, {share} of the link");
 }
 
-/// Answers that nobody asked for, and twice the same.
+/// Unsolicited replies, and duplicates.
 #[test]
 fn answers_too_many_do_no_lasting_harm() {
     let mut world = World::new(50_000.0, ms(200));
@@ -336,7 +336,7 @@ fn answers_too_many_do_no_lasting_harm() {
         world.link.answer(world.now);
         world.run(ms(37));
     }
-    // Each answer is taken for that to another frame until there is a pause.
+    // Each reply is matched to another frame until there is a pause.
     world.rest(ms(5_000));
     world.run(ms(7_000));
     let from = world.now;
@@ -367,7 +367,7 @@ fn a_shorter_way_is_noticed() {
         let mut world = World::new(50_000.0, ms(200));
         world.run(ms(5_000));
         (world.rate, world.round_trip) = (rate, ms(round_trip));
-        // In pieces, as keys come.
+        // In pieces, as keys arrive.
         for _ in 0..12 {
             world.run(ms(190));
             world.rest(ms(30));
@@ -378,7 +378,7 @@ fn a_shorter_way_is_noticed() {
     }
 }
 
-/// As it would be by one that has always been so short.
+/// As by a link that has always been this short.
 #[test]
 fn a_way_that_is_a_little_shorter_is_used_as_well() {
     for round_trip in [150, 100, 50] {
@@ -398,7 +398,7 @@ fn a_way_that_is_a_little_shorter_is_used_as_well() {
     }
 }
 
-/// Frames that are small say nothing against an old limit, but the first large one does.
+/// Small frames do not contradict an old limit, but the first large one does.
 #[test]
 fn an_old_limit_does_not_last() {
     let mut world = World::new(100_000.0, ms(20));
