@@ -176,6 +176,7 @@ impl Painter {
     }
 
     /// Sets whether the terminal writes dark on light: light pixels then are left blank.
+    #[doc(hidden)]
     pub fn with_light_background(self, light_background: bool) -> Self {
         Self { light_background, ..self }
     }
@@ -201,6 +202,7 @@ impl Painter {
     ///
     /// # Panics
     /// If the picture needs more than 65,535 columns or rows.
+    #[doc(hidden)]
     pub fn paint(&mut self, picture: &Picture, grid: &mut Grid) {
         let pixels_per_cell = self.mode.pixels_per_cell();
         grid.clear(size_in_cells(picture, pixels_per_cell));

@@ -24,6 +24,7 @@ pub struct LinearRgb {
 
 impl LinearRgb {
     /// No light.
+    #[doc(hidden)]
     pub const BLACK: Self = Self::new(0.0, 0.0, 0.0);
 
     /// Returns light with these three channels, linear.

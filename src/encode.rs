@@ -153,6 +153,7 @@ impl Encoder {
     }
 
     /// Whether the terminal is told anything of colours: where not, not even to go back to its own.
+    #[doc(hidden)]
     pub fn with_colors(self, colors: bool) -> Self {
         Self { colorless: !colors, ..self }
     }

@@ -119,9 +119,10 @@ pub struct Cell {
     pub fg: Ink,
     /// The colour behind it.
     pub bg: Ink,
-    /// The colour of the line below, where [`Attributes::UNDERLINED`] draws one; by default it is the glyph's.
+    /// The colour of the line below, where the cell is underlined; by default it is the glyph's.
     pub underline: Ink,
     /// Bold, underlined and so on; none in a picture.
+    #[doc(hidden)]
     pub attributes: Attributes,
 }
 

@@ -312,7 +312,7 @@ pub use bounds::Bounds;
 pub use camera::{Camera, CameraError, Pose, ViewRectangle};
 pub use color::{LinearRgb, Srgb8};
 pub use light::{Falloff, Light, PointLight};
-pub use material::{Checker, Diffuse, Material};
+pub use material::Material;
 pub use mesh_file::MeshError;
 pub use scene::{Background, Object, SceneBuilder, SceneFault, ToneCurve};
 pub use shape::{Mesh, Plane, Shape, ShapeError, Sphere, Triangle};
@@ -335,7 +335,7 @@ pub use explain::{Explanation, explain};
 // Cells and text.
 pub use cell::{CellMode, Colors, Glyphs, Painter};
 pub use export::{frame_grid, text_frame};
-pub use grid::{Attributes, Cell, Glyph, Grid, Ink, Size};
+pub use grid::{Cell, Glyph, Grid, Ink, Size};
 
 // ratatui.
 #[cfg(feature = "backend")]

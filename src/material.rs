@@ -45,7 +45,7 @@ macro_rules! materials {
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Material {
-            $(#[doc = $of] $(#[$on])* $material($material),)*
+            $(#[doc = $of] #[doc(hidden)] $(#[$on])* $material($material),)*
             /// The surface's own: the colours and textures of a mesh's file; without any, [`DEFAULT`](Self::DEFAULT).
             Own,
         }

@@ -202,6 +202,7 @@ impl Scene {
     }
 
     /// Returns the scene with another camera.
+    #[doc(hidden)]
     pub fn with_camera(self, camera: Camera) -> Self {
         self.with(|checked| checked.camera = camera)
     }
@@ -247,6 +248,7 @@ impl Scene {
     ///
     /// # Errors
     /// Unless it is greater than 0 and at most 1e6.
+    #[doc(hidden)]
     pub fn with_exposure(self, exposure: f32) -> Result<Self, SceneFault> {
         let exposure = checks::given("exposure", exposure, checks::exposure)?;
         Ok(self.with(|checked| checked.exposure = exposure))

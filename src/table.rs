@@ -18,6 +18,7 @@ macro_rules! table {
 
         impl $Table {
             /// All values, in the order of the table.
+            #[doc(hidden)]
             pub const ALL: &[Self] = &[$($(#[cfg($condition)])? Self::$Row,)*];
 
             /// Returns the constant of the row.

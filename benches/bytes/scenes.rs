@@ -6,9 +6,10 @@ use std::f32::consts::{FRAC_PI_8, PI, TAU};
 use std::fmt;
 use std::num::NonZeroU32;
 use termtrace::internals::cell;
+use termtrace::internals::material::Checker;
 use termtrace::{
-    Background, Camera, CellMode, Checker, Falloff, LinearRgb, Material, Object, Picture, Plane, PointLight, Pose,
-    Scene, Size, Sphere, ViewRectangle, render, tone,
+    Background, Camera, CellMode, Falloff, LinearRgb, Material, Object, Picture, Plane, PointLight, Pose, Scene, Size,
+    Sphere, ViewRectangle, render, tone,
 };
 
 /// How many frames a sequence has, 1/30 s apart.

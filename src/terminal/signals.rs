@@ -140,6 +140,7 @@ impl Signals {
     }
 
     /// Returns the signal that asked the program to end, if any.
+    #[doc(hidden)]
     pub fn deadly(&self) -> Option<i32> {
         signal_in(&self.deadly)
     }

@@ -47,7 +47,7 @@ fn cameras_that_see_nothing_are_turned_away() {
         for (flags, words) in [
             ("--eye 0,0.7,0", "the eye and the target are the same point"),
             ("--target 1,1.5,6", "the eye and the target are the same point"),
-            ("--up 0,0,0", "up has no length"),
+            ("--up 0,0,0", "the up vector must have a length"),
             ("--up 1,0.8,6", "up is parallel to the view"),
             ("--eye 0,9,0", "up is parallel to the view"),
             ("--fov 0", "field of view"),

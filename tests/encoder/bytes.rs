@@ -8,7 +8,8 @@ use alacritty_terminal::vte::ansi;
 use std::io::{self, Write};
 use std::time::Duration;
 use termtrace::internals::encode::Allowance;
-use termtrace::{Attributes, Cell, Encoder, Glyph, Grid, Ink, Order, Quality, Size};
+use termtrace::internals::grid::Attributes;
+use termtrace::{Cell, Encoder, Glyph, Grid, Ink, Order, Quality, Size};
 
 const A: Ink = rgb(10, 20, 30);
 const B: Ink = rgb(200, 100, 0);

@@ -7,7 +7,8 @@ use super::watched::Watched;
 use arbitrary::{Result, Unstructured};
 use std::time::Duration;
 use termtrace::internals::encode::Allowance;
-use termtrace::{Attributes, Cell, Grid, Ink, Order, Quality, Size, Srgb8};
+use termtrace::internals::grid::Attributes;
+use termtrace::{Cell, Grid, Ink, Order, Quality, Size, Srgb8};
 
 const GLYPHS: [&str; 9] = ["▄", "▀", " ", "a", "@", "é", "│", "世", "🙂"];
 

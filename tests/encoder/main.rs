@@ -25,7 +25,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use screens::{Clusters, glyph_of};
-use termtrace::{Attributes, Cell, Grid, Ink, Order, Size, Srgb8};
+use termtrace::internals::grid::Attributes;
+use termtrace::{Cell, Grid, Ink, Order, Size, Srgb8};
 use watched::Watched;
 
 pub(crate) const fn rgb(r: u8, g: u8, b: u8) -> Ink {

@@ -6,7 +6,8 @@ use ratatui::buffer::{Buffer, CellDiffOption};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
 use std::num::NonZeroU16;
-use termtrace::{Attributes, Cell, Encoder, Glyph, Grid, Ink, Size, lay_over};
+use termtrace::internals::grid::Attributes;
+use termtrace::{Cell, Encoder, Glyph, Grid, Ink, Size, lay_over};
 use unicode_width::UnicodeWidthStr;
 
 /// A picture of one colour.

@@ -9,7 +9,8 @@
 //! - `vt100` keeps marks with their letter, but not a family or a flag in one place; `avt` gives every mark a cell.
 
 use std::num::NonZeroU16;
-use termtrace::{Attributes, Cell, Glyph, Grid, Ink, Size, Srgb8};
+use termtrace::internals::grid::Attributes;
+use termtrace::{Cell, Glyph, Grid, Ink, Size, Srgb8};
 use unicode_segmentation::UnicodeSegmentation;
 use unicode_width::UnicodeWidthStr;
 

@@ -2,8 +2,9 @@
 
 use glam::{Vec2, Vec3};
 use std::error::Error;
+use termtrace::internals::material::Checker;
 use termtrace::{
-    Background, Camera, Checker, Falloff, LinearRgb, Material, Mesh, Plane, PointLight, Pose, Scene, Sphere, ToneCurve,
+    Background, Camera, Falloff, LinearRgb, Material, Mesh, Plane, PointLight, Pose, Scene, Sphere, ToneCurve,
     Triangle, ViewRectangle,
 };
 

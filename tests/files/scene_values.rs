@@ -2,10 +2,11 @@
 
 use glam::{Vec2, Vec3};
 use std::path::Path;
+use termtrace::internals::material::Checker;
 use termtrace::internals::shape::Part;
 use termtrace::{
-    Background, Camera, Checker, Falloff, Light, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Sphere,
-    Srgb8, ToneCurve, ViewRectangle,
+    Background, Camera, Falloff, Light, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Sphere, Srgb8,
+    ToneCurve, ViewRectangle,
 };
 
 const CAMERA: &str = "camera: (eye: (0, 1, 5), target: (0, 1, 0))";

@@ -7,12 +7,13 @@ use std::f32::consts::PI;
 use std::num::NonZeroU32;
 use termtrace::internals::hit::any_hit;
 use termtrace::internals::light::LightSource;
+use termtrace::internals::material::Checker;
 use termtrace::internals::ray::{Interval, Probe, Ray};
 use termtrace::internals::shade::{incidence, shadow_ray};
 use termtrace::internals::shape::{Side, Surface};
 use termtrace::{
-    Background, Camera, Checker, Falloff, Framebuffer, LinearRgb, Material, Object, Plane, PointLight, Pose,
-    Resolution, Scene, Sphere, ToneCurve, ViewRectangle, render, tone,
+    Background, Camera, Falloff, Framebuffer, LinearRgb, Material, Object, Plane, PointLight, Pose, Resolution, Scene,
+    Sphere, ToneCurve, ViewRectangle, render, tone,
 };
 
 /// A camera that sees `fov` degrees vertically.

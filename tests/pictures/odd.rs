@@ -8,14 +8,14 @@ use std::io::Cursor;
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use termtrace::internals::control;
+use termtrace::internals::material::Checker;
 use termtrace::internals::mesh_file::MeshFile;
 use termtrace::internals::render::Refining;
-use termtrace::internals::{cell, maps, record};
+use termtrace::internals::{cell, control, maps, record};
 use termtrace::{
-    Camera, CameraPath, Cell, CellMode, Checker, Encoder, EncoderBackend, Framebuffer, Grid, LinearRgb, Map, Material,
-    Picture, Plane, PointLight, Pose, Render, Resolution, Sampling, Scene, Size, Sphere, Srgb8, Triangle,
-    ViewRectangle, describe, explain, export, frame_grid, lay_over, render, text_frame, tone,
+    Camera, CameraPath, Cell, CellMode, Encoder, EncoderBackend, Framebuffer, Grid, LinearRgb, Map, Material, Picture,
+    Plane, PointLight, Pose, Render, Resolution, Sampling, Scene, Size, Sphere, Srgb8, Triangle, ViewRectangle,
+    describe, explain, export, frame_grid, lay_over, render, text_frame, tone,
 };
 
 /// How a call has to end.

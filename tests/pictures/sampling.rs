@@ -3,10 +3,11 @@
 use glam::Vec3;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
+use termtrace::internals::material::Checker;
 use termtrace::internals::progress::Cancellation;
 use termtrace::internals::render::{Crew, Refining, render_by};
 use termtrace::{
-    Camera, Cancelled, Checker, Framebuffer, LinearRgb, Material, Object, Plane, Pose, Resolution, Sampling, Scene,
+    Camera, Cancelled, Framebuffer, LinearRgb, Material, Object, Plane, Pose, Resolution, Sampling, Scene,
     ViewRectangle, render, tone,
 };
 
