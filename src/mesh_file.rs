@@ -4,15 +4,15 @@
 //! format has a file of its own here. All have in common:
 //!
 //! - Polygons are triangulated: convex ones into fans, others by ear clipping, those of more than 64 corners always
-//! into fans.
+//!   into fans.
 //! - Numbers are finite and correctly rounded to single precision. Coordinates stay as written, whichever axis is up.
 //! - Colours become linear light. Vertex colours of PLY and OBJ are sRGB, as the programs that write them mean it;
-//! reflectances (`Kd` of MTL, base colours and vertex colours of glTF) are linear already. Everything is opaque.
+//!   reflectances (`Kd` of MTL, base colours and vertex colours of glTF) are linear already. Everything is opaque.
 //! - The first fault ends the reading. It is a [`MeshError`]: one line with the position.
 //! - Any bytes give a mesh or an error in linear time. Memory is not reserved for a claimed count that the file could
-//! not hold, so that it stays within a small multiple of the file's size (40 times the JSON of a glTF file that names
-//! nothing but empty meshes, at most 8 times elsewhere). At most [`MAX_BYTES`] are read, [`MAX_TRIANGLES`] made, and
-//! [`MAX_TEXELS`] decoded.
+//!   not hold, so that it stays within a small multiple of the file's size (40 times the JSON of a glTF file that names
+//!   nothing but empty meshes, at most 8 times elsewhere). At most [`MAX_BYTES`] are read, [`MAX_TRIANGLES`] made, and
+//!   [`MAX_TEXELS`] decoded.
 //!
 //! Side files (MTL files, textures, buffers of glTF) are requested by their path relative to the mesh through a
 //! function passed in; no URL and no absolute path is ever requested. A missing side file is an error, because a
@@ -24,22 +24,22 @@
 //! Numbers, JSON, base64 and images are left to crates. Times are of one thread, best of five; memory is the peak.
 //!
 //! - **glTF**: `gltf` 1.4.1, with and without its validation, fails at a GLB whose `POSITION` names an accessor that
-//! does not exist: `Gltf::from_slice` panics, as it does for 62 of 5,544 files made from one GLB by changing a byte
-//! (254 without validation; none here). Quantised positions are refused or left out, meshopt and Draco are not decoded,
-//! and a buffer may name any path, such as `/dev/zero`. It is as fast (498,436 triangles: 27 ms, here 26), and twice as
-//! fast where the JSON is large (60,000 nodes in 3.4 MB: 55 ms, here 118). `gltf-json` alone would replace one file of
-//! 166 lines, at the price of six more crates and nine times the memory.
+//!   does not exist: `Gltf::from_slice` panics, as it does for 62 of 5,544 files made from one GLB by changing a byte
+//!   (254 without validation; none here). Quantised positions are refused or left out, meshopt and Draco are not
+//!   decoded, and a buffer may name any path, such as `/dev/zero`. It is as fast (498,436 triangles: 27 ms, here 26),
+//!   and twice as fast where the JSON is large (60,000 nodes in 3.4 MB: 55 ms, here 118). `gltf-json` alone would
+//!   replace one file of 166 lines, at the price of six more crates and nine times the memory.
 //! - **OBJ**: `tobj` 4.0.5 makes a triangle of the polyline `l 1 2 3`. It refuses a line continued with a backslash and
-//! a comment in Latin-1, and its errors have no position. 198,916 triangles take 95 ms and 42 MB, here 41 ms and 26 MB.
-//! `mesh-loader` 0.1.13 comes nearest (48 ms, 51 MB, line and column), but fills the notch of a concave quad and does
-//! not report a missing MTL file.
+//!   a comment in Latin-1, and its errors have no position. 198,916 triangles take 95 ms and 42 MB, here 41 ms and 26
+//!   MB. `mesh-loader` 0.1.13 comes nearest (48 ms, 51 MB, line and column), but fills the notch of a concave quad and
+//!   does not report a missing MTL file.
 //! - **PLY**: `ply-rs-bw` 4.0.1 fails at an element without properties that claims 4,000,000,000 rows: it creates that
-//! many values until memory is exhausted. 868,624 triangles take 192 ms and 102 MB as text, 64 ms and 86 MB in binary;
-//! here 78 ms and 49 MB, 33 ms and 34 MB. `serde-ply` 0.2.2 is as fast, but its errors have no position.
+//!   many values until memory is exhausted. 868,624 triangles take 192 ms and 102 MB as text, 64 ms and 86 MB in
+//!   binary; here 78 ms and 49 MB, 33 ms and 34 MB. `serde-ply` 0.2.2 is as fast, but its errors have no position.
 //! - **STL**: `stl_io` 0.11.0 and `nom_stl` 0.2.2 read the first solid of a text file with two and silently drop the
-//! second; of a binary file whose count is too low by one, they drop the last triangle. A million triangles take 171
-//! ms, here 50. `mesh-loader` 0.1.13 is faster on text (400,000 triangles: 112 ms, here 153), but refuses `SOLID` in
-//! capitals.
+//!   second; of a binary file whose count is too low by one, they drop the last triangle. A million triangles take 171
+//!   ms, here 50. `mesh-loader` 0.1.13 is faster on text (400,000 triangles: 112 ms, here 153), but refuses `SOLID` in
+//!   capitals.
 
 #[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only readers add values"))]
 mod attribute;

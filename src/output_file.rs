@@ -6,15 +6,15 @@
 //!
 //! - **Symbolic links** are followed, even if their target does not exist yet: the link stays a link.
 //! - **A new file** gets the mode that the umask gives; **an existing one** keeps its owner and mode, and is refused if
-//! this process may not write it. Access control lists and extended attributes are not copied.
+//!   this process may not write it. Access control lists and extended attributes are not copied.
 //! - **Devices, pipes and descriptors** (`/dev/stdout`) cannot be replaced: [`open_stream`] opens them.
 //! - **In place**, over its old bytes, an existing file is written only if its identity cannot be kept otherwise: it
-//! has another hard link (which a new file would break), its owner cannot be restored, its folder does not allow new
-//! files, or it is a mount point. The contents are finished first, and a lock keeps other writers out. If writing
-//! fails, as on a full disk, the old bytes are written back; but a crash of the machine or SIGKILL within these
-//! milliseconds leaves a mixture.
+//!   has another hard link (which a new file would break), its owner cannot be restored, its folder does not allow new
+//!   files, or it is a mount point. The contents are finished first, and a lock keeps other writers out. If writing
+//!   fails, as on a full disk, the old bytes are written back; but a crash of the machine or SIGKILL within these
+//!   milliseconds leaves a mixture.
 //! - **Leftovers**: a killed process leaves its temporary file. [`OutputFile::remove_stale`] removes those with exactly
-//! our pattern of name that belong to our user and are not locked by a living writer.
+//!   our pattern of name that belong to our user and are not locked by a living writer.
 //!
 //! The rename itself is not synced: after a power failure there is the old file or the new one.
 //!

@@ -9,12 +9,12 @@
 //! # Crates that were tried
 //!
 //! - `ron2` 0.3 keeps names and positions, but a text of 2 KB (`a(a(a(...`) passes its depth limit and overflows the
-//! stack, a map of bare names (`{a,a,a,...`) takes quadratic time (14.6 s for 320 KB), and 10 MB of spheres take 1.0 s
-//! and 1.4 GB instead of .15 s and 126 MB here. The tests use it as a judge (`tests/files/scene_syntax.rs`): both
-//! readers must give the same trees.
+//!   stack, a map of bare names (`{a,a,a,...`) takes quadratic time (14.6 s for 320 KB), and 10 MB of spheres take 1.0
+//!   s and 1.4 GB instead of .15 s and 126 MB here. The tests use it as a judge (`tests/files/scene_syntax.rs`): both
+//!   readers must give the same trees.
 //! - `ron` 0.12.3 with serde fails at `background: Gradient(...)`, where a colour is allowed as well: for a type that
-//! is chosen by its contents the name `Gradient` is not passed on. 6 of the 12 shipped scenes are refused. It also
-//! stops at the first fault, where 31 of the 79 faulty scenes of the tests have several.
+//!   is chosen by its contents the name `Gradient` is not passed on. 6 of the 12 shipped scenes are refused. It also
+//!   stops at the first fault, where 31 of the 79 faulty scenes of the tests have several.
 
 mod fault;
 #[cfg(feature = "ron")]
