@@ -11,7 +11,7 @@ use termtrace::internals::mesh_file::MeshFile;
 use termtrace::internals::ray::{EightRays, Ray};
 use termtrace::internals::shade::{self, EightPoints};
 use termtrace::{
-    Camera, Falloff, Light, LinearRgb, Material, Mesh, Object, Plane, PointLight, Pose, Scene as Traced, Shape, Sphere,
+    Camera, Light, LinearRgb, Material, Mesh, Object, Plane, PointLight, Pose, Scene as Traced, Shape, Sphere,
     ViewRectangle,
 };
 
@@ -39,10 +39,15 @@ thread_local! {
 impl Termtrace {
     pub fn new(s: &Scene) -> Self {
         let grey = || Material::diffuse(LinearRgb::grey(0.5)).expect("a reflectance");
-        let spheres = s.spheres.iter().map(|&[x, y, z, r]| Shape::from(Sphere::new(Vec3::new(x, y, z), r).expect("a sphere")));
-        let planes = s.plane.iter().map(|plane| Shape::from(Plane::new(vec3(plane.n * plane.h), vec3(plane.n)).expect("a plane")));
+        let spheres =
+            s.spheres.iter().map(|&[x, y, z, r]| Shape::from(Sphere::new(Vec3::new(x, y, z), r).expect("a sphere")));
+        let planes = s
+            .plane
+            .iter()
+            .map(|plane| Shape::from(Plane::new(vec3(plane.n * plane.h), vec3(plane.n)).expect("a plane")));
         let positions = s.verts.iter().copied().map(Vec3::from_array).collect();
-        let mesh = MeshFile::new(positions, s.tris.clone()).map(|file| Shape::from(Mesh::new(file).expect("a mesh nearby")));
+        let mesh =
+            MeshFile::new(positions, s.tris.clone()).map(|file| Shape::from(Mesh::new(file).expect("a mesh nearby")));
         let shapes = spheres.chain(planes).chain(mesh);
         let objects: Vec<_> = shapes.map(|shape| Object::new(shape, grey())).collect();
         let pose = Pose { eye: vec3(s.eye), target: vec3(s.target), up: vec3(s.up) };
@@ -51,9 +56,7 @@ impl Termtrace {
         let start = Instant::now();
         let scene = Traced::new(camera, objects);
         let build_s = start.elapsed().as_secs_f64();
-        let light: Light =
-            PointLight::new(vec3(s.light), LinearRgb::grey(1.0)).expect("a light")
-                .into();
+        let light: Light = PointLight::new(vec3(s.light), LinearRgb::grey(1.0)).expect("a light").into();
         Self { kernel: Kernel::Auto, scene: Arc::new(scene), light, build_s }
     }
 
