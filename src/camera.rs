@@ -8,6 +8,16 @@ use crate::ray::Ray;
 use glam::{DVec3, Vec2, Vec3};
 use std::fmt;
 
+mod motion;
+#[cfg(feature = "ratatui")]
+mod on_screen;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use motion::{FILLED, framing_distance};
+#[cfg(feature = "ratatui")]
+pub use on_screen::Grip;
+
 /// A pose and intrinsic parameters that give a picture: the eye is not at the target, up is not along the view.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Camera {

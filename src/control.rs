@@ -10,9 +10,11 @@ mod moves;
 mod motion;
 mod pointer;
 
+// Drags are said in the words of what they move.
+pub use crate::camera::Grip;
 pub use bindings::{Binding, Bindings, Mode};
 pub use command::{Command, Direction, Side, Toward};
 pub use key::Key;
 pub use motion::{COAST, GLIDE, Motion, Pace};
-pub use moves::{dragged, framing, on_turntable, place_of, point_dragged, point_wheeled, speed, wheeled, zoomed};
-pub use pointer::{Gesture, Grip, Pointer};
+pub use moves::{dragged, on_turntable, speed, wheeled};
+pub use pointer::{Gesture, Pointer};

@@ -1,7 +1,6 @@
 //! How held keys move the eye.
 
 use super::key::unshifted;
-use super::moves::{around, moved, nearer, turned};
 use super::{Command, Direction, Toward};
 use crate::camera::Camera;
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifiers, ModifierKeyCode};
@@ -126,10 +125,12 @@ impl Motion {
         let seconds = if self.fast { FASTER * seconds } else { seconds };
         // Half of the turn before the way and half after it: a curve is nearly the same in one step as in many.
         let half = 0.5 * TURN_SPEED * self.pace.turning * seconds;
-        let turn = |camera| around(&turned(&camera, half * sum.turn), half * sum.around);
+        let (view, around) = (half * sum.turn, half * sum.around);
+        let turn = |camera: Camera| camera.turned(-view.x, view.y).orbited(-around.x, around.y);
         let seconds = self.pace.moving * seconds;
-        let camera = moved(&turn(*camera), speed * seconds * sum.way);
-        turn(nearer(&camera, libm::expf(-NEARER_SPEED * seconds * sum.nearer), speed))
+        let way = speed * seconds * sum.way;
+        let camera = turn(*camera).moved(way.x, way.y, -way.z);
+        turn(camera.nearer_within(libm::expf(-NEARER_SPEED * seconds * sum.nearer), speed))
     }
 
     /// Opposite keys cancel; two keys for the same are one.

@@ -1,5 +1,6 @@
 //! What the mouse does: events at times -> gestures, pure.
 
+use crate::camera::Grip;
 use crossterm::event::{KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use glam::Vec2;
 use std::time::Duration;
@@ -34,15 +35,6 @@ pub enum Gesture {
         /// Less than zero: towards the person.
         notches: f32,
     },
-}
-
-/// With which button something is held.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Grip {
-    /// With the left one.
-    Turn,
-    /// With the right or the middle one, or with the left one and Shift.
-    Pan,
 }
 
 /// Two clicks are one double click when they are no further apart in time,

@@ -2,13 +2,13 @@
 
 use super::{Background, Checked, Draft, Object, Scene};
 use crate::bounds::Bounds;
-use crate::camera::{Camera, Pose, ViewRectangle};
+use crate::camera::{Camera, FILLED, Pose, ViewRectangle, framing_distance};
 use crate::color::{LinearRgb, Srgb8};
 use crate::light::{Falloff, Light, PointLight};
 use crate::material::Material;
 use crate::mesh_file::MeshFile;
 use crate::shape::{Mesh, Plane};
-use glam::{BVec3, Vec3};
+use glam::{Vec2, Vec3};
 
 /// Direction of the eye from the middle of the mesh: slightly to the right, and above.
 const TOWARDS_EYE: Vec3 = Vec3::new(0.45, 0.4, 1.0);
@@ -17,7 +17,7 @@ const TOWARDS_EYE: Vec3 = Vec3::new(0.45, 0.4, 1.0);
 const FIELD_OF_VIEW: f32 = 0.698_131_7;
 
 /// Tangent of half the field of view, less a margin.
-const WITHIN: f32 = 0.95 * 0.363_970_23;
+const WITHIN: f32 = FILLED * 0.363_970_23;
 
 /// Least aspect ratio of a picture that shows the whole mesh.
 const ASPECT_RATIO: f32 = 4.0 / 3.0;
@@ -66,12 +66,8 @@ fn camera(bounds: &Bounds, middle: Vec3) -> Option<Camera> {
     let w = TOWARDS_EYE.normalize();
     let u = Vec3::Y.cross(w).normalize();
     let v = w.cross(u);
-    let distance = (0..8).map(|corner| {
-        let is_max = |axis: u32| corner >> axis & 1 == 1;
-        let corner = Vec3::select(BVec3::new(is_max(0), is_max(1), is_max(2)), bounds.max, bounds.min) - middle;
-        corner.dot(w) + (corner.dot(v).abs() / WITHIN).max(corner.dot(u).abs() / (WITHIN * ASPECT_RATIO))
-    });
-    let eye = middle + w * distance.fold(0.0, f32::max);
+    let half = Vec2::new(WITHIN * ASPECT_RATIO, WITHIN);
+    let eye = middle + w * framing_distance(bounds, [u, v, w], half, Vec2::ZERO);
     let pose = Pose { eye, target: middle, up: Vec3::Y };
     ViewRectangle::from_vertical_fov(FIELD_OF_VIEW).and_then(|rectangle| Camera::new(pose, rectangle)).ok()
 }

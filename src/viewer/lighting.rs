@@ -4,7 +4,7 @@ use super::Viewer;
 use super::lights::Lights;
 use super::mark::LightMark;
 use crate::camera::Camera;
-use crate::control::{self, Command, Toward};
+use crate::control::{Command, Toward};
 use crate::light::Light;
 use glam::{Vec2, Vec3};
 
@@ -27,7 +27,7 @@ impl Viewer {
             self.say("this scene has no light that could be moved");
             return;
         };
-        let is_seen = |camera: Camera| at.is_some_and(|at| control::place_of(&camera, at, 1.0).is_some());
+        let is_seen = |camera: Camera| at.is_some_and(|at| camera.place_of(at, 1.0).is_some());
         let behind = if camera.is_some_and(is_seen) { "" } else { ", behind the eye" };
         self.mark_light();
         let hint = self.hint(Command::Help, "shows its keys");
@@ -69,12 +69,12 @@ impl Viewer {
     /// The light goes so far to the right and down, in parts of the picture's width and height.
     pub(super) fn drag_light(&mut self, by: Vec2) {
         let aspect_ratio = self.part().aspect_ratio();
-        self.move_light(|camera, from| control::point_dragged(camera, from, by, aspect_ratio));
+        self.move_light(|camera, from| camera.point_dragged(from, by, aspect_ratio));
     }
 
     /// The light goes away from the eye.
     pub(super) fn wheel_light(&mut self, notches: f32) {
-        self.move_light(|camera, from| control::point_wheeled(camera, from, notches));
+        self.move_light(|camera, from| camera.point_wheeled(from, notches));
     }
 
     /// The light goes back to where the scene has it.
@@ -99,7 +99,7 @@ impl Viewer {
 /// The light in front of the eye that is nearest to the pointer on the screen, or any if there is none in front of it.
 fn nearest(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
     let away = |position: Vec3| {
-        let place = control::place_of(camera, position, aspect_ratio);
+        let place = camera.place_of(position, aspect_ratio);
         place.map_or(f32::INFINITY, |place| ((place - pointer) * Vec2::new(aspect_ratio, 1.0)).length())
     };
     let lights = lights.iter().enumerate().filter_map(|(light, of)| Some((light, away(of.position()?))));

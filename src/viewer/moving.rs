@@ -1,7 +1,7 @@
 //! How the eye moves, beside what held keys do.
 
 use super::Viewer;
-use crate::control::{self, Command};
+use crate::control::Command;
 use crate::framebuffer::Resolution;
 use crate::hit::closest_hit;
 use crate::ray::Ray;
@@ -39,7 +39,7 @@ impl Viewer {
             return;
         };
         let aspect_ratio = self.part().aspect_ratio();
-        self.eye.change(self.now, |camera, _| control::framing(camera, &bounds, aspect_ratio));
+        self.eye.change(self.now, |camera, _| camera.framing(&bounds, aspect_ratio));
     }
 
     /// The picture's size; of two maps side by side, each is a picture of its own.
@@ -50,7 +50,7 @@ impl Viewer {
 
     /// The field of view becomes narrower or wider, and is told.
     pub(super) fn zoom(&mut self, factor: f32) {
-        self.eye.change(self.now, |camera, _| control::zoomed(camera, factor));
+        self.eye.change(self.now, |camera, _| camera.zoomed(factor));
         if let Some(camera) = self.eye.camera() {
             let degrees = camera.rectangle().vertical_fov().to_degrees();
             self.say(format!("field of view: {degrees:.1} degrees"));

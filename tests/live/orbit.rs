@@ -2,7 +2,6 @@
 
 use crate::pty::{SOON, Session, Size, Start};
 use glam::Vec3;
-use termtrace::internals::control::framing;
 use termtrace::{Camera, Pose, Scene};
 
 pub(crate) const BALL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
@@ -83,7 +82,7 @@ fn f_shows_everything() {
     let bounds = scene.bounds().expect("there is a ball");
     let found = after(BALL, b"wwwf");
     // 40x24 square pixels.
-    let wanted = framing(scene.camera(), &bounds, 40.0 / 24.0).pose();
+    let wanted = scene.camera().framing(&bounds, 40.0 / 24.0).pose();
     assert!(found.pose().eye.abs_diff_eq(wanted.eye, 1e-3) && found.pose().target.abs_diff_eq(wanted.target, 1e-3));
 }
 

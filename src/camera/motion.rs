@@ -1,0 +1,184 @@
+//! Motions of the camera, of any size. None of them turns the picture upside down, and a motion that would lead to no
+//! picture, such as an eye beyond ±1e9, leaves the camera where it is.
+
+use super::{Camera, Pose};
+use crate::bounds::Bounds;
+use glam::{BVec3, Vec2, Vec3};
+
+/// The least angle, in radians, between the view and straight up or straight down, where no direction would be vertical.
+const POLE: f32 = 0.02;
+
+/// The least and the greatest distance from the eye to the target, as multiples of a scene's size: there is always something
+/// between them, and never too much for f32.
+pub(super) const NEAREST: f32 = 1e-3;
+pub(super) const FARTHEST: f32 = 1e4;
+
+/// The share of the picture's width or height that a framed box fills.
+pub(crate) const FILLED: f32 = 0.95;
+
+/// The range of the vertical field of view, in radians: 1 to 150 degrees.
+const FIELD_OF_VIEW: [f32; 2] = [0.017_453_3, 2.617_994];
+
+impl Camera {
+    /// Returns the camera after the eye has gone around the target, to the right and upwards, by angles in radians.
+    ///
+    /// The eye keeps its distance from the target, which stays in the middle of the picture. It stops 0.02 radians before
+    /// it would be straight above or below the target. An angle that is not finite changes nothing.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use std::f32::consts::FRAC_PI_2;
+    /// use termtrace::Scene;
+    ///
+    /// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")?;
+    /// let from_the_right = scene.camera().orbited(FRAC_PI_2, 0.0);
+    /// assert!(from_the_right.pose().eye.abs_diff_eq(Vec3::new(5.0, 0.0, 0.0), 1e-5));
+    /// # Ok::<(), termtrace::SceneError>(())
+    /// ```
+    #[must_use]
+    pub fn orbited(&self, right: f32, up: f32) -> Self {
+        if is_no_turn(right, up) {
+            return *self;
+        }
+        let pose = self.pose;
+        // An eye that goes to the right has to look to the left.
+        self.at_pose(Pose { eye: pose.target - self.turned_view(right, -up), ..pose })
+    }
+
+    /// Returns the camera after the view has turned to the right and upwards, by angles in radians. The eye stays where it
+    /// is, and the target goes around it.
+    ///
+    /// The view stops 0.02 radians before it would be straight up or down. An angle that is not finite changes nothing.
+    #[must_use]
+    pub fn turned(&self, right: f32, up: f32) -> Self {
+        if is_no_turn(right, up) {
+            return *self;
+        }
+        self.at_pose(Pose { target: self.pose.eye + self.turned_view(-right, up), ..self.pose })
+    }
+
+    /// Returns the camera after eye and target have moved to the right, along the camera's up vector, and forward, by
+    /// distances in world units.
+    #[must_use]
+    pub fn moved(&self, right: f32, up: f32, forward: f32) -> Self {
+        if (right, up, forward) == (0.0, 0.0, 0.0) {
+            return *self;
+        }
+        let by = right * self.basis.u + up * self.pose.up.normalize_or_zero() + -forward * self.basis.w;
+        self.shifted(by)
+    }
+
+    /// Returns the camera with the distance from the eye to the target multiplied by `factor`: nearer for less than 1, farther
+    /// away for more. The target and the direction of view stay.
+    ///
+    /// A single call changes the distance by a factor from 0.001 to 10,000, and the distance stays above 1e-15.
+    #[must_use]
+    pub fn nearer(&self, factor: f32) -> Self {
+        // The square of a smaller or larger distance would be beyond f32.
+        self.nearer_within(factor, self.target_distance().clamp(1e-12, 1e12))
+    }
+
+    /// Returns the camera with a view rectangle whose sides are multiplied by `factor`: a narrower field of view for less than
+    /// 1, a wider one for more. The vertical field of view stays between 1 and 150 degrees.
+    #[must_use]
+    pub fn zoomed(&self, factor: f32) -> Self {
+        let rectangle = self.rectangle;
+        let [least, most] = FIELD_OF_VIEW.map(|angle| 2.0 * libm::tanf(0.5 * angle));
+        let height = rectangle.height();
+        let wanted = (factor * height).clamp(least.min(height), most.max(height));
+        rectangle.scaled(wanted / height).map_or(*self, |rectangle| self.with_rectangle(rectangle))
+    }
+
+    /// Returns the camera that looks in the same direction from where the box fills 95 % of a picture of that aspect ratio
+    /// (width / height). The target becomes the box's centre. A box without a size changes nothing.
+    #[must_use]
+    pub fn framing(&self, bounds: &Bounds, aspect_ratio: f32) -> Self {
+        let (width, height, centre) = self.rectangle.fitted_to(aspect_ratio);
+        let half = 0.5 * FILLED * Vec2::new(width, height);
+        let [u, v, w] = [self.basis.u, self.basis.v, self.basis.w];
+        let distance = framing_distance(bounds, [u, v, w], half, centre);
+        if distance <= 0.0 {
+            return *self;
+        }
+        // Where the picture's centre is not straight ahead, the box is where that is.
+        let target = centre_of(bounds) - distance * (centre.x * u + centre.y * v);
+        self.at_pose(Pose { eye: target + distance * w, target, ..self.pose })
+    }
+
+    /// [`nearer`](Self::nearer), with a distance that stays within [`NEAREST`] and [`FARTHEST`] times the size of a scene.
+    /// Beyond these limits it can only go back.
+    pub(crate) fn nearer_within(&self, factor: f32, size: f32) -> Self {
+        let target = self.pose.target;
+        let distance = self.target_distance();
+        // The spacing of f32 grows with the numbers.
+        let nearest = (NEAREST * size).max(1e-5 * target.abs().max_element()).min(distance);
+        let wanted = (factor * distance).clamp(nearest, (FARTHEST * size).max(distance));
+        if factor == 1.0 || wanted == distance {
+            return *self;
+        }
+        self.at_pose(Pose { eye: target + wanted * self.basis.w, ..self.pose })
+    }
+
+    /// Returns the distance from the eye to the target, in world units.
+    pub(crate) fn target_distance(&self) -> f32 {
+        self.pose.eye.distance(self.pose.target)
+    }
+
+    /// Moves eye and target by the same vector.
+    pub(super) fn shifted(&self, by: Vec3) -> Self {
+        let Pose { eye, target, up } = self.pose;
+        self.at_pose(Pose { eye: eye + by, target: target + by, up })
+    }
+
+    /// The camera at that pose, or where it is if that gives no picture.
+    pub(super) fn at_pose(&self, pose: Pose) -> Self {
+        self.with_pose(pose).unwrap_or(*self)
+    }
+
+    /// The vector from the eye to the target after a turn to the left about up, and upwards about u.
+    fn turned_view(&self, left: f32, upwards: f32) -> Vec3 {
+        let Pose { eye, target, up } = self.pose;
+        let upwards = self.up_to_the_pole(upwards);
+        let axis_up = up.normalize_or_zero();
+        let u = rotated(self.basis.u, axis_up, left);
+        rotated(rotated(target - eye, axis_up, left), u, upwards)
+    }
+
+    /// As much of an upward turn as the pole leaves. A view that begins beyond the limit may turn away from the pole only.
+    fn up_to_the_pole(&self, angle: f32) -> f32 {
+        let limit = std::f32::consts::FRAC_PI_2 - POLE;
+        let sine = -self.basis.w.dot(self.pose.up.normalize_or_zero());
+        let elevation = libm::asinf(sine.clamp(-1.0, 1.0));
+        if angle > 0.0 { angle.min((limit - elevation).max(0.0)) } else { angle.max((-limit - elevation).min(0.0)) }
+    }
+}
+
+/// Whether a turn by these angles changes nothing.
+fn is_no_turn(right: f32, up: f32) -> bool {
+    (right, up) == (0.0, 0.0) || !(right.is_finite() && up.is_finite())
+}
+
+/// Returns how far from a box's centre, along w of a basis, the eye has to be for all corners to lie within `half` a width
+/// and height of `middle`, on the plane at distance 1.
+pub(crate) fn framing_distance(bounds: &Bounds, [u, v, w]: [Vec3; 3], half: Vec2, middle: Vec2) -> f32 {
+    let centre = centre_of(bounds);
+    let distance = (0..8).map(|corner| {
+        let is_max = |axis: u32| corner >> axis & 1 == 1;
+        let corner = Vec3::select(BVec3::new(is_max(0), is_max(1), is_max(2)), bounds.max, bounds.min) - centre;
+        let nearer = corner.dot(w);
+        let aside = Vec2::new(corner.dot(u), corner.dot(v)) + nearer * middle;
+        nearer + (aside.abs() / half).max_element()
+    });
+    distance.fold(0.0, f32::max)
+}
+
+fn centre_of(bounds: &Bounds) -> Vec3 {
+    bounds.min + 0.5 * bounds.extent()
+}
+
+/// Rodrigues' rotation of `v` about a unit axis, to the left when seen against it; the length is kept.
+fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
+    let (sin, cos) = libm::sincosf(angle);
+    let turned = v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
+    turned * (v.length() / turned.length())
+}
