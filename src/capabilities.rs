@@ -53,14 +53,20 @@ pub enum ColorChoice {
     Exactly(Colors),
 }
 
-/// Returns the cell aspect from a window's size in cells and in pixels, if it is plausible.
+/// Returns a cell's height over its width, from a window's size in cells and in pixels. `None` where that is not between
+/// 0.25 and 8: many terminals leave the pixels at 0.
 pub fn cell_aspect(columns: u16, rows: u16, width: u16, height: u16) -> Option<f32> {
     // Cells have whole pixels; a window may be a few pixels larger than its cells.
     let cell_width = width.checked_div(columns)?;
     let cell_height = height.checked_div(rows)?;
     let aspect = f32::from(cell_height) / f32::from(cell_width);
     // Some terminals fill these fields with garbage.
-    (0.25..=8.0).contains(&aspect).then_some(aspect)
+    is_cell_aspect(aspect).then_some(aspect)
+}
+
+/// Returns whether a cell may have that height over its width.
+pub(crate) fn is_cell_aspect(aspect: f32) -> bool {
+    (0.25..=8.0).contains(&aspect)
 }
 
 /// Returns whether the two half blocks meet in the same line, from a window's height in cells and in pixels: if a cell

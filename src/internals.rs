@@ -53,6 +53,7 @@ modules! {
 #[cfg(feature = "ratatui")]
 modules! {
     overlay
+    widget
 }
 
 #[cfg(feature = "live")]

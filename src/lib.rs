@@ -52,7 +52,8 @@
 //!   [`Map`]
 //! - Pictures in words: [`describe()`], [`explain()`]
 //! - Cells and text: [`Grid`], [`CellMode`], [`Painter`], [`text_frame`], [`frame_grid`], [`export`]
-//! - ratatui: `EncoderBackend` (feature `backend`) and its [`Encoder`], [`lay_over`]
+//! - ratatui: [`SceneView`] and its [`SceneState`], a scene as a widget; `EncoderBackend` (feature `backend`) and its
+//!   [`Encoder`]; [`lay_over`]
 //! - Films: [`Cast`], [`Gif`]
 //! - The live view: [`live`]
 //!
@@ -130,7 +131,8 @@
 //! - `cell`: picture -> grid, by half blocks or characters, in the colours that there are
 //! - `capabilities`: what a terminal's cells can be made of
 //! - `explain`: one pixel, and all that its light came from
-//! - `overlay`: any ratatui buffer laid over the grid
+//! - `overlay`: any ratatui buffer laid over the grid, and the grid as such a buffer
+//! - `widget`: a scene in a ratatui program
 //! - `encode`: wanted grid, shown grid, pen -> bytes
 //! - `export`: grid or picture -> text, ANSI, SVG, HTML, PNG
 //! - `record`: frames over time -> asciicast, GIF
@@ -272,6 +274,8 @@ mod capabilities;
 mod explain;
 #[cfg(feature = "ratatui")]
 mod overlay;
+#[cfg(feature = "ratatui")]
+mod widget;
 mod encode;
 pub mod export;
 #[cfg(any(feature = "cast", feature = "gif"))]
@@ -338,11 +342,17 @@ pub use export::{frame_grid, text_frame};
 pub use grid::{Cell, Glyph, Grid, Ink, Size};
 
 // ratatui.
+#[cfg(feature = "ratatui")]
+pub use camera::Grip;
+#[cfg(feature = "ratatui")]
+pub use capabilities::cell_aspect as cell_aspect_of;
 #[cfg(feature = "backend")]
 pub use encode::EncoderBackend;
 pub use encode::{Encoder, Order, Quality};
 #[cfg(feature = "ratatui")]
 pub use overlay::lay_over;
+#[cfg(feature = "ratatui")]
+pub use widget::{SceneState, SceneView};
 
 // Films.
 #[cfg(feature = "cast")]

@@ -1,4 +1,4 @@
-//! Text and panels over the picture: any ratatui buffer laid over the grid.
+//! Text and panels over the picture: any ratatui buffer laid over the grid; and the grid as such a buffer.
 
 use crate::color::Srgb8;
 use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
@@ -126,5 +126,106 @@ fn ink_from_ratatui(color: Color) -> Ink {
         Color::LightMagenta => Ink::Indexed(13),
         Color::LightCyan => Ink::Indexed(14),
         Color::White => Ink::Indexed(15),
+    }
+}
+
+/// The cells of the grid, in a buffer that begins at (0, 0). What stands there in a program that only draws some of its
+/// cells stays: [`Glyph::Foreign`] is skipped.
+///
+/// ```
+/// use ratatui::buffer::Buffer;
+/// use termtrace::{CellMode, Scene, Size, frame_grid};
+///
+/// let scene = Scene::load("scenes/three_spheres.ron".as_ref())?;
+/// let buffer = Buffer::from(&frame_grid(&scene, CellMode::HALF_BLOCK, Size::new(80, 24), 2.0));
+/// assert_eq!((buffer.area.width, buffer.area.height), (80, 24));
+/// # Ok::<(), termtrace::LoadError>(())
+/// ```
+impl From<&Grid> for Buffer {
+    fn from(grid: &Grid) -> Self {
+        let content = grid.cells().iter().map(ratatui_from_cell).collect();
+        Self { area: Rect::new(0, 0, grid.size().columns, grid.size().rows), content }
+    }
+}
+
+fn ratatui_from_cell(cell: &Cell) -> ratatui_core::buffer::Cell {
+    let mut to = ratatui_core::buffer::Cell::EMPTY;
+    match &cell.glyph {
+        Glyph::Char(' ') => {}
+        Glyph::Char(character) => {
+            to.set_char(*character);
+        }
+        Glyph::Cluster(text) => {
+            to.set_symbol(text);
+        }
+        // As ratatui leaves what a wide character covers.
+        Glyph::Covered => return to,
+        Glyph::Foreign => {
+            to.set_diff_option(CellDiffOption::Skip);
+        }
+    }
+    (to.fg, to.bg) = (cell.fg.into(), cell.bg.into());
+    set_underline(&mut to, cell.underline);
+    to.modifier = modifier_from_attributes(cell.attributes);
+    to
+}
+
+/// Gives the line below its colour, where ratatui's cells have one.
+#[cfg(feature = "underline-color")]
+fn set_underline(to: &mut ratatui_core::buffer::Cell, underline: Ink) {
+    to.underline_color = underline.into();
+}
+
+#[cfg(not(feature = "underline-color"))]
+fn set_underline(_: &mut ratatui_core::buffer::Cell, _: Ink) {}
+
+fn modifier_from_attributes(attributes: Attributes) -> Modifier {
+    if attributes.is_empty() {
+        return Modifier::empty();
+    }
+    let those = ATTRIBUTES.into_iter().filter(|&(_, of_grid)| attributes.contains(of_grid));
+    those.map(|(one, _)| one).collect()
+}
+
+/// The same colour in ratatui's words.
+impl From<Ink> for Color {
+    fn from(ink: Ink) -> Self {
+        match ink {
+            Ink::Default => Self::Reset,
+            Ink::Indexed(index) => Self::Indexed(index),
+            Ink::Rgb(Srgb8 { r, g, b }) => Self::Rgb(r, g, b),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Size;
+
+    /// Wide characters, clusters, modifiers and what is not ours: laid over another grid, the buffer gives the same again.
+    #[test]
+    fn a_grid_is_the_same_after_a_way_through_a_buffer() {
+        let mut grid = Grid::new(Size::new(6, 2));
+        let cell = Cell::new('a', Ink::Rgb(Srgb8::new(1, 2, 3)), Ink::Indexed(200));
+        let underline = if cfg!(feature = "underline-color") { Ink::Indexed(3) } else { Ink::Default };
+        grid.put(0, 0, &Cell { attributes: Attributes::BOLD, underline, ..cell.clone() }, 1);
+        grid.put(1, 0, &Cell { glyph: Glyph::Char('\u{6f22}'), ..cell.clone() }, 2);
+        grid.put(3, 0, &Cell { glyph: Glyph::Cluster("e\u{301}".into()), ..cell.clone() }, 1);
+        grid.put(4, 1, &Cell { glyph: Glyph::Cluster("\u{1f1e9}\u{1f1ea}".into()), ..cell }, 2);
+        *grid.cell_mut(5, 0) = Cell::FOREIGN;
+        let buffer = Buffer::from(&grid);
+        assert_eq!((buffer.area, buffer[(1, 0)].symbol()), (Rect::new(0, 0, 6, 2), "\u{6f22}"));
+        let mut again = Grid::foreign(grid.size());
+        lay_over(&mut again, &buffer);
+        assert_eq!(again, grid);
+    }
+
+    #[test]
+    fn an_ink_is_the_same_after_a_way_through_a_colour() {
+        let all = [Ink::Default, Ink::Rgb(Srgb8::new(9, 8, 7))].into_iter().chain((0..=255).map(Ink::Indexed));
+        for ink in all {
+            assert_eq!(ink_from_ratatui(ink.into()), ink);
+        }
     }
 }

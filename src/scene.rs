@@ -261,7 +261,7 @@ impl Scene {
     }
 
     /// Returns whether both are clones of one scene, unchanged since.
-    #[cfg(feature = "live")]
+    #[cfg(feature = "ratatui")]
     pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.checked, &other.checked) && Arc::ptr_eq(&self.accelerator, &other.accelerator)
     }

@@ -1,0 +1,116 @@
+//! A picture of a pane: all that it depends on, and the cells that come of it.
+
+use crate::camera::Camera;
+use crate::cell::{self, CellMode, Painter};
+use crate::framebuffer::{Resolution, ResolutionError};
+use crate::grid::Size;
+use crate::maps::{self, Map};
+use crate::progress::{Cancellation, Cancelled};
+use crate::render::{Crew, Refining, Sampling};
+use crate::scene::Scene;
+use crate::tone::{Picture, tone};
+use ratatui_core::buffer::Buffer;
+use std::num::NonZeroU32;
+
+/// How a scene is shown, whatever the scene is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Options {
+    pub(super) map: Map,
+    pub(super) cells: CellMode,
+    pub(super) cell_aspect: f32,
+    pub(super) sampling: Sampling,
+}
+
+/// All that a picture depends on.
+#[derive(Clone, Debug)]
+pub(super) struct Shot {
+    pub(super) scene: Scene,
+    pub(super) camera: Camera,
+    pub(super) size: Size,
+    /// The picture's size in pixels: that of its cells.
+    pub(super) resolution: Resolution,
+    pub(super) options: Options,
+}
+
+impl Shot {
+    /// Returns the shot of a pane of that size.
+    ///
+    /// # Errors
+    /// If the pane has more pixels than a picture may have.
+    pub(super) fn new(scene: &Scene, camera: &Camera, size: Size, options: Options) -> Result<Self, ResolutionError> {
+        let resolution = cell::resolution(options.cells, size, options.cell_aspect)?;
+        Ok(Self { scene: scene.clone(), camera: *camera, size, resolution, options })
+    }
+
+    /// Returns whether both give the same picture.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let of = |shot: &Self| (shot.camera, shot.size, shot.options);
+        self.scene.is_copy_of(&other.scene) && of(self) == of(other)
+    }
+
+    /// Returns the number of samples to which the picture is refined after a first one with a single sample a pixel.
+    fn refined_to(&self) -> Option<NonZeroU32> {
+        match self.options.sampling {
+            Sampling::UpTo(samples) if samples > NonZeroU32::MIN && self.options.map.refines() => Some(samples),
+            _ => None,
+        }
+    }
+}
+
+/// The cells of a shot.
+#[derive(Debug)]
+pub(super) struct Shown {
+    pub(super) shot: Shot,
+    /// From (0, 0) on.
+    pub(super) cells: Buffer,
+    /// Whether the picture has all samples that its shot asks for.
+    pub(super) is_final: bool,
+}
+
+/// The maker of pictures, with what it keeps from one to the next.
+#[derive(Default)]
+pub(super) struct Tracer {
+    painter: Option<Painter>,
+}
+
+impl Tracer {
+    /// Traces a shot.
+    pub(super) fn trace(&mut self, shot: Shot) -> Shown {
+        let Options { map, sampling, .. } = shot.options;
+        let picture = maps::picture(map, &shot.scene, &shot.camera, shot.resolution, sampling);
+        self.shown(shot, &picture, true)
+    }
+
+    /// Traces a shot and delivers it; before that a picture with one sample a pixel, if the shot asks for more where there are
+    /// edges. All samples are those of [`trace`](Self::trace).
+    ///
+    /// # Errors
+    /// [`Cancelled`], if the token is. `deliver` can cancel it.
+    pub(super) fn trace_in_steps(
+        &mut self,
+        shot: Shot,
+        token: &Cancellation,
+        mut deliver: impl FnMut(Shown),
+    ) -> Result<(), Cancelled> {
+        let Shot { scene, camera, options, .. } = &shot;
+        let Some(samples) = shot.refined_to() else {
+            let Options { map, sampling, .. } = *options;
+            let seen = maps::seen(map, Crew::Cancellable(token), scene, camera, shot.resolution, sampling)?;
+            deliver(self.shown(shot, &seen.picture, true));
+            return Ok(());
+        };
+        let mut picture = Refining::new(camera, shot.resolution);
+        for (samples, is_final) in [(NonZeroU32::MIN, false), (samples, true)] {
+            picture.refine_or_cancel(token, scene, samples)?;
+            deliver(self.shown(shot.clone(), &tone(&picture.framebuffer(), scene), is_final));
+        }
+        Ok(())
+    }
+
+    fn shown(&mut self, shot: Shot, picture: &Picture, is_final: bool) -> Shown {
+        let mode = shot.options.cells;
+        let painter = self.painter.take().filter(|painter| painter.mode() == mode);
+        let grid = self.painter.insert(painter.unwrap_or_else(|| Painter::new(mode))).grid(picture);
+        Shown { shot, cells: Buffer::from(&grid), is_final }
+    }
+}

@@ -1,0 +1,382 @@
+//! Panes drawn into buffers, and a worker that is held wherever a test wants it.
+
+use super::state::SceneState;
+use super::view::SceneView;
+use crate::camera::Grip;
+use crate::cell::{CellMode, Glyphs};
+use crate::export::frame_grid;
+use crate::framebuffer::Resolution;
+use crate::grid::Size;
+use crate::maps::Map;
+use crate::render::Sampling;
+use crate::scene::Scene;
+use ratatui_core::backend::TestBackend;
+use ratatui_core::buffer::{Buffer, Cell};
+use ratatui_core::layout::{Position, Rect};
+use ratatui_core::terminal::Terminal;
+use ratatui_core::widgets::StatefulWidget;
+use std::num::NonZeroU32;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+const AREA: Rect = Rect::new(0, 0, 20, 8);
+
+fn scene() -> Scene {
+    let text = include_str!("../../scenes/three_spheres.ron");
+    Scene::from_ron("three_spheres.ron", text).expect("the scene is fine")
+}
+
+/// What a view draws into a buffer of `AREA` that is full of `x`.
+fn drawn(view: &SceneView<'_>, area: Rect, state: &mut SceneState) -> Buffer {
+    let mut buffer = Buffer::filled(AREA, Cell::new("x"));
+    view.render(area, &mut buffer, state);
+    buffer
+}
+
+/// A picture of the scene from that camera, traced in the draw call.
+fn in_place(view: &SceneView<'_>, state: &SceneState) -> Buffer {
+    drawn(view, AREA, &mut SceneState::new(state.camera()))
+}
+
+#[test]
+fn a_state_goes_to_any_thread() {
+    fn takes<T: Send + Sync>(_: T) {}
+    takes(SceneState::new(scene().camera()).in_background(|| {}));
+}
+
+#[test]
+fn a_pane_shows_the_cells_of_a_frame() {
+    let scene = scene();
+    let mut terminal = Terminal::new(TestBackend::new(80, 24)).expect("a backend without errors");
+    for (cells, aspect) in [(CellMode::HALF_BLOCK, 2.0), (CellMode::RAMP, 1.7)] {
+        let view = SceneView::new(&scene).cells(cells).cell_aspect(aspect);
+        let mut state = SceneState::new(scene.camera());
+        assert!(!state.is_current());
+        terminal.draw(|frame| frame.render_stateful_widget(view, frame.area(), &mut state)).expect("no errors");
+        let grid = frame_grid(&scene, cells, Size::new(80, 24), aspect);
+        terminal.backend().assert_buffer(&Buffer::from(&grid));
+        assert!(state.is_current());
+    }
+}
+
+#[test]
+fn a_number_that_is_no_cells_aspect_is_the_usual_one() {
+    let scene = scene();
+    let state = SceneState::new(scene.camera());
+    let usual = in_place(&SceneView::new(&scene), &state);
+    for aspect in [f32::NAN, 0.0, -2.0, f32::INFINITY, 1e-30] {
+        assert_eq!(in_place(&SceneView::new(&scene).cell_aspect(aspect), &state), usual, "{aspect}");
+    }
+    assert_ne!(in_place(&SceneView::new(&scene).cell_aspect(1.0), &state), usual);
+}
+
+#[test]
+fn a_pane_is_clipped_to_the_buffer() {
+    let scene = scene();
+    let view = SceneView::new(&scene);
+    for (area, inside) in [
+        (Rect::new(3, 2, 10, 4), Rect::new(3, 2, 10, 4)),
+        (Rect::new(15, 5, 40, 40), Rect::new(15, 5, 5, 3)),
+        (Rect::new(0, 0, 65_535, 65_535), AREA),
+    ] {
+        let mut state = SceneState::new(scene.camera());
+        let buffer = drawn(&view, area, &mut state);
+        let grid = frame_grid(&scene, CellMode::HALF_BLOCK, Size::new(inside.width, inside.height), 2.0);
+        for at in AREA.positions() {
+            let wanted = Buffer::from(&grid);
+            let wanted = inside.contains(at).then(|| wanted[(at.x - inside.x, at.y - inside.y)].clone());
+            assert_eq!(buffer[at], wanted.unwrap_or(Cell::new("x")), "{area} at {at}");
+        }
+    }
+    // A buffer need not begin at (0, 0).
+    let mut buffer = Buffer::filled(Rect::new(7, 5, 4, 3), Cell::new("x"));
+    view.render(Rect::new(0, 0, 9, 7), &mut buffer, &mut SceneState::new(scene.camera()));
+    let grid = Buffer::from(&frame_grid(&scene, CellMode::HALF_BLOCK, Size::new(2, 2), 2.0));
+    assert_eq!((&buffer[(8, 6)], &buffer[(9, 6)]), (&grid[(1, 1)], &Cell::new("x")));
+}
+
+#[test]
+fn where_there_are_no_cells_nothing_is_drawn_or_found() {
+    let scene = scene();
+    let mut state = SceneState::new(scene.camera());
+    drawn(&SceneView::new(&scene), AREA, &mut state);
+    for area in
+        [Rect::ZERO, Rect::new(3, 3, 0, 5), Rect::new(3, 3, 5, 0), Rect::new(20, 0, 5, 5), Rect::new(0, 8, 5, 5)]
+    {
+        for mut state in [SceneState::new(scene.camera()), SceneState::new(scene.camera()).in_background(|| {})] {
+            let buffer = drawn(&SceneView::new(&scene), area, &mut state);
+            assert_eq!(buffer, Buffer::filled(AREA, Cell::new("x")));
+            assert!(!state.is_current() && !state.press(Position::ORIGIN, Grip::Turn));
+        }
+        // A pane that had cells once has none to be found.
+        drawn(&SceneView::new(&scene), area, &mut state);
+        assert_eq!(state.cell_of(scene.camera().pose().target), None);
+        assert!(AREA.positions().all(|at| state.hit(&scene, at).is_none()));
+    }
+}
+
+#[test]
+fn a_pane_that_is_too_large_for_a_picture_stays_as_it_is() {
+    let scene = scene();
+    let shape = CellMode { glyphs: Glyphs::Shape, ..CellMode::HALF_BLOCK };
+    let (across, down) = shape.pixels_per_cell();
+    let rows = Resolution::MAX_PIXELS / (1000 * across * down) + 1;
+    let mut buffer = Buffer::filled(Rect::new(0, 0, 1000, rows as u16), Cell::new("x"));
+    let mut state = SceneState::new(scene.camera());
+    SceneView::new(&scene).cells(shape).render(buffer.area, &mut buffer, &mut state);
+    assert!(buffer.content.iter().all(|cell| cell.symbol() == "x") && !state.is_current());
+}
+
+#[test]
+fn what_is_shown_already_is_not_traced_again() {
+    let scene = scene();
+    let mut state = SceneState::new(scene.camera());
+    let view = SceneView::new(&scene);
+    let smaller = Rect { width: 12, ..AREA };
+    let brighter = scene.clone().with_exposure(2.0).expect("an exposure");
+    drawn(&view, AREA, &mut state);
+    let mut is_kept = |scene: &Scene, view: &SceneView<'_>, area, turn: f32| {
+        state.mark("!");
+        state.orbit(turn, 0.0);
+        let buffer = drawn(&view.clone().of(scene), area, &mut state);
+        buffer[(0, 0)].symbol() == "!"
+    };
+    assert!(is_kept(&scene, &view, AREA, 0.0));
+    assert!(is_kept(&scene.clone(), &view, AREA, 0.0), "a copy of the scene is the same one");
+    assert!(!is_kept(&scene, &view, AREA, 0.1));
+    assert!(is_kept(&scene, &view, AREA, 0.0));
+    assert!(!is_kept(&scene, &view, smaller, 0.0));
+    assert!(!is_kept(&brighter, &view, smaller, 0.0));
+    assert!(!is_kept(&brighter, &view.clone().map(Map::Depth), smaller, 0.0));
+    assert!(!is_kept(&brighter, &view.clone().cells(CellMode::RAMP), smaller, 0.0));
+    assert!(!is_kept(&brighter, &view.clone().cell_aspect(1.5), smaller, 0.0));
+    assert!(!is_kept(&brighter, &view.clone().sampling(Sampling::BEST), smaller, 0.0));
+    assert!(is_kept(&brighter, &view.clone().sampling(Sampling::BEST), smaller, 0.0));
+}
+
+/// A state in the background whose thread stands still after each picture, until the test lets it go on.
+struct Held {
+    // Dropped first: the state waits for the thread.
+    go_on: Sender<()>,
+    state: SceneState,
+    woken: Receiver<()>,
+}
+
+impl Held {
+    fn new(scene: &Scene) -> Self {
+        let (wake, woken) = channel();
+        let (go_on, may_go_on) = channel();
+        let state = SceneState::new(scene.camera()).in_background(move || {
+            // The test may have ended.
+            let _ = wake.send(());
+            let _ = may_go_on.recv();
+        });
+        Self { go_on, state, woken }
+    }
+
+    fn wait(&self) {
+        self.woken.recv().expect("the thread is there");
+    }
+
+    fn go_on(&self) {
+        self.go_on.send(()).expect("the thread is there");
+    }
+
+    /// Ends the thread, and returns how many more pictures it made.
+    fn end(self) -> usize {
+        drop(self.go_on);
+        drop(self.state);
+        self.woken.iter().count()
+    }
+}
+
+#[test]
+fn of_the_views_asked_for_meanwhile_only_the_newest_is_traced() {
+    let scene = scene();
+    let view = SceneView::new(&scene);
+    let mut held = Held::new(&scene);
+    let blank = Buffer::filled(AREA, Cell::new("x"));
+    assert_eq!(drawn(&view, AREA, &mut held.state), blank, "nothing is there yet");
+    held.wait();
+    let first = in_place(&view, &held.state);
+    for _ in 0..5 {
+        held.state.orbit(0.2, 0.0);
+        assert_eq!(drawn(&view, AREA, &mut held.state), first, "the last picture stays");
+        assert!(!held.state.is_current());
+    }
+    held.go_on();
+    held.wait();
+    assert_eq!(drawn(&view, AREA, &mut held.state), in_place(&view, &held.state));
+    assert!(held.state.is_current());
+    held.state.orbit(0.2, 0.0);
+    assert!(!held.state.is_current(), "the camera has moved since");
+    assert_eq!(held.end(), 0, "the others are never traced");
+}
+
+#[test]
+fn samples_follow_a_first_picture_unless_the_view_has_changed() {
+    let scene = scene();
+    let (one, best) = (SceneView::new(&scene), SceneView::new(&scene).sampling(Sampling::BEST));
+    let mut held = Held::new(&scene);
+    drawn(&best, AREA, &mut held.state);
+    held.wait();
+    assert_eq!(drawn(&best, AREA, &mut held.state), in_place(&one, &held.state));
+    assert!(!held.state.is_current());
+    held.go_on();
+    held.wait();
+    assert_eq!(drawn(&best, AREA, &mut held.state), in_place(&best, &held.state));
+    assert!(held.state.is_current());
+    // Now the view changes while the first picture is all there is, and while it is being refined.
+    held.state.orbit(0.2, 0.0);
+    drawn(&best, AREA, &mut held.state);
+    held.go_on();
+    held.wait();
+    held.state.orbit(0.2, 0.0);
+    drawn(&best, AREA, &mut held.state);
+    held.go_on();
+    held.wait();
+    assert_eq!(drawn(&best, AREA, &mut held.state), in_place(&one, &held.state), "of the newest view");
+    held.go_on();
+    held.wait();
+    assert_eq!(drawn(&best, AREA, &mut held.state), in_place(&best, &held.state));
+    assert_eq!(held.end(), 0);
+}
+
+#[test]
+fn a_picture_of_another_size_stays_until_the_next_is_there() {
+    let scene = scene();
+    let view = SceneView::new(&scene);
+    let mut held = Held::new(&scene);
+    let small = Rect::new(2, 1, 6, 3);
+    drawn(&view, small, &mut held.state);
+    held.wait();
+    let old = drawn(&view, small, &mut held.state);
+    let larger = drawn(&view, Rect::new(2, 1, 10, 5), &mut held.state);
+    assert_eq!(larger, old, "its cells are where they were, and no others are drawn");
+    assert!(
+        held.state.hit(&scene, Position::new(7, 3)).is_some() && held.state.hit(&scene, Position::new(8, 3)).is_none()
+    );
+    let smaller = drawn(&view, Rect::new(2, 1, 3, 3), &mut held.state);
+    assert_eq!((&smaller[(4, 3)], smaller[(5, 3)].symbol()), (&old[(4, 3)], "x"));
+}
+
+/// Without the cancellation it would not end.
+#[test]
+fn to_drop_a_state_gives_up_what_is_in_work() {
+    let scene = scene();
+    let (wake, woken) = channel::<()>();
+    let mut state = SceneState::new(scene.camera()).in_background(move || _ = wake.send(()));
+    drawn(&SceneView::new(&scene).sampling(NonZeroU32::MAX), AREA, &mut state);
+    while !state.is_in_work() {
+        std::thread::yield_now();
+    }
+    drop(state);
+    assert!(woken.recv().is_err(), "the thread is gone, and has made no picture");
+}
+
+#[test]
+fn a_panic_in_the_background_goes_on_in_a_draw_call() {
+    let scene = scene();
+    let view = SceneView::new(&scene);
+    let mut state = SceneState::new(scene.camera()).in_background(|| panic!("a test asked for it"));
+    let panic = loop {
+        match catch_unwind(AssertUnwindSafe(|| drawn(&view, AREA, &mut state))) {
+            Ok(_) => std::thread::yield_now(),
+            Err(panic) => break panic,
+        }
+    };
+    assert_eq!(panic.downcast_ref(), Some(&"a test asked for it"));
+}
+
+#[test]
+fn a_point_that_is_seen_in_a_cell_is_in_that_cell() {
+    let scene = scene();
+    let view = SceneView::new(&scene).cell_aspect(1.7);
+    let area = Rect::new(3, 1, 40, 6);
+    let mut state = SceneState::new(&scene.camera().orbited(0.3, 0.1));
+    drawn(&view, area, &mut state);
+    let mut found = 0;
+    for at in AREA.positions() {
+        let hit = state.hit(&scene, at);
+        assert!(hit.is_none() || area.intersection(AREA).contains(at), "{at}");
+        if let (Some(hit), Some(ray)) = (hit, state.ray_through(at)) {
+            assert_eq!(state.cell_of(ray.at(hit.t)), Some(at));
+            found += 1;
+        }
+    }
+    assert!(found > 30, "{found}");
+    let pose = state.camera().pose();
+    assert_eq!(state.cell_of(pose.eye + (pose.eye - pose.target)), None, "behind the eye");
+    assert_eq!(state.cell_of(pose.target + 100.0 * state.camera().basis().u), None, "beside the picture");
+}
+
+#[test]
+fn what_is_taken_hold_of_follows_the_pointer() {
+    let scene = scene();
+    let view = SceneView::new(&scene);
+    let mut state = SceneState::new(scene.camera());
+    drawn(&view, Rect { x: 4, ..AREA }, &mut state);
+    let before = *state.camera();
+    state.drag(Position::new(9, 3));
+    assert!(!state.press(Position::new(3, 3), Grip::Pan), "beside the pane");
+    state.drag(Position::new(9, 3));
+    assert_eq!(*state.camera(), before, "nothing is held");
+    // In the middle of a cell, so that rounding does not show.
+    let ray = state.ray_through(Position::new(12, 3)).expect("inside");
+    let point = ray.at(before.target_distance());
+    let start = Position::new(12, 3);
+    assert!(state.press(start, Grip::Pan));
+    state.drag(Position::new(start.x + 5, start.y - 2));
+    state.drag(Position::new(start.x + 4, start.y - 2));
+    drawn(&view, Rect { x: 4, ..AREA }, &mut state);
+    assert_eq!(state.cell_of(point), Some(Position::new(start.x + 4, start.y - 2)));
+    state.release();
+    let after = *state.camera();
+    state.drag(start);
+    assert_eq!(*state.camera(), after, "it has been let go of");
+    assert!(state.press(start, Grip::Turn));
+    state.drag(Position::new(start.x + 4, start.y));
+    let to_the_left = (state.camera().pose().eye - after.pose().eye).dot(after.basis().u);
+    assert!(to_the_left < 0.0 && state.camera().pose().target == after.pose().target, "{to_the_left}");
+}
+
+#[test]
+fn the_wheel_keeps_what_is_under_the_pointer() {
+    let scene = scene();
+    let view = SceneView::new(&scene);
+    let mut state = SceneState::new(scene.camera());
+    assert!(!state.scroll(&scene, Position::new(5, 5), 1.0), "nothing is drawn yet");
+    drawn(&view, AREA, &mut state);
+    let at = Position::new(5, 5);
+    let ray = state.ray_through(at).expect("inside");
+    let point = ray.at(state.hit(&scene, at).expect("the floor").t);
+    let distance = |state: &SceneState| state.camera().pose().eye.distance(point);
+    let before = distance(&state);
+    assert!(state.scroll(&scene, at, 3.0) && distance(&state) < 0.8 * before);
+    drawn(&view, AREA, &mut state);
+    assert_eq!(state.cell_of(point), Some(at));
+    assert!(state.scroll(&scene, at, -3.0) && (distance(&state) - before).abs() < 1e-3 * before);
+}
+
+#[test]
+fn keys_move_the_camera() {
+    let scene = scene();
+    let view = SceneView::new(&scene);
+    let mut state = SceneState::new(scene.camera());
+    state.frame(&scene);
+    drawn(&view, AREA, &mut state);
+    state.frame(&scene);
+    drawn(&view, AREA, &mut state);
+    let bounds = scene.bounds().expect("three spheres");
+    assert!([bounds.min, bounds.max].iter().all(|&corner| state.cell_of(corner).is_some()));
+    let ray = state.ray_through(Position::new(10, 4)).expect("inside");
+    let point = ray.at(state.camera().target_distance());
+    state.pan(0.25, 0.0);
+    drawn(&view, AREA, &mut state);
+    assert_eq!(state.cell_of(point), Some(Position::new(6, 4)), "a quarter of 16 pixels, which are a column wide");
+    for factor in [0.5, 2.0] {
+        (0..200).for_each(|_| state.nearer(factor));
+        let distance = state.camera().target_distance();
+        assert!(distance > 0.9e-3 * state.scale() && distance < 1.1e4 * state.scale(), "{distance}");
+    }
+}

@@ -1,0 +1,122 @@
+//! What a pane shows.
+
+use super::SceneState;
+use super::shot::{Options, Shot};
+use crate::capabilities::{USUAL_CELL_ASPECT, is_cell_aspect};
+use crate::cell::CellMode;
+use crate::grid::Size;
+use crate::maps::Map;
+use crate::render::Sampling;
+use crate::scene::Scene;
+use ratatui_core::buffer::Buffer;
+use ratatui_core::layout::Rect;
+use ratatui_core::widgets::StatefulWidget;
+use std::num::NonZeroU32;
+
+/// A widget that shows a scene as the camera of its [`SceneState`] sees it.
+///
+/// It fills its area, as far as that lies inside the buffer. An area with more pixels than a picture may have stays as it is.
+/// To frame the view, draw a block and give the view the area inside:
+///
+/// ```
+/// use ratatui::{Frame, widgets::Block};
+/// use termtrace::{Scene, SceneState, SceneView};
+///
+/// fn draw(frame: &mut Frame<'_>, scene: &Scene, pane: &mut SceneState) {
+///     let block = Block::bordered().title("a scene");
+///     let inside = block.inner(frame.area());
+///     frame.render_widget(block, frame.area());
+///     frame.render_stateful_widget(SceneView::new(scene), inside, pane);
+/// }
+/// ```
+///
+/// # Panics
+/// Drawing goes on with a panic of the thread that traces [in the background](SceneState::in_background).
+#[derive(Clone, Debug)]
+#[must_use = "a widget does nothing before it is rendered"]
+pub struct SceneView<'a> {
+    scene: &'a Scene,
+    options: Options,
+}
+
+impl<'a> SceneView<'a> {
+    /// Shows the scene's light, one ray a pixel, by half blocks in truecolor, in cells twice as high as they are wide, unless
+    /// another choice is made.
+    pub fn new(scene: &'a Scene) -> Self {
+        let options = Options {
+            map: Map::Shaded,
+            cells: CellMode::HALF_BLOCK,
+            cell_aspect: USUAL_CELL_ASPECT,
+            sampling: Sampling::Each(NonZeroU32::MIN),
+        };
+        Self { scene, options }
+    }
+
+    /// Shows another map of the scene than its light.
+    pub fn map(self, map: Map) -> Self {
+        Self { options: Options { map, ..self.options }, ..self }
+    }
+
+    /// Makes the picture of other glyphs, or of other colours.
+    pub fn cells(self, cells: CellMode) -> Self {
+        Self { options: Options { cells, ..self.options }, ..self }
+    }
+
+    /// Says how high a cell is over its width. A number that is no cell's, less than 0.25 or more than 8, is taken for 2.
+    ///
+    /// A terminal tells it by the size of its window in pixels, which [`cell_aspect_of`](crate::cell_aspect_of) takes:
+    ///
+    /// ```no_run
+    /// use ratatui::crossterm::terminal::{WindowSize, window_size};
+    /// use termtrace::cell_aspect_of;
+    ///
+    /// let WindowSize { columns, rows, width, height } = window_size()?;
+    /// let aspect = cell_aspect_of(columns, rows, width, height).unwrap_or(2.0);
+    /// # Ok::<(), std::io::Error>(())
+    /// ```
+    pub fn cell_aspect(self, aspect: f32) -> Self {
+        let cell_aspect = if is_cell_aspect(aspect) { aspect } else { USUAL_CELL_ASPECT };
+        Self { options: Options { cell_aspect, ..self.options }, ..self }
+    }
+
+    /// Gives the pixels other samples.
+    pub fn sampling(self, sampling: impl Into<Sampling>) -> Self {
+        Self { options: Options { sampling: sampling.into(), ..self.options }, ..self }
+    }
+}
+
+#[cfg(test)]
+impl<'a> SceneView<'a> {
+    /// Returns the same view of another scene.
+    pub(super) fn of(self, scene: &'a Scene) -> Self {
+        Self { scene, ..self }
+    }
+}
+
+impl StatefulWidget for SceneView<'_> {
+    type State = SceneState;
+
+    fn render(self, area: Rect, buffer: &mut Buffer, state: &mut SceneState) {
+        StatefulWidget::render(&self, area, buffer, state);
+    }
+}
+
+impl StatefulWidget for &SceneView<'_> {
+    type State = SceneState;
+
+    fn render(self, area: Rect, buffer: &mut Buffer, state: &mut SceneState) {
+        let area = area.intersection(buffer.area);
+        let size = Size::new(area.width, area.height);
+        let shot = Shot::new(self.scene, state.camera(), size, self.options).ok().filter(|_| !area.is_empty());
+        let Some(shot) = shot else {
+            state.hide();
+            return;
+        };
+        let Some((shown, part)) = state.show(shot, area) else { return };
+        let columns = usize::from(part.width);
+        for (from, row) in part.rows().enumerate() {
+            let (from, to) = (shown.cells.index_of(0, from as u16), buffer.index_of(row.x, row.y));
+            buffer.content[to..][..columns].clone_from_slice(&shown.cells.content[from..][..columns]);
+        }
+    }
+}
