@@ -202,6 +202,7 @@ impl Camera {
     }
 
     /// The intrinsic parameters.
+    #[doc(hidden)]
     pub fn rectangle(&self) -> ViewRectangle {
         self.rectangle
     }

@@ -83,6 +83,7 @@ impl CameraPath {
     }
 
     /// When the path ends: back at the first view, or at the last keyframe.
+    #[doc(hidden)]
     pub fn seconds(&self) -> f64 {
         match &self.0 {
             Way::Orbit { seconds, .. } => *seconds,

@@ -148,6 +148,7 @@ impl Encoder {
 
     /// Whether frames stand in the brackets of synchronized output: a terminal that knows them shows each frame at once,
     /// others pass over them.
+    #[doc(hidden)]
     pub fn with_synchronized_output(self, synchronized: bool) -> Self {
         Self { synchronized, ..self }
     }
@@ -162,6 +163,7 @@ impl Encoder {
     ///
     /// To be called when the terminal's size has changed, even if it has changed back since the last frame: a terminal
     /// that becomes smaller loses what no longer fits, and from equal sizes the encoder cannot tell.
+    #[doc(hidden)]
     pub fn forget(&mut self) {
         self.known = None;
         self.due = Some(Duration::ZERO);

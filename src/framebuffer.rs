@@ -27,6 +27,7 @@ pub struct Resolution {
 impl Resolution {
     /// Limit on the pixels of a picture: 33,554,432, more than 8K. Rendering that many takes some 900 MB at one sample
     /// per pixel.
+    #[doc(hidden)]
     pub const MAX_PIXELS: u32 = 1 << 25;
 
     /// Returns the size of a picture of square pixels.
@@ -75,6 +76,7 @@ impl Resolution {
     }
 
     /// Returns a pixel's height divided by its width.
+    #[doc(hidden)]
     pub const fn pixel_aspect(&self) -> f32 {
         self.pixel_aspect
     }

@@ -170,6 +170,7 @@ impl Scene {
     }
 
     /// Returns the factor of all light before display; greater than 0.
+    #[doc(hidden)]
     pub fn exposure(&self) -> f32 {
         self.checked.exposure
     }
@@ -234,6 +235,7 @@ impl Scene {
     }
 
     /// Returns the scene with other [lights](Self::lights).
+    #[doc(hidden)]
     pub fn with_lights(self, lights: impl IntoIterator<Item: Into<Light>>) -> Self {
         self.with(|checked| checked.lights = lights.into_iter().map(Into::into).collect())
     }
