@@ -6,7 +6,6 @@
 //! Wald and Shirley, Geometric and Arithmetic Culling Methods for Entire Ray Packets, 2006.)
 
 use super::{Bvh, Child, Prefetch, Stack, Waiting, in_any_order, nearest_first};
-use crate::bounds::common;
 use crate::lanes::{Answers, LANES, Lanes, Mask, Vector, set_bits};
 use crate::ray::Rays;
 
@@ -32,13 +31,28 @@ enum Sense {
     Mixed,
 }
 
-/// Between what rays lie along an axis.
+/// Between what rays lie along an axis, of those that go one way: what bounds where they enter boxes, and what bounds where
+/// they leave them. Of mixed rays, what bounds where those enter that go forward, and where those that go backward.
 #[derive(Clone, Copy, Debug)]
 struct Hull<N> {
     origin: [N; 2],
-    /// Of mixed rays, the greatest below zero and the least above it.
     inverse: [N; 2],
 }
+
+/// How much wider the interval of inverse directions is made, relatively, at both ends: 128 units of 2^-24.
+/// [`Bounds::crossed`](crate::bounds::Bounds::crossed) lengthens a ray's way by 16 units, after two roundings; widened
+/// beforehand, there is nothing to lengthen in each test.
+const MORE: f32 = 128.0 / 16_777_216.0;
+
+/// The least inverse, without its sign, that can be widened: below, f32 has fewer digits.
+const LEAST: f32 = 4.0 * f32::MIN_POSITIVE;
+
+/// How many times as great as the least the greatest inverse of rays that go one way is, at most: 2^40.
+const RATIO: f32 = 1_099_511_627_776.0;
+
+/// How much later a packet leaves boxes than its rays: 2^-100. A product of a ray may be rounded to zero that is less than
+/// zero for its packet. Those of a ray are less than 2^-150, so those of its packet less than 2^-150 times [`RATIO`].
+const BEHIND: f32 = 1.0 / (RATIO * RATIO * 1_048_576.0);
 
 /// Between what the numbers of each group lie.
 #[inline(always)]
@@ -58,16 +72,11 @@ impl<N: Lanes> Hull<N> {
     fn of(origin: [N; GROUPS], inverse: [N; GROUPS]) -> (Sense, [Self; 2]) {
         let origin = extremes(origin);
         let [low, high] = extremes(inverse);
-        let zero = N::splat(0.0);
-        let sense = if (zero.lt(low) & high.le(N::splat(f32::MAX))).all() {
-            Sense::Forward
-        } else if (high.lt(zero) & N::splat(f32::MIN).le(low)).all() {
-            Sense::Backward
-        } else {
-            Sense::Mixed
-        };
+        let (all_origin, all_inverse) = (extreme(origin), extreme([low, high]));
+        let sense = Sense::of(all_inverse);
         if sense == Sense::Mixed {
             let (plus, minus) = (N::splat(f32::INFINITY), N::splat(f32::NEG_INFINITY));
+            let zero = N::splat(0.0);
             let (mut above, mut below) = (inverse, inverse);
             for (above, below) in above.iter_mut().zip(&mut below) {
                 *above = N::select(zero.lt(*above), *above, plus);
@@ -76,29 +85,62 @@ impl<N: Lanes> Hull<N> {
             let (above, below) = (extremes(above)[0], extremes(below)[1]);
             let [least, _] = extreme([above, above]);
             let [_, greatest] = extreme([below, below]);
-            let all = Self { origin: extreme(origin), inverse: [greatest, least] };
-            (sense, [Self { origin, inverse: [below, above] }, all])
-        } else {
-            let all = Self { origin: extreme(origin), inverse: extreme([low, high]) };
-            (sense, [Self { origin, inverse: [low, high] }, all])
+            return (sense, [Self::mixed(origin, [above, below]), Self::mixed(all_origin, [least, greatest])]);
+        }
+        (sense, [Self::one_way(sense, origin, [low, high]), Self::one_way(sense, all_origin, all_inverse)])
+    }
+
+    #[inline(always)]
+    fn one_way(sense: Sense, [first, last]: [N; 2], [low, high]: [N; 2]) -> Self {
+        let (less, more) = (N::splat(1.0 - MORE), N::splat(1.0 + MORE));
+        match sense {
+            Sense::Backward => Self { origin: [first, last], inverse: [high * less, low * more] },
+            _ => Self { origin: [last, first], inverse: [low * less, high * more] },
         }
     }
 
+    #[inline(always)]
+    fn mixed([first, last]: [N; 2], [above, below]: [N; 2]) -> Self {
+        let (less, half) = (N::splat(1.0 - MORE), N::splat(0.5));
+        // Where there are too few digits for a little, by half. That is not zero: no direction's inverse is less than 2^-128.
+        let above = N::select(above.lt(N::splat(LEAST)), above * half, above * less);
+        let below = N::select(N::splat(-LEAST).lt(below), below * half, below * less);
+        Self { origin: [last, first], inverse: [above, below] }
+    }
+
     /// Not after the first ray enters, not before the last one leaves; of those that do so at t >= 0.
+    ///
+    /// Rays of one way enter ahead at the product of the least distance and the least inverse, and leave at that of the
+    /// greatest ones. Of what is behind, a distance is negative, and so is the product, whichever inverse that is.
     #[inline(always)]
     fn way(&self, sense: Sense, min: N, max: N) -> [N; 2] {
-        let Self { origin: [first, last], inverse: [low, high] } = *self;
+        let Self { origin, inverse } = *self;
         let (near, far) = match sense {
-            Sense::Forward => (min - last, max - first),
-            Sense::Backward => (max - first, min - last),
+            Sense::Forward => (min, max),
+            Sense::Backward => (max, min),
             // Who goes forward enters at the least coordinates, who goes backward at the greatest; the other way, the box
             // is behind it.
             Sense::Mixed => {
-                let (forward, backward) = ((min - last) * high, (max - first) * low);
+                let (forward, backward) = ((min - origin[0]) * inverse[0], (max - origin[1]) * inverse[1]);
                 return [forward.max(backward.max(N::splat(f32::NEG_INFINITY))), N::splat(f32::INFINITY)];
             }
         };
-        [(near * low).min(near * high), (far * low).max(far * high)]
+        [(near - origin[0]) * inverse[0], (far - origin[1]) * inverse[1]]
+    }
+}
+
+impl Sense {
+    /// Of inverses between these.
+    #[inline(always)]
+    fn of<N: Lanes>([low, high]: [N; 2]) -> Self {
+        let (least, ratio, greatest) = (N::splat(LEAST), N::splat(RATIO), N::splat(f32::MAX / 2.0));
+        if (least.le(low) & high.le(low * ratio) & high.le(greatest)).all() {
+            Self::Forward
+        } else if (least.le(-high) & (-low).le(-high * ratio) & (-low).le(greatest)).all() {
+            Self::Backward
+        } else {
+            Self::Mixed
+        }
     }
 }
 
@@ -126,22 +168,31 @@ impl<N: Lanes> Packet<N> {
         self.senses.iter().filter(|&&sense| sense == Sense::Mixed).count() > 1
     }
 
-    /// Between what its rays cross each of eight boxes.
+    /// Between what its rays cross each of eight boxes, within these bounds, the first 0 or more.
     #[inline(always)]
-    pub fn crossed(&self, boxes: [Vector<N>; 2]) -> [N; 2] {
-        crossed(&self.all, self.senses, boxes)
+    pub fn crossed(&self, boxes: [Vector<N>; 2], within: [N; 2]) -> [N; 2] {
+        crossed(&self.all, self.senses, boxes, within)
     }
 
-    /// Between what the rays of each group cross one box.
+    /// Between what the rays of each group cross one box, within these bounds.
     #[inline(always)]
-    pub fn crossed_by_groups(&self, one: [Vector<N>; 2]) -> [N; 2] {
-        crossed(&self.groups, self.senses, one)
+    pub fn crossed_by_groups(&self, one: [Vector<N>; 2], within: [N; 2]) -> [N; 2] {
+        crossed(&self.groups, self.senses, one, within)
     }
 }
 
 #[inline(always)]
-fn crossed<N: Lanes>([x, y, z]: &[Hull<N>; 3], senses: [Sense; 3], [min, max]: [Vector<N>; 2]) -> [N; 2] {
-    common([x.way(senses[0], min.x, max.x), y.way(senses[1], min.y, max.y), z.way(senses[2], min.z, max.z)])
+fn crossed<N: Lanes>(
+    [x, y, z]: &[Hull<N>; 3],
+    senses: [Sense; 3],
+    [min, max]: [Vector<N>; 2],
+    [from, to]: [N; 2],
+) -> [N; 2] {
+    let x = x.way(senses[0], min.x, max.x);
+    let y = y.way(senses[1], min.y, max.y);
+    let z = z.way(senses[2], min.z, max.z);
+    let end = x[1].min(y[1].min(z[1])) + N::splat(BEHIND);
+    [x[0].max(y[0].max(z[0].max(from))), end.min(to)]
 }
 
 /// What becomes of a packet in a tree.
@@ -172,6 +223,12 @@ pub trait Visitor<N>: Prefetch {
 }
 
 impl Bvh {
+    /// The box in that place, as [`Waiting`] counts them.
+    #[inline(always)]
+    fn one<N: Lanes>(&self, place: u32) -> [Vector<N>; 2] {
+        self.nodes[place as usize / LANES].one(place as usize % LANES)
+    }
+
     /// Visits the leaves that a packet meets.
     #[inline(always)]
     pub fn visit_packet<N: Lanes, V: Visitor<N>>(
@@ -193,18 +250,17 @@ impl Bvh {
                 continue;
             }
             if place != u32::MAX {
-                let one = self.nodes[place as usize / LANES].one(place as usize % LANES);
-                let [enters, leaves] = packet.crossed_by_groups(one);
-                let groups = enters.max(min).le(leaves.min(visitor.reach())).bits();
+                let one = self.one(place);
+                let [starts, ends] = packet.crossed_by_groups(one, [min, visitor.reach()]);
+                let groups = starts.le(ends).bits();
                 if let Some(rays) = visitor.split(one, groups) {
                     visitor.trace_singles(child, rays, groups);
                     continue;
                 }
             }
             let node = &self.nodes[child.0 as usize];
-            let [enters, leaves] = packet.crossed(node.boxes());
-            let starts = enters.max(min);
-            let is_met = starts.le(leaves.min(N::splat(visitor.farthest()))).bits();
+            let [starts, ends] = packet.crossed(node.boxes(), [min, N::splat(visitor.farthest())]);
+            let is_met = starts.le(ends).bits();
             for lane in set_bits(is_met) {
                 self.prefetch(node.children[lane], visitor);
             }
@@ -214,5 +270,109 @@ impl Bvh {
                 in_any_order(node, child, is_met, &starts.store(), waiting)
             };
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Node;
+    use super::*;
+    use crate::bounds::crossed;
+    use crate::lanes::{Eight, Number};
+    use crate::ray::{EightRays, Ray};
+    use glam::Vec3;
+    use std::array::from_fn;
+
+    /// Numbers from -1 to 1, the same each time.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn next(&mut self) -> f32 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 40) as f32 / 8_388_608.0 - 1.0
+        }
+
+        fn vector(&mut self) -> Vec3 {
+            Vec3::new(self.next(), self.next(), self.next())
+        }
+    }
+
+    fn two_to(power: i32) -> f32 {
+        f32::from_bits(((127 + power) as u32) << 23)
+    }
+
+    /// How long directions are, and how far origins are off zero.
+    fn sizes(seed: u64) -> (f32, f32) {
+        let length = two_to([-120, -60, -8, 0, 0, 8, 60, 117, 123][seed as usize % 9]);
+        (length, two_to([0, 0, -30, 30, -100, 100][seed as usize / 9 % 6]))
+    }
+
+    /// Rays in a narrow or a wide packet, with directions and distances of all sizes, and boxes ahead of them, behind them,
+    /// flat ones, and those that touch an origin.
+    fn story(seed: u64) -> ([EightRays; GROUPS], [[Vector<Eight>; 2]; 2]) {
+        let (mut numbers, (length, scale)) = (Numbers(seed), sizes(seed));
+        let width = two_to(-((seed / 54 % 14) as i32));
+        let (origin, direction) = (numbers.vector(), numbers.vector());
+        let mut ray = || {
+            let mut direction = direction + numbers.vector() * width;
+            if seed.is_multiple_of(5) {
+                direction[seed as usize % 3] = 0.0;
+            }
+            Ray { origin: (origin + numbers.vector() * width) * scale, direction: direction * length }
+        };
+        let rays: [[Ray; LANES]; GROUPS] = from_fn(|_| from_fn(|_| ray()));
+        let mut some_box = |lane: usize| {
+            let through = &rays[lane][lane];
+            let t = [0.0, 1.0, -1.0, 3.0][lane % 4] * scale / length;
+            let at = through.origin + if t.is_finite() { through.direction * t } else { Vec3::ZERO };
+            let [from, to] = [0, 1].map(|_| at + numbers.vector() * scale * width * [0.0, 1e-3, 1.0][lane % 3]);
+            [from.min(to), from.max(to)]
+        };
+        let boxes = from_fn(|_| {
+            let boxes: [[Vec3; 2]; LANES] = from_fn(&mut some_box);
+            [Vector::of(boxes.map(|[min, _]| min)), Vector::of(boxes.map(|[_, max]| max))]
+        });
+        (rays.map(|rays| EightRays::of(&rays)), boxes)
+    }
+
+    /// No box that one of its rays meets is kept from a packet, or from that ray's group; and many others are.
+    #[test]
+    fn a_packet_meets_what_its_rays_meet() {
+        let (mut met, mut missed, mut kept) = (0, 0, 0);
+        for seed in 0..20_000 {
+            let (rays, boxes) = story(seed);
+            let groups: [Rays<Eight>; GROUPS] = from_fn(|group| Rays::load(&rays[group], false));
+            let packet = Packet::of(&groups);
+            // Rays this way and that, whose products f32 rounds to zero, may be said to meet what is behind them.
+            let (length, scale) = sizes(seed);
+            if scale / length < two_to(-60) && packet.senses.contains(&Sense::Mixed) {
+                continue;
+            }
+            let within = [Eight::ZERO, <Eight as Number>::splat(f32::MAX)];
+            let [starts, ends] = packet.crossed(Node::EMPTY.boxes(), within);
+            assert_eq!(starts.le(ends).bits(), 0, "seed {seed}: a box that is lacking is met");
+            for boxes in boxes {
+                let [starts, ends] = packet.crossed(boxes, within);
+                let by_all = starts.le(ends).bits();
+                for lane in 0..LANES {
+                    let one = boxes.map(|corner| Vector::splat(corner.of_lane(lane)));
+                    let [by_starts, by_ends] = packet.crossed_by_groups(one, within);
+                    let by_groups = by_starts.le(by_ends).bits();
+                    for (group, rays) in groups.iter().enumerate() {
+                        let [enters, leaves] = crossed(one, rays);
+                        let by_rays = enters.max(Eight::ZERO).le(leaves.min(<Eight as Number>::splat(f32::MAX))).bits();
+                        let may_meet = by_all >> lane & by_groups >> group & 1 == 1;
+                        assert!(by_rays == 0 || may_meet, "seed {seed}: box {lane}, group {group}");
+                        let first = set_bits(by_rays).map(|ray| enters.0[ray].max(0.0)).fold(f32::MAX, f32::min);
+                        let start = starts.0[lane].max(by_starts.0[group]);
+                        assert!(by_rays == 0 || start <= first, "seed {seed}: box {lane}, group {group}: {start}");
+                        met += u32::from(by_rays != 0);
+                        missed += u32::from(by_rays == 0);
+                        kept += u32::from(!may_meet);
+                    }
+                }
+            }
+        }
+        assert!(met > 100_000 && kept > missed / 3, "{met} are met, {kept} of {missed} kept away");
     }
 }
