@@ -289,6 +289,8 @@ impl<N: Lanes, S, const ANY: bool> Prefetch for InTree<'_, '_, N, S, ANY> {
 impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, ANY> {
     const NEAREST_FIRST: bool = !ANY;
 
+    const LEAST_SPLIT: u32 = split::least_split(ANY);
+
     #[inline(always)]
     fn min(&self) -> f32 {
         self.rays.within.min
@@ -348,7 +350,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
     #[inline(always)]
     fn split(&self, one: [Vector<N>; 2], groups: u32) -> Option<[u32; GROUPS]> {
         if self.rays.kernel == Kernel::Packet {
-            return (groups == 0).then_some([0; GROUPS]);
+            return None;
         }
         split::at_node::<ANY>(groups, &AtNode { rays: self.rays, one })
     }
