@@ -24,6 +24,8 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     place: [N; GROUPS],
     /// The greatest t of each group.
     reach: Eight,
+    /// The greatest t of all, or one that was; kept, as it is asked for at each node and leaf.
+    farthest: f32,
     /// How often one of the rays has left the packet at a node.
     left: u32,
     /// How many leaves the packet has met.
@@ -55,6 +57,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
             t: [N::splat(DONE); GROUPS],
             place: [N::splat(place_as_number(NOTHING)); GROUPS],
             reach: Eight([DONE; LANES]),
+            farthest: DONE,
             left: 0,
             leaves: 0,
         }
@@ -125,7 +128,8 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
 
     #[inline(always)]
     fn trace_tree<S: SideBySide>(&mut self, tree: &'p Tree<S>, packet: &mut Option<Packet<N>>, stacks: &mut Stacks) {
-        if tree.has_tree() && self.reach.greatest() >= self.within.min {
+        self.update_farthest();
+        if tree.has_tree() && self.farthest >= self.within.min {
             let packet = match packet {
                 Some(packet) => packet,
                 None => packet.insert(Packet::of(&self.groups)),
@@ -162,6 +166,12 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         if met.take(place, shape.first_crossing_in_pencil(rays, min, rough), self.accel) {
             self.set(group, met);
         }
+    }
+
+    /// Finds how far any ray still reaches, after rays have met something.
+    #[inline(always)]
+    fn update_farthest(&mut self) {
+        self.farthest = N::load(&self.reach).greatest();
     }
 
     #[inline(always)]
@@ -303,7 +313,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
 
     #[inline(always)]
     fn farthest(&self) -> f32 {
-        N::load(&self.rays.reach).greatest()
+        self.rays.farthest
     }
 
     #[inline(always)]
@@ -339,12 +349,16 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
             }
             pairs |= u64::from(groups) << (GROUPS * lane);
         }
+        if pairs == 0 {
+            return;
+        }
         while pairs != 0 {
             let (lane, group) =
                 (pairs.trailing_zeros() as usize / GROUPS % LANES, pairs.trailing_zeros() as usize % GROUPS);
             pairs &= pairs.wrapping_sub(1);
             self.rays.test(group, &shapes.splat(lane), self.tree.place(leaf, lane), N::splat(rough.0[lane]));
         }
+        self.rays.update_farthest();
     }
 
     #[inline(always)]
@@ -360,6 +374,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
         for group in set_bits(groups) {
             self.trace_singles_of(from, group, rays[group]);
         }
+        self.rays.update_farthest();
     }
 }
 
