@@ -82,7 +82,8 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
         return Ok((Bvh::default(), Leaves::default()));
     }
     let mut items: Vec<Item> = (0..).zip(boxes).map(item).collect();
-    let pairs = subtree(&mut items, 0, 0, report)?;
+    let around = Around::of(&items);
+    let pairs = subtree(&mut items, &around, Place { first: 0, depth: 0 }, report)?;
     let mut wide = Wide::of(&pairs);
     let root = Some(wide.append(0));
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
@@ -195,21 +196,36 @@ fn fill(area: f32, left: [f32; LANES], right: [f32; LANES], filling: &mut Fillin
     cost
 }
 
-/// The nodes over these items, of which the first stands at that place in the order. Large halves are built at the same
-/// time; as nodes find their children by distance, those of a subtree are the same wherever it comes to stand.
-fn subtree<E: Send>(items: &mut [Item], first: usize, depth: usize, report: Report<'_, E>) -> Result<Vec<Pair>, E> {
+/// Where items stand: the place of the first of them in the order, and how many nodes are above them.
+#[derive(Clone, Copy)]
+struct Place {
+    first: usize,
+    depth: usize,
+}
+
+impl Place {
+    /// The places of the items on either side of a cut.
+    fn halves(self, cut: usize) -> [Self; 2] {
+        let depth = self.depth + 1;
+        [Self { depth, ..self }, Self { first: self.first + cut, depth }]
+    }
+}
+
+/// The nodes over these items, around which that is. Large halves are built at the same time; as nodes find their children
+/// by distance, those of a subtree are the same wherever it comes to stand.
+fn subtree<E: Send>(items: &mut [Item], around: &Around, at: Place, report: Report<'_, E>) -> Result<Vec<Pair>, E> {
     if items.len() < FEW {
         let mut nodes = Vec::with_capacity(items.len());
-        append(items, first, depth, &mut nodes);
+        append(items, around, at, &mut nodes);
         return report(items.len()).map(|()| nodes);
     }
     report(0)?;
-    let around = Around::of(items);
     let bounds = around.boxes.bounds();
-    let cut = cut(items, &around, depth).unwrap_or(items.len() / 2);
+    let Halves { cut, around } = cut(items, around, at.depth).unwrap_or_else(|| Halves::at(items.len() / 2, items));
     let (left, right) = items.split_at_mut(cut);
+    let [at_left, at_right] = at.halves(cut);
     let (left, right) =
-        threads::join(|| subtree(left, first, depth + 1, report), || subtree(right, first + cut, depth + 1, report));
+        threads::join(|| subtree(left, &around[0], at_left, report), || subtree(right, &around[1], at_right, report));
     let (left, right) = (left?, right?);
     let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
     nodes.push(Pair { bounds, count: 0, at: 1 + left.len() as u32 });
@@ -219,22 +235,23 @@ fn subtree<E: Send>(items: &mut [Item], first: usize, depth: usize, report: Repo
 }
 
 /// The same on one thread, at the end of other nodes.
-fn append(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<Pair>) {
-    let around = Around::of(items);
+fn append(items: &mut [Item], around: &Around, at: Place, nodes: &mut Vec<Pair>) {
     let bounds = around.boxes.bounds();
-    let Some(cut) = cut(items, &around, depth) else {
-        nodes.push(Pair { bounds, count: items.len() as u32, at: first as u32 });
+    let Some(Halves { cut, around }) = cut(items, around, at.depth) else {
+        nodes.push(Pair { bounds, count: items.len() as u32, at: at.first as u32 });
         return;
     };
-    let at = nodes.len();
+    let number = nodes.len();
     nodes.push(Pair { bounds, count: 0, at: 0 });
     let (left, right) = items.split_at_mut(cut);
-    append(left, first, depth + 1, nodes);
-    nodes[at].at = (nodes.len() - at) as u32;
-    append(right, first + cut, depth + 1, nodes);
+    let [at_left, at_right] = at.halves(cut);
+    append(left, &around[0], at_left, nodes);
+    nodes[number].at = (nodes.len() - number) as u32;
+    append(right, &around[1], at_right, nodes);
 }
 
 /// What items lie in.
+#[derive(Clone, Copy)]
 struct Around {
     boxes: Rows,
     /// Twice their middles.
@@ -242,40 +259,64 @@ struct Around {
 }
 
 impl Around {
+    const NOTHING: Self = Self { boxes: Rows::EMPTY, middles: Rows::EMPTY };
+
     fn of(items: &[Item]) -> Self {
-        let mut around = Self { boxes: Rows::EMPTY, middles: Rows::EMPTY };
+        let mut around = Self::NOTHING;
         for item in items {
-            let middle = item.middle();
-            around.boxes.grow(item);
-            around.middles.grow(&Rows { min: middle, max: middle });
+            around.grow(item);
         }
         around
     }
+
+    #[inline(always)]
+    fn grow(&mut self, item: &Item) {
+        let middle = item.middle();
+        self.boxes.grow(item);
+        self.middles.grow(&Rows { min: middle, max: middle });
+    }
 }
 
-/// Puts the items on either side of a cut, and answers how many come before it; nothing where they are a leaf.
-fn cut(items: &mut [Item], around: &Around, depth: usize) -> Option<usize> {
+/// Items on either side of a cut: how many come before it, and what the items of each side lie in.
+struct Halves {
+    cut: usize,
+    around: [Around; 2],
+}
+
+impl Halves {
+    fn at(cut: usize, items: &[Item]) -> Self {
+        Self { cut, around: [Around::of(&items[..cut]), Around::of(&items[cut..])] }
+    }
+}
+
+/// Puts the items on either side of a cut; nothing where they are a leaf.
+fn cut(items: &mut [Item], around: &Around, depth: usize) -> Option<Halves> {
     if items.len() <= LEAF {
         return None;
     }
     let plane = if depth < FREE_DEPTH { Cut::cheapest(items, &around.middles) } else { None };
     // All in one place, or too deep: any half is as good.
-    let Some(Cut { bin, before, .. }) = plane else { return Some(items.len() / 2) };
+    let Some(Cut { bin, before, .. }) = plane else { return Some(Halves::at(items.len() / 2, items)) };
     Some(partition(items, |item| bin.of(item) < before))
 }
 
-/// Those for which it is true come first. How many they are.
-fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
+/// Puts those first for which it is true. What lies around each side is found on the way: with a pass of its own
+/// over the items of each node, the tree of the dragon's 871 k triangles took 1.01 times as long.
+fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
     let (mut start, mut end) = (0, items.len());
+    let [mut first, mut last] = [Around::NOTHING; 2];
     while start < end {
-        if is_first(&items[start]) {
+        let item = items[start];
+        if is_first(&item) {
+            first.grow(&item);
             start += 1;
         } else {
+            last.grow(&item);
             end -= 1;
             items.swap(start, end);
         }
     }
-    start
+    Halves { cut: start, around: [first, last] }
 }
 
 /// Into how many bins items are sorted, at most.
