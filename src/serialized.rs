@@ -146,9 +146,9 @@ mod tests {
     }
 
     #[track_caller]
-    fn assert_kept<T: Serialize + DeserializeOwned + PartialEq + Debug>(value: T) {
-        let text = serde_json::to_string(&value).expect("it is written");
-        assert_eq!(serde_json::from_str::<T>(&text).expect("it is read"), value, "{text}");
+    fn assert_kept<T: Serialize + DeserializeOwned + PartialEq + Debug>(value: &T) {
+        let text = serde_json::to_string(value).expect("it is written");
+        assert_eq!(&serde_json::from_str::<T>(&text).expect("it is read"), value, "{text}");
     }
 
     fn error<T: DeserializeOwned + Debug>(text: &str) -> String {
@@ -157,14 +157,14 @@ mod tests {
 
     #[test]
     fn values_are_kept() {
-        assert_kept(LinearRgb::new(0.1, 2.0, 1e-9));
-        assert_kept(Srgb8::new(1, 2, 255));
-        assert_kept(Size::new(80, 24));
-        assert_kept(Map::ALL.to_vec());
-        assert_kept([Sampling::BEST, Sampling::Coarse, Sampling::Each(NonZeroU32::MIN)]);
-        assert_kept(camera());
-        assert_kept(Resolution::square(3, 2).with_pixel_aspect(0.3).expect("a shape"));
-        assert_kept(Attributes::BOLD | Attributes::CROSSED_OUT);
+        assert_kept(&LinearRgb::new(0.1, 2.0, 1e-9));
+        assert_kept(&Srgb8::new(1, 2, 255));
+        assert_kept(&Size::new(80, 24));
+        assert_kept(&Map::ALL.to_vec());
+        assert_kept(&[Sampling::BEST, Sampling::Coarse, Sampling::Each(NonZeroU32::MIN)]);
+        assert_kept(&camera());
+        assert_kept(&Resolution::square(3, 2).with_pixel_aspect(0.3).expect("a shape"));
+        assert_kept(&(Attributes::BOLD | Attributes::CROSSED_OUT));
     }
 
     #[test]

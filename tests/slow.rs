@@ -500,7 +500,7 @@ fn a_draw_call_with_a_pane_in_the_background_is_short() {
             state.orbit(0.01, 0.0);
             let start = cpu();
             terminal.draw(|frame| frame.render_stateful_widget(&view, frame.area(), &mut state)).expect("no errors");
-            let took = cpu() - start;
+            let took = cpu().saturating_sub(start);
             // So each has a new picture to show, and the next one is being traced.
             woken.recv().expect("the thread is there");
             took
