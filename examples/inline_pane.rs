@@ -20,6 +20,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut terminal = ratatui::init_with_options(TerminalOptions { viewport: Viewport::Inline(ROWS) });
     let result = look_for_views(&mut terminal, &scene);
     ratatui::restore();
+    // The shell goes on below the picture.
+    println!();
     result
 }
 
