@@ -114,10 +114,11 @@ fn main() {
             let alone = one.install(|| termtrace_backend::Termtrace::new(&s)).build_s;
             let both = termtrace_backend::Termtrace::new(&s);
             println!(
-                "build {:<22} 1 thread {:8.1} ms; 2 threads {:.1} ms",
+                "build {:<22} 1 thread {:8.1} ms; 2 threads {:.1} ms; {:.1} bytes per primitive",
                 "termtrace",
                 alone * 1e3,
-                both.build_s * 1e3
+                both.build_s * 1e3,
+                both.tree_bytes() as f64 / s.prims() as f64
             );
             for kernel in [Kernel::Single, Kernel::Packet, Kernel::Scalar] {
                 if want(&format!("termtrace/{kernel:?}").to_lowercase()) {

@@ -60,6 +60,11 @@ impl Termtrace {
         Self { kernel: Kernel::Auto, scene: Arc::new(scene), light, build_s }
     }
 
+    /// The size of the trees and their leaves.
+    pub fn tree_bytes(&self) -> usize {
+        self.scene.tree_bytes()
+    }
+
     /// The same scene, traced in that way.
     pub fn by(&self, kernel: Kernel) -> Self {
         Self { kernel, scene: self.scene.clone(), ..*self }
