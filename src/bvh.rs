@@ -11,6 +11,8 @@ use glam::Vec3;
 use std::convert::Infallible;
 use std::ops::{ControlFlow, Range};
 
+mod cut;
+mod wide;
 mod build;
 mod packet;
 

@@ -1,0 +1,221 @@
+//! The choice of a cut between the items of a node: the one that the surface area heuristic expects to be cheapest
+//! (Goldsmith and Salmon 1987), among the cuts between a few bins along each axis (Wald, On fast Construction of SAH-based
+//! Bounding Volume Hierarchies, 2007).
+
+use crate::bounds::Bounds;
+use crate::lanes::LANES;
+use glam::Vec3;
+use std::array::from_fn;
+
+/// A box as two rows of four numbers, which fit the CPU's registers.
+#[derive(Clone, Copy)]
+#[repr(align(16))]
+pub(super) struct Rows {
+    pub(super) min: [f32; 4],
+    pub(super) max: [f32; 4],
+}
+
+impl Rows {
+    const EMPTY: Self = Self { min: [f32::INFINITY; 4], max: [f32::NEG_INFINITY; 4] };
+
+    #[inline(always)]
+    fn grow(&mut self, other: &Self) {
+        for at in 0..4 {
+            self.min[at] = if other.min[at] < self.min[at] { other.min[at] } else { self.min[at] };
+            self.max[at] = if other.max[at] > self.max[at] { other.max[at] } else { self.max[at] };
+        }
+    }
+
+    /// Returns twice the middle.
+    #[inline(always)]
+    fn middle(&self) -> [f32; 4] {
+        from_fn(|at| self.min[at] + self.max[at])
+    }
+
+    pub(super) fn bounds(&self) -> Bounds {
+        let [x, y, z, _] = self.min;
+        let [to_x, to_y, to_z, _] = self.max;
+        Bounds { min: Vec3::new(x, y, z), max: Vec3::new(to_x, to_y, to_z) }
+    }
+}
+
+/// A box with its number, as the bits of the fourth minimum, which no computation uses.
+pub(super) type Item = Rows;
+
+pub(super) fn item((number, bounds): (u32, &Bounds)) -> Item {
+    let [x, y, z] = bounds.min.to_array();
+    let [to_x, to_y, to_z] = bounds.max.to_array();
+    Rows { min: [x, y, z, f32::from_bits(number)], max: [to_x, to_y, to_z, 0.0] }
+}
+
+/// Limit on the boxes of a leaf, which are tested together.
+const LEAF: usize = LANES;
+
+/// Limit on the depth of a tree.
+const MAX_DEPTH: usize = 96;
+
+/// Depth up to which cuts may be unbalanced. Below it they halve the items, so that no path is longer than `MAX_DEPTH`:
+/// 2^32 items are halved 32 times.
+const FREE_DEPTH: usize = MAX_DEPTH - 34;
+
+/// The bounds of some items.
+#[derive(Clone, Copy)]
+pub(super) struct Around {
+    pub(super) boxes: Rows,
+    /// The bounds of twice their middles.
+    middles: Rows,
+}
+
+impl Around {
+    const NOTHING: Self = Self { boxes: Rows::EMPTY, middles: Rows::EMPTY };
+
+    pub(super) fn of(items: &[Item]) -> Self {
+        let mut around = Self::NOTHING;
+        for item in items {
+            around.grow(item);
+        }
+        around
+    }
+
+    #[inline(always)]
+    fn grow(&mut self, item: &Item) {
+        let middle = item.middle();
+        self.boxes.grow(item);
+        self.middles.grow(&Rows { min: middle, max: middle });
+    }
+}
+
+/// A cut: the number of items before it, and the bounds of the items on each side.
+pub(super) struct Halves {
+    pub(super) cut: usize,
+    pub(super) around: [Around; 2],
+}
+
+impl Halves {
+    pub(super) fn at(cut: usize, items: &[Item]) -> Self {
+        Self { cut, around: [Around::of(&items[..cut]), Around::of(&items[cut..])] }
+    }
+}
+
+/// Chooses a cut and partitions the items by it; `None` if they fit into a leaf.
+pub(super) fn cut(items: &mut [Item], around: &Around, depth: usize) -> Option<Halves> {
+    if items.len() <= LEAF {
+        return None;
+    }
+    let plane = if depth < FREE_DEPTH { Cut::cheapest(items, &around.middles) } else { None };
+    // All middles coincide, or the node is too deep: any half is as good.
+    let Some(Cut { bin, before, .. }) = plane else { return Some(Halves::at(items.len() / 2, items)) };
+    Some(partition(items, |item| bin.of(item) < before))
+}
+
+/// Moves the items for which `is_first` is true before the others. The bounds of both sides are computed on the way: with
+/// a separate pass over the items of each node, the tree of the dragon's 871 k triangles took 1.01 times as long.
+fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
+    let (mut start, mut end) = (0, items.len());
+    let [mut first, mut last] = [Around::NOTHING; 2];
+    while start < end {
+        let item = items[start];
+        if is_first(&item) {
+            first.grow(&item);
+            start += 1;
+        } else {
+            last.grow(&item);
+            end -= 1;
+            items.swap(start, end);
+        }
+    }
+    Halves { cut: start, around: [first, last] }
+}
+
+/// Largest number of bins.
+const BINS: usize = 16;
+
+/// Number of items below which half as many bins are used.
+const FEW_BINS: usize = 48;
+
+/// Equal parts along one axis.
+#[derive(Clone, Copy)]
+struct Bin {
+    axis: usize,
+    start: f32,
+    scale: f32,
+    last: usize,
+}
+
+impl Bin {
+    fn along(axis: usize, middles: &Rows, bins: usize) -> Option<Self> {
+        let extent = middles.max[axis] - middles.min[axis];
+        let scale = bins as f32 * 0.999 / extent;
+        let start = middles.min[axis];
+        (extent > 0.0 && scale.is_finite()).then_some(Self { axis, start, scale, last: bins - 1 })
+    }
+
+    #[inline(always)]
+    fn of(&self, item: &Item) -> usize {
+        let middle = item.min[self.axis] + item.max[self.axis];
+        (((middle - self.start) * self.scale) as usize).min(self.last)
+    }
+}
+
+/// A cut between two bins.
+struct Cut {
+    bin: Bin,
+    /// Index of the first bin after it.
+    before: usize,
+    /// The expected number of tests on both sides.
+    cost: f32,
+}
+
+impl Cut {
+    fn cheapest(items: &[Item], middles: &Rows) -> Option<Self> {
+        let count = if items.len() < FEW_BINS { BINS / 2 } else { BINS };
+        let axes = [0, 1, 2].map(|axis| Bin::along(axis, middles, count));
+        let mut bins = [[(Rows::EMPTY, 0_u32); BINS]; 3];
+        for item in items {
+            for (bin, bins) in axes.iter().zip(&mut bins) {
+                let Some(bin) = bin else { continue };
+                let (rows, count) = &mut bins[bin.of(item)];
+                rows.grow(item);
+                *count += 1;
+            }
+        }
+        let planes = axes.into_iter().zip(&bins).filter_map(|(bin, bins)| Self::between(bin?, &bins[..count]));
+        planes.min_by(|a, b| a.cost.total_cmp(&b.cost))
+    }
+
+    fn between(bin: Bin, bins: &[(Rows, u32)]) -> Option<Self> {
+        let mut behind = [(0.0, 0); BINS];
+        let mut sum = (Rows::EMPTY, 0);
+        for at in (1..bins.len()).rev() {
+            sum.0.grow(&bins[at].0);
+            sum.1 += bins[at].1;
+            behind[at] = (cost(sum), sum.1);
+        }
+        let mut sum = (Rows::EMPTY, 0);
+        let mut cheapest: Option<Self> = None;
+        for before in 1..bins.len() {
+            sum.0.grow(&bins[before - 1].0);
+            sum.1 += bins[before - 1].1;
+            if sum.1 == 0 || behind[before].1 == 0 {
+                continue;
+            }
+            let cost = cost(sum) + behind[before].0;
+            if cheapest.as_ref().is_none_or(|cheapest| cost < cheapest.cost) {
+                cheapest = Some(Self { bin, before, cost });
+            }
+        }
+        cheapest
+    }
+}
+
+/// Returns the half area of the box times the expected number of tests below it.
+///
+/// A leaf's boxes are tested eight at a time, so what counts is the number of blocks of eight. A sixteenth for each box
+/// tells apart cuts with as many blocks. Counting single boxes instead made 18 % more leaves of the dragon's 871 k
+/// triangles, and 5 % slower rays.
+#[inline(always)]
+fn cost((rows, count): (Rows, u32)) -> f32 {
+    let [x, y, z, _]: [f32; 4] = from_fn(|at| rows.max[at] - rows.min[at]);
+    let tests = count.div_ceil(LANES as u32) as f32 + count as f32 / 16.0;
+    if count == 0 { 0.0 } else { tests * (x * y + y * z + z * x) }
+}

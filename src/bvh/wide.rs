@@ -1,0 +1,201 @@
+//! The collapse of the binary tree into one with eight children in each node.
+
+use super::{Child, Node};
+use crate::bounds::Bounds;
+use crate::lanes::LANES;
+use std::ops::Range;
+
+/// A node of the binary tree. Its first child follows it in the array.
+#[derive(Clone, Copy)]
+pub(super) struct Pair {
+    pub(super) bounds: Bounds,
+    /// Number of boxes of a leaf; 0 for an inner node.
+    pub(super) count: u32,
+    /// For a leaf, the index of its first box in the order; for an inner node, the distance to its second child.
+    pub(super) at: u32,
+}
+
+/// The wide tree in construction.
+pub(super) struct Wide<'p> {
+    pairs: &'p [Pair],
+    fillings: Vec<Filling>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) leaves: Vec<Range<u32>>,
+}
+
+impl<'p> Wide<'p> {
+    pub(super) fn of(pairs: &'p [Pair]) -> Self {
+        Self { pairs, fillings: fillings(pairs), nodes: Vec::new(), leaves: Vec::new() }
+    }
+
+    pub(super) fn append(&mut self, at: usize) -> Child {
+        let Pair { count, at: first, .. } = self.pairs[at];
+        if count > 0 {
+            self.leaves.push(first..first + count);
+            return Child::leaf(self.leaves.len() as u32 - 1);
+        }
+        let number = self.nodes.len();
+        self.nodes.push(Node::EMPTY);
+        let mut children = Children::default();
+        self.gather(at, LANES, &mut children);
+        for (lane, &pair) in children.pairs[..children.count].iter().enumerate() {
+            let child = self.append(pair);
+            let bounds = &self.pairs[pair].bounds;
+            let node = &mut self.nodes[number];
+            node.children[lane] = child;
+            for axis in 0..3 {
+                node.bounds[axis][0].0[lane] = bounds.min[axis];
+                node.bounds[axis][1].0[lane] = bounds.max[axis];
+            }
+        }
+        Child::node(number as u32)
+    }
+
+    /// Adds the nodes that represent a node in at most `places` places.
+    fn gather(&self, at: usize, places: usize, children: &mut Children) {
+        let left = usize::from(self.fillings[at][places - 1]);
+        if left == WHOLE {
+            children.pairs[children.count] = at;
+            children.count += 1;
+        } else {
+            self.gather(at + 1, left, children);
+            self.gather(at + self.pairs[at].at as usize, places - left, children);
+        }
+    }
+}
+
+/// The nodes of the binary tree that become the children of a wide node.
+#[derive(Default)]
+struct Children {
+    pairs: [usize; LANES],
+    count: usize,
+}
+
+/// How the nodes below a node of the binary tree are distributed over 1 to 8 places of a wide node: for each number of
+/// places, how many of them go to the first child, or [`WHOLE`] where the node itself takes one place.
+type Filling = [u8; LANES];
+
+/// The node takes one place by itself.
+const WHOLE: usize = 0;
+
+/// Chooses the wide nodes that a ray is expected to meet least often, by dynamic programming over the binary tree
+/// (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017).
+///
+/// To open the largest box until there are eight left a third of the nodes with two children. This way the dragon's 871 k
+/// triangles have 28 % fewer nodes.
+fn fillings(pairs: &[Pair]) -> Vec<Filling> {
+    let mut fillings = vec![[WHOLE as u8; LANES]; pairs.len()];
+    // From the last node to the first, both children come before their parent, the first child on top.
+    let mut costs: Vec<[f32; LANES]> = Vec::new();
+    for (pair, filling) in pairs.iter().zip(&mut fillings).rev() {
+        let cost = match pair.count {
+            0 => costs.pop().zip(costs.pop()).map(|(left, right)| fill(pair.bounds.half_area(), left, right, filling)),
+            // A leaf is tested wherever it stands: its cost is the same in all trees.
+            _ => None,
+        };
+        costs.push(cost.unwrap_or([0.0; LANES]));
+    }
+    fillings
+}
+
+/// Finds the cheapest distribution for each number of places, and returns what each costs: the half areas of the wide
+/// nodes in it.
+fn fill(area: f32, left: [f32; LANES], right: [f32; LANES], filling: &mut Filling) -> [f32; LANES] {
+    let mut cost = [f32::INFINITY; LANES];
+    for places in 2..=LANES {
+        for of_left in 1..places {
+            let both = left[of_left - 1] + right[places - of_left - 1];
+            // Also the first of all, where areas are too great for f32.
+            if both < cost[places - 1] || of_left == 1 {
+                (cost[places - 1], filling[places - 1]) = (both, of_left as u8);
+            }
+        }
+    }
+    // In one place it is a node of its own, with eight places below.
+    cost[0] = area + cost[LANES - 1];
+    for places in 2..LANES {
+        if cost[0] < cost[places - 1] {
+            (cost[places - 1], filling[places - 1]) = (cost[0], WHOLE as u8);
+        }
+    }
+    cost
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::cut::{Around, Item, item};
+    use glam::Vec3;
+
+    /// A binary tree whose leaves have one box each, of arbitrary boxes.
+    fn pairs(boxes: usize, seed: u32) -> Vec<Pair> {
+        let mut state = seed;
+        let mut number = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
+        };
+        let mut items: Vec<Item> = (0..boxes as u32)
+            .map(|at| {
+                let min = Vec3::new(number(), number(), number()) * 10.0;
+                item((at, &Bounds { min, max: min + Vec3::new(number(), number(), number()) }))
+            })
+            .collect();
+        let mut nodes = Vec::new();
+        one_by_one(&mut items, 0, &mut nodes);
+        nodes
+    }
+
+    /// Appends a binary tree down to single boxes, as `build::append` does down to leaves.
+    fn one_by_one(items: &mut [Item], first: usize, nodes: &mut Vec<Pair>) {
+        let bounds = Around::of(items).boxes.bounds();
+        let at = nodes.len();
+        if items.len() == 1 {
+            return nodes.push(Pair { bounds, count: 1, at: first as u32 });
+        }
+        nodes.push(Pair { bounds, count: 0, at: 0 });
+        let cut = 1 + (items.len() * 3 + first) % (items.len() - 1);
+        let (left, right) = items.split_at_mut(cut);
+        one_by_one(left, first, nodes);
+        nodes[at].at = (nodes.len() - at) as u32;
+        one_by_one(right, first + cut, nodes);
+    }
+
+    /// The least sum of half areas of wide nodes, found by trying all distributions.
+    fn least_cost(pairs: &[Pair], at: usize, places: usize) -> f64 {
+        let pair = &pairs[at];
+        if pair.count > 0 {
+            return 0.0;
+        }
+        let right = at + pair.at as usize;
+        let split = |places: usize| {
+            let of_left = 1..places;
+            let both = of_left.map(|left| least_cost(pairs, at + 1, left) + least_cost(pairs, right, places - left));
+            both.fold(f64::INFINITY, f64::min)
+        };
+        let whole = || f64::from(pair.bounds.half_area()) + split(LANES);
+        if places == 1 { whole() } else { split(places).min(whole()) }
+    }
+
+    /// The sum of half areas of the wide nodes that the fillings make, and how many boxes they reach.
+    fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
+        if wide.pairs[at].count > 0 {
+            return (0.0, 1);
+        }
+        let mut children = Children::default();
+        wide.gather(at, LANES, &mut children);
+        let below = children.pairs[..children.count].iter().map(|&child| cost_and_boxes(wide, child));
+        let own = f64::from(wide.pairs[at].bounds.half_area());
+        below.fold((own, 0), |(cost, boxes), (more, others)| (cost + more, boxes + others))
+    }
+
+    #[test]
+    fn wide_nodes_are_the_cheapest_of_all_distributions() {
+        for seed in 0..6 {
+            let pairs = pairs(14, seed);
+            let (cost, boxes) = cost_and_boxes(&Wide::of(&pairs), 0);
+            let least = least_cost(&pairs, 0, 1);
+            assert_eq!(boxes, 14, "seed {seed}");
+            assert!((cost - least).abs() < 1e-4 * least, "seed {seed}: {cost}, but {least} is possible");
+        }
+    }
+}
