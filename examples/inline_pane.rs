@@ -1,5 +1,5 @@
-//! A scene in an inline viewport, below what the shell has printed: looks for a view, and prints it. Arrows go around the
-//! target, plus and minus come nearer and go away, Enter prints the eye point above the picture, `q` leaves.
+//! A scene in an inline viewport, below what the shell has printed: looks for a view, and prints it. Arrows go around
+//! the target, plus and minus come nearer and go away, Enter prints the eye point above the picture, `q` leaves.
 
 use ratatui::crossterm::event::{self, Event, KeyCode};
 use ratatui::text::Line;
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut terminal = ratatui::init_with_options(TerminalOptions { viewport: Viewport::Inline(ROWS) });
     let result = look_for_views(&mut terminal, &scene);
     ratatui::restore();
-    // The shell goes on below the picture.
+    // The shell's prompt continues on the next line.
     println!();
     result
 }

@@ -1,6 +1,6 @@
-//! Three panes that share one scene, each traced by a thread of its own, with the mouse: the left button goes around the target,
-//! the right one shifts the picture, the wheel comes nearer to what is under the pointer, and a click says which object
-//! that is. `f` sees everything, `q` leaves.
+//! Three panes that share one scene, each traced by a thread of its own, with the mouse: the left button goes around
+//! the target, the right one shifts the picture, the wheel comes nearer to what is under the pointer, and a click says
+//! which object that is. `f` sees everything, `q` leaves.
 
 use ratatui::crossterm::event::{self, DisableMouseCapture, EnableMouseCapture, Event, KeyCode};
 use ratatui::crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     })
 }
 
-/// Sends all events, until there is nothing to read, or nobody who listens.
+/// Sends all events until the input ends or the receiver is gone.
 fn read_events(sender: &Sender<Option<Event>>) {
     while let Ok(event) = event::read() {
         if sender.send(Some(event)).is_err() {
@@ -56,12 +56,12 @@ struct App {
 }
 
 impl App {
-    /// Draws whenever an event has come, or a picture: that is `None`.
+    /// Draws after each event or picture; `None` stands for a picture.
     fn run(&mut self, terminal: &mut DefaultTerminal, inbox: &Receiver<Option<Event>>) -> Result<(), Box<dyn Error>> {
         loop {
             terminal.draw(|frame| self.draw(frame))?;
             let first = inbox.recv()?;
-            // What has come meanwhile is drawn with it.
+            // Events that have arrived meanwhile are handled before the next draw call.
             for event in std::iter::once(first).chain(inbox.try_iter()).flatten() {
                 match event {
                     Event::Key(key) if key.code == KeyCode::Char('q') => return Ok(()),

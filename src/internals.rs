@@ -1,7 +1,7 @@
-//! No promise: every module of the route, for this project's own program, tests, benches and fuzz targets. Anything here may
-//! change in any release.
+//! Unstable: all modules, for this project's own program, tests, benches and fuzz targets. Anything here may change in
+//! any release.
 
-/// Re-exports what is `pub` in each module.
+/// Re-exports the `pub` items of each module.
 macro_rules! modules {
     ($($module:ident)*) => {
         $(pub mod $module {

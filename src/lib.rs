@@ -38,18 +38,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A library user meets [`Scene`]: all that was checked, together with the trees that rays go through. Loading
-//! one, or building one in code, builds the trees once; copies share them, and no function that takes a scene builds any.
+//! A library user meets [`Scene`]: all that was checked, together with the trees that rays go through. Loading one, or
+//! building one in code, builds the trees once; copies share them, and no function that takes a scene builds any.
 //!
 //! # The surface
 //!
-//! What is promised stands at the crate's root, in [`export`] and in [`live`]; the modules of the route are private.
+//! Promised items are at the root, in [`export`] and in [`live`]; all other modules are private.
 //! - Scene files: [`Scene`], its errors [`LoadError`] and [`SceneError`], and [`Progress`] of reading
-//! - Scenes in code: [`Scene::builder`], [`Camera`], [`Object`], [`Shape`], [`Material`], [`Light`], [`Background`], [`ToneCurve`],
-//!   [`LinearRgb`]
+//! - Scenes in code: [`Scene::builder`], [`Camera`], [`Object`], [`Shape`], [`Material`], [`Light`], [`Background`],
+//!   [`ToneCurve`], [`LinearRgb`]
 //! - Cameras over time: [`CameraPath`]
-//! - Pictures: [`Render`], and [`render()`] in short, with [`Resolution`] and [`Sampling`] -> [`Framebuffer`], [`tone()`] -> [`Picture`];
-//!   [`Map`]
+//! - Pictures: [`Render`], and [`render()`] in short, with [`Resolution`] and [`Sampling`] -> [`Framebuffer`],
+//!   [`tone()`] -> [`Picture`]; [`Map`]
 //! - Pictures in words: [`describe()`], [`explain()`]
 //! - Cells and text: [`Grid`], [`CellMode`], [`Painter`], [`text_frame`], [`frame_grid`], [`export`]
 //! - ratatui: [`SceneView`] and its [`SceneState`], a scene as a widget; `EncoderBackend` (feature `backend`) and its
@@ -59,8 +59,9 @@
 //!
 //! # Features
 //!
-//! Without any there are scenes in code, pictures and maps, descriptions and explanations, cells, the encoder, and text, ANSI,
-//! SVG and HTML. What more there is with a feature, and how many crates are compiled in all, this one included:
+//! Without any there are scenes in code, pictures and maps, descriptions and explanations, cells, the encoder, and
+//! text, ANSI, SVG and HTML. What more there is with a feature, and how many crates are compiled in all, this one
+//! included:
 //!
 //! | features | what they bring | crates |
 //! |---|---|--:|
@@ -155,8 +156,8 @@
 //!
 //! # Laws
 //!
-//! 1. A module uses only what stands above it here. Within a module the files of one folder form no cycle, and between a
-//!    file and those in its folder only types go one of the ways (`tests/laws.rs` reads the imports).
+//! 1. A module uses only what stands above it here. Within a module the files of one folder form no cycle, and between
+//!    a file and those in its folder only types go one of the ways (`tests/laws.rs` reads the imports).
 //! 2. Written, then checked: `scene_file` holds what the author wrote and where, of surfaces in the terms of `shape`;
 //!    `scene` has it converted once into a value that cannot be wrong. Units and colour spaces change there and nowhere
 //!    else.
@@ -167,43 +168,40 @@
 //!    threads, and the same bits on any CPU, because only + - * / and the square root are on its path, with libm in
 //!    Rust at set-up (clippy bans the rest; `tests/hashes.txt` has the bits).
 //! 5. Only `terminal` touches the operating system's terminal and signals, and it is the one owner of what is turned
-//!    on. Everything above bytes runs without a terminal. The feature `test-hooks`, which this crate's tests turn on for
-//!    themselves (a dev-dependency of the crate on itself), lets them say where it is to fail; no other build has it.
-//!    `input`, `protocol`, `pace`, `control` and `viewer` know no file, thread or clock: they are told the time.
-//! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no
-//!    timer runs. *When* to trace, refine, draw and wait is decided by one function of one snapshot of facts
-//!    (`viewer::schedule`). Each piece of state has one owner: no field is assigned but in the file that defines its type.
+//!    on. Everything above bytes runs without a terminal. The feature `test-hooks`, which this crate's tests turn on
+//!    for themselves (a dev-dependency of the crate on itself), lets them say where it is to fail; no other build has
+//!    it. `input`, `protocol`, `pace`, `control` and `viewer` know no file, thread or clock: they are told the time.
+//! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no timer
+//!    runs. *When* to trace, refine, draw and wait is decided by one function of one snapshot of facts
+//!    (`viewer::schedule`). Each piece of state has one owner: no field is assigned but in the file that defines its
+//!    type.
 //! 7. The library neither prints nor exits, and installs nothing by itself.
-//! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over arrays of its rays, in which
-//!    eight rays stand side by side all the way (`EightRays`), each with a bit for whether it is asked
-//!    about.
+//! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over arrays of its rays, in
+//!    which eight rays stand side by side all the way (`EightRays`), each with a bit for whether it is asked about.
 //! 9. Only `output_file` writes files, for the library and the program.
 //!
 //! # What is not here
 //!
-//! No trait objects in the tracer: a [`Shape`] is an enum, its `Part`s are what rays are
-//! tested against. A new surface is one file under `shape/`, where it implements `Surface`,
-//! `Described`, `InSceneFile` and `CheckedShape`, and
-//! one line in the table of `shape`, from which the enums, the lists and trees of `accel`, and what reads, describes and
+//! No trait objects in the tracer: a [`Shape`] is an enum, its `Part`s are what rays are tested against. A new surface
+//! is one file under `shape/`, where it implements `Surface`, `Described`, `InSceneFile` and `CheckedShape`, and one
+//! line in the table of `shape`, from which the enums, the lists and trees of `accel`, and what reads, describes and
 //! explains it are made (`shape::cube` is such a surface, for tests). In the same way a material is a file under
-//! `material/` with a type that is `Reflecting` and a line in the table of `material`, and a light
-//! a file under `light/` with a `LightSource` and a line in the table of `light`
-//! (`material::stripes` and `light::sun`, for tests). No crate reads scenes or meshes:
-//! `scene_text` and `mesh_file` say which were tried, and at which file each failed. No fixed epsilon: see
-//! `SurfacePoint::ray_origin`. No order of the tree that could show: see
-//! `Bounds::crossed`. No flag says that a picture is out of date: the shot that is wanted is
-//! compared with the one that was begun. A kind of cells is a file under `cell/` with all that is particular to it, and a
-//! row of the table of [`Glyphs`]; an export format is a file under `export/` and a row of the table of
-//! [`Format`](export::Format)s: flags, keys, commands, panels and the check against a golden file follow from these. No list
-//! of panels: a panel is a layer of the viewer, one file with a type that implements `viewer::layers::Layer`, and the line
-//! that opens it.
+//! `material/` with a type that is `Reflecting` and a line in the table of `material`, and a light a file under
+//! `light/` with a `LightSource` and a line in the table of `light` (`material::stripes` and `light::sun`, for tests).
+//! No crate reads scenes or meshes: `scene_text` and `mesh_file` say which were tried, and at which file each failed.
+//! No fixed epsilon: see `SurfacePoint::ray_origin`. No order of the tree that could show: see `Bounds::crossed`. No
+//! flag says that a picture is out of date: the shot that is wanted is compared with the one that was begun. A kind of
+//! cells is a file under `cell/` with all that is particular to it, and a row of the table of [`Glyphs`]; an export
+//! format is a file under `export/` and a row of the table of [`Format`](export::Format)s: flags, keys, commands,
+//! panels and the check against a golden file follow from these. No list of panels: a panel is a layer of the viewer,
+//! one file with a type that implements `viewer::layers::Layer`, and the line that opens it.
 //!
 //! # One eye ray
 //!
 //! `render` goes over a picture for `maps` or `app::renderer`: `render::uniform` with the same number of samples for
-//! each pixel, `render::adaptive` with more where there are edges. `render::schedule` gives each thread its tiles and cuts
-//! their samples into batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye rays (by
-//! `camera`) -> `hit` finds the closest hits: among the objects that stand alone, then in the trees (`accel`,
+//! each pixel, `render::adaptive` with more where there are edges. `render::schedule` gives each thread its tiles and
+//! cuts their samples into batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye
+//! rays (by `camera`) -> `hit` finds the closest hits: among the objects that stand alone, then in the trees (`accel`,
 //! over `bvh`), whose leaves are parts of `shape`s -> `shade` works out the points that were met (`shade::points`)
 //! -> it sends shadow rays (`hit` again) and adds up what arrives from the `light`s -> it has the
 //! `material` reflect that. `render::tiles` puts a tile's light into the `framebuffer` -> `tone` -> `cell` ->
@@ -212,11 +210,11 @@
 //! # One scene with a typo
 //!
 //! `scene::load` has the bytes read (`named_file`) -> `scene_text` makes a tree of them, in which every node has its
-//! place -> `scene_file` reads the fields, those of a
-//! `shape`, `material` or `light` in its own file; a name that is not known is a fault there, with the word that was
-//! meant (`text`) -> `scene::checked` is silent about what is missing only because of that -> `scene_text::fault` puts all
-//! faults in order, each with its line and carets -> the error goes back to who loaded the scene: the command line prints
-//! it, and the live view shows the first fault of it (`viewer::fault`).
+//! place -> `scene_file` reads the fields, those of a `shape`, `material` or `light` in its own file; a name that is
+//! not known is a fault there, with the word that was meant (`text`) -> `scene::checked` is silent about what is
+//! missing only because of that -> `scene_text::fault` puts all faults in order, each with its line and carets -> the
+//! error goes back to who loaded the scene: the command line prints it, and the live view shows the first fault of it
+//! (`viewer::fault`).
 //!
 //! # One key press
 //!
@@ -360,7 +358,7 @@ pub use record::Cast;
 #[cfg(feature = "gif")]
 pub use record::Gif;
 
-// What is read from words.
+// The error of `FromStr`.
 pub use text::ParseError;
 
 // The crates whose types are in signatures.

@@ -19,19 +19,20 @@ pub use crate::app::{Ending, Error, Options, Outcome, Source, run};
 use crate::scene::LoadError;
 pub use crate::terminal::Signals;
 
-/// Shows the scene of the first source until the user leaves, or goes to the next one. What takes longer than a moment
-/// shows its progress, then a sketch to look around in, and can be left at any time. The terminal is as it was when this
-/// returns, and also when it panics; a first scene that is wrong at once never touches it.
+/// Shows the scenes of these sources, beginning with the first, until the user leaves.
 ///
-/// A scene is read again when one of its files changes. The view shows what is wrong with it then, and with any scene but
-/// the first, over the picture, which stays as it was.
+/// A scene that takes longer than a moment to load shows its progress, then a coarse sketch to look around in; the user
+/// can leave meanwhile. The terminal is restored when this returns or panics. An error in the first scene that is found
+/// at once is returned without touching the terminal.
+///
+/// A scene is read again when one of its files changes. Errors of a later load are shown over the last good picture.
 ///
 /// # Errors
-/// If there is no source or no terminal, or the terminal goes away, or there is not enough memory for its window; or what is
-/// wrong with the first scene.
+/// If there is no source or no terminal, the terminal goes away, there is not enough memory for its window, or the
+/// first scene cannot be loaded.
 ///
 /// # Panics
-/// With the payload of a thread that panicked while tracing, or while reading or building a scene.
+/// With the payload of a thread that panicked while tracing, reading or building.
 pub fn open(
     sources: Vec<Source<LoadError>>,
     options: Options,

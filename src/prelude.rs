@@ -1,4 +1,4 @@
-//! What a first program needs: a scene, from a file or in code, its picture, and the picture's text.
+//! The imports of a typical program: a scene from a file or in code, its picture, and its text.
 //!
 //! ```
 //! use termtrace::prelude::*;

@@ -1,4 +1,4 @@
-//! Plain values in the formats of serde. What a type promises is checked when one is read.
+//! Serialization of plain values by serde. Invariants are checked when a value is deserialized.
 
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle};
 use crate::color::{LinearRgb, Srgb8};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::convert::Infallible;
 use std::num::NonZeroU32;
 
-/// Implements both traits for types by the form in which each is written: how a value becomes one, and back.
+/// Implements both traits by a serialized form: the conversion to it, and the checked conversion back.
 macro_rules! written_as {
     ($($Type:ty as $Form:ty: $to:expr, $from:expr;)*) => {
         $(impl Serialize for $Type {

@@ -1,10 +1,11 @@
 //! A ratatui widget that shows a scene.
 //!
-//! [`SceneView`] says what is shown, and how; [`SceneState`] is kept by the application from one draw call to the next: it
-//! has the camera and the last picture. A picture is traced in the draw call, or [in the background](SceneState::in_background).
-//! Either way nothing is traced for a pane that is to show what it showed before.
+//! [`SceneView`] holds the options of a pane; [`SceneState`] is kept by the application between draw calls and holds
+//! the camera and the last picture. Pictures are traced in the draw call or [in the
+//! background](SceneState::in_background). A pane whose scene, camera, size and options are unchanged is not traced
+//! again.
 //!
-//! Nothing here reads events: an application passes on what its keys and its mouse mean.
+//! The widget reads no events: the application calls the state's methods for its keys and mouse events.
 //!
 //! ```
 //! use ratatui::{Terminal, backend::TestBackend};

@@ -265,8 +265,8 @@ fn cycles_of_siblings_are_found() {
     assert_eq!(found(&[(a, "use super::b;"), ("encode/d/b.rs", "use super::a;"), (b, "")]), 0);
 }
 
-/// Parents and children that both name more than types of each other, as (parent's file, child's name): then neither can
-/// be understood before the other. A child may use the types of its parent, or the parent those of the child.
+/// Parents and children that both name more than types of each other, as (parent's file, child's name): then neither
+/// can be understood before the other. A child may use the types of its parent, or the parent those of the child.
 fn knots(files: &[(PathBuf, String)]) -> Vec<String> {
     let codes: BTreeMap<_, _> = files.iter().map(|(path, text)| (path.as_path(), code(text))).collect();
     let children = codes.iter().filter_map(|(&path, code)| {
@@ -393,7 +393,7 @@ fn the_operating_systems_terminal_has_one_owner() {
     }
 }
 
-/// What ties code to some operating systems.
+/// Signs of code for some operating systems only.
 const OF_A_SYSTEM: [&str; 7] =
     ["std::os::", "rustix::", "nix::", "signal_hook", "cfg(unix", "cfg(windows", "target_os"];
 
@@ -423,8 +423,8 @@ fn only_the_live_view_is_tied_to_a_system() {
     assert!(!["scene.rs", "named_file.rs", "named_file/plain.rs"].into_iter().any(is_live_only));
 }
 
-/// The modules of a person's session that need no terminal, file or clock: they are told the time, and driven by a terminal,
-/// a server or a test alike.
+/// The modules of a person's session that need no terminal, file or clock: they are told the time, and driven by a
+/// terminal, a server or a test alike.
 const PURE: [&str; 5] = ["input", "protocol", "pace", "control", "viewer"];
 
 #[test]

@@ -50,7 +50,7 @@ fn paths(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Whether Windows cannot have a file of that name: a device's, with any extension, or with a character that it refuses.
+/// Returns whether Windows refuses a file name: a device's, with any extension, or one with a reserved character.
 fn is_refused_by_windows(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
     let is_numbered =

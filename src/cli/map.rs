@@ -9,7 +9,7 @@ use termtrace::{Map, Sampling};
 
 /// Stands below the options in the help.
 pub(super) const EXPLAINED: &str = "\
-What is shown (--map); all but the first trace one ray for each pixel:
+Maps (--map); all but the first trace one ray per pixel:
   shaded     the light
   lambert    n.l of all lights, at most 1: no colours, no shadows
   depth      how far away it is: white at the eye, half as light at the target's distance, black far away

@@ -1,4 +1,4 @@
-//! What keys and the mouse make of the camera's motions.
+//! Camera motions for keys and the mouse.
 
 use super::Mode;
 use crate::camera::{Camera, Grip};
@@ -9,8 +9,8 @@ pub fn speed(camera: &Camera) -> f32 {
     0.5 * camera.target_distance()
 }
 
-/// Returns the camera after the picture has been dragged to the right and down by that part of its width and height: the
-/// view turns, in `orbit` about the target, or shifts so that the target follows.
+/// Returns the camera after the picture has been dragged to the right and down by that part of its width and height:
+/// the view turns, in `orbit` about the target, or shifts so that the target follows.
 pub fn dragged(camera: &Camera, mode: Mode, grip: Grip, by: Vec2, aspect_ratio: f32) -> Camera {
     match grip {
         Grip::Pan => camera.panned(by, aspect_ratio),
@@ -19,8 +19,8 @@ pub fn dragged(camera: &Camera, mode: Mode, grip: Grip, by: Vec2, aspect_ratio: 
     }
 }
 
-/// Returns the camera after the eye has come nearer to a point, which stays where it is in the picture, by notches of the
-/// wheel. In `orbit` the target comes nearer to it, too, in a scene of that size.
+/// Returns the camera after the eye has come nearer to a point, which stays where it is in the picture, by notches of
+/// the wheel. In `orbit` the target comes nearer to it, too, in a scene of that size.
 pub fn wheeled(camera: &Camera, mode: Mode, point: Vec3, notches: f32, size: f32) -> Camera {
     if mode == Mode::Orbit { camera.wheeled_around(point, notches, size) } else { camera.wheeled(point, notches) }
 }

@@ -1,7 +1,7 @@
 //! The encoder as a backend of ratatui: any ratatui program sends its bytes.
 //!
-//! ratatui says what changes, cell by cell; here that changes a wanted grid, and `flush` sends what the terminal does not
-//! show yet, in one write.
+//! ratatui says what changes, cell by cell; here that changes a wanted grid, and `flush` sends what the terminal does
+//! not show yet, in one write.
 
 use super::Encoder;
 use super::moves::{Move, Place};
@@ -26,9 +26,9 @@ use std::ops::Range;
 /// ```
 ///
 /// It never asks the terminal anything. The size is what its owner says ([`new`](Self::new) and
-/// [`resize`](Self::resize)); the cursor is where it was last put: by `set_cursor_position`, behind the last cell that was
-/// drawn, or down by the lines appended. A program with an inline viewport calls `set_cursor_position` with where the
-/// cursor is, before it begins and after a resize.
+/// [`resize`](Self::resize)); the cursor is where it was last put: by `set_cursor_position`, behind the last cell that
+/// was drawn, or down by the lines appended. A program with an inline viewport calls `set_cursor_position` with where
+/// the cursor is, before it begins and after a resize.
 ///
 /// What the program has not drawn is left as it is until the program clears it. Clearing is writing blanks, even where
 /// they should be already: it mends a screen on which something else has written. The terminal has to be in raw mode.
@@ -150,7 +150,7 @@ impl<W: Write> EncoderBackend<W> {
             return bytes;
         }
         // What the program writes itself has no colours then, nor has the shell's prompt after it.
-        self.encoder.lay_down_pen(&mut bytes);
+        self.encoder.reset_pen(&mut bytes);
         self.shown_cursor.position = end.map(|Place { column, row }| Position::new(column, row));
         self.shown_cursor.become_cursor(self.cursor, &mut bytes);
         self.encoder.bracket(0, &mut bytes);

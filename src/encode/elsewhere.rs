@@ -1,4 +1,4 @@
-//! What becomes of the screen by other hands than the encoder's.
+//! Changes of the screen that do not come from the encoder.
 
 use super::Encoder;
 use super::moves::Place;
@@ -6,15 +6,15 @@ use super::pen::Pen;
 use crate::grid::Cell;
 
 impl Encoder {
-    /// From here on nothing is known of that cell.
+    /// Marks a cell as unknown.
     pub(super) fn forget_cell(&mut self, Place { column, row }: Place) {
         if let Some(known) = &mut self.known {
             *known.shown.cell_mut(column, row) = Cell::FOREIGN;
         }
     }
 
-    /// Whatever comes from elsewhere is not to be in our colours.
-    pub(super) fn lay_down_pen(&mut self, bytes: &mut Vec<u8>) {
+    /// Resets the pen, so that foreign output does not get its colours.
+    pub(super) fn reset_pen(&mut self, bytes: &mut Vec<u8>) {
         if let Some(known) = &mut self.known
             && known.pen != Pen::default()
         {
@@ -22,8 +22,8 @@ impl Encoder {
         }
     }
 
-    /// The content of the screen moves up by so many rows. (Many terminals fill the rows that come in with the pen's
-    /// colour: it has to be laid down.)
+    /// Records that the screen's contents have moved up by this many rows. (Many terminals fill the new rows with the
+    /// pen's colour, so the pen must have been reset.)
     pub(super) fn scroll_up(&mut self, rows: u16) {
         if let Some(known) = &mut self.known {
             known.shown.scroll_up(rows);

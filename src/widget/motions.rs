@@ -1,4 +1,4 @@
-//! What keys and the mouse do to the camera of a pane.
+//! Motions of a pane's camera for keys and the mouse.
 
 use super::SceneState;
 use crate::camera::Grip;
@@ -20,14 +20,14 @@ impl SceneState {
         self.move_camera(self.camera().panned(Vec2::new(-right / aspect_ratio, up), aspect_ratio));
     }
 
-    /// Multiplies the distance from the eye to the target by `factor`. It stays within 0.001 and 10,000 times the distance
-    /// that it had in the camera that was [set](Self::set_camera) last, or after [`frame`](Self::frame).
+    /// Multiplies the distance from the eye to the target by `factor`. The distance stays within 0.001 and 10,000 times
+    /// that of the camera [set](Self::set_camera) last, or of the last [`frame`](Self::frame).
     pub fn nearer(&mut self, factor: f32) {
         self.move_camera(self.camera().nearer_within(factor, self.scale()));
     }
 
-    /// Looks in the same direction from where the pane is filled by everything in the scene that has an end. Nothing
-    /// happens in a scene without such objects. Before the first draw call the pane is taken for a square.
+    /// Moves the camera so that all bounded objects of the scene fill the pane, without turning it. Does nothing if
+    /// there are no such objects. Before the first draw call the pane counts as a square.
     pub fn frame(&mut self, scene: &Scene) {
         if let Some(bounds) = scene.bounds() {
             let camera = self.camera().framing(&bounds, self.aspect_ratio());
@@ -35,13 +35,13 @@ impl SceneState {
         }
     }
 
-    /// Takes hold of the picture, if the position is inside it, until [`release`](Self::release). Returns whether it is.
+    /// Starts a drag at a position inside the picture, until [`release`](Self::release). Returns whether it is inside.
     pub fn press(&mut self, at: Position, grip: Grip) -> bool {
         self.hold(self.ray_through(at).map(|_| (grip, at)));
         self.held().is_some()
     }
 
-    /// Drags what is held to a position, which may be outside the pane. Nothing happens if nothing is held.
+    /// Drags to a position, which may be outside the pane. Does nothing without a drag.
     pub fn drag(&mut self, to: Position) {
         let (Some((grip, from)), Some(size)) = (self.held(), self.size()) else { return };
         self.hold(Some((grip, to)));
@@ -54,20 +54,20 @@ impl SceneState {
         });
     }
 
-    /// Lets go of the picture.
+    /// Ends a drag.
     pub fn release(&mut self) {
         self.hold(None);
     }
 
-    /// Moves nearer to what is seen in the cell at a position, which stays where it is in the picture, by notches of the mouse
-    /// wheel: away for less than 0. Returns whether the position is inside the picture.
+    /// Moves the eye towards the point shown at a position, which keeps its place in the picture, by notches of the
+    /// mouse wheel; negative numbers move away. Returns whether the position is inside the picture.
     pub fn scroll(&mut self, scene: &Scene, at: Position, notches: f32) -> bool {
         let Some(point) = self.point_at(scene, at) else { return false };
         self.move_camera(self.camera().wheeled_around(point, notches, self.scale()));
         true
     }
 
-    /// The point that is seen in a cell; where there is nothing, one as far away as the target.
+    /// Returns the point shown in a cell; where nothing is hit, a point as far away as the target.
     fn point_at(&self, scene: &Scene, at: Position) -> Option<Vec3> {
         let ray = self.ray_through(at)?;
         // Along -w, t is the depth.

@@ -1,4 +1,4 @@
-//! A picture of a pane: all that it depends on, and the cells that come of it.
+//! A picture of a pane: everything that it depends on, and its cells.
 
 use crate::camera::Camera;
 use crate::cell::{self, CellMode, Painter};
@@ -12,7 +12,7 @@ use crate::tone::{Picture, tone};
 use ratatui_core::buffer::Buffer;
 use std::num::NonZeroU32;
 
-/// How a scene is shown, whatever the scene is.
+/// The options of a view, without its scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Options {
     pub(super) map: Map,
@@ -21,19 +21,19 @@ pub(super) struct Options {
     pub(super) sampling: Sampling,
 }
 
-/// All that a picture depends on.
+/// Everything that a picture depends on.
 #[derive(Clone, Debug)]
 pub(super) struct Shot {
     pub(super) scene: Scene,
     pub(super) camera: Camera,
     pub(super) size: Size,
-    /// The picture's size in pixels: that of its cells.
+    /// The size in pixels, which follows from that in cells.
     pub(super) resolution: Resolution,
     pub(super) options: Options,
 }
 
 impl Shot {
-    /// Returns the shot of a pane of that size.
+    /// Returns the shot of a pane of this size.
     ///
     /// # Errors
     /// If the pane has more pixels than a picture may have.
@@ -61,13 +61,13 @@ impl Shot {
 #[derive(Debug)]
 pub(super) struct Shown {
     pub(super) shot: Shot,
-    /// From (0, 0) on.
+    /// The cells, from (0, 0) on.
     pub(super) cells: Buffer,
-    /// Whether the picture has all samples that its shot asks for.
+    /// Whether the picture has all samples that the shot asks for.
     pub(super) is_final: bool,
 }
 
-/// The maker of pictures, with what it keeps from one to the next.
+/// The tracer of shots, which keeps its caches from one picture to the next.
 #[derive(Default)]
 pub(super) struct Tracer {
     painter: Option<Painter>,
@@ -81,11 +81,11 @@ impl Tracer {
         self.shown(shot, &picture, true)
     }
 
-    /// Traces a shot and delivers it; before that a picture with one sample a pixel, if the shot asks for more where there are
-    /// edges. All samples are those of [`trace`](Self::trace).
+    /// Traces a shot and delivers it. If the shot asks for more samples at edges, a picture with one sample per pixel
+    /// is delivered first. The samples are those of [`trace`](Self::trace).
     ///
     /// # Errors
-    /// [`Cancelled`], if the token is. `deliver` can cancel it.
+    /// [`Cancelled`], if the token is cancelled, which `deliver` may do.
     pub(super) fn trace_in_steps(
         &mut self,
         shot: Shot,

@@ -1,4 +1,4 @@
-//! What a pane keeps from one draw call to the next.
+//! The state of a pane between draw calls.
 
 use super::shot::{Shot, Shown, Tracer};
 use super::worker::Worker;
@@ -13,17 +13,17 @@ use std::fmt;
 
 /// The state of a [`SceneView`](super::SceneView): the camera, and the last picture.
 ///
-/// Positions are cells of the whole buffer, as in the mouse events of a terminal. What is asked by position is answered
-/// about the picture that was drawn last, which may be older than the camera.
+/// Positions are cells of the whole buffer, as in a terminal's mouse events. Queries by position refer to the picture
+/// drawn last, which may be older than the camera.
 pub struct SceneState {
     camera: Camera,
-    /// A length that says how near the eye may come, and how far away it may go.
+    /// The length that limits the distance of the eye from its target.
     scale: f32,
-    /// What a drag does, and where the pointer was last.
+    /// The kind of the current drag, and the last position of the pointer.
     held: Option<(Grip, Position)>,
-    /// Where the pane was drawn last.
+    /// The area of the last draw call.
     area: Rect,
-    /// What the last draw call asked for.
+    /// The shot that the last draw call requested.
     wanted: Option<Shot>,
     shown: Option<Shown>,
     tracer: Tracer,
@@ -39,7 +39,7 @@ impl fmt::Debug for SceneState {
 }
 
 impl SceneState {
-    /// Returns a state with nothing drawn yet, whose pictures are traced in the draw call.
+    /// Returns a state without a picture, whose pictures are traced in the draw call.
     pub fn new(camera: &Camera) -> Self {
         Self {
             camera: *camera,
@@ -53,32 +53,33 @@ impl SceneState {
         }
     }
 
-    /// Traces the pictures on a thread of this state's own, and calls `wake` on it whenever there is something new to draw.
+    /// Traces the pictures on a thread of its own, and calls `wake` there whenever a new picture can be drawn.
     ///
-    /// A draw call then shows the newest picture that is finished, and asks for another where that is out of date. One
-    /// picture is traced at a time; of several that are asked for meanwhile, only the newest is traced. With
-    /// [`Sampling::UpTo`](crate::render::Sampling::UpTo) a picture with one sample a pixel comes first, and the other
-    /// samples are given up for a newer view. To drop the state gives everything up, and waits for the thread.
+    /// A draw call then shows the newest finished picture and requests another if that is out of date. One picture is
+    /// traced at a time; of several requests only the newest is kept. With
+    /// [`Sampling::UpTo`](crate::render::Sampling::UpTo) a picture with one sample per pixel comes first, and its
+    /// refinement is cancelled by a request for a newer view. Dropping the state cancels the picture in progress and
+    /// joins the thread.
     ///
-    /// `wake` must not wait for the thread that draws. A panic on the thread goes on in the next draw call, for which `wake` is called. Where no thread can be started,
-    /// pictures are traced in the draw call.
+    /// `wake` must not wait for the drawing thread. A panic of the thread is continued in the next draw call, for which
+    /// `wake` is called. If no thread can be started, pictures are traced in the draw call.
     #[must_use]
     pub fn in_background(self, wake: impl Fn() + Send + 'static) -> Self {
         Self { worker: Worker::start(wake).ok(), ..self }
     }
 
-    /// Returns where the scene is looked at from in the next draw call.
+    /// Returns the camera of the next draw call.
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// Looks at the scene from somewhere else.
+    /// Sets the camera of the next draw call.
     pub fn set_camera(&mut self, camera: &Camera) {
         self.camera = *camera;
         self.scale = camera.target_distance();
     }
 
-    /// Moves the camera, in the scale in which it was set.
+    /// Moves the camera and keeps the scale of its distance.
     pub(super) fn move_camera(&mut self, to: Camera) {
         self.camera = to;
     }
@@ -88,31 +89,31 @@ impl SceneState {
         self.scale
     }
 
-    /// Returns what a drag does, and where the pointer was last; `None` if nothing is held.
+    /// Returns the kind of the current drag and the last position of the pointer; `None` without a drag.
     pub(super) fn held(&self) -> Option<(Grip, Position)> {
         self.held
     }
 
-    /// Takes hold of the picture there, or lets go of it.
+    /// Starts or ends a drag.
     pub(super) fn hold(&mut self, held: Option<(Grip, Position)>) {
         self.held = held;
     }
 
-    /// Returns whether the pane shows what the last draw call asked for, with all of its samples, and the camera has not
-    /// changed since. In the background, `wake` is called before it can become so.
+    /// Returns whether the pane shows the picture that the last draw call requested, with all samples, and the camera
+    /// has not changed since. In the background, `wake` is called before this becomes true.
     pub fn is_current(&self) -> bool {
         let (Some(shown), Some(wanted)) = (&self.shown, &self.wanted) else { return false };
         shown.is_final && shown.shot.is_same(wanted) && self.camera == wanted.camera
     }
 
-    /// Returns what is seen in the cell at a position: the closest hit in `scene` of the ray through the cell's middle.
-    /// `None` outside the picture, and where the ray meets nothing.
+    /// Returns the closest hit in `scene` of the ray through the middle of a cell; `None` outside the picture, and if
+    /// the ray hits nothing.
     pub fn hit(&self, scene: &Scene, at: Position) -> Option<Hit> {
         closest_hit(scene, &self.ray_through(at)?)
     }
 
-    /// Returns the cell in which a point of the scene is, or would be if nothing were in front of it. `None` outside the picture,
-    /// and behind the eye.
+    /// Returns the cell that shows a point of the scene, visible or not; `None` outside the picture, and behind the
+    /// eye.
     pub fn cell_of(&self, point: Vec3) -> Option<Position> {
         let (Shown { shot, .. }, part) = (self.shown.as_ref()?, self.part()?);
         let place = shot.camera.place_of(point, shot.resolution.aspect_ratio())?;
@@ -122,18 +123,18 @@ impl SceneState {
         is_inside.then(|| Position::new(part.x + cell.x as u16, part.y + cell.y as u16))
     }
 
-    /// Returns the size of the picture that was drawn last, in cells.
+    /// Returns the size of the last picture in cells.
     pub(super) fn size(&self) -> Option<Vec2> {
         let Size { columns, rows } = self.shown.as_ref()?.shot.size;
         Some(Vec2::new(columns.into(), rows.into()))
     }
 
-    /// Returns the aspect ratio of the picture that was asked for last; a square's before the first.
+    /// Returns the aspect ratio of the last requested picture; 1 before the first.
     pub(super) fn aspect_ratio(&self) -> f32 {
         self.wanted.as_ref().map_or(1.0, |wanted| wanted.resolution.aspect_ratio())
     }
 
-    /// Returns the eye ray through the middle of a cell, in the picture that was drawn last.
+    /// Returns the eye ray through the middle of a cell of the last picture.
     pub(super) fn ray_through(&self, at: Position) -> Option<Ray> {
         let (Shown { shot, .. }, part) = (self.shown.as_ref()?, self.part()?);
         if !part.contains(at) {
@@ -144,22 +145,22 @@ impl SceneState {
         Some(shot.camera.eye_rays(shot.resolution.aspect_ratio()).through(qu, qv))
     }
 
-    /// The part of the pane that the picture covers: less than all of it, where a larger one is asked for.
+    /// Returns the part of the pane that the last picture covers, which is smaller than a pane that has grown since.
     fn part(&self) -> Option<Rect> {
         let size = self.shown.as_ref()?.shot.size;
         Some(self.area.intersection(Rect { width: size.columns, height: size.rows, ..self.area }))
     }
 
-    /// Takes note of a pane that shows nothing.
+    /// Records that the pane shows nothing.
     pub(super) fn hide(&mut self) {
         self.area = Rect::ZERO;
     }
 
-    /// Sees to it that there is a picture of that shot, or will be, and returns the one to be drawn, with its part of the
-    /// pane.
+    /// Requests the picture of a shot if it is not the last one requested, and returns the picture to draw, with its
+    /// part of the pane.
     ///
     /// # Panics
-    /// With what the thread in the background panicked with.
+    /// With the payload of a panic in the background thread.
     pub(super) fn show(&mut self, shot: Shot, area: Rect) -> Option<(&Shown, Rect)> {
         self.area = area;
         let is_new = !self.wanted.as_ref().is_some_and(|wanted| wanted.is_same(&shot));
@@ -180,7 +181,7 @@ impl SceneState {
         self.shown.as_ref().map(|shown| (shown, part))
     }
 
-    /// Puts a mark into the picture that is shown, which nothing but another picture removes.
+    /// Marks the shown picture; only another picture removes the mark.
     #[cfg(test)]
     pub(super) fn mark(&mut self, mark: &'static str) {
         if let Some(shown) = &mut self.shown {
@@ -188,7 +189,7 @@ impl SceneState {
         }
     }
 
-    /// Returns whether the thread in the background has taken up what was asked for last.
+    /// Returns whether the background thread has started on the last request.
     #[cfg(test)]
     pub(super) fn is_in_work(&self) -> bool {
         self.worker.as_ref().is_some_and(Worker::is_in_work)

@@ -1,4 +1,4 @@
-//! What a pane shows.
+//! The widget of a pane.
 
 use super::SceneState;
 use super::shot::{Options, Shot};
@@ -15,8 +15,8 @@ use std::num::NonZeroU32;
 
 /// A widget that shows a scene as the camera of its [`SceneState`] sees it.
 ///
-/// It fills its area, as far as that lies inside the buffer. An area with more pixels than a picture may have stays as it is.
-/// To frame the view, draw a block and give the view the area inside:
+/// The widget fills the part of its area that is inside the buffer. It draws nothing into an area with more pixels than
+/// a picture may have. For a frame around it, draw a block and pass the area inside to the widget:
 ///
 /// ```
 /// use ratatui::{Frame, widgets::Block};
@@ -31,7 +31,7 @@ use std::num::NonZeroU32;
 /// ```
 ///
 /// # Panics
-/// Drawing goes on with a panic of the thread that traces [in the background](SceneState::in_background).
+/// Drawing continues a panic of the [background](SceneState::in_background) thread.
 #[derive(Clone, Debug)]
 #[must_use = "a widget does nothing before it is rendered"]
 pub struct SceneView<'a> {
@@ -40,8 +40,8 @@ pub struct SceneView<'a> {
 }
 
 impl<'a> SceneView<'a> {
-    /// Shows the scene's light, one ray a pixel, by half blocks in truecolor, in cells twice as high as they are wide, unless
-    /// another choice is made.
+    /// Returns a view with the defaults: the shaded picture, one ray per pixel, truecolor half blocks, and cells twice
+    /// as high as wide.
     pub fn new(scene: &'a Scene) -> Self {
         let options = Options {
             map: Map::Shaded,
@@ -52,19 +52,20 @@ impl<'a> SceneView<'a> {
         Self { scene, options }
     }
 
-    /// Shows another map of the scene than its light.
+    /// Sets the map to show instead of the shaded picture.
     pub fn map(self, map: Map) -> Self {
         Self { options: Options { map, ..self.options }, ..self }
     }
 
-    /// Makes the picture of other glyphs, or of other colours.
+    /// Sets the glyphs and colours.
     pub fn cells(self, cells: CellMode) -> Self {
         Self { options: Options { cells, ..self.options }, ..self }
     }
 
-    /// Says how high a cell is over its width. A number that is no cell's, less than 0.25 or more than 8, is taken for 2.
+    /// Sets the cell aspect: a cell's height divided by its width. Implausible numbers, less than 0.25 or more than 8,
+    /// are replaced by 2.
     ///
-    /// A terminal tells it by the size of its window in pixels, which [`cell_aspect_of`](crate::cell_aspect_of) takes:
+    /// [`cell_aspect_of`](crate::cell_aspect_of) derives it from the size of the terminal's window in pixels:
     ///
     /// ```no_run
     /// use ratatui::crossterm::terminal::{WindowSize, window_size};
@@ -79,7 +80,7 @@ impl<'a> SceneView<'a> {
         Self { options: Options { cell_aspect, ..self.options }, ..self }
     }
 
-    /// Gives the pixels other samples.
+    /// Sets the sampling.
     pub fn sampling(self, sampling: impl Into<Sampling>) -> Self {
         Self { options: Options { sampling: sampling.into(), ..self.options }, ..self }
     }

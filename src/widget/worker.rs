@@ -1,4 +1,4 @@
-//! The thread that traces the pictures of a pane, so that no draw call waits for one.
+//! The background thread that traces the pictures of a pane.
 
 use super::shot::{Shot, Shown, Tracer};
 use crate::progress::Cancellation;
@@ -9,31 +9,31 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
-/// The draw thread's side.
+/// The drawing thread's handle of the background thread.
 pub(super) struct Worker {
     desk: Arc<Desk>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// What lies between both threads.
+/// The state shared by both threads.
 #[derive(Default)]
 struct Desk {
     post: Mutex<Post>,
-    /// Notified of a new order.
+    /// Notified of a new request.
     ordered: Condvar,
 }
 
 #[derive(Default)]
 struct Post {
-    /// The next shot. A newer one takes its place.
+    /// The next shot, replaced by a newer one.
     wanted: Option<Shot>,
-    /// The token of the shot in work.
+    /// The token of the shot in progress.
     token: Cancellation,
-    /// Whether a picture of the shot in work has been delivered: the rest is given up for a newer one.
+    /// Whether a picture of the shot in progress has been delivered, so that a newer shot cancels the rest.
     is_refining: bool,
     /// The newest picture that has not been taken.
     done: Option<Shown>,
-    /// What the thread panicked with.
+    /// The payload of a panic in the thread.
     panic: Option<Box<dyn Any + Send>>,
     is_closed: bool,
 }
@@ -52,7 +52,7 @@ impl Worker {
             };
             if let Err(panic) = catch_unwind(AssertUnwindSafe(|| own.trace_all(&wake))) {
                 own.lock().panic = Some(panic);
-                // The next draw call goes on with the panic.
+                // The next draw call continues the panic.
                 if !is_waking.get() {
                     wake();
                 }
@@ -61,7 +61,7 @@ impl Worker {
         Ok(Self { desk, thread: Some(thread) })
     }
 
-    /// Orders a shot in the place of one that has not been begun.
+    /// Requests a shot, which replaces one that has not been started.
     pub(super) fn want(&self, shot: Shot) {
         let mut post = self.desk.lock();
         post.wanted = Some(shot);
@@ -71,21 +71,21 @@ impl Worker {
         self.desk.ordered.notify_one();
     }
 
-    /// Takes the newest picture that has been finished since the last call.
+    /// Takes the newest picture finished since the last call.
     ///
     /// # Panics
-    /// With what the thread panicked with.
+    /// With the payload of a panic in the thread.
     pub(super) fn take(&self) -> Option<Shown> {
         let mut post = self.desk.lock();
         if let Some(panic) = post.panic.take() {
             drop(post);
-            // The panic hook has printed its message already.
+            // The panic hook has already printed the message.
             resume_unwind(panic);
         }
         post.done.take()
     }
 
-    /// Returns whether no shot waits to be begun.
+    /// Returns whether no request is waiting.
     #[cfg(test)]
     pub(super) fn is_in_work(&self) -> bool {
         self.desk.lock().wanted.is_none()
@@ -93,7 +93,7 @@ impl Worker {
 }
 
 impl Drop for Worker {
-    /// Gives the shot in work up, and waits for the thread: 256 rays of each thread that traces.
+    /// Cancels the shot in progress and joins the thread, which takes the time of 256 rays on each tracing thread.
     fn drop(&mut self) {
         let mut post = self.desk.lock();
         post.is_closed = true;
@@ -108,11 +108,11 @@ impl Drop for Worker {
 
 impl Desk {
     fn lock(&self) -> MutexGuard<'_, Post> {
-        // No code that can panic runs while it is held.
+        // No code that can panic runs while the lock is held.
         self.post.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for the next shot; `None` when there will be no more.
+    /// Waits for the next shot; `None` when the state is dropped.
     fn next(&self) -> Option<(Shot, Cancellation)> {
         let mut post = self.lock();
         loop {
@@ -131,7 +131,7 @@ impl Desk {
     fn trace_all(&self, wake: &impl Fn()) {
         let mut tracer = Tracer::default();
         while let Some((shot, token)) = self.next() {
-            // A shot that was given up leaves what it has delivered.
+            // The pictures delivered before a cancel stay valid.
             let _ = tracer.trace_in_steps(shot, &token, |shown| {
                 self.deliver(shown);
                 wake();

@@ -1,4 +1,4 @@
-//! What packagers install beside the program: the manual and the completions in `assets/`, as the program prints them.
+//! The manual and the completions in `assets/`, which packagers install, are what the program prints.
 //!
 //! `BLESS=1 cargo test --test cli assets` writes them anew.
 

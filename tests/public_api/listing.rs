@@ -1,4 +1,4 @@
-//! rustdoc's JSON -> the list of what is promised.
+//! The list of the promised surface, from rustdoc's JSON.
 
 use crate::signature::{arguments, bounds, function, generics, where_clause, written};
 use serde_json::Value;
@@ -7,17 +7,17 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The crates whose types promised signatures may have.
 const SHARED: [&str; 5] = ["core", "alloc", "std", "glam", "ratatui_core"];
 
-/// What is promised.
+/// The promised surface.
 pub(crate) struct Listing {
     /// One line each, sorted by path.
     pub(crate) text: String,
     /// The number of items and methods.
     pub(crate) count: usize,
-    /// The types in them that are neither promised nor of a crate that is re-exported.
+    /// Types in signatures that are neither promised nor from a re-exported crate.
     pub(crate) unpromised: Vec<String>,
 }
 
-/// Lists what is promised.
+/// Lists the promised surface.
 pub(crate) fn listing(json: &Value) -> Listing {
     let mut surface = Surface { json, paths: BTreeMap::new(), lines: BTreeSet::new(), count: 0 };
     surface.walk(&json["root"], "");
@@ -38,7 +38,7 @@ struct Surface<'a> {
     count: usize,
 }
 
-/// The kind of an item, and what is particular to it.
+/// The kind of an item and its contents.
 fn inner(item: &Value) -> (&str, &Value) {
     let inner = item["inner"].as_object().and_then(|inner| inner.iter().next()).expect("an item has a kind");
     (inner.0, inner.1)

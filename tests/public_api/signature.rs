@@ -68,7 +68,7 @@ fn qualified(body: &Value) -> String {
     }
 }
 
-/// What stands behind a path: in angle brackets, or in the parentheses of a closure's trait.
+/// Formats the generic arguments of a path: in angle brackets, or in the parentheses of a closure's trait.
 pub(crate) fn arguments(of: &Value) -> String {
     if let Some(of) = of.get("parenthesized") {
         return format!("({}){}", joined(list(&of["inputs"]).map(written), ", "), returned(&of["output"]));
