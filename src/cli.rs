@@ -10,11 +10,11 @@ mod doctor;
 mod encoding;
 mod explain;
 mod frame;
-mod later;
+mod deferred_args;
 mod live;
 mod map;
-mod near;
-mod origin;
+mod suggestions;
+mod scene_source;
 mod outcome;
 mod outputs;
 mod picture;
@@ -24,7 +24,7 @@ mod scene_args;
 mod settings;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
-use later::Later;
+use deferred_args::DeferredArgs;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
@@ -53,8 +53,8 @@ Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wro
 
 /// Stands below the options.
 fn help() -> String {
-    let cells = cells::explained();
-    let explained = [&cells, map::EXPLAINED, encoding::EXPLAINED, settings::EXPLAINED].join("\n");
+    let cells = cells::after_help();
+    let explained = [&cells, map::MAP_HELP, encoding::ENCODING_HELP, settings::SETTINGS_HELP].join("\n");
     format!("{explained}\n\n{EXAMPLES}")
 }
 
@@ -74,25 +74,25 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Print one frame, or compare it with a golden one
-    Frame(Later<frame::FrameArgs>),
+    Frame(DeferredArgs<frame::FrameArgs>),
     /// Record a film along a camera path: asciicast, GIF or numbered PNGs
-    Record(Later<record::RecordArgs>),
+    Record(DeferredArgs<record::RecordArgs>),
     /// Say what a pixel comes from: its ray, what that met, the lights
-    Explain(Later<explain::ExplainArgs>),
+    Explain(DeferredArgs<explain::ExplainArgs>),
     /// Say what is wrong with a scene file, or that it is fine
-    Check(Later<check::CheckArgs>),
+    Check(DeferredArgs<check::CheckArgs>),
     /// Say in words what a picture shows
-    Describe(Later<describe::DescribeArgs>),
+    Describe(DeferredArgs<describe::DescribeArgs>),
     /// Time the tracing of a scene
-    Bench(Later<bench::BenchArgs>),
+    Bench(DeferredArgs<bench::BenchArgs>),
     /// Say what this terminal can do and who says so, and draw a test card
-    Doctor(Later<doctor::DoctorArgs>),
+    Doctor(DeferredArgs<doctor::DoctorArgs>),
     /// Say which settings hold, and who says so
-    Config(Later<config::ConfigArgs>),
+    Config(DeferredArgs<config::ConfigArgs>),
     /// Print what a shell is to know to complete arguments
-    Completions(Later<completions::CompletionsArgs>),
+    Completions(DeferredArgs<completions::CompletionsArgs>),
     /// Print the manual, for man
-    Man(Later<completions::ManArgs>),
+    Man(DeferredArgs<completions::ManArgs>),
 }
 
 /// Reads the command line, does what it says, and says what went wrong.
@@ -107,16 +107,16 @@ pub(crate) fn main() -> ExitCode {
     // What was given to the command, if there is one.
     let given = given.subcommand().map_or(&given, |(_, given)| given);
     let done = match cli.command {
-        Some(Command::Frame(Later(args))) => frame::run(&args),
-        Some(Command::Record(Later(args))) => record::run(&args),
-        Some(Command::Explain(Later(args))) => explain::run(&args),
-        Some(Command::Check(Later(args))) => check::run(&args),
-        Some(Command::Describe(Later(args))) => describe::run(&args),
-        Some(Command::Bench(Later(args))) => bench::run(&args),
+        Some(Command::Frame(DeferredArgs(args))) => frame::run(&args),
+        Some(Command::Record(DeferredArgs(args))) => record::run(&args),
+        Some(Command::Explain(DeferredArgs(args))) => explain::run(&args),
+        Some(Command::Check(DeferredArgs(args))) => check::run(&args),
+        Some(Command::Describe(DeferredArgs(args))) => describe::run(&args),
+        Some(Command::Bench(DeferredArgs(args))) => bench::run(&args),
         Some(Command::Doctor(_)) => doctor::run(given),
-        Some(Command::Config(Later(args))) => config::run(&args, given),
-        Some(Command::Completions(Later(args))) => completions::complete(&args),
-        Some(Command::Man(Later(args))) => completions::man(&args),
+        Some(Command::Config(DeferredArgs(args))) => config::run(&args, given),
+        Some(Command::Completions(DeferredArgs(args))) => completions::complete(&args),
+        Some(Command::Man(DeferredArgs(args))) => completions::man(&args),
         None => live::run(&cli.live, given),
     };
     outcome::exit_code(done)
@@ -126,5 +126,5 @@ fn parse(arguments: impl Iterator<Item = OsString>) -> Result<(Cli, ArgMatches),
     let given = Cli::command().try_get_matches_from(arguments);
     given
         .and_then(|given| Ok((Cli::from_arg_matches(&given)?, given)))
-        .map_err(|error| outcome::say(&renamed::with_tip(error)))
+        .map_err(|error| outcome::print_clap_message(&renamed::with_tip(error)))
 }

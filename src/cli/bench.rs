@@ -2,10 +2,10 @@
 
 mod generated;
 
-use super::origin::Origin;
-use super::outcome::{Done, Failure, usage, write_stdout};
-use super::picture::{fits, parse_size};
+use super::outcome::{CommandResult, Failure, usage, write_stdout};
+use super::picture::{check_pixel_count, parse_size};
 use super::scene_args::on_threads;
+use super::scene_source::SceneSource;
 use clap::{Args, ValueEnum};
 use generated::Generated;
 use std::fmt::Write;
@@ -47,7 +47,7 @@ pub(super) struct BenchArgs {
     threads: Option<u16>,
     /// How the rays go through the scene: it changes how long that takes, and nothing else
     #[arg(long, value_name = "HOW", default_value = "auto")]
-    kernel: Way,
+    kernel: KernelArg,
     /// How many times
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: u32,
@@ -58,7 +58,7 @@ pub(super) struct BenchArgs {
 
 /// A [`Kernel`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Way {
+enum KernelArg {
     /// Together as long as that is cheaper
     Auto,
     /// One by one, against eight boxes or parts at once
@@ -69,7 +69,7 @@ enum Way {
     Scalar,
 }
 
-impl Way {
+impl KernelArg {
     fn kernel(self) -> Kernel {
         match self {
             Self::Auto => Kernel::Auto,
@@ -84,7 +84,7 @@ impl BenchArgs {
     /// The scene, and its name.
     fn scene(&self) -> Result<(String, Scene), Failure> {
         let (name, scene) = if let Some(path) = &self.scene {
-            (visible(&path.display().to_string()), Origin::of(path)?.load()?)
+            (visible(&path.display().to_string()), SceneSource::of(path)?.load()?)
         } else {
             let generated = self.generated.unwrap_or(Generated::Three);
             (format!("{generated:?}").to_lowercase(), generated.scene().map_err(usage)?)
@@ -95,12 +95,12 @@ impl BenchArgs {
 
     fn resolution(&self) -> Result<Resolution, Failure> {
         let (width, height) = self.pixels;
-        fits(width.into(), height.into())?;
+        check_pixel_count(width.into(), height.into())?;
         Ok(Resolution::square(width, height))
     }
 }
 
-pub(super) fn run(args: &BenchArgs) -> Done {
+pub(super) fn run(args: &BenchArgs) -> CommandResult {
     let resolution = args.resolution()?;
     on_threads(args.threads, || {
         let (name, scene) = args.scene()?;

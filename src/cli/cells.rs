@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use termtrace::internals::capabilities::{ColorChoice, GlyphChoice, Hints, terminfo_colors};
 use termtrace::{CellMode, Colors, Glyphs};
 
-const EXPLAINED: &str = "\
+const CELL_HELP: &str = "\
 The colours (--color):
   auto       as many as the terminal has, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own answer,
              terminfo and TERM; termtrace doctor says who said what
@@ -18,22 +18,22 @@ What stands in the cells (--glyphs):
   auto       half blocks; shape where there is no colour, the locale is not UTF-8, or a block is not one column wide";
 
 /// Stands below the options in the help.
-pub(super) fn explained() -> String {
+pub(super) fn after_help() -> String {
     Glyphs::ALL
         .iter()
-        .fold(EXPLAINED.to_owned(), |text, glyphs| format!("{text}\n  {:<9}  {}", glyphs.name(), glyphs.help()))
+        .fold(CELL_HELP.to_owned(), |text, glyphs| format!("{text}\n  {:<9}  {}", glyphs.name(), glyphs.help()))
 }
 
 #[derive(Args)]
 pub(super) struct CellArgs {
     #[arg(long, help = defaults::help("color", "Which colours the picture may have"), value_name = "WHICH")]
-    color: Option<Color>,
+    color: Option<ColorArg>,
     #[arg(long, help = defaults::help("glyphs", "What its cells are made of"), value_name = "KIND", value_parser = glyph_parser())]
     glyphs: Option<GlyphChoice>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Color {
+enum ColorArg {
     Auto,
     Always,
     Never,
@@ -65,12 +65,12 @@ impl CellArgs {
 
     fn color_choice(&self) -> ColorChoice {
         match self.color {
-            None | Some(Color::Auto) => ColorChoice::Auto,
-            Some(Color::Always) => ColorChoice::Always,
-            Some(Color::Never) => ColorChoice::Never,
-            Some(Color::Truecolor) => ColorChoice::Exactly(Colors::Truecolor),
-            Some(Color::Indexed256) => ColorChoice::Exactly(Colors::Indexed256),
-            Some(Color::Indexed16) => ColorChoice::Exactly(Colors::SIXTEEN),
+            None | Some(ColorArg::Auto) => ColorChoice::Auto,
+            Some(ColorArg::Always) => ColorChoice::Always,
+            Some(ColorArg::Never) => ColorChoice::Never,
+            Some(ColorArg::Truecolor) => ColorChoice::Exactly(Colors::Truecolor),
+            Some(ColorArg::Indexed256) => ColorChoice::Exactly(Colors::Indexed256),
+            Some(ColorArg::Indexed16) => ColorChoice::Exactly(Colors::SIXTEEN),
         }
     }
 
@@ -89,7 +89,7 @@ impl CellArgs {
 
     /// For a file or a pipe, of which the environment says nothing: in these colours if any will do. Without colours it is
     /// the ramp, which is the text that people compare.
-    pub(super) fn in_file(&self, auto: Colors) -> CellMode {
+    pub(super) fn mode_for_file(&self, auto: Colors) -> CellMode {
         let colors = match self.color_choice() {
             ColorChoice::Auto => auto,
             ColorChoice::Always => Colors::Truecolor,

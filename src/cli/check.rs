@@ -1,6 +1,6 @@
 //! `termtrace check`: what is wrong with a scene file.
 
-use super::outcome::{Done, write_stdout};
+use super::outcome::{CommandResult, write_stdout};
 use super::scene_args::SceneArgs;
 use clap::Args;
 use termtrace::internals::text::visible;
@@ -18,7 +18,7 @@ pub(super) struct CheckArgs {
 }
 
 /// Every fault was said by `load`; a scene that loads is fine.
-pub(super) fn run(args: &CheckArgs) -> Done {
+pub(super) fn run(args: &CheckArgs) -> CommandResult {
     let scene = args.scene.load()?;
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");

@@ -1,7 +1,7 @@
 //! `termtrace completions` and `termtrace man`: what a system wants to know of the command line.
 
 use super::Cli;
-use super::outcome::{Done, Failure, reason, write_stdout};
+use super::outcome::{CommandResult, Failure, reason, write_stdout};
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 use termtrace::internals::text::closest;
@@ -35,14 +35,14 @@ pub(super) struct ManArgs {
 }
 
 /// A script for the shell.
-pub(super) fn complete(args: &CompletionsArgs) -> Done {
+pub(super) fn complete(args: &CompletionsArgs) -> CommandResult {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "termtrace", &mut script);
     write_stdout(&script)
 }
 
 /// A page of the manual, as roff.
-pub(super) fn man(args: &ManArgs) -> Done {
+pub(super) fn man(args: &ManArgs) -> CommandResult {
     let mut program = Cli::command();
     program.build();
     let page = match &args.command {

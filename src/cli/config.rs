@@ -1,8 +1,8 @@
 //! `termtrace config`: every setting, what holds, and who says so; and the keys.
 
-use super::outcome::{Done, write_stdout};
+use super::outcome::{CommandResult, write_stdout};
 use super::settings::files::path_of;
-use super::settings::{Held, SettingArgs, Settings, keys};
+use super::settings::{EffectiveSetting, SettingArgs, Settings, keys};
 use clap::{ArgMatches, Args};
 use std::fmt::Write;
 use termtrace::internals::text::visible_lines;
@@ -26,17 +26,17 @@ pub(super) struct ConfigArgs {
     keys: bool,
 }
 
-pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> Done {
+pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
     let no_config = given.get_flag("no_config");
     let bindings = keys::bindings(no_config)?;
     if args.keys {
         return write_stdout(bindings.to_ron().as_bytes());
     }
     let settings = Settings::gather(given)?;
-    let width = settings.held.iter().map(|held| held.value.width()).max().unwrap_or(0);
+    let width = settings.effective.iter().map(|held| held.value.width()).max().unwrap_or(0);
     let mut text = String::new();
-    for Held { name, value, said_by } in &settings.held {
-        let _ = writeln!(text, "{name:<16}{value:<width$}  {said_by}");
+    for EffectiveSetting { name, value, source } in &settings.effective {
+        let _ = writeln!(text, "{name:<16}{value:<width$}  {source}");
     }
     text.push('\n');
     for name in ["config.ron", "keys.ron"] {

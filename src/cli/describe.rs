@@ -1,7 +1,7 @@
 //! `termtrace describe`: what a picture shows, as text for those who cannot see it.
 
-use super::outcome::{Done, write_stdout};
-use super::picture::{fits, parse_size};
+use super::outcome::{CommandResult, write_stdout};
+use super::picture::{check_pixel_count, parse_size};
 use super::scene_args::SceneArgs;
 use clap::Args;
 use termtrace::internals::text::visible;
@@ -26,11 +26,11 @@ pub(super) struct DescribeArgs {
     size: (u32, u32),
 }
 
-pub(super) fn run(args: &DescribeArgs) -> Done {
+pub(super) fn run(args: &DescribeArgs) -> CommandResult {
     let (columns, rows) = args.size;
     // Eight points in each cell of the usual shape, two by four: as fine as characters show a picture.
     let [width, height] = [columns.saturating_mul(2), rows.saturating_mul(4)];
-    fits(width.into(), height.into())?;
+    check_pixel_count(width.into(), height.into())?;
     let resolution = Resolution::square(width, height);
     let scene = args.scene.load()?;
     let name = visible(&args.scene.path().display().to_string());

@@ -3,10 +3,10 @@
 mod card;
 mod report;
 
-use super::outcome::{Done, Failure, reason, write_stdout};
+use super::outcome::{CommandResult, Failure, reason, write_stdout};
 use super::settings::{Settings, TerminalArgs};
 use clap::{ArgMatches, Args};
-use report::{Known, Talk};
+use report::{QueryOutcome, Report};
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 use termtrace::internals::capabilities::{Asking, CellShape, Findings};
@@ -23,32 +23,33 @@ pub(super) struct DoctorArgs {
 }
 
 /// How long the terminal may take to answer.
-const PATIENCE: Duration = Duration::from_secs(2);
+const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
 
-pub(super) fn run(given: &ArgMatches) -> Done {
+pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let settings = Settings::gather(given)?;
     let hints = settings.args.terminal.hints();
     let mut questions = Questions::all(&hints);
     let mut cell = CellShape::default();
     let is_terminal = io::stdout().is_terminal();
-    let talk = match hints.asking() {
-        _ if !is_terminal => Talk::NoTerminal,
+    let outcome = match hints.asking() {
+        _ if !is_terminal => QueryOutcome::NoTerminal,
         // Nothing to ask it, and nothing that it would not print.
-        Asking::Nothing => Talk::Answered(Duration::ZERO),
-        _ => match talk(&mut questions, &mut cell) {
+        Asking::Nothing => QueryOutcome::Answered(Duration::ZERO),
+        _ => match query_terminal(&mut questions, &mut cell) {
             // Its answers cannot be had.
-            Err(_) if !io::stdin().is_terminal() => Talk::NoTerminal,
-            talk => talk.map_err(|error| Failure::runtime("terminal", reason(&error)))?,
+            Err(_) if !io::stdin().is_terminal() => QueryOutcome::NoTerminal,
+            outcome => outcome.map_err(|error| Failure::runtime("terminal", reason(&error)))?,
         },
     };
     let findings = Findings::new(&hints, cell, questions.answers());
-    let known = Known { settings: &settings, hints: &hints, findings: &findings, answers: questions.answers(), talk };
-    write_stdout(report::text(&known).as_bytes())?;
+    let report =
+        Report { settings: &settings, hints: &hints, findings: &findings, answers: questions.answers(), outcome };
+    write_stdout(report::text(&report).as_bytes())?;
     if is_terminal { write_stdout(&card::bytes(&findings.capabilities())) } else { Ok(()) }
 }
 
 /// Takes the terminal, asks, and gives it back.
-fn talk(questions: &mut Questions, cell: &mut CellShape) -> io::Result<Talk> {
+fn query_terminal(questions: &mut Questions, cell: &mut CellShape) -> io::Result<QueryOutcome> {
     let mut signals = Signals::catch()?;
     let mut terminal = Terminal::take(&signals).inspect_err(|_| {
         // While it waited to be brought to the foreground.
@@ -58,7 +59,7 @@ fn talk(questions: &mut Questions, cell: &mut CellShape) -> io::Result<Talk> {
     })?;
     let mut receiver = Receiver::default();
     let asked = Instant::now();
-    let talk = terminal.window().and_then(|window| {
+    let outcome = terminal.window().and_then(|window| {
         *cell = window.cell;
         terminal.send(questions.bytes())?;
         receiver.sent(questions.bytes(), Duration::ZERO);
@@ -68,7 +69,7 @@ fn talk(questions: &mut Questions, cell: &mut CellShape) -> io::Result<Talk> {
     if let Some(signal) = signals.deadly() {
         die_of(signal);
     }
-    talk
+    outcome
 }
 
 /// Waits for the last reply, for a signal to end, or until the terminal has had its time.
@@ -78,21 +79,21 @@ fn await_replies(
     signals: &mut Signals,
     questions: &mut Questions,
     asked: Instant,
-) -> io::Result<Talk> {
+) -> io::Result<QueryOutcome> {
     while questions.is_open() {
-        let Some(left) = PATIENCE.checked_sub(asked.elapsed()) else { return Ok(Talk::Silence) };
+        let Some(left) = QUERY_TIMEOUT.checked_sub(asked.elapsed()) else { return Ok(QueryOutcome::TimedOut) };
         let woken = terminal.wait(signals.wake_pipe(), Some(left))?;
         if woken.wake {
             signals.drain();
         }
         if signals.deadly().is_some() {
-            return Ok(Talk::Silence);
+            return Ok(QueryOutcome::TimedOut);
         }
         if woken.keys {
             take_replies(terminal, receiver, questions, asked.elapsed())?;
         }
     }
-    Ok(Talk::Answered(asked.elapsed()))
+    Ok(QueryOutcome::Answered(asked.elapsed()))
 }
 
 /// Keys are nobody's here, and are thrown away.

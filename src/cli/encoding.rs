@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use termtrace::internals::encode;
 
 /// Stands below the options in the help.
-pub(super) const EXPLAINED: &str = "\
+pub(super) const ENCODING_HELP: &str = "\
 The order of cells:
   color    so that colours are reused: the fewest bytes on a plain link
   raster   row by row: more bytes, but a compressor makes the least of them, because each frame resembles the last;
@@ -29,7 +29,7 @@ pub(super) struct EncodingArgs {
 pub(super) struct OrderArgs {
     /// In which order changed cells are sent [default: color; live, raster until the link is found slow]
     #[arg(long, value_name = "ORDER", conflicts_with = "compressed_link")]
-    order: Option<Order>,
+    order: Option<OrderArg>,
     /// The link compresses, as ssh -C does: --order raster
     #[arg(long)]
     compressed_link: bool,
@@ -39,19 +39,19 @@ pub(super) struct OrderArgs {
 #[derive(Args)]
 pub(super) struct LossArgs {
     #[arg(long, help = defaults::help("quality", "How near a moving picture is to the right one; it decides bytes, not rays"), value_name = "QUALITY")]
-    quality: Option<Quality>,
+    quality: Option<QualityArg>,
     #[arg(long, help = defaults::help("max_rate", "The most bytes per second in the mean, such as 50k or 2M; what is most wrong is sent first"), value_name = "BYTES", value_parser = parse_rate)]
     max_rate: Option<u32>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Order {
+enum OrderArg {
     Color,
     Raster,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Quality {
+enum QualityArg {
     Exact,
     Equal,
     Fast,
@@ -73,8 +73,8 @@ impl OrderArgs {
     /// If it was said.
     pub(super) fn order(&self) -> Option<encode::Order> {
         match self.order {
-            Some(Order::Raster) => Some(encode::Order::Raster),
-            Some(Order::Color) => Some(encode::Order::Color),
+            Some(OrderArg::Raster) => Some(encode::Order::Raster),
+            Some(OrderArg::Color) => Some(encode::Order::Color),
             None => self.compressed_link.then_some(encode::Order::Raster),
         }
     }
@@ -84,9 +84,9 @@ impl LossArgs {
     /// If it was said.
     pub(super) fn quality(&self) -> Option<encode::Quality> {
         self.quality.map(|quality| match quality {
-            Quality::Exact => encode::Quality::Exact,
-            Quality::Equal => encode::Quality::Equal,
-            Quality::Fast => encode::Quality::Fast,
+            QualityArg::Exact => encode::Quality::Exact,
+            QualityArg::Equal => encode::Quality::Equal,
+            QualityArg::Fast => encode::Quality::Fast,
         })
     }
 

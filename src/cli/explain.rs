@@ -1,6 +1,6 @@
 //! `termtrace explain`: all that a pixel of a frame comes from.
 
-use super::outcome::{Done, usage, write_stdout};
+use super::outcome::{CommandResult, usage, write_stdout};
 use super::picture::SizeArgs;
 use super::scene_args::SceneArgs;
 use clap::Args;
@@ -30,7 +30,7 @@ pub(super) struct ExplainArgs {
     size: SizeArgs,
 }
 
-pub(super) fn run(args: &ExplainArgs) -> Done {
+pub(super) fn run(args: &ExplainArgs) -> CommandResult {
     let mode = CellMode::HALF_BLOCK;
     let resolution = args.size.resolution(mode)?;
     let [width, height] = [resolution.width(), resolution.height()];

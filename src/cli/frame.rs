@@ -4,7 +4,7 @@ mod golden;
 
 use super::cells::{self, CellArgs};
 use super::map::{self, MapArgs};
-use super::outcome::{Done, Failure, write_stdout};
+use super::outcome::{CommandResult, Failure, write_stdout};
 use super::outputs;
 use super::picture::PictureArgs;
 use super::scene_args::SceneArgs;
@@ -36,7 +36,7 @@ Examples:
   termtrace frame my.ron --check my.txt                       compare with it";
 
 #[derive(Args)]
-#[command(after_help = format!("{}\n{}\n{FILES}\n\n{EXAMPLES}", cells::explained(), map::EXPLAINED))]
+#[command(after_help = format!("{}\n{}\n{FILES}\n\n{EXAMPLES}", cells::after_help(), map::MAP_HELP))]
 pub(super) struct FrameArgs {
     #[command(flatten)]
     scene: SceneArgs,
@@ -91,13 +91,13 @@ impl FrameArgs {
     fn cell_mode(&self, format: Format) -> CellMode {
         match format.contents() {
             Contents::Pixels(_) => CellMode::HALF_BLOCK,
-            Contents::Cells { has_colors: true, .. } => self.cells.in_file(Colors::Truecolor),
-            Contents::Cells { has_colors: false, .. } => self.cells.in_file(Colors::None),
+            Contents::Cells { has_colors: true, .. } => self.cells.mode_for_file(Colors::Truecolor),
+            Contents::Cells { has_colors: false, .. } => self.cells.mode_for_file(Colors::None),
         }
     }
 
     /// Turns away what the format makes no use of.
-    fn check_flags(&self, format: Format) -> Done {
+    fn check_flags(&self, format: Format) -> CommandResult {
         let wrong = |why: String| Err(Failure::Usage(why));
         self.map.check_samples(self.picture.samples())?;
         let name = format.name();
@@ -125,7 +125,7 @@ impl FrameArgs {
         let scene = self.scene.load()?;
         let mode = self.cell_mode(format);
         let resolution = self.picture.resolution(mode)?;
-        self.picture.fits_scaled(resolution)?;
+        self.picture.check_scaled_pixel_count(resolution)?;
         let samples = self.picture.samples();
         let map = self.map.map();
         let picture = self
@@ -142,11 +142,11 @@ impl FrameArgs {
     }
 }
 
-pub(super) fn run(args: &FrameArgs) -> Done {
+pub(super) fn run(args: &FrameArgs) -> CommandResult {
     let format = args.format()?;
     args.check_flags(format)?;
     if let Some(file) = args.output().or(args.check.as_deref().filter(|_| args.bless)) {
-        args.scene.keeps(&[], file)?;
+        args.scene.refuse_overwriting(&[], file)?;
     }
     let frame = args.contents(format)?;
     match (&args.check, args.output()) {

@@ -3,9 +3,9 @@
 use super::Cli;
 use super::completions::{command_near, no_command};
 use super::encoding::OrderArgs;
-use super::origin::Origin;
-use super::outcome::{Done, Failure, complain_of_panic, reason, say, usage, write_stdout};
-use super::scene_args::{LookArgs, on_threads};
+use super::outcome::{CommandResult, Failure, exit_after_panic, print_clap_message, reason, usage, write_stdout};
+use super::scene_args::{CameraArgs, on_threads};
+use super::scene_source::SceneSource;
 use super::settings::{SettingArgs, Settings, keys};
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, CommandFactory};
@@ -36,7 +36,7 @@ pub(super) struct LiveArgs {
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
-    look: LookArgs,
+    camera_args: CameraArgs,
     #[command(flatten)]
     settings: SettingArgs,
     #[command(flatten)]
@@ -61,13 +61,13 @@ impl LiveArgs {
         options.exports = Some(PathBuf::from("."));
         options.welcome = self.scenes.is_empty().then(|| welcome(&bindings));
         options.bindings = bindings;
-        options.threads = self.look.threads.map(usize::from);
+        options.threads = self.camera_args.threads.map(usize::from);
         options
     }
 }
 
 /// `given` is what clap has matched of `args`: it knows which flags were given.
-pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> Done {
+pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     // The name of a command that was misspelt looks like a scene's.
     if let Some(first) = args.scenes.first().and_then(|first| first.to_str())
         && !Path::new(first).exists()
@@ -75,20 +75,20 @@ pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> Done {
     {
         return Err(no_command(first));
     }
-    if io::stdout().is_terminal() { look(args, given) } else { print(args) }
+    if io::stdout().is_terminal() { open_view(args, given) } else { print_frame(args) }
 }
 
 /// One frame, as `termtrace frame` prints it: by the flags alone.
-fn print(args: &LiveArgs) -> Done {
+fn print_frame(args: &LiveArgs) -> CommandResult {
     let settings = &args.settings;
     settings.check_samples()?;
-    let origin = match &args.scenes[..] {
+    let source = match &args.scenes[..] {
         [] => {
             let missing = "without a terminal to show the built-in scene on, name a scene: termtrace <SCENE>";
-            say(&Cli::command().error(ErrorKind::MissingRequiredArgument, missing));
-            return Err(Failure::Said(2));
+            print_clap_message(&Cli::command().error(ErrorKind::MissingRequiredArgument, missing));
+            return Err(Failure::Reported(2));
         }
-        [scene] => Origin::of(scene)?,
+        [scene] => SceneSource::of(scene)?,
         [first, more @ ..] => {
             let more: Vec<_> = more.iter().map(|path| path.to_string_lossy()).collect();
             let message = format!(
@@ -99,21 +99,22 @@ fn print(args: &LiveArgs) -> Done {
             return Err(Failure::Usage(message));
         }
     };
-    let scene = origin.load()?;
-    let camera = args.look.camera(scene.camera()).map_err(usage)?;
+    let scene = source.load()?;
+    let camera = args.camera_args.camera(scene.camera()).map_err(usage)?;
     let scene = scene.with_camera(camera);
     let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
-    let cell_mode = settings.terminal.cells.in_file(Colors::None);
+    let cell_mode = settings.terminal.cells.mode_for_file(Colors::None);
     let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect).map_err(usage)?;
     let sampling = settings.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
     let map = settings.map.map();
-    let picture = on_threads(args.look.threads, || maps::picture(map, &scene, scene.camera(), resolution, sampling))?;
+    let picture =
+        on_threads(args.camera_args.threads, || maps::picture(map, &scene, scene.camera(), resolution, sampling))?;
     let grid = cell::grid_from_picture(cell_mode, &picture);
     write_stdout(&export::printed(&grid, cell_mode.colors))
 }
 
 /// The live view. Whatever happens in it, the terminal is given back before a word is said.
-fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
+fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     #[cfg(feature = "test-hooks")]
     inject_faults();
     let settings = Settings::gather(given)?.args;
@@ -131,7 +132,7 @@ fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
             app::Error::Scene(failure) => failure,
             error => Failure::Runtime(error.to_string()),
         })?,
-        Err(_) => complain_of_panic(),
+        Err(_) => exit_after_panic(),
     };
     if let Ending::Signal(signal) = ending {
         die_of(signal);
@@ -146,16 +147,16 @@ fn look(args: &LiveArgs, given: &ArgMatches) -> Done {
 /// What there is to look at; standard input is read here, before the terminal is taken.
 fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
     if args.scenes.is_empty() {
-        return Ok(vec![source(Origin::BuiltIn, &args.look)]);
+        return Ok(vec![live_source(SceneSource::BuiltIn, &args.camera_args)]);
     }
-    args.scenes.iter().map(|path| Origin::of(path).map(|origin| source(origin, &args.look))).collect()
+    args.scenes.iter().map(|path| SceneSource::of(path).map(|scene| live_source(scene, &args.camera_args))).collect()
 }
 
-fn source(origin: Origin, look: &LookArgs) -> Source<Failure> {
-    let file = if let Origin::File(path) = &origin { Some(path.clone()) } else { None };
-    let (name, look) = (origin.to_string(), look.clone());
+fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Source<Failure> {
+    let file = if let SceneSource::File(path) = &scene { Some(path.clone()) } else { None };
+    let (name, camera_args) = (scene.to_string(), camera_args.clone());
     let is_mesh = is_mesh(&name, &[]);
-    let source = Source::new(name, move |watcher| look.draft(&origin, watcher));
+    let source = Source::new(name, move |watcher| camera_args.draft(&scene, watcher));
     let source = if is_mesh { source.orbited() } else { source };
     file.into_iter().fold(source, Source::with_file)
 }

@@ -1,6 +1,6 @@
 //! `--map`: what the commands that make pictures show of the scene.
 
-use super::outcome::{Done, Failure};
+use super::outcome::{CommandResult, Failure};
 use super::settings::defaults;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -8,7 +8,7 @@ use std::num::NonZeroU32;
 use termtrace::{Map, Sampling};
 
 /// Stands below the options in the help.
-pub(super) const EXPLAINED: &str = "\
+pub(super) const MAP_HELP: &str = "\
 Maps (--map); all but the first trace one ray per pixel:
   shaded     the light
   lambert    n.l of all lights, at most 1: no colours, no shadows
@@ -36,7 +36,7 @@ impl MapArgs {
     }
 
     /// Refuses more samples than one for each pixel where the map has no use for them.
-    pub(super) fn check_samples(&self, sampling: Sampling) -> Done {
+    pub(super) fn check_samples(&self, sampling: Sampling) -> CommandResult {
         let map = self.map();
         if map.refines() || sampling == Sampling::Each(NonZeroU32::MIN) {
             return Ok(());

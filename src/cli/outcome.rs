@@ -15,7 +15,7 @@ pub(super) enum Failure {
     /// The scene is wrong: exit code 2.
     Scene(SceneError),
     /// All is said already, but for the exit code.
-    Said(u8),
+    Reported(u8),
 }
 
 impl Failure {
@@ -35,7 +35,7 @@ impl Display for Failure {
         match self {
             Self::Runtime(message) | Self::Usage(message) => f.write_str(message),
             Self::Scene(error) => error.fmt(f),
-            Self::Said(_) => Ok(()),
+            Self::Reported(_) => Ok(()),
         }
     }
 }
@@ -49,24 +49,24 @@ impl From<Failure> for Notice {
     }
 }
 
-pub(super) type Done = Result<(), Failure>;
+pub(super) type CommandResult = Result<(), Failure>;
 
 /// Says what went wrong, if anything did.
-pub(super) fn exit_code(done: Done) -> ExitCode {
+pub(super) fn exit_code(done: CommandResult) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Said(code)) => ExitCode::from(code),
-        Err(Failure::Runtime(message)) => complain(&message, 1),
-        Err(Failure::Usage(message)) => complain(&message, 2),
-        Err(Failure::Scene(error)) => complain(&error.to_string(), 2),
+        Err(Failure::Reported(code)) => ExitCode::from(code),
+        Err(Failure::Runtime(message)) => report_failure(&message, 1),
+        Err(Failure::Usage(message)) => report_failure(&message, 2),
+        Err(Failure::Scene(error)) => report_failure(&error.to_string(), 2),
     }
 }
 
 /// Prints what clap says of the command line, which it may quote. Help and version are no errors; a closed pipe hides
 /// either.
-pub(super) fn say(said: &clap::Error) -> ExitCode {
-    let text = visible_lines(&said.render().to_string());
-    if said.use_stderr() {
+pub(super) fn print_clap_message(message: &clap::Error) -> ExitCode {
+    let text = visible_lines(&message.render().to_string());
+    if message.use_stderr() {
         print_error(&text);
         return ExitCode::from(2);
     }
@@ -74,7 +74,7 @@ pub(super) fn say(said: &clap::Error) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn complain(message: &str, code: u8) -> ExitCode {
+fn report_failure(message: &str, code: u8) -> ExitCode {
     print_error(&format!("termtrace: {}\n", visible_lines(message)));
     ExitCode::from(code)
 }
@@ -94,7 +94,7 @@ pub(super) fn reason(error: &io::Error) -> String {
 }
 
 /// Says what the threads said when they panicked, and ends as a panic does.
-pub(super) fn complain_of_panic() -> ! {
+pub(super) fn exit_after_panic() -> ! {
     let messages = termtrace::internals::terminal::take_panic_messages();
     for message in messages {
         print_error(&(visible_lines(&message) + "\n"));
@@ -103,7 +103,7 @@ pub(super) fn complain_of_panic() -> ! {
 }
 
 /// To standard output. A reader that has seen enough (`| head`) is no error.
-pub(super) fn write_stdout(bytes: &[u8]) -> Done {
+pub(super) fn write_stdout(bytes: &[u8]) -> CommandResult {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

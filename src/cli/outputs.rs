@@ -1,6 +1,6 @@
 //! The files that a command writes. A signal that ends the program removes the one that is not finished.
 
-use super::outcome::{Done, Failure, reason};
+use super::outcome::{CommandResult, Failure, reason};
 use std::fs::File;
 use std::io::{self, Stdout, Write};
 use std::path::Path;
@@ -10,19 +10,19 @@ use termtrace::internals::terminal::before_death;
 
 /// The file that is being written, shared with the thread that hears of signals. Whoever has locked it keeps the other
 /// from beginning, writing, finishing or removing it; streams, which may block, are not in it.
-type Unfinished = Mutex<Option<OutputFile>>;
+type PartialFile = Mutex<Option<OutputFile>>;
 
 /// Writes a whole file, or nothing.
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Done {
+pub(super) fn write(path: &Path, bytes: &[u8]) -> CommandResult {
     let mut outputs = Outputs::default();
-    outputs.abandoned_on_signals(|| ());
+    outputs.remove_on_signals(|| ());
     outputs.write(path, bytes).map_err(|error| Failure::runtime(path.display(), reason(&error)))
 }
 
 /// The files of a command, one after the other.
 #[derive(Default)]
 pub(super) struct Outputs {
-    unfinished: Arc<Unfinished>,
+    unfinished: Arc<PartialFile>,
     /// Whether leftovers were looked for: once is enough for the thousands of files of a film.
     has_cleaned: bool,
 }
@@ -30,7 +30,7 @@ pub(super) struct Outputs {
 impl Outputs {
     /// From now on a signal that ends the program removes the unfinished file, and does something else, first. Where
     /// signals cannot be caught, the next run removes it: no reason to give up.
-    pub(super) fn abandoned_on_signals(&self, last_act: impl FnOnce() + Send + 'static) {
+    pub(super) fn remove_on_signals(&self, last_act: impl FnOnce() + Send + 'static) {
         let unfinished = Arc::downgrade(&self.unfinished);
         let _ = before_death(move || {
             abandon(&unfinished);
@@ -63,7 +63,7 @@ pub(super) enum Output {
     Stdout(Stdout),
     /// A device or a pipe: what is written is gone.
     Stream(File),
-    File(Arc<Unfinished>),
+    File(Arc<PartialFile>),
 }
 
 impl Output {
@@ -97,12 +97,12 @@ impl Write for Output {
     }
 }
 
-fn locked(unfinished: &Unfinished) -> MutexGuard<'_, Option<OutputFile>> {
+fn locked(unfinished: &PartialFile) -> MutexGuard<'_, Option<OutputFile>> {
     unfinished.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Removes the unfinished file. It stays locked: nothing is begun any more.
-fn abandon(unfinished: &Weak<Unfinished>) {
+fn abandon(unfinished: &Weak<PartialFile>) {
     if let Some(unfinished) = unfinished.upgrade() {
         let mut file = locked(&unfinished);
         file.take();

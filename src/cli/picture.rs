@@ -1,6 +1,6 @@
 //! How large frames are, and how finely traced: the flags of `frame` and `record`.
 
-use super::outcome::{Done, Failure};
+use super::outcome::{CommandResult, Failure};
 use clap::Args;
 use std::num::NonZeroU32;
 use termtrace::internals::capabilities::{CELL_ASPECTS, USUAL_CELL_ASPECT};
@@ -67,10 +67,10 @@ impl PictureArgs {
     }
 
     /// Whether a file with the picture at that scale is not too large.
-    pub(super) fn fits_scaled(&self, resolution: Resolution) -> Done {
+    pub(super) fn check_scaled_pixel_count(&self, resolution: Resolution) -> CommandResult {
         let [width, height] =
             [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(self.scale()));
-        fits(width, height)
+        check_pixel_count(width, height)
     }
 
     /// Whether anybody has asked for it.
@@ -80,7 +80,7 @@ impl PictureArgs {
 }
 
 /// No picture is larger than memory can be expected to hold.
-pub(super) fn fits(width: u64, height: u64) -> Done {
+pub(super) fn check_pixel_count(width: u64, height: u64) -> CommandResult {
     let most = u64::from(Resolution::MAX_PIXELS);
     if width.saturating_mul(height) > most { Err(too_large(width, height)) } else { Ok(()) }
 }

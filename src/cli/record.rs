@@ -5,12 +5,12 @@ mod progress;
 
 use super::encoding::{self, EncodingArgs};
 use super::map::{self, MapArgs};
-use super::outcome::{Done, Failure, reason};
+use super::outcome::{CommandResult, Failure, reason};
 use super::outputs::{Output, Outputs};
-use super::picture::{PictureArgs, fits};
+use super::picture::{PictureArgs, check_pixel_count};
 use super::scene_args::SceneArgs;
 use clap::Args;
-use numbered::Numbered;
+use numbered::NumberedFiles;
 use std::io::{self, BufWriter, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::internals::cell;
@@ -30,7 +30,7 @@ Examples:
   termtrace record my.ron --compressed-link | gzip >my.cast.gz";
 
 #[derive(Args)]
-#[command(after_help = format!("{}\n{}\n\n{EXAMPLES}", map::EXPLAINED, encoding::EXPLAINED))]
+#[command(after_help = format!("{}\n{}\n\n{EXAMPLES}", map::MAP_HELP, encoding::ENCODING_HELP))]
 pub(super) struct RecordArgs {
     #[command(flatten)]
     scene: SceneArgs,
@@ -62,11 +62,11 @@ const MAX_GIF_FPS: u32 = 50;
 const ORBIT_SECONDS: f64 = 8.0;
 
 /// What the film becomes.
-enum Format {
+enum FilmFormat {
     /// An asciicast, on standard output if there is no file.
     Cast(Option<PathBuf>),
     Gif(PathBuf),
-    Png(Numbered),
+    Png(NumberedFiles),
 }
 
 /// All that has been asked for, found to be possible.
@@ -74,18 +74,18 @@ struct Film {
     scene: Scene,
     cameras: Vec<Camera>,
     resolution: Resolution,
-    format: Format,
+    format: FilmFormat,
 }
 
 impl RecordArgs {
-    fn format(&self) -> Result<Format, Failure> {
+    fn format(&self) -> Result<FilmFormat, Failure> {
         let Some(path) = self.output.as_deref().filter(|&path| path != Path::new("-")) else {
-            return Ok(Format::Cast(None));
+            return Ok(FilmFormat::Cast(None));
         };
         match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("cast") => Ok(Format::Cast(Some(path.to_owned()))),
-            Some("gif") => Ok(Format::Gif(path.to_owned())),
-            Some("png") => Numbered::parse(path).map(Format::Png),
+            Some("cast") => Ok(FilmFormat::Cast(Some(path.to_owned()))),
+            Some("gif") => Ok(FilmFormat::Gif(path.to_owned())),
+            Some("png") => NumberedFiles::parse(path).map(FilmFormat::Png),
             _ => Err(Failure::Usage(format!("{}: the name does not end in .cast, .gif or .png", path.display()))),
         }
     }
@@ -93,7 +93,7 @@ impl RecordArgs {
     fn film(&self) -> Result<Film, Failure> {
         let format = self.format()?;
         if let Some(output) = &self.output {
-            self.scene.keeps(&[&self.path], output)?;
+            self.scene.refuse_overwriting(&[&self.path], output)?;
         }
         let resolution = self.picture.resolution(CellMode::HALF_BLOCK)?;
         self.check_flags(&format, resolution)?;
@@ -103,11 +103,11 @@ impl RecordArgs {
     }
 
     /// Turns away what the format cannot be, or makes no use of.
-    fn check_flags(&self, format: &Format, resolution: Resolution) -> Done {
+    fn check_flags(&self, format: &FilmFormat, resolution: Resolution) -> CommandResult {
         let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
         self.map.check_samples(self.picture.samples())?;
-        let is_cast = matches!(format, Format::Cast(_));
-        if matches!(format, Format::Cast(None)) && io::stdout().is_terminal() {
+        let is_cast = matches!(format, FilmFormat::Cast(_));
+        if matches!(format, FilmFormat::Cast(None)) && io::stdout().is_terminal() {
             return wrong("an asciicast would garble the terminal; name a file with -o, or pipe it");
         }
         if is_cast && self.picture.has_scale() {
@@ -120,15 +120,15 @@ impl RecordArgs {
         }
         let (width, height) = gif_size(resolution, self.picture.scale());
         match format {
-            Format::Cast(_) => Ok(()),
-            Format::Png(_) => self.picture.fits_scaled(resolution),
-            Format::Gif(_) if self.fps > MAX_GIF_FPS => {
+            FilmFormat::Cast(_) => Ok(()),
+            FilmFormat::Png(_) => self.picture.check_scaled_pixel_count(resolution),
+            FilmFormat::Gif(_) if self.fps > MAX_GIF_FPS => {
                 wrong("a GIF has at most 50 frames per second: viewers slow down one that has more")
             }
-            Format::Gif(_) if width.max(height) > u16::MAX.into() => {
+            FilmFormat::Gif(_) if width.max(height) > u16::MAX.into() => {
                 Err(Failure::Usage(format!("a GIF of {width}x{height} pixels is too large; at most 65535 each way")))
             }
-            Format::Gif(_) => fits(width, height),
+            FilmFormat::Gif(_) => check_pixel_count(width, height),
         }
     }
 
@@ -152,7 +152,7 @@ impl RecordArgs {
         if self.path == Path::new("orbit") {
             return Ok(CameraPath::orbit(*camera, self.seconds.unwrap_or(ORBIT_SECONDS)));
         }
-        if self.scene.look.eye.is_some() || self.scene.look.target.is_some() {
+        if self.scene.camera_args.eye.is_some() || self.scene.camera_args.target.is_some() {
             return Err(Failure::Usage(
                 "--eye and --target are for the orbit; a path file says both itself".to_owned(),
             ));
@@ -163,7 +163,7 @@ impl RecordArgs {
     fn sink(&self, film: &Film, outputs: &mut Outputs) -> io::Result<Sink> {
         let resolution = film.resolution;
         Ok(match &film.format {
-            Format::Cast(path) => {
+            FilmFormat::Cast(path) => {
                 let out = match path {
                     Some(path) => outputs.begin(path)?,
                     None => Output::Stdout(io::stdout()),
@@ -180,11 +180,11 @@ impl RecordArgs {
                         .with_max_rate(self.encoding.loss.max_rate()),
                 )
             }
-            Format::Gif(path) => {
+            FilmFormat::Gif(path) => {
                 let out = BufWriter::new(outputs.begin(path)?);
                 Sink::Gif(Gif::begin(out, resolution, self.picture.scale(), self.fps)?)
             }
-            Format::Png(_) => Sink::Png { pixel_aspect: resolution.pixel_aspect(), scale: self.picture.scale() },
+            FilmFormat::Png(_) => Sink::Png { pixel_aspect: resolution.pixel_aspect(), scale: self.picture.scale() },
         })
     }
 }
@@ -225,16 +225,16 @@ impl Film {
     /// The file that a frame, counted from 0, goes to.
     fn file(&self, frame: usize) -> PathBuf {
         match &self.format {
-            Format::Cast(None) => "standard output".into(),
-            Format::Cast(Some(path)) | Format::Gif(path) => path.clone(),
-            Format::Png(numbered) => numbered.file(frame + 1),
+            FilmFormat::Cast(None) => "standard output".into(),
+            FilmFormat::Cast(Some(path)) | FilmFormat::Gif(path) => path.clone(),
+            FilmFormat::Png(numbered) => numbered.file(frame + 1),
         }
     }
 
     /// A reader that has seen enough (`| head`) is no error.
     fn written<T>(&self, frame: usize, result: io::Result<T>) -> Result<T, Stop> {
         result.map_err(|error| match self.format {
-            Format::Cast(None) if error.kind() == io::ErrorKind::BrokenPipe => Stop::NoReader,
+            FilmFormat::Cast(None) if error.kind() == io::ErrorKind::BrokenPipe => Stop::NoReader,
             _ => Stop::Failure(Failure::runtime(self.file(frame).display(), reason(&error))),
         })
     }
@@ -246,7 +246,7 @@ enum Stop {
     Failure(Failure),
 }
 
-pub(super) fn run(args: &RecordArgs) -> Done {
+pub(super) fn run(args: &RecordArgs) -> CommandResult {
     let film = args.film()?;
     let written = args.scene.on_threads(|| write(args, &film))?;
     match written {
@@ -260,7 +260,7 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     let mut outputs = Outputs::default();
     let bar = progress::bar(film.cameras.len() as u64);
     let shown = bar.downgrade();
-    outputs.abandoned_on_signals(move || {
+    outputs.remove_on_signals(move || {
         // Whoever ends the recording finds a clean line.
         if let Some(bar) = shown.upgrade() {
             bar.finish_and_clear();

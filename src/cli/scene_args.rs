@@ -1,7 +1,7 @@
 //! The scene that a command is about, and who looks at it.
 
-use super::origin::Origin;
-use super::outcome::{Done, Failure, usage};
+use super::outcome::{CommandResult, Failure, usage};
+use super::scene_source::SceneSource;
 use clap::Args;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ pub(super) struct SceneArgs {
     #[arg(value_name = "SCENE")]
     pub(super) scene: PathBuf,
     #[command(flatten)]
-    pub(super) look: LookArgs,
+    pub(super) camera_args: CameraArgs,
 }
 
 impl SceneArgs {
@@ -26,7 +26,7 @@ impl SceneArgs {
     }
 
     /// Refuses to write over the scene, or another file that it is shown with.
-    pub(super) fn keeps(&self, others: &[&Path], output: &Path) -> Done {
+    pub(super) fn refuse_overwriting(&self, others: &[&Path], output: &Path) -> CommandResult {
         let is_output = |input: &&Path| match (input.canonicalize(), output.canonicalize()) {
             (Ok(input), Ok(output)) => input == output,
             _ => false,
@@ -39,20 +39,20 @@ impl SceneArgs {
 
     /// The scene, with the camera that the command line wants.
     pub(super) fn load(&self) -> Result<Scene, Failure> {
-        let scene = Origin::of(&self.scene)?.load()?;
-        let camera = self.look.camera(scene.camera()).map_err(usage)?;
+        let scene = SceneSource::of(&self.scene)?.load()?;
+        let camera = self.camera_args.camera(scene.camera()).map_err(usage)?;
         Ok(scene.with_camera(camera))
     }
 
     /// Does something on the threads that the command line wants.
     pub(super) fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-        on_threads(self.look.threads, work)
+        on_threads(self.camera_args.threads, work)
     }
 }
 
 /// Who looks at the scene.
 #[derive(Args, Clone)]
-pub(super) struct LookArgs {
+pub(super) struct CameraArgs {
     /// Where to look from, instead of the scene's eye point
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
     pub(super) eye: Option<Vec3>,
@@ -70,10 +70,10 @@ pub(super) struct LookArgs {
     pub(super) threads: Option<u16>,
 }
 
-impl LookArgs {
+impl CameraArgs {
     /// The scene as it is to be looked at, not built yet, until the watcher cancels it.
-    pub(super) fn draft(&self, origin: &Origin, watcher: &Watcher<'_>) -> Result<Draft, Failure> {
-        let draft = origin.draft(watcher)?;
+    pub(super) fn draft(&self, source: &SceneSource, watcher: &Watcher<'_>) -> Result<Draft, Failure> {
+        let draft = source.draft(watcher)?;
         let camera = self.camera(draft.camera()).map_err(usage)?;
         Ok(draft.with_camera(camera))
     }

@@ -13,7 +13,7 @@ mod values;
 use super::cells::CellArgs;
 use super::encoding::LossArgs;
 use super::map::MapArgs;
-use super::outcome::{Done, Failure, usage};
+use super::outcome::{CommandResult, Failure, usage};
 use super::picture::{parse_cell_aspect, parse_samples};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
@@ -25,7 +25,7 @@ use termtrace::internals::capabilities::Hints;
 use termtrace::internals::control::Pace;
 
 /// Stands below the options in the help.
-pub(super) const EXPLAINED: &str = "\
+pub(super) const SETTINGS_HELP: &str = "\
 Settings: what holds for good stands in config.ron, by the flags' names, as in (fps: 30, color: 256), or in the
 environment, as in TERMTRACE_FPS=30; a flag goes before the environment, and that before the file. keys.ron beside it
 binds keys. termtrace config says what holds, who says so, and where the files are looked for.";
@@ -70,7 +70,7 @@ pub(super) struct SettingArgs {
 
 impl SettingArgs {
     /// Refuses more samples than one for each pixel where the map has no use for them.
-    pub(super) fn check_samples(&self) -> Done {
+    pub(super) fn check_samples(&self) -> CommandResult {
         self.samples.map_or(Ok(()), |samples| self.map.check_samples(samples))
     }
 
@@ -99,33 +99,33 @@ fn parse_speed(text: &str) -> Result<f32, String> {
 pub(super) struct Settings {
     pub(super) args: SettingArgs,
     /// In the order of the help.
-    pub(super) held: Vec<Held>,
+    pub(super) effective: Vec<EffectiveSetting>,
 }
 
 /// A setting as it holds.
-pub(super) struct Held {
+pub(super) struct EffectiveSetting {
     /// As the file calls it.
     pub(super) name: String,
     pub(super) value: String,
-    pub(super) said_by: SaidBy,
+    pub(super) source: SettingSource,
 }
 
 /// Who says how something is to be.
-pub(super) enum SaidBy {
+pub(super) enum SettingSource {
     Flag(String),
     Variable(String),
     /// The file, in that line.
     File(PathBuf, usize),
-    Nobody,
+    Default,
 }
 
-impl std::fmt::Display for SaidBy {
+impl std::fmt::Display for SettingSource {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Flag(flag) => f.write_str(flag),
             Self::Variable(name) => f.write_str(name),
             Self::File(path, line) => write!(f, "{}:{line}", path.display()),
-            Self::Nobody => f.write_str("default"),
+            Self::Default => f.write_str("default"),
         }
     }
 }
@@ -139,33 +139,33 @@ impl Settings {
             Some(file) => entries::read(file, &command).map_err(usage)?,
             None => Vec::new(),
         };
-        let held: Vec<_> = command
+        let effective: Vec<_> = command
             .get_arguments()
             .map(|setting| {
                 let said = by_flag(setting, given)
                     .or_else(|| by_environment(setting))
                     .or_else(|| by_file(setting, &entries, file.as_ref()?))
-                    .unwrap_or_else(|| (defaults::of(setting.get_id().as_str()).to_owned(), SaidBy::Nobody));
-                Held { name: setting.get_id().to_string(), value: said.0, said_by: said.1 }
+                    .unwrap_or_else(|| (defaults::of(setting.get_id().as_str()).to_owned(), SettingSource::Default));
+                EffectiveSetting { name: setting.get_id().to_string(), value: said.0, source: said.1 }
             })
             .collect();
         let mut words = Vec::new();
-        for (setting, held) in command.get_arguments().zip(&held) {
-            if let SaidBy::Variable(name) = &held.said_by {
+        for (setting, held) in command.get_arguments().zip(&effective) {
+            if let SettingSource::Variable(name) = &held.source {
                 values::check(&command, setting, &held.value)
                     .map_err(|wrong| Failure::Usage(format!("{name}=\"{}\": {wrong}", held.value)))?;
             }
-            if !matches!(held.said_by, SaidBy::Nobody) {
+            if !matches!(held.source, SettingSource::Default) {
                 words.push(values::word(setting, &held.value));
             }
         }
         let args = command.try_get_matches_from(words).and_then(|found| SettingArgs::from_arg_matches(&found));
-        Ok(Self { args: args.map_err(usage)?, held })
+        Ok(Self { args: args.map_err(usage)?, effective })
     }
 
     /// Who says how the setting of that name is to be.
-    pub(super) fn said_by(&self, name: &str) -> &SaidBy {
-        self.held.iter().find(|held| held.name == name).map_or(&SaidBy::Nobody, |held| &held.said_by)
+    pub(super) fn source(&self, name: &str) -> &SettingSource {
+        self.effective.iter().find(|held| held.name == name).map_or(&SettingSource::Default, |held| &held.source)
     }
 }
 
@@ -174,30 +174,30 @@ fn command() -> Command {
     SettingArgs::augment_args(Command::new("termtrace").no_binary_name(true))
 }
 
-type Said = (String, SaidBy);
+type Given = (String, SettingSource);
 
-fn by_flag(setting: &Arg, given: &ArgMatches) -> Option<Said> {
+fn by_flag(setting: &Arg, given: &ArgMatches) -> Option<Given> {
     let id = setting.get_id().as_str();
     // A command need not have all of the flags.
     let text = given.try_get_raw(id).ok()??.next()?.to_string_lossy().into_owned();
     let is_given = given.value_source(id) == Some(ValueSource::CommandLine);
-    is_given.then_some((text, SaidBy::Flag(values::flag(setting))))
+    is_given.then_some((text, SettingSource::Flag(values::flag(setting))))
 }
 
 /// By its own variable, or, for colours, by those that all programs heed.
-fn by_environment(setting: &Arg) -> Option<Said> {
+fn by_environment(setting: &Arg) -> Option<Given> {
     let name = format!("TERMTRACE_{}", setting.get_id().as_str().to_uppercase());
     if let Some(text) = std::env::var_os(&name).filter(|text| !text.is_empty()) {
-        return Some((text.to_string_lossy().into_owned(), SaidBy::Variable(name)));
+        return Some((text.to_string_lossy().into_owned(), SettingSource::Variable(name)));
     }
     let gathered = Hints::gather(&|name| std::env::var(name).ok(), &|_| None);
     let name = gathered.color_variable().filter(|_| setting.get_id() == "color")?;
-    Some(("auto".to_owned(), SaidBy::Variable(name.to_owned())))
+    Some(("auto".to_owned(), SettingSource::Variable(name.to_owned())))
 }
 
-fn by_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<Said> {
+fn by_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<Given> {
     let entry = entries.iter().find(|entry| setting.get_id() == entry.name.as_str())?;
-    Some((entry.text.clone(), SaidBy::File(file.path.clone(), entry.line)))
+    Some((entry.text.clone(), SettingSource::File(file.path.clone(), entry.line)))
 }
 
 #[cfg(test)]

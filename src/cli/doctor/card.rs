@@ -43,16 +43,19 @@ fn grid(capabilities: &Capabilities) -> Grid {
     let mut grid = painter.grid(&picture(capabilities));
     // As in the live view, where the halves are said to meet.
     if capabilities.halves_meet {
-        let turned = |column: usize| column >= usize::from(STRIPES) && column % 2 == 1;
+        let is_upper = |column: usize| column >= usize::from(STRIPES) && column % 2 == 1;
         for row in grid.rows_mut() {
-            row.iter_mut().enumerate().filter(|(column, _)| turned(*column)).for_each(|(_, cell)| turn(cell));
+            row.iter_mut()
+                .enumerate()
+                .filter(|(column, _)| is_upper(*column))
+                .for_each(|(_, cell)| use_upper_half(cell));
         }
     }
     grid
 }
 
 /// The same halves by the other block.
-fn turn(cell: &mut Cell) {
+fn use_upper_half(cell: &mut Cell) {
     if cell.glyph == '▄' {
         *cell = Cell::new('▀', cell.bg, cell.fg);
     }
@@ -65,7 +68,7 @@ fn picture(capabilities: &Capabilities) -> Picture {
     let (across, down) = mode.pixels_per_cell();
     let pixels = (0..resolution.height()).flat_map(|y| (0..resolution.width()).map(move |x| (x, y)));
     let color = |(x, y): (u32, u32)| {
-        let at = Place {
+        let at = CardPoint {
             column: (x as f32 + 0.5) / across as f32,
             row: (y as f32 + 0.5) / down as f32,
             pixel: (1.0 / across as f32, 1.0 / down as f32),
@@ -77,13 +80,13 @@ fn picture(capabilities: &Capabilities) -> Picture {
 }
 
 /// A place on the card, in cells, and the size of a pixel.
-struct Place {
+struct CardPoint {
     column: f32,
     row: f32,
     pixel: (f32, f32),
 }
 
-impl Place {
+impl CardPoint {
     fn color(&self, cell_aspect: f32) -> Srgb8 {
         let [gradient, stripes, end] = [GRADIENT, STRIPES, COLUMNS].map(f32::from);
         let gap = f32::from(GAP);

@@ -9,39 +9,39 @@ use termtrace::internals::text::visible_lines;
 
 /// How the talk with the terminal went.
 #[derive(Clone, Copy)]
-pub(super) enum Talk {
+pub(super) enum QueryOutcome {
     /// There is no terminal.
     NoTerminal,
     /// The last answer came after that time; at once, where nothing was asked.
     Answered(Duration),
     /// It came too late, or never.
-    Silence,
+    TimedOut,
 }
 
 /// All that is to be told.
-pub(super) struct Known<'a> {
+pub(super) struct Report<'a> {
     pub(super) settings: &'a Settings,
     pub(super) hints: &'a Hints,
     pub(super) findings: &'a Findings,
     pub(super) answers: &'a Answers,
-    pub(super) talk: Talk,
+    pub(super) outcome: QueryOutcome,
 }
 
-pub(super) fn text(known: &Known<'_>) -> String {
-    let term = known.hints.variable("TERM").unwrap_or_default();
+pub(super) fn text(report: &Report<'_>) -> String {
+    let term = report.hints.variable("TERM").unwrap_or_default();
     let version = env!("CARGO_PKG_VERSION");
     let mut text = format!("What this terminal (TERM={term}) can do, and who says so; termtrace {version}\n");
-    for (what, value, who) in known.rows() {
+    for (what, value, who) in report.rows() {
         let _ = writeln!(text, "{what:<20}  {value:<28}  {who}");
     }
     // A name is not to steer the terminal that it is printed on.
     visible_lines(&text)
 }
 
-type Row = (&'static str, String, String);
+type ReportRow = (&'static str, String, String);
 
-impl Known<'_> {
-    fn rows(&self) -> Vec<Row> {
+impl Report<'_> {
+    fn rows(&self) -> Vec<ReportRow> {
         let findings = self.findings;
         vec![
             self.questions(),
@@ -61,9 +61,9 @@ impl Known<'_> {
     }
 
     /// What the user may have set, by that setting.
-    fn set<T>(&self, what: &'static str, setting: &str, found: Found<T>, say: impl FnOnce(T) -> String) -> Row {
+    fn set<T>(&self, what: &'static str, setting: &str, found: Found<T>, say: impl FnOnce(T) -> String) -> ReportRow {
         match found.source {
-            Source::User => (what, say(found.value), self.settings.said_by(setting).to_string()),
+            Source::User => (what, say(found.value), self.settings.source(setting).to_string()),
             _ => row(what, found, say),
         }
     }
@@ -73,28 +73,28 @@ impl Known<'_> {
         if self.hints.glyphs.is_some() { "glyphs" } else { "color" }
     }
 
-    fn questions(&self) -> Row {
+    fn questions(&self) -> ReportRow {
         let asked = match self.hints.asking() {
-            _ if matches!(self.talk, Talk::NoTerminal) => "nothing: there is none here",
+            _ if matches!(self.outcome, QueryOutcome::NoTerminal) => "nothing: there is none here",
             Asking::Nothing => "nothing, by its name",
             Asking::Console => "what a console understands",
             Asking::Screen => "what screen understands",
             Asking::Tmux => "what tmux understands",
             Asking::Everything => "everything",
         };
-        let how = match self.talk {
-            Talk::NoTerminal => "-".to_owned(),
-            Talk::Answered(_) if self.hints.asking() == Asking::Nothing => "-".to_owned(),
-            Talk::Answered(after) => format!("answered after {} ms", after.as_millis()),
-            Talk::Silence => "no end of answers in 2 s".to_owned(),
+        let how = match self.outcome {
+            QueryOutcome::NoTerminal => "-".to_owned(),
+            QueryOutcome::Answered(_) if self.hints.asking() == Asking::Nothing => "-".to_owned(),
+            QueryOutcome::Answered(after) => format!("answered after {} ms", after.as_millis()),
+            QueryOutcome::TimedOut => "no end of answers in 2 s".to_owned(),
         };
         ("it was asked", asked.to_owned(), how)
     }
 
-    fn locale(&self) -> Row {
+    fn locale(&self) -> ReportRow {
         let (value, who) = match self.hints.locale() {
             Some((name, locale)) => (locale, name.to_owned()),
-            None => ("none: taken for UTF-8".to_owned(), who(Source::Assumed)),
+            None => ("none: taken for UTF-8".to_owned(), source_name(Source::Assumed)),
         };
         ("locale", value, who)
     }
@@ -108,7 +108,7 @@ impl Known<'_> {
         self.answers.cell_pixels.map_or_else(String::new, |(width, height)| format!(" ({width}x{height} pixels)"))
     }
 
-    fn answered(&self, what: &'static str, answer: Option<String>) -> Row {
+    fn answered(&self, what: &'static str, answer: Option<String>) -> ReportRow {
         match answer {
             Some(answer) => (what, answer, "its answer".to_owned()),
             None => (what, "not known".to_owned(), self.no_answer().to_owned()),
@@ -116,21 +116,21 @@ impl Known<'_> {
     }
 
     fn no_answer(&self) -> &'static str {
-        match (self.talk, self.hints.asking()) {
-            (Talk::NoTerminal, _) | (_, Asking::Nothing) => "not asked",
+        match (self.outcome, self.hints.asking()) {
+            (QueryOutcome::NoTerminal, _) | (_, Asking::Nothing) => "not asked",
             (_, Asking::Everything) => "no answer",
             _ => "no answer, or not asked",
         }
     }
 
-    fn yes(&self, what: &'static str, found: Found<bool>) -> Row {
+    fn yes(&self, what: &'static str, found: Found<bool>) -> ReportRow {
         if found.source == Source::Assumed {
             return (what, "not known: no".to_owned(), self.no_answer().to_owned());
         }
         row(what, found, yes_or_no)
     }
 
-    fn background(&self) -> Row {
+    fn background(&self) -> ReportRow {
         let kind = if self.findings.light_background.value { "light" } else { "dark" };
         match self.answers.background {
             Some(c) => self.answered("background", Some(format!("{kind}, #{:02x}{:02x}{:02x}", c.r, c.g, c.b))),
@@ -138,12 +138,12 @@ impl Known<'_> {
         }
     }
 
-    fn sixteen(&self) -> Row {
+    fn sixteen(&self) -> ReportRow {
         let count = self.answers.sixteen.iter().flatten().count();
         self.answered("its 16 colours", (count > 0).then(|| format!("{count} known")))
     }
 
-    fn mouse(&self) -> Row {
+    fn mouse(&self) -> ReportRow {
         let what = "mouse, by pixels";
         match (self.answers.sgr_mouse, self.answers.pixel_mouse) {
             (None, None) => self.answered(what, None),
@@ -155,12 +155,12 @@ impl Known<'_> {
     }
 }
 
-fn row<T>(what: &'static str, found: Found<T>, say: impl FnOnce(T) -> String) -> Row {
-    (what, say(found.value), who(found.source))
+fn row<T>(what: &'static str, found: Found<T>, say: impl FnOnce(T) -> String) -> ReportRow {
+    (what, say(found.value), source_name(found.source))
 }
 
-fn who(source: Source) -> String {
-    let who = match source {
+fn source_name(source: Source) -> String {
+    let name = match source {
         Source::User => "the user",
         Source::Variable(name) => name,
         Source::Window => "the window's pixels",
@@ -168,7 +168,7 @@ fn who(source: Source) -> String {
         Source::Terminfo => "terminfo",
         Source::Assumed => "assumed",
     };
-    who.to_owned()
+    name.to_owned()
 }
 
 fn colors(colors: Colors) -> String {

@@ -1,6 +1,6 @@
 //! `frame --check`: is the frame the one in the file, and if not, where do they differ?
 
-use crate::cli::outcome::{Done, Failure, write_stdout};
+use crate::cli::outcome::{CommandResult, Failure, write_stdout};
 use std::io;
 use std::path::Path;
 use termtrace::export::Format;
@@ -10,11 +10,11 @@ use termtrace::internals::text::visible;
 
 /// The most bytes that a golden frame has: 16 MiB, as any text that is read, or four times as many as the frame that it is
 /// compared with. A larger one is of another picture, and its diff would be as long.
-const MAX_BYTES: usize = 16 << 20;
+const MAX_GOLDEN_BYTES: usize = 16 << 20;
 
 /// Done if the file holds exactly this frame; else a diff goes to standard output.
-pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> Done {
-    let most = MAX_BYTES.max(4 * frame.len());
+pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult {
+    let most = MAX_GOLDEN_BYTES.max(4 * frame.len());
     let golden = named_file::read(path, Accepted::FilesAndPipes, |_| most, &Watcher::patient()).map_err(|error| {
         let reason = match error.kind() {
             io::ErrorKind::NotFound => "no such golden frame; --bless writes it".to_owned(),
@@ -28,5 +28,5 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> Done {
     let name = visible(&path.display().to_string());
     let difference = format.difference(&golden, frame, &name);
     write_stdout(format!("{name}: the frame differs\n{difference}").as_bytes())?;
-    Err(Failure::Said(1))
+    Err(Failure::Reported(1))
 }

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 /// What stands before and after the number, and with how many digits it is written at least.
 #[derive(Debug, PartialEq)]
-pub(super) struct Numbered {
+pub(super) struct NumberedFiles {
     before: String,
     digits: usize,
     after: String,
 }
 
-impl Numbered {
+impl NumberedFiles {
     /// As `printf` reads it: `%d` or `%04d` once, and `%%` for a percent sign.
     pub(super) fn parse(path: &Path) -> Result<Self, Failure> {
         let name = path.to_str().ok_or_else(|| wrong(path, "the name is not UTF-8"))?;
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     fn files(name: &str) -> Option<[String; 3]> {
-        let numbered = Numbered::parse(Path::new(name)).ok()?;
+        let numbered = NumberedFiles::parse(Path::new(name)).ok()?;
         Some([1, 42, 123_456].map(|number| numbered.file(number).display().to_string()))
     }
 

@@ -13,16 +13,16 @@ pub(super) fn bar(frames: u64) -> ProgressBar {
     }
     let style = ProgressStyle::with_template("[{wide_bar}] {pos}/{len} frames, {eta}");
     let style = style.map_or_else(|_| ProgressStyle::default_bar(), |style| style.progress_chars("=> "));
-    let target = ProgressDrawTarget::term_like_with_hz(Box::new(Narrower(terminal)), 10);
+    let target = ProgressDrawTarget::term_like_with_hz(Box::new(NarrowTerm(terminal)), 10);
     let bar = ProgressBar::with_draw_target(Some(frames), target).with_style(style);
     bar.with_finish(ProgressFinish::AndClear)
 }
 
 /// The terminal without its last columns: what it echoes of Ctrl-C then stays on the bar's line, and goes with it.
 #[derive(Debug)]
-struct Narrower(Term);
+struct NarrowTerm(Term);
 
-impl TermLike for Narrower {
+impl TermLike for NarrowTerm {
     fn width(&self) -> u16 {
         TermLike::width(&self.0).saturating_sub(4)
     }

@@ -9,7 +9,7 @@ use termtrace::internals::scene_text::text_from;
 
 /// The most bytes that a file of the user's has: 64 KiB, more than ten times the whole table of keys with what each command
 /// does, which is the longest of them (5 kB).
-const MAX_BYTES: usize = 64 << 10;
+const MAX_USER_FILE_BYTES: usize = 64 << 10;
 
 /// A file of the user's that is there.
 pub(in crate::cli) struct UserFile {
@@ -21,7 +21,7 @@ impl UserFile {
     /// The file of that name; `None` if there is none, or no place for one.
     pub(in crate::cli) fn read(name: &str) -> Result<Option<Self>, LoadError> {
         let Some(path) = path_of(name) else { return Ok(None) };
-        match named_file::read(&path, Accepted::FilesAndPipes, |_| MAX_BYTES, &Watcher::patient()) {
+        match named_file::read(&path, Accepted::FilesAndPipes, |_| MAX_USER_FILE_BYTES, &Watcher::patient()) {
             Ok(bytes) => {
                 let text = text_from(&path.to_string_lossy(), &bytes)?.to_owned();
                 Ok(Some(Self { path, text }))

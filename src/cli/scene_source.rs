@@ -1,7 +1,7 @@
 //! Where a scene comes from, and what is said if it does not.
 
-use super::near;
 use super::outcome::{Failure, reason, usage};
+use super::suggestions;
 use std::fmt;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ const BUILT_IN: &str = include_str!("../../scenes/three_spheres.ron");
 
 /// Where a scene comes from: once found out, it can be read again and again.
 #[derive(Clone)]
-pub(super) enum Origin {
+pub(super) enum SceneSource {
     File(PathBuf),
     /// What standard input said.
     Stdin(Vec<u8>),
@@ -22,7 +22,7 @@ pub(super) enum Origin {
     BuiltIn,
 }
 
-impl Origin {
+impl SceneSource {
     /// What the command line calls by that name. Standard input, which may be the terminal, is read here: before that is
     /// taken.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
@@ -44,7 +44,7 @@ impl Origin {
     }
 }
 
-impl fmt::Display for Origin {
+impl fmt::Display for SceneSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(path) => path.display().fmt(f),
@@ -66,7 +66,7 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
     if let Unfinished::Failed(LoadError::Scene(error)) = error {
         return Failure::Scene(error);
     }
-    let meant = if path.exists() { None } else { near::scene(path) };
+    let meant = if path.exists() { None } else { suggestions::scene_like(path) };
     Failure::Usage(match meant {
         Some(meant) => format!("{error}; did you mean {}?", meant.display()),
         None => error.to_string(),

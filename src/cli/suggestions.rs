@@ -5,15 +5,15 @@ use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::text::closest;
 
 /// So many files of a folder are looked at.
-const MOST_FILES: usize = 10_000;
+const MAX_LISTED_FILES: usize = 10_000;
 
 /// Returns the scene or mesh in the same folder whose name is most like that one, with or without its extension; of two
 /// that are as near, the one with the same extension.
-pub(super) fn scene(path: &Path) -> Option<PathBuf> {
+pub(super) fn scene_like(path: &Path) -> Option<PathBuf> {
     let name = path.file_name()?.to_str()?;
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
     let files = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
-    let names = files.take(MOST_FILES).filter_map(|file| file.ok()?.file_name().into_string().ok());
+    let names = files.take(MAX_LISTED_FILES).filter_map(|file| file.ok()?.file_name().into_string().ok());
     let scenes = names.filter(|name| is_mesh(name, &[]) || Path::new(name).extension().is_some_and(|end| end == "ron"));
     // What a folder lists may not be there: a link that leads nowhere, the name itself among them.
     let there: Vec<_> = scenes.filter(|other| path.with_file_name(other).exists()).collect();

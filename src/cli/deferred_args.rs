@@ -4,9 +4,9 @@ use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
 
 /// To list the arguments of all commands takes several times as long as to read those of one, and the first picture waits
 /// for it.
-pub(super) struct Later<T>(pub(super) T);
+pub(super) struct DeferredArgs<T>(pub(super) T);
 
-impl<T: Args> Args for Later<T> {
+impl<T: Args> Args for DeferredArgs<T> {
     fn augment_args(command: Command) -> Command {
         command.defer(|command| keep_about(command, T::augment_args))
     }
@@ -16,7 +16,7 @@ impl<T: Args> Args for Later<T> {
     }
 }
 
-impl<T: Args> FromArgMatches for Later<T> {
+impl<T: Args> FromArgMatches for DeferredArgs<T> {
     fn from_arg_matches(given: &ArgMatches) -> Result<Self, Error> {
         T::from_arg_matches(given).map(Self)
     }
