@@ -8,7 +8,7 @@ use crate::camera::{Camera, Pose};
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
 use crate::progress::Cancelled;
-use crate::render::{Cost, Crew, Reach, Sampling, Sight, all_sights};
+use crate::render::{Cost, Executor, Reach, Sampling, Sight, all_sights};
 use crate::scene::Scene;
 use crate::shade;
 use crate::shape::Side;
@@ -187,40 +187,40 @@ pub fn picture(
     resolution: Resolution,
     sampling: impl Into<Sampling>,
 ) -> Picture {
-    all_seen(map, Crew::Pool, scene, camera, resolution, sampling.into()).picture
+    all_seen(map, Executor::Pool, scene, camera, resolution, sampling.into()).picture
 }
 
-/// Traces as [`picture`] does on the threads of `crew`.
+/// Traces as [`picture`] does on the threads of `executor`.
 ///
 /// # Errors
-/// [`Cancelled`], if the crew's token is cancelled.
+/// [`Cancelled`], if the executor's token is cancelled.
 pub fn seen(
     map: Map,
-    crew: Crew<'_>,
+    executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
 ) -> Result<Seen, Cancelled> {
-    crew.finish(all_seen(map, crew, scene, camera, resolution, sampling))
+    executor.finish(all_seen(map, executor, scene, camera, resolution, sampling))
 }
 
 fn all_seen(
     map: Map,
-    crew: Crew<'_>,
+    executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
 ) -> Seen {
     let painted = |reach, paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| {
-        let sighted = all_sights(crew, scene, camera, resolution, sampling, reach, paint);
+        let sighted = all_sights(executor, scene, camera, resolution, sampling, reach, paint);
         let [width, height] = [resolution.width(), resolution.height()];
         Seen { picture: Picture { width, height, pixels: sighted.pixels }, cost: sighted.cost }
     };
     let of_surfaces = |paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| painted(Reach::Surfaces, paint);
     match map {
-        Map::Shaded => shaded::seen(crew, scene, camera, resolution, sampling),
+        Map::Shaded => shaded::seen(executor, scene, camera, resolution, sampling),
         Map::Lambert => of_surfaces(&|sight| lambert(scene, sight)),
         Map::Depth => {
             let middle = distance(camera);
@@ -240,7 +240,7 @@ fn all_seen(
             Some(Side::Front) => FRONT,
             Some(Side::Back) => BACK,
         }),
-        Map::Contrast => contrast::seen(crew, scene, camera, resolution, sampling),
+        Map::Contrast => contrast::seen(executor, scene, camera, resolution, sampling),
     }
 }
 

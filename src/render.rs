@@ -33,13 +33,13 @@ pub use count::{Counts, count};
 pub use one::{Steps, trace_pixel};
 pub use order::Render;
 pub use sampling::Sampling;
-pub use schedule::Crew;
+pub use schedule::Executor;
 pub(crate) use sights::all_sights;
 pub use sights::{Reach, Sight, Sighted, sights};
 
 /// Returns the picture of `scene` seen by `camera`. The first ray of a pixel goes through its centre.
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Framebuffer {
-    render_all(Crew::Pool, scene, camera, resolution, sampling.into()).framebuffer
+    render_all(Executor::Pool, scene, camera, resolution, sampling.into()).framebuffer
 }
 
 /// A frame and its cost.
@@ -67,18 +67,18 @@ impl AddAssign for Cost {
     }
 }
 
-/// Renders as [`render`] does on the threads of `crew`.
+/// Renders as [`render`] does on the threads of `executor`.
 ///
 /// # Errors
-/// [`Cancelled`], if the crew's token is cancelled.
+/// [`Cancelled`], if the executor's token is cancelled.
 pub fn render_by(
-    crew: Crew<'_>,
+    executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: impl Into<Sampling>,
 ) -> Result<Rendered, Cancelled> {
-    crew.finish(render_all(crew, scene, camera, resolution, sampling.into()))
+    executor.finish(render_all(executor, scene, camera, resolution, sampling.into()))
 }
 
 /// Returns the total in which a [`Report`](report::Report) counts such a render: the sum of [`Unit`](steps::Unit) over
@@ -92,23 +92,23 @@ fn units(resolution: Resolution, sampling: Sampling) -> u64 {
     }
 }
 
-/// Renders as [`render`] does on the threads of `crew`; after a cancel the rest is skipped.
+/// Renders as [`render`] does on the threads of `executor`; after a cancel the rest is skipped.
 pub(crate) fn render_all(
-    crew: Crew<'_>,
+    executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
 ) -> Rendered {
     match sampling.bounded() {
-        Sampling::Coarse => uniform::render(crew, scene, &Tiles::new(camera, resolution, 2), 1),
-        Sampling::Each(samples) => uniform::render(crew, scene, &Tiles::new(camera, resolution, 1), samples.get()),
+        Sampling::Coarse => uniform::render(executor, scene, &Tiles::new(camera, resolution, 2), 1),
+        Sampling::Each(samples) => uniform::render(executor, scene, &Tiles::new(camera, resolution, 1), samples.get()),
         Sampling::UpTo(samples) => {
             let mut picture = Refining::new(camera, resolution);
-            let cost = picture.refine(crew, scene, samples);
+            let cost = picture.refine(executor, scene, samples);
             // The picture of a cancelled render is dropped: filling millions of pixels would exceed the limit for the
             // answer to a cancel.
-            let is_lost = crew.is_cancelled();
+            let is_lost = executor.is_cancelled();
             let framebuffer = if is_lost { Framebuffer::new(Resolution::square(0, 0)) } else { picture.framebuffer() };
             Rendered { framebuffer, cost }
         }

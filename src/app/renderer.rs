@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::maps::{self, Map, Seen};
 use crate::progress::{Cancellation, Cancelled};
-use crate::render::{Cost, Crew, Refining, Sampling};
+use crate::render::{Cost, Executor, Refining, Sampling};
 use crate::scene::Scene;
 use crate::terminal::{self, Waker};
 use crate::tone::tone;
@@ -95,7 +95,7 @@ impl Renderer {
         if self.is_small(&job) {
             // The same light as `UpTo(1)`, without the accumulator for refining, which is quickly traced again.
             let one = Sampling::Each(NonZeroU32::MIN);
-            let see = |map, part| maps::seen(map, Crew::Alone, &job.scene, &job.shot.camera, part, one);
+            let see = |map, part| maps::seen(map, Executor::CurrentThread, &job.scene, &job.shot.camera, part, one);
             return frame_of(&job, see).ok().map(|frame| self.noted(frame));
         }
         let work = InWork { refines: job.refines, token: Cancellation::default() };
@@ -252,7 +252,7 @@ impl Tracer {
         let samples = match job.sampling {
             Sampling::UpTo(samples) if map.refines() => samples,
             sampling => {
-                return maps::seen(map, Crew::Cancellable(token), scene, &shot.camera, resolution, sampling);
+                return maps::seen(map, Executor::Cancellable(token), scene, &shot.camera, resolution, sampling);
             }
         };
         let mut kept = kept.unwrap_or_else(|| Kept::new(job, resolution));
@@ -271,7 +271,7 @@ fn has_one_sample(sampling: Sampling) -> bool {
 mod tests {
     use super::*;
     use crate::camera::{Pose, ViewRectangle};
-    use crate::render::{Crew, render_by};
+    use crate::render::{Executor, render_by};
     use crate::terminal::Signals;
     use crate::tone::Picture;
     use crate::viewer::Shown;
@@ -350,7 +350,7 @@ mod tests {
     fn a_picture_is_gone_on_with_where_it_was_left() {
         let scene = three_spheres();
         let (camera, resolution) = (*scene.camera(), Resolution::square(40, 24));
-        let best = render_by(Crew::Pool, &scene, &camera, resolution, Sampling::BEST).expect("it has no token");
+        let best = render_by(Executor::Pool, &scene, &camera, resolution, Sampling::BEST).expect("it has no token");
         let shown = tone(&best.framebuffer, &scene);
         let mut tracer = Tracer::default();
         let mut trace_of = |scene: &Scene, camera, sampling, refines| {

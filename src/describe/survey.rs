@@ -6,7 +6,7 @@ use crate::framebuffer::Resolution;
 use crate::hit::closest_hit;
 use crate::material::Material;
 use crate::ray::Ray;
-use crate::render::{Crew, Reach, Sampling, Sight, all_sights};
+use crate::render::{Executor, Reach, Sampling, Sight, all_sights};
 use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
@@ -93,7 +93,7 @@ impl Survey {
     pub(super) fn of(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
         let one = Sampling::Each(NonZeroU32::MIN);
         let see = |sight: &Sight| spot(scene, sight);
-        let spots = all_sights(Crew::Pool, scene, camera, resolution, one, Reach::Surfaces, see).pixels;
+        let spots = all_sights(Executor::Pool, scene, camera, resolution, one, Reach::Surfaces, see).pixels;
         let mut survey = Self { covered: BTreeMap::new(), hides: BTreeMap::new(), nothing: 0, pixels: spots.len() };
         for (at, spot) in (0..).zip(&spots) {
             let Some(spot) = spot else {

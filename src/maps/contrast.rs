@@ -7,7 +7,7 @@ use super::{Seen, shaded};
 use crate::camera::Camera;
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
-use crate::render::{Crew, Reach, Sampling, all_sights};
+use crate::render::{Executor, Reach, Sampling, all_sights};
 use crate::scene::Scene;
 use crate::tone::Picture;
 use std::num::NonZeroU32;
@@ -18,11 +18,17 @@ const WHITE: Srgb8 = Srgb8::new(255, 255, 255);
 /// Threshold for white: half of white as perceived, CIE 1976 L* 50.
 const MIDDLE: f32 = 0.184;
 
-pub(super) fn seen(crew: Crew<'_>, scene: &Scene, camera: &Camera, resolution: Resolution, sampling: Sampling) -> Seen {
+pub(super) fn seen(
+    executor: Executor<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+) -> Seen {
     let sampling = if sampling == Sampling::Coarse { sampling } else { Sampling::Each(NonZeroU32::MIN) };
-    let light = shaded::seen(crew, scene, camera, resolution, sampling);
+    let light = shaded::seen(executor, scene, camera, resolution, sampling);
     // Counted from 1; 0 for none.
-    let objects = all_sights(crew, scene, camera, resolution, sampling, Reach::Surfaces, |sight| {
+    let objects = all_sights(executor, scene, camera, resolution, sampling, Reach::Surfaces, |sight| {
         sight.hit.map_or(0, |hit| hit.object + 1)
     });
     let mut cost = light.cost;

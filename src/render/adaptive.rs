@@ -4,7 +4,7 @@ use super::pixel::{First, Watched};
 use super::sampling::{PASSES, Runs};
 use super::steps::{Buffers, Goal, Shot, Unit};
 use super::tiles::{ALL_PIXELS, PIXELS, Tiles};
-use super::{Cost, Crew};
+use super::{Cost, Executor};
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::framebuffer::{Framebuffer, Resolution};
@@ -46,42 +46,42 @@ impl Refining {
         scene: &Scene,
         samples: NonZeroU32,
     ) -> Result<Cost, Cancelled> {
-        let crew = Crew::Cancellable(token);
-        crew.finish(self.refine(crew, scene, samples))
+        let executor = Executor::Cancellable(token);
+        executor.finish(self.refine(executor, scene, samples))
     }
 
-    pub(super) fn refine(&mut self, crew: Crew<'_>, scene: &Scene, samples: NonZeroU32) -> Cost {
+    pub(super) fn refine(&mut self, executor: Executor<'_>, scene: &Scene, samples: NonZeroU32) -> Cost {
         let wanted = PASSES.iter().filter(|pass| pass.end <= samples.get()).count();
         let mut cost = Cost::default();
         // Finding edges takes the whole first pass. After it each pixel decides by itself whether it needs more
         // samples, and no tile waits for another.
         if self.passes == 0 && wanted > 0 {
-            cost += self.trace_first(crew, scene);
+            cost += self.trace_first(executor, scene);
             self.passes = 1;
         }
         if self.passes < wanted {
-            cost += self.trace_more(crew, scene, self.passes..wanted);
+            cost += self.trace_more(executor, scene, self.passes..wanted);
             self.passes = wanted;
         }
         cost
     }
 
-    fn trace_first(&mut self, crew: Crew<'_>, scene: &Scene) -> Cost {
+    fn trace_first(&mut self, executor: Executor<'_>, scene: &Scene) -> Cost {
         let runs = Runs::of(PASSES[0].clone());
         let shot = Shot::new(scene, &self.tiles, Goal::Reflected);
-        crew.trace(&shot, self.first.iter_mut().collect(), |tile, first| {
+        executor.trace(&shot, self.first.iter_mut().collect(), |tile, first| {
             first.resize(PIXELS, First::default());
             tile.trace(&runs, |buffers, _, _| see_first(first, buffers));
         })
     }
 
     /// Traces the remaining passes.
-    fn trace_more(&mut self, crew: Crew<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
+    fn trace_more(&mut self, executor: Executor<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
         let white = 1.0 / scene.exposure();
         let runs: Vec<_> = passes.map(|pass| (pass, Runs::of(PASSES[pass].clone()))).collect();
         let Self { tiles, first, watched, .. } = self;
         let shot = Shot { unit: Unit::Tile(UNITS_OF_MORE), ..Shot::new(scene, tiles, Goal::Reflected) };
-        crew.trace(&shot, watched.iter_mut().collect(), |tile, watched| {
+        executor.trace(&shot, watched.iter_mut().collect(), |tile, watched| {
             if watched.is_empty() {
                 watched.extend(first[tile.number].iter().map(Watched::new));
             }

@@ -3,7 +3,7 @@
 use super::sampling::Runs;
 use super::steps::{Buffers, Goal, Shot};
 use super::tiles::Tiles;
-use super::{Crew, Sampling};
+use super::{Executor, Sampling};
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::hit::{self, Kernel};
@@ -49,7 +49,7 @@ pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolut
     let shot = Shot { kernel, ..Shot::new(scene, &tiles, goal) };
     let runs = Runs::of(0..samples.min(Sampling::MAX_SAMPLES).get());
     let mut counts = vec![Counts::default(); tiles.count()];
-    Crew::Pool.trace(&shot, counts.iter_mut().collect(), |tile, counts| {
+    Executor::Pool.trace(&shot, counts.iter_mut().collect(), |tile, counts| {
         tile.trace(&runs, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));
     });
     // Summed tile by tile, because a sum of floats depends on the order.

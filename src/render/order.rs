@@ -1,7 +1,7 @@
 //! The builder of a render.
 
 use super::report::Report;
-use super::{Crew, Sampling, render_all, units};
+use super::{Executor, Sampling, render_all, units};
 use crate::camera::Camera;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::progress::{Cancellation, Cancelled};
@@ -123,12 +123,14 @@ impl<'a> Render<'a> {
     /// Renders on the threads of the current rayon pool.
     fn trace(self) -> Result<Framebuffer, Cancelled> {
         let Self { scene, camera, resolution, sampling, threads: _, token, hear } = self;
-        let render = |crew: Crew<'_>| crew.finish(render_all(crew, scene, &camera, resolution, sampling).framebuffer);
+        let render = |executor: Executor<'_>| {
+            executor.finish(render_all(executor, scene, &camera, resolution, sampling).framebuffer)
+        };
         let Some(hear) = hear else {
-            return render(Crew::Cancellable(&token));
+            return render(Executor::Cancellable(&token));
         };
         let report = Report::new(&hear, token, units(resolution, sampling));
-        let framebuffer = render(Crew::Reporting(&report))?;
+        let framebuffer = render(Executor::Reporting(&report))?;
         let _ = hear(1.0);
         Ok(framebuffer)
     }

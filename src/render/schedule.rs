@@ -11,10 +11,10 @@ use std::time::{Duration, Instant};
 
 /// The threads that trace.
 #[derive(Clone, Copy, Debug)]
-pub enum Crew<'a> {
+pub enum Executor<'a> {
     /// The calling thread alone, for frames of less than about a millisecond: waking other threads takes longer than
     /// they save.
-    Alone,
+    CurrentThread,
     /// The threads of the current rayon pool.
     Pool,
     /// The threads of the current rayon pool, until the token is cancelled.
@@ -26,16 +26,16 @@ pub enum Crew<'a> {
 /// Predicted time up to which the calling thread traces alone: waking another one takes 16 us, and 80 us after a pause.
 const SHORT: Duration = Duration::from_micros(300);
 
-impl Crew<'_> {
+impl Executor<'_> {
     pub(super) fn is_cancelled(self) -> bool {
         match self {
-            Self::Alone | Self::Pool => false,
+            Self::CurrentThread | Self::Pool => false,
             Self::Cancellable(token) => token.is_cancelled(),
             Self::Reporting(report) => report.is_cancelled(),
         }
     }
 
-    /// Returns the result if the crew's token is not cancelled. A cancelled crew skips the rest, so this is called at
+    /// Returns the result if the executor's token is not cancelled. A cancelled executor skips the rest, so this is called at
     /// the end: a token that is not cancelled by then never was.
     pub(crate) fn finish<T>(self, traced: T) -> Result<T, Cancelled> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(traced) }
@@ -54,7 +54,7 @@ impl Crew<'_> {
                 return Cost::default();
             }
             shot.tiles.inside(number, &mut buffers.wanted);
-            let mut tile = Tile { crew: self, shot, number, buffers, cost: Cost::default() };
+            let mut tile = Tile { executor: self, shot, number, buffers, cost: Cost::default() };
             trace(&mut tile, part);
             if let (Self::Reporting(report), Unit::Tile(units)) = (self, shot.unit) {
                 report.add(units);
@@ -63,7 +63,7 @@ impl Crew<'_> {
         };
         let (start, count) = (Instant::now(), parts.len() as u32);
         let is_short = |done: u32| start.elapsed() * count < SHORT * done;
-        let mut is_alone = matches!(self, Self::Alone);
+        let mut is_alone = matches!(self, Self::CurrentThread);
         let mut tiles = parts.into_iter().enumerate();
         let (mut buffers, mut costs) = (Buffers::default(), Vec::with_capacity(tiles.len()));
         for (done, tile) in (1..).zip(tiles.by_ref()) {
@@ -89,7 +89,7 @@ impl Crew<'_> {
 
 /// A tile of a shot on the thread that traces it.
 pub(super) struct Tile<'t> {
-    crew: Crew<'t>,
+    executor: Executor<'t>,
     shot: &'t Shot<'t>,
     /// Its index.
     pub(super) number: usize,
@@ -99,19 +99,19 @@ pub(super) struct Tile<'t> {
 
 impl Tile<'_> {
     /// Traces samples of the active pixels, and calls `sink` after each batch with the buffers, the batch, and the
-    /// range of its pixels among the active ones, until the crew is cancelled.
+    /// range of its pixels among the active ones, until the executor is cancelled.
     pub(super) fn trace(&mut self, runs: &Runs, mut sink: impl FnMut(&mut Buffers, &Run, Range<usize>)) {
-        let Self { crew, shot, number, ref mut buffers, ref mut cost } = *self;
+        let Self { executor, shot, number, ref mut buffers, ref mut cost } = *self;
         let start = Instant::now();
         'runs: for run in runs.iter() {
             for batch in run.batches(buffers.wanted.len()) {
-                if crew.is_cancelled() {
+                if executor.is_cancelled() {
                     break 'runs;
                 }
                 cost.rays += buffers.trace(shot, number, &run, batch.clone());
                 let pixels = batch.len();
                 sink(buffers, &run, batch);
-                if let (Crew::Reporting(report), Unit::Ray) = (crew, shot.unit) {
+                if let (Executor::Reporting(report), Unit::Ray) = (executor, shot.unit) {
                     report.add((pixels * run.each()) as u64);
                 }
             }

@@ -3,7 +3,7 @@
 use super::sampling::Runs;
 use super::steps::{Buffers, Goal, Shot};
 use super::tiles::Tiles;
-use super::{Cost, Crew, Sampling};
+use super::{Cost, Executor, Sampling};
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::hit::Hit;
@@ -54,9 +54,9 @@ pub struct Sighted<T> {
 /// one per pixel, or one for two by two pixels if the sampling is [`Coarse`](Sampling::Coarse).
 ///
 /// # Errors
-/// [`Cancelled`], if the crew's token is cancelled.
+/// [`Cancelled`], if the executor's token is cancelled.
 pub fn sights<T: Copy + Default + Send>(
-    crew: Crew<'_>,
+    executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
@@ -64,12 +64,12 @@ pub fn sights<T: Copy + Default + Send>(
     reach: Reach,
     see: impl Fn(&Sight) -> T + Sync,
 ) -> Result<Sighted<T>, Cancelled> {
-    crew.finish(all_sights(crew, scene, camera, resolution, sampling, reach, see))
+    executor.finish(all_sights(executor, scene, camera, resolution, sampling, reach, see))
 }
 
 /// Traces as [`sights`] does; after a cancel the rest is skipped.
 pub(crate) fn all_sights<T: Copy + Default + Send>(
-    crew: Crew<'_>,
+    executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
@@ -82,7 +82,7 @@ pub(crate) fn all_sights<T: Copy + Default + Send>(
     let goal = if reach == Reach::Lights { Goal::Arriving } else { Goal::Hits };
     let runs = Runs::of(0..1);
     let mut pixels = vec![T::default(); resolution.pixel_count()];
-    let cost = crew.trace(&Shot::new(scene, &tiles, goal), tiles.split(&mut pixels), |tile, mut part| {
+    let cost = executor.trace(&Shot::new(scene, &tiles, goal), tiles.split(&mut pixels), |tile, mut part| {
         tile.trace(&runs, |Buffers { pixels, rays, hits, arriving, .. }, _, _| {
             for (group, pixels) in pixels.chunks(LANES).enumerate() {
                 for (lane, &pixel) in pixels.iter().enumerate() {

@@ -3,7 +3,7 @@
 use super::sampling::{MOST_RAYS, Run, Runs};
 use super::steps::{Buffers, Goal, Shot};
 use super::tiles::{PIXELS, Tiles};
-use super::{Crew, Rendered};
+use super::{Executor, Rendered};
 use crate::framebuffer::Framebuffer;
 use crate::lanes::{Eight, LANES};
 use crate::scene::Scene;
@@ -11,11 +11,11 @@ use crate::shade::{self, EightLights};
 use std::ops::Range;
 
 /// Renders the picture with this many samples per pixel.
-pub(super) fn render(crew: Crew<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Rendered {
+pub(super) fn render(executor: Executor<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Rendered {
     let mut framebuffer = Framebuffer::new(tiles.resolution);
     let parts = tiles.split(framebuffer.pixels_mut());
     let (runs, share) = (Runs::of(0..samples), 1.0 / samples as f32);
-    let cost = crew.trace(&Shot::new(scene, tiles, Goal::Reflected), parts, |tile, mut part| {
+    let cost = executor.trace(&Shot::new(scene, tiles, Goal::Reflected), parts, |tile, mut part| {
         let mut sums = [[Eight::ZERO; 3]; PIXELS / LANES];
         tile.trace(&runs, |buffers, run, pixels| add_lights(&mut sums, buffers, run, pixels));
         tiles.show(&tile.buffers.wanted, |at| shade::light_of(&sums[at / LANES], at % LANES) * share, &mut part);

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use termtrace::internals::render::{Crew, render_by};
+use termtrace::internals::render::{Executor, render_by};
 use termtrace::{Framebuffer, LinearRgb, Resolution, Scene, render};
 
 /// Width and height in pixels, samples per pixel. The last has tiles cut off at both edges.
@@ -57,7 +57,8 @@ fn every_frame_has_the_same_bits_everywhere() {
             let hash = || render(&scene, scene.camera(), Resolution::square(width, height), samples).hash();
             let hashes = pools.each_ref().map(|(threads, pool)| (*threads, pool.install(hash)));
             let [(_, first), ..] = hashes;
-            let alone = render_by(Crew::Alone, &scene, scene.camera(), Resolution::square(width, height), samples);
+            let alone =
+                render_by(Executor::CurrentThread, &scene, scene.camera(), Resolution::square(width, height), samples);
             assert_eq!(alone.expect("nobody cancels it").framebuffer.hash(), hashes[0].1, "{frame}: without a pool");
             for (threads, hash) in hashes {
                 assert_eq!(hash, first, "{frame}: {threads} threads give other bits than one");

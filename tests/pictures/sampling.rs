@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use termtrace::internals::material::Checker;
 use termtrace::internals::progress::Cancellation;
-use termtrace::internals::render::{Crew, Refining, render_by};
+use termtrace::internals::render::{Executor, Refining, render_by};
 use termtrace::{
     Camera, Cancelled, Framebuffer, LinearRgb, Material, Object, Plane, Pose, Resolution, Sampling, Scene,
     ViewRectangle, render, tone,
@@ -64,7 +64,7 @@ fn zero_has_no_sign() {
 #[test]
 fn samples_go_where_the_edges_are() {
     for (path, scene) in shipped() {
-        let traced = |sampling| render_by(Crew::Pool, &scene, scene.camera(), SIZE, sampling).unwrap();
+        let traced = |sampling| render_by(Executor::Pool, &scene, scene.camera(), SIZE, sampling).unwrap();
         let (all, best, one) =
             (traced(Sampling::Each(samples(64))), traced(Sampling::BEST), traced(Sampling::Each(NonZeroU32::MIN)));
         let [near, far] = [&best, &one].map(|it| psnr(&scene, &it.framebuffer, &all.framebuffer));
@@ -108,14 +108,14 @@ fn threads_do_not_show_in_a_refined_picture() {
 fn a_coarse_picture_is_made_of_blocks() {
     for (path, scene) in shipped() {
         let resolution = Resolution::square(81, 47);
-        let coarse = render_by(Crew::Pool, &scene, scene.camera(), resolution, Sampling::Coarse).unwrap();
+        let coarse = render_by(Executor::Pool, &scene, scene.camera(), resolution, Sampling::Coarse).unwrap();
         for y in 0..47 {
             for x in 0..81 {
                 let block = coarse.framebuffer.pixel(x / 2 * 2, y / 2 * 2);
                 assert_eq!(coarse.framebuffer.pixel(x, y), block, "{} ({x}, {y})", path.display());
             }
         }
-        let fine = render_by(Crew::Pool, &scene, scene.camera(), resolution, NonZeroU32::MIN).unwrap();
+        let fine = render_by(Executor::Pool, &scene, scene.camera(), resolution, NonZeroU32::MIN).unwrap();
         assert!(coarse.cost.rays * 3 < fine.cost.rays, "{}", path.display());
         assert!(psnr(&scene, &coarse.framebuffer, &fine.framebuffer) > 14.0, "{}", path.display());
     }
@@ -128,7 +128,7 @@ fn a_refinement_can_be_given_up() {
     let token = Cancellation::default();
     token.cancel();
     assert_eq!(picture.refine_or_cancel(&token, &scene, samples(64)), Err(Cancelled));
-    let cancelled = render_by(Crew::Cancellable(&token), &scene, scene.camera(), SIZE, Sampling::BEST);
+    let cancelled = render_by(Executor::Cancellable(&token), &scene, scene.camera(), SIZE, Sampling::BEST);
     assert_eq!(cancelled, Err(Cancelled));
 }
 
