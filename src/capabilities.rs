@@ -1,7 +1,7 @@
 //! The capabilities of a terminal, as plain values, and their detection from the environment and the terminal's
 //! replies.
 
-mod answers;
+mod replies;
 mod detection;
 mod findings;
 #[cfg(feature = "live")]
@@ -10,9 +10,9 @@ mod terminfo;
 // Capabilities are expressed in the types of the stages that use them.
 pub use crate::cell::{CellMode, Colors, Glyphs};
 pub use crate::grid::CellShape;
-pub use answers::{Answers, TEST_COLOR};
-pub use detection::{Clues, Found, GlyphChoice, Source, colors, glyphs};
-pub use findings::{Asking, Findings, Hints, VARIABLES};
+pub use detection::{Clues, Detected, GlyphChoice, Source, colors, glyphs};
+pub use findings::{Findings, Hints, SafeQueries, VARIABLES};
+pub use replies::{Replies, TEST_COLOR};
 #[cfg(feature = "live")]
 pub use terminfo::terminfo_colors;
 
@@ -37,7 +37,7 @@ pub struct Capabilities {
 pub const USUAL_CELL_ASPECT: f32 = 2.0;
 
 /// The range of plausible cell aspects. Values outside it are errors of a user or a program.
-pub const CELL_ASPECTS: RangeInclusive<f32> = 0.1..=10.0;
+pub const CELL_ASPECT_RANGE: RangeInclusive<f32> = 0.1..=10.0;
 
 /// The user's choice of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,11 +61,11 @@ pub fn cell_aspect(columns: u16, rows: u16, width: u16, height: u16) -> Option<f
     let cell_height = height.checked_div(rows)?;
     let aspect = f32::from(cell_height) / f32::from(cell_width);
     // Some terminals fill these fields with garbage.
-    is_cell_aspect(aspect).then_some(aspect)
+    is_plausible_cell_aspect(aspect).then_some(aspect)
 }
 
 /// Returns whether a cell may have that height over its width.
-pub(crate) fn is_cell_aspect(aspect: f32) -> bool {
+pub(crate) fn is_plausible_cell_aspect(aspect: f32) -> bool {
     (0.25..=8.0).contains(&aspect)
 }
 

@@ -31,8 +31,8 @@ macro_rules! written_as {
 }
 
 written_as! {
-    LinearRgb as [f32; 3]: |light| [light.r, light.g, light.b], |bands| Ok::<_, Infallible>(Self::from(bands));
-    Srgb8 as [u8; 3]: |color| [color.r, color.g, color.b], |bands| Ok::<_, Infallible>(Self::from(bands));
+    LinearRgb as [f32; 3]: |light| [light.r, light.g, light.b], |channels| Ok::<_, Infallible>(Self::from(channels));
+    Srgb8 as [u8; 3]: |color| [color.r, color.g, color.b], |channels| Ok::<_, Infallible>(Self::from(channels));
     Size as SizeForm: |&Size { columns, rows }| SizeForm { columns, rows },
         |SizeForm { columns, rows }| Ok::<_, Infallible>(Self { columns, rows });
     Map as String: |map| map.name().to_owned(), |name: String| name.parse::<Self>();

@@ -4,7 +4,7 @@ use super::{ColorChoice, Colors, Glyphs};
 
 /// An answer and its source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Found<T> {
+pub struct Detected<T> {
     /// The answer.
     pub value: T,
     /// The source.
@@ -47,12 +47,12 @@ pub type GlyphChoice = Option<Glyphs>;
 /// The first of these that answers decides: the flag; `NO_COLOR`; `COLORTERM`; the terminal's own reply; terminfo's
 /// flags; the name in `TERM`, if it is known for truecolor; terminfo's number; the name. `CLICOLOR_FORCE`,
 /// `FORCE_COLOR` and `--color=always` set a minimum.
-pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Found<Colors> {
+pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
     let least = match choice {
-        ColorChoice::Never => return Found { value: Colors::None, source: Source::User },
-        ColorChoice::Exactly(value) => return Found { value, source: Source::User },
-        ColorChoice::Always => Some(Found { value: Colors::SIXTEEN, source: Source::User }),
-        ColorChoice::Auto => match asked_for(clues) {
+        ColorChoice::Never => return Detected { value: Colors::None, source: Source::User },
+        ColorChoice::Exactly(value) => return Detected { value, source: Source::User },
+        ColorChoice::Always => Some(Detected { value: Colors::SIXTEEN, source: Source::User }),
+        ColorChoice::Auto => match requested_by_variable(clues) {
             Some(refused) if refused.value == Colors::None => return refused,
             forced => forced,
         },
@@ -62,20 +62,20 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Found<Colors> {
 }
 
 /// Returns the glyphs to use: half blocks, unless they would be garbage, or there is no colour to distinguish them.
-pub fn glyphs(choice: GlyphChoice, colors: Found<Colors>, clues: &Clues<'_>) -> Found<Glyphs> {
+pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) -> Detected<Glyphs> {
     if let Some(value) = choice {
-        return Found { value, source: Source::User };
+        return Detected { value, source: Source::User };
     }
     if colors.value == Colors::None {
-        return Found { value: Glyphs::Shape, source: colors.source };
+        return Detected { value: Glyphs::Shape, source: colors.source };
     }
     match locale(clues) {
         Some((name, locale)) => {
             let value = if is_utf8(&locale) { Glyphs::Half } else { Glyphs::Shape };
-            Found { value, source: Source::Variable(name) }
+            Detected { value, source: Source::Variable(name) }
         }
         // Without a contrary sign UTF-8 is assumed: current terminals show it.
-        None => Found { value: Glyphs::Half, source: Source::Assumed },
+        None => Detected { value: Glyphs::Half, source: Source::Assumed },
     }
 }
 
@@ -85,18 +85,18 @@ fn value(clues: &Clues<'_>, name: &str) -> Option<String> {
 }
 
 /// Returns the request of the user's variables; a forced level is a minimum.
-pub(super) fn asked_for(clues: &Clues<'_>) -> Option<Found<Colors>> {
+pub(super) fn requested_by_variable(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     refused(clues).or_else(|| forced(clues))
 }
 
 /// The convention of no-color.org: set, and not empty.
-fn refused(clues: &Clues<'_>) -> Option<Found<Colors>> {
-    value(clues, "NO_COLOR").map(|_| Found { value: Colors::None, source: Source::Variable("NO_COLOR") })
+fn refused(clues: &Clues<'_>) -> Option<Detected<Colors>> {
+    value(clues, "NO_COLOR").map(|_| Detected { value: Colors::None, source: Source::Variable("NO_COLOR") })
 }
 
 /// The conventions of bixense.com/clicolors and of Node: a level, or just that there is to be colour.
-fn forced(clues: &Clues<'_>) -> Option<Found<Colors>> {
-    let found = |value, name| Some(Found { value, source: Source::Variable(name) });
+fn forced(clues: &Clues<'_>) -> Option<Detected<Colors>> {
+    let found = |value, name| Some(Detected { value, source: Source::Variable(name) });
     if value(clues, "CLICOLOR_FORCE").is_some_and(|force| force != "0") {
         return found(Colors::SIXTEEN, "CLICOLOR_FORCE");
     }
@@ -110,21 +110,21 @@ fn forced(clues: &Clues<'_>) -> Option<Found<Colors>> {
 }
 
 /// Other values than these two announce colour, but not how many.
-pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Found<Colors>> {
+pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let colorterm = value(clues, "COLORTERM")?.to_ascii_lowercase();
     let is_truecolor = colorterm == "truecolor" || colorterm == "24bit";
-    is_truecolor.then_some(Found { value: Colors::Truecolor, source: Source::Variable("COLORTERM") })
+    is_truecolor.then_some(Detected { value: Colors::Truecolor, source: Source::Variable("COLORTERM") })
 }
 
 /// A terminal that did not keep the colour may have any smaller number.
-fn replied(clues: &Clues<'_>) -> Option<Found<Colors>> {
+fn replied(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let kept = clues.truecolor_reply?;
-    kept.then_some(Found { value: Colors::Truecolor, source: Source::Reply })
+    kept.then_some(Detected { value: Colors::Truecolor, source: Source::Reply })
 }
 
 /// terminfo's flags, then what is known of the name, then terminfo's number, which is too low for names of truecolor
 /// terminals.
-fn by_term(clues: &Clues<'_>) -> Found<Colors> {
+fn by_term(clues: &Clues<'_>) -> Detected<Colors> {
     let (terminfo, name) = (by_terminfo(clues), by_name(clues));
     match terminfo {
         Some(terminfo) if terminfo.value == Colors::Truecolor || name.value != Colors::Truecolor => terminfo,
@@ -132,15 +132,15 @@ fn by_term(clues: &Clues<'_>) -> Found<Colors> {
     }
 }
 
-fn by_terminfo(clues: &Clues<'_>) -> Option<Found<Colors>> {
+fn by_terminfo(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let value = (clues.terminfo)(&value(clues, "TERM")?)?;
-    Some(Found { value, source: Source::Terminfo })
+    Some(Detected { value, source: Source::Terminfo })
 }
 
 /// By conventions of names; every emulator of the last twenty years has 256 colours.
-fn by_name(clues: &Clues<'_>) -> Found<Colors> {
+fn by_name(clues: &Clues<'_>) -> Detected<Colors> {
     let Some(term) = value(clues, "TERM") else {
-        return Found { value: Colors::Indexed256, source: Source::Assumed };
+        return Detected { value: Colors::Indexed256, source: Source::Assumed };
     };
     let term = term.to_ascii_lowercase();
     let has = |parts: &[&str]| parts.iter().any(|part| term.contains(part));
@@ -155,7 +155,7 @@ fn by_name(clues: &Clues<'_>) -> Found<Colors> {
     } else {
         Colors::Indexed256
     };
-    Found { value, source: Source::Variable("TERM") }
+    Detected { value, source: Source::Variable("TERM") }
 }
 
 /// The variables that name the locale's character set, in POSIX's order; the first one set counts.
@@ -239,7 +239,7 @@ mod tests {
             (Auto, &[], None, Indexed256, Source::Assumed),
         ] {
             let found = with_clues(environment, reply, |clues| colors(choice, clues));
-            assert_eq!(found, Found { value, source }, "{choice:?} {environment:?} {reply:?}");
+            assert_eq!(found, Detected { value, source }, "{choice:?} {environment:?} {reply:?}");
         }
     }
 
@@ -261,9 +261,9 @@ mod tests {
             (Some(Half), NoColors, &[("LC_ALL", "C")], Half, Source::User),
             (Some(Ramp), Truecolor, &[utf8], Ramp, Source::User),
         ] {
-            let colors = Found { value: colors, source: Source::Terminfo };
+            let colors = Detected { value: colors, source: Source::Terminfo };
             let found = with_clues(environment, None, |clues| glyphs(choice, colors, clues));
-            assert_eq!(found, Found { value, source }, "{choice:?} {colors:?} {environment:?}");
+            assert_eq!(found, Detected { value, source }, "{choice:?} {colors:?} {environment:?}");
         }
     }
 }

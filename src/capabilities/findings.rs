@@ -1,8 +1,8 @@
 //! The findings about a terminal from all sources: the user, the environment, the window, its own replies.
 
-use super::detection::{asked_for, colorterm, locale};
-use super::{Answers, Capabilities, CellMode, Clues, ColorChoice, Colors, Found, GlyphChoice, Glyphs, Source};
-use super::{CELL_ASPECTS, USUAL_CELL_ASPECT, colors, glyphs};
+use super::detection::{colorterm, locale, requested_by_variable};
+use super::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT, colors, glyphs};
+use super::{Capabilities, CellMode, Clues, ColorChoice, Colors, Detected, GlyphChoice, Glyphs, Replies, Source};
 use crate::grid::CellShape;
 
 /// The user's choices and the environment, read once and evaluated again with each reply.
@@ -12,7 +12,7 @@ pub struct Hints {
     pub color: ColorChoice,
     /// The user's choice of glyphs.
     pub glyphs: GlyphChoice,
-    /// The cell aspect, if the user gives it. A value outside [`CELL_ASPECTS`] is ignored.
+    /// The cell aspect, if the user gives it. A value outside [`CELL_ASPECT_RANGE`] is ignored.
     pub cell_aspect: Option<f32>,
     variables: Vec<(&'static str, String)>,
     terminfo: Option<Colors>,
@@ -24,9 +24,9 @@ pub const VARIABLES: [&str; 10] =
 
 /// The queries that a terminal tolerates without printing garbage or confusing a multiplexer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asking {
+pub enum SafeQueries {
     /// None: it is dumb, or of a kind that may print unknown sequences.
-    Nothing,
+    None,
     /// The cursor position, which the Linux console has always supported.
     Console,
     /// Those that GNU screen answers. It passes device control strings on to the outer terminal, which would print
@@ -35,7 +35,7 @@ pub enum Asking {
     /// Those that tmux answers by itself; a cell's size and the colours are those of the outer terminal.
     Tmux,
     /// All.
-    Everything,
+    All,
 }
 
 impl Hints {
@@ -44,7 +44,7 @@ impl Hints {
         let variables: Vec<_> = VARIABLES.into_iter().filter_map(|name| Some((name, variable(name)?))).collect();
         let mut hints = Self { variables, ..Self::default() };
         // Where COLORTERM decides, terminfo is not read: that takes longer than tracing a small frame.
-        if hints.judge(None, colorterm).is_none() {
+        if hints.evaluate(None, colorterm).is_none() {
             hints.terminfo = hints.variable("TERM").and_then(terminfo);
         }
         hints
@@ -62,13 +62,13 @@ impl Hints {
 
     /// Returns the locale and the variable that names it, if one does.
     pub fn locale(&self) -> Option<(&'static str, String)> {
-        self.judge(None, locale)
+        self.evaluate(None, locale)
     }
 
     /// Returns the variable by which the user asks for colours or for none, if any: `NO_COLOR`, `CLICOLOR_FORCE` or
     /// `FORCE_COLOR`.
     pub fn color_variable(&self) -> Option<&'static str> {
-        match self.judge(None, asked_for)?.source {
+        match self.evaluate(None, requested_by_variable)?.source {
             Source::Variable(name) => Some(name),
             _ => None,
         }
@@ -79,35 +79,35 @@ impl Hints {
     }
 
     /// Returns the colours, given the answer about truecolor.
-    fn colors(&self, truecolor_reply: Option<bool>) -> Found<Colors> {
-        self.judge(truecolor_reply, |clues| colors(self.color, clues))
+    fn colors(&self, truecolor_reply: Option<bool>) -> Detected<Colors> {
+        self.evaluate(truecolor_reply, |clues| colors(self.color, clues))
     }
 
-    fn judge<T>(&self, truecolor_reply: Option<bool>, judge: impl FnOnce(&Clues<'_>) -> T) -> T {
+    fn evaluate<T>(&self, truecolor_reply: Option<bool>, evaluate: impl FnOnce(&Clues<'_>) -> T) -> T {
         let variable = |name: &str| self.raw(name).map(str::to_owned);
-        judge(&Clues { variable: &variable, truecolor_reply, terminfo: &|_| self.terminfo })
+        evaluate(&Clues { variable: &variable, truecolor_reply, terminfo: &|_| self.terminfo })
     }
 
     /// Returns the queries that the terminal tolerates.
-    pub fn asking(&self) -> Asking {
-        let Some(term) = self.variable("TERM") else { return Asking::Nothing };
+    pub fn safe_queries(&self) -> SafeQueries {
+        let Some(term) = self.variable("TERM") else { return SafeQueries::None };
         let begins = |names: &[&str]| names.iter().any(|name| term.starts_with(name));
         if begins(&["dumb", "unknown", "vt", "ansi", "eterm", "emacs", "cons", "sun"]) {
-            Asking::Nothing
+            SafeQueries::None
         } else if self.variable("TMUX").is_some() || begins(&["tmux"]) {
-            Asking::Tmux
+            SafeQueries::Tmux
         } else if self.variable("STY").is_some() || begins(&["screen"]) {
-            Asking::Screen
+            SafeQueries::Screen
         } else if begins(&["linux"]) {
-            Asking::Console
+            SafeQueries::Console
         } else {
-            Asking::Everything
+            SafeQueries::All
         }
     }
 
     /// Returns whether an answer about truecolor would matter. If there is to be no colour, no sequence about colour is
     /// sent, not even a query.
-    pub fn wonders_about_truecolor(&self) -> bool {
+    pub fn needs_truecolor_reply(&self) -> bool {
         self.colors(Some(true)).value != self.colors(None).value
     }
 
@@ -117,14 +117,14 @@ impl Hints {
     }
 
     /// Returns whether the values of the sixteen colours matter.
-    pub fn wonders_about_sixteen(&self) -> bool {
+    pub fn needs_palette_reply(&self) -> bool {
         matches!(self.colors(None).value, Colors::Indexed16(_))
     }
 
     /// Returns whether the width of block characters matters.
-    pub fn wonders_about_blocks(&self) -> bool {
+    pub fn needs_block_width_reply(&self) -> bool {
         self.glyphs.is_none()
-            && self.judge(None, |clues| glyphs(None, colors(self.color, clues), clues)).value == Glyphs::Half
+            && self.evaluate(None, |clues| glyphs(None, colors(self.color, clues), clues)).value == Glyphs::Half
     }
 }
 
@@ -132,51 +132,51 @@ impl Hints {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Findings {
     /// The colours.
-    pub colors: Found<Colors>,
+    pub colors: Detected<Colors>,
     /// The glyphs.
-    pub glyphs: Found<Glyphs>,
+    pub glyphs: Detected<Glyphs>,
     /// The cell aspect.
-    pub cell_aspect: Found<f32>,
+    pub cell_aspect: Detected<f32>,
     /// Whether both half blocks meet in the same line.
-    pub halves_meet: Found<bool>,
+    pub halves_meet: Detected<bool>,
     /// Whether it writes dark on light.
-    pub light_background: Found<bool>,
+    pub light_background: Detected<bool>,
     /// Whether it supports synchronized output.
-    pub synchronized_output: Found<bool>,
+    pub synchronized_output: Detected<bool>,
     /// Whether it supports the kitty keyboard protocol.
-    pub kitty_keyboard: Found<bool>,
+    pub kitty_keyboard: Detected<bool>,
     /// Whether it supports SGR mouse reports.
-    pub sgr_mouse: Found<bool>,
+    pub sgr_mouse: Detected<bool>,
     /// Whether it supports mouse reports in pixels.
-    pub pixel_mouse: Found<bool>,
+    pub pixel_mouse: Detected<bool>,
 }
 
 impl Findings {
     /// Combines all sources.
-    pub fn new(hints: &Hints, window: CellShape, answers: &Answers) -> Self {
-        let colors = with_answered_values(hints.colors(answers.truecolor), answers);
+    pub fn new(hints: &Hints, window: CellShape, replies: &Replies) -> Self {
+        let colors = with_replied_palette(hints.colors(replies.truecolor), replies);
         let answered = |answer: Option<bool>| found(answer, Source::Reply, false);
-        let of_window = |value| Found { value, source: Source::Window };
+        let of_window = |value| Detected { value, source: Source::Window };
         let cell_aspect = hints
             .cell_aspect
-            .filter(|aspect| CELL_ASPECTS.contains(aspect))
-            .map(|value| Found { value, source: Source::User });
+            .filter(|aspect| CELL_ASPECT_RANGE.contains(aspect))
+            .map(|value| Detected { value, source: Source::User });
         let by_pixels = window.aspect.map(of_window);
         Self {
             colors,
-            glyphs: with_answered_width(hints.judge(None, |clues| glyphs(hints.glyphs, colors, clues)), answers),
+            glyphs: with_replied_width(hints.evaluate(None, |clues| glyphs(hints.glyphs, colors, clues)), replies),
             cell_aspect: cell_aspect
                 .or(by_pixels)
-                .unwrap_or_else(|| found(answered_aspect(answers), Source::Reply, USUAL_CELL_ASPECT)),
+                .unwrap_or_else(|| found(replied_aspect(replies), Source::Reply, USUAL_CELL_ASPECT)),
             halves_meet: match window.aspect {
-                Some(_) => Found { value: window.halves_meet, source: Source::Window },
-                None => answered(answers.cell_pixels.map(|(_, height)| height > 0 && height % 2 == 0)),
+                Some(_) => Detected { value: window.halves_meet, source: Source::Window },
+                None => answered(replies.cell_pixels.map(|(_, height)| height > 0 && height % 2 == 0)),
             },
-            light_background: answered(answers.light_background()),
-            synchronized_output: answered(answers.synchronized_output),
-            kitty_keyboard: answered(answers.kitty_keyboard),
-            sgr_mouse: answered(answers.sgr_mouse),
-            pixel_mouse: answered(answers.pixel_mouse),
+            light_background: answered(replies.light_background()),
+            synchronized_output: answered(replies.synchronized_output),
+            kitty_keyboard: answered(replies.kitty_keyboard),
+            sgr_mouse: answered(replies.sgr_mouse),
+            pixel_mouse: answered(replies.pixel_mouse),
         }
     }
 
@@ -192,17 +192,17 @@ impl Findings {
     }
 }
 
-fn found<T>(answer: Option<T>, source: Source, otherwise: T) -> Found<T> {
+fn found<T>(answer: Option<T>, source: Source, otherwise: T) -> Detected<T> {
     match answer {
-        Some(value) => Found { value, source },
-        None => Found { value: otherwise, source: Source::Assumed },
+        Some(value) => Detected { value, source },
+        None => Detected { value: otherwise, source: Source::Assumed },
     }
 }
 
 /// Returns sixteen colours with the values that the terminal has reported.
-fn with_answered_values(mut found: Found<Colors>, answers: &Answers) -> Found<Colors> {
+fn with_replied_palette(mut found: Detected<Colors>, replies: &Replies) -> Detected<Colors> {
     if let Colors::Indexed16(values) = &mut found.value {
-        for (value, answer) in values.iter_mut().zip(answers.sixteen) {
+        for (value, answer) in values.iter_mut().zip(replies.sixteen) {
             *value = answer.unwrap_or(*value);
         }
     }
@@ -210,16 +210,16 @@ fn with_answered_values(mut found: Found<Colors>, answers: &Answers) -> Found<Co
 }
 
 /// Blocks that take two columns, or are shown as several characters, cannot be pixels.
-fn with_answered_width(glyphs: Found<Glyphs>, answers: &Answers) -> Found<Glyphs> {
-    let is_broken = glyphs.value == Glyphs::Half && answers.block_width.is_some_and(|width| width != 1);
+fn with_replied_width(glyphs: Detected<Glyphs>, replies: &Replies) -> Detected<Glyphs> {
+    let is_broken = glyphs.value == Glyphs::Half && replies.block_width.is_some_and(|width| width != 1);
     if is_broken && glyphs.source != Source::User {
-        return Found { value: Glyphs::Shape, source: Source::Reply };
+        return Detected { value: Glyphs::Shape, source: Source::Reply };
     }
     glyphs
 }
 
-fn answered_aspect(answers: &Answers) -> Option<f32> {
-    let (width, height) = answers.cell_pixels?;
+fn replied_aspect(replies: &Replies) -> Option<f32> {
+    let (width, height) = replies.cell_pixels?;
     super::cell_aspect(1, 1, width, height)
 }
 
@@ -256,23 +256,23 @@ mod tests {
     #[test]
     fn only_what_does_no_harm_is_asked() {
         for (environment, expected) in [
-            (&[("TERM", "xterm-256color")][..], Asking::Everything),
-            (&[("TERM", "xterm-kitty")], Asking::Everything),
-            (&[("TERM", "new-terminal")], Asking::Everything),
-            (&[("TERM", "tmux-256color")], Asking::Tmux),
-            (&[("TERM", "screen-256color"), ("TMUX", "/tmp/t,1,0")], Asking::Tmux),
-            (&[("TERM", "xterm-256color"), ("TMUX", "/tmp/t,1,0")], Asking::Tmux),
-            (&[("TERM", "screen.xterm-256color")], Asking::Screen),
-            (&[("TERM", "xterm"), ("STY", "1.pts")], Asking::Screen),
-            (&[("TERM", "linux")], Asking::Console),
-            (&[("TERM", "dumb")], Asking::Nothing),
-            (&[("TERM", "dumb"), ("TMUX", "/tmp/t,1,0")], Asking::Nothing),
-            (&[("TERM", "vt100")], Asking::Nothing),
-            (&[("TERM", "eterm-color")], Asking::Nothing),
-            (&[("TERM", "")], Asking::Nothing),
-            (&[], Asking::Nothing),
+            (&[("TERM", "xterm-256color")][..], SafeQueries::All),
+            (&[("TERM", "xterm-kitty")], SafeQueries::All),
+            (&[("TERM", "new-terminal")], SafeQueries::All),
+            (&[("TERM", "tmux-256color")], SafeQueries::Tmux),
+            (&[("TERM", "screen-256color"), ("TMUX", "/tmp/t,1,0")], SafeQueries::Tmux),
+            (&[("TERM", "xterm-256color"), ("TMUX", "/tmp/t,1,0")], SafeQueries::Tmux),
+            (&[("TERM", "screen.xterm-256color")], SafeQueries::Screen),
+            (&[("TERM", "xterm"), ("STY", "1.pts")], SafeQueries::Screen),
+            (&[("TERM", "linux")], SafeQueries::Console),
+            (&[("TERM", "dumb")], SafeQueries::None),
+            (&[("TERM", "dumb"), ("TMUX", "/tmp/t,1,0")], SafeQueries::None),
+            (&[("TERM", "vt100")], SafeQueries::None),
+            (&[("TERM", "eterm-color")], SafeQueries::None),
+            (&[("TERM", "")], SafeQueries::None),
+            (&[], SafeQueries::None),
         ] {
-            assert_eq!(hints(environment).asking(), expected, "{environment:?}");
+            assert_eq!(hints(environment).safe_queries(), expected, "{environment:?}");
         }
     }
 
@@ -289,34 +289,34 @@ mod tests {
             (&[("TERM", "alacritty")], ColorChoice::Auto, false, false, true),
         ] {
             let hints = Hints { color, ..hints(environment) };
-            let asked = (hints.wonders_about_truecolor(), hints.wonders_about_sixteen(), hints.wonders_about_blocks());
+            let asked = (hints.needs_truecolor_reply(), hints.needs_palette_reply(), hints.needs_block_width_reply());
             assert_eq!(asked, (truecolor, sixteen, blocks), "{environment:?} {color:?}");
         }
     }
 
     #[test]
     fn answers_change_what_was_assumed() {
-        let answers = Answers { truecolor: Some(true), block_width: Some(1), ..Answers::default() };
-        let before = Findings::new(&hints(XTERM), CellShape::default(), &Answers::default());
-        assert_eq!(before.colors, Found { value: Colors::Indexed256, source: Source::Terminfo });
-        let after = Findings::new(&hints(XTERM), CellShape::default(), &answers);
-        assert_eq!(after.colors, Found { value: Colors::Truecolor, source: Source::Reply });
-        assert_eq!(after.glyphs, Found { value: Glyphs::Half, source: Source::Variable("LANG") });
+        let replies = Replies { truecolor: Some(true), block_width: Some(1), ..Replies::default() };
+        let before = Findings::new(&hints(XTERM), CellShape::default(), &Replies::default());
+        assert_eq!(before.colors, Detected { value: Colors::Indexed256, source: Source::Terminfo });
+        let after = Findings::new(&hints(XTERM), CellShape::default(), &replies);
+        assert_eq!(after.colors, Detected { value: Colors::Truecolor, source: Source::Reply });
+        assert_eq!(after.glyphs, Detected { value: Glyphs::Half, source: Source::Variable("LANG") });
     }
 
     #[test]
     fn broken_blocks_are_not_used_unless_the_user_says_so() {
         for (choice, width, expected) in [
-            (None, Some(1), Found { value: Glyphs::Half, source: Source::Variable("LANG") }),
-            (None, Some(2), Found { value: Glyphs::Shape, source: Source::Reply }),
-            (None, Some(3), Found { value: Glyphs::Shape, source: Source::Reply }),
-            (None, None, Found { value: Glyphs::Half, source: Source::Variable("LANG") }),
-            (Some(Glyphs::Half), Some(2), Found { value: Glyphs::Half, source: Source::User }),
-            (Some(Glyphs::Ramp), Some(2), Found { value: Glyphs::Ramp, source: Source::User }),
+            (None, Some(1), Detected { value: Glyphs::Half, source: Source::Variable("LANG") }),
+            (None, Some(2), Detected { value: Glyphs::Shape, source: Source::Reply }),
+            (None, Some(3), Detected { value: Glyphs::Shape, source: Source::Reply }),
+            (None, None, Detected { value: Glyphs::Half, source: Source::Variable("LANG") }),
+            (Some(Glyphs::Half), Some(2), Detected { value: Glyphs::Half, source: Source::User }),
+            (Some(Glyphs::Ramp), Some(2), Detected { value: Glyphs::Ramp, source: Source::User }),
         ] {
             let hints = Hints { glyphs: choice, ..hints(XTERM) };
-            let answers = Answers { block_width: width, ..Answers::default() };
-            let findings = Findings::new(&hints, CellShape::default(), &answers);
+            let replies = Replies { block_width: width, ..Replies::default() };
+            let findings = Findings::new(&hints, CellShape::default(), &replies);
             assert_eq!(findings.glyphs, expected, "{choice:?} {width:?}");
         }
     }
@@ -335,8 +335,8 @@ mod tests {
             (None, nothing, None, (2.0, Source::Assumed), (false, Source::Assumed)),
         ] {
             let hints = Hints { cell_aspect: flagged, ..hints(XTERM) };
-            let answers = Answers { cell_pixels: pixels, ..Answers::default() };
-            let Findings { cell_aspect, halves_meet, .. } = Findings::new(&hints, window, &answers);
+            let replies = Replies { cell_pixels: pixels, ..Replies::default() };
+            let Findings { cell_aspect, halves_meet, .. } = Findings::new(&hints, window, &replies);
             let found = ((cell_aspect.value, cell_aspect.source), (halves_meet.value, halves_meet.source));
             assert_eq!(found, (aspect, meet), "{flagged:?} {window:?} {pixels:?}");
         }
@@ -344,10 +344,10 @@ mod tests {
 
     #[test]
     fn sixteen_colours_look_as_the_terminal_says() {
-        let mut answers = Answers::default();
-        answers.sixteen[3] = Some(Srgb8::new(1, 2, 3));
+        let mut replies = Replies::default();
+        replies.sixteen[3] = Some(Srgb8::new(1, 2, 3));
         let hints = hints(&[("TERM", "linux")]);
-        let Colors::Indexed16(values) = Findings::new(&hints, CellShape::default(), &answers).colors.value else {
+        let Colors::Indexed16(values) = Findings::new(&hints, CellShape::default(), &replies).colors.value else {
             panic!("sixteen colours");
         };
         assert_eq!((values[3], values[1]), (Srgb8::new(1, 2, 3), Srgb8::new(205, 0, 0)));
@@ -355,19 +355,19 @@ mod tests {
 
     #[test]
     fn what_is_answered_is_there_and_nothing_else() {
-        let all = Answers {
+        let all = Replies {
             synchronized_output: Some(true),
             kitty_keyboard: Some(true),
             sgr_mouse: Some(true),
             pixel_mouse: Some(true),
             background: Some(Srgb8::new(255, 255, 255)),
-            ..Answers::default()
+            ..Replies::default()
         };
-        for (answers, expected) in [
-            (all, Found { value: true, source: Source::Reply }),
-            (Answers::default(), Found { value: false, source: Source::Assumed }),
+        for (replies, expected) in [
+            (all, Detected { value: true, source: Source::Reply }),
+            (Replies::default(), Detected { value: false, source: Source::Assumed }),
         ] {
-            let f = Findings::new(&hints(XTERM), CellShape::default(), &answers);
+            let f = Findings::new(&hints(XTERM), CellShape::default(), &replies);
             let found = [f.synchronized_output, f.kitty_keyboard, f.sgr_mouse, f.pixel_mouse, f.light_background];
             assert_eq!(found, [expected; 5]);
             let capabilities = f.capabilities();
@@ -378,7 +378,7 @@ mod tests {
 
     #[test]
     fn what_is_wanted_exactly_is_had() {
-        let findings = Findings::new(&Hints::exactly(CellMode::RAMP), CellShape::default(), &Answers::default());
+        let findings = Findings::new(&Hints::exactly(CellMode::RAMP), CellShape::default(), &Replies::default());
         assert_eq!(findings.capabilities().cell_mode, CellMode::RAMP);
     }
 }

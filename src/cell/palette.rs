@@ -133,7 +133,7 @@ impl Cube {
     /// Returns the eight corners of the cell of levels around the light, and the two greys around its luminance: mixes
     /// of near colours have the least grain.
     fn around(&self, light: LinearRgb) -> [Candidate; 10] {
-        let [r, g, b] = [light.r, light.g, light.b].map(|band| below(&self.levels, band));
+        let [r, g, b] = [light.r, light.g, light.b].map(|channel| below(&self.levels, channel));
         let grey = below(&self.greys, light.luminance());
         std::array::from_fn(|k| match k {
             8.. => self.colors[216 + grey + k - 8],
@@ -143,6 +143,6 @@ impl Cube {
 }
 
 /// Returns the highest level not above the channel, except the last one, so that another follows.
-fn below(levels: &[f32], band: f32) -> usize {
-    levels[1..levels.len() - 1].iter().take_while(|&&level| level <= band).count()
+fn below(levels: &[f32], channel: f32) -> usize {
+    levels[1..levels.len() - 1].iter().take_while(|&&level| level <= channel).count()
 }

@@ -45,6 +45,6 @@ fn mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) ->
 /// Returns the same hue with its brightest channel at the maximum; black stays black.
 fn brightest(color: Srgb8) -> Srgb8 {
     let most = u32::from(color.r.max(color.g).max(color.b).max(1));
-    let scaled = |band: u8| (u32::from(band) * 255 / most) as u8; // no band is above the most
+    let scaled = |channel: u8| (u32::from(channel) * 255 / most) as u8; // no channel is above the most
     Srgb8::new(scaled(color.r), scaled(color.g), scaled(color.b))
 }

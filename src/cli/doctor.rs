@@ -9,7 +9,7 @@ use clap::{ArgMatches, Args};
 use report::{QueryOutcome, Report};
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
-use termtrace::internals::capabilities::{Asking, CellShape, Findings};
+use termtrace::internals::capabilities::{CellShape, Findings, SafeQueries};
 use termtrace::internals::input::Input;
 use termtrace::internals::protocol::{Questions, Receiver};
 use termtrace::internals::terminal::{Terminal, die_of};
@@ -31,19 +31,19 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let mut questions = Questions::all(&hints);
     let mut cell = CellShape::default();
     let is_terminal = io::stdout().is_terminal();
-    let outcome = match hints.asking() {
+    let outcome = match hints.safe_queries() {
         _ if !is_terminal => QueryOutcome::NoTerminal,
         // Nothing to ask it, and nothing that it would not print.
-        Asking::Nothing => QueryOutcome::Answered(Duration::ZERO),
+        SafeQueries::None => QueryOutcome::Answered(Duration::ZERO),
         _ => match query_terminal(&mut questions, &mut cell) {
             // Its answers cannot be had.
             Err(_) if !io::stdin().is_terminal() => QueryOutcome::NoTerminal,
             outcome => outcome.map_err(|error| Failure::runtime("terminal", reason(&error)))?,
         },
     };
-    let findings = Findings::new(&hints, cell, questions.answers());
+    let findings = Findings::new(&hints, cell, questions.replies());
     let report =
-        Report { settings: &settings, hints: &hints, findings: &findings, answers: questions.answers(), outcome };
+        Report { settings: &settings, hints: &hints, findings: &findings, replies: questions.replies(), outcome };
     write_stdout(report::text(&report).as_bytes())?;
     if is_terminal { write_stdout(&card::bytes(&findings.capabilities())) } else { Ok(()) }
 }

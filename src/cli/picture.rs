@@ -3,7 +3,7 @@
 use super::outcome::{CommandResult, Failure};
 use clap::Args;
 use std::num::NonZeroU32;
-use termtrace::internals::capabilities::{CELL_ASPECTS, USUAL_CELL_ASPECT};
+use termtrace::internals::capabilities::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT};
 use termtrace::{CellMode, Resolution, Sampling};
 
 /// How large a frame is.
@@ -111,6 +111,6 @@ pub(super) fn parse_samples(text: &str) -> Result<Sampling, String> {
 
 /// A cell that anybody could read in.
 pub(super) fn parse_cell_aspect(text: &str) -> Result<f32, String> {
-    let aspect = text.parse().ok().filter(|aspect| CELL_ASPECTS.contains(aspect));
+    let aspect = text.parse().ok().filter(|aspect| CELL_ASPECT_RANGE.contains(aspect));
     aspect.ok_or_else(|| "expected a number from 0.1 to 10, such as 2".to_owned())
 }

@@ -3,7 +3,7 @@
 //! The batch ends with the query that every terminal replies to (DA1). Terminals reply in order: once that reply is
 //! here, no other reply to the batch follows. The first picture does not wait for it.
 
-use crate::capabilities::{Answers, Asking, Hints, TEST_COLOR};
+use crate::capabilities::{Hints, Replies, SafeQueries, TEST_COLOR};
 use crate::input::Reply;
 
 use super::query::{FENCE, Tag};
@@ -12,7 +12,7 @@ use super::query::{FENCE, Tag};
 #[derive(Clone, Debug, Default)]
 pub struct Questions {
     bytes: Vec<u8>,
-    answers: Answers,
+    replies: Replies,
     /// Whether replies may still arrive.
     open: bool,
 }
@@ -20,29 +20,29 @@ pub struct Questions {
 impl Questions {
     /// Returns the queries for the facts that the picture depends on and the environment leaves open.
     pub fn needed(hints: &Hints) -> Self {
-        let wonders = [hints.wonders_about_truecolor(), hints.wonders_about_sixteen(), hints.wonders_about_blocks()];
-        Self::of(hints.asking(), wonders)
+        let wonders = [hints.needs_truecolor_reply(), hints.needs_palette_reply(), hints.needs_block_width_reply()];
+        Self::of(hints.safe_queries(), wonders)
     }
 
     /// Returns all queries that the terminal is known to tolerate.
     pub fn all(hints: &Hints) -> Self {
-        Self::of(hints.asking(), [hints.allows_color(), true, true])
+        Self::of(hints.safe_queries(), [hints.allows_color(), true, true])
     }
 
-    fn of(asking: Asking, [truecolor, sixteen, blocks]: [bool; 3]) -> Self {
+    fn of(safe_queries: SafeQueries, [truecolor, sixteen, blocks]: [bool; 3]) -> Self {
         let mut bytes = Vec::new();
-        if asking == Asking::Nothing {
+        if safe_queries == SafeQueries::None {
             return Self::default();
         }
         if blocks {
             bytes.extend_from_slice(BLOCK_WIDTH.as_bytes());
         }
-        if asking == Asking::Tmux || asking == Asking::Everything {
+        if safe_queries == SafeQueries::Tmux || safe_queries == SafeQueries::All {
             bytes.extend_from_slice(BACKGROUND);
             bytes.extend_from_slice(SYNCHRONIZED);
             bytes.extend_from_slice(&Tag::FIRST.query());
         }
-        if asking == Asking::Everything {
+        if safe_queries == SafeQueries::All {
             bytes.extend_from_slice(MOUSE_AND_KEYBOARD);
             bytes.extend_from_slice(CELL_PIXELS);
             if truecolor {
@@ -53,7 +53,7 @@ impl Questions {
             }
         }
         bytes.extend_from_slice(FENCE);
-        Self { bytes, answers: Answers::default(), open: true }
+        Self { bytes, replies: Replies::default(), open: true }
     }
 
     /// Returns the bytes of the batch, which end with [`FENCE`]; empty if there are no queries.
@@ -62,8 +62,8 @@ impl Questions {
     }
 
     /// Returns the answers so far.
-    pub fn answers(&self) -> &Answers {
-        &self.answers
+    pub fn replies(&self) -> &Replies {
+        &self.replies
     }
 
     /// Returns whether the reply to the fence is outstanding.
@@ -83,15 +83,15 @@ impl Questions {
         if !self.open {
             return false;
         }
-        let answers = &mut self.answers;
+        let replies = &mut self.replies;
         match reply {
             Reply::DeviceAttributes(_) => return self.close(),
-            Reply::CursorPosition { column, .. } => answers.take_cursor(*column),
-            &Reply::Mode { mode, state } => answers.take_mode(mode, state),
-            &Reply::CellPixels { width, height } => answers.cell_pixels = Some((width, height)),
-            Reply::KeyboardFlags(_) => answers.kitty_keyboard = Some(true),
-            Reply::Osc(text) => answers.take_osc(text),
-            Reply::Dcs(text) => answers.take_dcs(text),
+            Reply::CursorPosition { column, .. } => replies.take_cursor(*column),
+            &Reply::Mode { mode, state } => replies.take_mode(mode, state),
+            &Reply::CellPixels { width, height } => replies.cell_pixels = Some((width, height)),
+            Reply::KeyboardFlags(_) => replies.kitty_keyboard = Some(true),
+            Reply::Osc(text) => replies.take_osc(text),
+            Reply::Dcs(text) => replies.take_dcs(text),
             _ => {}
         }
         false
@@ -183,14 +183,14 @@ mod tests {
             assert!(!questions.take(reply), "{reply:?}");
         }
         assert!(questions.take(&Reply::DeviceAttributes(vec![62])));
-        let answers = questions.answers().clone();
-        assert_eq!((answers.block_width, answers.synchronized_output), (Some(1), Some(true)));
-        assert_eq!((answers.kitty_keyboard, answers.cell_pixels), (Some(true), Some((10, 20))));
-        assert_eq!((answers.truecolor, answers.light_background()), (Some(true), Some(true)));
+        let replies = questions.replies().clone();
+        assert_eq!((replies.block_width, replies.synchronized_output), (Some(1), Some(true)));
+        assert_eq!((replies.kitty_keyboard, replies.cell_pixels), (Some(true), Some((10, 20))));
+        assert_eq!((replies.truecolor, replies.light_background()), (Some(true), Some(true)));
         // Forged, or a reply to another program.
         assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));
         assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
-        assert_eq!(questions.answers(), &answers);
+        assert_eq!(questions.replies(), &replies);
     }
 
     #[test]
@@ -198,7 +198,7 @@ mod tests {
         let mut questions = Questions::all(&hints("xterm", ""));
         questions.take(&Reply::Mode { mode: 2026, state: 2 });
         assert!(questions.close() && !questions.close() && !questions.is_open());
-        assert_eq!(questions.answers().synchronized_output, Some(true));
+        assert_eq!(questions.replies().synchronized_output, Some(true));
     }
 
     #[test]
@@ -213,6 +213,6 @@ mod tests {
         let mut questions = Questions::all(&hints("dumb", ""));
         assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
         assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));
-        assert_eq!(questions.answers(), &Answers::default());
+        assert_eq!(questions.replies(), &Replies::default());
     }
 }

@@ -21,7 +21,7 @@ impl Display {
     /// Returns a display with the findings from the environment alone.
     pub(super) fn new(hints: Hints, window: Window) -> Self {
         let questions = Questions::needed(&hints);
-        let capabilities = Findings::new(&hints, window.cell, questions.answers()).capabilities();
+        let capabilities = Findings::new(&hints, window.cell, questions.replies()).capabilities();
         Self { hints, window, questions, capabilities }
     }
 
@@ -73,7 +73,7 @@ impl Display {
     }
 
     fn conclude(&mut self) {
-        let findings = Findings::new(&self.hints, self.window.cell, self.questions.answers());
+        let findings = Findings::new(&self.hints, self.window.cell, self.questions.replies());
         self.capabilities = findings.capabilities();
     }
 
@@ -87,15 +87,15 @@ impl Display {
 
     /// Returns whether the terminal supports the kitty keyboard protocol.
     pub(super) fn knows_keyboard(&self) -> bool {
-        !self.questions.is_open() && self.questions.answers().kitty_keyboard == Some(true)
+        !self.questions.is_open() && self.questions.replies().kitty_keyboard == Some(true)
     }
 
     /// Returns a cell's size in pixels, if the terminal reports mouse positions in pixels.
     pub(super) fn mouse_pixels(&self) -> Option<(u16, u16)> {
-        let answers = self.questions.answers();
-        let knows = !self.questions.is_open() && answers.pixel_mouse == Some(true);
+        let replies = self.questions.replies();
+        let knows = !self.questions.is_open() && replies.pixel_mouse == Some(true);
         let is_cell = |&(width, height): &(u16, u16)| width > 0 && height > 0;
-        self.window.cell_pixels.or(answers.cell_pixels).filter(is_cell).filter(|_| knows)
+        self.window.cell_pixels.or(replies.cell_pixels).filter(is_cell).filter(|_| knows)
     }
 
     /// Returns the modes to switch on besides those that every terminal supports.

@@ -2,7 +2,7 @@
 
 use super::SceneState;
 use super::shot::{Options, Shot};
-use crate::capabilities::{USUAL_CELL_ASPECT, is_cell_aspect};
+use crate::capabilities::{USUAL_CELL_ASPECT, is_plausible_cell_aspect};
 use crate::cell::CellMode;
 use crate::grid::Size;
 use crate::maps::Map;
@@ -76,7 +76,7 @@ impl<'a> SceneView<'a> {
     /// # Ok::<(), std::io::Error>(())
     /// ```
     pub fn cell_aspect(self, aspect: f32) -> Self {
-        let cell_aspect = if is_cell_aspect(aspect) { aspect } else { USUAL_CELL_ASPECT };
+        let cell_aspect = if is_plausible_cell_aspect(aspect) { aspect } else { USUAL_CELL_ASPECT };
         Self { options: Options { cell_aspect, ..self.options }, ..self }
     }
 

@@ -4,7 +4,7 @@ use crate::cli::settings::Settings;
 use std::fmt::Write;
 use std::time::Duration;
 use termtrace::Colors;
-use termtrace::internals::capabilities::{Answers, Asking, Findings, Found, Hints, Source};
+use termtrace::internals::capabilities::{Detected, Findings, Hints, Replies, SafeQueries, Source};
 use termtrace::internals::text::visible_lines;
 
 /// How the talk with the terminal went.
@@ -23,7 +23,7 @@ pub(super) struct Report<'a> {
     pub(super) settings: &'a Settings,
     pub(super) hints: &'a Hints,
     pub(super) findings: &'a Findings,
-    pub(super) answers: &'a Answers,
+    pub(super) replies: &'a Replies,
     pub(super) outcome: QueryOutcome,
 }
 
@@ -61,7 +61,13 @@ impl Report<'_> {
     }
 
     /// What the user may have set, by that setting.
-    fn set<T>(&self, what: &'static str, setting: &str, found: Found<T>, say: impl FnOnce(T) -> String) -> ReportRow {
+    fn set<T>(
+        &self,
+        what: &'static str,
+        setting: &str,
+        found: Detected<T>,
+        say: impl FnOnce(T) -> String,
+    ) -> ReportRow {
         match found.source {
             Source::User => (what, say(found.value), self.settings.source(setting).to_string()),
             _ => row(what, found, say),
@@ -74,17 +80,17 @@ impl Report<'_> {
     }
 
     fn questions(&self) -> ReportRow {
-        let asked = match self.hints.asking() {
+        let asked = match self.hints.safe_queries() {
             _ if matches!(self.outcome, QueryOutcome::NoTerminal) => "nothing: there is none here",
-            Asking::Nothing => "nothing, by its name",
-            Asking::Console => "what a console understands",
-            Asking::Screen => "what screen understands",
-            Asking::Tmux => "what tmux understands",
-            Asking::Everything => "everything",
+            SafeQueries::None => "nothing, by its name",
+            SafeQueries::Console => "what a console understands",
+            SafeQueries::Screen => "what screen understands",
+            SafeQueries::Tmux => "what tmux understands",
+            SafeQueries::All => "everything",
         };
         let how = match self.outcome {
             QueryOutcome::NoTerminal => "-".to_owned(),
-            QueryOutcome::Answered(_) if self.hints.asking() == Asking::Nothing => "-".to_owned(),
+            QueryOutcome::Answered(_) if self.hints.safe_queries() == SafeQueries::None => "-".to_owned(),
             QueryOutcome::Answered(after) => format!("answered after {} ms", after.as_millis()),
             QueryOutcome::TimedOut => "no end of answers in 2 s".to_owned(),
         };
@@ -101,11 +107,11 @@ impl Report<'_> {
 
     /// How many columns a half block takes.
     fn width(&self) -> String {
-        self.answers.block_width.map_or_else(String::new, |width| format!(", {}", columns(width)))
+        self.replies.block_width.map_or_else(String::new, |width| format!(", {}", columns(width)))
     }
 
     fn pixels(&self) -> String {
-        self.answers.cell_pixels.map_or_else(String::new, |(width, height)| format!(" ({width}x{height} pixels)"))
+        self.replies.cell_pixels.map_or_else(String::new, |(width, height)| format!(" ({width}x{height} pixels)"))
     }
 
     fn answered(&self, what: &'static str, answer: Option<String>) -> ReportRow {
@@ -116,14 +122,14 @@ impl Report<'_> {
     }
 
     fn no_answer(&self) -> &'static str {
-        match (self.outcome, self.hints.asking()) {
-            (QueryOutcome::NoTerminal, _) | (_, Asking::Nothing) => "not asked",
-            (_, Asking::Everything) => "no answer",
+        match (self.outcome, self.hints.safe_queries()) {
+            (QueryOutcome::NoTerminal, _) | (_, SafeQueries::None) => "not asked",
+            (_, SafeQueries::All) => "no answer",
             _ => "no answer, or not asked",
         }
     }
 
-    fn yes(&self, what: &'static str, found: Found<bool>) -> ReportRow {
+    fn yes(&self, what: &'static str, found: Detected<bool>) -> ReportRow {
         if found.source == Source::Assumed {
             return (what, "not known: no".to_owned(), self.no_answer().to_owned());
         }
@@ -132,20 +138,20 @@ impl Report<'_> {
 
     fn background(&self) -> ReportRow {
         let kind = if self.findings.light_background.value { "light" } else { "dark" };
-        match self.answers.background {
+        match self.replies.background {
             Some(c) => self.answered("background", Some(format!("{kind}, #{:02x}{:02x}{:02x}", c.r, c.g, c.b))),
             None => ("background", format!("not known: {kind}"), self.no_answer().to_owned()),
         }
     }
 
     fn sixteen(&self) -> ReportRow {
-        let count = self.answers.sixteen.iter().flatten().count();
+        let count = self.replies.sixteen.iter().flatten().count();
         self.answered("its 16 colours", (count > 0).then(|| format!("{count} known")))
     }
 
     fn mouse(&self) -> ReportRow {
         let what = "mouse, by pixels";
-        match (self.answers.sgr_mouse, self.answers.pixel_mouse) {
+        match (self.replies.sgr_mouse, self.replies.pixel_mouse) {
             (None, None) => self.answered(what, None),
             (cells, pixels) => {
                 let say = |known: Option<bool>| yes_or_no(known.unwrap_or(false));
@@ -155,7 +161,7 @@ impl Report<'_> {
     }
 }
 
-fn row<T>(what: &'static str, found: Found<T>, say: impl FnOnce(T) -> String) -> ReportRow {
+fn row<T>(what: &'static str, found: Detected<T>, say: impl FnOnce(T) -> String) -> ReportRow {
     (what, say(found.value), source_name(found.source))
 }
 

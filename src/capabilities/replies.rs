@@ -4,7 +4,7 @@ use crate::color::{LinearRgb, Srgb8};
 
 /// The answers so far. `None`: no answer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Answers {
+pub struct Replies {
     /// Whether it kept [`TEST_COLOR`] as its background colour (DECRQSS of SGR).
     pub truecolor: Option<bool>,
     /// Whether it supports synchronized output (DECRQM of mode 2026).
@@ -28,7 +28,7 @@ pub struct Answers {
 /// The background colour that is set before the colour is queried: none of the 256.
 pub const TEST_COLOR: Srgb8 = Srgb8::new(1, 2, 3);
 
-impl Answers {
+impl Replies {
     /// Records the state of a private mode as reported by DECRPM: 0 not recognised, 4 permanently reset.
     pub fn take_mode(&mut self, mode: u16, state: u16) {
         let known = Some(matches!(state, 1..=3));
@@ -44,11 +44,11 @@ impl Answers {
     pub fn take_osc(&mut self, text: &[u8]) {
         let Ok(text) = std::str::from_utf8(text) else { return };
         if let Some(color) = text.strip_prefix("11;") {
-            self.background = color_named(color).or(self.background);
+            self.background = parse_color(color).or(self.background);
         } else if let Some((index, color)) = text.strip_prefix("4;").and_then(|rest| rest.split_once(';'))
-            && let Some(place) = index.parse().ok().and_then(|index: usize| self.sixteen.get_mut(index))
+            && let Some(slot) = index.parse().ok().and_then(|index: usize| self.sixteen.get_mut(index))
         {
-            *place = color_named(color).or(*place);
+            *slot = parse_color(color).or(*slot);
         }
     }
 
@@ -77,21 +77,21 @@ impl Answers {
 }
 
 /// Parses `rgb:R/G/B` or `rgba:R/G/B/A` with one to four hexadecimal digits each, as X11 writes it, or `#rrggbb`.
-fn color_named(text: &str) -> Option<Srgb8> {
+fn parse_color(text: &str) -> Option<Srgb8> {
     let [r, g, b] = if let Some(digits) = text.strip_prefix('#') {
         // By bytes, so that no character is split.
         let pair = |at: usize| digits.get(at..at + 2).filter(|_| digits.len() == 6);
         [pair(0)?, pair(2)?, pair(4)?]
     } else {
-        let bands = text.strip_prefix("rgb:").or_else(|| text.strip_prefix("rgba:"))?;
-        let mut bands = bands.split('/');
-        [bands.next()?, bands.next()?, bands.next()?]
+        let channels = text.strip_prefix("rgb:").or_else(|| text.strip_prefix("rgba:"))?;
+        let mut channels = channels.split('/');
+        [channels.next()?, channels.next()?, channels.next()?]
     };
-    Some(Srgb8::new(band(r)?, band(g)?, band(b)?))
+    Some(Srgb8::new(parse_channel(r)?, parse_channel(g)?, parse_channel(b)?))
 }
 
 /// Scales a number from its digits' largest value to 8 bits.
-fn band(digits: &str) -> Option<u8> {
+fn parse_channel(digits: &str) -> Option<u8> {
     let is_hex = matches!(digits.len(), 1..=4) && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
     let value = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex)?;
     let highest = (1 << (4 * digits.len())) - 1;
@@ -119,22 +119,22 @@ mod tests {
             ("red", None),
             ("?", None),
         ] {
-            assert_eq!(color_named(text), expected, "{text}");
+            assert_eq!(parse_color(text), expected, "{text}");
         }
     }
 
     #[test]
     fn backgrounds_and_the_sixteen_colours_are_kept() {
-        let mut answers = Answers::default();
+        let mut replies = Replies::default();
         for text in
             ["11;rgb:ff/ff/ff", "4;15;rgb:1/2/3", "4;16;rgb:1/2/3", "4;x;rgb:1/2/3", "4;1;?", "10;#000000", "11;?"]
         {
-            answers.take_osc(text.as_bytes());
+            replies.take_osc(text.as_bytes());
         }
-        answers.take_osc(b"11;\xff");
-        assert_eq!(answers.background, Some(Srgb8::new(255, 255, 255)));
-        assert_eq!(answers.sixteen[15], Some(Srgb8::new(17, 34, 51)));
-        assert_eq!(answers.sixteen.iter().flatten().count(), 1);
+        replies.take_osc(b"11;\xff");
+        assert_eq!(replies.background, Some(Srgb8::new(255, 255, 255)));
+        assert_eq!(replies.sixteen[15], Some(Srgb8::new(17, 34, 51)));
+        assert_eq!(replies.sixteen.iter().flatten().count(), 1);
     }
 
     #[test]
@@ -142,10 +142,10 @@ mod tests {
         for (text, light) in
             [("#000000", false), ("#002b36", false), ("#555555", false), ("#fdf6e3", true), ("#ffffff", true)]
         {
-            let mut answers = Answers::default();
-            assert_eq!(answers.light_background(), None);
-            answers.take_osc(format!("11;{text}").as_bytes());
-            assert_eq!(answers.light_background(), Some(light), "{text}");
+            let mut replies = Replies::default();
+            assert_eq!(replies.light_background(), None);
+            replies.take_osc(format!("11;{text}").as_bytes());
+            assert_eq!(replies.light_background(), Some(light), "{text}");
         }
     }
 
@@ -163,30 +163,30 @@ mod tests {
             ("1$r2 q", None),
             (">|XTerm(379)", None),
         ] {
-            let mut answers = Answers::default();
-            answers.take_dcs(text.as_bytes());
-            assert_eq!(answers.truecolor, expected, "{text}");
+            let mut replies = Replies::default();
+            replies.take_dcs(text.as_bytes());
+            assert_eq!(replies.truecolor, expected, "{text}");
         }
     }
 
     #[test]
     fn modes_are_known_or_not() {
         for (state, known) in [(0, false), (1, true), (2, true), (3, true), (4, false), (9, false)] {
-            let mut answers = Answers::default();
+            let mut replies = Replies::default();
             for mode in [2026, 1006, 1016, 7] {
-                answers.take_mode(mode, state);
+                replies.take_mode(mode, state);
             }
             let expected = [Some(known); 3];
-            assert_eq!([answers.synchronized_output, answers.sgr_mouse, answers.pixel_mouse], expected, "{state}");
+            assert_eq!([replies.synchronized_output, replies.sgr_mouse, replies.pixel_mouse], expected, "{state}");
         }
     }
 
     #[test]
     fn a_blocks_width_is_where_the_cursor_went() {
         for (column, width) in [(0, None), (1, None), (2, Some(1)), (3, Some(2)), (4, Some(3))] {
-            let mut answers = Answers::default();
-            answers.take_cursor(column);
-            assert_eq!(answers.block_width, width, "{column}");
+            let mut replies = Replies::default();
+            replies.take_cursor(column);
+            assert_eq!(replies.block_width, width, "{column}");
         }
     }
 }
