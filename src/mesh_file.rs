@@ -11,7 +11,7 @@
 //! - The first fault ends the reading. It is a [`MeshError`]: one line with the position.
 //! - Any bytes give a mesh or an error in linear time. Memory is not reserved for a claimed count that the file could
 //!   not hold, so that it stays within a small multiple of the file's size (40 times the JSON of a glTF file that names
-//!   nothing but empty meshes, at most 8 times elsewhere). At most [`MAX_BYTES`] are read, [`MAX_TRIANGLES`] made, and
+//!   nothing but empty meshes, at most 8 times elsewhere). At most [`MAX_MESH_BYTES`] are read, [`MAX_TRIANGLES`] made, and
 //!   [`MAX_TEXELS`] decoded.
 //!
 //! Side files (MTL files, textures, buffers of glTF) are requested by their path relative to the mesh through a
@@ -46,20 +46,20 @@ mod attribute;
 #[cfg(feature = "mesh")]
 mod builder;
 #[cfg(feature = "mesh")]
-mod coarse;
+mod decimation;
 #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only readers fail"))]
-mod error;
+mod mesh_error;
 #[cfg(feature = "mesh")]
 mod fault;
 #[cfg(feature = "mesh")]
 mod gltf;
 #[cfg(feature = "mesh")]
-mod kind;
+mod format;
 mod limits;
 #[cfg(feature = "mesh")]
 mod mtl;
 #[cfg(feature = "mesh")]
-mod neighbours;
+mod side_files;
 #[cfg(feature = "mesh")]
 mod obj;
 #[cfg(feature = "mesh")]
@@ -77,8 +77,8 @@ mod texture;
 mod unread;
 
 pub use attribute::Attribute;
-pub use error::{MeshError, Place};
-pub use limits::{MAX_BYTES, MAX_TEXELS, MAX_TRIANGLES};
+pub use limits::{MAX_MESH_BYTES, MAX_TEXELS, MAX_TRIANGLES};
+pub use mesh_error::{FilePosition, MeshError};
 #[cfg(feature = "mesh")]
 pub use read::is_mesh;
 pub use texture::{Texture, TexturePlacement};
@@ -243,5 +243,5 @@ fn unit_or_zero(normal: Vec3) -> Vec3 {
 }
 
 fn is_reflectance(color: LinearRgb) -> bool {
-    [color.r, color.g, color.b].iter().all(|band| (0.0..=1.0).contains(band))
+    [color.r, color.g, color.b].iter().all(|channel| (0.0..=1.0).contains(channel))
 }

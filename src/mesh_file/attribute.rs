@@ -7,11 +7,11 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribute<T> {
     values: Vec<T>,
-    corners: Corners,
+    corners: CornerIndices,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-enum Corners {
+enum CornerIndices {
     /// No triangle has the attribute.
     #[default]
     Absent,
@@ -33,14 +33,14 @@ pub(super) fn turn(triangles: &mut [[u32; 3]]) {
 
 impl<T> Default for Attribute<T> {
     fn default() -> Self {
-        Self { values: Vec::new(), corners: Corners::Absent }
+        Self { values: Vec::new(), corners: CornerIndices::Absent }
     }
 }
 
 impl<T: Copy> Attribute<T> {
     /// Returns the attribute with one value for each position.
     pub(super) fn of_positions(values: Vec<T>) -> Self {
-        Self { values, corners: Corners::OfPositions }
+        Self { values, corners: CornerIndices::OfPositions }
     }
 
     /// Returns the attribute with other values at the same indices.
@@ -50,7 +50,7 @@ impl<T: Copy> Attribute<T> {
 
     /// Returns the attribute of triangles whose last two corners are exchanged.
     pub(super) fn turned(mut self) -> Self {
-        if let Corners::Own(corners) = &mut self.corners {
+        if let CornerIndices::Own(corners) = &mut self.corners {
             turn(corners);
         }
         self
@@ -69,9 +69,9 @@ impl<T: Copy> Attribute<T> {
     /// Returns the indices of the values at a triangle's corners; `None` if it has none.
     pub fn indices_of(&self, triangle: usize, triangles: &[[u32; 3]]) -> Option<[u32; 3]> {
         match &self.corners {
-            Corners::Absent => None,
-            Corners::OfPositions => triangles.get(triangle).copied(),
-            Corners::Own(corners) => corners.get(triangle).copied().filter(|&corner| corner != NONE),
+            CornerIndices::Absent => None,
+            CornerIndices::OfPositions => triangles.get(triangle).copied(),
+            CornerIndices::Own(corners) => corners.get(triangle).copied().filter(|&corner| corner != NONE),
         }
     }
 
@@ -90,31 +90,31 @@ impl<T: Copy> Attribute<T> {
     /// Sets the indices of the next triangle, which is number `triangles` and has the given `positions`.
     pub(super) fn push(&mut self, triangles: &[[u32; 3]], positions: [u32; 3], corner: Option<[u32; 3]>) {
         match (&mut self.corners, corner) {
-            (Corners::Absent, None) => {}
-            (Corners::Absent, Some(corner)) if triangles.is_empty() && corner == positions => {
-                self.corners = Corners::OfPositions;
+            (CornerIndices::Absent, None) => {}
+            (CornerIndices::Absent, Some(corner)) if triangles.is_empty() && corner == positions => {
+                self.corners = CornerIndices::OfPositions;
             }
-            (Corners::OfPositions, Some(corner)) if corner == positions => {}
-            (Corners::Absent, Some(corner)) => {
+            (CornerIndices::OfPositions, Some(corner)) if corner == positions => {}
+            (CornerIndices::Absent, Some(corner)) => {
                 let mut own = vec![NONE; triangles.len()];
                 own.push(corner);
-                self.corners = Corners::Own(own);
+                self.corners = CornerIndices::Own(own);
             }
-            (Corners::OfPositions, _) => {
+            (CornerIndices::OfPositions, _) => {
                 let mut own = triangles.to_vec();
                 own.push(corner.unwrap_or(NONE));
-                self.corners = Corners::Own(own);
+                self.corners = CornerIndices::Own(own);
             }
-            (Corners::Own(own), _) => own.push(corner.unwrap_or(NONE)),
+            (CornerIndices::Own(own), _) => own.push(corner.unwrap_or(NONE)),
         }
     }
 
     /// Frees unused capacity, and everything if no triangle has a value.
     pub(super) fn shrink(&mut self) {
         match &mut self.corners {
-            Corners::Absent => self.values = Vec::new(),
-            Corners::OfPositions => {}
-            Corners::Own(corners) => corners.shrink_to_fit(),
+            CornerIndices::Absent => self.values = Vec::new(),
+            CornerIndices::OfPositions => {}
+            CornerIndices::Own(corners) => corners.shrink_to_fit(),
         }
         self.values.shrink_to_fit();
     }
@@ -123,9 +123,9 @@ impl<T: Copy> Attribute<T> {
     pub(super) fn is_valid(&self, triangles: &[[u32; 3]], is_valid_value: impl Fn(&T) -> bool) -> bool {
         let in_range = |corner: &[u32; 3]| corner.iter().all(|&index| (index as usize) < self.values.len());
         let corners_are_valid = match &self.corners {
-            Corners::Absent => true,
-            Corners::OfPositions => triangles.iter().all(in_range),
-            Corners::Own(corners) => {
+            CornerIndices::Absent => true,
+            CornerIndices::OfPositions => triangles.iter().all(in_range),
+            CornerIndices::Own(corners) => {
                 corners.len() == triangles.len() && corners.iter().all(|corner| *corner == NONE || in_range(corner))
             }
         };
@@ -141,8 +141,8 @@ mod tests {
     const B: [u32; 3] = [2, 1, 3];
 
     /// Asserts the indices found again after pushing, and the representation.
-    fn pushed(corners: &[Option<[u32; 3]>]) -> (Vec<Option<[u32; 3]>>, Corners) {
-        let mut attribute = Attribute { values: vec![0.0; 9], corners: Corners::Absent };
+    fn pushed(corners: &[Option<[u32; 3]>]) -> (Vec<Option<[u32; 3]>>, CornerIndices) {
+        let mut attribute = Attribute { values: vec![0.0; 9], corners: CornerIndices::Absent };
         let triangles: Vec<_> = [A, B].into_iter().cycle().take(corners.len()).collect();
         for (i, &corner) in corners.iter().enumerate() {
             attribute.push(&triangles[..i], triangles[i], corner);
@@ -153,8 +153,8 @@ mod tests {
 
     #[test]
     fn corners_have_indices_of_their_own_only_where_they_differ() {
-        assert_eq!(pushed(&[None, None]).1, Corners::Absent);
-        assert_eq!(pushed(&[Some(A), Some(B), Some(A)]).1, Corners::OfPositions);
+        assert_eq!(pushed(&[None, None]).1, CornerIndices::Absent);
+        assert_eq!(pushed(&[Some(A), Some(B), Some(A)]).1, CornerIndices::OfPositions);
         for corners in [
             [None, Some(B), None, Some([5, 6, 7])],
             [Some(A), Some(A), Some(A), None],
@@ -163,7 +163,7 @@ mod tests {
         ] {
             let (found, kept) = pushed(&corners);
             assert_eq!(found, corners);
-            assert!(matches!(kept, Corners::Own(_)));
+            assert!(matches!(kept, CornerIndices::Own(_)));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A mesh under construction.
 
 use super::attribute::Attribute;
-use super::fault::Fault;
+use super::fault::MeshFault;
 use super::limits::MAX_TRIANGLES;
 use super::{MeshFile, MeshMaterial};
 use crate::color::LinearRgb;
@@ -9,7 +9,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 /// The triangles and attributes read so far.
 #[derive(Default)]
-pub(super) struct Builder {
+pub(super) struct MeshBuilder {
     pub(super) positions: Vec<Vec3>,
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) normals: Attribute<Vec3>,
@@ -21,27 +21,27 @@ pub(super) struct Builder {
 
 /// A triangle: the indices of its corners' attributes.
 #[derive(Clone, Copy)]
-pub(super) struct Triangle {
+pub(super) struct TriangleIndices {
     pub(super) positions: [u32; 3],
     pub(super) normals: Option<[u32; 3]>,
     pub(super) texture_coordinates: Option<[u32; 3]>,
     pub(super) colors: Option<[u32; 3]>,
 }
 
-impl Triangle {
+impl TriangleIndices {
     /// Returns a triangle with positions only.
     pub(super) fn new(positions: [u32; 3]) -> Self {
         Self { positions, normals: None, texture_coordinates: None, colors: None }
     }
 }
 
-impl Builder {
+impl MeshBuilder {
     /// Adds a triangle, whose indices must be in range.
-    pub(super) fn push(&mut self, triangle: Triangle) -> Result<(), Fault> {
+    pub(super) fn push(&mut self, triangle: TriangleIndices) -> Result<(), MeshFault> {
         if self.triangles.len() >= MAX_TRIANGLES {
-            return Err(Fault::of_file(too_many()));
+            return Err(MeshFault::of_file(too_many()));
         }
-        let Triangle { positions, normals, texture_coordinates, colors } = triangle;
+        let TriangleIndices { positions, normals, texture_coordinates, colors } = triangle;
         self.normals.push(&self.triangles, positions, normals);
         self.texture_coordinates.push(&self.triangles, positions, texture_coordinates);
         self.colors.push(&self.triangles, positions, colors);
@@ -61,15 +61,19 @@ impl Builder {
     }
 
     /// Returns the mesh. `nothing` describes the contents of a file without triangles, for the message.
-    pub(super) fn finish(mut self, nothing: &str) -> Result<MeshFile, Fault> {
+    pub(super) fn finish(mut self, nothing: &str) -> Result<MeshFile, MeshFault> {
         if self.triangles.is_empty() {
-            return Err(Fault::of_file(format!("there are no triangles in this file: {nothing}")));
+            return Err(MeshFault::of_file(format!("there are no triangles in this file: {nothing}")));
         }
         self.shrink();
         let Self { positions, triangles, normals, texture_coordinates, colors, materials, material_runs } = self;
         let mesh = MeshFile { positions, triangles, normals, texture_coordinates, colors, materials, material_runs };
         // Readers report these faults with their positions before; this is the last line of defence.
-        if mesh.is_valid() { Ok(mesh) } else { Err(Fault::of_file("this mesh has numbers or indices out of range")) }
+        if mesh.is_valid() {
+            Ok(mesh)
+        } else {
+            Err(MeshFault::of_file("this mesh has numbers or indices out of range"))
+        }
     }
 
     fn shrink(&mut self) {

@@ -1,18 +1,18 @@
 //! A fault on its way from the reader that found it to the [`MeshError`] that names the file.
 
-use super::{MeshError, Place};
+use super::{FilePosition, MeshError};
 use crate::progress::{Cancelled, Unfinished};
 use crate::scene_text::clipped;
 
 /// A fault, or a cancel, before the file's name is added. Boxed, because a result of eight bytes keeps the parsing of
 /// numbers fast.
 #[derive(Debug)]
-pub(super) struct Fault(Box<Cause>);
+pub(super) struct MeshFault(Box<Cause>);
 
 #[derive(Debug)]
 enum Cause {
     Here {
-        place: FaultPlace,
+        offset: FaultOffset,
         message: String,
     },
     /// A fault in a side file, whose name is known.
@@ -23,39 +23,41 @@ enum Cause {
 
 /// A position as readers know it: the number of bytes before it.
 #[derive(Clone, Copy, Debug)]
-enum FaultPlace {
+enum FaultOffset {
     File,
     Text(usize),
     Byte(usize),
 }
 
-impl Fault {
+impl MeshFault {
     /// Returns a fault of the whole file, or one whose message gives the position.
     #[cold]
     pub(super) fn of_file(message: impl Into<String>) -> Self {
-        Self(Box::new(Cause::Here { place: FaultPlace::File, message: message.into() }))
+        Self(Box::new(Cause::Here { offset: FaultOffset::File, message: message.into() }))
     }
 
     /// Returns a fault at a byte of a text.
     #[cold]
     pub(super) fn in_text(at: usize, message: impl Into<String>) -> Self {
-        Self(Box::new(Cause::Here { place: FaultPlace::Text(at), message: message.into() }))
+        Self(Box::new(Cause::Here { offset: FaultOffset::Text(at), message: message.into() }))
     }
 
     /// Returns a fault at a byte of a binary file.
     #[cold]
     pub(super) fn at_byte(at: usize, message: impl Into<String>) -> Self {
-        Self(Box::new(Cause::Here { place: FaultPlace::Byte(at), message: message.into() }))
+        Self(Box::new(Cause::Here { offset: FaultOffset::Byte(at), message: message.into() }))
     }
 
     /// Returns the error of the file with these bytes.
     pub(super) fn into_error(self, name: &str, bytes: &[u8]) -> Unfinished<MeshError> {
         Unfinished::Failed(match *self.0 {
-            Cause::Here { place: FaultPlace::File, message } => MeshError::of_file(name, &message),
-            Cause::Here { place: FaultPlace::Byte(byte), message } => MeshError::at(name, Place::Byte(byte), &message),
-            Cause::Here { place: FaultPlace::Text(at), message } => {
+            Cause::Here { offset: FaultOffset::File, message } => MeshError::of_file(name, &message),
+            Cause::Here { offset: FaultOffset::Byte(byte), message } => {
+                MeshError::at(name, FilePosition::Byte(byte), &message)
+            }
+            Cause::Here { offset: FaultOffset::Text(at), message } => {
                 let (line, column) = line_and_column(bytes, at);
-                MeshError::at(name, Place::Text { line, column }, &message)
+                MeshError::at(name, FilePosition::Text { line, column }, &message)
             }
             Cause::Elsewhere(error) => error,
             Cause::Cancelled => return Unfinished::Cancelled,
@@ -63,13 +65,13 @@ impl Fault {
     }
 }
 
-impl From<MeshError> for Fault {
+impl From<MeshError> for MeshFault {
     fn from(error: MeshError) -> Self {
         Self(Box::new(Cause::Elsewhere(error)))
     }
 }
 
-impl From<Unfinished<MeshError>> for Fault {
+impl From<Unfinished<MeshError>> for MeshFault {
     fn from(unfinished: Unfinished<MeshError>) -> Self {
         match unfinished {
             Unfinished::Cancelled => Cancelled.into(),
@@ -78,7 +80,7 @@ impl From<Unfinished<MeshError>> for Fault {
     }
 }
 
-impl From<Cancelled> for Fault {
+impl From<Cancelled> for MeshFault {
     #[cold]
     fn from(Cancelled: Cancelled) -> Self {
         Self(Box::new(Cause::Cancelled))

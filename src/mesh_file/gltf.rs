@@ -12,57 +12,61 @@ mod nodes;
 mod primitives;
 
 use super::MeshFile;
-use super::fault::{Fault, shown};
-use super::neighbours::Neighbours;
+use super::fault::{MeshFault, shown};
+use super::side_files::SideFiles;
 use crate::progress::Meter;
 use buffers::Buffers;
 use json::Json;
 use serde_json::Value;
 
-pub(super) fn read_json(bytes: &[u8], neighbours: &mut Neighbours<'_>, meter: Meter<'_>) -> Result<MeshFile, Fault> {
-    read(bytes, 0, None, neighbours, meter)
+pub(super) fn read_json(bytes: &[u8], side_files: &mut SideFiles<'_>, meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
+    read(bytes, 0, None, side_files, meter)
 }
 
 /// Splits a GLB: a header of 12 bytes and chunks, the first of which is JSON and the second may be a buffer.
-pub(super) fn read_binary(bytes: &[u8], neighbours: &mut Neighbours<'_>, meter: Meter<'_>) -> Result<MeshFile, Fault> {
+pub(super) fn read_binary(
+    bytes: &[u8],
+    side_files: &mut SideFiles<'_>,
+    meter: Meter<'_>,
+) -> Result<MeshFile, MeshFault> {
     const HEADER: usize = 12;
     let word = |at: usize| bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes);
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(Fault::at_byte(
+        return Err(MeshFault::at_byte(
             bytes.len(),
             "the file ends within the header of 12 bytes that a GLB file begins with",
         ));
     };
     if !bytes.starts_with(b"glTF") {
-        return Err(Fault::at_byte(0, "a GLB file begins with \"glTF\""));
+        return Err(MeshFault::at_byte(0, "a GLB file begins with \"glTF\""));
     }
     if version != 2 {
-        return Err(Fault::at_byte(4, format!("this is version {version} of GLB; only version 2 is read")));
+        return Err(MeshFault::at_byte(4, format!("this is version {version} of GLB; only version 2 is read")));
     }
     if length as usize > bytes.len() {
         let found = bytes.len();
-        return Err(Fault::at_byte(
+        return Err(MeshFault::at_byte(
             8,
             format!("the file was cut short: it should have {length} bytes, and has {found}"),
         ));
     }
     let chunk = |at: usize, kind: &[u8; 4], name: &str| {
         let Some(size) = word(at) else {
-            return Err(Fault::at_byte(at, format!("the file ends where the {name} chunk should begin")));
+            return Err(MeshFault::at_byte(at, format!("the file ends where the {name} chunk should begin")));
         };
         if bytes.get(at + 4..at + 8) != Some(kind) {
             let found = shown(bytes.get(at + 4..at + 8).unwrap_or_default());
-            return Err(Fault::at_byte(at + 4, format!("this chunk should be {name}, but is {found}")));
+            return Err(MeshFault::at_byte(at + 4, format!("this chunk should be {name}, but is {found}")));
         }
         let rest = &bytes[at + 8..];
         rest.get(..size as usize).ok_or_else(|| {
-            Fault::at_byte(at, format!("this chunk should have {size} bytes, but only {} are left", rest.len()))
+            MeshFault::at_byte(at, format!("this chunk should have {size} bytes, but only {} are left", rest.len()))
         })
     };
     let json = chunk(HEADER, b"JSON", "JSON")?;
     let buffer_at = (HEADER + 8 + json.len()).next_multiple_of(4);
     let buffer = if buffer_at < bytes.len() { Some(chunk(buffer_at, b"BIN\0", "BIN")?) } else { None };
-    read(json, HEADER + 8, buffer, neighbours, meter)
+    read(json, HEADER + 8, buffer, side_files, meter)
 }
 
 /// Parses the JSON, which starts at byte `at` of a GLB file.
@@ -70,9 +74,9 @@ fn read(
     json: &[u8],
     at: usize,
     glb_buffer: Option<&[u8]>,
-    neighbours: &mut Neighbours<'_>,
+    side_files: &mut SideFiles<'_>,
     mut meter: Meter<'_>,
-) -> Result<MeshFile, Fault> {
+) -> Result<MeshFile, MeshFault> {
     meter.step()?;
     let text = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
     check_count(text)?;
@@ -80,7 +84,7 @@ fn read(
     let root = Json::root(&document)?;
     check_version(root)?;
     check_extensions(root)?;
-    nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, neighbours), &mut meter)
+    nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, side_files), &mut meter)
 }
 
 /// Limits on the objects, and on the items of lists and objects, in a document: as values they take 600 and 32 bytes
@@ -88,28 +92,28 @@ fn read(
 const MAX_OBJECTS: usize = 1 << 20;
 const MAX_ITEMS: usize = 16 << 20;
 
-fn check_count(json: &[u8]) -> Result<(), Fault> {
+fn check_count(json: &[u8]) -> Result<(), MeshFault> {
     let count = |wanted: &[u8]| json.iter().filter(|byte| wanted.contains(byte)).count();
     if count(b"{") > MAX_OBJECTS || count(b"[,") > MAX_ITEMS {
         let message = format!("the JSON has more than {MAX_OBJECTS} objects or {MAX_ITEMS} items, too many to be read");
-        return Err(Fault::of_file(message));
+        return Err(MeshFault::of_file(message));
     }
     Ok(())
 }
 
 /// Returns the fault of the JSON: with its line in a text, with its byte in a GLB file.
-fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], at: usize) -> Fault {
+fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], at: usize) -> MeshFault {
     let line_start = text.split_inclusive(|&byte| byte == b'\n').take(error.line().saturating_sub(1)).map(<[u8]>::len);
     let place = json.len() - text.len() + line_start.sum::<usize>() + error.column().saturating_sub(1);
     // serde_json ends its message with the position, which is given differently here.
     let (full, told) = (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
     let message = format!("this is not JSON: {}", full.strip_suffix(&told).unwrap_or(&full));
-    if at == 0 { Fault::in_text(place, message) } else { Fault::at_byte(at + place, message) }
+    if at == 0 { MeshFault::in_text(place, message) } else { MeshFault::at_byte(at + place, message) }
 }
 
-fn check_version(root: Json<'_>) -> Result<(), Fault> {
+fn check_version(root: Json<'_>) -> Result<(), MeshFault> {
     let Some(asset) = root.field("asset")? else {
-        return Err(Fault::of_file("this JSON is no glTF: it lacks asset: {version: \"2.0\"}"));
+        return Err(MeshFault::of_file("this JSON is no glTF: it lacks asset: {version: \"2.0\"}"));
     };
     let version = asset.required("version")?;
     if version.string()?.starts_with("2.") {
@@ -119,7 +123,7 @@ fn check_version(root: Json<'_>) -> Result<(), Fault> {
 }
 
 /// A file that requires an unsupported extension would be drawn wrong.
-fn check_extensions(root: Json<'_>) -> Result<(), Fault> {
+fn check_extensions(root: Json<'_>) -> Result<(), MeshFault> {
     for extension in root.list("extensionsRequired")? {
         let name = extension.string()?;
         let is_known = name.starts_with("KHR_materials_")

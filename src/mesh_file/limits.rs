@@ -1,7 +1,7 @@
 //! Limits on what is read.
 
 /// Limit on the bytes read for one mesh, side files included: 2 GiB.
-pub const MAX_BYTES: usize = 2 << 30;
+pub const MAX_MESH_BYTES: usize = 2 << 30;
 
 /// Limit on the triangles of a mesh: 64 Mi. A glTF file that instantiates the same triangles repeatedly makes at most 1
 /// Mi of them and one for each of its bytes.

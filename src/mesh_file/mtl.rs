@@ -1,10 +1,10 @@
 //! MTL, the materials of OBJ files: `Kd` and `map_Kd`. All other lines are skipped.
 
 use super::MeshMaterial;
-use super::fault::{Fault, shown};
-use super::neighbours::{Neighbours, local_path};
-use super::text::Text;
-use super::texture::{self, Budget, Texture, TexturePlacement};
+use super::fault::{MeshFault, shown};
+use super::side_files::{SideFiles, local_path};
+use super::text::TextCursor;
+use super::texture::{self, TexelBudget, Texture, TexturePlacement};
 use crate::color::LinearRgb;
 use glam::Vec3;
 use std::collections::{HashMap, HashSet};
@@ -18,7 +18,7 @@ pub(super) struct Library {
     by_name: HashMap<Box<[u8]>, u32>,
     files: HashSet<PathBuf>,
     textures: HashMap<PathBuf, Arc<Texture>>,
-    budget: Budget,
+    budget: TexelBudget,
 }
 
 impl Library {
@@ -40,21 +40,21 @@ impl Library {
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
-    neighbours: &mut Neighbours<'_>,
+    side_files: &mut SideFiles<'_>,
     library: &mut Library,
-) -> Result<(), Fault> {
+) -> Result<(), MeshFault> {
     library.files.insert(path.to_owned());
     let folder = path.parent().unwrap_or(Path::new(""));
-    let name = neighbours.name_of(path);
-    let mut reader = Reader { text: Text::new(bytes), folder, neighbours, library };
+    let name = side_files.name_of(path);
+    let mut reader = MtlReader { text: TextCursor::new(bytes), folder, side_files, library };
     // The fault is in this file, not in the one that names it.
-    reader.statements().map_err(|fault| Fault::from(fault.into_error(&name, bytes)))
+    reader.statements().map_err(|fault| MeshFault::from(fault.into_error(&name, bytes)))
 }
 
-struct Reader<'a, 'b> {
-    text: Text<'a>,
+struct MtlReader<'a, 'b> {
+    text: TextCursor<'a>,
     folder: &'a Path,
-    neighbours: &'a mut Neighbours<'b>,
+    side_files: &'a mut SideFiles<'b>,
     library: &'a mut Library,
 }
 
@@ -62,8 +62,8 @@ struct Reader<'a, 'b> {
 /// grey.
 const UNSAID: LinearRgb = LinearRgb::grey(0.8);
 
-impl Reader<'_, '_> {
-    fn statements(&mut self) -> Result<(), Fault> {
+impl MtlReader<'_, '_> {
+    fn statements(&mut self) -> Result<(), MeshFault> {
         let mut has_reflectance = false;
         while self.text.go_to_statement() {
             let word = self.text.word();
@@ -100,13 +100,13 @@ impl Reader<'_, '_> {
         self.library.materials.push(MeshMaterial { reflectance: UNSAID, texture: None });
     }
 
-    fn material(&mut self, at: usize) -> Result<&mut MeshMaterial, Fault> {
+    fn material(&mut self, at: usize) -> Result<&mut MeshMaterial, MeshFault> {
         let last = self.library.materials.last_mut();
-        last.ok_or_else(|| Fault::in_text(at, "this line belongs to no material: newmtl must stand above it"))
+        last.ok_or_else(|| MeshFault::in_text(at, "this line belongs to no material: newmtl must stand above it"))
     }
 
     /// Reads `Kd r g b`, or `Kd r` for a grey. Values are clamped to 0..=1.
-    fn reflectance(&mut self) -> Result<LinearRgb, Fault> {
+    fn reflectance(&mut self) -> Result<LinearRgb, MeshFault> {
         let r = self.text.number()?.clamp(0.0, 1.0);
         if self.text.is_at_line_end() {
             return Ok(LinearRgb::grey(r));
@@ -114,12 +114,12 @@ impl Reader<'_, '_> {
         Ok(LinearRgb::new(r, self.text.number()?.clamp(0.0, 1.0), self.text.number()?.clamp(0.0, 1.0)))
     }
 
-    fn texture(&mut self) -> Result<TexturePlacement, Fault> {
+    fn texture(&mut self) -> Result<TexturePlacement, MeshFault> {
         let transform = self.options()?;
         let name = self.text.rest_of_line();
         let at = self.text.at() - name.len();
         let name = String::from_utf8_lossy(name);
-        let path = local_path(self.folder, &name).map_err(|message| Fault::in_text(at, message))?;
+        let path = local_path(self.folder, &name).map_err(|message| MeshFault::in_text(at, message))?;
         let texture = match self.library.textures.get(&path) {
             Some(texture) => Arc::clone(texture),
             None => self.load(path, at)?,
@@ -127,20 +127,23 @@ impl Reader<'_, '_> {
         Ok(TexturePlacement { texture, transform })
     }
 
-    fn load(&mut self, path: PathBuf, at: usize) -> Result<Arc<Texture>, Fault> {
-        let bytes = self.neighbours.read(&path).map_err(|message| {
-            Fault::in_text(at, format!("the texture is missing: {message}; put that file there, or take this line out"))
+    fn load(&mut self, path: PathBuf, at: usize) -> Result<Arc<Texture>, MeshFault> {
+        let bytes = self.side_files.read(&path).map_err(|message| {
+            MeshFault::in_text(
+                at,
+                format!("the texture is missing: {message}; put that file there, or take this line out"),
+            )
         })?;
-        let name = shown(self.neighbours.name_of(&path).as_bytes());
+        let name = shown(self.side_files.name_of(&path).as_bytes());
         let texture = texture::decode(&bytes, &mut self.library.budget)
-            .map_err(|what| Fault::in_text(at, format!("{name} {what}")))?;
+            .map_err(|what| MeshFault::in_text(at, format!("{name} {what}")))?;
         let texture = Arc::new(texture);
         self.library.textures.insert(path, Arc::clone(&texture));
         Ok(texture)
     }
 
     /// Reads the options before the file name: `-s` (scale) and `-o` (offset) take effect, others are skipped.
-    fn options(&mut self) -> Result<[Vec3; 2], Fault> {
+    fn options(&mut self) -> Result<[Vec3; 2], MeshFault> {
         let (mut scale, mut offset) = ([1.0; 2], [0.0; 2]);
         loop {
             let start = self.text.at();
@@ -163,7 +166,7 @@ impl Reader<'_, '_> {
         if u.is_finite() && v.is_finite() {
             return Ok([u, v]);
         }
-        Err(Fault::in_text(self.text.at(), "the texture's scale or offset is too large"))
+        Err(MeshFault::in_text(self.text.at(), "the texture's scale or offset is too large"))
     }
 
     fn skip_words(&mut self, count: usize) {
@@ -173,7 +176,7 @@ impl Reader<'_, '_> {
     }
 
     /// Reads one to three numbers, of which the first two count.
-    fn two_of_three(&mut self, values: &mut [f32; 2]) -> Result<(), Fault> {
+    fn two_of_three(&mut self, values: &mut [f32; 2]) -> Result<(), MeshFault> {
         values[0] = self.text.number()?;
         for i in 1..3 {
             let start = self.text.at();

@@ -1,52 +1,53 @@
 //! Wavefront OBJ: polygons, normals, texture coordinates, the colours that some programs write after a position, and
 //! materials of MTL files. Lines, points, curves and surfaces are skipped.
 
-use super::builder::{Builder, Triangle, unit};
-use super::fault::{Fault, shown};
+use super::builder::{MeshBuilder, TriangleIndices, unit};
+use super::fault::{MeshFault, shown};
 use super::mtl::{self, Library};
-use super::neighbours::{Neighbours, local_path};
-use super::text::Text;
+use super::side_files::{SideFiles, local_path};
+use super::text::TextCursor;
 use super::{MeshFile, polygon};
 use crate::color::{LinearRgb, linear_from_srgb};
 use crate::progress::Meter;
 use glam::{Vec2, Vec3};
 use std::path::Path;
 
-pub(super) fn read(bytes: &[u8], neighbours: &mut Neighbours<'_>, mut meter: Meter<'_>) -> Result<MeshFile, Fault> {
+pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     if let Some(place) = bytes.iter().position(|&byte| byte == 0) {
-        return Err(Fault::at_byte(place, "an OBJ file is text, and this byte is a NUL"));
+        return Err(MeshFault::at_byte(place, "an OBJ file is text, and this byte is a NUL"));
     }
-    let text = Text::new(bytes);
-    let mut reader = Reader { text, mesh: Builder::default(), library: None, corners: Corners::default(), neighbours };
+    let text = TextCursor::new(bytes);
+    let mut reader =
+        ObjReader { text, mesh: MeshBuilder::default(), library: None, corners: FaceCorners::default(), side_files };
     while reader.text.go_to_statement() {
         meter.reach(reader.text.at())?;
         reader.statement()?;
     }
-    let Reader { mut mesh, library, .. } = reader;
+    let ObjReader { mut mesh, library, .. } = reader;
     mesh.materials = library.map(Library::into_materials).unwrap_or_default();
     mesh.finish("it has no faces (f)")
 }
 
-struct Reader<'a, 'b> {
-    text: Text<'a>,
-    mesh: Builder,
+struct ObjReader<'a, 'b> {
+    text: TextCursor<'a>,
+    mesh: MeshBuilder,
     /// The materials of the MTL files named so far; `None` before the first one.
     library: Option<Library>,
     /// The corners of the current face, kept for its allocation.
-    corners: Corners,
-    neighbours: &'a mut Neighbours<'b>,
+    corners: FaceCorners,
+    side_files: &'a mut SideFiles<'b>,
 }
 
 /// The indices of a face's corners. Each corner has texture coordinates or none has; the same for normals.
 #[derive(Default)]
-struct Corners {
+struct FaceCorners {
     positions: Vec<u32>,
     texture_coordinates: Vec<u32>,
     normals: Vec<u32>,
 }
 
-impl Reader<'_, '_> {
-    fn statement(&mut self) -> Result<(), Fault> {
+impl ObjReader<'_, '_> {
+    fn statement(&mut self) -> Result<(), MeshFault> {
         let word = self.text.word();
         let at = self.text.at() - word.len();
         match word {
@@ -60,12 +61,15 @@ impl Reader<'_, '_> {
                 self.text.skip_line();
                 Ok(())
             }
-            _ => Err(Fault::in_text(at, format!("{} begins no line of an OBJ file (v, vt, vn, f, ...)", shown(word)))),
+            _ => Err(MeshFault::in_text(
+                at,
+                format!("{} begins no line of an OBJ file (v, vt, vn, f, ...)", shown(word)),
+            )),
         }
     }
 
     /// Reads `v x y z`, `v x y z w` or `v x y z r g b`.
-    fn vertex(&mut self) -> Result<(), Fault> {
+    fn vertex(&mut self) -> Result<(), MeshFault> {
         let position = self.numbers()?;
         self.mesh.positions.push(Vec3::from(position));
         if !self.text.is_at_line_end() {
@@ -78,13 +82,13 @@ impl Reader<'_, '_> {
         self.text.end_line()
     }
 
-    fn numbers(&mut self) -> Result<[f32; 3], Fault> {
+    fn numbers(&mut self) -> Result<[f32; 3], MeshFault> {
         Ok([self.text.number()?, self.text.number()?, self.text.number()?])
     }
 
     /// Adds the colour of the last vertex. Vertices without a colour among others with one are white.
     fn color(&mut self, encoded: [f32; 3]) {
-        let [r, g, b] = encoded.map(|band| linear_from_srgb(f64::from(band.clamp(0.0, 1.0))) as f32);
+        let [r, g, b] = encoded.map(|channel| linear_from_srgb(f64::from(channel.clamp(0.0, 1.0))) as f32);
         self.pad_colors(self.mesh.positions.len() - 1);
         self.mesh.colors.values_mut().push(LinearRgb::new(r, g, b));
     }
@@ -93,14 +97,14 @@ impl Reader<'_, '_> {
         self.mesh.colors.values_mut().resize(count, LinearRgb::grey(1.0));
     }
 
-    fn normal(&mut self) -> Result<(), Fault> {
+    fn normal(&mut self) -> Result<(), MeshFault> {
         let direction = self.numbers()?;
         self.mesh.normals.values_mut().push(unit(Vec3::from(direction).as_dvec3()));
         self.text.end_line()
     }
 
     /// Reads `vt u`, `vt u v` or `vt u v w`; v is measured from the bottom.
-    fn texture_coordinate(&mut self) -> Result<(), Fault> {
+    fn texture_coordinate(&mut self) -> Result<(), MeshFault> {
         let u = self.text.number()?;
         let v = if self.text.is_at_line_end() { 0.0 } else { self.text.number()? };
         self.mesh.texture_coordinates.values_mut().push(Vec2::new(u, 1.0 - v));
@@ -108,7 +112,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn face(&mut self, at: usize) -> Result<(), Fault> {
+    fn face(&mut self, at: usize) -> Result<(), MeshFault> {
         self.corners.positions.clear();
         self.corners.texture_coordinates.clear();
         self.corners.normals.clear();
@@ -116,32 +120,32 @@ impl Reader<'_, '_> {
             self.corner()?;
         }
         self.text.skip_line();
-        let Corners { positions, texture_coordinates, normals } = &self.corners;
+        let FaceCorners { positions, texture_coordinates, normals } = &self.corners;
         let count = positions.len();
         if count < 3 {
             let message = format!("a face has at least 3 corners; this one has {count}");
-            return Err(Fault::in_text(at, message));
+            return Err(MeshFault::in_text(at, message));
         }
         let (has_uv, has_normals) = (!texture_coordinates.is_empty(), !normals.is_empty());
         if (has_uv && texture_coordinates.len() != count) || (has_normals && normals.len() != count) {
             let message = "the corners of this face are not written alike: all v, all v/vt, all v//vn or all v/vt/vn";
-            return Err(Fault::in_text(at, message));
+            return Err(MeshFault::in_text(at, message));
         }
         self.triangles()
     }
 
     /// Adds the triangles of the current face.
-    fn triangles(&mut self) -> Result<(), Fault> {
+    fn triangles(&mut self) -> Result<(), MeshFault> {
         let has_colors = !self.mesh.colors.values().is_empty();
         if has_colors {
             self.pad_colors(self.mesh.positions.len());
         }
-        let Corners { positions, texture_coordinates, normals } = &self.corners;
+        let FaceCorners { positions, texture_coordinates, normals } = &self.corners;
         let pick = |indices: &[u32], corners: [usize; 3]| corners.map(|i| indices[i]);
         let pick_any = |indices: &[u32], corners| (!indices.is_empty()).then(|| pick(indices, corners));
         for corners in polygon::cut(positions, &self.mesh.positions) {
             let positions = pick(positions, corners);
-            self.mesh.push(Triangle {
+            self.mesh.push(TriangleIndices {
                 positions,
                 normals: pick_any(normals, corners),
                 texture_coordinates: pick_any(texture_coordinates, corners),
@@ -152,7 +156,7 @@ impl Reader<'_, '_> {
     }
 
     /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    fn corner(&mut self) -> Result<(), Fault> {
+    fn corner(&mut self) -> Result<(), MeshFault> {
         let start = self.text.at();
         let vertex = self.index("vertex", self.mesh.positions.len())?;
         self.corners.positions.push(vertex);
@@ -171,19 +175,19 @@ impl Reader<'_, '_> {
         self.end_corner(start)
     }
 
-    fn end_corner(&mut self, start: usize) -> Result<(), Fault> {
+    fn end_corner(&mut self, start: usize) -> Result<(), MeshFault> {
         if self.text.is_at_word_end() { Ok(()) } else { Err(self.bad_corner(start)) }
     }
 
     #[cold]
-    fn bad_corner(&mut self, start: usize) -> Fault {
+    fn bad_corner(&mut self, start: usize) -> MeshFault {
         self.text = self.text.back_at(start);
         self.text.expected("a corner (v, v/vt, v//vn or v/vt/vn)")
     }
 
     /// Returns a zero-based index from one that counts from 1 or, if negative, back from the last.
     #[inline]
-    fn index(&mut self, what: &str, count: usize) -> Result<u32, Fault> {
+    fn index(&mut self, what: &str, count: usize) -> Result<u32, MeshFault> {
         let at = self.text.at();
         let Some(written) = self.text.digits() else { return Err(self.bad_corner(at)) };
         let size = written.unsigned_abs() as usize; // 64 bits on all that termtrace runs on
@@ -191,16 +195,16 @@ impl Reader<'_, '_> {
         match index.filter(|&index| index < count) {
             // A file of 2 GiB has fewer than 2^31 of anything.
             Some(index) => Ok(index as u32),
-            None => Err(Fault::in_text(at, no_such_index(what, written, count))),
+            None => Err(MeshFault::in_text(at, no_such_index(what, written, count))),
         }
     }
 
-    fn use_material(&mut self) -> Result<(), Fault> {
+    fn use_material(&mut self) -> Result<(), MeshFault> {
         let name = self.text.rest_of_line();
         let at = self.text.at() - name.len();
         let material = match &self.library {
             Some(library) if !is_no_material(name) => Some(library.index_of(name).ok_or_else(|| {
-                Fault::in_text(at, format!("material {} is in no MTL file that was named above", shown(name)))
+                MeshFault::in_text(at, format!("material {} is in no MTL file that was named above", shown(name)))
             })?),
             // Texture coordinates without any `vt`: a model exported without them.
             _ => None,
@@ -210,23 +214,23 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn library(&mut self) -> Result<(), Fault> {
+    fn library(&mut self) -> Result<(), MeshFault> {
         let names = self.text.rest_of_line();
         let at = self.text.at() - names.len();
         let text = String::from_utf8_lossy(names);
         for name in library_names(&text) {
-            let path = local_path(Path::new(""), name).map_err(|message| Fault::in_text(at, message))?;
+            let path = local_path(Path::new(""), name).map_err(|message| MeshFault::in_text(at, message))?;
             let library = self.library.get_or_insert_default();
             if library.has_file(&path) {
                 continue;
             }
-            let bytes = self.neighbours.read(&path).map_err(|message| {
-                Fault::in_text(
+            let bytes = self.side_files.read(&path).map_err(|message| {
+                MeshFault::in_text(
                     at,
                     format!("the materials are missing: {message}; put that file there, or take this line out"),
                 )
             })?;
-            mtl::read(&path, &bytes, self.neighbours, library)?;
+            mtl::read(&path, &bytes, self.side_files, library)?;
         }
         self.text.skip_line();
         Ok(())

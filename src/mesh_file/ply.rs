@@ -2,30 +2,30 @@
 //! elements and properties are skipped, whatever their type and order.
 
 mod header;
-mod rows;
+mod body;
 
-use super::builder::{Builder, Triangle, unit};
-use super::fault::Fault;
+use super::builder::{MeshBuilder, TriangleIndices, unit};
+use super::fault::MeshFault;
 use super::{MeshFile, polygon};
 use crate::color::{LinearRgb, Srgb8, linear_from_srgb};
 use crate::progress::Meter;
+use body::{AsciiRows, BinaryRows, RowReader};
 use glam::Vec3;
-use header::{Element, Encoding, Header, Property, Shape, Type};
-use rows::{Ascii, Binary, Rows};
+use header::{Element, Encoding, Header, Property, PropertyType, ScalarType};
 
-pub(super) fn read(bytes: &[u8], meter: Meter<'_>) -> Result<MeshFile, Fault> {
+pub(super) fn read(bytes: &[u8], meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     let header = Header::read(bytes)?;
     match header.encoding {
-        Encoding::Ascii => read_body(&header, Ascii::new(bytes, header.end, meter)),
-        Encoding::LittleEndian => read_body(&header, Binary::<false>::new(bytes, header.end, meter)),
-        Encoding::BigEndian => read_body(&header, Binary::<true>::new(bytes, header.end, meter)),
+        Encoding::Ascii => read_body(&header, AsciiRows::new(bytes, header.end, meter)),
+        Encoding::LittleEndian => read_body(&header, BinaryRows::<false>::new(bytes, header.end, meter)),
+        Encoding::BigEndian => read_body(&header, BinaryRows::<true>::new(bytes, header.end, meter)),
     }
 }
 
-fn read_body(header: &Header<'_>, mut rows: impl Rows) -> Result<MeshFile, Fault> {
+fn read_body(header: &Header<'_>, mut rows: impl RowReader) -> Result<MeshFile, MeshFault> {
     let vertices = header.elements.iter().find(|element| element.name == "vertex");
     let vertex_count = vertices.map_or(0, |element| element.count);
-    let mut mesh = Builder::default();
+    let mut mesh = MeshBuilder::default();
     for element in &header.elements {
         let indices = element.properties.iter().position(Property::is_indices);
         match (element.name, indices) {
@@ -42,11 +42,11 @@ fn read_body(header: &Header<'_>, mut rows: impl Rows) -> Result<MeshFile, Fault
 }
 
 /// Calls back at the start and end of each row of an element.
-fn each_row<R: Rows>(
+fn each_row<R: RowReader>(
     element: &Element<'_>,
     rows: &mut R,
-    mut read: impl FnMut(&mut R) -> Result<(), Fault>,
-) -> Result<(), Fault> {
+    mut read: impl FnMut(&mut R) -> Result<(), MeshFault>,
+) -> Result<(), MeshFault> {
     for row in 0..element.count {
         rows.begin(element, row)?;
         read(rows)?;
@@ -55,10 +55,10 @@ fn each_row<R: Rows>(
     Ok(())
 }
 
-fn skip(properties: &[Property<'_>], rows: &mut impl Rows) -> Result<(), Fault> {
+fn skip(properties: &[Property<'_>], rows: &mut impl RowReader) -> Result<(), MeshFault> {
     properties.iter().try_for_each(|property| match property.shape {
-        Shape::Scalar(kind) => rows.skip(kind, 1),
-        Shape::List { length, item } => {
+        PropertyType::Scalar(kind) => rows.skip(kind, 1),
+        PropertyType::List { length, item } => {
             let length = rows.length(length)?;
             rows.skip(item, length)
         }
@@ -74,7 +74,7 @@ const NOTHING: usize = 9;
 /// Returns the slot of a vertex property.
 fn slot(property: &Property<'_>) -> usize {
     match property.name {
-        _ if matches!(property.shape, Shape::List { .. }) => NOTHING,
+        _ if matches!(property.shape, PropertyType::List { .. }) => NOTHING,
         "x" => POSITION,
         "y" => POSITION + 1,
         "z" => POSITION + 2,
@@ -88,11 +88,11 @@ fn slot(property: &Property<'_>) -> usize {
     }
 }
 
-fn read_vertices(element: &Element<'_>, rows: &mut impl Rows, mesh: &mut Builder) -> Result<(), Fault> {
+fn read_vertices(element: &Element<'_>, rows: &mut impl RowReader, mesh: &mut MeshBuilder) -> Result<(), MeshFault> {
     let slots: Vec<usize> = element.properties.iter().map(slot).collect();
     let has = |group: usize| (group..group + 3).all(|slot| slots.contains(&slot));
     if !has(POSITION) {
-        return Err(Fault::in_text(element.at, "the element vertex lacks one of the properties x, y and z"));
+        return Err(MeshFault::in_text(element.at, "the element vertex lacks one of the properties x, y and z"));
     }
     let color_type = slots.iter().position(|&slot| slot == COLOR).map(|i| element.properties[i].shape);
     let (has_normals, color_type) = (has(NORMAL), color_type.filter(|_| has(COLOR)));
@@ -104,7 +104,7 @@ fn read_vertices(element: &Element<'_>, rows: &mut impl Rows, mesh: &mut Builder
         let mut values = [0.0; NOTHING + 1];
         for (property, &slot) in element.properties.iter().zip(&slots) {
             match property.shape {
-                Shape::Scalar(kind) if slot < NOTHING => values[slot] = rows.number(kind)?,
+                PropertyType::Scalar(kind) if slot < NOTHING => values[slot] = rows.number(kind)?,
                 _ => skip(std::slice::from_ref(property), rows)?,
             }
         }
@@ -121,26 +121,26 @@ fn read_vertices(element: &Element<'_>, rows: &mut impl Rows, mesh: &mut Builder
 }
 
 /// Returns the number of rows that the file can hold, at most what the element claims.
-fn room(element: &Element<'_>, rows: &impl Rows) -> usize {
+fn room(element: &Element<'_>, rows: &impl RowReader) -> usize {
     let least = rows.least_size(&element.properties).max(1);
     (element.count as usize).min(rows.left() / least)
 }
 
 /// Returns the scale of a colour: integers range from 0 to the largest of their type, floats from 0 to 1.
-fn color(bands: [f32; 3], shape: Shape) -> LinearRgb {
+fn color(channels: [f32; 3], shape: PropertyType) -> LinearRgb {
     let white = match shape {
-        Shape::Scalar(Type::U8) => {
-            let [r, g, b] = bands.map(|band| band.clamp(0.0, 255.0) as u8);
+        PropertyType::Scalar(ScalarType::U8) => {
+            let [r, g, b] = channels.map(|channel| channel.clamp(0.0, 255.0) as u8);
             return LinearRgb::from_srgb8(Srgb8::new(r, g, b));
         }
-        Shape::Scalar(Type::I8) => f64::from(i8::MAX),
-        Shape::Scalar(Type::I16) => f64::from(i16::MAX),
-        Shape::Scalar(Type::U16) => f64::from(u16::MAX),
-        Shape::Scalar(Type::I32) => f64::from(i32::MAX),
-        Shape::Scalar(Type::U32) => f64::from(u32::MAX),
-        Shape::Scalar(Type::F32 | Type::F64) | Shape::List { .. } => 1.0,
+        PropertyType::Scalar(ScalarType::I8) => f64::from(i8::MAX),
+        PropertyType::Scalar(ScalarType::I16) => f64::from(i16::MAX),
+        PropertyType::Scalar(ScalarType::U16) => f64::from(u16::MAX),
+        PropertyType::Scalar(ScalarType::I32) => f64::from(i32::MAX),
+        PropertyType::Scalar(ScalarType::U32) => f64::from(u32::MAX),
+        PropertyType::Scalar(ScalarType::F32 | ScalarType::F64) | PropertyType::List { .. } => 1.0,
     };
-    let [r, g, b] = bands.map(|band| linear_from_srgb((f64::from(band) / white).clamp(0.0, 1.0)) as f32);
+    let [r, g, b] = channels.map(|channel| linear_from_srgb((f64::from(channel) / white).clamp(0.0, 1.0)) as f32);
     LinearRgb::new(r, g, b)
 }
 
@@ -149,15 +149,15 @@ fn read_faces(
     element: &Element<'_>,
     at: usize,
     vertex_count: u32,
-    rows: &mut impl Rows,
-    mesh: &mut Builder,
-) -> Result<(), Fault> {
+    rows: &mut impl RowReader,
+    mesh: &mut MeshBuilder,
+) -> Result<(), MeshFault> {
     let (before, indices, after) = parts(element, at);
     mesh.triangles.reserve(room(element, rows));
     let mut corners = Vec::new();
     each_row(element, rows, |rows| {
         skip(before, rows)?;
-        let start = rows.place();
+        let start = rows.position();
         read_corners(indices, vertex_count, rows, &mut corners)?;
         if corners.len() < 3 {
             let message = format!("a face has at least 3 corners; this one has {}", corners.len());
@@ -170,18 +170,23 @@ fn read_faces(
     })
 }
 
-fn parts<'a, 'b>(element: &'b Element<'a>, at: usize) -> (&'b [Property<'a>], Shape, &'b [Property<'a>]) {
+fn parts<'a, 'b>(element: &'b Element<'a>, at: usize) -> (&'b [Property<'a>], PropertyType, &'b [Property<'a>]) {
     let (before, rest) = element.properties.split_at(at);
     (before, rest[0].shape, &rest[1..])
 }
 
-fn read_corners(indices: Shape, vertex_count: u32, rows: &mut impl Rows, corners: &mut Vec<u32>) -> Result<(), Fault> {
-    let Shape::List { length, item } = indices else { return Ok(()) };
+fn read_corners(
+    indices: PropertyType,
+    vertex_count: u32,
+    rows: &mut impl RowReader,
+    corners: &mut Vec<u32>,
+) -> Result<(), MeshFault> {
+    let PropertyType::List { length, item } = indices else { return Ok(()) };
     corners.clear();
     for _ in 0..rows.length(length)? {
-        let place = rows.place();
+        let position = rows.position();
         let index = rows.integer(item)?;
-        corners.push(vertex(index, vertex_count).map_err(|message| rows.fault(place, message))?);
+        corners.push(vertex(index, vertex_count).map_err(|message| rows.fault(position, message))?);
     }
     Ok(())
 }
@@ -204,20 +209,20 @@ fn read_strips(
     element: &Element<'_>,
     at: usize,
     vertex_count: u32,
-    rows: &mut impl Rows,
-    mesh: &mut Builder,
-) -> Result<(), Fault> {
+    rows: &mut impl RowReader,
+    mesh: &mut MeshBuilder,
+) -> Result<(), MeshFault> {
     let (before, indices, after) = parts(element, at);
-    let Shape::List { length, item } = indices else { return Ok(()) };
+    let PropertyType::List { length, item } = indices else { return Ok(()) };
     each_row(element, rows, |rows| {
         skip(before, rows)?;
         let mut strip = Strip::default();
         for _ in 0..rows.length(length)? {
-            let place = rows.place();
+            let position = rows.position();
             match rows.integer(item)? {
                 -1 => strip = Strip::default(),
                 index => {
-                    let corner = vertex(index, vertex_count).map_err(|message| rows.fault(place, message))?;
+                    let corner = vertex(index, vertex_count).map_err(|message| rows.fault(position, message))?;
                     if let Some(triangle) = strip.next(corner) {
                         push(mesh, triangle)?;
                     }
@@ -247,11 +252,11 @@ impl Strip {
 }
 
 /// Triangles have the attributes of their vertices.
-fn push(mesh: &mut Builder, positions: [u32; 3]) -> Result<(), Fault> {
+fn push(mesh: &mut MeshBuilder, positions: [u32; 3]) -> Result<(), MeshFault> {
     let (normals, colors) = (!mesh.normals.values().is_empty(), !mesh.colors.values().is_empty());
-    mesh.push(Triangle {
+    mesh.push(TriangleIndices {
         normals: normals.then_some(positions),
         colors: colors.then_some(positions),
-        ..Triangle::new(positions)
+        ..TriangleIndices::new(positions)
     })
 }

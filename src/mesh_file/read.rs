@@ -1,9 +1,9 @@
 //! Reading of a mesh from bytes in any format, or from a file.
 
-use super::fault::Fault;
-use super::kind::{self, Kind};
-use super::neighbours::Neighbours;
-use super::{MAX_BYTES, MeshError, MeshFile, gltf, obj, ply, stl};
+use super::fault::MeshFault;
+use super::format::{self, MeshFormat};
+use super::side_files::SideFiles;
+use super::{MAX_MESH_BYTES, MeshError, MeshFile, gltf, obj, ply, stl};
 use crate::memory;
 use crate::named_file::{self, Accepted};
 use crate::progress::{Meter, Unfinished, Watcher};
@@ -30,7 +30,7 @@ impl MeshFile {
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
         watcher: &Watcher<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
-        read(name, bytes, &mut Neighbours::new(name, open), watcher).map_err(|fault| fault.into_error(name, bytes))
+        read(name, bytes, &mut SideFiles::new(name, open), watcher).map_err(|fault| fault.into_error(name, bytes))
     }
 
     /// Loads a mesh file.
@@ -65,7 +65,7 @@ impl MeshFile {
         accepted: Accepted,
         watcher: &Watcher<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
-        let read = named_file::read(path, accepted, |_| MAX_BYTES, watcher);
+        let read = named_file::read(path, accepted, |_| MAX_MESH_BYTES, watcher);
         if watcher.is_gone() {
             return Err(Unfinished::Cancelled);
         }
@@ -81,7 +81,7 @@ impl MeshFile {
         let mut open = |relative: &Path| {
             let path = folder.join(relative);
             watcher.needs(&path);
-            named_file::read(&path, Accepted::Files, |_| MAX_BYTES, watcher)
+            named_file::read(&path, Accepted::Files, |_| MAX_MESH_BYTES, watcher)
         };
         Self::parse(&path.to_string_lossy(), bytes, &mut open, watcher)
     }
@@ -89,23 +89,28 @@ impl MeshFile {
 
 /// Returns whether a file with this name, or with this beginning, is meant to be a mesh.
 pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
-    kind::by_ending(name).is_some() || bytes.starts_with(b"ply") || bytes.starts_with(b"glTF")
+    format::by_ending(name).is_some() || bytes.starts_with(b"ply") || bytes.starts_with(b"glTF")
 }
 
 /// The one place where the formats are told apart.
-fn read(name: &str, bytes: &[u8], neighbours: &mut Neighbours<'_>, watcher: &Watcher<'_>) -> Result<MeshFile, Fault> {
-    if bytes.len() > MAX_BYTES {
-        return Err(Fault::of_file("the file is larger than 2 GiB, too large to be read"));
+fn read(
+    name: &str,
+    bytes: &[u8],
+    side_files: &mut SideFiles<'_>,
+    watcher: &Watcher<'_>,
+) -> Result<MeshFile, MeshFault> {
+    if bytes.len() > MAX_MESH_BYTES {
+        return Err(MeshFault::of_file("the file is larger than 2 GiB, too large to be read"));
     }
     let meter = Meter::new(watcher, name, bytes.len());
     has_memory(bytes.len() * PEAK_PER_BYTE, "to read it")?;
-    let mesh = match kind::of(name, bytes)? {
-        Kind::Obj => obj::read(bytes, neighbours, meter),
-        Kind::StlText => stl::read_text(bytes, meter),
-        Kind::StlBinary => stl::read_binary(bytes, meter),
-        Kind::Ply => ply::read(bytes, meter),
-        Kind::Gltf => gltf::read_json(bytes, neighbours, meter),
-        Kind::Glb => gltf::read_binary(bytes, neighbours, meter),
+    let mesh = match format::recognised(name, bytes)? {
+        MeshFormat::Obj => obj::read(bytes, side_files, meter),
+        MeshFormat::StlText => stl::read_text(bytes, meter),
+        MeshFormat::StlBinary => stl::read_binary(bytes, meter),
+        MeshFormat::Ply => ply::read(bytes, meter),
+        MeshFormat::Gltf => gltf::read_json(bytes, side_files, meter),
+        MeshFormat::Glb => gltf::read_binary(bytes, side_files, meter),
     }?;
     let triangles = mesh.triangles().len();
     has_memory(triangles * PEAK_PER_TRIANGLE, &format!("for its {triangles} triangles"))?;
@@ -120,6 +125,6 @@ const PEAK_PER_BYTE: usize = 8;
 /// file.
 const PEAK_PER_TRIANGLE: usize = 320;
 
-fn has_memory(bytes: usize, what_for: &str) -> Result<(), Fault> {
-    memory::check(bytes).map_err(|error| Fault::of_file(format!("{error} {what_for}")))
+fn has_memory(bytes: usize, what_for: &str) -> Result<(), MeshFault> {
+    memory::check(bytes).map_err(|error| MeshFault::of_file(format!("{error} {what_for}")))
 }

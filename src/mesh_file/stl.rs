@@ -2,11 +2,11 @@
 //! them with more digits; nor are the colours that some programs put into the attribute bytes, each in its own way.
 
 use super::MeshFile;
-use super::builder::{Builder, Triangle, too_many};
-use super::fault::{Fault, shown};
+use super::builder::{MeshBuilder, TriangleIndices, too_many};
+use super::fault::{MeshFault, shown};
 use super::limits::MAX_TRIANGLES;
 use super::polygon;
-use super::text::Text;
+use super::text::TextCursor;
 use crate::progress::Meter;
 use glam::Vec3;
 
@@ -27,23 +27,23 @@ pub(super) fn size_fits(bytes: &[u8]) -> bool {
     claimed_size(bytes) == Some(bytes.len() as u64)
 }
 
-pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, Fault> {
+pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     let size = claimed_size(bytes).ok_or_else(|| {
         let message = "the file ends within the header of 84 bytes that a binary STL file begins with";
-        Fault::at_byte(bytes.len(), message)
+        MeshFault::at_byte(bytes.len(), message)
     })?;
     if size != bytes.len() as u64 {
         let (triangles, found) = ((size - HEADER as u64) / FACET as u64, bytes.len());
         let message = format!(
             "a binary STL file of {triangles} triangles, as it says here, has {size} bytes; this file has {found}"
         );
-        return Err(Fault::at_byte(HEADER - 4, message));
+        return Err(MeshFault::at_byte(HEADER - 4, message));
     }
     let facets = bytes[HEADER..].chunks_exact(FACET);
     if facets.len() > MAX_TRIANGLES {
-        return Err(Fault::at_byte(HEADER - 4, too_many()));
+        return Err(MeshFault::at_byte(HEADER - 4, too_many()));
     }
-    let mut mesh = Builder { positions: Vec::with_capacity(3 * facets.len()), ..Builder::default() };
+    let mut mesh = MeshBuilder { positions: Vec::with_capacity(3 * facets.len()), ..MeshBuilder::default() };
     for (i, facet) in facets.enumerate() {
         meter.reach(HEADER + i * FACET)?;
         for corner in 0..3 {
@@ -56,18 +56,18 @@ pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile
 }
 
 /// Reads twelve bytes with their position.
-fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, Fault> {
-    let band = |axis: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * axis + i]));
-    let vertex = Vec3::new(band(0), band(1), band(2));
+fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, MeshFault> {
+    let coordinate = |axis: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * axis + i]));
+    let vertex = Vec3::new(coordinate(0), coordinate(1), coordinate(2));
     if vertex.is_finite() {
         return Ok(vertex);
     }
     let axis = usize::from(vertex.x.is_finite()) * (1 + usize::from(vertex.y.is_finite()));
-    Err(Fault::at_byte(at + 4 * axis, format!("{} is not a finite number", band(axis))))
+    Err(MeshFault::at_byte(at + 4 * axis, format!("{} is not a finite number", coordinate(axis))))
 }
 
-pub(super) fn read_text(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, Fault> {
-    let mut reader = TextReader { text: Text::new(bytes), mesh: Builder::default(), open: None };
+pub(super) fn read_text(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
+    let mut reader = TextReader { text: TextCursor::new(bytes), mesh: MeshBuilder::default(), open: None };
     while reader.text.go_to_statement() {
         meter.reach(reader.text.at())?;
         reader.statement()?;
@@ -79,14 +79,14 @@ pub(super) fn read_text(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, 
 }
 
 struct TextReader<'a> {
-    text: Text<'a>,
-    mesh: Builder,
+    text: TextCursor<'a>,
+    mesh: MeshBuilder,
     /// Index of the first vertex of the open loop.
     open: Option<u32>,
 }
 
 impl TextReader<'_> {
-    fn statement(&mut self) -> Result<(), Fault> {
+    fn statement(&mut self) -> Result<(), MeshFault> {
         let word = self.text.word();
         let at = self.text.at() - word.len();
         match word.to_ascii_lowercase().as_slice() {
@@ -95,32 +95,35 @@ impl TextReader<'_> {
             b"endloop" if self.open.is_some() => self.end_loop(at)?,
             b"solid" | b"facet" | b"endfacet" | b"endsolid" | b"color" if self.open.is_none() => {}
             _ if self.open.is_some() => {
-                return Err(Fault::in_text(at, format!("{} stands where vertex or endloop should be", shown(word))));
+                return Err(MeshFault::in_text(
+                    at,
+                    format!("{} stands where vertex or endloop should be", shown(word)),
+                ));
             }
             _ => {
                 let wanted = "solid, facet, outer loop, endfacet or endsolid";
-                return Err(Fault::in_text(at, format!("{} stands where {wanted} should be", shown(word))));
+                return Err(MeshFault::in_text(at, format!("{} stands where {wanted} should be", shown(word))));
             }
         }
         self.text.skip_line();
         Ok(())
     }
 
-    fn vertex(&mut self) -> Result<(), Fault> {
+    fn vertex(&mut self) -> Result<(), MeshFault> {
         let vertex = Vec3::new(self.text.number()?, self.text.number()?, self.text.number()?);
         self.mesh.positions.push(vertex);
         self.text.end_line()
     }
 
     /// Adds the triangles of a loop; some programs write polygons.
-    fn end_loop(&mut self, at: usize) -> Result<(), Fault> {
+    fn end_loop(&mut self, at: usize) -> Result<(), MeshFault> {
         let corners: Vec<u32> = (self.open.take().unwrap_or_default()..self.mesh.positions.len() as u32).collect();
         if corners.len() < 3 {
             let message = format!("this loop has {} vertices; a facet has at least 3", corners.len());
-            return Err(Fault::in_text(at, message));
+            return Err(MeshFault::in_text(at, message));
         }
         for triangle in polygon::cut(&corners, &self.mesh.positions) {
-            self.mesh.push(Triangle::new(triangle.map(|i| corners[i])))?;
+            self.mesh.push(TriangleIndices::new(triangle.map(|i| corners[i])))?;
         }
         Ok(())
     }

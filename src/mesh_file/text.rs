@@ -3,15 +3,15 @@
 //! OBJ, MTL, STL and PLY have in common that words are separated by blanks and a line is a statement. Comments after
 //! `#` and lines continued by `\`, which only OBJ has, do not occur in the others.
 
-use super::fault::{Fault, shown};
+use super::fault::{MeshFault, shown};
 
 /// A position in a text, and the reading from there.
-pub(super) struct Text<'a> {
+pub(super) struct TextCursor<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl<'a> Text<'a> {
+impl<'a> TextCursor<'a> {
     /// Starts at the beginning of a text, after its byte order mark if it has one.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
@@ -80,7 +80,7 @@ impl<'a> Text<'a> {
     }
 
     /// Checks that the statement ends here.
-    pub(super) fn end_line(&mut self) -> Result<(), Fault> {
+    pub(super) fn end_line(&mut self) -> Result<(), MeshFault> {
         if self.is_at_line_end() {
             self.skip_line();
             return Ok(());
@@ -129,7 +129,7 @@ impl<'a> Text<'a> {
 
     /// Reads a word that must be a finite number, correctly rounded.
     #[inline]
-    pub(super) fn number(&mut self) -> Result<f32, Fault> {
+    pub(super) fn number(&mut self) -> Result<f32, MeshFault> {
         self.skip_blanks();
         if let Ok((value, length)) = fast_float2::parse_partial::<f32, _>(&self.bytes[self.at..])
             && value.is_finite()
@@ -142,14 +142,14 @@ impl<'a> Text<'a> {
     }
 
     #[cold]
-    fn no_number(&mut self) -> Fault {
+    fn no_number(&mut self) -> MeshFault {
         let start = self.at;
         let word = self.word();
         match fast_float2::parse::<f64, _>(word) {
             Ok(value) if value.is_finite() => {
-                Fault::in_text(start, format!("{} is too large: numbers go up to 3.4e38", shown(word)))
+                MeshFault::in_text(start, format!("{} is too large: numbers go up to 3.4e38", shown(word)))
             }
-            Ok(_) => Fault::in_text(start, format!("{} is not a finite number", shown(word))),
+            Ok(_) => MeshFault::in_text(start, format!("{} is not a finite number", shown(word))),
             Err(_) => {
                 self.at = start;
                 self.expected("a number")
@@ -159,7 +159,7 @@ impl<'a> Text<'a> {
 
     /// Reads a word that must be an integer.
     #[inline]
-    pub(super) fn integer(&mut self) -> Result<i64, Fault> {
+    pub(super) fn integer(&mut self) -> Result<i64, MeshFault> {
         self.skip_blanks();
         let start = self.at;
         let value = self.digits();
@@ -201,7 +201,7 @@ impl<'a> Text<'a> {
 
     /// Returns the fault that something else was expected here.
     #[cold]
-    pub(super) fn expected(&mut self, wanted: &str) -> Fault {
+    pub(super) fn expected(&mut self, wanted: &str) -> MeshFault {
         let is_line_end = self.is_at_line_end();
         let start = self.at;
         let found = match self.word() {
@@ -209,7 +209,7 @@ impl<'a> Text<'a> {
             _ if is_line_end => "the line ends".to_owned(),
             word => format!("{} stands", shown(word)),
         };
-        Fault::in_text(start, format!("{found} where {wanted} should be"))
+        MeshFault::in_text(start, format!("{found} where {wanted} should be"))
     }
 }
 

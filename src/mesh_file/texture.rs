@@ -4,7 +4,7 @@
 mod decoded;
 
 #[cfg(feature = "mesh")]
-pub(super) use decoded::{Budget, decode};
+pub(super) use decoded::{TexelBudget, decode};
 
 use crate::color::{LinearRgb, Srgb8};
 use glam::{Vec2, Vec3};

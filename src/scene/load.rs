@@ -125,7 +125,7 @@ fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, Unfinished<LoadErro
     let name = path.to_string_lossy();
     watcher.needs(path);
     let is_mesh = |bytes: &[u8]| mesh_file::is_mesh(&name, bytes);
-    let most = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_BYTES } else { MAX_BYTES };
+    let most = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_MESH_BYTES } else { MAX_BYTES };
     let bytes = bytes_of(path, most, watcher)?;
     if is_mesh(&bytes) {
         return around_mesh(path, &bytes, watcher);

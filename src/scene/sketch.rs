@@ -19,7 +19,7 @@ impl Draft {
         let details = DETAILS / (meshes().count() as f32).sqrt();
         let sketched = |object: &Object| match mesh_of(&object.shape) {
             Some(mesh) => {
-                mesh.file().coarse(details as u32).map(|mesh| Object::new(Mesh::of_checked(mesh), object.material))
+                mesh.file().decimated(details as u32).map(|mesh| Object::new(Mesh::of_checked(mesh), object.material))
             }
             None => Some(object.clone()),
         };

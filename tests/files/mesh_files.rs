@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use termtrace::internals::mesh_file::{MeshFile, Place};
+use termtrace::internals::mesh_file::{FilePosition, MeshFile};
 use termtrace::{LinearRgb, Srgb8};
 
 fn folder() -> PathBuf {
@@ -316,7 +316,7 @@ fn a_file_that_is_not_there_is_said_so() {
     let error = MeshFile::from_bytes("models/x.obj", mesh.as_bytes(), &mut |_| Ok(b"Kd 1".to_vec())).unwrap_err();
     assert!(error.to_string().starts_with("models/x.mtl:1:1: "), "{error}");
     let error = MeshFile::load(&folder().join("nowhere\u{1b}.obj")).unwrap_err();
-    assert_eq!((error.place(), error.message()), (Place::File, "there is no such file"));
+    assert_eq!((error.position(), error.message()), (FilePosition::File, "there is no such file"));
     assert!(error.name().ends_with("nowhere\u{fffd}.obj"));
     assert!(MeshFile::load(&folder()).unwrap_err().to_string().ends_with(": this is a directory, not a file"));
 }

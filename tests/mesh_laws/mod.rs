@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use std::io;
 use std::path::Path;
-use termtrace::internals::mesh_file::{MeshFile, Place};
+use termtrace::internals::mesh_file::{FilePosition, MeshFile};
 use termtrace::{LinearRgb, MeshError};
 
 /// A mesh that is as it should be, or an error that can be shown. The file may name others: what stands after the
@@ -63,10 +63,10 @@ fn assert_shown(error: &MeshError, bytes: &[u8]) {
     assert!(message.starts_with(error.name()), "{message}");
     assert!(!message.contains(char::is_control), "{message:?}");
     assert!(message.chars().count() < 1000, "{message}");
-    match error.place() {
-        Place::File => {}
-        Place::Byte(byte) => assert!(byte <= bytes.len(), "{message}"),
-        Place::Text { line, column } => {
+    match error.position() {
+        FilePosition::File => {}
+        FilePosition::Byte(byte) => assert!(byte <= bytes.len(), "{message}"),
+        FilePosition::Text { line, column } => {
             let lines = 1 + bytes.iter().filter(|byte| b"\r\n".contains(byte)).count();
             assert!((1..=lines).contains(&line) && (1..=bytes.len() + 1).contains(&column), "{message}");
         }

@@ -1,8 +1,8 @@
 //! Accessors: typed views of a buffer's bytes.
 
-use super::buffers::{Buffers, View};
+use super::buffers::{BufferView, Buffers};
 use super::json::Json;
-use crate::mesh_file::fault::Fault;
+use crate::mesh_file::fault::MeshFault;
 
 /// An accessor: `count` elements of several components each.
 pub(super) struct Accessor<'a> {
@@ -18,7 +18,7 @@ pub(super) struct Accessor<'a> {
 
 /// The bytes of the elements.
 struct Elements<'a> {
-    view: View<'a>,
+    view: BufferView<'a>,
     offset: usize,
     stride: usize,
 }
@@ -42,7 +42,7 @@ enum Component {
 }
 
 impl Component {
-    fn read(json: Json<'_>) -> Result<Self, Fault> {
+    fn read(json: Json<'_>) -> Result<Self, MeshFault> {
         let field = json.required("componentType")?;
         Ok(match field.index()? {
             5120 => Self::I8,
@@ -92,7 +92,12 @@ impl Component {
 
 impl<'a> Elements<'a> {
     /// Returns `count` elements of `size` bytes, after checking that they lie in the view.
-    fn new(json: Json<'a>, size: usize, count: usize, buffers: &mut Buffers<'a, '_>) -> Result<Option<Self>, Fault> {
+    fn new(
+        json: Json<'a>,
+        size: usize,
+        count: usize,
+        buffers: &mut Buffers<'a, '_>,
+    ) -> Result<Option<Self>, MeshFault> {
         let Some(view) = json.field("bufferView")? else { return Ok(None) };
         let view = buffers.view(view)?;
         let offset = json.index_or("byteOffset", 0)?;
@@ -117,7 +122,7 @@ impl<'a> Elements<'a> {
 
 impl<'a> Accessor<'a> {
     /// Returns the accessor with this index.
-    pub(super) fn read(index: Json<'a>, buffers: &mut Buffers<'a, '_>) -> Result<Self, Fault> {
+    pub(super) fn read(index: Json<'a>, buffers: &mut Buffers<'a, '_>) -> Result<Self, MeshFault> {
         let (_, json) = index.item_of(buffers.root(), "accessors")?;
         let component = Component::read(json)?;
         let kind = json.required("type")?;
@@ -130,7 +135,7 @@ impl<'a> Accessor<'a> {
         };
         let count = json.required("count")?.index()?;
         let elements = Elements::new(json, width * component.size(), count, buffers)?;
-        if elements.is_none() && count > buffers.most() {
+        if elements.is_none() && count > buffers.max_elements() {
             return Err(json.fault(format!("{count} elements of zeros are too many for a file of this size")));
         }
         let sparse = match json.field("sparse")? {
@@ -141,12 +146,12 @@ impl<'a> Accessor<'a> {
     }
 
     /// Returns a fault of this accessor.
-    pub(super) fn fault(&self, message: impl std::fmt::Display) -> Fault {
+    pub(super) fn fault(&self, message: impl std::fmt::Display) -> MeshFault {
         self.json.fault(message)
     }
 
     /// Returns the first N components of the elements, which must be finite.
-    pub(super) fn vectors<const N: usize>(&self) -> Result<Vec<[f32; N]>, Fault> {
+    pub(super) fn vectors<const N: usize>(&self) -> Result<Vec<[f32; N]>, MeshFault> {
         if self.width < N {
             return Err(self.fault(format!("elements of {N} numbers should be here, not of {}", self.width)));
         }
@@ -161,7 +166,7 @@ impl<'a> Accessor<'a> {
     }
 
     /// Returns the elements as indices.
-    pub(super) fn indices(&self) -> Result<Vec<u32>, Fault> {
+    pub(super) fn indices(&self) -> Result<Vec<u32>, MeshFault> {
         if self.width != 1 || !self.component.is_index() {
             return Err(self.fault("indices are SCALAR and of component type 5121, 5123 or 5125"));
         }
@@ -183,7 +188,7 @@ impl<'a> Accessor<'a> {
 }
 
 impl<'a> Sparse<'a> {
-    fn read(json: Json<'a>, size: usize, elements: usize, buffers: &mut Buffers<'a, '_>) -> Result<Self, Fault> {
+    fn read(json: Json<'a>, size: usize, elements: usize, buffers: &mut Buffers<'a, '_>) -> Result<Self, MeshFault> {
         let count = json.required("count")?.index()?;
         if count > elements {
             return Err(json.fault(format!("{count} of {elements} elements cannot be replaced")));

@@ -2,8 +2,8 @@
 
 use super::json::Json;
 use crate::mesh_file::MAX_TRIANGLES;
-use crate::mesh_file::fault::{Fault, shown};
-use crate::mesh_file::neighbours::{Neighbours, local_path};
+use crate::mesh_file::fault::{MeshFault, shown};
+use crate::mesh_file::side_files::{SideFiles, local_path};
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::collections::HashMap;
@@ -14,7 +14,7 @@ use std::rc::Rc;
 pub(super) struct Buffers<'a, 'b> {
     root: Json<'a>,
     glb: Option<&'a [u8]>,
-    neighbours: &'a mut Neighbours<'b>,
+    side_files: &'a mut SideFiles<'b>,
     read: HashMap<usize, Bytes<'a>>,
     files: HashMap<PathBuf, Rc<[u8]>>,
     /// Number of bytes that the JSON, its buffers and its images have so far.
@@ -40,7 +40,7 @@ impl std::ops::Deref for Bytes<'_> {
 
 /// A buffer view.
 #[derive(Clone)]
-pub(super) struct View<'a> {
+pub(super) struct BufferView<'a> {
     buffer: Bytes<'a>,
     start: usize,
     end: usize,
@@ -48,7 +48,7 @@ pub(super) struct View<'a> {
     pub(super) stride: Option<usize>,
 }
 
-impl View<'_> {
+impl BufferView<'_> {
     pub(super) fn bytes(&self) -> &[u8] {
         &self.buffer[self.start..self.end]
     }
@@ -56,9 +56,9 @@ impl View<'_> {
 
 impl<'a, 'b> Buffers<'a, 'b> {
     /// Returns the buffers of a document of `size` bytes.
-    pub(super) fn new(root: Json<'a>, size: usize, glb: Option<&'a [u8]>, neighbours: &'a mut Neighbours<'b>) -> Self {
+    pub(super) fn new(root: Json<'a>, size: usize, glb: Option<&'a [u8]>, side_files: &'a mut SideFiles<'b>) -> Self {
         let size = size + glb.map_or(0, <[u8]>::len);
-        Self { root, glb, neighbours, read: HashMap::new(), files: HashMap::new(), size }
+        Self { root, glb, side_files, read: HashMap::new(), files: HashMap::new(), size }
     }
 
     pub(super) fn root(&self) -> Json<'a> {
@@ -67,12 +67,12 @@ impl<'a, 'b> Buffers<'a, 'b> {
 
     /// Returns the limit on the triangles or vertices that a document of this size may make, so that a small file
     /// cannot exhaust memory.
-    pub(super) fn most(&self) -> usize {
+    pub(super) fn max_elements(&self) -> usize {
         self.size.saturating_add(1 << 20).min(MAX_TRIANGLES)
     }
 
     /// Returns the buffer view whose index is in a field of `value`.
-    pub(super) fn view(&mut self, index: Json<'a>) -> Result<View<'a>, Fault> {
+    pub(super) fn view(&mut self, index: Json<'a>) -> Result<BufferView<'a>, MeshFault> {
         let (_, view) = index.item_of(self.root, "bufferViews")?;
         if view.extension("EXT_meshopt_compression")?.is_some() {
             return Err(view.fault("this part of the file is compressed with meshopt, which is not supported"));
@@ -85,10 +85,10 @@ impl<'a, 'b> Buffers<'a, 'b> {
             let size = buffer.len();
             view.fault(format!("{length} bytes from byte {start} on are not in the buffer, which has {size}"))
         })?;
-        Ok(View { buffer, start, end, stride })
+        Ok(BufferView { buffer, start, end, stride })
     }
 
-    fn buffer(&mut self, index: Json<'a>) -> Result<Bytes<'a>, Fault> {
+    fn buffer(&mut self, index: Json<'a>) -> Result<Bytes<'a>, MeshFault> {
         let (index, buffer) = index.item_of(self.root, "buffers")?;
         if let Some(bytes) = self.read.get(&index) {
             return Ok(bytes.clone());
@@ -112,7 +112,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
     }
 
     /// Returns the bytes of a URI: a `data:` URI's own, or those of a side file.
-    pub(super) fn resource(&mut self, uri: Json<'a>) -> Result<Bytes<'a>, Fault> {
+    pub(super) fn resource(&mut self, uri: Json<'a>) -> Result<Bytes<'a>, MeshFault> {
         let text = uri.string()?;
         if let Some(data) = text.strip_prefix("data:") {
             return data_of(data).map(|bytes| Bytes::Read(bytes.into())).map_err(|message| uri.fault(message));
@@ -121,7 +121,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
         if let Some(bytes) = self.files.get(&path) {
             return Ok(Bytes::Read(Rc::clone(bytes)));
         }
-        let bytes = self.neighbours.read(&path).map_err(|message| uri.fault(message))?;
+        let bytes = self.side_files.read(&path).map_err(|message| uri.fault(message))?;
         self.size += bytes.len();
         let bytes: Rc<[u8]> = bytes.into();
         self.files.insert(path, Rc::clone(&bytes));

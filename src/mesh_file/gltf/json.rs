@@ -1,6 +1,6 @@
 //! JSON values with their path in the document, for the positions of faults.
 
-use crate::mesh_file::fault::{Fault, shown};
+use crate::mesh_file::fault::{MeshFault, shown};
 use serde_json::{Map, Value};
 use std::fmt::{self, Write};
 
@@ -8,13 +8,13 @@ use std::fmt::{self, Write};
 #[derive(Clone, Copy)]
 pub(super) struct Json<'a> {
     value: &'a Value,
-    path: Path<'a>,
+    path: JsonPath<'a>,
 }
 
 /// A path such as `meshes[2].primitives`, as much of it as fits without an allocation. The relevant parts of glTF are
 /// at most four steps deep.
 #[derive(Clone, Copy)]
-struct Path<'a> {
+struct JsonPath<'a> {
     steps: [Option<Step<'a>>; 6],
 }
 
@@ -24,7 +24,7 @@ enum Step<'a> {
     Item(usize),
 }
 
-impl<'a> Path<'a> {
+impl<'a> JsonPath<'a> {
     fn and(mut self, step: Step<'a>) -> Self {
         if let Some(free) = self.steps.iter_mut().find(|step| step.is_none()) {
             *free = Some(step);
@@ -33,7 +33,7 @@ impl<'a> Path<'a> {
     }
 }
 
-impl fmt::Display for Path<'_> {
+impl fmt::Display for JsonPath<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, step) in self.steps.iter().flatten().enumerate() {
             match step {
@@ -47,25 +47,25 @@ impl fmt::Display for Path<'_> {
 }
 
 impl<'a> Json<'a> {
-    pub(super) fn root(value: &'a Value) -> Result<Self, Fault> {
-        let root = Self { value, path: Path { steps: [None; 6] } };
+    pub(super) fn root(value: &'a Value) -> Result<Self, MeshFault> {
+        let root = Self { value, path: JsonPath { steps: [None; 6] } };
         root.object().map(|_| root)
     }
 
     /// Returns a fault of this value.
     #[cold]
-    pub(super) fn fault(self, message: impl fmt::Display) -> Fault {
+    pub(super) fn fault(self, message: impl fmt::Display) -> MeshFault {
         let mut text = self.path.to_string();
         if !text.is_empty() {
             text.push_str(": ");
         }
         // Writing to a string does not fail.
         let _ = write!(text, "{message}");
-        Fault::of_file(text)
+        MeshFault::of_file(text)
     }
 
     #[cold]
-    fn mismatch(self, wanted: &str) -> Fault {
+    fn mismatch(self, wanted: &str) -> MeshFault {
         let found = match self.value {
             Value::Null => "null".to_owned(),
             Value::Bool(value) => value.to_string(),
@@ -77,28 +77,28 @@ impl<'a> Json<'a> {
         self.fault(format!("{found} stands where {wanted} should be"))
     }
 
-    fn object(self) -> Result<&'a Map<String, Value>, Fault> {
+    fn object(self) -> Result<&'a Map<String, Value>, MeshFault> {
         self.value.as_object().ok_or_else(|| self.mismatch("an object"))
     }
 
     /// Returns a field, if it exists.
-    pub(super) fn field(self, name: &'static str) -> Result<Option<Self>, Fault> {
+    pub(super) fn field(self, name: &'static str) -> Result<Option<Self>, MeshFault> {
         let path = self.path.and(Step::Field(name));
         Ok(self.object()?.get(name).map(|value| Self { value, path }))
     }
 
     /// Returns a required field.
-    pub(super) fn required(self, name: &'static str) -> Result<Self, Fault> {
+    pub(super) fn required(self, name: &'static str) -> Result<Self, MeshFault> {
         self.field(name)?.ok_or_else(|| self.fault(format!("the field {name} is missing")))
     }
 
     /// Returns the fields of an object in a field, by name; none if it is missing.
-    pub(super) fn extension(self, name: &'static str) -> Result<Option<Self>, Fault> {
+    pub(super) fn extension(self, name: &'static str) -> Result<Option<Self>, MeshFault> {
         self.field("extensions")?.map_or(Ok(None), |extensions| extensions.field(name))
     }
 
     /// Returns the items of a list in a field; none if it is missing.
-    pub(super) fn list(self, name: &'static str) -> Result<impl Iterator<Item = Self> + use<'a>, Fault> {
+    pub(super) fn list(self, name: &'static str) -> Result<impl Iterator<Item = Self> + use<'a>, MeshFault> {
         let list = self.field(name)?;
         let items = list.map_or(Ok(&[][..]), Self::items)?;
         Ok(items
@@ -107,17 +107,17 @@ impl<'a> Json<'a> {
             .filter_map(move |(i, value)| list.map(|list| Self { value, path: list.path.and(Step::Item(i)) })))
     }
 
-    fn items(self) -> Result<&'a [Value], Fault> {
+    fn items(self) -> Result<&'a [Value], MeshFault> {
         self.value.as_array().map(Vec::as_slice).ok_or_else(|| self.mismatch("a list"))
     }
 
     /// Returns the number of items of a list in a field; 0 if it is missing.
-    pub(super) fn count(self, name: &'static str) -> Result<usize, Fault> {
+    pub(super) fn count(self, name: &'static str) -> Result<usize, MeshFault> {
         self.field(name)?.map_or(Ok(0), |list| list.items().map(<[Value]>::len))
     }
 
     /// Returns the item of the root's list `name` whose index is this value.
-    pub(super) fn item_of(self, root: Json<'a>, name: &'static str) -> Result<(usize, Self), Fault> {
+    pub(super) fn item_of(self, root: Json<'a>, name: &'static str) -> Result<(usize, Self), MeshFault> {
         let index = self.index()?;
         let list = root.field(name)?;
         let items = list.map_or(Ok(&[][..]), Self::items)?;
@@ -129,31 +129,31 @@ impl<'a> Json<'a> {
     }
 
     /// Returns the value as a non-negative integer.
-    pub(super) fn index(self) -> Result<usize, Fault> {
+    pub(super) fn index(self) -> Result<usize, MeshFault> {
         let number = self.value.as_u64().and_then(|number| usize::try_from(number).ok());
         number.ok_or_else(|| self.mismatch("a whole number that is not negative"))
     }
 
     /// Returns an optional field as a non-negative integer.
-    pub(super) fn index_or(self, name: &'static str, default: usize) -> Result<usize, Fault> {
+    pub(super) fn index_or(self, name: &'static str, default: usize) -> Result<usize, MeshFault> {
         self.field(name)?.map_or(Ok(default), Self::index)
     }
 
-    pub(super) fn string(self) -> Result<&'a str, Fault> {
+    pub(super) fn string(self) -> Result<&'a str, MeshFault> {
         self.value.as_str().ok_or_else(|| self.mismatch("a string"))
     }
 
-    pub(super) fn is_true(self, name: &'static str) -> Result<bool, Fault> {
+    pub(super) fn is_true(self, name: &'static str) -> Result<bool, MeshFault> {
         let Some(field) = self.field(name)? else { return Ok(false) };
         field.value.as_bool().ok_or_else(|| field.mismatch("true or false"))
     }
 
-    pub(super) fn number(self) -> Result<f64, Fault> {
+    pub(super) fn number(self) -> Result<f64, MeshFault> {
         self.value.as_f64().filter(|number| number.is_finite()).ok_or_else(|| self.mismatch("a finite number"))
     }
 
     /// Returns an optional field as exactly `N` numbers.
-    pub(super) fn numbers<const N: usize>(self, name: &'static str) -> Result<Option<[f64; N]>, Fault> {
+    pub(super) fn numbers<const N: usize>(self, name: &'static str) -> Result<Option<[f64; N]>, MeshFault> {
         let Some(list) = self.field(name)? else { return Ok(None) };
         let wanted = || list.fault(format!("{N} numbers should be here"));
         let items: &[Value; N] = list.items()?.try_into().map_err(|_| wanted())?;

@@ -4,8 +4,8 @@ use super::buffers::{Buffers, described};
 use super::json::Json;
 use crate::color::LinearRgb;
 use crate::mesh_file::MeshMaterial;
-use crate::mesh_file::fault::Fault;
-use crate::mesh_file::texture::{self, Budget, Texture, TexturePlacement};
+use crate::mesh_file::fault::MeshFault;
+use crate::mesh_file::texture::{self, TexelBudget, Texture, TexturePlacement};
 use glam::Vec3;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,20 +17,20 @@ pub(super) struct Material {
 }
 
 /// All materials of the document.
-pub(super) fn read(buffers: &mut Buffers<'_, '_>) -> Result<Vec<Material>, Fault> {
-    let mut reader = Reader { buffers, textures: HashMap::new(), budget: Budget::default() };
+pub(super) fn read(buffers: &mut Buffers<'_, '_>) -> Result<Vec<Material>, MeshFault> {
+    let mut reader = MaterialReader { buffers, textures: HashMap::new(), budget: TexelBudget::default() };
     reader.buffers.root().list("materials")?.map(|material| reader.material(material)).collect()
 }
 
-struct Reader<'r, 'a, 'b> {
+struct MaterialReader<'r, 'a, 'b> {
     buffers: &'r mut Buffers<'a, 'b>,
     /// The images read so far, by their index.
     textures: HashMap<usize, Arc<Texture>>,
-    budget: Budget,
+    budget: TexelBudget,
 }
 
-impl<'a> Reader<'_, 'a, '_> {
-    fn material(&mut self, json: Json<'a>) -> Result<Material, Fault> {
+impl<'a> MaterialReader<'_, 'a, '_> {
+    fn material(&mut self, json: Json<'a>) -> Result<Material, MeshFault> {
         // The specular-glossiness extension, which older files use instead of a base colour.
         let (base, factor, texture) = match json.extension("KHR_materials_pbrSpecularGlossiness")? {
             Some(older) => (Some(older), "diffuseFactor", "diffuseTexture"),
@@ -41,7 +41,7 @@ impl<'a> Reader<'_, 'a, '_> {
             Material { material: MeshMaterial { reflectance: white, texture: None }, texture_coordinates: 0 };
         let Some(base) = base else { return Ok(material) };
         if let Some([r, g, b, _]) = base.numbers::<4>(factor)? {
-            let [r, g, b] = [r, g, b].map(|band| band.clamp(0.0, 1.0) as f32);
+            let [r, g, b] = [r, g, b].map(|channel| channel.clamp(0.0, 1.0) as f32);
             material.material.reflectance = LinearRgb::new(r, g, b);
         }
         if let Some(info) = base.field(texture)? {
@@ -53,7 +53,7 @@ impl<'a> Reader<'_, 'a, '_> {
     }
 
     /// Returns the texture that a material names, with its placement and its texture coordinate set.
-    fn placement(&mut self, info: Json<'a>) -> Result<(TexturePlacement, usize), Fault> {
+    fn placement(&mut self, info: Json<'a>) -> Result<(TexturePlacement, usize), MeshFault> {
         let (_, texture) = info.required("index")?.item_of(self.buffers.root(), "textures")?;
         let Some(source) = texture.field("source")? else {
             return Err(texture.fault("the texture has no source that is a PNG or JPEG picture"));
@@ -67,7 +67,7 @@ impl<'a> Reader<'_, 'a, '_> {
         Ok((placement, set))
     }
 
-    fn texture(&mut self, source: Json<'a>) -> Result<Arc<Texture>, Fault> {
+    fn texture(&mut self, source: Json<'a>) -> Result<Arc<Texture>, MeshFault> {
         let (index, image) = source.item_of(self.buffers.root(), "images")?;
         if let Some(texture) = self.textures.get(&index) {
             return Ok(Arc::clone(texture));
@@ -85,7 +85,7 @@ impl<'a> Reader<'_, 'a, '_> {
 }
 
 /// Reads `KHR_texture_transform`: scaled, rotated, translated.
-fn transform_of(json: Json<'_>) -> Result<[Vec3; 2], Fault> {
+fn transform_of(json: Json<'_>) -> Result<[Vec3; 2], MeshFault> {
     let [offset_u, offset_v] = json.numbers("offset")?.unwrap_or([0.0; 2]);
     let [scale_u, scale_v] = json.numbers("scale")?.unwrap_or([1.0; 2]);
     let angle = json.field("rotation")?.map_or(Ok(0.0), Json::number)?;

@@ -4,7 +4,7 @@ use super::buffers::Buffers;
 use super::json::Json;
 use super::primitives::Primitives;
 use crate::mesh_file::MeshFile;
-use crate::mesh_file::fault::Fault;
+use crate::mesh_file::fault::MeshFault;
 use crate::progress::Meter;
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
@@ -13,7 +13,7 @@ pub(super) fn read<'a>(
     root: Json<'a>,
     buffers: &mut Buffers<'a, '_>,
     meter: &mut Meter<'_>,
-) -> Result<MeshFile, Fault> {
+) -> Result<MeshFile, MeshFault> {
     let mut is_visited = vec![false; root.count("nodes")?];
     let mut primitives = Primitives::new(buffers)?;
     // An explicit stack: trees may be deep.
@@ -35,16 +35,16 @@ pub(super) fn read<'a>(
 }
 
 /// A node and its index.
-type Node<'a> = (usize, Json<'a>);
+type IndexedNode<'a> = (usize, Json<'a>);
 
 /// Returns the nodes whose indices are in a list.
-fn nodes_in<'a>(json: Json<'a>, list: &'static str, root: Json<'a>) -> Result<Vec<Node<'a>>, Fault> {
+fn nodes_in<'a>(json: Json<'a>, list: &'static str, root: Json<'a>) -> Result<Vec<IndexedNode<'a>>, MeshFault> {
     json.list(list)?.map(|index| index.item_of(root, "nodes")).collect()
 }
 
 /// Returns the roots of the default scene, or of the first one; in a file without scenes, all nodes that are not
 /// children.
-fn roots(root: Json<'_>) -> Result<Vec<Node<'_>>, Fault> {
+fn roots(root: Json<'_>) -> Result<Vec<IndexedNode<'_>>, MeshFault> {
     let scene = match root.field("scene")? {
         Some(index) => Some(index.item_of(root, "scenes")?.1),
         None => root.list("scenes")?.next(),
@@ -62,7 +62,7 @@ fn roots(root: Json<'_>) -> Result<Vec<Node<'_>>, Fault> {
 }
 
 /// Returns the transform of a node in its parent.
-fn local_transform(node: Json<'_>) -> Result<DMat4, Fault> {
+fn local_transform(node: Json<'_>) -> Result<DMat4, MeshFault> {
     if let Some(matrix) = node.numbers::<16>("matrix")? {
         return Ok(DMat4::from_cols_array(&matrix));
     }

@@ -6,15 +6,15 @@ use super::json::Json;
 use super::materials;
 use crate::color::LinearRgb;
 use crate::mesh_file::MeshFile;
-use crate::mesh_file::builder::{Builder, Triangle, unit};
-use crate::mesh_file::fault::Fault;
+use crate::mesh_file::builder::{MeshBuilder, TriangleIndices, unit};
+use crate::mesh_file::fault::MeshFault;
 use glam::{DMat3, DMat4, Vec2, Vec3};
 use std::collections::HashMap;
 
 /// The triangles and attributes read so far.
 pub(super) struct Primitives<'r, 'a, 'b> {
     buffers: &'r mut Buffers<'a, 'b>,
-    mesh: Builder,
+    mesh: MeshBuilder,
     /// The texture coordinate set that each material uses.
     texture_coordinate_sets: Vec<usize>,
     /// Positions and normals of the current node, by their accessors.
@@ -40,13 +40,13 @@ const TEXTURE_COORDINATES: [&str; 8] =
     ["TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3", "TEXCOORD_4", "TEXCOORD_5", "TEXCOORD_6", "TEXCOORD_7"];
 
 impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
-    pub(super) fn new(buffers: &'r mut Buffers<'a, 'b>) -> Result<Self, Fault> {
+    pub(super) fn new(buffers: &'r mut Buffers<'a, 'b>) -> Result<Self, MeshFault> {
         let materials = materials::read(buffers)?;
         let texture_coordinate_sets = materials.iter().map(|material| material.texture_coordinates).collect();
         let materials = materials.into_iter().map(|material| material.material).collect();
         Ok(Self {
             buffers,
-            mesh: Builder { materials, ..Builder::default() },
+            mesh: MeshBuilder { materials, ..MeshBuilder::default() },
             texture_coordinate_sets,
             positions: Ranges::new(),
             normals: Ranges::new(),
@@ -55,12 +55,12 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         })
     }
 
-    pub(super) fn finish(self) -> Result<MeshFile, Fault> {
+    pub(super) fn finish(self) -> Result<MeshFile, MeshFault> {
         self.mesh.finish("its scene shows no mesh of triangles")
     }
 
     /// Reads the primitives of a mesh at a node.
-    pub(super) fn add_mesh(&mut self, mesh: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), Fault> {
+    pub(super) fn add_mesh(&mut self, mesh: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), MeshFault> {
         self.positions.clear();
         self.normals.clear();
         for primitive in mesh.list("primitives")? {
@@ -69,7 +69,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         Ok(())
     }
 
-    fn add(&mut self, primitive: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), Fault> {
+    fn add(&mut self, primitive: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), MeshFault> {
         let mode = primitive.index_or("mode", 4)?;
         if mode < 4 {
             // Points and lines.
@@ -98,7 +98,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
             }
             let vertices = corners.map(|corner| indices.as_ref().map_or(corner as u32, |indices| indices[corner]));
             let at = |range: Range| vertices.map(|vertex| range.start + vertex);
-            self.mesh.push(Triangle {
+            self.mesh.push(TriangleIndices {
                 positions: at(positions),
                 normals: normals.map(at),
                 texture_coordinates: texture_coordinates.map(at),
@@ -108,8 +108,8 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         self.check_size(primitive)
     }
 
-    fn check_size(&self, json: Json<'_>) -> Result<(), Fault> {
-        let most = self.buffers.most();
+    fn check_size(&self, json: Json<'_>) -> Result<(), MeshFault> {
+        let most = self.buffers.max_elements();
         if self.mesh.triangles.len().max(self.mesh.positions.len()) > most {
             return Err(
                 json.fault(format!("nodes show meshes so often that there are more than {most} triangles or vertices"))
@@ -118,7 +118,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         Ok(())
     }
 
-    fn positions(&mut self, attributes: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<Range, Fault> {
+    fn positions(&mut self, attributes: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<Range, MeshFault> {
         let index = attributes.required("POSITION")?;
         let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
         if let Some(&range) = self.positions.get(&number) {
@@ -136,7 +136,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         Ok(range)
     }
 
-    fn normals(&mut self, attributes: Json<'a>, transform: DMat4) -> Result<Option<Range>, Fault> {
+    fn normals(&mut self, attributes: Json<'a>, transform: DMat4) -> Result<Option<Range>, MeshFault> {
         let Some(index) = attributes.field("NORMAL")? else { return Ok(None) };
         let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
         if let Some(&range) = self.normals.get(&number) {
@@ -151,7 +151,11 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         Ok(Some(range))
     }
 
-    fn texture_coordinates(&mut self, attributes: Json<'a>, material: Option<usize>) -> Result<Option<Range>, Fault> {
+    fn texture_coordinates(
+        &mut self,
+        attributes: Json<'a>,
+        material: Option<usize>,
+    ) -> Result<Option<Range>, MeshFault> {
         let set = material.map_or(0, |index| self.texture_coordinate_sets[index]);
         let Some(name) = TEXTURE_COORDINATES.get(set) else {
             return Err(attributes.fault(format!("the material wants TEXCOORD_{set}; only 0 to 7 are read")));
@@ -169,7 +173,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         Ok(Some(range))
     }
 
-    fn colors(&mut self, attributes: Json<'a>) -> Result<Option<Range>, Fault> {
+    fn colors(&mut self, attributes: Json<'a>) -> Result<Option<Range>, MeshFault> {
         let Some(index) = attributes.field("COLOR_0")? else { return Ok(None) };
         let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
         if let Some(&range) = self.colors.get(&number) {
@@ -178,8 +182,8 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         let vectors = Accessor::read(index, self.buffers)?.vectors::<3>()?;
         let values = self.mesh.colors.values_mut();
         let range = range_after(values.len(), vectors.len());
-        values.extend(vectors.into_iter().map(|bands| {
-            let [r, g, b] = bands.map(|band| band.clamp(0.0, 1.0));
+        values.extend(vectors.into_iter().map(|channels| {
+            let [r, g, b] = channels.map(|channel| channel.clamp(0.0, 1.0));
             LinearRgb::new(r, g, b)
         }));
         self.colors.insert(number, range);
@@ -187,7 +191,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     }
 
     /// Returns the indices, each below `count`; `None` for a primitive without indices.
-    fn indices(&mut self, primitive: Json<'a>, count: usize) -> Result<Option<Vec<u32>>, Fault> {
+    fn indices(&mut self, primitive: Json<'a>, count: usize) -> Result<Option<Vec<u32>>, MeshFault> {
         let Some(index) = primitive.field("indices")? else { return Ok(None) };
         let accessor = Accessor::read(index, self.buffers)?;
         let indices = accessor.indices()?;

@@ -1,7 +1,7 @@
 //! The header: the elements and the properties of their rows.
 
-use crate::mesh_file::fault::{Fault, shown};
-use crate::mesh_file::text::Text;
+use crate::mesh_file::fault::{MeshFault, shown};
+use crate::mesh_file::text::TextCursor;
 
 /// A header.
 pub(super) struct Header<'a> {
@@ -29,26 +29,26 @@ pub(super) struct Element<'a> {
 
 pub(super) struct Property<'a> {
     pub(super) name: &'a str,
-    pub(super) shape: Shape,
+    pub(super) shape: PropertyType,
 }
 
 impl Property<'_> {
     /// Returns whether the property lists the corners of a face.
     pub(super) fn is_indices(&self) -> bool {
-        let is_list = matches!(self.shape, Shape::List { item, .. } if !item.is_float());
+        let is_list = matches!(self.shape, PropertyType::List { item, .. } if !item.is_float());
         is_list && ["vertex_indices", "vertex_index"].contains(&self.name)
     }
 }
 
 /// The form of a property: a number, or a list that starts with its length.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shape {
-    Scalar(Type),
-    List { length: Type, item: Type },
+pub(super) enum PropertyType {
+    Scalar(ScalarType),
+    List { length: ScalarType, item: ScalarType },
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Type {
+pub(super) enum ScalarType {
     I8,
     U8,
     I16,
@@ -59,7 +59,7 @@ pub(super) enum Type {
     F64,
 }
 
-impl Type {
+impl ScalarType {
     fn from_name(name: &[u8]) -> Option<Self> {
         Some(match name {
             b"char" | b"int8" => Self::I8,
@@ -90,10 +90,10 @@ impl Type {
 }
 
 impl<'a> Header<'a> {
-    pub(super) fn read(bytes: &'a [u8]) -> Result<Self, Fault> {
-        let mut reader = Reader { text: Text::new(bytes), encoding: None, elements: Vec::new() };
+    pub(super) fn read(bytes: &'a [u8]) -> Result<Self, MeshFault> {
+        let mut reader = HeaderReader { text: TextCursor::new(bytes), encoding: None, elements: Vec::new() };
         if reader.text.rest_of_line() != b"ply" {
-            return Err(Fault::in_text(0, "a PLY file begins with a line that says ply"));
+            return Err(MeshFault::in_text(0, "a PLY file begins with a line that says ply"));
         }
         reader.text.skip_line();
         while reader.statement()? {}
@@ -103,7 +103,7 @@ impl<'a> Header<'a> {
         let line_end = if bytes.get(3..5) == Some(b"\r\n") { 2 } else { 1 };
         let end = (reader.text.at() + line_end).min(bytes.len());
         let encoding = reader.encoding.ok_or_else(|| {
-            Fault::in_text(
+            MeshFault::in_text(
                 3,
                 "the header lacks its line `format ascii 1.0` (or binary_little_endian, binary_big_endian)",
             )
@@ -112,15 +112,15 @@ impl<'a> Header<'a> {
     }
 }
 
-struct Reader<'a> {
-    text: Text<'a>,
+struct HeaderReader<'a> {
+    text: TextCursor<'a>,
     encoding: Option<Encoding>,
     elements: Vec<Element<'a>>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> HeaderReader<'a> {
     /// Reads a line. Returns `false` after the last one, whose end is not skipped.
-    fn statement(&mut self) -> Result<bool, Fault> {
+    fn statement(&mut self) -> Result<bool, MeshFault> {
         if !self.text.go_to_statement() {
             return Err(self.text.expected("end_header"));
         }
@@ -138,13 +138,13 @@ impl<'a> Reader<'a> {
             _ => {
                 let message =
                     format!("{} begins no line of a header (format, element, property, comment)", shown(word));
-                return Err(Fault::in_text(at, message));
+                return Err(MeshFault::in_text(at, message));
             }
         }
         Ok(true)
     }
 
-    fn format(&mut self) -> Result<(), Fault> {
+    fn format(&mut self) -> Result<(), MeshFault> {
         let word = self.text.word();
         let at = self.text.at() - word.len();
         self.encoding = Some(match word {
@@ -153,69 +153,69 @@ impl<'a> Reader<'a> {
             b"binary_big_endian" => Encoding::BigEndian,
             _ => {
                 let wanted = "ascii, binary_little_endian or binary_big_endian";
-                return Err(Fault::in_text(at, format!("unknown format {}; it is {wanted}", shown(word))));
+                return Err(MeshFault::in_text(at, format!("unknown format {}; it is {wanted}", shown(word))));
             }
         });
         self.text.skip_line();
         Ok(())
     }
 
-    fn element(&mut self, at: usize) -> Result<(), Fault> {
+    fn element(&mut self, at: usize) -> Result<(), MeshFault> {
         let name = self.name()?;
         self.text.skip_blanks();
         let count_at = self.text.at();
         let count = self.text.integer()?;
         let Ok(count) = u32::try_from(count) else {
-            return Err(Fault::in_text(
+            return Err(MeshFault::in_text(
                 count_at,
                 format!("{count} rows are not possible: there are 0 to {}", u32::MAX),
             ));
         };
         if matches!(name, "vertex" | "face" | "tristrips") && self.elements.iter().any(|element| element.name == name) {
-            return Err(Fault::in_text(at, format!("the element {name} is there twice")));
+            return Err(MeshFault::in_text(at, format!("the element {name} is there twice")));
         }
         self.elements.push(Element { name, count, properties: Vec::new(), at });
         self.text.end_line()
     }
 
-    fn name(&mut self) -> Result<&'a str, Fault> {
+    fn name(&mut self) -> Result<&'a str, MeshFault> {
         self.text.skip_blanks();
         let at = self.text.at();
         match std::str::from_utf8(self.text.word()) {
             Ok("") => Err(self.text.expected("a name")),
             Ok(name) => Ok(name),
-            Err(_) => Err(Fault::in_text(at, "this name is not UTF-8")),
+            Err(_) => Err(MeshFault::in_text(at, "this name is not UTF-8")),
         }
     }
 
-    fn property(&mut self, at: usize) -> Result<(), Fault> {
+    fn property(&mut self, at: usize) -> Result<(), MeshFault> {
         let start = self.text.at();
         let shape = if self.text.word() == b"list" {
             self.text.skip_blanks();
             let length_at = self.text.at();
-            let shape = Shape::List { length: self.kind()?, item: self.kind()? };
-            if matches!(shape, Shape::List { length, .. } if length.is_float()) {
-                return Err(Fault::in_text(length_at, "the length of a list is a whole number (uchar, int, ...)"));
+            let shape = PropertyType::List { length: self.kind()?, item: self.kind()? };
+            if matches!(shape, PropertyType::List { length, .. } if length.is_float()) {
+                return Err(MeshFault::in_text(length_at, "the length of a list is a whole number (uchar, int, ...)"));
             }
             shape
         } else {
             self.text = self.text.back_at(start);
-            Shape::Scalar(self.kind()?)
+            PropertyType::Scalar(self.kind()?)
         };
         let name = self.name()?;
         let Some(element) = self.elements.last_mut() else {
-            return Err(Fault::in_text(at, "this property belongs to no element: one must stand above it"));
+            return Err(MeshFault::in_text(at, "this property belongs to no element: one must stand above it"));
         };
         element.properties.push(Property { name, shape });
         self.text.end_line()
     }
 
-    fn kind(&mut self) -> Result<Type, Fault> {
+    fn kind(&mut self) -> Result<ScalarType, MeshFault> {
         let word = self.text.word();
         let at = self.text.at() - word.len();
-        Type::from_name(word).ok_or_else(|| {
+        ScalarType::from_name(word).ok_or_else(|| {
             let wanted = "char, uchar, short, ushort, int, uint, float or double";
-            Fault::in_text(at, format!("unknown type {}; it is {wanted}", shown(word)))
+            MeshFault::in_text(at, format!("unknown type {}; it is {wanted}", shown(word)))
         })
     }
 }

@@ -20,15 +20,15 @@ impl TexturePlacement {
 }
 
 /// The number of texels that may still be decoded.
-pub(in crate::mesh_file) struct Budget(usize);
+pub(in crate::mesh_file) struct TexelBudget(usize);
 
-impl Default for Budget {
+impl Default for TexelBudget {
     fn default() -> Self {
         Self(MAX_TEXELS)
     }
 }
 
-impl Budget {
+impl TexelBudget {
     fn take(&mut self, width: usize, height: usize) -> Result<(), String> {
         if width == 0 || height == 0 {
             return Err("is a picture without pixels".to_owned());
@@ -42,7 +42,7 @@ impl Budget {
 }
 
 /// Decodes an image. An `Err` describes the file, as in "is neither PNG nor JPEG".
-pub(in crate::mesh_file) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
+pub(in crate::mesh_file) fn decode(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String> {
     if bytes.starts_with(b"\x89PNG") {
         decode_png(bytes, budget)
     } else if bytes.starts_with(b"\xff\xd8") {
@@ -54,7 +54,7 @@ pub(in crate::mesh_file) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<
     }
 }
 
-fn decode_png(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
+fn decode_png(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String> {
     let say = |error: png::DecodingError| format!("is a PNG picture that cannot be read: {error}");
     let limits = png::Limits { bytes: 8 * MAX_TEXELS };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
@@ -75,7 +75,7 @@ fn decode_png(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
     complete(width, height, texels, "PNG")
 }
 
-fn decode_jpeg(bytes: &[u8], budget: &mut Budget) -> Result<Texture, String> {
+fn decode_jpeg(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String> {
     let say = |error: &dyn fmt::Debug| format!("is a JPEG picture that cannot be read: {error:?}");
     let options = DecoderOptions::default()
         .set_max_width(MAX_TEXELS)

@@ -1,25 +1,25 @@
 //! Decimation of a mesh, for a coarse sketch.
 
 use super::MeshFile;
-use super::builder::{Builder, Triangle};
+use super::builder::{MeshBuilder, TriangleIndices};
 use crate::bounds::Bounds;
 use glam::{DVec3, Vec3};
 use std::collections::HashSet;
 
 /// Marks a triangle that is dropped.
-const MOST: usize = 128 << 10;
+const MAX_DECIMATED_TRIANGLES: usize = 128 << 10;
 
 /// Marks a cube without a vertex.
-const EMPTY: u32 = u32::MAX;
+const NO_CLUSTER: u32 = u32::MAX;
 
 impl MeshFile {
     /// Returns the mesh decimated by vertex clustering: space is cut into cubes, `cubes` (at most 256) along the mesh's
     /// longest side, and the vertices of each become one, at their mean (Rossignac and Borrel, Multi-resolution 3D
     /// approximations for rendering complex scenes, 1993). Holes and edges stay within a cube's size. `None` if no
     /// triangle is left.
-    pub fn coarse(&self, cubes: u32) -> Option<Self> {
+    pub fn decimated(&self, cubes: u32) -> Option<Self> {
         let (corner_of, positions) = self.merged(cubes.clamp(1, 256));
-        let mut mesh = Builder { positions, materials: self.materials.clone(), ..Builder::default() };
+        let mut mesh = MeshBuilder { positions, materials: self.materials.clone(), ..MeshBuilder::default() };
         let mut seen = HashSet::new();
         for (index, corners) in self.triangles.iter().enumerate() {
             let corners = corners.map(|corner| corner_of[corner as usize]);
@@ -28,7 +28,7 @@ impl MeshFile {
                 continue;
             }
             self.push_like(index, corners, &mut mesh).ok()?;
-            if mesh.triangles.len() == MOST {
+            if mesh.triangles.len() == MAX_DECIMATED_TRIANGLES {
                 break;
             }
         }
@@ -41,29 +41,34 @@ impl MeshFile {
         let start = bounds.min.as_dvec3();
         let side = (bounds.max.as_dvec3() - start).max_element();
         let scale = if side > 0.0 { f64::from(cubes) * 0.999_999 / side } else { 0.0 };
-        let mut numbers = vec![EMPTY; cubes.pow(3) as usize];
+        let mut cluster_of = vec![NO_CLUSTER; cubes.pow(3) as usize];
         let mut sums: Vec<(DVec3, u32)> = Vec::new();
         let corner_of = self.positions.iter().map(|position| {
             let position = position.as_dvec3();
             let [x, y, z] = ((position - start) * scale).to_array().map(|place| (place as u32).min(cubes - 1));
-            let number = &mut numbers[((z * cubes + y) * cubes + x) as usize];
-            if *number == EMPTY {
-                *number = sums.len() as u32; // at most 2^24
+            let cluster = &mut cluster_of[((z * cubes + y) * cubes + x) as usize];
+            if *cluster == NO_CLUSTER {
+                *cluster = sums.len() as u32; // at most 2^24
                 sums.push((DVec3::ZERO, 0));
             }
-            let (sum, count) = &mut sums[*number as usize];
+            let (sum, count) = &mut sums[*cluster as usize];
             *sum += position;
             *count += 1;
-            *number
+            *cluster
         });
         let corner_of = corner_of.collect();
         (corner_of, sums.into_iter().map(|(sum, count)| (sum / f64::from(count)).as_vec3()).collect())
     }
 
     /// Returns a triangle with these corners and the other attributes of triangle `at`.
-    fn push_like(&self, index: usize, positions: [u32; 3], mesh: &mut Builder) -> Result<(), super::fault::Fault> {
+    fn push_like(
+        &self,
+        index: usize,
+        positions: [u32; 3],
+        mesh: &mut MeshBuilder,
+    ) -> Result<(), super::fault::MeshFault> {
         mesh.set_material(self.material_of(index).map(|material| material as u32)); // as many as there were
-        let triangle = Triangle {
+        let triangle = TriangleIndices {
             positions,
             normals: self.normals_of(index).map(|values| mesh.normals.add(values)),
             texture_coordinates: self.texture_coordinates_of(index).map(|values| mesh.texture_coordinates.add(values)),
@@ -107,25 +112,25 @@ mod tests {
     #[test]
     fn a_coarse_mesh_covers_what_the_mesh_covers() {
         let mesh = square(100);
-        let coarse = mesh.coarse(10).expect("something is left");
-        assert_eq!(coarse.positions.len(), 100);
-        assert_eq!(coarse.triangles.len(), 2 * 9 * 9);
+        let decimated = mesh.decimated(10).expect("something is left");
+        assert_eq!(decimated.positions.len(), 100);
+        assert_eq!(decimated.triangles.len(), 2 * 9 * 9);
         // Ends in the middle of the outermost cubes.
-        assert!((area(&coarse) - 90.0 * 90.0).abs() < 200.0, "{}", area(&coarse));
-        assert!((0..coarse.triangles.len()).all(|i| coarse.normals_of(i) == Some([Vec3::Z; 3])));
+        assert!((area(&decimated) - 90.0 * 90.0).abs() < 200.0, "{}", area(&decimated));
+        assert!((0..decimated.triangles.len()).all(|i| decimated.normals_of(i) == Some([Vec3::Z; 3])));
     }
 
     #[test]
     fn triangles_larger_than_the_cubes_stay() {
         let mesh = square(4);
-        let coarse = mesh.coarse(200).expect("something is left");
-        assert_eq!((coarse.positions.len(), coarse.triangles.len()), (25, 32));
-        assert_eq!(area(&coarse), 16.0);
+        let decimated = mesh.decimated(200).expect("something is left");
+        assert_eq!((decimated.positions.len(), decimated.triangles.len()), (25, 32));
+        assert_eq!(area(&decimated), 16.0);
     }
 
     #[test]
     fn of_a_point_nothing_is_left() {
         let point = MeshFile::new(vec![Vec3::X; 3], vec![[0, 1, 2]]).expect("it is a mesh");
-        assert_eq!(point.coarse(96), None);
+        assert_eq!(point.decimated(96), None);
     }
 }

@@ -1,24 +1,24 @@
 //! The side files of a mesh.
 
 use super::fault::shown;
-use super::limits::MAX_BYTES;
+use super::limits::MAX_MESH_BYTES;
 use crate::named_file;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
 /// The one way to side files, with a limit on the total number of bytes read.
-pub(super) struct Neighbours<'a> {
+pub(super) struct SideFiles<'a> {
     open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     bytes_left: usize,
     /// The folder of the mesh, for messages.
     folder: PathBuf,
 }
 
-impl<'a> Neighbours<'a> {
+impl<'a> SideFiles<'a> {
     /// Returns the side files of the mesh of this name.
     pub(super) fn new(name: &str, open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>) -> Self {
         let folder = Path::new(name).parent().unwrap_or(Path::new("")).to_owned();
-        Self { open, bytes_left: MAX_BYTES, folder }
+        Self { open, bytes_left: MAX_MESH_BYTES, folder }
     }
 
     /// Returns a side file's name for messages: relative to the user's current folder, like the mesh's own.
@@ -38,14 +38,14 @@ impl<'a> Neighbours<'a> {
 }
 
 /// Limit on the length of a path: no supported system allows more, and messages stay readable.
-const LONGEST: usize = 255;
+const MAX_PATH_BYTES: usize = 255;
 
 /// Returns the path that a file in `folder` refers to, relative to the mesh. `\` is a separator too, as Windows writes
 /// it. An `Err` says why it is refused: it is a URL, absolute, or empty.
 pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String> {
     let name = shown(written.as_bytes());
     let say = |what: &str| Err(format!("{name} {what}"));
-    if written.len() > LONGEST {
+    if written.len() > MAX_PATH_BYTES {
         return say("is longer than a path may be");
     }
     if written.contains("://") || written.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("data:")) {

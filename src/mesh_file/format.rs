@@ -1,12 +1,12 @@
 //! Recognition of a file's format by its content.
 
-use super::fault::{Fault, shown};
+use super::fault::{MeshFault, shown};
 use super::{obj, stl};
 use std::path::Path;
 
 /// The formats that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum MeshFormat {
     Obj,
     StlText,
     StlBinary,
@@ -42,29 +42,29 @@ const OTHERS: [(&[u8], &str); 17] = [
 const READ: &str = "OBJ, STL, PLY, glTF and GLB files are read";
 
 /// Returns the format of the bytes. The file name's extension counts only where the content does not decide.
-pub(super) fn of(name: &str, bytes: &[u8]) -> Result<Kind, Fault> {
+pub(super) fn recognised(name: &str, bytes: &[u8]) -> Result<MeshFormat, MeshFault> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     if text.is_empty() {
-        return Err(Fault::of_file(format!("the file is empty; {READ}")));
+        return Err(MeshFault::of_file(format!("the file is empty; {READ}")));
     }
-    if let Some(kind) = by_content(bytes, text) {
-        return Ok(kind);
+    if let Some(format) = by_content(bytes, text) {
+        return Ok(format);
     }
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
-        return Err(Fault::of_file(format!("this {what}")));
+        return Err(MeshFault::of_file(format!("this {what}")));
     }
-    by_ending(name).ok_or_else(|| Fault::of_file(not_known(name, bytes)))
+    by_ending(name).ok_or_else(|| MeshFault::of_file(not_known(name, bytes)))
 }
 
-fn by_content(bytes: &[u8], text: &[u8]) -> Option<Kind> {
+fn by_content(bytes: &[u8], text: &[u8]) -> Option<MeshFormat> {
     match bytes {
-        [b'p', b'l', b'y', b'\r' | b'\n', ..] => Some(Kind::Ply),
-        _ if bytes.starts_with(b"glTF") => Some(Kind::Glb),
+        [b'p', b'l', b'y', b'\r' | b'\n', ..] => Some(MeshFormat::Ply),
+        _ if bytes.starts_with(b"glTF") => Some(MeshFormat::Glb),
         // Binary formats before text: the header of a binary STL file may contain anything, even "solid".
-        _ if stl::size_fits(bytes) => Some(Kind::StlBinary),
-        _ if text.starts_with(b"{") => Some(Kind::Gltf),
-        _ if is_stl_text(text) => Some(Kind::StlText),
-        _ if is_obj(text) => Some(Kind::Obj),
+        _ if stl::size_fits(bytes) => Some(MeshFormat::StlBinary),
+        _ if text.starts_with(b"{") => Some(MeshFormat::Gltf),
+        _ if is_stl_text(text) => Some(MeshFormat::StlText),
+        _ if is_obj(text) => Some(MeshFormat::Obj),
         _ => None,
     }
 }
@@ -87,14 +87,14 @@ fn first_word(line: &[u8]) -> &[u8] {
     line.split(u8::is_ascii_whitespace).next().unwrap_or_default()
 }
 
-pub(super) fn by_ending(name: &str) -> Option<Kind> {
+pub(super) fn by_ending(name: &str) -> Option<MeshFormat> {
     let ending = Path::new(name).extension()?.to_str()?.to_ascii_lowercase();
     Some(match ending.as_str() {
-        "obj" => Kind::Obj,
-        "stl" => Kind::StlBinary,
-        "ply" => Kind::Ply,
-        "gltf" => Kind::Gltf,
-        "glb" => Kind::Glb,
+        "obj" => MeshFormat::Obj,
+        "stl" => MeshFormat::StlBinary,
+        "ply" => MeshFormat::Ply,
+        "gltf" => MeshFormat::Gltf,
+        "glb" => MeshFormat::Glb,
         _ => return None,
     })
 }

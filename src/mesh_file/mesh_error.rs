@@ -12,13 +12,13 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeshError {
     name: String,
-    place: Place,
+    position: FilePosition,
     message: String,
 }
 
 /// The position of a fault in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// The whole file, or as the message says.
     File,
     /// In a text: line and column, counted from 1, the column in characters.
@@ -35,11 +35,11 @@ pub enum Place {
 impl MeshError {
     /// Returns an error of a file as a whole.
     pub(super) fn of_file(name: &str, message: &str) -> Self {
-        Self::at(name, Place::File, message)
+        Self::at(name, FilePosition::File, message)
     }
 
-    pub(super) fn at(name: &str, place: Place, message: &str) -> Self {
-        Self { name: visible(name), place, message: visible(message) }
+    pub(super) fn at(name: &str, position: FilePosition, message: &str) -> Self {
+        Self { name: visible(name), position, message: visible(message) }
     }
 
     /// Returns the file with the fault: the mesh, or a side file.
@@ -50,8 +50,8 @@ impl MeshError {
 
     /// Returns the position of the fault.
     #[doc(hidden)]
-    pub fn place(&self) -> Place {
-        self.place
+    pub fn position(&self) -> FilePosition {
+        self.position
     }
 
     /// Returns the message: one line without a full stop.
@@ -63,11 +63,11 @@ impl MeshError {
 
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, place, message } = self;
-        match place {
-            Place::File => write!(f, "{name}: {message}"),
-            Place::Text { line, column } => write!(f, "{name}:{line}:{column}: {message}"),
-            Place::Byte(byte) => write!(f, "{name}: byte {byte}: {message}"),
+        let Self { name, position, message } = self;
+        match position {
+            FilePosition::File => write!(f, "{name}: {message}"),
+            FilePosition::Text { line, column } => write!(f, "{name}:{line}:{column}: {message}"),
+            FilePosition::Byte(byte) => write!(f, "{name}: byte {byte}: {message}"),
         }
     }
 }

@@ -1,0 +1,217 @@
+//! The numbers of the body, as text or binary.
+
+use super::header::{Element, Property, PropertyType, ScalarType};
+use crate::mesh_file::fault::MeshFault;
+use crate::mesh_file::text::TextCursor;
+use crate::progress::Meter;
+
+/// A body: rows of numbers.
+pub(super) trait RowReader {
+    /// Starts a row; `row` counts from 0.
+    fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault>;
+    /// Ends a row after all its numbers.
+    fn end(&mut self, element: &Element<'_>) -> Result<(), MeshFault>;
+    /// Reads a finite number.
+    fn number(&mut self, kind: ScalarType) -> Result<f32, MeshFault>;
+    /// Reads an integer, whose type is not a float.
+    fn integer(&mut self, kind: ScalarType) -> Result<i64, MeshFault>;
+    /// Skips numbers.
+    fn skip(&mut self, kind: ScalarType, count: usize) -> Result<(), MeshFault>;
+    /// Returns the position, for `fault`.
+    fn position(&self) -> usize;
+    /// Returns a fault at a position.
+    fn fault(&self, position: usize, message: String) -> MeshFault;
+    /// Returns the number of bytes left.
+    fn left(&self) -> usize;
+    /// Returns the least size of a row in bytes.
+    fn least_size(&self, properties: &[Property<'_>]) -> usize;
+
+    /// Reads the length of a list, which must not be negative.
+    fn length(&mut self, kind: ScalarType) -> Result<usize, MeshFault> {
+        let position = self.position();
+        let length = self.integer(kind)?;
+        usize::try_from(length).map_err(|_| self.fault(position, format!("a list has no {length} items")))
+    }
+}
+
+/// A text body, where a row is a line.
+pub(super) struct AsciiRows<'a> {
+    text: TextCursor<'a>,
+    meter: Meter<'a>,
+}
+
+impl<'a> AsciiRows<'a> {
+    pub(super) fn new(bytes: &'a [u8], at: usize, meter: Meter<'a>) -> Self {
+        Self { text: TextCursor::from(bytes, at), meter }
+    }
+}
+
+impl RowReader for AsciiRows<'_> {
+    #[inline]
+    fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
+        if self.text.go_to_statement() {
+            return Ok(self.meter.reach(self.text.at())?);
+        }
+        let Element { name, count, .. } = element;
+        Err(MeshFault::in_text(
+            self.text.at(),
+            format!("the file ends after {row} of {count} rows of the element {name}"),
+        ))
+    }
+
+    #[inline]
+    fn end(&mut self, element: &Element<'_>) -> Result<(), MeshFault> {
+        if self.text.is_at_line_end() {
+            self.text.skip_line();
+            return Ok(());
+        }
+        Err(self.text.expected(&format!("the end of this row of the element {}", element.name)))
+    }
+
+    #[inline]
+    fn number(&mut self, _kind: ScalarType) -> Result<f32, MeshFault> {
+        self.text.number()
+    }
+
+    #[inline]
+    fn integer(&mut self, _kind: ScalarType) -> Result<i64, MeshFault> {
+        self.text.integer()
+    }
+
+    fn skip(&mut self, _kind: ScalarType, count: usize) -> Result<(), MeshFault> {
+        for _ in 0..count {
+            if self.text.word().is_empty() {
+                return Err(self.text.expected("a number"));
+            }
+        }
+        Ok(())
+    }
+
+    fn position(&self) -> usize {
+        self.text.at()
+    }
+
+    fn fault(&self, position: usize, message: String) -> MeshFault {
+        let mut text = self.text.back_at(position);
+        text.skip_blanks();
+        MeshFault::in_text(text.at(), message)
+    }
+
+    fn left(&self) -> usize {
+        self.text.left()
+    }
+
+    /// A digit and a blank for each number.
+    fn least_size(&self, properties: &[Property<'_>]) -> usize {
+        2 * properties.len()
+    }
+}
+
+/// A binary body, where rows are contiguous and numbers have the size of their type.
+pub(super) struct BinaryRows<'a, const BIG_ENDIAN: bool> {
+    bytes: &'a [u8],
+    at: usize,
+    meter: Meter<'a>,
+}
+
+impl<'a, const BIG_ENDIAN: bool> BinaryRows<'a, BIG_ENDIAN> {
+    pub(super) fn new(bytes: &'a [u8], at: usize, meter: Meter<'a>) -> Self {
+        Self { bytes, at, meter }
+    }
+
+    #[inline]
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], MeshFault> {
+        let Some(&taken) = self.bytes.get(self.at..).and_then(|rest| rest.first_chunk::<N>()) else {
+            return Err(self.cut_short());
+        };
+        self.at += N;
+        let mut taken = taken;
+        if BIG_ENDIAN {
+            taken.reverse();
+        }
+        Ok(taken)
+    }
+
+    #[cold]
+    fn cut_short(&self) -> MeshFault {
+        MeshFault::at_byte(self.bytes.len(), "the file ends within a row; it was cut short")
+    }
+
+    #[inline]
+    fn value(&mut self, kind: ScalarType) -> Result<f64, MeshFault> {
+        Ok(match kind {
+            ScalarType::F32 => f64::from(f32::from_le_bytes(self.take()?)),
+            ScalarType::F64 => f64::from_le_bytes(self.take()?),
+            kind => self.integer(kind)? as f64,
+        })
+    }
+}
+
+impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
+    #[inline]
+    fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
+        if self.at < self.bytes.len() {
+            return Ok(self.meter.reach(self.at)?);
+        }
+        let Element { name, count, .. } = element;
+        Err(MeshFault::at_byte(self.at, format!("the file ends after {row} of {count} rows of the element {name}")))
+    }
+
+    #[inline]
+    fn end(&mut self, _element: &Element<'_>) -> Result<(), MeshFault> {
+        Ok(())
+    }
+
+    #[inline]
+    fn number(&mut self, kind: ScalarType) -> Result<f32, MeshFault> {
+        let position = self.at;
+        let value = self.value(kind)?;
+        let single = value as f32;
+        if single.is_finite() {
+            return Ok(single);
+        }
+        let what = if value.is_finite() { "is too large: numbers go up to 3.4e38" } else { "is not a finite number" };
+        Err(self.fault(position, format!("{value:e} {what}")))
+    }
+
+    #[inline]
+    fn integer(&mut self, kind: ScalarType) -> Result<i64, MeshFault> {
+        Ok(match kind {
+            ScalarType::I8 => i64::from(i8::from_le_bytes(self.take()?)),
+            ScalarType::U8 => i64::from(u8::from_le_bytes(self.take()?)),
+            ScalarType::I16 => i64::from(i16::from_le_bytes(self.take()?)),
+            ScalarType::U16 => i64::from(u16::from_le_bytes(self.take()?)),
+            ScalarType::I32 => i64::from(i32::from_le_bytes(self.take()?)),
+            ScalarType::U32 => i64::from(u32::from_le_bytes(self.take()?)),
+            // Floats never get here: the header refuses them where an integer is required.
+            ScalarType::F32 => f32::from_le_bytes(self.take()?) as i64,
+            ScalarType::F64 => f64::from_le_bytes(self.take()?) as i64,
+        })
+    }
+
+    fn skip(&mut self, kind: ScalarType, count: usize) -> Result<(), MeshFault> {
+        let end = kind.size().checked_mul(count).and_then(|size| self.at.checked_add(size));
+        self.at = end.filter(|&end| end <= self.bytes.len()).ok_or_else(|| self.cut_short())?;
+        Ok(())
+    }
+
+    fn position(&self) -> usize {
+        self.at
+    }
+
+    fn fault(&self, position: usize, message: String) -> MeshFault {
+        MeshFault::at_byte(position, message)
+    }
+
+    fn left(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+
+    fn least_size(&self, properties: &[Property<'_>]) -> usize {
+        let least = |shape| match shape {
+            PropertyType::Scalar(kind) => ScalarType::size(kind),
+            PropertyType::List { length, .. } => length.size(),
+        };
+        properties.iter().map(|property| least(property.shape)).sum()
+    }
+}
