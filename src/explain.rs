@@ -14,7 +14,7 @@ use crate::framebuffer::{Framebuffer, Resolution};
 use crate::hit::{self, Hit, Test, Witness};
 use crate::light::Light;
 use crate::ray::Ray;
-use crate::render::{Steps, trace_pixel};
+use crate::render::{PixelTrace, trace_pixel};
 use crate::scene::{Scene, ToneCurve};
 use crate::shade::{self, Incidence};
 use crate::shape::{Surface, SurfacePoint};
@@ -113,37 +113,37 @@ impl Lit {
 /// # Panics
 /// Outside the picture.
 pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u32; 2]) -> Explanation {
-    let steps = trace_pixel(scene, camera, resolution, pixel);
+    let trace = trace_pixel(scene, camera, resolution, pixel);
     let mut listener = Listener::default();
-    hit::closest_hit_witnessed(scene, &steps.ray, &mut listener);
+    hit::closest_hit_witnessed(scene, &trace.ray, &mut listener);
     let mut one = Framebuffer::new(Resolution::square(1, 1));
-    one.pixels_mut()[0] = steps.light;
+    one.pixels_mut()[0] = trace.light;
     Explanation {
         resolution,
         pixel,
-        q: steps.q,
-        ray: steps.ray,
+        q: trace.q,
+        ray: trace.ray,
         nodes: listener.nodes,
-        tested: listener.tested(scene, &steps.ray),
-        seen: steps.hit.map(|hit| seen(scene, &steps, hit)),
-        light: steps.light,
+        tested: listener.tested(scene, &trace.ray),
+        seen: trace.hit.map(|hit| seen(scene, &trace, hit)),
+        light: trace.light,
         exposure: scene.exposure(),
         tone_curve: scene.tone_curve(),
-        shown: shown(steps.light, scene),
+        shown: shown(trace.light, scene),
         bytes: tone(&one, scene).pixels[0],
     }
 }
 
-fn seen(scene: &Scene, steps: &Steps, hit: Hit) -> Seen {
-    let point = hit.surface(scene).at_crossing(&steps.ray, hit.t);
+fn seen(scene: &Scene, trace: &PixelTrace, hit: Hit) -> Seen {
+    let point = hit.surface(scene).at_crossing(&trace.ray, hit.t);
     Seen {
         hit,
         name: Name::of(scene, hit.object, hit.part),
         point,
         ambient: scene.ambient(),
         lights: scene.lights().iter().map(|light| lit(scene, light, &point)).collect(),
-        arriving: steps.arriving,
-        reflectance: steps.reflectance,
+        arriving: trace.arriving,
+        reflectance: trace.reflectance,
     }
 }
 

@@ -8,7 +8,7 @@ use crate::camera::{Camera, Pose};
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
 use crate::progress::Cancelled;
-use crate::render::{Cost, Executor, Reach, Sampling, Sight, all_sights};
+use crate::render::{Cost, Executor, GBufferSample, Sampling, TraceDepth, trace_g_buffer_partial};
 use crate::scene::Scene;
 use crate::shade;
 use crate::shape::Side;
@@ -60,7 +60,7 @@ const BACK: Srgb8 = Srgb8::new(235, 80, 50);
 
 /// A picture and its cost.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct TracedMap {
     /// The picture.
     pub picture: Picture,
     /// The cost, which has no influence on the picture.
@@ -187,66 +187,66 @@ pub fn picture(
     resolution: Resolution,
     sampling: impl Into<Sampling>,
 ) -> Picture {
-    all_seen(map, Executor::Pool, scene, camera, resolution, sampling.into()).picture
+    trace_partial(map, Executor::Pool, scene, camera, resolution, sampling.into()).picture
 }
 
 /// Traces as [`picture`] does on the threads of `executor`.
 ///
 /// # Errors
 /// [`Cancelled`], if the executor's token is cancelled.
-pub fn seen(
+pub fn trace(
     map: Map,
     executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
-) -> Result<Seen, Cancelled> {
-    executor.finish(all_seen(map, executor, scene, camera, resolution, sampling))
+) -> Result<TracedMap, Cancelled> {
+    executor.finish(trace_partial(map, executor, scene, camera, resolution, sampling))
 }
 
-fn all_seen(
+fn trace_partial(
     map: Map,
     executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
-) -> Seen {
-    let painted = |reach, paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| {
-        let sighted = all_sights(executor, scene, camera, resolution, sampling, reach, paint);
+) -> TracedMap {
+    let painted = |depth, paint: &(dyn Fn(&GBufferSample) -> Srgb8 + Sync)| {
+        let traced = trace_g_buffer_partial(executor, scene, camera, resolution, sampling, depth, paint);
         let [width, height] = [resolution.width(), resolution.height()];
-        Seen { picture: Picture { width, height, pixels: sighted.pixels }, cost: sighted.cost }
+        TracedMap { picture: Picture { width, height, pixels: traced.pixels }, cost: traced.cost }
     };
-    let of_surfaces = |paint: &(dyn Fn(&Sight) -> Srgb8 + Sync)| painted(Reach::Surfaces, paint);
+    let of_surfaces = |paint: &(dyn Fn(&GBufferSample) -> Srgb8 + Sync)| painted(TraceDepth::Surfaces, paint);
     match map {
-        Map::Shaded => shaded::seen(executor, scene, camera, resolution, sampling),
-        Map::Lambert => of_surfaces(&|sight| lambert(scene, sight)),
+        Map::Shaded => shaded::trace(executor, scene, camera, resolution, sampling),
+        Map::Lambert => of_surfaces(&|sample| lambert(scene, sample)),
         Map::Depth => {
             let middle = distance(camera);
-            of_surfaces(&|sight| sight.hit.map_or(NOTHING, |hit| colors::depth(hit.t, middle)))
+            of_surfaces(&|sample| sample.hit.map_or(NOTHING, |hit| colors::depth(hit.t, middle)))
         }
         Map::Normal => {
-            of_surfaces(&|sight| sight.surface(scene).map_or(NOTHING, |surface| colors::normal(surface.normal)))
+            of_surfaces(&|sample| sample.surface(scene).map_or(NOTHING, |surface| colors::normal(surface.normal)))
         }
-        Map::Object => of_surfaces(&|sight| sight.hit.map_or(NOTHING, |hit| colors::object(hit.object))),
-        Map::Shadow => painted(Reach::Lights, &|sight| match sight.hit {
-            Some(_) => colors::share(sight.lit_by.count_ones(), scene.lights().len().min(32) as u32),
+        Map::Object => of_surfaces(&|sample| sample.hit.map_or(NOTHING, |hit| colors::object(hit.object))),
+        Map::Shadow => painted(TraceDepth::Lights, &|sample| match sample.hit {
+            Some(_) => colors::share(sample.lit_by.count_ones(), scene.lights().len().min(32) as u32),
             None => NOTHING,
         }),
-        Map::Cost => of_surfaces(&|sight| colors::heat(cost::tests(scene, sight))),
-        Map::Facing => of_surfaces(&|sight| match sight.surface(scene).map(|surface| surface.side) {
+        Map::Cost => of_surfaces(&|sample| colors::heat(cost::tests(scene, sample))),
+        Map::Facing => of_surfaces(&|sample| match sample.surface(scene).map(|surface| surface.side) {
             None => NOTHING,
             Some(Side::Front) => FRONT,
             Some(Side::Back) => BACK,
         }),
-        Map::Contrast => contrast::seen(executor, scene, camera, resolution, sampling),
+        Map::Contrast => contrast::trace(executor, scene, camera, resolution, sampling),
     }
 }
 
 /// Returns the sum of the lecture's n.l over all lights, as light.
-fn lambert(scene: &Scene, sight: &Sight) -> Srgb8 {
-    let Some(surface) = sight.surface(scene) else { return NOTHING };
+fn lambert(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
+    let Some(surface) = sample.surface(scene) else { return NOTHING };
     let cosine = |light| shade::incidence(light, &surface).map_or(0.0, |incidence| incidence.cosine);
     Srgb8::from_linear(LinearRgb::grey(scene.lights().iter().map(cosine).sum()))
 }

@@ -21,25 +21,25 @@ mod steps;
 mod report;
 mod schedule;
 mod uniform;
-mod pixel;
+mod accumulator;
 mod adaptive;
-mod sights;
+mod gbuffer;
 mod count;
-mod one;
-mod order;
+mod single_pixel;
+mod builder;
 
-pub use adaptive::Refining;
+pub use adaptive::ProgressiveRender;
+pub use builder::Render;
 pub use count::{Counts, count};
-pub use one::{Steps, trace_pixel};
-pub use order::Render;
+pub(crate) use gbuffer::trace_g_buffer_partial;
+pub use gbuffer::{GBufferSample, PixelValues, TraceDepth, trace_g_buffer};
 pub use sampling::Sampling;
 pub use schedule::Executor;
-pub(crate) use sights::all_sights;
-pub use sights::{Reach, Sight, Sighted, sights};
+pub use single_pixel::{PixelTrace, trace_pixel};
 
 /// Returns the picture of `scene` seen by `camera`. The first ray of a pixel goes through its centre.
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Framebuffer {
-    render_all(Executor::Pool, scene, camera, resolution, sampling.into()).framebuffer
+    render_partial(Executor::Pool, scene, camera, resolution, sampling.into()).framebuffer
 }
 
 /// A frame and its cost.
@@ -78,22 +78,22 @@ pub fn render_by(
     resolution: Resolution,
     sampling: impl Into<Sampling>,
 ) -> Result<Rendered, Cancelled> {
-    executor.finish(render_all(executor, scene, camera, resolution, sampling.into()))
+    executor.finish(render_partial(executor, scene, camera, resolution, sampling.into()))
 }
 
-/// Returns the total in which a [`Report`](report::Report) counts such a render: the sum of [`Unit`](steps::Unit) over
+/// Returns the total in which a [`Report`](report::Report) counts such a render: the sum of [`ProgressUnit`](steps::ProgressUnit) over
 /// all of its tiles.
 fn units(resolution: Resolution, sampling: Sampling) -> u64 {
     let pixels = resolution.pixel_count() as u64;
     match sampling.bounded() {
         Sampling::Coarse => u64::from(resolution.width().div_ceil(2)) * u64::from(resolution.height().div_ceil(2)),
         Sampling::Each(samples) => pixels * u64::from(samples.get()),
-        Sampling::UpTo(samples) => pixels + adaptive::units_of_more(resolution, samples),
+        Sampling::UpTo(samples) => pixels + adaptive::refinement_units(resolution, samples),
     }
 }
 
 /// Renders as [`render`] does on the threads of `executor`; after a cancel the rest is skipped.
-pub(crate) fn render_all(
+pub(crate) fn render_partial(
     executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
@@ -104,7 +104,7 @@ pub(crate) fn render_all(
         Sampling::Coarse => uniform::render(executor, scene, &Tiles::new(camera, resolution, 2), 1),
         Sampling::Each(samples) => uniform::render(executor, scene, &Tiles::new(camera, resolution, 1), samples.get()),
         Sampling::UpTo(samples) => {
-            let mut picture = Refining::new(camera, resolution);
+            let mut picture = ProgressiveRender::new(camera, resolution);
             let cost = picture.refine(executor, scene, samples);
             // The picture of a cancelled render is dropped: filling millions of pixels would exceed the limit for the
             // answer to a cancel.

@@ -10,7 +10,7 @@ use crate::hit::{self, Kernel};
 use crate::maps::Map;
 use crate::progress::Watcher;
 use crate::ray::{Interval, Ray};
-use crate::render::{self, Refining, Sampling};
+use crate::render::{self, ProgressiveRender, Sampling};
 use crate::scene::{Draft, Scene};
 use crate::tone::tone;
 use crate::{export, maps};
@@ -68,7 +68,7 @@ fn no_picture_builds_a_tree() {
     let built = builds(|| {
         let light = render::render(scene, camera, resolution, Sampling::BEST);
         tone(&light, scene);
-        Refining::new(camera, resolution);
+        ProgressiveRender::new(camera, resolution);
         render::count(Kernel::Auto, scene, camera, resolution, NonZeroU32::MIN);
         render::trace_pixel(scene, camera, resolution, [20, 12]);
         for map in Map::ALL {

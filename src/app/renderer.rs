@@ -4,9 +4,9 @@
 
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::maps::{self, Map, Seen};
+use crate::maps::{self, Map, TracedMap};
 use crate::progress::{Cancellation, Cancelled};
-use crate::render::{Cost, Executor, Refining, Sampling};
+use crate::render::{Cost, Executor, ProgressiveRender, Sampling};
 use crate::scene::Scene;
 use crate::terminal::{self, Waker};
 use crate::tone::tone;
@@ -95,7 +95,7 @@ impl Renderer {
         if self.is_small(&job) {
             // The same light as `UpTo(1)`, without the accumulator for refining, which is quickly traced again.
             let one = Sampling::Each(NonZeroU32::MIN);
-            let see = |map, part| maps::seen(map, Executor::CurrentThread, &job.scene, &job.shot.camera, part, one);
+            let see = |map, part| maps::trace(map, Executor::CurrentThread, &job.scene, &job.shot.camera, part, one);
             return frame_of(&job, see).ok().map(|frame| self.noted(frame));
         }
         let work = InWork { refines: job.refines, token: Cancellation::default() };
@@ -184,7 +184,10 @@ impl Drop for Renderer {
 type Order = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>;
 
 /// Returns the frame of a job, whose pictures `see` traces one by one.
-fn frame_of(job: &Job, mut see: impl FnMut(Map, Resolution) -> Result<Seen, Cancelled>) -> Result<Frame, Cancelled> {
+fn frame_of(
+    job: &Job,
+    mut see: impl FnMut(Map, Resolution) -> Result<TracedMap, Cancelled>,
+) -> Result<Frame, Cancelled> {
     let start = Instant::now();
     let Job { scene, shot, sampling, refines } = job.clone();
     let mut cost = Cost::default();
@@ -214,12 +217,12 @@ struct Tracer {
 struct Kept {
     scene: Scene,
     view: (Camera, Resolution),
-    picture: Refining,
+    picture: ProgressiveRender,
 }
 
 impl Kept {
     fn new(Job { scene, shot, .. }: &Job, resolution: Resolution) -> Self {
-        let picture = Refining::new(&shot.camera, resolution);
+        let picture = ProgressiveRender::new(&shot.camera, resolution);
         Self { scene: scene.clone(), view: (shot.camera, resolution), picture }
     }
 
@@ -247,18 +250,18 @@ impl Tracer {
         map: Map,
         resolution: Resolution,
         kept: Option<Kept>,
-    ) -> Result<Seen, Cancelled> {
+    ) -> Result<TracedMap, Cancelled> {
         let Job { scene, shot, .. } = job;
         let samples = match job.sampling {
             Sampling::UpTo(samples) if map.refines() => samples,
             sampling => {
-                return maps::seen(map, Executor::Cancellable(token), scene, &shot.camera, resolution, sampling);
+                return maps::trace(map, Executor::Cancellable(token), scene, &shot.camera, resolution, sampling);
             }
         };
         let mut kept = kept.unwrap_or_else(|| Kept::new(job, resolution));
         let cost = kept.picture.refine_or_cancel(token, scene, samples)?;
         let light = self.kept.insert(kept).picture.framebuffer();
-        Ok(Seen { picture: tone(&light, scene), cost })
+        Ok(TracedMap { picture: tone(&light, scene), cost })
     }
 }
 

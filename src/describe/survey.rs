@@ -6,7 +6,7 @@ use crate::framebuffer::Resolution;
 use crate::hit::closest_hit;
 use crate::material::Material;
 use crate::ray::Ray;
-use crate::render::{Executor, Reach, Sampling, Sight, all_sights};
+use crate::render::{Executor, GBufferSample, Sampling, TraceDepth, trace_g_buffer_partial};
 use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
@@ -92,8 +92,9 @@ pub(super) struct Survey {
 impl Survey {
     pub(super) fn of(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
         let one = Sampling::Each(NonZeroU32::MIN);
-        let see = |sight: &Sight| spot(scene, sight);
-        let spots = all_sights(Executor::Pool, scene, camera, resolution, one, Reach::Surfaces, see).pixels;
+        let see = |sample: &GBufferSample| spot(scene, sample);
+        let spots =
+            trace_g_buffer_partial(Executor::Pool, scene, camera, resolution, one, TraceDepth::Surfaces, see).pixels;
         let mut survey = Self { covered: BTreeMap::new(), hides: BTreeMap::new(), nothing: 0, pixels: spots.len() };
         for (at, spot) in (0..).zip(&spots) {
             let Some(spot) = spot else {
@@ -131,14 +132,14 @@ impl Survey {
     }
 }
 
-fn spot(scene: &Scene, sight: &Sight) -> Option<Spot> {
-    let (hit, surface) = (sight.hit?, sight.surface(scene)?);
+fn spot(scene: &Scene, sample: &GBufferSample) -> Option<Spot> {
+    let (hit, surface) = (sample.hit?, sample.surface(scene)?);
     let own = hit.surface(scene).own_reflectance(surface.uv);
     Some(Spot {
         object: hit.object,
-        distance: hit.t * sight.ray.direction.length(),
+        distance: hit.t * sample.ray.direction.length(),
         reflectance: own.unwrap_or(Material::DEFAULT_REFLECTANCE),
-        behind: behind(scene, *sight),
+        behind: behind(scene, *sample),
     })
 }
 
@@ -148,16 +149,16 @@ const DEEP: usize = 3;
 const LAYERS: usize = 12;
 
 /// Returns the next objects that the ray would hit without the visible one.
-fn behind(scene: &Scene, mut sight: Sight) -> [Option<u32>; DEEP] {
-    let seen = sight.hit.map(|hit| hit.object);
+fn behind(scene: &Scene, mut sample: GBufferSample) -> [Option<u32>; DEEP] {
+    let seen = sample.hit.map(|hit| hit.object);
     let (mut found, mut count) = ([None; DEEP], 0);
     for _ in 0..LAYERS {
-        let Some(surface) = sight.surface(scene) else { break };
+        let Some(surface) = sample.surface(scene) else { break };
         // Starts as far behind the surface as a shadow ray starts in front of it.
         let origin = surface.position - surface.facing * surface.clearance;
-        sight.ray = Ray { origin, ..sight.ray };
-        sight.hit = closest_hit(scene, &sight.ray);
-        let object = sight.hit.map(|hit| hit.object);
+        sample.ray = Ray { origin, ..sample.ray };
+        sample.hit = closest_hit(scene, &sample.ray);
+        let object = sample.hit.map(|hit| hit.object);
         if object.is_some() && object != seen && !found.contains(&object) {
             found[count] = object;
             count += 1;

@@ -3,11 +3,11 @@
 //! A threshold alone loses an object in front of one of the same kind: two white ones merge. So a line of the other
 //! colour separates two neighbours with the same colour.
 
-use super::{Seen, shaded};
+use super::{TracedMap, shaded};
 use crate::camera::Camera;
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
-use crate::render::{Executor, Reach, Sampling, all_sights};
+use crate::render::{Executor, Sampling, TraceDepth, trace_g_buffer_partial};
 use crate::scene::Scene;
 use crate::tone::Picture;
 use std::num::NonZeroU32;
@@ -18,22 +18,23 @@ const WHITE: Srgb8 = Srgb8::new(255, 255, 255);
 /// Threshold for white: half of white as perceived, CIE 1976 L* 50.
 const MIDDLE: f32 = 0.184;
 
-pub(super) fn seen(
+pub(super) fn trace(
     executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
-) -> Seen {
+) -> TracedMap {
     let sampling = if sampling == Sampling::Coarse { sampling } else { Sampling::Each(NonZeroU32::MIN) };
-    let light = shaded::seen(executor, scene, camera, resolution, sampling);
+    let light = shaded::trace(executor, scene, camera, resolution, sampling);
     // Counted from 1; 0 for none.
-    let objects = all_sights(executor, scene, camera, resolution, sampling, Reach::Surfaces, |sight| {
-        sight.hit.map_or(0, |hit| hit.object + 1)
-    });
+    let objects =
+        trace_g_buffer_partial(executor, scene, camera, resolution, sampling, TraceDepth::Surfaces, |sample| {
+            sample.hit.map_or(0, |hit| hit.object + 1)
+        });
     let mut cost = light.cost;
     cost += objects.cost;
-    Seen { picture: drawn(&light.picture, &objects.pixels), cost }
+    TracedMap { picture: drawn(&light.picture, &objects.pixels), cost }
 }
 
 /// Returns the picture in two colours, where each pixel shows the object with this number.

@@ -1,7 +1,7 @@
 //! The tests of a pixel's rays, each traced singly: the eye ray, and the shadow rays from its hit.
 
 use crate::hit::{Test, Witness, any_hit_witnessed, closest_hit_witnessed};
-use crate::render::Sight;
+use crate::render::GBufferSample;
 use crate::scene::Scene;
 use crate::shade;
 
@@ -19,10 +19,10 @@ impl Witness for Count {
     }
 }
 
-pub(super) fn tests(scene: &Scene, sight: &Sight) -> u32 {
+pub(super) fn tests(scene: &Scene, sample: &GBufferSample) -> u32 {
     let mut count = Count::default();
-    closest_hit_witnessed(scene, &sight.ray, &mut count);
-    if let Some(surface) = sight.surface(scene).filter(|_| scene.shadows()) {
+    closest_hit_witnessed(scene, &sample.ray, &mut count);
+    if let Some(surface) = sample.surface(scene).filter(|_| scene.shadows()) {
         for light in scene.lights().iter().filter(|light| shade::incidence(light, &surface).is_some()) {
             any_hit_witnessed(scene, &shade::shadow_ray(light, &surface), light.in_the_way(), &mut count);
         }

@@ -1,8 +1,8 @@
 //! Adaptive refinement: more samples where a picture has edges, pass by pass.
 
-use super::pixel::{First, Watched};
-use super::sampling::{PASSES, Runs};
-use super::steps::{Buffers, Goal, Shot, Unit};
+use super::accumulator::{Accumulator, FirstSample};
+use super::sampling::{PASSES, SampleBatches};
+use super::steps::{Buffers, ProgressUnit, RenderJob, Stage};
 use super::tiles::{ALL_PIXELS, PIXELS, Tiles};
 use super::{Cost, Executor};
 use crate::camera::Camera;
@@ -18,21 +18,21 @@ use std::ops::Range;
 /// A picture in progress, which gets more samples where it has edges. Its light does not depend on the steps in which
 /// it is refined, to the bit.
 #[derive(Clone, Debug)]
-pub struct Refining {
+pub struct ProgressiveRender {
     tiles: Tiles,
     /// The G-buffer: the first sample of each pixel, tile by tile.
-    first: Vec<Vec<First>>,
+    first: Vec<Vec<FirstSample>>,
     /// All samples of each pixel, once there are more than one.
-    watched: Vec<Vec<Watched>>,
+    accumulators: Vec<Vec<Accumulator>>,
     /// Number of passes done.
     passes: usize,
 }
 
-impl Refining {
+impl ProgressiveRender {
     /// Returns a picture without samples.
     pub fn new(camera: &Camera, resolution: Resolution) -> Self {
         let tiles = Tiles::new(camera, resolution, 1);
-        Self { tiles, first: vec![Vec::new(); tiles.count()], watched: vec![Vec::new(); tiles.count()], passes: 0 }
+        Self { tiles, first: vec![Vec::new(); tiles.count()], accumulators: vec![Vec::new(); tiles.count()], passes: 0 }
     }
 
     /// Traces what is missing up to [`Sampling::UpTo`](super::Sampling::UpTo) that number of samples, and returns the
@@ -51,47 +51,48 @@ impl Refining {
     }
 
     pub(super) fn refine(&mut self, executor: Executor<'_>, scene: &Scene, samples: NonZeroU32) -> Cost {
-        let wanted = PASSES.iter().filter(|pass| pass.end <= samples.get()).count();
+        let passes = PASSES.iter().filter(|pass| pass.end <= samples.get()).count();
         let mut cost = Cost::default();
         // Finding edges takes the whole first pass. After it each pixel decides by itself whether it needs more
         // samples, and no tile waits for another.
-        if self.passes == 0 && wanted > 0 {
+        if self.passes == 0 && passes > 0 {
             cost += self.trace_first(executor, scene);
             self.passes = 1;
         }
-        if self.passes < wanted {
-            cost += self.trace_more(executor, scene, self.passes..wanted);
-            self.passes = wanted;
+        if self.passes < passes {
+            cost += self.trace_refinement(executor, scene, self.passes..passes);
+            self.passes = passes;
         }
         cost
     }
 
     fn trace_first(&mut self, executor: Executor<'_>, scene: &Scene) -> Cost {
-        let runs = Runs::of(PASSES[0].clone());
-        let shot = Shot::new(scene, &self.tiles, Goal::Reflected);
-        executor.trace(&shot, self.first.iter_mut().collect(), |tile, first| {
-            first.resize(PIXELS, First::default());
-            tile.trace(&runs, |buffers, _, _| see_first(first, buffers));
+        let batches = SampleBatches::of(PASSES[0].clone());
+        let job = RenderJob::new(scene, &self.tiles, Stage::Reflected);
+        executor.trace(&job, self.first.iter_mut().collect(), |tile, first| {
+            first.resize(PIXELS, FirstSample::default());
+            tile.trace(&batches, |buffers, _, _| record_first_samples(first, buffers));
         })
     }
 
     /// Traces the remaining passes.
-    fn trace_more(&mut self, executor: Executor<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
+    fn trace_refinement(&mut self, executor: Executor<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
         let white = 1.0 / scene.exposure();
-        let runs: Vec<_> = passes.map(|pass| (pass, Runs::of(PASSES[pass].clone()))).collect();
-        let Self { tiles, first, watched, .. } = self;
-        let shot = Shot { unit: Unit::Tile(UNITS_OF_MORE), ..Shot::new(scene, tiles, Goal::Reflected) };
-        executor.trace(&shot, watched.iter_mut().collect(), |tile, watched| {
-            if watched.is_empty() {
-                watched.extend(first[tile.number].iter().map(Watched::new));
+        let batches: Vec<_> = passes.map(|pass| (pass, SampleBatches::of(PASSES[pass].clone()))).collect();
+        let Self { tiles, first, accumulators, .. } = self;
+        let job =
+            RenderJob { unit: ProgressUnit::Tile(REFINEMENT_UNITS), ..RenderJob::new(scene, tiles, Stage::Reflected) };
+        executor.trace(&job, accumulators.iter_mut().collect(), |tile, accumulators| {
+            if accumulators.is_empty() {
+                accumulators.extend(first[tile.number].iter().map(Accumulator::new));
             }
-            for &(pass, ref runs) in &runs {
-                tile.buffers.wanted.retain(|&pixel| match (pass, &watched[usize::from(pixel)]) {
+            for &(pass, ref batches) in &batches {
+                tile.buffers.active.retain(|&pixel| match (pass, &accumulators[usize::from(pixel)]) {
                     (1, _) => is_at_edge(tiles, first, tile.number, pixel.into(), white),
-                    (2, watched) => watched.is_at_edge(),
-                    (_, watched) => watched.is_rough(white),
+                    (2, accumulator) => accumulator.is_refined(),
+                    (_, accumulator) => accumulator.is_noisy(white),
                 });
-                tile.trace(runs, |buffers, run, _| add_samples(watched, buffers, run.each()));
+                tile.trace(batches, |buffers, batch, _| add_samples(accumulators, buffers, batch.per_pixel()));
             }
         })
     }
@@ -105,54 +106,54 @@ impl Refining {
     pub fn framebuffer(&self) -> Framebuffer {
         let mut framebuffer = Framebuffer::new(self.tiles.resolution);
         let parts = self.tiles.split(framebuffer.pixels_mut());
-        for ((first, watched), mut part) in self.first.iter().zip(&self.watched).zip(parts) {
-            if !watched.is_empty() {
-                self.tiles.show(&ALL_PIXELS, |pixel| watched[pixel].mean(), &mut part);
+        for ((first, accumulators), mut part) in self.first.iter().zip(&self.accumulators).zip(parts) {
+            if !accumulators.is_empty() {
+                self.tiles.write_all(&ALL_PIXELS, |pixel| accumulators[pixel].mean(), &mut part);
             } else if !first.is_empty() {
-                self.tiles.show(&ALL_PIXELS, |pixel| first[pixel].light, &mut part);
+                self.tiles.write_all(&ALL_PIXELS, |pixel| first[pixel].light, &mut part);
             }
         }
         framebuffer
     }
 }
 
-/// The progress [units](Unit) of a tile in all passes but the first, whose number of samples is not known beforehand.
+/// The progress [units](ProgressUnit) of a tile in all passes but the first, whose number of samples is not known beforehand.
 /// For the pictures of `scenes/` these passes take 8 to 25 times the instructions of the first.
-const UNITS_OF_MORE: u64 = 16 * PIXELS as u64;
+const REFINEMENT_UNITS: u64 = 16 * PIXELS as u64;
 
 /// Returns the units of all passes but the first.
-pub(super) fn units_of_more(resolution: Resolution, samples: NonZeroU32) -> u64 {
+pub(super) fn refinement_units(resolution: Resolution, samples: NonZeroU32) -> u64 {
     let is_refined = PASSES[1].end <= samples.get();
-    if is_refined { UNITS_OF_MORE * Tiles::count_of(resolution) as u64 } else { 0 }
+    if is_refined { REFINEMENT_UNITS * Tiles::count_of(resolution) as u64 } else { 0 }
 }
 
 /// Returns whether an edge may run beside a pixel of a tile; `white` is the light that is displayed as white.
-fn is_at_edge(tiles: &Tiles, first: &[Vec<First>], tile: usize, pixel: usize, white: f32) -> bool {
+fn is_at_edge(tiles: &Tiles, first: &[Vec<FirstSample>], tile: usize, pixel: usize, white: f32) -> bool {
     let own = &first[tile][pixel];
-    let [columns, rows] = tiles.around(tile, pixel);
+    let [columns, rows] = tiles.neighbourhood(tile, pixel);
     rows.into_iter().any(|y| {
         columns.clone().any(|x| {
-            let (tile, pixel) = tiles.at([x, y]);
+            let (tile, pixel) = tiles.locate([x, y]);
             own.is_edge_to(&first[tile][pixel], white)
         })
     })
 }
 
 /// Records the hits and light of a batch with one ray per pixel.
-fn see_first(first: &mut [First], buffers: &Buffers) {
+fn record_first_samples(first: &mut [FirstSample], buffers: &Buffers) {
     for (ray, &pixel) in buffers.pixels.iter().enumerate() {
         let (group, lane) = (ray / LANES, ray % LANES);
         // Stored as a sum of one sample, which is never -0.
         let light = LinearRgb::BLACK + shade::light_of(&buffers.lights[group], lane);
         let lit_by = buffers.arriving[group].lit_by[lane];
-        first[usize::from(pixel)] = First::new(light, buffers.points[group].seen(lane), lit_by);
+        first[usize::from(pixel)] = FirstSample::new(light, buffers.points[group].seen(lane), lit_by);
     }
 }
 
-/// Adds a batch's samples, `each` for every pixel, to the tile's pixels.
-fn add_samples(watched: &mut [Watched], buffers: &Buffers, each: usize) {
-    let bands = buffers.bands();
-    for (first, &pixel) in buffers.pixels.iter().enumerate().step_by(each) {
-        watched[usize::from(pixel)].add(bands.each_ref().map(|band| &band[first..first + each]));
+/// Adds a batch's samples, `per_pixel` for every pixel, to the tile's pixels.
+fn add_samples(accumulators: &mut [Accumulator], buffers: &Buffers, per_pixel: usize) {
+    let channels = buffers.channels();
+    for (first, &pixel) in buffers.pixels.iter().enumerate().step_by(per_pixel) {
+        accumulators[usize::from(pixel)].add(channels.each_ref().map(|channel| &channel[first..first + per_pixel]));
     }
 }

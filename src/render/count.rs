@@ -1,7 +1,7 @@
 //! The trace stage alone, for benchmarks: eye rays, closest hits, and a shadow ray from each.
 
-use super::sampling::Runs;
-use super::steps::{Buffers, Goal, Shot};
+use super::sampling::SampleBatches;
+use super::steps::{Buffers, RenderJob, Stage};
 use super::tiles::Tiles;
 use super::{Executor, Sampling};
 use crate::camera::Camera;
@@ -45,12 +45,12 @@ impl Add for Counts {
 /// even if the surface faces away from it. Runs on the threads of the current rayon pool.
 pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
     let tiles = Tiles::new(camera, resolution, 1);
-    let goal = if scene.shadows() { Goal::Points } else { Goal::Hits };
-    let shot = Shot { kernel, ..Shot::new(scene, &tiles, goal) };
-    let runs = Runs::of(0..samples.min(Sampling::MAX_SAMPLES).get());
+    let last_stage = if scene.shadows() { Stage::Points } else { Stage::Hits };
+    let job = RenderJob { kernel, ..RenderJob::new(scene, &tiles, last_stage) };
+    let batches = SampleBatches::of(0..samples.min(Sampling::MAX_SAMPLES).get());
     let mut counts = vec![Counts::default(); tiles.count()];
-    Executor::Pool.trace(&shot, counts.iter_mut().collect(), |tile, counts| {
-        tile.trace(&runs, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));
+    Executor::Pool.trace(&job, counts.iter_mut().collect(), |tile, counts| {
+        tile.trace(&batches, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));
     });
     // Summed tile by tile, because a sum of floats depends on the order.
     counts.into_iter().fold(Counts::default(), Add::add)

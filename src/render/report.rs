@@ -8,15 +8,15 @@ use std::time::{Duration, Instant};
 
 /// Limit on the time between two reports, as far as batches end within it: the receiver can cancel only when it is
 /// called.
-const PERIOD: Duration = Duration::from_millis(10);
+const MAX_REPORT_PERIOD: Duration = Duration::from_millis(10);
 
 /// Progress after which a report is made before that time, as a part of the whole, so that a short render has reports
 /// too.
-const STEP: f32 = 0.005;
+const MIN_REPORT_STEP: f32 = 0.005;
 
 /// A receiver of progress reports, and the amount of work done.
 pub struct Report<'a> {
-    hear: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync),
+    callback: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync),
     token: Cancellation,
     /// The total number of units.
     total: u64,
@@ -33,14 +33,14 @@ impl fmt::Debug for Report<'_> {
 #[derive(Debug)]
 struct Done {
     units: u64,
-    told: f32,
+    reported: f32,
     at: Instant,
 }
 
 impl<'a> Report<'a> {
-    /// Reports to `hear` the parts of a number of units, from 0 on. The token is cancelled when it returns `Break`.
-    pub(super) fn new(hear: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync), token: Cancellation, total: u64) -> Self {
-        Self { hear, token, total, done: Mutex::new(Done { units: 0, told: 0.0, at: Instant::now() }) }
+    /// Reports to `callback` the parts of a number of units, from 0 on. The token is cancelled when it returns `Break`.
+    pub(super) fn new(callback: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync), token: Cancellation, total: u64) -> Self {
+        Self { callback, token, total, done: Mutex::new(Done { units: 0, reported: 0.0, at: Instant::now() }) }
     }
 
     pub(super) fn is_cancelled(&self) -> bool {
@@ -54,15 +54,18 @@ impl<'a> Report<'a> {
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         done.units += units;
         let part = done.units as f32 / self.total as f32;
-        if part < 1.0 && (part - done.told >= STEP || done.at.elapsed() >= PERIOD) && !self.is_cancelled() {
-            self.tell(part);
-            done.told = part;
+        if part < 1.0
+            && (part - done.reported >= MIN_REPORT_STEP || done.at.elapsed() >= MAX_REPORT_PERIOD)
+            && !self.is_cancelled()
+        {
+            self.call(part);
+            done.reported = part;
             done.at = Instant::now();
         }
     }
 
-    fn tell(&self, part: f32) {
-        if (self.hear)(part).is_break() {
+    fn call(&self, part: f32) {
+        if (self.callback)(part).is_break() {
             self.token.cancel();
         }
     }

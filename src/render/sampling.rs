@@ -47,79 +47,79 @@ pub(super) const PASSES: [Range<u32>; 4] = [0..1, 1..4, 4..16, 16..64];
 /// A batch of samples that are traced together, pixel by pixel: rays through one pixel hit the same things more often
 /// than rays through neighbours. All have the same [`footprint_share`].
 #[derive(Clone, Debug)]
-pub(super) struct Run {
+pub(super) struct SampleBatch {
     pub(super) samples: Range<u32>,
     /// Positions of the batch's samples in their pixels, in groups of eight.
-    pub(super) positions: [[Eight; 2]; MOST_RAYS / LANES],
+    pub(super) positions: [[Eight; 2]; MAX_BATCH_RAYS / LANES],
 }
 
 /// Limit on the rays in a batch: their arrays fit the first-level cache.
-pub(super) const MOST_RAYS: usize = 256;
+pub(super) const MAX_BATCH_RAYS: usize = 256;
 
 /// Limit on the samples of one pixel in a batch.
-const MOST_SAMPLES: u32 = 64;
+const MAX_BATCH_SAMPLES: u32 = 64;
 
 /// A range of samples, divided into batches.
-pub(super) struct Runs {
+pub(super) struct SampleBatches {
     samples: Range<u32>,
     /// The first batch. The others are computed again for each tile, which is cheap compared with tracing them.
-    kept: Vec<Run>,
+    kept: Vec<SampleBatch>,
 }
 
-impl Runs {
+impl SampleBatches {
     pub(super) fn of(samples: Range<u32>) -> Self {
-        let kept = cut(samples.clone()).take(PASSES.len()).map(Run::of).collect();
+        let kept = split(samples.clone()).take(PASSES.len()).map(SampleBatch::of).collect();
         Self { samples, kept }
     }
 
     /// Returns the batches in order.
-    pub(super) fn iter(&self) -> impl Iterator<Item = Cow<'_, Run>> {
-        cut(self.samples.clone()).enumerate().map(|(at, samples)| match self.kept.get(at) {
-            Some(run) => Cow::Borrowed(run),
-            None => Cow::Owned(Run::of(samples)),
+    pub(super) fn iter(&self) -> impl Iterator<Item = Cow<'_, SampleBatch>> {
+        split(self.samples.clone()).enumerate().map(|(at, samples)| match self.kept.get(at) {
+            Some(batch) => Cow::Borrowed(batch),
+            None => Cow::Owned(SampleBatch::of(samples)),
         })
     }
 }
 
 /// Divides a range of samples at the ends of passes and by the limit on a batch.
-fn cut(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
+fn split(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
     std::iter::from_fn(move || {
         let Range { start, end } = samples;
         let of_pass = PASSES.iter().map(|pass| pass.end).find(|&end| start < end);
-        samples.start = end.min(of_pass.unwrap_or(end)).min(start.saturating_add(MOST_SAMPLES));
+        samples.start = end.min(of_pass.unwrap_or(end)).min(start.saturating_add(MAX_BATCH_SAMPLES));
         (start < end).then_some(start..samples.start)
     })
 }
 
-impl Run {
+impl SampleBatch {
     pub(super) fn of(samples: Range<u32>) -> Self {
-        let mut run = Self { samples, positions: [[Eight::ZERO; 2]; MOST_RAYS / LANES] };
-        for ray in 0..MOST_RAYS {
-            let (x, y) = sample_position(run.samples.start + (ray % run.each()) as u32);
-            let [all_x, all_y] = &mut run.positions[ray / LANES];
+        let mut batch = Self { samples, positions: [[Eight::ZERO; 2]; MAX_BATCH_RAYS / LANES] };
+        for ray in 0..MAX_BATCH_RAYS {
+            let (x, y) = sample_position(batch.samples.start + (ray % batch.per_pixel()) as u32);
+            let [all_x, all_y] = &mut batch.positions[ray / LANES];
             (all_x.0[ray % LANES], all_y.0[ray % LANES]) = (x, y);
         }
-        run
+        batch
     }
 
     /// Returns the number of samples per pixel.
-    pub(super) fn each(&self) -> usize {
+    pub(super) fn per_pixel(&self) -> usize {
         self.samples.len()
     }
 
     /// Divides this many pixels into chunks, each of which makes one batch of rays.
-    pub(super) fn batches(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> {
-        let at_once = MOST_RAYS / self.each();
-        (0..pixels).step_by(at_once).map(move |first| first..pixels.min(first + at_once))
+    pub(super) fn pixel_ranges(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> {
+        let pixels_at_once = MAX_BATCH_RAYS / self.per_pixel();
+        (0..pixels).step_by(pixels_at_once).map(move |first| first..pixels.min(first + pixels_at_once))
     }
 
     /// Writes the pixel of each ray of a batch.
-    pub(super) fn spread(&self, pixels: &[u8], of_rays: &mut Vec<u8>) {
+    pub(super) fn assign_pixels(&self, pixels: &[u8], of_rays: &mut Vec<u8>) {
         of_rays.clear();
-        if self.each() == 1 {
+        if self.per_pixel() == 1 {
             of_rays.extend_from_slice(pixels);
         } else {
-            of_rays.extend(pixels.iter().flat_map(|&pixel| std::iter::repeat_n(pixel, self.each())));
+            of_rays.extend(pixels.iter().flat_map(|&pixel| std::iter::repeat_n(pixel, self.per_pixel())));
         }
     }
 }
@@ -153,20 +153,20 @@ mod tests {
     /// For any range each sample of each pixel is traced exactly once, in order, at its position, and the samples of a
     /// batch stand for the same share of a pixel.
     #[test]
-    fn runs_and_batches_leave_nothing_out() {
+    fn batches_leave_nothing_out() {
         for samples in [0..1, 0..3, 0..16, 1..4, 4..16, 16..64, 0..64, 0..65, 0..300, 5..7] {
             for pixels in [0, 1, 5, 21, 22, 255, 256] {
                 let mut traced = vec![Vec::new(); pixels];
-                for run in Runs::of(samples.clone()).iter() {
-                    let shares = [run.samples.start, run.samples.end - 1].map(footprint_share);
-                    assert_eq!(shares[0], shares[1], "{:?}", run.samples);
-                    for batch in run.batches(pixels) {
+                for batch in SampleBatches::of(samples.clone()).iter() {
+                    let shares = [batch.samples.start, batch.samples.end - 1].map(footprint_share);
+                    assert_eq!(shares[0], shares[1], "{:?}", batch.samples);
+                    for range in batch.pixel_ranges(pixels) {
                         let numbers: Vec<_> = (0..=u8::MAX).take(pixels).collect();
                         let mut of_rays = Vec::new();
-                        run.spread(&numbers[batch], &mut of_rays);
-                        assert!(of_rays.len() <= MOST_RAYS, "{samples:?} of {pixels} pixels");
+                        batch.assign_pixels(&numbers[range], &mut of_rays);
+                        assert!(of_rays.len() <= MAX_BATCH_RAYS, "{samples:?} of {pixels} pixels");
                         for (ray, &pixel) in of_rays.iter().enumerate() {
-                            let [x, y] = &run.positions[ray / LANES];
+                            let [x, y] = &batch.positions[ray / LANES];
                             traced[usize::from(pixel)].push((x.0[ray % LANES], y.0[ray % LANES]));
                         }
                     }

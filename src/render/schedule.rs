@@ -2,8 +2,8 @@
 
 use super::Cost;
 use super::report::Report;
-use super::sampling::{Run, Runs};
-use super::steps::{Buffers, Shot, Unit};
+use super::sampling::{SampleBatch, SampleBatches};
+use super::steps::{Buffers, ProgressUnit, RenderJob};
 use crate::progress::{Cancellation, Cancelled};
 use crate::threads;
 use std::ops::Range;
@@ -24,7 +24,7 @@ pub enum Executor<'a> {
 }
 
 /// Predicted time up to which the calling thread traces alone: waking another one takes 16 us, and 80 us after a pause.
-const SHORT: Duration = Duration::from_micros(300);
+const SINGLE_THREAD_TIME: Duration = Duration::from_micros(300);
 
 impl Executor<'_> {
     pub(super) fn is_cancelled(self) -> bool {
@@ -41,11 +41,11 @@ impl Executor<'_> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(traced) }
     }
 
-    /// Traces each tile of a shot on one of the threads, each of which reuses its buffers: `trace` gets the tile and
+    /// Traces each tile of a job on one of the threads, each of which reuses its buffers: `trace` gets the tile and
     /// its part of the result. Returns the cost.
     pub(super) fn trace<T: Send>(
         self,
-        shot: &Shot<'_>,
+        job: &RenderJob<'_>,
         parts: Vec<T>,
         trace: impl Fn(&mut Tile<'_>, T) + Send + Sync,
     ) -> Cost {
@@ -53,25 +53,25 @@ impl Executor<'_> {
             if self.is_cancelled() {
                 return Cost::default();
             }
-            shot.tiles.inside(number, &mut buffers.wanted);
-            let mut tile = Tile { executor: self, shot, number, buffers, cost: Cost::default() };
+            job.tiles.pixels_in_picture(number, &mut buffers.active);
+            let mut tile = Tile { executor: self, job, number, buffers, cost: Cost::default() };
             trace(&mut tile, part);
-            if let (Self::Reporting(report), Unit::Tile(units)) = (self, shot.unit) {
+            if let (Self::Reporting(report), ProgressUnit::Tile(units)) = (self, job.unit) {
                 report.add(units);
             }
             tile.cost
         };
         let (start, count) = (Instant::now(), parts.len() as u32);
-        let is_short = |done: u32| start.elapsed() * count < SHORT * done;
-        let mut is_alone = matches!(self, Self::CurrentThread);
+        let is_short = |done: u32| start.elapsed() * count < SINGLE_THREAD_TIME * done;
+        let mut is_single_threaded = matches!(self, Self::CurrentThread);
         let mut tiles = parts.into_iter().enumerate();
         let (mut buffers, mut costs) = (Buffers::default(), Vec::with_capacity(tiles.len()));
         for (done, tile) in (1..).zip(tiles.by_ref()) {
             costs.push(work(&mut buffers, tile));
-            if !is_alone && !is_short(done) {
+            if !is_single_threaded && !is_short(done) {
                 // Queried late, because it may start rayon's global pool.
-                is_alone = threads::count() == 1;
-                if !is_alone {
+                is_single_threaded = threads::count() == 1;
+                if !is_single_threaded {
                     break;
                 }
             }
@@ -87,10 +87,10 @@ impl Executor<'_> {
     }
 }
 
-/// A tile of a shot on the thread that traces it.
+/// A tile of a job on the thread that traces it.
 pub(super) struct Tile<'t> {
     executor: Executor<'t>,
-    shot: &'t Shot<'t>,
+    job: &'t RenderJob<'t>,
     /// Its index.
     pub(super) number: usize,
     pub(super) buffers: &'t mut Buffers,
@@ -100,19 +100,23 @@ pub(super) struct Tile<'t> {
 impl Tile<'_> {
     /// Traces samples of the active pixels, and calls `sink` after each batch with the buffers, the batch, and the
     /// range of its pixels among the active ones, until the executor is cancelled.
-    pub(super) fn trace(&mut self, runs: &Runs, mut sink: impl FnMut(&mut Buffers, &Run, Range<usize>)) {
-        let Self { executor, shot, number, ref mut buffers, ref mut cost } = *self;
+    pub(super) fn trace(
+        &mut self,
+        batches: &SampleBatches,
+        mut sink: impl FnMut(&mut Buffers, &SampleBatch, Range<usize>),
+    ) {
+        let Self { executor, job, number, ref mut buffers, ref mut cost } = *self;
         let start = Instant::now();
-        'runs: for run in runs.iter() {
-            for batch in run.batches(buffers.wanted.len()) {
+        'batches: for batch in batches.iter() {
+            for range in batch.pixel_ranges(buffers.active.len()) {
                 if executor.is_cancelled() {
-                    break 'runs;
+                    break 'batches;
                 }
-                cost.rays += buffers.trace(shot, number, &run, batch.clone());
-                let pixels = batch.len();
-                sink(buffers, &run, batch);
-                if let (Executor::Reporting(report), Unit::Ray) = (executor, shot.unit) {
-                    report.add((pixels * run.each()) as u64);
+                cost.rays += buffers.trace(job, number, &batch, range.clone());
+                let pixels = range.len();
+                sink(buffers, &batch, range);
+                if let (Executor::Reporting(report), ProgressUnit::Ray) = (executor, job.unit) {
+                    report.add((pixels * batch.per_pixel()) as u64);
                 }
             }
         }

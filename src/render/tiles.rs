@@ -4,7 +4,7 @@
 //! group's eye rays are the eight lanes of a vector, and a square's are a packet. Multiple samples of a pixel are
 //! consecutive.
 
-use super::sampling::{Run, footprint_share};
+use super::sampling::{SampleBatch, footprint_share};
 use crate::camera::{Camera, EyeRays};
 use crate::framebuffer::Resolution;
 use crate::lanes::{ALL, Eight, LANES, Lanes, Number, Vector};
@@ -42,19 +42,19 @@ impl Tiles {
         resolution.width().div_ceil(SIDE) as usize * resolution.height().div_ceil(SIDE) as usize
     }
 
-    fn across(&self) -> u32 {
+    fn tiles_per_row(&self) -> u32 {
         self.columns.div_ceil(SIDE)
     }
 
     /// Returns the number of tiles.
     pub(super) fn count(&self) -> usize {
-        self.across() as usize * self.rows.div_ceil(SIDE) as usize
+        self.tiles_per_row() as usize * self.rows.div_ceil(SIDE) as usize
     }
 
     /// Returns the upper left pixel of a tile.
     fn corner(&self, tile: usize) -> [u32; 2] {
         let tile = tile as u32;
-        [tile % self.across() * SIDE, tile / self.across() * SIDE]
+        [tile % self.tiles_per_row() * SIDE, tile / self.tiles_per_row() * SIDE]
     }
 
     /// Splits a picture's pixels by tiles: each gets its part of every row that it covers.
@@ -62,7 +62,7 @@ impl Tiles {
         let side = (SIDE * self.scale) as usize;
         let mut tiles: Vec<_> = (0..self.count()).map(|_| Vec::with_capacity(side)).collect();
         for (y, row) in pixels.chunks_mut(self.resolution.width().max(1) as usize).enumerate() {
-            let first = y / side * self.across() as usize;
+            let first = y / side * self.tiles_per_row() as usize;
             for (tile, part) in tiles[first..].iter_mut().zip(row.chunks_mut(side)) {
                 tile.push(part);
             }
@@ -72,10 +72,10 @@ impl Tiles {
 
     /// Writes the values of a tile's pixels, given by their index in the tile, to the tile's part of a picture; pixels
     /// outside are skipped.
-    pub(super) fn show<T: Copy>(&self, pixels: &[u8], shown: impl Fn(usize) -> T, part: &mut [&mut [T]]) {
+    pub(super) fn write_all<T: Copy>(&self, pixels: &[u8], shown: impl Fn(usize) -> T, part: &mut [&mut [T]]) {
         if pixels.len() == PIXELS && self.scale == 1 {
             // The same as below row by row, but four neighbours at a time.
-            for (row, pixels) in part.iter_mut().zip(&IN_ROW) {
+            for (row, pixels) in part.iter_mut().zip(&PIXELS_BY_ROW) {
                 let (fours, rest) = row.as_chunks_mut::<4>();
                 let left = &pixels[4 * fours.len()..];
                 for (four, &[first, ..]) in fours.iter_mut().zip(pixels.as_chunks::<4>().0) {
@@ -87,50 +87,50 @@ impl Tiles {
             return;
         }
         for (at, &pixel) in pixels.iter().enumerate() {
-            self.put(pixel, shown(at), part);
+            self.write(pixel, shown(at), part);
         }
     }
 
     /// Writes the value of one pixel.
-    pub(super) fn put<T: Copy>(&self, pixel: u8, shown: T, part: &mut [&mut [T]]) {
+    pub(super) fn write<T: Copy>(&self, pixel: u8, shown: T, part: &mut [&mut [T]]) {
         let scale = self.scale as usize;
-        let [x, y] = in_tile(pixel.into()).map(|at| at as usize * scale);
+        let [x, y] = coordinates(pixel.into()).map(|at| at as usize * scale);
         for row in part.iter_mut().skip(y).take(scale) {
             row.iter_mut().skip(x).take(scale).for_each(|place| *place = shown);
         }
     }
 
     /// Returns a pixel's column and its neighbours, and the same for its row; `None` outside the picture.
-    pub(super) fn around(&self, tile: usize, pixel: usize) -> [Range<u32>; 2] {
-        let ([left, top], [x, y]) = (self.corner(tile), in_tile(pixel));
+    pub(super) fn neighbourhood(&self, tile: usize, pixel: usize) -> [Range<u32>; 2] {
+        let ([left, top], [x, y]) = (self.corner(tile), coordinates(pixel));
         let beside = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
         [beside(left + x, self.columns), beside(top + y, self.rows)]
     }
 
     /// Returns the tile of a pixel and the pixel's index in it.
-    pub(super) fn at(&self, [x, y]: [u32; 2]) -> (usize, usize) {
-        let tile = y / SIDE * self.across() + x / SIDE;
-        (tile as usize, IN_ROW[(y % SIDE) as usize][(x % SIDE) as usize].into())
+    pub(super) fn locate(&self, [x, y]: [u32; 2]) -> (usize, usize) {
+        let tile = y / SIDE * self.tiles_per_row() + x / SIDE;
+        (tile as usize, PIXELS_BY_ROW[(y % SIDE) as usize][(x % SIDE) as usize].into())
     }
 
     /// Returns the indices of a tile's pixels that are in the picture.
-    pub(super) fn inside(&self, tile: usize, pixels: &mut Vec<u8>) {
+    pub(super) fn pixels_in_picture(&self, tile: usize, pixels: &mut Vec<u8>) {
         pixels.clear();
         pixels.extend_from_slice(&ALL_PIXELS);
         let [left, top] = self.corner(tile);
         let [right, bottom] = [self.columns - left, self.rows - top];
         if right < SIDE || bottom < SIDE {
             pixels.retain(|&pixel| {
-                let [x, y] = in_tile(pixel.into());
+                let [x, y] = coordinates(pixel.into());
                 x < right && y < bottom
             });
         }
     }
 
     /// Computes the eye rays of a batch, one for each of these pixels of the tile.
-    pub(super) fn make_eye_rays(&self, tile: usize, pixels: &[u8], run: &Run, rays: &mut Vec<EightRays>) {
+    pub(super) fn make_eye_rays(&self, tile: usize, pixels: &[u8], batch: &SampleBatch, rays: &mut Vec<EightRays>) {
         rays.clear();
-        simd::run(MakeEyeRays { tiles: self, tile, pixels, run, rays });
+        simd::run(MakeEyeRays { tiles: self, tile, pixels, batch, rays });
     }
 
     /// Returns the position of a sample in the picture: the lecture's (qu, qv), with (0, 0) at the lower left corner.
@@ -162,17 +162,17 @@ pub(super) static ALL_PIXELS: [u8; PIXELS] = {
 };
 
 /// Returns the column and row of a pixel in its tile.
-pub(super) const fn in_tile(pixel: usize) -> [u32; 2] {
+pub(super) const fn coordinates(pixel: usize) -> [u32; 2] {
     let at = pixel as u32;
     [at & 3 | (at >> 3 & 1) << 2 | (at >> 6 & 1) << 3, at >> 2 & 1 | (at >> 4 & 3) << 1 | (at >> 7 & 1) << 3]
 }
 
 /// The columns and rows of all pixels in a tile, as floats.
-static IN_TILE: [[f32; PIXELS]; 2] = {
+static PIXEL_COORDINATES: [[f32; PIXELS]; 2] = {
     let mut all = [[0.0; PIXELS]; 2];
     let mut pixel = 0;
     while pixel < PIXELS {
-        let [x, y] = in_tile(pixel);
+        let [x, y] = coordinates(pixel);
         (all[0][pixel], all[1][pixel]) = (x as f32, y as f32);
         pixel += 1;
     }
@@ -180,11 +180,11 @@ static IN_TILE: [[f32; PIXELS]; 2] = {
 };
 
 /// Returns the pixels of a tile row by row.
-static IN_ROW: [[u8; SIDE as usize]; SIDE as usize] = {
+static PIXELS_BY_ROW: [[u8; SIDE as usize]; SIDE as usize] = {
     let mut rows = [[0; SIDE as usize]; SIDE as usize];
     let mut pixel = 0;
     while pixel < PIXELS {
-        let [x, y] = in_tile(pixel);
+        let [x, y] = coordinates(pixel);
         rows[y as usize][x as usize] = pixel as u8;
         pixel += 1;
     }
@@ -195,7 +195,7 @@ struct MakeEyeRays<'w> {
     tiles: &'w Tiles,
     tile: usize,
     pixels: &'w [u8],
-    run: &'w Run,
+    batch: &'w SampleBatch,
     rays: &'w mut Vec<EightRays>,
 }
 
@@ -204,16 +204,16 @@ impl Work for MakeEyeRays<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) {
-        let Self { tiles, tile, pixels, run, rays } = self;
+        let Self { tiles, tile, pixels, batch, rays } = self;
         let eye_rays = &tiles.eye_rays;
         let [left, top] = tiles.corner(tile).map(|at| N::splat(at as f32));
         let origin = Vector::splat(eye_rays.eye());
-        for (pixels, &[mut sx, mut sy]) in pixels.chunks(LANES).zip(&run.positions) {
+        for (pixels, &[mut sx, mut sy]) in pixels.chunks(LANES).zip(&batch.positions) {
             let [mut x, mut y] = [Eight::ZERO; 2];
             let last = pixels.len() - 1;
             for lane in 0..LANES {
                 let pixel = usize::from(pixels[lane.min(last)]);
-                (x.0[lane], y.0[lane]) = (IN_TILE[0][pixel], IN_TILE[1][pixel]);
+                (x.0[lane], y.0[lane]) = (PIXEL_COORDINATES[0][pixel], PIXEL_COORDINATES[1][pixel]);
             }
             for lane in pixels.len()..LANES {
                 (sx.0[lane], sy.0[lane]) = (sx.0[last], sy.0[last]);

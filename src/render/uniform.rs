@@ -1,7 +1,7 @@
 //! Uniform sampling: the same number of samples for each pixel.
 
-use super::sampling::{MOST_RAYS, Run, Runs};
-use super::steps::{Buffers, Goal, Shot};
+use super::sampling::{MAX_BATCH_RAYS, SampleBatch, SampleBatches};
+use super::steps::{Buffers, RenderJob, Stage};
 use super::tiles::{PIXELS, Tiles};
 use super::{Executor, Rendered};
 use crate::framebuffer::Framebuffer;
@@ -14,20 +14,20 @@ use std::ops::Range;
 pub(super) fn render(executor: Executor<'_>, scene: &Scene, tiles: &Tiles, samples: u32) -> Rendered {
     let mut framebuffer = Framebuffer::new(tiles.resolution);
     let parts = tiles.split(framebuffer.pixels_mut());
-    let (runs, share) = (Runs::of(0..samples), 1.0 / samples as f32);
-    let cost = executor.trace(&Shot::new(scene, tiles, Goal::Reflected), parts, |tile, mut part| {
+    let (batches, share) = (SampleBatches::of(0..samples), 1.0 / samples as f32);
+    let cost = executor.trace(&RenderJob::new(scene, tiles, Stage::Reflected), parts, |tile, mut part| {
         let mut sums = [[Eight::ZERO; 3]; PIXELS / LANES];
-        tile.trace(&runs, |buffers, run, pixels| add_lights(&mut sums, buffers, run, pixels));
-        tiles.show(&tile.buffers.wanted, |at| shade::light_of(&sums[at / LANES], at % LANES) * share, &mut part);
+        tile.trace(&batches, |buffers, batch, pixels| add_lights(&mut sums, buffers, batch, pixels));
+        tiles.write_all(&tile.buffers.active, |at| shade::light_of(&sums[at / LANES], at % LANES) * share, &mut part);
     });
     Rendered { framebuffer, cost }
 }
 
 /// Adds the light of a batch to the sums of its pixels, for each pixel in the order of its samples.
-fn add_lights(sums: &mut [EightLights], buffers: &Buffers, run: &Run, pixels: Range<usize>) {
-    let each = run.each();
-    if each == 1 {
-        const { assert!(PIXELS <= MOST_RAYS, "one sample of each pixel is one batch") };
+fn add_lights(sums: &mut [EightLights], buffers: &Buffers, batch: &SampleBatch, pixels: Range<usize>) {
+    let per_pixel = batch.per_pixel();
+    if per_pixel == 1 {
+        const { assert!(PIXELS <= MAX_BATCH_RAYS, "one sample of each pixel is one batch") };
         for (sums, lights) in sums.iter_mut().zip(&buffers.lights) {
             for (sum, &light) in sums.iter_mut().zip(lights) {
                 *sum = *sum + light;
@@ -35,9 +35,9 @@ fn add_lights(sums: &mut [EightLights], buffers: &Buffers, run: &Run, pixels: Ra
         }
         return;
     }
-    for (band, lights) in buffers.bands().iter().enumerate() {
-        for (pixel, lights) in pixels.clone().zip(lights.chunks_exact(each)) {
-            let sum = &mut sums[pixel / LANES][band].0[pixel % LANES];
+    for (channel, lights) in buffers.channels().iter().enumerate() {
+        for (pixel, lights) in pixels.clone().zip(lights.chunks_exact(per_pixel)) {
+            let sum = &mut sums[pixel / LANES][channel].0[pixel % LANES];
             *sum = lights.iter().fold(*sum, |sum, light| sum + light);
         }
     }

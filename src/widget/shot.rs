@@ -6,7 +6,7 @@ use crate::framebuffer::{Resolution, ResolutionError};
 use crate::grid::Size;
 use crate::maps::{self, Map};
 use crate::progress::{Cancellation, Cancelled};
-use crate::render::{Executor, Refining, Sampling};
+use crate::render::{Executor, ProgressiveRender, Sampling};
 use crate::scene::Scene;
 use crate::tone::{Picture, tone};
 use ratatui_core::buffer::Buffer;
@@ -95,11 +95,11 @@ impl Tracer {
         let Shot { scene, camera, options, .. } = &shot;
         let Some(samples) = shot.refined_to() else {
             let Options { map, sampling, .. } = *options;
-            let seen = maps::seen(map, Executor::Cancellable(token), scene, camera, shot.resolution, sampling)?;
+            let seen = maps::trace(map, Executor::Cancellable(token), scene, camera, shot.resolution, sampling)?;
             deliver(self.shown(shot, &seen.picture, true));
             return Ok(());
         };
-        let mut picture = Refining::new(camera, shot.resolution);
+        let mut picture = ProgressiveRender::new(camera, shot.resolution);
         for (samples, is_final) in [(NonZeroU32::MIN, false), (samples, true)] {
             picture.refine_or_cancel(token, scene, samples)?;
             deliver(self.shown(shot.clone(), &tone(&picture.framebuffer(), scene), is_final));

@@ -6,7 +6,7 @@
 use std::num::NonZeroU32;
 use std::path::Path;
 use termtrace::internals::hit::closest_hit;
-use termtrace::internals::maps::{self, picture, seen};
+use termtrace::internals::maps::{self, picture};
 use termtrace::internals::render::Executor;
 use termtrace::internals::shape::{Side, Surface};
 use termtrace::internals::{cell, shade};
@@ -65,7 +65,7 @@ fn every_map_has_the_same_bytes_everywhere() {
                 hash(&pool.install(|| picture(map, &scene, scene.camera(), resolution, ONE)))
             };
             let [one, two, seven] = [1, 2, 7].map(made);
-            let alone = seen(map, Executor::CurrentThread, &scene, scene.camera(), resolution, ONE.into())
+            let alone = maps::trace(map, Executor::CurrentThread, &scene, scene.camera(), resolution, ONE.into())
                 .expect("it has no token");
             assert!(one == two && one == seven && one == hash(&alone.picture), "{name} {map:?}");
             assert!(!found.contains(&one), "{name} {map:?} looks as another map");

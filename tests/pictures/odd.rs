@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use termtrace::internals::material::Checker;
 use termtrace::internals::mesh_file::MeshFile;
-use termtrace::internals::render::Refining;
+use termtrace::internals::render::ProgressiveRender;
 use termtrace::internals::{cell, control, maps, record};
 use termtrace::{
     Camera, CameraPath, Cell, CellMode, Encoder, EncoderBackend, Framebuffer, Grid, LinearRgb, Map, Material, Picture,
@@ -128,7 +128,7 @@ fn renders() -> Vec<Case> {
             made(Render::new(&scene()).resolution(Resolution::square(8, 8)).threads(usize::MAX).run())
         }),
         ("refine 0x0", With("0"), || {
-            Refining::new(&camera(), Resolution::square(0, 0)).framebuffer().pixels().len().to_string()
+            ProgressiveRender::new(&camera(), Resolution::square(0, 0)).framebuffer().pixels().len().to_string()
         }),
         ("no objects", With("16"), || shot(&empty(), Resolution::square(4, 4))),
         ("no light from an exposure near 0", With("16"), || {

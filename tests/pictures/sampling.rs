@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use termtrace::internals::material::Checker;
 use termtrace::internals::progress::Cancellation;
-use termtrace::internals::render::{Executor, Refining, render_by};
+use termtrace::internals::render::{Executor, ProgressiveRender, render_by};
 use termtrace::{
     Camera, Cancelled, Framebuffer, LinearRgb, Material, Object, Plane, Pose, Resolution, Sampling, Scene,
     ViewRectangle, render, tone,
@@ -40,7 +40,7 @@ fn the_steps_of_a_refinement_do_not_show() {
     for (path, scene) in shipped() {
         let at_once = render(&scene, scene.camera(), SIZE, Sampling::BEST).hash();
         for steps in [&[1, 4, 16, 64][..], &[4, 64], &[1, 2, 3, 17, 63, 64], &[16, 16, 64, 64]] {
-            let mut picture = Refining::new(scene.camera(), SIZE);
+            let mut picture = ProgressiveRender::new(scene.camera(), SIZE);
             for &step in steps {
                 picture.refine_or_cancel(&Cancellation::default(), &scene, samples(step)).unwrap();
             }
@@ -124,7 +124,7 @@ fn a_coarse_picture_is_made_of_blocks() {
 #[test]
 fn a_refinement_can_be_given_up() {
     let (_, scene) = shipped().next().expect("there are scenes");
-    let mut picture = Refining::new(scene.camera(), SIZE);
+    let mut picture = ProgressiveRender::new(scene.camera(), SIZE);
     let token = Cancellation::default();
     token.cancel();
     assert_eq!(picture.refine_or_cancel(&token, &scene, samples(64)), Err(Cancelled));

@@ -1,7 +1,7 @@
 //! The steps for a single pixel, with the values between them.
 
-use super::sampling::{Run, sample_position};
-use super::steps::{Buffers, Goal, Shot};
+use super::sampling::{SampleBatch, sample_position};
+use super::steps::{Buffers, RenderJob, Stage};
 use super::tiles::Tiles;
 use crate::camera::Camera;
 use crate::color::LinearRgb;
@@ -15,7 +15,7 @@ use glam::Vec2;
 
 /// The values of the steps of [`render`](super::render) for the first sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Steps {
+pub struct PixelTrace {
     /// The lecture's (qu, qv): the sample's position in the picture, from (0, 0) at the lower left corner to (1, 1) at
     /// the upper right one.
     pub q: Vec2,
@@ -57,18 +57,18 @@ impl Scene {
 ///
 /// # Panics
 /// Outside the picture.
-pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y]: [u32; 2]) -> Steps {
+pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y]: [u32; 2]) -> PixelTrace {
     assert!(x < resolution.width() && y < resolution.height(), "pixel ({x}, {y}) is outside the picture");
     let tiles = Tiles::new(camera, resolution, 1);
-    let (tile, pixel) = tiles.at([x, y]);
-    let (shot, run) = (Shot::new(scene, &tiles, Goal::Reflected), Run::of(0..1));
-    let mut buffers = Buffers { wanted: vec![pixel as u8], ..Buffers::default() };
-    buffers.trace(&shot, tile, &run, 0..1);
+    let (tile, pixel) = tiles.locate([x, y]);
+    let (job, batch) = (RenderJob::new(scene, &tiles, Stage::Reflected), SampleBatch::of(0..1));
+    let mut buffers = Buffers { active: vec![pixel as u8], ..Buffers::default() };
+    buffers.trace(&job, tile, &batch, 0..1);
     let [arriving, light] = [&buffers.arriving[0].light, &buffers.lights[0]].map(|lights| shade::light_of(lights, 0));
     // The reflectance is the reflected light where the arriving light is 1.
     buffers.arriving[0].light = [Eight([1.0; LANES]); 3];
-    buffers.reflect(&shot, &run);
-    Steps {
+    buffers.reflect(&job, &batch);
+    PixelTrace {
         q: tiles.q([x as f32, y as f32], sample_position(0).into()).into(),
         ray: buffers.rays[0].ray(0),
         hit: buffers.hits[0].hit(scene, 0),

@@ -1,7 +1,7 @@
 //! G-buffers: the hits of the rays through a picture's pixels, for pictures of something other than light.
 
-use super::sampling::Runs;
-use super::steps::{Buffers, Goal, Shot};
+use super::sampling::SampleBatches;
+use super::steps::{Buffers, RenderJob, Stage};
 use super::tiles::Tiles;
 use super::{Cost, Executor, Sampling};
 use crate::camera::Camera;
@@ -15,7 +15,7 @@ use crate::shape::{Surface, SurfacePoint};
 
 /// The depth of tracing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
+pub enum TraceDepth {
     /// To the closest hits.
     Surfaces,
     /// To the lights as well.
@@ -24,7 +24,7 @@ pub enum Reach {
 
 /// The G-buffer sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub struct GBufferSample {
     /// The eye ray.
     pub ray: Ray,
     /// The closest hit.
@@ -34,7 +34,7 @@ pub struct Sight {
     pub lit_by: u32,
 }
 
-impl Sight {
+impl GBufferSample {
     /// Returns the surface point of the hit.
     pub fn surface(&self, scene: &Scene) -> Option<SurfacePoint> {
         self.hit.map(|hit| hit.surface(scene).at_crossing(&self.ray, hit.t))
@@ -43,7 +43,7 @@ impl Sight {
 
 /// The results for all pixels, and their cost.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sighted<T> {
+pub struct PixelValues<T> {
     /// One result per pixel, row by row from the top.
     pub pixels: Vec<T>,
     /// The cost.
@@ -55,43 +55,45 @@ pub struct Sighted<T> {
 ///
 /// # Errors
 /// [`Cancelled`], if the executor's token is cancelled.
-pub fn sights<T: Copy + Default + Send>(
+pub fn trace_g_buffer<T: Copy + Default + Send>(
     executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
-    reach: Reach,
-    see: impl Fn(&Sight) -> T + Sync,
-) -> Result<Sighted<T>, Cancelled> {
-    executor.finish(all_sights(executor, scene, camera, resolution, sampling, reach, see))
+    depth: TraceDepth,
+    see: impl Fn(&GBufferSample) -> T + Sync,
+) -> Result<PixelValues<T>, Cancelled> {
+    executor.finish(trace_g_buffer_partial(executor, scene, camera, resolution, sampling, depth, see))
 }
 
-/// Traces as [`sights`] does; after a cancel the rest is skipped.
-pub(crate) fn all_sights<T: Copy + Default + Send>(
+/// Traces as [`trace_g_buffer`] does; after a cancel the rest is skipped.
+pub(crate) fn trace_g_buffer_partial<T: Copy + Default + Send>(
     executor: Executor<'_>,
     scene: &Scene,
     camera: &Camera,
     resolution: Resolution,
     sampling: Sampling,
-    reach: Reach,
-    see: impl Fn(&Sight) -> T + Sync,
-) -> Sighted<T> {
+    depth: TraceDepth,
+    see: impl Fn(&GBufferSample) -> T + Sync,
+) -> PixelValues<T> {
     let scale = if sampling == Sampling::Coarse { 2 } else { 1 };
     let tiles = Tiles::new(camera, resolution, scale);
-    let goal = if reach == Reach::Lights { Goal::Arriving } else { Goal::Hits };
-    let runs = Runs::of(0..1);
+    let last_stage = if depth == TraceDepth::Lights { Stage::Arriving } else { Stage::Hits };
+    let batches = SampleBatches::of(0..1);
     let mut pixels = vec![T::default(); resolution.pixel_count()];
-    let cost = executor.trace(&Shot::new(scene, &tiles, goal), tiles.split(&mut pixels), |tile, mut part| {
-        tile.trace(&runs, |Buffers { pixels, rays, hits, arriving, .. }, _, _| {
-            for (group, pixels) in pixels.chunks(LANES).enumerate() {
-                for (lane, &pixel) in pixels.iter().enumerate() {
-                    let lit_by = arriving.get(group).map_or(0, |arriving| arriving.lit_by[lane]);
-                    let sight = Sight { ray: rays[group].ray(lane), hit: hits[group].hit(scene, lane), lit_by };
-                    tiles.put(pixel, see(&sight), &mut part);
+    let cost =
+        executor.trace(&RenderJob::new(scene, &tiles, last_stage), tiles.split(&mut pixels), |tile, mut part| {
+            tile.trace(&batches, |Buffers { pixels, rays, hits, arriving, .. }, _, _| {
+                for (group, pixels) in pixels.chunks(LANES).enumerate() {
+                    for (lane, &pixel) in pixels.iter().enumerate() {
+                        let lit_by = arriving.get(group).map_or(0, |arriving| arriving.lit_by[lane]);
+                        let sample =
+                            GBufferSample { ray: rays[group].ray(lane), hit: hits[group].hit(scene, lane), lit_by };
+                        tiles.write(pixel, see(&sample), &mut part);
+                    }
                 }
-            }
+            });
         });
-    });
-    Sighted { pixels, cost }
+    PixelValues { pixels, cost }
 }

@@ -5,45 +5,45 @@ use glam::Vec3;
 
 /// The first sample of a pixel.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct First {
+pub(super) struct FirstSample {
     pub(super) light: LinearRgb,
     /// The object's number, from 1; 0 for none.
     object: u32,
-    facing: Vec3,
+    normal: Vec3,
     lit_by: u32,
 }
 
-impl First {
+impl FirstSample {
     /// Returns the sample with this light, from an object with its normal or from none, and the lights that reach it.
     pub(super) fn new(light: LinearRgb, surface: Option<(u32, Vec3)>, lit_by: u32) -> Self {
-        let (object, facing) = surface.map_or((0, Vec3::ZERO), |(object, normal)| (object + 1, normal));
-        Self { light, object, facing, lit_by }
+        let (object, normal) = surface.map_or((0, Vec3::ZERO), |(object, normal)| (object + 1, normal));
+        Self { light, object, normal, lit_by }
     }
 
     /// Returns whether an edge may run between two pixels: of an object, a shadow, a pattern, or a surface that bends
     /// by more than 22.5 degrees. `white` is the light that is displayed as white.
     pub(super) fn is_edge_to(&self, other: &Self, white: f32) -> bool {
-        const BEND: f32 = 0.92;
+        const MIN_NORMAL_COSINE: f32 = 0.92;
         self.object != other.object
             || self.lit_by != other.lit_by
-            || self.object != 0 && self.facing.dot(other.facing) < BEND
-            || is_contrast(self.light, other.light, VISIBLE, white)
+            || self.object != 0 && self.normal.dot(other.normal) < MIN_NORMAL_COSINE
+            || differ(self.light, other.light, EDGE_CONTRAST, white)
     }
 }
 
 /// The accumulator of a pixel's samples, with the data that tell whether it needs more.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Watched {
+pub(super) struct Accumulator {
     /// The sum of the samples.
     light: LinearRgb,
     count: u32,
-    /// The least and the greatest light of the first samples, at most [`MANY`], per channel.
+    /// The least and the greatest light of the first samples, at most [`RANGE_SAMPLES`], per channel.
     range: [LinearRgb; 2],
 }
 
-impl Watched {
+impl Accumulator {
     /// Returns an accumulator with one sample.
-    pub(super) fn new(first: &First) -> Self {
+    pub(super) fn new(first: &FirstSample) -> Self {
         let mut range = [f32::INFINITY, f32::NEG_INFINITY].map(LinearRgb::grey);
         widen(&mut range, first.light);
         Self { light: first.light, count: 1, range }
@@ -54,7 +54,7 @@ impl Watched {
         let lights = || r.iter().zip(g).zip(b).map(|((&r, &g), &b)| LinearRgb::new(r, g, b));
         lights().for_each(|light| self.light += light);
         // After that many samples the range is no longer needed.
-        if self.count < MANY {
+        if self.count < RANGE_SAMPLES {
             lights().for_each(|light| widen(&mut self.range, light));
         }
         self.count += r.len() as u32;
@@ -66,13 +66,13 @@ impl Watched {
     }
 
     /// Returns whether there is more than one sample.
-    pub(super) fn is_at_edge(&self) -> bool {
+    pub(super) fn is_refined(&self) -> bool {
         self.count > 1
     }
 
     /// Returns whether the samples differ so much that their mean is uncertain.
-    pub(super) fn is_rough(&self, white: f32) -> bool {
-        is_contrast(self.range[0], self.range[1], UNSURE, white)
+    pub(super) fn is_noisy(&self, white: f32) -> bool {
+        differ(self.range[0], self.range[1], NOISE_CONTRAST, white)
     }
 }
 
@@ -87,17 +87,19 @@ fn widen([least, most]: &mut [LinearRgb; 2], light: LinearRgb) {
 }
 
 /// Relative difference of neighbours that is visible as an edge.
-const VISIBLE: f32 = 0.05;
+const EDGE_CONTRAST: f32 = 0.05;
 
 /// Number of samples that decide whether more are needed.
-const MANY: u32 = 16;
+const RANGE_SAMPLES: u32 = 16;
 
 /// Relative difference among that many samples at which the mean may be off by a visible amount.
-const UNSURE: f32 = 0.2;
+const NOISE_CONTRAST: f32 = 0.2;
 
 /// Returns whether two lights differ by this share of the greater one in a channel, and by more than is visible in the
 /// dark.
-fn is_contrast(a: LinearRgb, b: LinearRgb, share: f32, white: f32) -> bool {
-    const DARK: f32 = 0.005;
-    [(a.r, b.r), (a.g, b.g), (a.b, b.b)].into_iter().any(|(a, b)| (a - b).abs() > share * a.max(b) + DARK * white)
+fn differ(a: LinearRgb, b: LinearRgb, share: f32, white: f32) -> bool {
+    const MIN_CONTRAST: f32 = 0.005;
+    [(a.r, b.r), (a.g, b.g), (a.b, b.b)]
+        .into_iter()
+        .any(|(a, b)| (a - b).abs() > share * a.max(b) + MIN_CONTRAST * white)
 }

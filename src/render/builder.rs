@@ -1,7 +1,7 @@
 //! The builder of a render.
 
 use super::report::Report;
-use super::{Executor, Sampling, render_all, units};
+use super::{Executor, Sampling, render_partial, units};
 use crate::camera::Camera;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::progress::{Cancellation, Cancelled};
@@ -11,7 +11,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 /// A receiver of progress reports: the part of the work done, from 0 to 1.
-type Hear<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Send + Sync + 'a>;
+type ProgressCallback<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Send + Sync + 'a>;
 
 /// A render of a scene: from its own camera, with 1280 x 720 pixels and [`Sampling::BEST`], on the threads of the
 /// current rayon pool, unless set otherwise.
@@ -41,7 +41,7 @@ pub struct Render<'a> {
     sampling: Sampling,
     threads: Option<usize>,
     token: Cancellation,
-    hear: Option<Hear<'a>>,
+    callback: Option<ProgressCallback<'a>>,
 }
 
 impl fmt::Debug for Render<'_> {
@@ -70,7 +70,7 @@ impl<'a> Render<'a> {
             sampling: Sampling::BEST,
             threads: None,
             token: Cancellation::default(),
-            hear: None,
+            callback: None,
         }
     }
 
@@ -101,11 +101,11 @@ impl<'a> Render<'a> {
         Self { token: token.clone(), ..self }
     }
 
-    /// Reports the part of the work done to `hear`: positive and increasing, at the end 1. Reports come one at a time,
-    /// from any of the threads, at least every 10 ms; the threads wait for `hear`. The render is cancelled when it
+    /// Reports the part of the work done to `callback`: positive and increasing, at the end 1. Reports come one at a time,
+    /// from any of the threads, at least every 10 ms; the threads wait for `callback`. The render is cancelled when it
     /// returns `Break`.
-    pub fn on_progress(self, hear: impl Fn(f32) -> ControlFlow<()> + Send + Sync + 'a) -> Self {
-        Self { hear: Some(Box::new(hear)), ..self }
+    pub fn on_progress(self, callback: impl Fn(f32) -> ControlFlow<()> + Send + Sync + 'a) -> Self {
+        Self { callback: Some(Box::new(callback)), ..self }
     }
 
     /// Renders the picture: the light of [`render`](super::render), to the bit.
@@ -122,16 +122,16 @@ impl<'a> Render<'a> {
 
     /// Renders on the threads of the current rayon pool.
     fn trace(self) -> Result<Framebuffer, Cancelled> {
-        let Self { scene, camera, resolution, sampling, threads: _, token, hear } = self;
+        let Self { scene, camera, resolution, sampling, threads: _, token, callback } = self;
         let render = |executor: Executor<'_>| {
-            executor.finish(render_all(executor, scene, &camera, resolution, sampling).framebuffer)
+            executor.finish(render_partial(executor, scene, &camera, resolution, sampling).framebuffer)
         };
-        let Some(hear) = hear else {
+        let Some(callback) = callback else {
             return render(Executor::Cancellable(&token));
         };
-        let report = Report::new(&hear, token, units(resolution, sampling));
+        let report = Report::new(&callback, token, units(resolution, sampling));
         let framebuffer = render(Executor::Reporting(&report))?;
-        let _ = hear(1.0);
+        let _ = callback(1.0);
         Ok(framebuffer)
     }
 }
@@ -160,18 +160,18 @@ mod tests {
     fn its_light_is_that_of_render_and_its_reports_rise_to_one() {
         let (scene, resolution) = (scene(), Resolution::square(601, 401));
         for sampling in samplings() {
-            let heard = Mutex::new(Vec::new());
-            let hear = |part| {
-                heard.lock().expect("no report panics").push(part);
+            let reports = Mutex::new(Vec::new());
+            let callback = |part| {
+                reports.lock().expect("no report panics").push(part);
                 ControlFlow::Continue(())
             };
-            let picture = Render::new(&scene).resolution(resolution).sampling(sampling).on_progress(hear).run();
+            let picture = Render::new(&scene).resolution(resolution).sampling(sampling).on_progress(callback).run();
             let wanted = render(&scene, scene.camera(), resolution, sampling);
             assert_eq!(picture.expect("nothing cancels it").hash(), wanted.hash(), "{sampling:?}");
-            let heard = heard.into_inner().expect("no report panics");
-            assert!(heard.len() > 50, "{} reports with {sampling:?}", heard.len());
-            assert!(heard.is_sorted_by(|a, b| a < b) && heard[0] > 0.0, "{sampling:?}: {heard:?}");
-            assert!(heard.ends_with(&[1.0]) && heard[heard.len() - 2] > 0.9, "{sampling:?}: {heard:?}");
+            let reports = reports.into_inner().expect("no report panics");
+            assert!(reports.len() > 50, "{} reports with {sampling:?}", reports.len());
+            assert!(reports.is_sorted_by(|a, b| a < b) && reports[0] > 0.0, "{sampling:?}: {reports:?}");
+            assert!(reports.ends_with(&[1.0]) && reports[reports.len() - 2] > 0.9, "{sampling:?}: {reports:?}");
         }
     }
 
@@ -179,15 +179,15 @@ mod tests {
     fn a_break_gives_it_up_and_nothing_more_is_reported() {
         let (scene, resolution) = (scene(), Resolution::square(400, 300));
         for sampling in samplings() {
-            let heard = Mutex::new(0);
-            let hear = |_| {
-                let mut heard = heard.lock().expect("no report panics");
-                *heard += 1;
-                if *heard == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            let reports = Mutex::new(0);
+            let callback = |_| {
+                let mut reports = reports.lock().expect("no report panics");
+                *reports += 1;
+                if *reports == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
-            let render = Render::new(&scene).resolution(resolution).sampling(sampling).on_progress(hear);
+            let render = Render::new(&scene).resolution(resolution).sampling(sampling).on_progress(callback);
             assert_eq!(render.run(), Err(Cancelled), "{sampling:?}");
-            assert_eq!(heard.into_inner().expect("no report panics"), 3, "{sampling:?}");
+            assert_eq!(reports.into_inner().expect("no report panics"), 3, "{sampling:?}");
         }
     }
 
@@ -198,11 +198,11 @@ mod tests {
         let wanted = render(&scene, scene.camera(), resolution, Sampling::BEST).hash();
         for threads in [0, 1, 2, 7] {
             let used = Mutex::new(0);
-            let hear = |_| {
+            let callback = |_| {
                 *used.lock().expect("no report panics") = rayon::current_num_threads();
                 ControlFlow::Continue(())
             };
-            let picture = Render::new(&scene).resolution(resolution).threads(threads).on_progress(hear).run();
+            let picture = Render::new(&scene).resolution(resolution).threads(threads).on_progress(callback).run();
             assert_eq!(picture.expect("nothing cancels it").hash(), wanted, "{threads}");
             assert_eq!(used.into_inner().expect("no report panics"), threads.max(1));
         }
