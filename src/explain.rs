@@ -11,7 +11,7 @@ pub use text::{Name, WIDTH, cell};
 use crate::camera::Camera;
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::{Framebuffer, Resolution};
-use crate::hit::{self, Hit, Test, Witness};
+use crate::hit::{self, Hit, Observer, PrimitiveTest};
 use crate::light::Light;
 use crate::ray::Ray;
 use crate::render::{PixelTrace, trace_pixel};
@@ -114,8 +114,8 @@ impl Lit {
 /// Outside the picture.
 pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u32; 2]) -> Explanation {
     let trace = trace_pixel(scene, camera, resolution, pixel);
-    let mut listener = Listener::default();
-    hit::closest_hit_witnessed(scene, &trace.ray, &mut listener);
+    let mut recorder = TestRecorder::default();
+    hit::closest_hit_observed(scene, &trace.ray, &mut recorder);
     let mut one = Framebuffer::new(Resolution::square(1, 1));
     one.pixels_mut()[0] = trace.light;
     Explanation {
@@ -123,8 +123,8 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
         pixel,
         q: trace.q,
         ray: trace.ray,
-        nodes: listener.nodes,
-        tested: listener.tested(scene, &trace.ray),
+        nodes: recorder.nodes,
+        tested: recorder.tested(scene, &trace.ray),
         seen: trace.hit.map(|hit| seen(scene, &trace, hit)),
         light: trace.light,
         exposure: scene.exposure(),
@@ -151,35 +151,35 @@ fn lit(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lit {
     let incidence = shade::incidence_on_either_side(light, point);
     let ray = shade::shadow_ray(light, point);
     let blocker = (scene.shadows() && 0.0 < incidence.cosine)
-        .then(|| hit::any_hit_witnessed(scene, &ray, light.in_the_way(), &mut Listener::default()))
+        .then(|| hit::any_hit_observed(scene, &ray, light.in_the_way(), &mut TestRecorder::default()))
         .flatten();
     Lit { incidence, blocker: blocker.map(|hit| (Name::of(scene, hit.object, hit.part), hit.t)) }
 }
 
 /// The observer that records what a ray is tested against.
 #[derive(Default)]
-struct Listener {
+struct TestRecorder {
     nodes: u32,
-    tests: Vec<Test>,
+    tests: Vec<PrimitiveTest>,
 }
 
-impl Witness for Listener {
-    fn boxes(&mut self) {
+impl Observer for TestRecorder {
+    fn node_tested(&mut self) {
         self.nodes += 1;
     }
 
-    fn part(&mut self, test: Test) {
+    fn primitive_tested(&mut self, test: PrimitiveTest) {
         self.tests.push(test);
     }
 }
 
-impl Listener {
+impl TestRecorder {
     fn tested(self, scene: &Scene, ray: &Ray) -> Vec<Tested> {
         let mut tests = self.tests;
-        let order = |test: &Test| (test.object, test.part);
-        let t = |test: &Test| test.t.unwrap_or(f32::INFINITY);
+        let order = |test: &PrimitiveTest| (test.object, test.part);
+        let t = |test: &PrimitiveTest| test.t.unwrap_or(f32::INFINITY);
         tests.sort_by(|a, b| t(a).total_cmp(&t(b)).then(order(a).cmp(&order(b))));
-        let tested = |Test { object, part, t }| {
+        let tested = |PrimitiveTest { object, part, t }| {
             let equation = scene.objects()[object as usize].shape.part(part).equation(ray);
             Tested { name: Name::of(scene, object, part), t, equation }
         };

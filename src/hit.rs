@@ -16,9 +16,9 @@ use single::SingleRay;
 mod packet;
 mod single;
 mod split;
-mod witness;
+mod observer;
 
-pub use witness::{Test, Witness};
+pub use observer::{Observer, PrimitiveTest};
 
 /// The closest crossing in front of a ray's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,49 +57,49 @@ pub enum Kernel {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EightHits {
     /// Which of them have met anything, a bit for each.
-    pub met: u32,
+    pub hit_mask: u32,
     /// Where on the ray, of those that have.
     pub t: Eight,
-    /// The place of the part that was met, or [`NOTHING`](Self::NOTHING): its bits.
-    places: Eight,
+    /// The place of the part that was met, or [`NO_PRIMITIVE`](Self::NO_PRIMITIVE): its bits.
+    primitives: Eight,
 }
 
 impl EightHits {
     /// No part's place.
-    pub(crate) const NOTHING: u32 = u32::MAX;
+    pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 
     /// The place of the part that one of them has met.
     #[inline(always)]
-    pub(crate) fn place(&self, lane: usize) -> u32 {
-        self.places.0[lane].to_bits()
+    pub(crate) fn primitive(&self, lane: usize) -> u32 {
+        self.primitives.0[lane].to_bits()
     }
 
     /// Who has met what has that place: a bit for each.
     #[inline(always)]
-    pub(crate) fn at<N: Lanes>(&self, place: u32) -> u32 {
-        N::load(&self.places).has_bits(place).bits()
+    pub(crate) fn mask_of<N: Lanes>(&self, primitive: u32) -> u32 {
+        N::load(&self.primitives).has_bits(primitive).bits()
     }
 
     /// Where in its leaf each of them has met something: its place, of which the lowest three bits count.
     #[inline(always)]
-    pub(crate) fn in_leaf<N: Lanes>(&self) -> N {
-        N::load(&self.places)
+    pub(crate) fn lanes_in_leaf<N: Lanes>(&self) -> N {
+        N::load(&self.primitives)
     }
 
     /// In which leaf, of all that there are: the bits of these numbers.
     #[inline(always)]
-    pub(crate) fn leaves<N: Lanes>(&self) -> N {
+    pub(crate) fn leaf_indices<N: Lanes>(&self) -> N {
         let mut leaves = Eight::ZERO;
-        for (leaf, place) in leaves.0.iter_mut().zip(self.places.0) {
-            *leaf = f32::from_bits(place.to_bits() / LANES as u32);
+        for (leaf, primitive) in leaves.0.iter_mut().zip(self.primitives.0) {
+            *leaf = f32::from_bits(primitive.to_bits() / LANES as u32);
         }
         N::load(&leaves)
     }
 
-    /// Who has met what has one of the places from the first up to the second.
+    /// Who has met what has one of the primitives from the first up to the second.
     #[inline(always)]
-    pub(crate) fn between(&self, start: u32, end: u32) -> u32 {
-        (0..LANES).fold(0, |lanes, lane| lanes | u32::from((start..end).contains(&self.place(lane))) << lane)
+    pub(crate) fn mask_of_range(&self, start: u32, end: u32) -> u32 {
+        (0..LANES).fold(0, |lanes, lane| lanes | u32::from((start..end).contains(&self.primitive(lane))) << lane)
     }
 
     /// What one of them has met.
@@ -107,8 +107,8 @@ impl EightHits {
     /// # Panics
     /// In another scene than that it was found in; or if there are not so many.
     pub fn hit(&self, scene: &Scene, lane: usize) -> Option<Hit> {
-        (self.met >> lane & 1 == 1).then(|| {
-            let PartId { object, part } = scene.accelerator().id(self.place(lane));
+        (self.hit_mask >> lane & 1 == 1).then(|| {
+            let PartId { object, part } = scene.accelerator().id(self.primitive(lane));
             Hit { t: self.t.0[lane], object, part }
         })
     }
@@ -125,12 +125,12 @@ pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mu
 }
 
 /// Which of the rays that are asked about meet anything inside the interval: a bit for each.
-pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Interval, met: &mut Vec<u32>) {
-    met.clear();
+pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Interval, hit_masks: &mut Vec<u32>) {
+    hit_masks.clear();
     let accel = scene.accelerator();
     match kernel {
-        Kernel::Scalar => any_single::<Eight>(accel, rays, within, &mut Queue::default(), met),
-        _ => simd::run(AnyHits { kernel, accel, rays, within, met }),
+        Kernel::Scalar => any_single::<Eight>(accel, rays, within, &mut Queue::default(), hit_masks),
+        _ => simd::run(AnyHits { kernel, accel, rays, within, hit_masks }),
     }
 }
 
@@ -143,42 +143,42 @@ pub fn closest_hit(scene: &Scene, ray: &Ray) -> Option<Hit> {
 
 /// Whether one ray meets anything inside the interval.
 pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
-    let mut met = Vec::with_capacity(1);
-    any_hits(Kernel::Single, scene, &[EightRays::of(std::slice::from_ref(ray))], within, &mut met);
-    met == [1]
+    let mut hit_masks = Vec::with_capacity(1);
+    any_hits(Kernel::Single, scene, &[EightRays::of(std::slice::from_ref(ray))], within, &mut hit_masks);
+    hit_masks == [1]
 }
 
-/// [`closest_hit`], with a witness of what the ray is tested against.
-pub fn closest_hit_witnessed(scene: &Scene, ray: &Ray, witness: &mut impl Witness) -> Option<Hit> {
-    let (t, place) = simd::run(Watched::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, witness });
-    let PartId { object, part } = scene.accelerator().id(place?);
+/// [`closest_hit`], with a observer of what the ray is tested against.
+pub fn closest_hit_observed(scene: &Scene, ray: &Ray, observer: &mut impl Observer) -> Option<Hit> {
+    let (t, primitive) = simd::run(Observed::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, observer });
+    let PartId { object, part } = scene.accelerator().id(primitive?);
     Some(Hit { t, object, part })
 }
 
-/// [`any_hit`], with a witness of what the ray is tested against. Returns what it met, which need not be the closest.
-pub fn any_hit_witnessed(scene: &Scene, ray: &Ray, within: Interval, witness: &mut impl Witness) -> Option<Hit> {
-    let (_, place) = simd::run(Watched::<_, ANY> { scene, ray, within, witness });
-    let PartId { object, part } = scene.accelerator().id(place?);
+/// [`any_hit`], with a observer of what the ray is tested against. Returns what it met, which need not be the closest.
+pub fn any_hit_observed(scene: &Scene, ray: &Ray, within: Interval, observer: &mut impl Observer) -> Option<Hit> {
+    let (_, primitive) = simd::run(Observed::<_, ANY> { scene, ray, within, observer });
+    let PartId { object, part } = scene.accelerator().id(primitive?);
     let t = scene.objects()[object as usize].shape.part(part).closest_crossing(&Probe::new(*ray), within)?;
     Some(Hit { t, object, part })
 }
 
 /// A ray by itself that somebody watches.
-struct Watched<'w, W, const ANY: bool> {
+struct Observed<'w, W, const ANY: bool> {
     scene: &'w Scene,
     ray: &'w Ray,
     within: Interval,
-    witness: &'w mut W,
+    observer: &'w mut W,
 }
 
-impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
+impl<W: Observer, const ANY: bool> Work for Observed<'_, W, ANY> {
     type Output = (f32, Option<u32>);
 
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
-        let Self { scene, ray, within, witness } = self;
+        let Self { scene, ray, within, observer } = self;
         let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), scene.accelerator().needs_shear());
-        let mut ray = SingleRay::<N, ANY, _>::watched(scene.accelerator(), &rays, 0, within, witness);
+        let mut ray = SingleRay::<N, ANY, _>::observed(scene.accelerator(), &rays, 0, within, observer);
         ray.trace(&mut Queue::default());
         ray.found()
     }
@@ -186,7 +186,7 @@ impl<W: Witness, const ANY: bool> Work for Watched<'_, W, ANY> {
 
 impl Kernel {
     /// Whether so many groups of rays go together.
-    fn is_together(self, groups: usize) -> bool {
+    fn uses_packet(self, groups: usize) -> bool {
         match self {
             Self::Auto => groups > 1,
             Self::Packet => true,
@@ -213,12 +213,12 @@ impl Work for ClosestHits<'_> {
         let Self { kernel, accel, rays, hits } = self;
         let mut stacks = Stacks::default();
         let mut packet = PacketRays::<N, CLOSEST>::new(kernel, accel, Interval::IN_FRONT);
-        let mut together = true;
+        let mut uses_packets = true;
         for rays in rays.chunks(GROUPS) {
-            if together && kernel.is_together(rays.len()) {
+            if uses_packets && kernel.uses_packet(rays.len()) {
                 packet.trace(rays, &mut stacks);
-                packet.tell_hits(hits);
-                together = !packet.was_useless();
+                packet.write_hits(hits);
+                uses_packets = !packet.was_inefficient();
                 continue;
             }
             closest_single::<N>(accel, rays, &mut stacks.single, hits);
@@ -230,16 +230,16 @@ impl Work for ClosestHits<'_> {
 #[inline(always)]
 fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], queue: &mut Queue, hits: &mut Vec<EightHits>) {
     for rays in rays {
-        let nothing = Eight([f32::from_bits(EightHits::NOTHING); LANES]);
-        let mut hit = EightHits { met: 0, t: Eight::ZERO, places: nothing };
+        let nothing = Eight([f32::from_bits(EightHits::NO_PRIMITIVE); LANES]);
+        let mut hit = EightHits { hit_mask: 0, t: Eight::ZERO, primitives: nothing };
         // What tests have in common is reckoned for all eight at once.
         let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.asked) {
             let mut ray = SingleRay::<N, CLOSEST>::new(accel, &eight, lane, Interval::IN_FRONT);
             ray.trace(queue);
-            if let (t, Some(place)) = ray.found() {
-                hit.met |= 1 << lane;
-                (hit.t.0[lane], hit.places.0[lane]) = (t, f32::from_bits(place));
+            if let (t, Some(primitive)) = ray.found() {
+                hit.hit_mask |= 1 << lane;
+                (hit.t.0[lane], hit.primitives.0[lane]) = (t, f32::from_bits(primitive));
             }
         }
         hits.push(hit);
@@ -251,7 +251,7 @@ struct AnyHits<'w> {
     accel: &'w Accelerator,
     rays: &'w [EightRays],
     within: Interval,
-    met: &'w mut Vec<u32>,
+    hit_masks: &'w mut Vec<u32>,
 }
 
 impl Work for AnyHits<'_> {
@@ -259,19 +259,19 @@ impl Work for AnyHits<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) {
-        let Self { kernel, accel, rays, within, met } = self;
+        let Self { kernel, accel, rays, within, hit_masks } = self;
         let mut stacks = Stacks::default();
         let mut packet = PacketRays::<N, ANY>::new(kernel, accel, within);
         // A packet knows of nothing behind the origins.
-        let mut together = within.min >= 0.0;
+        let mut uses_packets = within.min >= 0.0;
         for rays in rays.chunks(GROUPS) {
-            if together && kernel.is_together(rays.len()) {
+            if uses_packets && kernel.uses_packet(rays.len()) {
                 packet.trace(rays, &mut stacks);
-                packet.tell_met(met);
-                together = !packet.was_useless();
+                packet.write_hit_masks(hit_masks);
+                uses_packets = !packet.was_inefficient();
                 continue;
             }
-            any_single::<N>(accel, rays, within, &mut stacks.single, met);
+            any_single::<N>(accel, rays, within, &mut stacks.single, hit_masks);
         }
     }
 }
@@ -283,17 +283,17 @@ fn any_single<N: Lanes>(
     rays: &[EightRays],
     within: Interval,
     queue: &mut Queue,
-    met: &mut Vec<u32>,
+    hit_masks: &mut Vec<u32>,
 ) {
     for rays in rays {
-        let mut of_group = 0;
+        let mut hit_mask = 0;
         let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.asked) {
             let mut ray = SingleRay::<N, ANY>::new(accel, &eight, lane, within);
             ray.trace(queue);
-            of_group |= u32::from(ray.found().1.is_some()) << lane;
+            hit_mask |= u32::from(ray.found().1.is_some()) << lane;
         }
-        met.push(of_group);
+        hit_masks.push(hit_mask);
     }
 }
 

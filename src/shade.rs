@@ -25,12 +25,12 @@ mod points;
 
 pub use points::{EightPoints, surface_points};
 
-/// The light that eight rays bring, band by band.
+/// The light that eight rays bring, channel by channel.
 pub type EightLights = [Eight; 3];
 
 /// One of the eight.
 #[inline(always)]
-pub fn light_of([r, g, b]: &EightLights, lane: usize) -> LinearRgb {
+pub fn lane_light([r, g, b]: &EightLights, lane: usize) -> LinearRgb {
     LinearRgb::new(r.0[lane], g.0[lane], b.0[lane])
 }
 
@@ -61,26 +61,26 @@ pub fn arriving_light(
     arriving: &mut Vec<EightArriving>,
 ) -> u64 {
     let LinearRgb { r, g, b } = scene.ambient();
-    let ambient = [r, g, b].map(|band| Eight([band; LANES]));
+    let ambient = [r, g, b].map(|channel| Eight([channel; LANES]));
     let mut shadow_rays = 0;
     arriving.clear();
     arriving.resize(points.len(), EightArriving { light: ambient, lit_by: [0; LANES] });
     for (number, light) in scene.lights().iter().enumerate() {
-        simd::run(Aim { light, points, shadows });
+        simd::run(AimShadowRays { light, points, shadows });
         shadow_rays += shadows.trace(scene, light);
-        simd::run(Arrive { number, shadows, arriving });
+        simd::run(AddUnblocked { number, shadows, arriving });
     }
     shadow_rays
 }
 
 /// The shadow rays of points that face a light.
-struct Aim<'w> {
+struct AimShadowRays<'w> {
     light: &'w Light,
     points: &'w [EightPoints],
     shadows: &'w mut ShadowRays,
 }
 
-impl Work for Aim<'_> {
+impl Work for AimShadowRays<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -89,9 +89,9 @@ impl Work for Aim<'_> {
         rays.clear();
         lights.clear();
         for points in points {
-            let (faces, Falling { light: [r, g, b], .. }) =
-                falling::<N>(light, points.position.load(), points.normal.load());
-            rays.push(eight_shadow_rays::<N>(light, points, faces.bits() & points.met));
+            let (faces, IncidentLight { light: [r, g, b], .. }) =
+                incident_light::<N>(light, points.position.load(), points.shading_normal.load());
+            rays.push(eight_shadow_rays::<N>(light, points, faces.bits() & points.hit_mask));
             lights.push([r.store(), g.store(), b.store()]);
         }
     }
@@ -117,13 +117,13 @@ pub fn count(rays: &[EightRays]) -> u64 {
 }
 
 /// What the light of that number adds to what arrives.
-struct Arrive<'w> {
+struct AddUnblocked<'w> {
     number: usize,
     shadows: &'w ShadowRays,
     arriving: &'w mut [EightArriving],
 }
 
-impl Work for Arrive<'_> {
+impl Work for AddUnblocked<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -160,25 +160,25 @@ impl Work for Shadows<'_> {
     #[inline(always)]
     fn run<N: Lanes>(self) {
         for points in self.points {
-            self.rays.push(eight_shadow_rays::<N>(self.light, points, points.met));
+            self.rays.push(eight_shadow_rays::<N>(self.light, points, points.hit_mask));
         }
     }
 }
 
 /// [`shadow_ray`] from those of the points that are asked about.
 #[inline(always)]
-fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, asked: u32) -> EightRays {
-    let origin = points.position.load() + points.facing.load() * N::load(&points.clearance);
+fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32) -> EightRays {
+    let origin = points.position.load() + points.geometric_normal.load() * N::load(&points.clearance);
     let direction = light.to_light(origin);
-    let rays = EightRays { origin: origin.store(), direction: direction.store(), asked };
-    if asked == ALL || asked == 0 {
+    let rays = EightRays { origin: origin.store(), direction: direction.store(), asked: active };
+    if active == ALL || active == 0 {
         return rays;
     }
-    let (one, asked_about) = (rays.ray(asked.trailing_zeros() as usize % LANES), N::answers(asked));
+    let (one, is_active) = (rays.ray(active.trailing_zeros() as usize % LANES), N::answers(active));
     EightRays {
-        origin: Vector::select(asked_about, origin, Vector::splat(one.origin)).store(),
-        direction: Vector::select(asked_about, direction, Vector::splat(one.direction)).store(),
-        asked,
+        origin: Vector::select(is_active, origin, Vector::splat(one.origin)).store(),
+        direction: Vector::select(is_active, direction, Vector::splat(one.direction)).store(),
+        asked: active,
     }
 }
 
@@ -214,16 +214,16 @@ impl Work for Reflect<'_> {
     fn run<N: Lanes>(self) {
         for (at, points) in self.points.iter().enumerate() {
             let mut light = [N::splat(0.0); 3];
-            if points.met != ALL {
+            if points.hit_mask != ALL {
                 light = backgrounds(self.scene, self.rays[at].direction.load());
             }
-            let mut left = points.met;
+            let mut left = points.hit_mask;
             while left != 0 {
                 let object = points.ids.id(left.trailing_zeros() as usize % LANES).object;
                 let same = left & points.ids.are_of::<N>(object);
                 let reflectance = self.reflectances::<N>(&self.scene.objects()[object as usize], at, same);
-                for (band, light) in light.iter_mut().enumerate() {
-                    let reflected = reflectance[band] * N::load(&self.arriving[at].light[band]);
+                for (channel, light) in light.iter_mut().enumerate() {
+                    let reflected = reflectance[channel] * N::load(&self.arriving[at].light[channel]);
                     *light = N::select(N::answers(same), reflected, *light);
                 }
                 left &= !same;
@@ -241,13 +241,13 @@ impl Reflect<'_> {
         let points = &self.points[at];
         match (&object.material, &object.shape) {
             (Material::Own, shape) => {
-                let mut bands = [Eight::ZERO; 3];
+                let mut channels = [Eight::ZERO; 3];
                 for lane in set_bits(own) {
                     let reflectance = shape.part(points.ids.id(lane).part).own_reflectance(points.uv(lane));
                     let LinearRgb { r, g, b } = reflectance.unwrap_or(Material::DEFAULT_REFLECTANCE);
-                    [bands[0].0[lane], bands[1].0[lane], bands[2].0[lane]] = [r, g, b];
+                    [channels[0].0[lane], channels[1].0[lane], channels[2].0[lane]] = [r, g, b];
                 }
-                [N::load(&bands[0]), N::load(&bands[1]), N::load(&bands[2])]
+                [N::load(&channels[0]), N::load(&channels[1]), N::load(&channels[2])]
             }
             (material, shape) => {
                 let uv = [N::load(&points.uv[0]), N::load(&points.uv[1])];
@@ -279,13 +279,13 @@ pub fn incidence(light: &Light, point: &SurfacePoint) -> Option<Incidence> {
 /// The same also where the surface faces away from the light.
 pub fn incidence_on_either_side(light: &Light, point: &SurfacePoint) -> Incidence {
     let (position, normal) = (Vector::<f32>::splat(point.position), Vector::splat(point.normal));
-    let (_, Falling { l, distance, cosine, light: [r, g, b] }) = falling(light, position, normal);
+    let (_, IncidentLight { l, distance, cosine, light: [r, g, b] }) = incident_light(light, position, normal);
     let distance = if light.position().is_some() { distance } else { f32::INFINITY };
     Incidence { l: l.into(), distance, cosine, light: LinearRgb::new(r, g, b) }
 }
 
 /// [`Incidence`] at one point or several.
-struct Falling<N> {
+struct IncidentLight<N> {
     l: Vector<N>,
     distance: N,
     cosine: N,
@@ -294,20 +294,20 @@ struct Falling<N> {
 
 /// What the light does at points, and whether the surface there faces it.
 #[inline(always)]
-fn falling<N: Number>(light: &Light, position: Vector<N>, normal: Vector<N>) -> (N::Mask, Falling<N>) {
+fn incident_light<N: Number>(light: &Light, position: Vector<N>, normal: Vector<N>) -> (N::Mask, IncidentLight<N>) {
     let to_light = light.to_light(position);
     let distance_squared = to_light.dot(to_light);
     let distance = distance_squared.sqrt();
     let l = Vector { x: to_light.x / distance, y: to_light.y / distance, z: to_light.z / distance };
     let cosine = normal.dot(l);
-    let light = light.irradiance(l, distance_squared, cosine).map(|band| band.min(N::splat(BRIGHTEST)));
+    let light = light.irradiance(l, distance_squared, cosine).map(|channel| channel.min(N::splat(MAX_IRRADIANCE)));
     // No also for NaN: a light that lies in the surface.
-    (N::splat(0.0).lt(cosine), Falling { l, distance, cosine, light })
+    (N::splat(0.0).lt(cosine), IncidentLight { l, distance, cosine, light })
 }
 
 /// A light nearly in its surface may be brighter than f32 can say. Bounded by this, all sums and products that follow are
 /// numbers: NaN has other bits on other CPUs. (`min` of NaN and a number is the number.)
-const BRIGHTEST: f32 = 1e30;
+const MAX_IRRADIANCE: f32 = 1e30;
 
 /// The ray from a point to a light. The light is at t = 1, or infinitely far.
 pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Ray {
@@ -318,13 +318,13 @@ pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Ray {
 /// The light that comes along rays that meet nothing.
 #[inline(always)]
 fn backgrounds<N: Number>(scene: &Scene, direction: Vector<N>) -> [N; 3] {
-    let bands = |LinearRgb { r, g, b }: LinearRgb| [N::splat(r), N::splat(g), N::splat(b)];
+    let channels = |LinearRgb { r, g, b }: LinearRgb| [N::splat(r), N::splat(g), N::splat(b)];
     match scene.background() {
-        Background::Color(color) => bands(color),
+        Background::Color(color) => channels(color),
         Background::Gradient { bottom, top } => {
             let up = direction.y * (N::splat(1.0) / direction.dot(direction).sqrt());
             let share = N::splat(0.5) * (up + N::splat(1.0));
-            let ([r0, g0, b0], [r1, g1, b1]) = (bands(bottom), bands(top));
+            let ([r0, g0, b0], [r1, g1, b1]) = (channels(bottom), channels(top));
             let rest = N::splat(1.0) - share;
             [r0 * rest + r1 * share, g0 * rest + g1 * share, b0 * rest + b1 * share]
         }

@@ -21,26 +21,26 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     /// Where the closest was met, or where the interval ends; of who has enough, before all.
     t: [N; GROUPS],
     /// The bits of its place.
-    place: [N; GROUPS],
+    primitive: [N; GROUPS],
     /// The greatest t of each group.
     reach: Eight,
     /// The greatest t of all, or one that was; kept, as it is asked for at each node and leaf.
     farthest: f32,
     /// How often one of the rays has left the packet at a node.
-    left: u32,
+    rays_left: u32,
     /// How many leaves the packet has met.
     leaves: u32,
 }
 
 /// No part's place.
-const NOTHING: u32 = EightHits::NOTHING;
+const NO_PRIMITIVE: u32 = EightHits::NO_PRIMITIVE;
 
 /// Nothing is met so early.
-const DONE: f32 = f32::NEG_INFINITY;
+const TERMINATED: f32 = f32::NEG_INFINITY;
 
 #[inline(always)]
-fn place_as_number(place: u32) -> f32 {
-    f32::from_bits(place)
+fn index_as_lane(primitive: u32) -> f32 {
+    f32::from_bits(primitive)
 }
 
 impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
@@ -54,11 +54,11 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
             rays: &[],
             groups: [Rays::load(&zeros, false); GROUPS],
             within,
-            t: [N::splat(DONE); GROUPS],
-            place: [N::splat(place_as_number(NOTHING)); GROUPS],
-            reach: Eight([DONE; LANES]),
-            farthest: DONE,
-            left: 0,
+            t: [N::splat(TERMINATED); GROUPS],
+            primitive: [N::splat(index_as_lane(NO_PRIMITIVE)); GROUPS],
+            reach: Eight([TERMINATED; LANES]),
+            farthest: TERMINATED,
+            rays_left: 0,
             leaves: 0,
         }
     }
@@ -66,24 +66,24 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     /// Whether the last rays had better been traced one by one from the start. Those of the packets that follow are likely
     /// to do the same.
     #[inline(always)]
-    pub(super) fn was_useless(&self) -> bool {
+    pub(super) fn was_inefficient(&self) -> bool {
         let active = self.rays.iter().map(|rays| rays.asked.count_ones()).sum();
-        split::is_useless(self.leaves, self.left, active)
+        split::is_inefficient(self.leaves, self.rays_left, active)
     }
 
     /// Takes these rays, at most as many as a packet has, and finds what they meet.
     #[inline(always)]
     pub(super) fn trace(&mut self, rays: &'p [EightRays], stacks: &mut Stacks) {
-        (self.rays, self.left, self.leaves) = (rays, 0, 0);
+        (self.rays, self.rays_left, self.leaves) = (rays, 0, 0);
         // Who is not asked about does not widen the packet.
         let Some(one) = rays.iter().find(|rays| rays.asked != 0) else { return self.reset(0..GROUPS) };
         let accel = self.accel;
         let (has_trees, needs_shear) = (accel.has_trees(), accel.needs_shear());
-        for (group, of_group) in rays.iter().enumerate() {
-            let asked = of_group.asked;
-            let rays = Rays::load(if asked == 0 { one } else { of_group }, needs_shear);
-            let met = self.test_few(&rays, asked);
-            (self.t[group], self.place[group]) = (met.t, met.place);
+        for (group, group_rays) in rays.iter().enumerate() {
+            let active = group_rays.asked;
+            let rays = Rays::load(if active == 0 { one } else { group_rays }, needs_shear);
+            let hits = self.test_unculled(&rays, active);
+            (self.t[group], self.primitive[group]) = (hits.t, hits.primitive);
             if has_trees {
                 self.groups[group] = rays;
             }
@@ -102,27 +102,27 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     #[inline(always)]
     fn reset(&mut self, groups: Range<usize>) {
         for group in groups {
-            self.t[group] = N::splat(DONE);
-            self.place[group] = N::splat(place_as_number(NOTHING));
-            self.reach.0[group] = DONE;
+            self.t[group] = N::splat(TERMINATED);
+            self.primitive[group] = N::splat(index_as_lane(NO_PRIMITIVE));
+            self.reach.0[group] = TERMINATED;
         }
     }
 
     /// Tells where each ray met what.
     #[inline(always)]
-    pub(super) fn tell_hits(&self, hits: &mut Vec<EightHits>) {
+    pub(super) fn write_hits(&self, hits: &mut Vec<EightHits>) {
         for group in 0..self.rays.len() {
-            let place = self.place[group];
-            let met = (!place.has_bits(NOTHING)).bits();
-            hits.push(EightHits { met, t: self.t[group].store(), places: place.store() });
+            let primitive = self.primitive[group];
+            let hit_mask = (!primitive.has_bits(NO_PRIMITIVE)).bits();
+            hits.push(EightHits { hit_mask, t: self.t[group].store(), primitives: primitive.store() });
         }
     }
 
     /// Tells which rays met anything, a bit for each.
     #[inline(always)]
-    pub(super) fn tell_met(&self, met: &mut Vec<u32>) {
+    pub(super) fn write_hit_masks(&self, hit_masks: &mut Vec<u32>) {
         for (group, rays) in self.rays.iter().enumerate() {
-            met.push(self.t[group].le(N::splat(DONE)).bits() & rays.asked);
+            hit_masks.push(self.t[group].le(N::splat(TERMINATED)).bits() & rays.asked);
         }
     }
 
@@ -136,11 +136,11 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
             };
             let Stacks { packet: stack, single: queue } = stacks;
             let groups = self.rays.len();
-            let mut in_tree = InTree { rays: self, tree, packet, pencil: Sought::NotYet, queue };
+            let mut in_tree = InTree { rays: self, tree, packet, pencil: CommonOriginCache::Unknown, queue };
             match tree.bvh.root() {
                 Some(root) if in_tree.rays.kernel == Kernel::Auto && packet.is_scattered() => {
                     for group in 0..groups {
-                        let waiting = !in_tree.rays.t[group].le(N::splat(DONE));
+                        let waiting = !in_tree.rays.t[group].le(N::splat(TERMINATED));
                         in_tree.trace_singles_of(root, group, waiting.bits());
                     }
                 }
@@ -151,20 +151,20 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
 
     /// Has a group meet all that no tree leaves out: planes, and kinds of which there are but a few.
     #[inline(always)]
-    fn test_few(&self, rays: &Rays<N>, asked: u32) -> Met<N, ANY> {
+    fn test_unculled(&self, rays: &Rays<N>, active: u32) -> GroupHits<N, ANY> {
         let accel = self.accel;
-        let t = N::select(N::answers(asked), N::splat(self.within.max), N::splat(DONE));
-        let mut met = Met { t, place: N::splat(place_as_number(NOTHING)) };
-        accel.visit(&mut Few { met: &mut met, rays, min: N::splat(self.within.min), accel });
-        met
+        let t = N::select(N::answers(active), N::splat(self.within.max), N::splat(TERMINATED));
+        let mut hits = GroupHits { t, primitive: N::splat(index_as_lane(NO_PRIMITIVE)) };
+        accel.visit(&mut Unculled { hits: &mut hits, rays, min: N::splat(self.within.min), accel });
+        hits
     }
 
     #[inline(always)]
-    fn test<C: Crossable<N>>(&mut self, group: usize, shape: &C, place: u32, rough: N) {
-        let mut met = Met::<N, ANY> { t: self.t[group], place: self.place[group] };
+    fn test<C: Crossable<N>>(&mut self, group: usize, shape: &C, primitive: u32, rough: N) {
+        let mut hits = GroupHits::<N, ANY> { t: self.t[group], primitive: self.primitive[group] };
         let (rays, min) = (&self.groups[group], N::splat(self.within.min));
-        if met.take(place, shape.first_crossing_in_pencil(rays, min, rough), self.accel) {
-            self.set(group, met);
+        if hits.update(primitive, shape.first_crossing_in_pencil(rays, min, rough), self.accel) {
+            self.set(group, hits);
         }
     }
 
@@ -175,52 +175,52 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     }
 
     #[inline(always)]
-    fn set(&mut self, group: usize, Met { t, place }: Met<N, ANY>) {
+    fn set(&mut self, group: usize, GroupHits { t, primitive }: GroupHits<N, ANY>) {
         self.t[group] = t;
-        self.place[group] = place;
+        self.primitive[group] = primitive;
         self.reach.0[group] = t.greatest();
     }
 }
 
 /// What a group's rays have met.
-struct Met<N, const ANY: bool> {
+struct GroupHits<N, const ANY: bool> {
     t: N,
-    place: N,
+    primitive: N,
 }
 
-impl<N: Lanes, const ANY: bool> Met<N, ANY> {
+impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
     /// Tests all of which there are but a few.
     #[inline(always)]
-    fn test_few<S: SideBySide>(&mut self, tree: &Tree<S>, rays: &Rays<N>, min: N, accel: &Accelerator) {
+    fn test_unculled<S: SideBySide>(&mut self, tree: &Tree<S>, rays: &Rays<N>, min: N, accel: &Accelerator) {
         let Some(leaf) = tree.leaves.first() else { return };
         for lane in 0..tree.few {
             let shape = leaf.splat(lane);
-            self.take(tree.place(0, lane), shape.first_crossing(rays, min), accel);
+            self.update(tree.place(0, lane), shape.first_crossing(rays, min), accel);
         }
     }
 
     /// Takes a part where it is met; answers whether it is.
     #[inline(always)]
-    fn take(&mut self, place: u32, crossing: Option<(N::Mask, N)>, accel: &Accelerator) -> bool {
+    fn update(&mut self, primitive: u32, crossing: Option<(N::Mask, N)>, accel: &Accelerator) -> bool {
         let Some((crosses, t)) = crossing else { return false };
         if ANY {
-            return self.meet(crosses & t.le(self.t), N::splat(DONE), place);
+            return self.record(crosses & t.le(self.t), N::splat(TERMINATED), primitive);
         }
         let is_as_close = crosses & t.same(self.t);
         let mut is_closest = crosses & t.lt(self.t);
         if is_as_close.any() {
-            let first = comes_before(accel, place, &self.place.store());
+            let first = precedes_in_scene(accel, primitive, &self.primitive.store());
             is_closest = is_closest | (is_as_close & N::answers(first));
         }
-        self.meet(is_closest, t, place)
+        self.record(is_closest, t, primitive)
     }
 
     #[inline(always)]
-    fn meet(&mut self, is_met: N::Mask, t: N, place: u32) -> bool {
-        let is_any = is_met.any();
+    fn record(&mut self, is_hit: N::Mask, t: N, primitive: u32) -> bool {
+        let is_any = is_hit.any();
         if is_any {
-            self.t = N::select(is_met, t, self.t);
-            self.place = N::select(is_met, N::splat(place_as_number(place)), self.place);
+            self.t = N::select(is_hit, t, self.t);
+            self.primitive = N::select(is_hit, N::splat(index_as_lane(primitive)), self.primitive);
         }
         is_any
     }
@@ -244,31 +244,31 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Trees<'_, 'p, N, ANY>
 }
 
 /// A group's way through all that no tree leaves out.
-struct Few<'a, N: Lanes, const ANY: bool> {
-    met: &'a mut Met<N, ANY>,
+struct Unculled<'a, N: Lanes, const ANY: bool> {
+    hits: &'a mut GroupHits<N, ANY>,
     rays: &'a Rays<N>,
     min: N,
     accel: &'a Accelerator,
 }
 
-impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Few<'_, N, ANY> {
+impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> {
     #[inline(always)]
     fn list<S: Endless>(&mut self, list: &'p List<S>) {
-        for (place, (_, surface)) in list.parts() {
-            self.met.take(place, surface.splat().first_crossing(self.rays, self.min), self.accel);
+        for (primitive, (_, surface)) in list.parts() {
+            self.hits.update(primitive, surface.splat().first_crossing(self.rays, self.min), self.accel);
         }
     }
 
     #[inline(always)]
     fn tree<S: SideBySide>(&mut self, tree: &'p Tree<S>) {
-        self.met.test_few(tree, self.rays, self.min, self.accel);
+        self.hits.test_unculled(tree, self.rays, self.min, self.accel);
     }
 }
 
 /// Which of the others it stands before in the scene: a bit for each.
 #[cold]
-fn comes_before(accel: &Accelerator, place: u32, others: &Eight) -> u32 {
-    let is_first = |other: u32| other == NOTHING || accel.id(place) < accel.id(other);
+fn precedes_in_scene(accel: &Accelerator, primitive: u32, others: &Eight) -> u32 {
+    let is_first = |other: u32| other == NO_PRIMITIVE || accel.id(primitive) < accel.id(other);
     others.0.iter().rev().fold(0, |first, other| first << 1 | u32::from(is_first(other.to_bits())))
 }
 
@@ -277,15 +277,15 @@ struct InTree<'a, 'p, N: Lanes, S, const ANY: bool> {
     rays: &'a mut PacketRays<'p, N, ANY>,
     tree: &'p Tree<S>,
     packet: &'a Packet<N>,
-    pencil: Sought<N>,
+    pencil: CommonOriginCache<N>,
     queue: &'a mut Queue,
 }
 
 /// The pencil of a packet, which only a leaf asks for: packets that meet none do without. That makes eye rays 1 to 2 %
 /// faster where meshes cover half of the picture.
-enum Sought<N: Lanes> {
-    NotYet,
-    Missing,
+enum CommonOriginCache<N: Lanes> {
+    Unknown,
+    Absent,
     Found(Pencil<N>),
 }
 
@@ -299,7 +299,7 @@ impl<N: Lanes, S, const ANY: bool> Prefetch for InTree<'_, '_, N, S, ANY> {
 impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, ANY> {
     const NEAREST_FIRST: bool = !ANY;
 
-    const LEAST_SPLIT: u32 = split::least_split(ANY);
+    const LEAST_SPLIT: u32 = split::min_boxes_to_split(ANY);
 
     #[inline(always)]
     fn min(&self) -> f32 {
@@ -322,14 +322,14 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
         let min = N::splat(self.rays.within.min);
         let boxes = shapes.load::<N>().boxes();
         let [starts, ends] = self.packet.crossed(boxes, [min, N::splat(self.farthest())]);
-        let is_met = starts.le(ends).bits();
-        if is_met == 0 {
+        let boxes_hit = starts.le(ends).bits();
+        if boxes_hit == 0 {
             return;
         }
         self.rays.leaves += 1;
-        self.seek_pencil();
+        self.find_common_origin();
         let edges = match &self.pencil {
-            Sought::Found(pencil) => shapes.edges(pencil),
+            CommonOriginCache::Found(pencil) => shapes.edges(pencil),
             _ => None,
         };
         let rough = match &edges {
@@ -339,12 +339,12 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
         let [low, high] = [boxes[0].store(), boxes[1].store()];
         // All that are to be tested, a bit for each: a loop over them is guessed wrong once, at its end.
         let mut pairs = 0_u64;
-        for lane in set_bits(is_met) {
+        for lane in set_bits(boxes_hit) {
             let one = [Vector::splat(low.of_lane(lane)), Vector::splat(high.of_lane(lane))];
             let [starts, ends] = self.packet.crossed_by_groups(one, [min, self.reach()]);
             let mut groups = starts.le(ends).bits();
             // Any blocker will do, and next to it the edges let few groups off: without them shadow rays are 5 % faster.
-            if let (false, Some(edges), Sought::Found(pencil)) = (ANY, &edges, &self.pencil) {
+            if let (false, Some(edges), CommonOriginCache::Found(pencil)) = (ANY, &edges, &self.pencil) {
                 groups &= !edges.passed_by(lane, pencil);
             }
             pairs |= u64::from(groups) << (GROUPS * lane);
@@ -366,7 +366,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
         if self.rays.kernel == Kernel::Packet {
             return None;
         }
-        split::at_node::<ANY>(groups, &AtNode { rays: self.rays, one })
+        split::split_at_node::<ANY>(groups, &NodeRays { rays: self.rays, one })
     }
 
     #[inline(always)]
@@ -379,14 +379,14 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
 }
 
 /// A packet before a box.
-struct AtNode<'a, 'p, N: Lanes, const ANY: bool> {
+struct NodeRays<'a, 'p, N: Lanes, const ANY: bool> {
     rays: &'a PacketRays<'p, N, ANY>,
     one: [Vector<N>; 2],
 }
 
-impl<N: Lanes, const ANY: bool> split::AtNode for AtNode<'_, '_, N, ANY> {
+impl<N: Lanes, const ANY: bool> split::NodeRays for NodeRays<'_, '_, N, ANY> {
     #[inline(always)]
-    fn met_by(&self, group: usize) -> u32 {
+    fn hit_mask(&self, group: usize) -> u32 {
         let [enters, leaves] = crossed(self.one, &self.rays.groups[group]);
         enters.max(N::splat(self.rays.within.min)).le(leaves.min(self.rays.t[group])).bits()
     }
@@ -395,12 +395,12 @@ impl<N: Lanes, const ANY: bool> split::AtNode for AtNode<'_, '_, N, ANY> {
 impl<N: Lanes, S: SideBySide, const ANY: bool> InTree<'_, '_, N, S, ANY> {
     /// Finds the pencil if it was not asked for before.
     #[inline(always)]
-    fn seek_pencil(&mut self) {
-        if let Sought::NotYet = self.pencil {
+    fn find_common_origin(&mut self) {
+        if let CommonOriginCache::Unknown = self.pencil {
             let pencil = if S::HAVE_EDGES { Pencil::of(&self.rays.groups) } else { None };
             self.pencil = match pencil {
-                Some(pencil) => Sought::Found(pencil),
-                None => Sought::Missing,
+                Some(pencil) => CommonOriginCache::Found(pencil),
+                None => CommonOriginCache::Absent,
             };
         }
     }
@@ -411,21 +411,21 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> InTree<'_, '_, N, S, ANY> {
         if rays == 0 {
             return;
         }
-        self.rays.left += rays.count_ones();
-        let (mut t, mut place) = (self.rays.t[group].store(), self.rays.place[group].store());
+        self.rays.rays_left += rays.count_ones();
+        let (mut t, mut primitive) = (self.rays.t[group].store(), self.rays.primitive[group].store());
         for lane in set_bits(rays) {
             let within = Interval { min: self.rays.within.min, max: t.0[lane] };
-            let known = place.0[lane].to_bits();
+            let known = primitive.0[lane].to_bits();
             let ray = SingleRay::<N, ANY>::new(self.rays.accel, &self.rays.groups[group], lane, within);
-            let mut ray = ray.going_on((known != NOTHING).then_some(known));
+            let mut ray = ray.with_known_hit((known != NO_PRIMITIVE).then_some(known));
             ray.trace_from(from, self.tree, self.queue);
-            if let (met, Some(found)) = ray.found() {
-                t.0[lane] = if ANY { DONE } else { met };
-                place.0[lane] = place_as_number(found);
+            if let (hit_t, Some(found)) = ray.found() {
+                t.0[lane] = if ANY { TERMINATED } else { hit_t };
+                primitive.0[lane] = index_as_lane(found);
             }
         }
         self.rays.t[group] = N::load(&t);
-        self.rays.place[group] = N::load(&place);
+        self.rays.primitive[group] = N::load(&primitive);
         self.rays.reach.0[group] = t.greatest();
     }
 }

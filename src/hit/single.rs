@@ -1,6 +1,6 @@
 //! A ray by itself, against eight boxes or parts at a time.
 
-use super::witness::{Nobody, Test, Witness};
+use super::observer::{NoObserver, Observer, PrimitiveTest};
 use crate::accel::{Accelerator, List, PartId, Tree, Visitor};
 use crate::bvh::{Child, LeafVisitor, Prefetch, Queue};
 use crate::lanes::{Answers, Eight, Lanes, Work, set_bits};
@@ -9,7 +9,7 @@ use crate::shape::{Crossable, Endless, SideBySide};
 use std::ops::ControlFlow;
 
 /// A ray, and what it has met.
-pub(super) struct SingleRay<'p, N: Lanes, const ANY: bool, W = Nobody> {
+pub(super) struct SingleRay<'p, N: Lanes, const ANY: bool, W = NoObserver> {
     accel: &'p Accelerator,
     /// It is one of these.
     rays: &'p Rays<N>,
@@ -17,59 +17,59 @@ pub(super) struct SingleRay<'p, N: Lanes, const ANY: bool, W = Nobody> {
     /// `max` is where the closest was met, or where the interval ends.
     within: Interval,
     /// What was met.
-    place: Option<u32>,
-    witness: W,
+    primitive: Option<u32>,
+    observer: W,
 }
 
 impl<'p, N: Lanes, const ANY: bool> SingleRay<'p, N, ANY> {
     #[inline(always)]
     pub(super) fn new(accel: &'p Accelerator, rays: &'p Rays<N>, lane: usize, within: Interval) -> Self {
-        Self::watched(accel, rays, lane, within, Nobody)
+        Self::observed(accel, rays, lane, within, NoObserver)
     }
 }
 
-impl<'p, N: Lanes, const ANY: bool, W: Witness> SingleRay<'p, N, ANY, W> {
+impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
     #[inline(always)]
-    pub(super) fn watched(
+    pub(super) fn observed(
         accel: &'p Accelerator,
         rays: &'p Rays<N>,
         lane: usize,
         within: Interval,
-        witness: W,
+        observer: W,
     ) -> Self {
-        Self { accel, rays, lane, within, place: None, witness }
+        Self { accel, rays, lane, within, primitive: None, observer }
     }
 
     /// A ray that has met this already.
     #[inline(always)]
-    pub(super) fn going_on(self, place: Option<u32>) -> Self {
-        Self { place, ..self }
+    pub(super) fn with_known_hit(self, primitive: Option<u32>) -> Self {
+        Self { primitive, ..self }
     }
 
     /// Where it met what.
     #[inline(always)]
     pub(super) fn found(&self) -> (f32, Option<u32>) {
-        (self.within.max, self.place)
+        (self.within.max, self.primitive)
     }
 
     /// Searches through everything.
     #[inline(always)]
     pub(super) fn trace(&mut self, queue: &mut Queue) {
-        self.accel.visit(&mut Everything { ray: self, queue });
+        self.accel.visit(&mut AllPrimitives { ray: self, queue });
     }
 
     #[inline(always)]
     fn trace_list<S: Endless>(&mut self, list: &List<S>) {
-        for (place, (id, surface)) in list.parts() {
+        for (primitive, (id, surface)) in list.parts() {
             let crossing = surface
                 .splat()
                 .first_crossing(self.rays, N::splat(self.within.min))
                 .and_then(|(crosses, t)| (crosses.bits() >> self.lane & 1 == 1).then(|| t.lane(self.lane)));
-            if W::IS_THERE {
-                self.witness.part(Test::of(*id, crossing));
+            if W::ENABLED {
+                self.observer.primitive_tested(PrimitiveTest::of(*id, crossing));
             }
             if let Some(t) = crossing {
-                self.meet(t, place);
+                self.record(t, primitive);
             }
         }
     }
@@ -79,7 +79,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> SingleRay<'p, N, ANY, W> {
         match tree.bvh.root() {
             Some(root) if tree.has_tree() => self.trace_from(root, tree, queue),
             // The only leaf: what a tree takes to begin with would be most of the time.
-            Some(_) if !(ANY && self.place.is_some()) => self.test(&self.rays.splat_lane(self.lane), 0, tree),
+            Some(_) if !(ANY && self.primitive.is_some()) => self.test(&self.rays.splat_lane(self.lane), 0, tree),
             _ => {}
         }
     }
@@ -87,7 +87,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> SingleRay<'p, N, ANY, W> {
     /// Searches through a part of a tree.
     #[inline(always)]
     pub(super) fn trace_from<S: SideBySide>(&mut self, from: Child, tree: &Tree<S>, queue: &mut Queue) {
-        if ANY && self.place.is_some() {
+        if ANY && self.primitive.is_some() {
             return;
         }
         N::apart(Search { ray: self, from, tree, queue });
@@ -97,34 +97,34 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> SingleRay<'p, N, ANY, W> {
     fn test<S: SideBySide>(&mut self, rays: &Rays<N>, leaf: usize, tree: &Tree<S>) {
         let shapes = tree.leaves[leaf].load::<N>();
         let crossing = shapes.first_crossing(rays, N::splat(self.within.min));
-        if W::IS_THERE {
-            self.tell(tree.parts(leaf), crossing);
+        if W::ENABLED {
+            self.report_tests(tree.parts(leaf), crossing);
         }
         let Some((crosses, t)) = crossing else { return };
-        let met = (crosses & t.le(N::splat(self.within.max))).bits();
-        if met == 0 {
+        let hit_mask = (crosses & t.le(N::splat(self.within.max))).bits();
+        if hit_mask == 0 {
             return;
         }
         let t = t.store();
-        for lane in set_bits(met) {
-            self.meet(t.0[lane], tree.place(leaf, lane));
+        for lane in set_bits(hit_mask) {
+            self.record(t.0[lane], tree.place(leaf, lane));
         }
     }
 
-    /// Tells the witness of a leaf's parts.
-    fn tell(&mut self, parts: impl Iterator<Item = PartId>, crossing: Option<(N::Mask, N)>) {
+    /// Tells the observer of a leaf's parts.
+    fn report_tests(&mut self, parts: impl Iterator<Item = PartId>, crossing: Option<(N::Mask, N)>) {
         let (crosses, t) = crossing.map_or((0, Eight::ZERO), |(crosses, t)| (crosses.bits(), t.store()));
         for (lane, id) in parts.enumerate() {
-            self.witness.part(Test::of(id, (crosses >> lane & 1 == 1).then_some(t.0[lane])));
+            self.observer.primitive_tested(PrimitiveTest::of(id, (crosses >> lane & 1 == 1).then_some(t.0[lane])));
         }
     }
 
     /// Something at t.
     #[inline(always)]
-    fn meet(&mut self, t: f32, place: u32) {
-        let is_first = |other: u32| self.accel.id(place) < self.accel.id(other);
-        if t < self.within.max || t == self.within.max && self.place.is_none_or(is_first) {
-            self.place = Some(place);
+    fn record(&mut self, t: f32, primitive: u32) {
+        let is_first = |other: u32| self.accel.id(primitive) < self.accel.id(other);
+        if t < self.within.max || t == self.within.max && self.primitive.is_none_or(is_first) {
+            self.primitive = Some(primitive);
             if !ANY {
                 self.within.max = t;
             }
@@ -133,12 +133,12 @@ impl<'p, N: Lanes, const ANY: bool, W: Witness> SingleRay<'p, N, ANY, W> {
 }
 
 /// A ray's way through all parts.
-struct Everything<'a, 'p, N: Lanes, const ANY: bool, W> {
+struct AllPrimitives<'a, 'p, N: Lanes, const ANY: bool, W> {
     ray: &'a mut SingleRay<'p, N, ANY, W>,
     queue: &'a mut Queue,
 }
 
-impl<'p, N: Lanes, const ANY: bool, W: Witness> Visitor<'p> for Everything<'_, 'p, N, ANY, W> {
+impl<'p, N: Lanes, const ANY: bool, W: Observer> Visitor<'p> for AllPrimitives<'_, 'p, N, ANY, W> {
     #[inline(always)]
     fn list<S: Endless>(&mut self, list: &'p List<S>) {
         self.ray.trace_list(list);
@@ -158,7 +158,7 @@ struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     queue: &'a mut Queue,
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> Work for Search<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S: SideBySide, const ANY: bool, W: Observer> Work for Search<'_, '_, N, S, ANY, W> {
     type Output = ();
 
     /// The numbers are those that the ray has.
@@ -191,16 +191,16 @@ impl<N: Lanes, S, const ANY: bool, W> Prefetch for InTree<'_, '_, N, S, ANY, W> 
     }
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool, W: Witness> LeafVisitor for InTree<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S: SideBySide, const ANY: bool, W: Observer> LeafVisitor for InTree<'_, '_, N, S, ANY, W> {
     #[inline(always)]
     fn boxes(&mut self) {
-        self.ray.witness.boxes();
+        self.ray.observer.node_tested();
     }
 
     #[inline(always)]
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
         self.ray.test(self.rays, leaf, self.tree);
-        if ANY && self.ray.place.is_some() {
+        if ANY && self.ray.primitive.is_some() {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(self.ray.within.max)

@@ -144,9 +144,9 @@ fn record_first_samples(first: &mut [FirstSample], buffers: &Buffers) {
     for (ray, &pixel) in buffers.pixels.iter().enumerate() {
         let (group, lane) = (ray / LANES, ray % LANES);
         // Stored as a sum of one sample, which is never -0.
-        let light = LinearRgb::BLACK + shade::light_of(&buffers.lights[group], lane);
+        let light = LinearRgb::BLACK + shade::lane_light(&buffers.lights[group], lane);
         let lit_by = buffers.arriving[group].lit_by[lane];
-        first[usize::from(pixel)] = FirstSample::new(light, buffers.points[group].seen(lane), lit_by);
+        first[usize::from(pixel)] = FirstSample::new(light, buffers.points[group].object_and_normal(lane), lit_by);
     }
 }
 

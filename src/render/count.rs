@@ -61,9 +61,9 @@ fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
     let Buffers { rays, hits, points, shadows: ShadowRays { rays: shadow_rays, blocked, .. }, .. } = buffers;
     let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
     for hits in hits.iter() {
-        counts.hits += u64::from(hits.met.count_ones());
+        counts.hits += u64::from(hits.hit_mask.count_ones());
         // Zero for rays without a hit: a sum without branches.
-        let depths = Eight::select(Eight::answers(hits.met), hits.t, Eight::ZERO);
+        let depths = Eight::select(Eight::answers(hits.hit_mask), hits.t, Eight::ZERO);
         counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
     }
     for light in scene.lights().iter().filter(|_| scene.shadows()) {

@@ -64,7 +64,7 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     let (job, batch) = (RenderJob::new(scene, &tiles, Stage::Reflected), SampleBatch::of(0..1));
     let mut buffers = Buffers { active: vec![pixel as u8], ..Buffers::default() };
     buffers.trace(&job, tile, &batch, 0..1);
-    let [arriving, light] = [&buffers.arriving[0].light, &buffers.lights[0]].map(|lights| shade::light_of(lights, 0));
+    let [arriving, light] = [&buffers.arriving[0].light, &buffers.lights[0]].map(|lights| shade::lane_light(lights, 0));
     // The reflectance is the reflected light where the arriving light is 1.
     buffers.arriving[0].light = [Eight([1.0; LANES]); 3];
     buffers.reflect(&job, &batch);
@@ -73,7 +73,7 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
         ray: buffers.rays[0].ray(0),
         hit: buffers.hits[0].hit(scene, 0),
         arriving,
-        reflectance: shade::light_of(&buffers.lights[0], 0),
+        reflectance: shade::lane_light(&buffers.lights[0], 0),
         light,
     }
 }

@@ -13,13 +13,13 @@ use glam::Vec2;
 #[derive(Clone, Copy, Debug)]
 pub struct EightPoints {
     /// Which of the rays have met one, a bit for each. What stands for the others has no meaning.
-    pub met: u32,
+    pub hit_mask: u32,
     /// Whose it is.
     pub(super) ids: PartIds<Eight>,
     /// As [`SurfacePoint`](crate::shape::SurfacePoint) has them.
     pub(super) position: Vector<Eight>,
-    pub(super) normal: Vector<Eight>,
-    pub(super) facing: Vector<Eight>,
+    pub(super) shading_normal: Vector<Eight>,
+    pub(super) geometric_normal: Vector<Eight>,
     pub(super) clearance: Eight,
     pub(super) uv: [Eight; 2],
 }
@@ -27,11 +27,11 @@ pub struct EightPoints {
 impl EightPoints {
     /// Of rays that have met nothing.
     const NONE: Self = Self {
-        met: 0,
+        hit_mask: 0,
         ids: PartIds::ZERO,
         position: Vector::ZERO,
-        normal: Vector::ZERO,
-        facing: Vector::ZERO,
+        shading_normal: Vector::ZERO,
+        geometric_normal: Vector::ZERO,
         clearance: Eight::ZERO,
         uv: [Eight::ZERO; 2],
     };
@@ -43,8 +43,8 @@ impl EightPoints {
 
     /// The object, by its place in [`Scene::objects`], and the normal that one of the rays has met.
     #[inline]
-    pub fn seen(&self, lane: usize) -> Option<(u32, glam::Vec3)> {
-        (self.met >> lane & 1 == 1).then(|| (self.ids.id(lane).object, self.normal.of_lane(lane)))
+    pub fn object_and_normal(&self, lane: usize) -> Option<(u32, glam::Vec3)> {
+        (self.hit_mask >> lane & 1 == 1).then(|| (self.ids.id(lane).object, self.shading_normal.of_lane(lane)))
     }
 }
 
@@ -68,11 +68,11 @@ impl Work for SurfacePoints<'_> {
     fn run<N: Lanes>(self) {
         let Self { scene, rays, hits, points } = self;
         for ((rays, hits), at) in rays.iter().zip(hits).zip(points) {
-            at.met = hits.met;
-            if at.met != 0 {
-                of_hits::<N>(scene.accelerator(), rays, hits, at);
+            at.hit_mask = hits.hit_mask;
+            if at.hit_mask != 0 {
+                gather_surfaces::<N>(scene.accelerator(), rays, hits, at);
                 if scene.accelerator().has_smooth {
-                    smooth(scene, at);
+                    interpolate_normals(scene, at);
                 }
             }
         }
@@ -80,15 +80,15 @@ impl Work for SurfacePoints<'_> {
 }
 
 #[inline(always)]
-fn of_hits<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &EightHits, at: &mut EightPoints) {
+fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &EightHits, at: &mut EightPoints) {
     let mut points = Points::<N>::nowhere();
     let mut ids = PartIds::<N>::splat(PartId { object: 0, part: 0 });
-    let mut left = at.met;
+    let mut left = at.hit_mask;
     while left != 0 {
-        let place = hits.place(left.trailing_zeros() as usize % LANES);
-        let mut at_place = AtPlace { place, rays, hits, found: (0, ids, points) };
-        accel.visit(&mut at_place);
-        let (lanes, whose, found) = at_place.found;
+        let primitive = hits.primitive(left.trailing_zeros() as usize % LANES);
+        let mut surfaces = SurfacesOfPrimitive { primitive, rays, hits, found: (0, ids, points) };
+        accel.visit(&mut surfaces);
+        let (lanes, whose, found) = surfaces.found;
         if lanes == ALL {
             (points, ids) = (found, whose);
         } else {
@@ -99,58 +99,58 @@ fn of_hits<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &EightHits, at
     }
     at.ids = ids.store();
     at.position = points.position.store();
-    at.facing = points.facing.store();
-    at.normal = at.facing;
+    at.geometric_normal = points.facing.store();
+    at.shading_normal = at.geometric_normal;
     at.clearance = points.clearance.store();
     at.uv = [points.uv[0].store(), points.uv[1].store()];
 }
 
 /// The surfaces that eight rays have met where one place is: a part without an end is looked at by itself; those of one
 /// tree are looked at together.
-struct AtPlace<'h, N: Lanes> {
-    place: u32,
+struct SurfacesOfPrimitive<'h, N: Lanes> {
+    primitive: u32,
     rays: &'h EightRays,
     hits: &'h EightHits,
     /// Of which rays, a bit for each; whose; and what.
     found: (u32, PartIds<N>, Points<N>),
 }
 
-impl<'a, N: Lanes> Visitor<'a> for AtPlace<'_, N> {
+impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
     #[inline(always)]
     fn list<S: Endless>(&mut self, list: &'a List<S>) {
-        if list.holds(self.place) {
-            let (id, surface) = list.part(self.place);
+        if list.holds(self.primitive) {
+            let (id, surface) = list.part(self.primitive);
             let found = surface.splat().points_at(&Rays::<N>::load(self.rays, false), N::load(&self.hits.t));
-            self.found = (self.hits.at::<N>(self.place), PartIds::splat(*id), found);
+            self.found = (self.hits.mask_of::<N>(self.primitive), PartIds::splat(*id), found);
         }
     }
 
     #[inline(always)]
     fn tree<S: SideBySide>(&mut self, tree: &'a Tree<S>) {
-        if tree.holds(self.place) {
-            self.found = in_tree(tree, self.rays, self.hits, self.hits.between(tree.first, tree.end()));
+        if tree.holds(self.primitive) {
+            self.found = surfaces_in_tree(tree, self.rays, self.hits, self.hits.mask_of_range(tree.first, tree.end()));
         }
     }
 }
 
 /// What these of the rays have met in a tree: who, whose, and what.
 #[inline(always)]
-fn in_tree<N: Lanes, S: SideBySide>(
+fn surfaces_in_tree<N: Lanes, S: SideBySide>(
     tree: &Tree<S>,
     rays: &EightRays,
     hits: &EightHits,
     lanes: u32,
 ) -> (u32, PartIds<N>, Points<N>) {
-    let (leaves, in_leaf) = (hits.leaves::<N>(), hits.in_leaf::<N>());
-    let place_of_first = |left: u32| hits.place(left.trailing_zeros() as usize % LANES);
+    let (leaves, in_leaf) = (hits.leaf_indices::<N>(), hits.lanes_in_leaf::<N>());
+    let first_primitive = |left: u32| hits.primitive(left.trailing_zeros() as usize % LANES);
     // Most often all stand in one leaf. Who has met nothing here is given whatever it has, and that is not looked at.
-    let first = place_of_first(lanes);
+    let first = first_primitive(lanes);
     let (leaf, ids) = tree.leaf(first);
     let (mut shapes, mut whose) = (leaf.pick(in_leaf), ids.pick(in_leaf));
     let mut left = lanes & !leaves.has_bits(first / LANES as u32).bits();
     while left != 0 {
-        let place = place_of_first(left);
-        let ((leaf, ids), are_here) = (tree.leaf(place), leaves.has_bits(place / LANES as u32));
+        let primitive = first_primitive(left);
+        let ((leaf, ids), are_here) = (tree.leaf(primitive), leaves.has_bits(primitive / LANES as u32));
         shapes = S::select(are_here, leaf.pick(in_leaf), shapes);
         whose = PartIds::select(are_here, ids.pick(in_leaf), whose);
         left &= !are_here.bits();
@@ -159,15 +159,15 @@ fn in_tree<N: Lanes, S: SideBySide>(
 }
 
 /// Goes over to the smooth surfaces that triangles stand for.
-fn smooth(scene: &Scene, at: &mut EightPoints) {
-    for lane in set_bits(at.met) {
+fn interpolate_normals(scene: &Scene, at: &mut EightPoints) {
+    for lane in set_bits(at.hit_mask) {
         let PartId { object, part } = at.ids.id(lane);
         if let Part::Facet(facet) = scene.objects()[object as usize].shape.part(part)
             && let Some((position, normal)) =
-                facet.smooth(at.position.of_lane(lane), at.facing.of_lane(lane), at.uv(lane))
+                facet.smooth(at.position.of_lane(lane), at.geometric_normal.of_lane(lane), at.uv(lane))
         {
             at.position.put(lane, position);
-            at.normal.put(lane, normal);
+            at.shading_normal.put(lane, normal);
         }
     }
 }

@@ -8,7 +8,8 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use termtrace::internals::bvh::{Bvh, LeafVisitor, Leaves, Prefetch, Queue};
 use termtrace::internals::hit::{
-    Kernel, Test, Witness, any_hit, any_hit_witnessed, any_hits, closest_hit, closest_hit_witnessed, closest_hits,
+    Kernel, Observer, PrimitiveTest, any_hit, any_hit_observed, any_hits, closest_hit, closest_hit_observed,
+    closest_hits,
 };
 use termtrace::internals::lanes::{ALL, Eight, LANES, set_bits};
 use termtrace::internals::light::LightSource;
@@ -309,31 +310,31 @@ fn brute_force(scene: &Scene, ray: &Ray, within: Interval) -> Option<Hit> {
 
 /// Keeps all that it is told.
 #[derive(Default)]
-struct Listener {
+struct TestRecorder {
     boxes: usize,
-    tests: Vec<Test>,
+    tests: Vec<PrimitiveTest>,
 }
 
-impl Witness for Listener {
-    fn boxes(&mut self) {
+impl Observer for TestRecorder {
+    fn node_tested(&mut self) {
         self.boxes += 1;
     }
 
-    fn part(&mut self, test: Test) {
+    fn primitive_tested(&mut self, test: PrimitiveTest) {
         self.tests.push(test);
     }
 }
 
-impl Listener {
+impl TestRecorder {
     /// What it was told is true: of no part twice, of each where it is crossed, and of what was met.
     fn is_right(&self, scene: &Scene, ray: &Ray, min: f32, met: Option<Hit>) -> bool {
         let from_min = Interval { min, max: f32::MAX };
-        let crossing = |test: &Test| {
+        let crossing = |test: &PrimitiveTest| {
             let part = scene.objects()[test.object as usize].shape.part(test.part);
             part.closest_crossing(&Probe::new(*ray), from_min)
         };
         let names: HashSet<_> = self.tests.iter().map(|test| (test.object, test.part)).collect();
-        let tells_of = |Hit { t, object, part }| self.tests.contains(&Test { object, part, t: Some(t) });
+        let tells_of = |Hit { t, object, part }| self.tests.contains(&PrimitiveTest { object, part, t: Some(t) });
         names.len() == self.tests.len()
             && self.tests.iter().all(|test| test.t == crossing(test))
             && met.is_none_or(tells_of)
@@ -343,25 +344,25 @@ impl Listener {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1_000))]
 
-    /// Who is watched meets the same, and the witness is told how that was found.
+    /// Who is watched meets the same, and the observer is told how that was found.
     #[test]
     fn a_witness_changes_nothing_and_knows_all(shapes in prop::collection::vec(shape(), 1..40), ray in ray()) {
         let scene = scene(shapes);
-        let mut witness = Listener::default();
-        let hit = closest_hit_witnessed(&scene, &ray, &mut witness);
+        let mut observer = TestRecorder::default();
+        let hit = closest_hit_observed(&scene, &ray, &mut observer);
         prop_assert_eq!(hit, closest_hit(&scene, &ray));
-        prop_assert!(witness.is_right(&scene, &ray, 0.0, hit), "{:?} {:?}", witness.tests, hit);
-        let closest = witness.tests.iter().filter_map(|test| test.t).fold(f32::INFINITY, f32::min);
+        prop_assert!(observer.is_right(&scene, &ray, 0.0, hit), "{:?} {:?}", observer.tests, hit);
+        let closest = observer.tests.iter().filter_map(|test| test.t).fold(f32::INFINITY, f32::min);
         prop_assert_eq!(hit.map_or(f32::INFINITY, |hit| hit.t), closest);
         let parts: u32 = scene.objects().iter().map(|object| object.shape.part_count()).sum();
         // More than a leaf of each kind: there is a tree, and its root is looked at.
-        prop_assert!(parts <= 16 || witness.boxes > 0 || witness.tests.len() == parts as usize);
+        prop_assert!(parts <= 16 || observer.boxes > 0 || observer.tests.len() == parts as usize);
         for within in [PointLight::IN_THE_WAY, Interval { min: 0.3, max: 0.7 }, Interval { min: -1.0, max: 0.5 }] {
-            let mut witness = Listener::default();
-            let met = any_hit_witnessed(&scene, &ray, within, &mut witness);
+            let mut observer = TestRecorder::default();
+            let met = any_hit_observed(&scene, &ray, within, &mut observer);
             prop_assert_eq!(met.is_some(), any_hit(&scene, &ray, within));
             prop_assert!(met.is_none_or(|hit| within.contains(hit.t)));
-            prop_assert!(witness.is_right(&scene, &ray, within.min, met), "{:?} {:?}", witness.tests, met);
+            prop_assert!(observer.is_right(&scene, &ray, within.min, met), "{:?} {:?}", observer.tests, met);
         }
     }
 

@@ -75,7 +75,7 @@ impl Termtrace {
         hit::closest_hits(self.kernel, &self.scene, rays, hits);
         let mut sum = Acc::default();
         for hits in hits.iter() {
-            sum.hits += u64::from(hits.met.count_ones());
+            sum.hits += u64::from(hits.hit_mask.count_ones());
             sum.tsum += depths(hits);
         }
         if full {
@@ -107,7 +107,7 @@ fn eye_rays(f: &Frame, [x, y]: [u32; 2], [x1, y1]: [u32; 2]) -> EightRays {
 
 /// The sum of the depths of what is met, without a branch for each.
 fn depths(hits: &EightHits) -> f64 {
-    let depth = |lane: usize| if hits.met >> lane & 1 == 1 { f64::from(hits.t.0[lane]) } else { 0.0 };
+    let depth = |lane: usize| if hits.hit_mask >> lane & 1 == 1 { f64::from(hits.t.0[lane]) } else { 0.0 };
     let [a, b, c, d] = [0, 2, 4, 6].map(|lane| [depth(lane), depth(lane + 1)]);
     (a[0] + b[0]) + (c[0] + d[0]) + ((a[1] + b[1]) + (c[1] + d[1]))
 }
@@ -152,7 +152,7 @@ impl Backend for Termtrace {
             } else {
                 hit::closest_hits(self.kernel, &self.scene, rays_of_a_tile, &mut hits);
                 for hits in &hits {
-                    sum.hits += u64::from(hits.met.count_ones());
+                    sum.hits += u64::from(hits.hit_mask.count_ones());
                     sum.tsum += depths(hits);
                 }
             }

@@ -3,20 +3,20 @@
 use crate::accel::PartId;
 
 /// Who is told what a ray is tested against, by the same code that traces pictures.
-pub trait Witness {
+pub trait Observer {
     /// Whether anybody is there. What is only for him to know is not worked out otherwise.
-    const IS_THERE: bool = true;
+    const ENABLED: bool = true;
 
     /// The ray was tested against the boxes of a node: up to eight.
-    fn boxes(&mut self);
+    fn node_tested(&mut self);
 
     /// The ray was tested against a part of an object.
-    fn part(&mut self, test: Test);
+    fn primitive_tested(&mut self, test: PrimitiveTest);
 }
 
 /// A ray's test against a part of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Test {
+pub struct PrimitiveTest {
     /// Which of the scene's objects, by its place in [`Scene::objects`](crate::scene::Scene::objects).
     pub object: u32,
     /// Which of its shape's [parts](crate::shape::Shape::part).
@@ -25,35 +25,35 @@ pub struct Test {
     pub t: Option<f32>,
 }
 
-impl Test {
+impl PrimitiveTest {
     pub(super) fn of(PartId { object, part }: PartId, t: Option<f32>) -> Self {
         Self { object, part, t }
     }
 }
 
-/// The usual witness.
-pub(super) struct Nobody;
+/// The usual observer.
+pub(super) struct NoObserver;
 
-impl Witness for Nobody {
-    const IS_THERE: bool = false;
-
-    #[inline(always)]
-    fn boxes(&mut self) {}
+impl Observer for NoObserver {
+    const ENABLED: bool = false;
 
     #[inline(always)]
-    fn part(&mut self, _: Test) {}
+    fn node_tested(&mut self) {}
+
+    #[inline(always)]
+    fn primitive_tested(&mut self, _: PrimitiveTest) {}
 }
 
-impl<W: Witness> Witness for &mut W {
-    const IS_THERE: bool = W::IS_THERE;
+impl<W: Observer> Observer for &mut W {
+    const ENABLED: bool = W::ENABLED;
 
     #[inline(always)]
-    fn boxes(&mut self) {
-        W::boxes(self);
+    fn node_tested(&mut self) {
+        W::node_tested(self);
     }
 
     #[inline(always)]
-    fn part(&mut self, test: Test) {
-        W::part(self, test);
+    fn primitive_tested(&mut self, test: PrimitiveTest) {
+        W::primitive_tested(self, test);
     }
 }
