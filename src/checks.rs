@@ -9,16 +9,16 @@ use std::borrow::Cow;
 use std::fmt;
 
 /// Limit on coordinates: beyond it, squaring twice on a ray's way would exceed f32.
-const FARTHEST: f64 = 1e9;
+const MAX_COORDINATE: f64 = 1e9;
 
 /// Limit on lengths: below it, squaring twice would underflow f32.
-const SHORTEST: f64 = 1e-9;
+const MIN_LENGTH: f64 = 1e-9;
 
-const BRIGHTEST: f64 = 1e12;
-const LARGEST_EXPOSURE: f64 = 1e6;
+const MAX_LIGHT: f64 = 1e12;
+const MAX_EXPOSURE: f64 = 1e6;
 
 /// Limit on the ratio of two lengths of a view rectangle.
-const LARGEST_RATIO: f64 = 1e6;
+const MAX_RATIO: f64 = 1e6;
 
 /// The message for a value, which says what would be right where possible: one line without a full stop.
 pub(crate) type Message = Cow<'static, str>;
@@ -34,14 +34,14 @@ pub(crate) type Message = Cow<'static, str>;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneFault {
-    place: Message,
+    subject: Message,
     message: Message,
 }
 
 impl SceneFault {
     /// Returns an error with a name, or a name and a value.
-    pub(crate) fn new(place: impl Into<Message>, message: impl Into<Message>) -> Self {
-        Self { place: place.into(), message: message.into() }
+    pub(crate) fn new(subject: impl Into<Message>, message: impl Into<Message>) -> Self {
+        Self { subject: subject.into(), message: message.into() }
     }
 
     /// Returns the message in the words of a scene file's error.
@@ -53,7 +53,7 @@ impl SceneFault {
 
 impl fmt::Display for SceneFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.message)
+        write!(f, "{}: {}", self.subject, self.message)
     }
 }
 
@@ -72,7 +72,7 @@ pub(crate) fn finite(value: f64) -> Result<f64, Message> {
 
 /// Checks that a coordinate is within the range that rays can be traced in.
 pub(crate) fn coordinate(value: f64) -> Result<f32, Message> {
-    if value.abs() <= FARTHEST { Ok(value as f32) } else { Err(TOO_FAR.into()) }
+    if value.abs() <= MAX_COORDINATE { Ok(value as f32) } else { Err(TOO_FAR.into()) }
 }
 
 pub(crate) const TOO_FAR: &str =
@@ -80,7 +80,7 @@ pub(crate) const TOO_FAR: &str =
 
 /// Returns whether all these points are within the range that rays can be traced in.
 pub(crate) fn are_near(points: &[Vec3]) -> bool {
-    points.iter().all(|point| f64::from(point.abs().max_element()) <= FARTHEST)
+    points.iter().all(|point| f64::from(point.abs().max_element()) <= MAX_COORDINATE)
 }
 
 /// Returns the message for a mesh that is not [near](are_near).
@@ -91,7 +91,7 @@ pub(crate) fn length(what: &str, value: f64) -> Result<f32, Message> {
     if value <= 0.0 {
         return Err(format!("the {what} must be greater than 0").into());
     }
-    if !is_within(value, SHORTEST, FARTHEST) {
+    if !is_within(value, MIN_LENGTH, MAX_COORDINATE) {
         return Err(format!("the {what} must lie between 1e-9 and 1e9").into());
     }
     Ok(value as f32)
@@ -99,7 +99,7 @@ pub(crate) fn length(what: &str, value: f64) -> Result<f32, Message> {
 
 /// Checks a scale factor along an axis. A negative factor mirrors; 0 would leave nothing of a mesh.
 pub(crate) fn factor(value: f64) -> Result<f32, Message> {
-    if is_within(value.abs(), SHORTEST, FARTHEST) {
+    if is_within(value.abs(), MIN_LENGTH, MAX_COORDINATE) {
         Ok(value as f32)
     } else {
         Err("a factor must lie between 1e-9 and 1e9, or be as far below 0".into())
@@ -111,21 +111,21 @@ pub(crate) fn amount(what: &str, value: f64) -> Result<f32, Message> {
     if value < 0.0 {
         return Err(format!("{what} must not be negative").into());
     }
-    if value > BRIGHTEST {
+    if value > MAX_LIGHT {
         return Err(format!("{what} must be at most 1e12").into());
     }
     Ok(value as f32)
 }
 
 /// Checks a channel of light.
-pub(crate) fn light(band: f64) -> Result<f32, Message> {
-    amount("light", band)
+pub(crate) fn light(channel: f64) -> Result<f32, Message> {
+    amount("light", channel)
 }
 
 /// Checks a channel of a reflectance, at most 1.
-pub(crate) fn reflectance(band: f64) -> Result<f32, Message> {
-    if (0.0..=1.0).contains(&band) {
-        Ok(band as f32)
+pub(crate) fn reflectance(channel: f64) -> Result<f32, Message> {
+    if (0.0..=1.0).contains(&channel) {
+        Ok(channel as f32)
     } else {
         Err("a reflectance must lie within 0 and 1; no surface reflects more light than it gets".into())
     }
@@ -133,7 +133,7 @@ pub(crate) fn reflectance(band: f64) -> Result<f32, Message> {
 
 /// Checks an exposure.
 pub(crate) fn exposure(value: f64) -> Result<f32, Message> {
-    if value > 0.0 && value as f32 > 0.0 && value <= LARGEST_EXPOSURE {
+    if value > 0.0 && value as f32 > 0.0 && value <= MAX_EXPOSURE {
         return Ok(value as f32);
     }
     let wanted = if value <= 0.0 { "greater than 0" } else { "between 1e-45 and 1e6" };
@@ -162,23 +162,23 @@ pub(crate) fn corners(corners: [Vec3; 3]) -> Result<[Vec3; 3], Message> {
 
 /// A length over another one, such as an aspect ratio.
 pub(crate) fn is_ratio(value: f64) -> bool {
-    is_within(value, 1.0 / LARGEST_RATIO, LARGEST_RATIO)
+    is_within(value, 1.0 / MAX_RATIO, MAX_RATIO)
 }
 
 /// Whether an up vector has a length that can be squared.
 pub(crate) fn is_long(vector: Vec3) -> bool {
-    vector.abs().max_element() >= SHORTEST as f32
+    vector.abs().max_element() >= MIN_LENGTH as f32
 }
 
 /// Whether all coordinates are such that light can be followed there.
 pub(crate) fn is_near(vector: DVec3) -> bool {
-    vector.abs().max_element() <= FARTHEST
+    vector.abs().max_element() <= MAX_COORDINATE
 }
 
 // What code gives -------------------------------------------------------------------------------------------------------
 
 /// Checks a number that code gives.
-pub(crate) fn given(
+pub(crate) fn checked_number(
     name: &'static str,
     value: f32,
     rule: impl FnOnce(f64) -> Result<f32, Message>,
@@ -188,7 +188,7 @@ pub(crate) fn given(
 }
 
 /// Checks a vector that code gives.
-fn given_vector<T>(
+fn checked_vector<T>(
     name: impl fmt::Display,
     vector: Vec3,
     rule: impl FnOnce(DVec3) -> Result<T, Message>,
@@ -205,25 +205,25 @@ fn given_vector<T>(
 }
 
 /// Checks a point that code gives.
-pub(crate) fn given_point(name: impl fmt::Display, point: Vec3) -> Result<Vec3, SceneFault> {
-    given_vector(name, point, |_| Ok(point))
+pub(crate) fn checked_point(name: impl fmt::Display, point: Vec3) -> Result<Vec3, SceneFault> {
+    checked_vector(name, point, |_| Ok(point))
 }
 
 /// Checks a direction that code gives, of any length but 0. Returns it with unit length.
-pub(crate) fn given_direction(name: &'static str, direction: Vec3) -> Result<Vec3, SceneFault> {
-    given_vector(name, direction, |numbers| unit_vector(name, numbers)).map(DVec3::as_vec3)
+pub(crate) fn checked_direction(name: &'static str, direction: Vec3) -> Result<Vec3, SceneFault> {
+    checked_vector(name, direction, |numbers| unit_vector(name, numbers)).map(DVec3::as_vec3)
 }
 
-/// Checks a colour that code gives, band by band.
-pub(crate) fn given_color(
+/// Checks a colour that code gives, channel by channel.
+pub(crate) fn checked_color(
     name: &'static str,
     color: LinearRgb,
     rule: impl Fn(f64) -> Result<f32, Message>,
 ) -> Result<LinearRgb, SceneFault> {
     let LinearRgb { r, g, b } = color;
-    let checked = [r, g, b].into_iter().try_for_each(|band| {
-        finite(band.into())?;
-        rule(band.into()).map(drop)
+    let checked = [r, g, b].into_iter().try_for_each(|channel| {
+        finite(channel.into())?;
+        rule(channel.into()).map(drop)
     });
     checked.map_err(|message| SceneFault::new(format!("{name} is ({r}, {g}, {b})"), message))?;
     Ok(color)

@@ -6,8 +6,8 @@
 use crate::color::LinearRgb;
 use crate::lanes::{Number, Vector};
 use crate::ray::Interval;
-use crate::scene_text::Node;
-use crate::written::{InSceneFile, Reader, Validator};
+use crate::scene_text::SyntaxNode;
+use crate::written::{InSceneFile, NodeReader, Validator};
 use glam::Vec3;
 
 mod point;
@@ -131,7 +131,7 @@ macro_rules! lights {
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $light::NAME,)*];
 
             /// Reads the light with this name.
-            pub(crate) fn read(name: &str, reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Self> {
+            pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $light::NAME {
                     return $light::read_node(reader, node).map(Self::$name);
                 })*

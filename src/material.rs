@@ -9,8 +9,8 @@
 use crate::checks::SceneFault;
 use crate::color::LinearRgb;
 use crate::lanes::Number;
-use crate::scene_text::Node;
-use crate::written::{InSceneFile, Reader, Validator};
+use crate::scene_text::SyntaxNode;
+use crate::written::{InSceneFile, NodeReader, Validator};
 
 mod checker;
 mod diffuse;
@@ -96,7 +96,7 @@ macro_rules! materials {
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $material::NAME,)*];
 
             /// Reads the material with this name.
-            pub(crate) fn read(name: &str, reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Self> {
+            pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $material::NAME {
                     return $material::read_node(reader, node).map(Self::$material);
                 })*

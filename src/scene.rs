@@ -230,7 +230,7 @@ impl Scene {
     /// Unless each channel is within 0 and 1e12.
     #[doc(hidden)]
     pub fn with_ambient(self, ambient: LinearRgb) -> Result<Self, SceneFault> {
-        let ambient = checks::given_color("ambient", ambient, checks::light)?;
+        let ambient = checks::checked_color("ambient", ambient, checks::light)?;
         Ok(self.with(|checked| checked.ambient = ambient))
     }
 
@@ -252,7 +252,7 @@ impl Scene {
     /// Unless it is greater than 0 and at most 1e6.
     #[doc(hidden)]
     pub fn with_exposure(self, exposure: f32) -> Result<Self, SceneFault> {
-        let exposure = checks::given("exposure", exposure, checks::exposure)?;
+        let exposure = checks::checked_number("exposure", exposure, checks::exposure)?;
         Ok(self.with(|checked| checked.exposure = exposure))
     }
 
@@ -310,10 +310,10 @@ impl Background {
     /// Returns the background if its light is within range.
     fn checked(self) -> Result<Self, SceneFault> {
         match self {
-            Self::Color(color) => checks::given_color("background", color, checks::light).map(Self::Color),
+            Self::Color(color) => checks::checked_color("background", color, checks::light).map(Self::Color),
             Self::Gradient { bottom, top } => {
-                let bottom = checks::given_color("bottom", bottom, checks::light)?;
-                Ok(Self::Gradient { bottom, top: checks::given_color("top", top, checks::light)? })
+                let bottom = checks::checked_color("bottom", bottom, checks::light)?;
+                Ok(Self::Gradient { bottom, top: checks::checked_color("top", top, checks::light)? })
             }
         }
     }

@@ -16,9 +16,9 @@ pub use path::{PathFile, WrittenKeyframe};
 use crate::light::WrittenLight;
 use crate::material::WrittenMaterial;
 use crate::progress::Watcher;
-use crate::scene_text::{Faults, Node, Value};
+use crate::scene_text::{Faults, SyntaxNode, Value};
 use crate::shape::WrittenShape;
-use crate::written::{Fields, Reader, Spanned, WrittenColor, WrittenNumber};
+use crate::written::{Fields, NodeReader, Spanned, WrittenColor, WrittenNumber};
 
 /// A whole scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -101,21 +101,21 @@ pub struct WrittenObject {
 
 impl SceneFile {
     /// Reads a scene from its tree; anything else is added to `faults`. After a cancel the lists end early.
-    pub fn read(root: &Node<'_>, watcher: &Watcher<'_>, faults: &mut Faults) -> Self {
-        let mut reader = Reader::new(faults, watcher);
+    pub fn read(root: &SyntaxNode<'_>, watcher: &Watcher<'_>, faults: &mut Faults) -> Self {
+        let mut reader = NodeReader::new(faults, watcher);
         let Some(fields) = reader.root(root) else {
             return Self::default();
         };
         let mut scene = Self {
-            camera: reader.required(&fields, "camera", Reader::camera),
-            views: reader.optional(&fields, "views", Reader::views).unwrap_or_default(),
-            background: reader.optional(&fields, "background", Reader::background),
-            ambient: reader.optional(&fields, "ambient", Reader::color),
-            lights: reader.optional(&fields, "lights", Reader::lights).unwrap_or_default(),
-            objects: reader.optional(&fields, "objects", Reader::objects).unwrap_or_default(),
-            shadows: reader.optional(&fields, "shadows", Reader::boolean),
-            exposure: reader.optional(&fields, "exposure", Reader::number),
-            tone_curve: reader.optional_word(&fields, "tone_curve", Reader::tone_curve),
+            camera: reader.required(&fields, "camera", NodeReader::camera),
+            views: reader.optional(&fields, "views", NodeReader::views).unwrap_or_default(),
+            background: reader.optional(&fields, "background", NodeReader::background),
+            ambient: reader.optional(&fields, "ambient", NodeReader::color),
+            lights: reader.optional(&fields, "lights", NodeReader::lights).unwrap_or_default(),
+            objects: reader.optional(&fields, "objects", NodeReader::objects).unwrap_or_default(),
+            shadows: reader.optional(&fields, "shadows", NodeReader::boolean),
+            exposure: reader.optional(&fields, "exposure", NodeReader::number),
+            tone_curve: reader.optional_word(&fields, "tone_curve", NodeReader::tone_curve),
             materials: Vec::new(),
             materials_complete: true,
         };
@@ -126,8 +126,8 @@ impl SceneFile {
     }
 }
 
-impl Reader<'_> {
-    fn root<'n>(&mut self, root: &'n Node<'n>) -> Option<Fields<'n>> {
+impl NodeReader<'_> {
+    fn root<'n>(&mut self, root: &'n SyntaxNode<'n>) -> Option<Fields<'n>> {
         const FIELDS: &[&str] = &[
             "camera",
             "views",
@@ -143,29 +143,29 @@ impl Reader<'_> {
         self.fields(root, "a scene", "a scene (camera: ..., lights: [...], objects: [...])", FIELDS)
     }
 
-    fn background(&mut self, node: &Node<'_>) -> Option<WrittenBackground> {
+    fn background(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenBackground> {
         if !matches!(node.value, Value::Group(ref group) if group.name.is_some()) {
             return self.color(node).map(WrittenBackground::Color);
         }
         self.variant(node, "a background", "a colour or Gradient(bottom: ..., top: ...)", &["Gradient"])?;
         let fields = self.fields(node, "a Gradient", "Gradient(bottom: ..., top: ...)", &["bottom", "top"])?;
         Some(WrittenBackground::Gradient {
-            bottom: self.required(&fields, "bottom", Reader::color),
-            top: self.required(&fields, "top", Reader::color),
+            bottom: self.required(&fields, "bottom", NodeReader::color),
+            top: self.required(&fields, "top", NodeReader::color),
         })
     }
 
-    fn lights(&mut self, node: &Node<'_>) -> Option<Vec<WrittenLight>> {
+    fn lights(&mut self, node: &SyntaxNode<'_>) -> Option<Vec<WrittenLight>> {
         let items = self.list(node, "a list of lights [Point(...), ...]")?;
         Some(self.each(items, Self::light))
     }
 
-    fn light(&mut self, node: &Node<'_>) -> Option<WrittenLight> {
+    fn light(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenLight> {
         let name = self.variant(node, "a light", "a light, such as Point(position: ...)", WrittenLight::NAMES)?;
         WrittenLight::read(name, self, node)
     }
 
-    fn tone_curve(&mut self, node: &Node<'_>) -> Option<WrittenToneCurve> {
+    fn tone_curve(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenToneCurve> {
         let all = [
             ("None", WrittenToneCurve::None),
             ("Reinhard", WrittenToneCurve::Reinhard),

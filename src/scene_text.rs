@@ -1,7 +1,7 @@
 //! The reader of RON: text to a syntax tree with positions; faults with line, column and caret.
 //!
 //! Scenes are written in RON (Rusty Object Notation). The tree knows nothing of scenes: their grammar is that of
-//! [`scene_file`](crate::scene_file). It guarantees two things. Every [`Node`] has its byte range, so that a later
+//! [`scene_file`](crate::scene_file). It guarantees two things. Every [`SyntaxNode`] has its byte range, so that a later
 //! check can point at it, and a program can replace it without touching the comments around it. And no text, however
 //! large, deep or broken, causes more than a [`Fault`]: nesting is limited, memory is bounded by a small multiple of
 //! the text, time is linear.
@@ -22,16 +22,16 @@ mod parser;
 #[cfg(feature = "ron")]
 mod tokens;
 #[cfg(feature = "ron")]
-mod whole;
+mod read;
 
 pub use fault::{Fault, Faults, Report, SceneError, line_and_column};
 pub(crate) use fault::{clipped, quoted};
 #[cfg(feature = "ron")]
 pub use parser::parse;
 #[cfg(feature = "ron")]
-pub(crate) use whole::read_or_cancel;
+pub(crate) use read::read_or_cancel;
 #[cfg(feature = "ron")]
-pub use whole::{read, text_from};
+pub use read::{read, text_from};
 
 /// A range of bytes in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,20 +50,20 @@ impl Span {
     }
 
     /// Returns the empty range at an index.
-    pub fn at(place: usize) -> Self {
-        Self::new(place, place)
+    pub fn at(offset: usize) -> Self {
+        Self::new(offset, offset)
     }
 }
 
 /// Limit on the size of a text: 16 MiB, which holds a scene of 200,000 spheres.
-pub const MAX_BYTES: usize = 16 << 20;
+pub const MAX_TEXT_BYTES: usize = 16 << 20;
 
 /// Limit on the nesting of values.
-pub const MAX_DEPTH: usize = 128;
+pub const MAX_NESTING: usize = 128;
 
 /// A value and its position.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Node<'a> {
+pub struct SyntaxNode<'a> {
     /// The range of the whole value, brackets included.
     pub span: Span,
     /// The value.
@@ -80,9 +80,9 @@ pub enum Value<'a> {
     /// A string with its escapes resolved.
     String(Box<str>),
     /// `[a, b]`.
-    List(Vec<Node<'a>>),
+    List(Vec<SyntaxNode<'a>>),
     /// `{a: b}`.
-    Map(Vec<(Node<'a>, Node<'a>)>),
+    Map(Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>),
     /// `Name`, `Name(...)` or `(...)`.
     Group(Box<Group<'a>>),
 }
@@ -111,7 +111,7 @@ pub enum Body<'a> {
     /// None: `InverseSquare`.
     Nothing,
     /// Values: `(1, 2, 3)`; also `()`.
-    Values(Vec<Node<'a>>),
+    Values(Vec<SyntaxNode<'a>>),
     /// Named values: `(radius: 1)`.
     Fields(Vec<Field<'a>>),
 }
@@ -122,10 +122,10 @@ pub struct Field<'a> {
     /// The name before the colon.
     pub name: Name<'a>,
     /// The value after it.
-    pub value: Node<'a>,
+    pub value: SyntaxNode<'a>,
 }
 
-impl<'a> Node<'a> {
+impl<'a> SyntaxNode<'a> {
     /// Returns the fields of `(name: value, ...)`, a group without a name; none for `()`.
     pub fn fields(&self) -> Option<&[Field<'a>]> {
         match &self.value {

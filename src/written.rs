@@ -1,19 +1,19 @@
 //! Values as written, each with its position: reading from the syntax tree, and checking.
 //!
-//! A [`Reader`] continues after a fault, so that one run reports all. A missing or faulty value is `None`, and its
+//! A [`NodeReader`] continues after a fault, so that one run reports all. A missing or faulty value is `None`, and its
 //! fault has been reported. A [`Validator`] checks what types do not: that a radius is positive, or that a coordinate
 //! is small enough for rays to be traced.
 
 mod colors;
-mod reader;
+mod node_reader;
 mod validator;
 
 pub use colors::WrittenColor;
-pub use reader::{Fields, Reader};
-pub(crate) use reader::{description, group_of_values, values};
+pub use node_reader::{Fields, NodeReader};
+pub(crate) use node_reader::{description, group_of_values, values};
 pub use validator::Validator;
 
-use crate::scene_text::{Node, Span};
+use crate::scene_text::{Span, SyntaxNode};
 use std::fmt::Debug;
 
 /// A value and its position.
@@ -55,10 +55,10 @@ pub trait InSceneFile {
     const FIELDS: &'static [&'static str];
 
     /// Reads its fields.
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> Self::Written;
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> Self::Written;
 
     /// Reads the whole value, name and fields.
-    fn read_node(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Self::Written> {
+    fn read_node(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self::Written> {
         let fields = reader.fields(node, Self::OWNER, Self::FORM, Self::FIELDS)?;
         Some(Self::read(reader, &fields))
     }

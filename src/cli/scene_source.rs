@@ -76,7 +76,7 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
 /// All of it, up to one byte more than a scene may have.
 fn read_stdin() -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    let limit = termtrace::internals::scene_text::MAX_BYTES as u64 + 1;
+    let limit = termtrace::internals::scene_text::MAX_TEXT_BYTES as u64 + 1;
     let read = io::stdin().lock().take(limit).read_to_end(&mut bytes);
     read.map(|_| bytes).map_err(|error| Failure::runtime("standard input", reason(&error)))
 }

@@ -1,7 +1,7 @@
 //! Bindings of one's own: RON -> the built-in table, changed; and back.
 
 use super::{Bindings, Command, Key, Mode};
-use crate::scene_text::{self, Faults, Field, Node, SceneError, Span, Value, clipped, quoted};
+use crate::scene_text::{self, Faults, Field, SceneError, Span, SyntaxNode, Value, clipped, quoted};
 use crate::text::{closest, listed};
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -133,7 +133,7 @@ fn keys_as_ron(keys: &[Key]) -> String {
 }
 
 /// `(mode: { key: command, ... }, ...)`
-fn lines(root: &Node<'_>, faults: &mut Faults) -> Vec<Line> {
+fn lines(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Line> {
     const FORM: &str = "modes with their keys, as in (fly: { \"8\": MoveForward })";
     let Some(fields) = root.fields() else {
         faults.add(root.head(), || format!("expected {FORM}"));
@@ -174,14 +174,14 @@ fn unknown_mode(name: &str) -> String {
 }
 
 /// A key or a list of keys, and where each stands.
-fn keys_of(node: &Node<'_>, faults: &mut Faults) -> Vec<(Key, Span)> {
+fn keys_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<(Key, Span)> {
     match &node.value {
         Value::List(items) => items.iter().filter_map(|item| Some((key_of(item, faults)?, item.span))).collect(),
         _ => key_of(node, faults).map(|key| (key, node.span)).into_iter().collect(),
     }
 }
 
-fn key_of(node: &Node<'_>, faults: &mut Faults) -> Option<Key> {
+fn key_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Key> {
     let Value::String(name) = &node.value else {
         faults.add(node.head(), || "expected a key in quotes, as in \"w\", or a list of keys".to_owned());
         return None;
@@ -201,7 +201,7 @@ fn key_of(node: &Node<'_>, faults: &mut Faults) -> Option<Key> {
 }
 
 /// The command, if it is one that means something in the mode.
-fn command_of(mode: Mode, node: &Node<'_>, faults: &mut Faults) -> Option<Command> {
+fn command_of(mode: Mode, node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Command> {
     let Some(word) = node.word() else {
         let expected = "expected a command without quotes, such as MoveForward, or None";
         faults.add(node.head(), || expected.to_owned());

@@ -4,8 +4,8 @@ use super::LightSource;
 use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
 use crate::lanes::{Number, Vector};
-use crate::scene_text::Node;
-use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, WrittenNumber, WrittenVector};
+use crate::scene_text::SyntaxNode;
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, WrittenNumber, WrittenVector};
 use glam::Vec3;
 
 /// A point source: very small, and the same in all directions (lecture, "Shading", assumptions 1 and 2).
@@ -25,8 +25,8 @@ impl PointLight {
     /// # Errors
     /// Unless the coordinates are within ±1e9, and each channel of the intensity within 0 and 1e12.
     pub fn new(position: Vec3, intensity: LinearRgb) -> Result<Self, SceneFault> {
-        let position = checks::given_point("position", position)?;
-        let intensity = checks::given_color("intensity", intensity, checks::light)?;
+        let position = checks::checked_point("position", position)?;
+        let intensity = checks::checked_color("intensity", intensity, checks::light)?;
         Ok(Self { position, intensity, falloff: Falloff::default() })
     }
 
@@ -90,7 +90,7 @@ impl LightSource for PointLight {
     }
 
     fn moved_to(self, position: Vec3) -> Self {
-        checks::given_point("position", position).map_or(self, |position| Self { position, ..self })
+        checks::checked_point("position", position).map_or(self, |position| Self { position, ..self })
     }
 
     fn check(written: &WrittenPointLight, validator: &mut Validator<'_>) -> Option<Self> {
@@ -129,17 +129,17 @@ impl InSceneFile for PointLight {
     const FORM: &'static str = "Point(position: ...)";
     const FIELDS: &'static [&'static str] = &["position", "color", "intensity", "falloff"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenPointLight {
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenPointLight {
         WrittenPointLight {
-            position: reader.required(fields, "position", Reader::point),
-            color: reader.optional(fields, "color", Reader::color),
-            intensity: reader.optional(fields, "intensity", Reader::number),
+            position: reader.required(fields, "position", NodeReader::point),
+            color: reader.optional(fields, "color", NodeReader::color),
+            intensity: reader.optional(fields, "intensity", NodeReader::number),
             falloff: reader.optional_word(fields, "falloff", falloff),
         }
     }
 }
 
-fn falloff(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Falloff> {
+fn falloff(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Falloff> {
     let all = [("InverseSquare", Falloff::InverseSquare), ("None", Falloff::None)];
     reader.choice(node, "a falloff", &all)
 }

@@ -4,7 +4,7 @@ use super::LightSource;
 use crate::color::LinearRgb;
 use crate::lanes::{Number, Vector};
 use crate::ray::Interval;
-use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenVector};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::Vec3;
 
 /// White light from one direction, of the same strength everywhere: a white surface that faces it has the radiance 1.
@@ -46,8 +46,8 @@ impl InSceneFile for Sun {
     const FORM: &'static str = "Sun(direction: ...)";
     const FIELDS: &'static [&'static str] = &["direction"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> Option<WrittenVector> {
-        reader.required(fields, "direction", Reader::direction)
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> Option<WrittenVector> {
+        reader.required(fields, "direction", NodeReader::direction)
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Reflecting, bands};
 use crate::checks::{self, SceneFault};
 use crate::color::{LinearRgb, Srgb8};
 use crate::lanes::Number;
-use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, WrittenNumber};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, WrittenNumber};
 
 /// Squares of two alternating reflectances, on the surface's own coordinates (of a plane).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,9 +28,9 @@ impl Checker {
     /// Unless each channel is within 0 and 1, and the size between 1e-9 and 1e9.
     #[doc(hidden)]
     pub fn new(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
-        let a = checks::given_color("a", a, checks::reflectance)?;
-        let b = checks::given_color("b", b, checks::reflectance)?;
-        let size = checks::given("size", size, |size| checks::length(SIZE, size))?;
+        let a = checks::checked_color("a", a, checks::reflectance)?;
+        let b = checks::checked_color("b", b, checks::reflectance)?;
+        let size = checks::checked_number("size", size, |size| checks::length(SIZE, size))?;
         Ok(Self { a, b, size })
     }
 }
@@ -82,11 +82,11 @@ impl InSceneFile for Checker {
     const FORM: &'static str = "Checker(a: ..., b: ..., size: ...)";
     const FIELDS: &'static [&'static str] = &["a", "b", "size"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenChecker {
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenChecker {
         WrittenChecker {
-            a: reader.optional(fields, "a", Reader::color),
-            b: reader.optional(fields, "b", Reader::color),
-            size: reader.optional(fields, "size", Reader::number),
+            a: reader.optional(fields, "a", NodeReader::color),
+            b: reader.optional(fields, "b", NodeReader::color),
+            size: reader.optional(fields, "size", NodeReader::number),
         }
     }
 }

@@ -4,8 +4,8 @@ use super::{Reflecting, bands};
 use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
 use crate::lanes::Number;
-use crate::scene_text::{Body, Node, Value};
-use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor, group_of_values};
+use crate::scene_text::{Body, SyntaxNode, Value};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, group_of_values};
 
 /// The same reflectance everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ impl Diffuse {
     /// Unless each channel is within 0 and 1.
     #[doc(hidden)]
     pub fn new(reflectance: LinearRgb) -> Result<Self, SceneFault> {
-        Ok(Self { reflectance: checks::given_color("reflectance", reflectance, checks::reflectance)? })
+        Ok(Self { reflectance: checks::checked_color("reflectance", reflectance, checks::reflectance)? })
     }
 }
 
@@ -51,12 +51,12 @@ impl InSceneFile for Diffuse {
     const FORM: &'static str = "Diffuse(\"#rrggbb\")";
     const FIELDS: &'static [&'static str] = &["reflectance"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> Option<WrittenColor> {
-        reader.required(fields, "reflectance", Reader::color)
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> Option<WrittenColor> {
+        reader.required(fields, "reflectance", NodeReader::color)
     }
 
     /// `Diffuse(colour)` or `Diffuse(reflectance: colour)`.
-    fn read_node(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Option<WrittenColor>> {
+    fn read_node(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Option<WrittenColor>> {
         if let Value::Group(group) = &node.value
             && let Body::Values(values) = &group.body
         {

@@ -4,7 +4,7 @@
 use super::{Reflecting, bands};
 use crate::color::LinearRgb;
 use crate::lanes::Number;
-use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenColor};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor};
 
 /// Stripes of width 1 across the first of the surface's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,8 +44,8 @@ impl InSceneFile for Stripes {
     const FORM: &'static str = "Stripes(a: ..., b: ...)";
     const FIELDS: &'static [&'static str] = &["a", "b"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> [Option<WrittenColor>; 2] {
-        ["a", "b"].map(|name| reader.required(fields, name, Reader::color))
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> [Option<WrittenColor>; 2] {
+        ["a", "b"].map(|name| reader.required(fields, name, NodeReader::color))
     }
 }
 

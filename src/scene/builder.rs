@@ -89,8 +89,8 @@ impl SceneBuilder {
         }
         Ok(Draft::new(Checked {
             background: rest.background.checked()?,
-            ambient: checks::given_color("ambient", rest.ambient, checks::light)?,
-            exposure: checks::given("exposure", rest.exposure, checks::exposure)?,
+            ambient: checks::checked_color("ambient", rest.ambient, checks::light)?,
+            exposure: checks::checked_number("exposure", rest.exposure, checks::exposure)?,
             objects: objects.into(),
             ..rest
         })

@@ -31,7 +31,7 @@ pub(super) fn check(
     let background = file.background.as_ref().and_then(|written| validator.background(written));
     let ambient = file.ambient.and_then(|color| validator.light_color(color));
     let lights = file.lights.iter().filter_map(|light| light.check(&mut validator)).collect();
-    let exposure = file.exposure.and_then(|written| validator.take(written.span, checks::exposure(written.value)));
+    let exposure = file.exposure.and_then(|written| validator.accept(written.span, checks::exposure(written.value)));
     let objects = validator.objects(file, meshes, watcher);
     if !faults.is_empty() {
         return None;
@@ -69,8 +69,8 @@ impl Validator<'_> {
     fn objects(&mut self, file: &SceneFile, meshes: &mut dyn Meshes, watcher: &Watcher<'_>) -> Vec<Object> {
         let mut materials = HashMap::new();
         for NamedMaterial { name, material } in &file.materials {
-            let made = material.as_ref().map(|written| Made { written, material: written.check(self) });
-            materials.insert(&**name, made);
+            let checked = material.as_ref().map(|written| CheckedMaterial { written, material: written.check(self) });
+            materials.insert(&**name, checked);
         }
         let object = |written: &WrittenObject| {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
@@ -84,15 +84,15 @@ impl Validator<'_> {
         &mut self,
         object: &WrittenObject,
         file: &SceneFile,
-        materials: &HashMap<&str, Option<Made<'_>>>,
+        materials: &HashMap<&str, Option<CheckedMaterial<'_>>>,
     ) -> Option<Material> {
         let Some(Spanned { value, span }) = &object.material else {
             return Some(if object.shape.brings_colors() { Material::Own } else { Material::DEFAULT });
         };
-        let Made { written, material } = match value {
-            MaterialUse::Inline(written) => Made { written, material: written.check(self) },
+        let CheckedMaterial { written, material } = match value {
+            MaterialUse::Inline(written) => CheckedMaterial { written, material: written.check(self) },
             MaterialUse::Named(name) => match materials.get(&**name) {
-                Some(&made) => made?,
+                Some(&checked) => checked?,
                 None if !file.materials_complete => return None,
                 None => return self.fault(*span, || unknown_material(name, file)),
             },
@@ -108,7 +108,7 @@ impl Validator<'_> {
 
 /// A material and its written form.
 #[derive(Clone, Copy)]
-struct Made<'f> {
+struct CheckedMaterial<'f> {
     written: &'f WrittenMaterial,
     /// `None` if it is faulty.
     material: Option<Material>,

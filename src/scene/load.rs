@@ -8,7 +8,7 @@ use crate::mesh_file::{self, MeshError, MeshFile};
 use crate::named_file::{self, Accepted};
 use crate::progress::{Progress, Unfinished, Watcher};
 use crate::scene_file::{PathFile, SceneFile};
-use crate::scene_text::{MAX_BYTES, SceneError, read, read_or_cancel, text_from};
+use crate::scene_text::{MAX_TEXT_BYTES, SceneError, read, read_or_cancel, text_from};
 use crate::shape;
 use crate::text::{Notice, visible};
 use std::collections::HashMap;
@@ -125,12 +125,12 @@ fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, Unfinished<LoadErro
     let name = path.to_string_lossy();
     watcher.needs(path);
     let is_mesh = |bytes: &[u8]| mesh_file::is_mesh(&name, bytes);
-    let most = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_MESH_BYTES } else { MAX_BYTES };
+    let most = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_MESH_BYTES } else { MAX_TEXT_BYTES };
     let bytes = bytes_of(path, most, watcher)?;
     if is_mesh(&bytes) {
         return around_mesh(path, &bytes, watcher);
     }
-    memory::check(bytes.len() * PEAK)
+    memory::check(bytes.len() * PEAK_PER_TEXT_BYTE)
         .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error: error.into() })?;
     let text = text_from(&name, &bytes).map_err(LoadError::Scene)?;
     draft(&name, text, watcher).map_err(|unfinished| unfinished.map(LoadError::Scene))
@@ -184,7 +184,7 @@ impl CameraPath {
     /// # Errors
     /// If the file cannot be read, or as [`CameraPath::from_bytes`].
     pub fn load(path: &Path, camera: &Camera) -> Result<Self, LoadError> {
-        let bytes = bytes_of(path, |_| MAX_BYTES, &Watcher::patient())?;
+        let bytes = bytes_of(path, |_| MAX_TEXT_BYTES, &Watcher::patient())?;
         Ok(Self::from_bytes(&path.to_string_lossy(), &bytes, camera)?)
     }
 }
@@ -301,7 +301,7 @@ impl shape::Meshes for Meshes<'_> {
 
 /// Limit on the memory per byte of a scene file, including the trees of its objects; 26 bytes were measured for 300,000
 /// spheres.
-const PEAK: usize = 32;
+const PEAK_PER_TEXT_BYTE: usize = 32;
 
 /// Reads the bytes of a file named by the user.
 fn bytes_of(path: &Path, most: impl Fn(&[u8]) -> usize, watcher: &Watcher<'_>) -> Result<Vec<u8>, LoadError> {

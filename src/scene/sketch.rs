@@ -4,7 +4,7 @@ use super::{Checked, Draft, Object, Scene};
 use crate::shape::{Mesh, Shape};
 
 /// Least number of triangles for which a sketch is made: building fewer is as fast.
-const MANY: u32 = 1 << 17;
+const MIN_SKETCHED_TRIANGLES: u32 = 1 << 17;
 
 /// Approximate number of details along a sketched mesh's longest side: as many as a screen resolves.
 const DETAILS: f32 = 64.0;
@@ -13,7 +13,7 @@ impl Draft {
     /// Returns the scene with coarse meshes, which are built in a moment; `None` if the scene itself is built as fast.
     pub fn sketch(&self) -> Option<Scene> {
         let meshes = || self.checked.objects.iter().filter_map(|object| mesh_of(&object.shape));
-        if meshes().map(Mesh::triangle_count).fold(0, u32::saturating_add) < MANY {
+        if meshes().map(Mesh::triangle_count).fold(0, u32::saturating_add) < MIN_SKETCHED_TRIANGLES {
             return None;
         }
         let details = DETAILS / (meshes().count() as f32).sqrt();

@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::progress::Watcher;
 use crate::scene_file::SceneFile;
-use crate::scene_text::{Body, Faults, Field, Node, Value, parse};
+use crate::scene_text::{Body, Faults, Field, SyntaxNode, Value, parse};
 
 /// Returns the text of a scene file with `camera` added as the last of its `views`. `None` if the text is not a scene.
 ///
@@ -40,7 +40,7 @@ pub fn with_view(text: &str, camera: &Camera) -> Option<String> {
 type Addition = (usize, String);
 
 /// Returns the insertion into an existing list of views, on a line of its own if the closing bracket has one.
-fn to_list(text: &str, list: &Node<'_>, view: &str) -> Option<Vec<Addition>> {
+fn to_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<Vec<Addition>> {
     let items = items(list)?;
     let close = list.span.end as usize - 1;
     let last = items.last().map(|item| item.span.end as usize);
@@ -94,7 +94,7 @@ fn count(text: &str) -> Option<usize> {
     Some(SceneFile::read(&root, &Watcher::patient(), &mut Faults::default()).views.len())
 }
 
-fn fields<'n, 'a>(node: &'n Node<'a>) -> Option<&'n [Field<'a>]> {
+fn fields<'n, 'a>(node: &'n SyntaxNode<'a>) -> Option<&'n [Field<'a>]> {
     match &node.value {
         Value::Group(group) => match &group.body {
             Body::Fields(fields) => Some(fields),
@@ -104,7 +104,7 @@ fn fields<'n, 'a>(node: &'n Node<'a>) -> Option<&'n [Field<'a>]> {
     }
 }
 
-fn items<'n, 'a>(node: &'n Node<'a>) -> Option<&'n [Node<'a>]> {
+fn items<'n, 'a>(node: &'n SyntaxNode<'a>) -> Option<&'n [SyntaxNode<'a>]> {
     match &node.value {
         Value::List(items) => Some(items),
         Value::Group(group) => match &group.body {

@@ -1,8 +1,8 @@
 //! Cameras as written: the scene's camera and further views.
 
-use crate::scene_text::{Node, Span, quoted};
+use crate::scene_text::{Span, SyntaxNode, quoted};
 use crate::text::listed;
-use crate::written::{Fields, Reader, WrittenNumber, WrittenVector};
+use crate::written::{Fields, NodeReader, WrittenNumber, WrittenVector};
 
 /// The camera or a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,28 +50,28 @@ impl WrittenCamera {
     }
 }
 
-impl Reader<'_> {
-    pub(super) fn camera(&mut self, node: &Node<'_>) -> Option<WrittenCamera> {
+impl NodeReader<'_> {
+    pub(super) fn camera(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenCamera> {
         self.camera_called(node, "a camera", "a camera (eye: ..., target: ...)")
     }
 
     /// Reads the views of a scene, each with the fields of a camera.
-    pub(super) fn views(&mut self, node: &Node<'_>) -> Option<Vec<WrittenCamera>> {
+    pub(super) fn views(&mut self, node: &SyntaxNode<'_>) -> Option<Vec<WrittenCamera>> {
         let items = self.list(node, "a list of views [(eye: ..., target: ...), ...]")?;
         Some(self.each(items, |reader, item| reader.camera_called(item, "a view", "a view (eye: ..., target: ...)")))
     }
 
-    fn camera_called(&mut self, node: &Node<'_>, owner: &'static str, form: &str) -> Option<WrittenCamera> {
+    fn camera_called(&mut self, node: &SyntaxNode<'_>, owner: &'static str, form: &str) -> Option<WrittenCamera> {
         const FIELDS: &[&str] =
             &["eye", "target", "up", "vertical_fov", "aspect_ratio", "focal_length", "width", "height", "shift"];
         let fields = self.fields(node, owner, form, FIELDS)?;
         Some(WrittenCamera {
             span: node.head(),
-            eye: self.required(&fields, "eye", Reader::point),
-            target: self.required(&fields, "target", Reader::point),
-            up: self.optional(&fields, "up", Reader::direction),
+            eye: self.required(&fields, "eye", NodeReader::point),
+            target: self.required(&fields, "target", NodeReader::point),
+            up: self.optional(&fields, "up", NodeReader::direction),
             lens: self.lens(&fields),
-            shift: self.optional(&fields, "shift", Reader::shift),
+            shift: self.optional(&fields, "shift", NodeReader::shift),
         })
     }
 
@@ -79,8 +79,8 @@ impl Reader<'_> {
         const FOCAL: [&str; 3] = ["focal_length", "width", "height"];
         if FOCAL.iter().all(|&name| fields.get(name).is_none()) {
             return WrittenLens::FieldOfView {
-                vertical_fov: self.optional(fields, "vertical_fov", Reader::number),
-                aspect_ratio: self.optional(fields, "aspect_ratio", Reader::number),
+                vertical_fov: self.optional(fields, "vertical_fov", NodeReader::number),
+                aspect_ratio: self.optional(fields, "aspect_ratio", NodeReader::number),
             };
         }
         for name in ["vertical_fov", "aspect_ratio"] {
@@ -91,7 +91,7 @@ impl Reader<'_> {
             }
         }
         self.missing_of_focal_form(fields, &FOCAL);
-        let [focal_length, width, height] = FOCAL.map(|name| self.optional(fields, name, Reader::number));
+        let [focal_length, width, height] = FOCAL.map(|name| self.optional(fields, name, NodeReader::number));
         WrittenLens::FocalLength { focal_length, width, height }
     }
 
@@ -107,7 +107,7 @@ impl Reader<'_> {
         }
     }
 
-    fn shift(&mut self, node: &Node<'_>) -> Option<[WrittenNumber; 2]> {
+    fn shift(&mut self, node: &SyntaxNode<'_>) -> Option<[WrittenNumber; 2]> {
         self.numbers(node, "a shift (right, up)")
     }
 }

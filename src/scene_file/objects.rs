@@ -2,25 +2,25 @@
 
 use super::{MaterialUse, NamedMaterial, WrittenObject};
 use crate::material::WrittenMaterial;
-use crate::scene_text::{Body, Node, Value, quoted};
+use crate::scene_text::{Body, SyntaxNode, Value, quoted};
 use crate::shape::WrittenShape;
-use crate::written::{Reader, Spanned, description, values};
+use crate::written::{NodeReader, Spanned, description, values};
 use std::collections::HashSet;
 
-impl Reader<'_> {
-    pub(super) fn objects(&mut self, node: &Node<'_>) -> Option<Vec<WrittenObject>> {
+impl NodeReader<'_> {
+    pub(super) fn objects(&mut self, node: &SyntaxNode<'_>) -> Option<Vec<WrittenObject>> {
         let items = self.list(node, "a list of objects [Sphere(...), ...]")?;
         Some(self.each(items, Self::object))
     }
 
-    fn object(&mut self, node: &Node<'_>) -> Option<WrittenObject> {
+    fn object(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenObject> {
         const FORM: &str = "an object, such as Sphere(center: ..., radius: ...)";
         let name = self.variant(node, "an object", FORM, WrittenShape::NAMES)?;
         let (shape, fields) = WrittenShape::read(name, self, node)?;
-        Some(WrittenObject { shape, material: self.optional(&fields, "material", Reader::material_use) })
+        Some(WrittenObject { shape, material: self.optional(&fields, "material", NodeReader::material_use) })
     }
 
-    fn material_use(&mut self, node: &Node<'_>) -> Option<Spanned<MaterialUse>> {
+    fn material_use(&mut self, node: &SyntaxNode<'_>) -> Option<Spanned<MaterialUse>> {
         let value = match &node.value {
             Value::String(name) => MaterialUse::Named(name.clone()),
             _ => MaterialUse::Inline(self.material(node)?),
@@ -29,7 +29,7 @@ impl Reader<'_> {
     }
 
     /// Reads the entries of `materials`. Returns `false` with them if a name may be missing because an entry is faulty.
-    pub(super) fn materials(&mut self, node: &Node<'_>, materials: &mut Vec<NamedMaterial>) -> bool {
+    pub(super) fn materials(&mut self, node: &SyntaxNode<'_>, materials: &mut Vec<NamedMaterial>) -> bool {
         let Value::Map(entries) = &node.value else {
             let is_empty = values(node).is_some_and(<[_]>::is_empty);
             if !is_empty {
@@ -54,7 +54,7 @@ impl Reader<'_> {
     }
 
     /// Reports a bare word as a fault that names the quoted material.
-    fn material_name<'n>(&mut self, key: &'n Node<'n>) -> Option<&'n str> {
+    fn material_name<'n>(&mut self, key: &'n SyntaxNode<'n>) -> Option<&'n str> {
         match &key.value {
             Value::String(name) => return Some(name),
             Value::Group(group) if group.body == Body::Nothing => {
@@ -67,7 +67,7 @@ impl Reader<'_> {
         None
     }
 
-    fn material(&mut self, node: &Node<'_>) -> Option<WrittenMaterial> {
+    fn material(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenMaterial> {
         const FORM: &str = "a material, such as Diffuse(\"red\"), or the name of one";
         let name = self.variant(node, "a material", FORM, WrittenMaterial::NAMES)?;
         WrittenMaterial::read(name, self, node)

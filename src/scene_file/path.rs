@@ -1,8 +1,8 @@
 //! Camera paths as written.
 
 use crate::progress::Watcher;
-use crate::scene_text::{Faults, Node, Span};
-use crate::written::{Reader, WrittenNumber, WrittenVector};
+use crate::scene_text::{Faults, Span, SyntaxNode};
+use crate::written::{NodeReader, WrittenNumber, WrittenVector};
 
 /// A camera path file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,32 +30,32 @@ pub struct WrittenKeyframe {
 
 impl PathFile {
     /// Reads a camera path from its tree; anything else is added to `faults`.
-    pub fn read(root: &Node<'_>, faults: &mut Faults) -> Self {
+    pub fn read(root: &SyntaxNode<'_>, faults: &mut Faults) -> Self {
         const FORM: &str = "a camera path (keyframes: [(time: ..., eye: ..., target: ...), ...])";
         let watcher = Watcher::patient();
-        let mut reader = Reader::new(faults, &watcher);
+        let mut reader = NodeReader::new(faults, &watcher);
         let fields = reader.fields(root, "a camera path", FORM, &["keyframes"]);
-        Self { keyframes: fields.and_then(|fields| reader.required(&fields, "keyframes", Reader::keyframes)) }
+        Self { keyframes: fields.and_then(|fields| reader.required(&fields, "keyframes", NodeReader::keyframes)) }
     }
 }
 
-impl Reader<'_> {
-    fn keyframes(&mut self, node: &Node<'_>) -> Option<(Vec<WrittenKeyframe>, Span)> {
+impl NodeReader<'_> {
+    fn keyframes(&mut self, node: &SyntaxNode<'_>) -> Option<(Vec<WrittenKeyframe>, Span)> {
         let items = self.list(node, "a list of keyframes [(time: ..., eye: ..., target: ...), ...]")?;
         Some((self.each(items, Self::keyframe), node.span))
     }
 
-    fn keyframe(&mut self, node: &Node<'_>) -> Option<WrittenKeyframe> {
+    fn keyframe(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenKeyframe> {
         const FORM: &str = "a keyframe (time: ..., eye: ..., target: ...)";
         const FIELDS: &[&str] = &["time", "eye", "target", "up", "vertical_fov"];
         let fields = self.fields(node, "a keyframe", FORM, FIELDS)?;
         Some(WrittenKeyframe {
             span: node.head(),
-            time: self.required(&fields, "time", Reader::number),
-            eye: self.required(&fields, "eye", Reader::point),
-            target: self.required(&fields, "target", Reader::point),
-            up: self.optional(&fields, "up", Reader::direction),
-            vertical_fov: self.optional(&fields, "vertical_fov", Reader::number),
+            time: self.required(&fields, "time", NodeReader::number),
+            eye: self.required(&fields, "eye", NodeReader::point),
+            target: self.required(&fields, "target", NodeReader::point),
+            up: self.optional(&fields, "up", NodeReader::direction),
+            vertical_fov: self.optional(&fields, "vertical_fov", NodeReader::number),
         })
     }
 }

@@ -29,11 +29,11 @@ pub struct Faults {
 }
 
 impl Faults {
-    const KEPT: usize = 1000;
+    const MAX_KEPT: usize = 1000;
 
     /// Adds a fault. `message` is called only if the fault is kept.
     pub fn add(&mut self, span: Span, message: impl FnOnce() -> String) {
-        if self.kept.len() < Self::KEPT {
+        if self.kept.len() < Self::MAX_KEPT {
             let message = message();
             self.kept.push(Fault { message, span });
         } else {
@@ -105,15 +105,15 @@ impl Report {
 }
 
 impl SceneError {
-    const PRINTED: usize = 50;
+    const MAX_PRINTED: usize = 50;
 
     /// Returns the error with these faults of a text. `name` is the file's, for messages only.
     #[doc(hidden)]
     pub fn new(name: &str, text: &str, faults: impl Into<Faults>) -> Self {
         let Faults { mut kept, more } = faults.into();
         kept.sort_by_key(|fault| (fault.span.start, fault.span.end));
-        let mut walk = Walk::new(text);
-        let reports = kept.iter().map(|fault| walk.report(fault)).collect();
+        let mut counter = LineCounter::new(text);
+        let reports = kept.iter().map(|fault| counter.report(fault)).collect();
         Self { name: visible(name), reports, more }
     }
 
@@ -164,14 +164,14 @@ impl SceneError {
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, report) in self.reports.iter().take(Self::PRINTED).enumerate() {
+        for (i, report) in self.reports.iter().take(Self::MAX_PRINTED).enumerate() {
             let end = if i == 0 { "" } else { "\n" };
             write!(f, "{end}{}", report.message_in(&self.name))?;
             for line in report.excerpt().iter().flatten() {
                 write!(f, "\n{line}")?;
             }
         }
-        match self.count().saturating_sub(Self::PRINTED) {
+        match self.count().saturating_sub(Self::MAX_PRINTED) {
             0 => Ok(()),
             1 => write!(f, "\n... and 1 more fault"),
             more => write!(f, "\n... and {more} more faults"),
@@ -183,7 +183,7 @@ impl std::error::Error for SceneError {}
 
 /// A position in the text that moves from fault to fault and counts lines and columns, so that all of them take one
 /// pass.
-struct Walk<'a> {
+struct LineCounter<'a> {
     text: &'a str,
     at: usize,
     line: usize,
@@ -191,13 +191,13 @@ struct Walk<'a> {
     line_start: usize,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> LineCounter<'a> {
     fn new(text: &'a str) -> Self {
         Self { text, at: 0, line: 1, column: 1, line_start: 0 }
     }
 
-    fn go_to(&mut self, place: usize) {
-        for c in self.text[self.at..place].chars() {
+    fn advance_to(&mut self, offset: usize) {
+        for c in self.text[self.at..offset].chars() {
             self.at += c.len_utf8();
             if c == '\n' {
                 self.line += 1;
@@ -212,7 +212,7 @@ impl<'a> Walk<'a> {
     fn report(&mut self, fault: &Fault) -> Report {
         let start = character_at(self.text, fault.span.start as usize);
         let end = character_at(self.text, fault.span.end as usize).max(start);
-        self.go_to(start);
+        self.advance_to(start);
         let excerpt = Excerpt::new(&self.text[self.line_start..], start - self.line_start, end - self.line_start);
         Report {
             line: self.line,
@@ -227,16 +227,16 @@ impl<'a> Walk<'a> {
 }
 
 /// Returns the start of the character that contains a byte.
-fn character_at(text: &str, place: usize) -> usize {
-    let place = place.min(text.len());
-    (0..=place).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
+fn character_at(text: &str, offset: usize) -> usize {
+    let offset = offset.min(text.len());
+    (0..=offset).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
 }
 
 /// Returns the line and column of a byte, counted from 1.
-pub fn line_and_column(text: &str, place: usize) -> (usize, usize) {
-    let mut walk = Walk::new(text);
-    walk.go_to(place);
-    (walk.line, walk.column)
+pub fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+    let mut counter = LineCounter::new(text);
+    counter.advance_to(offset);
+    (counter.line, counter.column)
 }
 
 /// The part of a line that is shown.
@@ -248,17 +248,18 @@ struct Excerpt {
 
 impl Excerpt {
     /// Limit on the columns shown.
-    const WIDTH: usize = 100;
+    const MAX_EXCERPT_WIDTH: usize = 100;
     /// A fault this near the start of the line is shown with the whole start of the line;
-    const NEAR: usize = 75;
+    const WHOLE_START: usize = 75;
     /// any other with this many columns before it.
-    const BEFORE: usize = 50;
+    const CONTEXT_BEFORE: usize = 50;
 
     /// Returns the part to show of `text`, which starts with the line; the fault is at bytes `start` to `end`.
     fn new(text: &str, start: usize, end: usize) -> Self {
-        let is_long = text.chars().take(Self::WIDTH + 1).take_while(|&c| c != '\n').count() > Self::WIDTH;
-        let is_far = is_long && back_by(text, start, Self::NEAR) > 0;
-        let from = if is_far { back_by(text, start, Self::BEFORE) } else { 0 };
+        let is_long =
+            text.chars().take(Self::MAX_EXCERPT_WIDTH + 1).take_while(|&c| c != '\n').count() > Self::MAX_EXCERPT_WIDTH;
+        let is_far = is_long && back_by(text, start, Self::WHOLE_START) > 0;
+        let from = if is_far { back_by(text, start, Self::CONTEXT_BEFORE) } else { 0 };
         let mut excerpt =
             Self { source: if from > 0 { "...".to_owned() } else { String::new() }, caret: 0, caret_width: 0 };
         excerpt.take(text, from, start, end);
@@ -266,7 +267,7 @@ impl Excerpt {
     }
 
     fn take(&mut self, text: &str, from: usize, start: usize, end: usize) {
-        let (mut caret_end, mut budget) = (None, Self::WIDTH);
+        let (mut caret_end, mut budget) = (None, Self::MAX_EXCERPT_WIDTH);
         let mut caret = None;
         for (i, c) in text[from..].char_indices() {
             let (at, rest) = (from + i, &text[from + i..]);
@@ -295,10 +296,10 @@ impl Excerpt {
     }
 }
 
-/// Returns the index of the character `columns` terminal columns before `place`, at least 0.
-fn back_by(text: &str, place: usize, columns: usize) -> usize {
+/// Returns the index of the character `columns` terminal columns before `offset`, at least 0.
+fn back_by(text: &str, offset: usize, columns: usize) -> usize {
     let mut left = columns;
-    for (i, c) in text[..place].char_indices().rev() {
+    for (i, c) in text[..offset].char_indices().rev() {
         let width = visible_char(c).width().unwrap_or(1).max(1);
         if width > left {
             return i + c.len_utf8();
@@ -310,9 +311,9 @@ fn back_by(text: &str, place: usize, columns: usize) -> usize {
 
 /// Returns a piece of the file for a message, truncated if long.
 pub(crate) fn clipped(text: &str) -> String {
-    const LONGEST: usize = 40;
-    let mut shown: String = text.chars().take(LONGEST).map(visible_char).collect();
-    if text.chars().nth(LONGEST).is_some() {
+    const MAX_QUOTED_CHARS: usize = 40;
+    let mut shown: String = text.chars().take(MAX_QUOTED_CHARS).map(visible_char).collect();
+    if text.chars().nth(MAX_QUOTED_CHARS).is_some() {
         shown.push_str("...");
     }
     shown

@@ -2,19 +2,19 @@
 
 use super::fault::{clipped, line_and_column, quoted};
 use super::tokens::{Token, Tokens};
-use super::{Body, Fault, Field, Group, MAX_DEPTH, Name, Node, Span, Value};
+use super::{Body, Fault, Field, Group, MAX_NESTING, Name, Span, SyntaxNode, Value};
 use crate::progress::{Meter, Unfinished, Watcher};
 
 /// Parses the single value of a text.
 ///
 /// # Errors
 /// The first fault, if the text is not RON.
-pub fn parse(text: &str) -> Result<Node<'_>, Fault> {
+pub fn parse(text: &str) -> Result<SyntaxNode<'_>, Fault> {
     parse_or_cancel(text, Meter::new(&Watcher::patient(), "", text.len())).map_err(Unfinished::failure)
 }
 
 /// Parses as [`parse`] does, until the meter's watcher cancels it.
-pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<Node<'a>> {
+pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<SyntaxNode<'a>> {
     let mut tokens = Tokens::new(text);
     tokens.skip_attributes()?;
     let (next, span) = tokens.next()?;
@@ -61,7 +61,7 @@ impl<'a> Parser<'a, '_> {
         matches!(tokens.next(), Ok((Token::Colon, _)))
     }
 
-    fn value(&mut self) -> Parsed<Node<'a>> {
+    fn value(&mut self) -> Parsed<SyntaxNode<'a>> {
         let start = self.span.start;
         self.meter.reach(start as usize)?;
         let value = match self.next {
@@ -92,12 +92,12 @@ impl<'a> Parser<'a, '_> {
         Ok(self.node(start, value))
     }
 
-    fn node(&self, start: u32, value: Value<'a>) -> Node<'a> {
+    fn node(&self, start: u32, value: Value<'a>) -> SyntaxNode<'a> {
         let span = Span { start, end: self.previous_end };
-        Node { span, value }
+        SyntaxNode { span, value }
     }
 
-    fn word(&mut self, word: &'a str) -> Parsed<Node<'a>> {
+    fn word(&mut self, word: &'a str) -> Parsed<SyntaxNode<'a>> {
         let span = self.span;
         self.advance()?;
         let value = match (word, &self.next) {
@@ -112,7 +112,7 @@ impl<'a> Parser<'a, '_> {
         Ok(self.node(span.start, value))
     }
 
-    fn named_group(&mut self, name: Name<'a>) -> Parsed<Node<'a>> {
+    fn named_group(&mut self, name: Name<'a>) -> Parsed<SyntaxNode<'a>> {
         let body = self.body()?;
         if let ("Some", Body::Values(values)) = (name.text, &body)
             && let [inner] = &values[..]
@@ -135,7 +135,7 @@ impl<'a> Parser<'a, '_> {
         Ok(body)
     }
 
-    fn items(&mut self) -> Parsed<Vec<Node<'a>>> {
+    fn items(&mut self) -> Parsed<Vec<SyntaxNode<'a>>> {
         let mut items = Vec::new();
         while !self.at_end() {
             items.push(self.value()?);
@@ -151,7 +151,7 @@ impl<'a> Parser<'a, '_> {
         Ok(items)
     }
 
-    fn entries(&mut self) -> Parsed<Vec<(Node<'a>, Node<'a>)>> {
+    fn entries(&mut self) -> Parsed<Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>> {
         let mut entries = Vec::new();
         while !self.at_end() {
             let key = self.value()?;
@@ -201,8 +201,8 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn open(&mut self) -> Parsed<()> {
-        if self.open.len() == MAX_DEPTH {
-            return Err(self.here(format!("brackets lie more than {MAX_DEPTH} deep in each other")));
+        if self.open.len() == MAX_NESTING {
+            return Err(self.here(format!("brackets lie more than {MAX_NESTING} deep in each other")));
         }
         if let Token::Open(bracket) = self.next {
             self.open.push((bracket, self.span));

@@ -5,7 +5,7 @@ use crate::bounds::{Bounds, crossed};
 use crate::lanes::Vector;
 use crate::ray::{Interval, Probe, Ray};
 use crate::text::number;
-use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenNumber, WrittenVector};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
 use glam::Vec3;
 
 /// All points x with max |x - c| - h = 0, the faces perpendicular to the axes.
@@ -190,10 +190,10 @@ impl InSceneFile for Cube {
     const FORM: &'static str = "Cube(center: ..., side: ...)";
     const FIELDS: &'static [&'static str] = &["center", "side", "material"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenCube {
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCube {
         WrittenCube {
-            center: reader.required(fields, "center", Reader::point),
-            side: reader.optional(fields, "side", Reader::number),
+            center: reader.required(fields, "center", NodeReader::point),
+            side: reader.optional(fields, "side", NodeReader::number),
         }
     }
 }

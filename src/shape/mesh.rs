@@ -7,8 +7,8 @@ use crate::color::LinearRgb;
 use crate::mesh_file::{MAX_TRIANGLES, MeshFile};
 use crate::progress::Unfinished;
 use crate::ray::{Interval, Probe, Ray};
-use crate::scene_text::{Node, Value};
-use crate::written::{Fields, InSceneFile, Reader, Spanned, Validator, WrittenVector};
+use crate::scene_text::{SyntaxNode, Value};
+use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator, WrittenVector};
 use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
 use std::fmt;
 use std::ops::{Add, Mul};
@@ -61,7 +61,7 @@ impl Mesh {
     /// index has its position.
     pub fn from_triangles(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> Result<Self, ShapeError> {
         for (at, &position) in positions.iter().enumerate() {
-            checks::given_point(format_args!("positions[{at}]"), position)?;
+            checks::checked_point(format_args!("positions[{at}]"), position)?;
         }
         for (at, corners) in indices.iter().enumerate() {
             if let Some(missing) = corners.iter().find(|&&index| index as usize >= positions.len()) {
@@ -200,12 +200,12 @@ impl InSceneFile for Mesh {
     const FORM: &'static str = "Mesh(path: \"...\")";
     const FIELDS: &'static [&'static str] = &["path", "scale", "rotate", "translate", "material"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenMesh {
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenMesh {
         WrittenMesh {
             path: reader.required(fields, "path", path),
             scale: reader.optional(fields, "scale", scale),
             rotate: reader.optional(fields, "rotate", angles),
-            translate: reader.optional(fields, "translate", Reader::point),
+            translate: reader.optional(fields, "translate", NodeReader::point),
         }
     }
 }
@@ -229,7 +229,7 @@ impl CheckedShape for Mesh {
     }
 }
 
-fn path(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Spanned<String>> {
+fn path(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Spanned<String>> {
     let Value::String(path) = &node.value else {
         reader.mismatch(node, "the path of a mesh in quotes");
         return None;
@@ -238,7 +238,7 @@ fn path(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<Spanned<String>> {
 }
 
 /// One number for all axes, or three.
-fn scale(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<WrittenVector> {
+fn scale(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
     if matches!(node.value, Value::Number(_)) {
         let number = reader.number(node)?;
         return Some(WrittenVector { components: [number; 3], span: node.span });
@@ -247,7 +247,7 @@ fn scale(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<WrittenVector> {
     Some(WrittenVector { components, span: node.span })
 }
 
-fn angles(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<WrittenVector> {
+fn angles(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
     let components = reader.numbers(node, "angles in degrees about the axes (x, y, z)")?;
     Some(WrittenVector { components, span: node.span })
 }
@@ -275,7 +275,7 @@ fn placement(
 /// Along no axis nothing is left of a mesh; it may be mirrored.
 fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3> {
     for factor in written.components {
-        validator.take(factor.span, checks::factor(factor.value))?;
+        validator.accept(factor.span, checks::factor(factor.value))?;
     }
     Some(DVec3::from_array(written.components.map(|factor| factor.value)).as_vec3())
 }

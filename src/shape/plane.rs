@@ -9,7 +9,7 @@ use crate::bounds::Bounds;
 use crate::checks;
 use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
-use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenVector};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::Vec3;
 
 /// All points x with (x - a).n = 0. It has no end, and is seen from both sides.
@@ -28,8 +28,8 @@ impl Plane {
     /// # Errors
     /// Unless all coordinates lie within ±1e9, and the normal has a length.
     pub fn new(point: Vec3, normal: Vec3) -> Result<Self, ShapeError> {
-        let point = checks::given_point("point", point)?;
-        Ok(Self::unchecked(point, checks::given_direction("normal", normal)?))
+        let point = checks::checked_point("point", point)?;
+        Ok(Self::unchecked(point, checks::checked_direction("normal", normal)?))
     }
 
     /// Returns the plane, which is not checked, with a normal of unit length.
@@ -171,10 +171,10 @@ impl InSceneFile for Plane {
     const FORM: &'static str = "Plane(point: ..., normal: ...)";
     const FIELDS: &'static [&'static str] = &["point", "normal", "material"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenPlane {
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenPlane {
         WrittenPlane {
-            point: reader.required(fields, "point", Reader::point),
-            normal: reader.required(fields, "normal", Reader::direction),
+            point: reader.required(fields, "point", NodeReader::point),
+            normal: reader.required(fields, "normal", NodeReader::direction),
         }
     }
 }

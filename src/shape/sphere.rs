@@ -9,7 +9,7 @@ use crate::checks;
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
 use crate::text::number;
-use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenNumber, WrittenVector};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
 use glam::Vec3;
 use std::array::from_fn;
 
@@ -32,8 +32,8 @@ impl Sphere {
     /// # Errors
     /// Unless the centre's coordinates lie within ±1e9, and the radius between 1e-9 and 1e9.
     pub fn new(center: Vec3, radius: f32) -> Result<Self, ShapeError> {
-        let center = checks::given_point("center", center)?;
-        let radius = checks::given("radius", radius, |radius| checks::length("radius", radius))?;
+        let center = checks::checked_point("center", center)?;
+        let radius = checks::checked_number("radius", radius, |radius| checks::length("radius", radius))?;
         Ok(Self { center, radius })
     }
 
@@ -248,10 +248,10 @@ impl InSceneFile for Sphere {
     const FORM: &'static str = "Sphere(center: ..., radius: ...)";
     const FIELDS: &'static [&'static str] = &["center", "radius", "material"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenSphere {
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenSphere {
         WrittenSphere {
-            center: reader.required(fields, "center", Reader::point),
-            radius: reader.required(fields, "radius", Reader::number),
+            center: reader.required(fields, "center", NodeReader::point),
+            radius: reader.required(fields, "radius", NodeReader::number),
         }
     }
 }

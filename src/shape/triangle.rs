@@ -10,8 +10,8 @@ use crate::bounds::{Bounds, crossed};
 use crate::checks::{self, SceneFault};
 use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Pencil, Probe, Ray, Rays, nearest_in, sheared_exactly};
-use crate::scene_text::{Node, Span};
-use crate::written::{Fields, InSceneFile, Reader, Validator, WrittenVector};
+use crate::scene_text::{Span, SyntaxNode};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
@@ -257,7 +257,7 @@ impl Triangle {
     /// Unless all coordinates lie within ±1e9, and the corners not on one line.
     pub fn new(corners: [Vec3; 3]) -> Result<Self, ShapeError> {
         for (name, corner) in ["corners[0]", "corners[1]", "corners[2]"].into_iter().zip(corners) {
-            checks::given_point(name, corner)?;
+            checks::checked_point(name, corner)?;
         }
         let corners = checks::corners(corners).map_err(|message| SceneFault::new("corners", message))?;
         Ok(Self { corners })
@@ -372,7 +372,7 @@ impl InSceneFile for Triangle {
     const FORM: &'static str = "Triangle(corners: [(x, y, z), (x, y, z), (x, y, z)])";
     const FIELDS: &'static [&'static str] = &["corners", "material"];
 
-    fn read(reader: &mut Reader<'_>, fields: &Fields<'_>) -> WrittenTriangle {
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenTriangle {
         WrittenTriangle { corners: reader.required(fields, "corners", corners) }
     }
 }
@@ -382,12 +382,12 @@ impl CheckedShape for Triangle {
         let all = written.corners?;
         let [a, b, c] = all.map(|corner| validator.point(corner));
         let whole = Span { start: all[0].span.start, end: all[2].span.end };
-        let corners = validator.take(whole, checks::corners([a?, b?, c?]))?;
+        let corners = validator.accept(whole, checks::corners([a?, b?, c?]))?;
         Some(Self { corners }.into())
     }
 }
 
-fn corners(reader: &mut Reader<'_>, node: &Node<'_>) -> Option<[WrittenVector; 3]> {
+fn corners(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<[WrittenVector; 3]> {
     const FORM: &str = "three corners [(x, y, z), (x, y, z), (x, y, z)]";
     let [a, b, c] = reader.list(node, FORM)? else {
         reader.mismatch(node, FORM);

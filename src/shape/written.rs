@@ -3,9 +3,9 @@
 use super::{Shape, surfaces};
 use crate::mesh_file::MeshFile;
 use crate::progress::Unfinished;
-use crate::scene_text::Node;
+use crate::scene_text::SyntaxNode;
 use crate::text;
-use crate::written::{Fields, InSceneFile, Reader, Validator};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator};
 
 /// A surface as it is written, and its check.
 pub trait CheckedShape: InSceneFile {
@@ -47,7 +47,7 @@ macro_rules! written {
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* <super::$surface as InSceneFile>::NAME,)*];
 
             /// Reads the fields of the shape of that name. Returns them, too, for the object's other fields.
-            pub(crate) fn read<'n>(name: &str, reader: &mut Reader<'_>, node: &'n Node<'n>) -> Option<(Self, Fields<'n>)> {
+            pub(crate) fn read<'n>(name: &str, reader: &mut NodeReader<'_>, node: &'n SyntaxNode<'n>) -> Option<(Self, Fields<'n>)> {
                 $($(#[$on])* if name == super::$surface::NAME {
                     use super::$surface as Surface;
                     let fields = reader.fields(node, Surface::OWNER, Surface::FORM, Surface::FIELDS)?;

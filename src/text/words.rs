@@ -26,24 +26,24 @@ fn joined(words: &[impl AsRef<str>], conjunction: &str) -> String {
 pub fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
     // The distance takes time proportional to the product of the lengths, and a name this long is no misspelling. Among
     // thousands of names, one is always close.
-    const LONGEST: usize = 64;
-    const MOST: usize = 1000;
-    if word.len() > LONGEST {
+    const MAX_WORD_BYTES: usize = 64;
+    const MAX_CANDIDATES: usize = 1000;
+    if word.len() > MAX_WORD_BYTES {
         return None;
     }
     let written = word.to_lowercase();
     among
         .into_iter()
-        .take(MOST)
-        .filter(|known| known.len() <= LONGEST)
-        .filter_map(|known| Some((distance(&written, &known.to_lowercase())?, known)))
+        .take(MAX_CANDIDATES)
+        .filter(|known| known.len() <= MAX_WORD_BYTES)
+        .filter_map(|known| Some((misspelling_distance(&written, &known.to_lowercase())?, known)))
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, known)| known)
 }
 
 /// Returns the distance if it is small enough for a misspelling.
-fn distance(written: &str, known: &str) -> Option<usize> {
-    let distance = slips(written, known);
+fn misspelling_distance(written: &str, known: &str) -> Option<usize> {
+    let distance = edit_distance(written, known);
     let is_part = written.len() >= 3 && known.split('_').any(|part| part == written);
     let allowed = match written.chars().count() {
         ..3 => 0,
@@ -55,7 +55,7 @@ fn distance(written: &str, known: &str) -> Option<usize> {
 /// Returns the distance of two words by optimal string alignment: the least number of letters added, removed, changed,
 /// or exchanged with their neighbours, where no letter is changed twice (Damerau, A technique for computer detection
 /// and correction of spelling errors, 1964).
-fn slips(written: &str, known: &str) -> usize {
+fn edit_distance(written: &str, known: &str) -> usize {
     let known: Vec<_> = known.chars().collect();
     // Three rows of the table of distances between prefixes: for the letter before the last, the last, and the current
     // one.
@@ -114,7 +114,7 @@ mod tests {
     proptest::proptest! {
         #[test]
         fn slips_are_counted_as_elsewhere(written in "[abé]{0,7}", known in "[abé]{0,7}") {
-            proptest::prop_assert_eq!(slips(&written, &known), strsim::osa_distance(&written, &known));
+            proptest::prop_assert_eq!(edit_distance(&written, &known), strsim::osa_distance(&written, &known));
         }
     }
 

@@ -1,9 +1,9 @@
 //! Colours as written.
 
 use super::WrittenNumber;
-use super::reader::{Reader, values};
+use super::node_reader::{NodeReader, values};
 use crate::color::{LinearRgb, Srgb8};
-use crate::scene_text::{Body, Group, Node, Value, quoted};
+use crate::scene_text::{Body, Group, SyntaxNode, Value, quoted};
 use crate::text::{ParseError, closest};
 use std::str::FromStr;
 
@@ -23,14 +23,14 @@ impl WrittenColor {
     pub fn numbers(&self) -> &[WrittenNumber] {
         match self {
             Self::Srgb(_) => &[],
-            Self::Linear(bands) => bands,
-            Self::Grey(band) => std::slice::from_ref(band),
+            Self::Linear(channels) => channels,
+            Self::Grey(channel) => std::slice::from_ref(channel),
         }
     }
 }
 
-impl Reader<'_> {
-    pub(crate) fn color(&mut self, node: &Node<'_>) -> Option<WrittenColor> {
+impl NodeReader<'_> {
+    pub(crate) fn color(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenColor> {
         const WANTED: &str = "a colour (\"#rrggbb\", a name, (r, g, b) or a number)";
         match &node.value {
             Value::String(string) => match color_from(string) {

@@ -18,7 +18,7 @@ impl Validator<'_> {
     }
 
     /// Returns a value that passes a rule of [`checks`]; otherwise reports the rule's message.
-    pub(crate) fn take<T>(&mut self, span: Span, checked: Result<T, Message>) -> Option<T> {
+    pub(crate) fn accept<T>(&mut self, span: Span, checked: Result<T, Message>) -> Option<T> {
         match checked {
             Ok(value) => Some(value),
             Err(message) => self.fault(span, || message.into_owned()),
@@ -27,7 +27,8 @@ impl Validator<'_> {
 
     /// Checks that all three coordinates are within the range that a picture can be traced in.
     pub(crate) fn coordinates(&mut self, written: WrittenVector) -> Option<DVec3> {
-        let near = written.components.map(|number| self.take(number.span, checks::coordinate(number.value)).is_some());
+        let near =
+            written.components.map(|number| self.accept(number.span, checks::coordinate(number.value)).is_some());
         (near == [true; 3]).then(|| DVec3::from_array(written.components.map(|component| component.value)))
     }
 
@@ -37,12 +38,12 @@ impl Validator<'_> {
 
     /// Checks that a length is positive and can be squared in f32.
     pub(crate) fn length(&mut self, what: &str, written: WrittenNumber) -> Option<f32> {
-        self.take(written.span, checks::length(what, written.value))
+        self.accept(written.span, checks::length(what, written.value))
     }
 
     /// Checks an amount of light.
     pub(crate) fn amount(&mut self, what: &str, written: WrittenNumber) -> Option<f32> {
-        self.take(written.span, checks::amount(what, written.value))
+        self.accept(written.span, checks::amount(what, written.value))
     }
 
     /// Checks a colour of light, which may have any amount.
@@ -56,8 +57,8 @@ impl Validator<'_> {
     }
 
     fn color(&mut self, written: WrittenColor, rule: fn(f64) -> Result<f32, Message>) -> Option<LinearRgb> {
-        for band in written.numbers() {
-            self.take(band.span, rule(band.value))?;
+        for channel in written.numbers() {
+            self.accept(channel.span, rule(channel.value))?;
         }
         Some(linear(written))
     }
@@ -65,7 +66,7 @@ impl Validator<'_> {
     /// Returns the direction at unit length, computed in f64 so that only one rounding is left.
     pub(crate) fn unit_vector(&mut self, what: &str, written: WrittenVector) -> Option<DVec3> {
         let vector = self.coordinates(written)?;
-        self.take(written.span, checks::unit_vector(what, vector))
+        self.accept(written.span, checks::unit_vector(what, vector))
     }
 }
 

@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use std::fmt::Write;
 use std::time::{Duration, Instant};
-use termtrace::internals::scene_text::{Body, MAX_BYTES, Node, Value, parse};
+use termtrace::internals::scene_text::{Body, MAX_TEXT_BYTES, SyntaxNode, Value, parse};
 use termtrace::{Scene, SceneError};
 
 const SCENE: &str = r##"// A scene with one of everything.
@@ -96,20 +96,20 @@ fn large_files_take_linear_time() {
 
 #[test]
 fn files_beyond_the_limit_are_not_read() {
-    let error = read(&vec![b' '; MAX_BYTES + 1]).unwrap_err();
+    let error = read(&vec![b' '; MAX_TEXT_BYTES + 1]).unwrap_err();
     assert_eq!(error.to_string(), "x.ron:1:1: the file is larger than 16 MiB, too large to be read");
 }
 
 /// Our tree, in a notation of the test's own.
-fn ours(node: &Node<'_>) -> String {
-    let many = |nodes: &[Node<'_>]| nodes.iter().map(ours).collect::<Vec<_>>().join(" ");
+fn ours(node: &SyntaxNode<'_>) -> String {
+    let many = |nodes: &[SyntaxNode<'_>]| nodes.iter().map(ours).collect::<Vec<_>>().join(" ");
     match &node.value {
         Value::Bool(value) => value.to_string(),
         Value::Number(value) => format!("{value:?}"),
         Value::String(value) => format!("{value:?}"),
         Value::List(items) => format!("[{}]", many(items)),
         Value::Map(entries) => {
-            let entry = |(key, value): &(Node<'_>, Node<'_>)| format!("{}={}", ours(key), ours(value));
+            let entry = |(key, value): &(SyntaxNode<'_>, SyntaxNode<'_>)| format!("{}={}", ours(key), ours(value));
             format!("{{{}}}", entries.iter().map(entry).collect::<Vec<_>>().join(" "))
         }
         Value::Group(group) => {

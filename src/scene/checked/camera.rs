@@ -38,7 +38,7 @@ impl Validator<'_> {
             None => Some(up_if_none),
         };
         let pose = Pose { eye: eye?, target: target?, up: up? };
-        let places = Places {
+        let spans = PoseSpans {
             whole: written.span,
             target: written.target.map(|target| target.span),
             up: written.up.map(|up| up.span),
@@ -46,7 +46,7 @@ impl Validator<'_> {
         };
         // If the lens is faulty the pose is checked with any lens, so that its faults are reported too.
         let any = || ViewRectangle::from_vertical_fov(1.0).ok();
-        let camera = self.camera_of(pose, rectangle.or_else(any)?, places)?;
+        let camera = self.camera_of(pose, rectangle.or_else(any)?, spans)?;
         rectangle.and(Some(camera))
     }
 
@@ -60,18 +60,18 @@ impl Validator<'_> {
     }
 
     /// Returns the camera, or reports a fault at the pose's position.
-    pub(super) fn camera_of(&mut self, pose: Pose, rectangle: ViewRectangle, places: Places) -> Option<Camera> {
+    pub(super) fn camera_of(&mut self, pose: Pose, rectangle: ViewRectangle, spans: PoseSpans) -> Option<Camera> {
         let error = match Camera::new(pose, rectangle) {
             Ok(camera) => return Some(camera),
             Err(error) => error,
         };
-        let place = match error {
-            CameraError::UpIsZero | CameraError::UpAlongView => places.up.or(places.target),
-            _ => places.target,
+        let span = match error {
+            CameraError::UpIsZero | CameraError::UpAlongView => spans.up.or(spans.target),
+            _ => spans.target,
         };
-        self.fault(place.unwrap_or(places.whole), || match error {
-            CameraError::UpAlongView if places.up.is_none() => {
-                format!("the camera looks straight up or down, along {}; give it another `up`", places.up_if_none)
+        self.fault(span.unwrap_or(spans.whole), || match error {
+            CameraError::UpAlongView if spans.up.is_none() => {
+                format!("the camera looks straight up or down, along {}; give it another `up`", spans.up_if_none)
             }
             _ => error.to_string(),
         })
@@ -165,7 +165,7 @@ impl Validator<'_> {
 
 /// Positions of a pose's parts, to point at when one is wrong.
 #[derive(Clone, Copy)]
-pub(super) struct Places {
+pub(super) struct PoseSpans {
     pub(super) whole: Span,
     pub(super) target: Option<Span>,
     pub(super) up: Option<Span>,

@@ -1,6 +1,6 @@
 //! Checking of camera paths: times increase, and every keyframe is a camera.
 
-use super::camera::Places;
+use super::camera::PoseSpans;
 use crate::camera::{Camera, Pose};
 use crate::camera_path::{CameraPath, Keyframe};
 use crate::scene_file::{PathFile, WrittenKeyframe};
@@ -8,7 +8,7 @@ use crate::scene_text::Faults;
 use crate::written::{Spanned, Validator, WrittenNumber};
 
 /// Limit on times in seconds: more than eleven days.
-const LATEST: f64 = 1e6;
+const MAX_SECONDS: f64 = 1e6;
 
 /// Returns the path; if `None`, every fault has been added. Parameters that a keyframe does not give are those of
 /// `camera`.
@@ -16,7 +16,7 @@ pub(in crate::scene) fn check(file: &PathFile, camera: &Camera, faults: &mut Fau
     let mut validator = Validator { faults };
     let (written, span) = file.keyframes.as_ref()?;
     let cameras: Vec<_> = written.iter().map(|keyframe| validator.keyframe(keyframe, camera)).collect();
-    validator.rising(written);
+    validator.check_times(written);
     if !validator.faults.is_empty() {
         return None;
     }
@@ -39,27 +39,27 @@ impl Validator<'_> {
             None => Some(camera.rectangle()),
         };
         let pose = Pose { eye: eye?, target: target?, up: up? };
-        let places = Places {
+        let spans = PoseSpans {
             whole: written.span,
             target: written.target.map(|target| target.span),
             up: written.up.map(|up| up.span),
             up_if_none: "the scene's up vector",
         };
         // If the angle is faulty the pose is checked without it.
-        let camera = self.camera_of(pose, rectangle.unwrap_or(camera.rectangle()), places)?;
+        let camera = self.camera_of(pose, rectangle.unwrap_or(camera.rectangle()), spans)?;
         rectangle.and(Some(Keyframe { time: time?, camera }))
     }
 
     fn time(&mut self, written: WrittenNumber) -> Option<f64> {
         let Spanned { value, span } = written;
-        if (0.0..=LATEST).contains(&value) {
+        if (0.0..=MAX_SECONDS).contains(&value) {
             return Some(value);
         }
         self.fault(span, || "the time must lie between 0 and 1e6 seconds".to_owned())
     }
 
     /// Reports each time that is not after the one before.
-    fn rising(&mut self, written: &[WrittenKeyframe]) {
+    fn check_times(&mut self, written: &[WrittenKeyframe]) {
         let times: Vec<WrittenNumber> = written.iter().filter_map(|keyframe| keyframe.time).collect();
         for pair in times.windows(2).filter(|pair| pair[1].value <= pair[0].value) {
             self.faults.add(pair[1].span, || {

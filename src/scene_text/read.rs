@@ -1,7 +1,7 @@
 //! Reading of a whole file: bytes to text to tree to a checked value, with a fault for bytes that are not text.
 
 use super::parser::parse_or_cancel;
-use super::{Fault, Faults, MAX_BYTES, Node, SceneError, Span};
+use super::{Fault, Faults, MAX_TEXT_BYTES, SceneError, Span, SyntaxNode};
 use crate::progress::{Meter, Unfinished, Watcher};
 
 /// Returns what `check` makes of a text's tree.
@@ -14,9 +14,9 @@ pub fn read<T>(
     name: &str,
     text: &str,
     smallest: &str,
-    check: impl FnOnce(&Node<'_>, &mut Faults) -> Option<T>,
+    check: impl FnOnce(&SyntaxNode<'_>, &mut Faults) -> Option<T>,
 ) -> Result<T, SceneError> {
-    let check = |root: Node<'_>, faults: &mut Faults| check(&root, faults);
+    let check = |root: SyntaxNode<'_>, faults: &mut Faults| check(&root, faults);
     read_or_cancel(name, text, smallest, &Watcher::patient(), check).map_err(Unfinished::failure)
 }
 
@@ -32,7 +32,7 @@ pub(crate) fn read_or_cancel<'a, T>(
     text: &'a str,
     smallest: &str,
     watcher: &Watcher<'_>,
-    check: impl FnOnce(Node<'a>, &mut Faults) -> Option<T>,
+    check: impl FnOnce(SyntaxNode<'a>, &mut Faults) -> Option<T>,
 ) -> Result<T, Unfinished<SceneError>> {
     let root = check_size(text.len())
         .and_then(|()| not_empty(text, smallest))
@@ -51,7 +51,7 @@ pub(crate) fn read_or_cancel<'a, T>(
 /// Returns the bytes as text.
 ///
 /// # Errors
-/// If there are more than [`MAX_BYTES`], they are not UTF-8, or they are evidently not text.
+/// If there are more than [`MAX_TEXT_BYTES`], they are not UTF-8, or they are evidently not text.
 pub fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError> {
     decoded(bytes).map_err(|fault| {
         // For a file that is not text from its first byte on, no line is worth showing.
@@ -67,14 +67,14 @@ fn decoded(bytes: &[u8]) -> Result<&str, Fault> {
     }
     no_nul(bytes)?;
     std::str::from_utf8(bytes).map_err(|error| {
-        let place = error.valid_up_to();
-        let byte = bytes.get(place).copied().unwrap_or_default();
-        fault_at(place, format!("the file is not UTF-8 text: byte 0x{byte:02x} begins no character here"))
+        let offset = error.valid_up_to();
+        let byte = bytes.get(offset).copied().unwrap_or_default();
+        fault_at(offset, format!("the file is not UTF-8 text: byte 0x{byte:02x} begins no character here"))
     })
 }
 
 fn check_size(bytes: usize) -> Result<(), Fault> {
-    if bytes > MAX_BYTES {
+    if bytes > MAX_TEXT_BYTES {
         return Err(fault_at(0, "the file is larger than 16 MiB, too large to be read".to_owned()));
     }
     Ok(())
@@ -89,15 +89,15 @@ fn not_empty(text: &str, smallest: &str) -> Result<(), Fault> {
 
 /// Text contains no NUL, and nearly every binary format has one near its start.
 fn no_nul(bytes: &[u8]) -> Result<(), Fault> {
-    let Some(place) = bytes.iter().position(|&byte| byte == 0) else {
+    let Some(offset) = bytes.iter().position(|&byte| byte == 0) else {
         return Ok(());
     };
     // Positions in the text as shown agree with those in the file only as far as it is UTF-8.
-    let is_text = std::str::from_utf8(&bytes[..place]).is_ok();
-    let message = format!("this is not a text file: byte {place} is a NUL");
-    Err(fault_at(if is_text { place } else { 0 }, message))
+    let is_text = std::str::from_utf8(&bytes[..offset]).is_ok();
+    let message = format!("this is not a text file: byte {offset} is a NUL");
+    Err(fault_at(if is_text { offset } else { 0 }, message))
 }
 
-fn fault_at(place: usize, message: String) -> Fault {
-    Fault { message, span: Span::at(place) }
+fn fault_at(offset: usize, message: String) -> Fault {
+    Fault { message, span: Span::at(offset) }
 }

@@ -3,11 +3,11 @@
 use super::{Spanned, WrittenNumber, WrittenVector};
 use crate::checks;
 use crate::progress::Watcher;
-use crate::scene_text::{Body, Faults, Field, Group, Name, Node, Span, Value, clipped, quoted};
+use crate::scene_text::{Body, Faults, Field, Group, Name, Span, SyntaxNode, Value, clipped, quoted};
 use crate::text::{closest, listed};
 
 /// Reads values and reports faults.
-pub struct Reader<'f> {
+pub struct NodeReader<'f> {
     faults: &'f mut Faults,
     watcher: &'f Watcher<'f>,
 }
@@ -30,7 +30,7 @@ impl<'n> Fields<'n> {
     }
 
     /// Its value.
-    pub(crate) fn get(&self, name: &str) -> Option<&'n Node<'n>> {
+    pub(crate) fn get(&self, name: &str) -> Option<&'n SyntaxNode<'n>> {
         self.field(name).map(|field| &field.value)
     }
 
@@ -40,7 +40,7 @@ impl<'n> Fields<'n> {
     }
 }
 
-impl<'f> Reader<'f> {
+impl<'f> NodeReader<'f> {
     pub(crate) fn new(faults: &'f mut Faults, watcher: &'f Watcher<'f>) -> Self {
         Self { faults, watcher }
     }
@@ -50,7 +50,7 @@ impl<'f> Reader<'f> {
     }
 
     /// Reports a value of a wrong type.
-    pub(crate) fn mismatch(&mut self, node: &Node<'_>, wanted: &str) {
+    pub(crate) fn mismatch(&mut self, node: &SyntaxNode<'_>, wanted: &str) {
         self.fault(node.span, || format!("expected {wanted}, found {}", description(node)));
     }
 
@@ -59,7 +59,7 @@ impl<'f> Reader<'f> {
     /// Returns the fields of a node, each known and given once. `form` shows the full form.
     pub(crate) fn fields<'n>(
         &mut self,
-        node: &'n Node<'n>,
+        node: &'n SyntaxNode<'n>,
         owner: &'static str,
         form: &str,
         known: &[&'static str],
@@ -103,7 +103,7 @@ impl<'f> Reader<'f> {
         &mut self,
         fields: &Fields<'_>,
         name: &str,
-        read: impl FnOnce(&mut Self, &Node<'_>) -> Option<T>,
+        read: impl FnOnce(&mut Self, &SyntaxNode<'_>) -> Option<T>,
     ) -> Option<T> {
         let Some(node) = fields.get(name) else {
             if !fields.is_given(name) {
@@ -120,7 +120,7 @@ impl<'f> Reader<'f> {
         &mut self,
         fields: &Fields<'_>,
         name: &str,
-        read: impl FnOnce(&mut Self, &Node<'_>) -> Option<T>,
+        read: impl FnOnce(&mut Self, &SyntaxNode<'_>) -> Option<T>,
     ) -> Option<T> {
         let node = fields.get(name)?;
         if is_word(node, "None") {
@@ -134,7 +134,7 @@ impl<'f> Reader<'f> {
         &mut self,
         fields: &Fields<'_>,
         name: &str,
-        read: impl FnOnce(&mut Self, &Node<'_>) -> Option<T>,
+        read: impl FnOnce(&mut Self, &SyntaxNode<'_>) -> Option<T>,
     ) -> Option<T> {
         read(self, fields.get(name)?)
     }
@@ -142,7 +142,7 @@ impl<'f> Reader<'f> {
     /// Reads the group's name, which must be one of `names`.
     pub(crate) fn variant<'n>(
         &mut self,
-        node: &'n Node<'n>,
+        node: &'n SyntaxNode<'n>,
         kind: &str,
         form: &str,
         known: &[&'static str],
@@ -163,7 +163,12 @@ impl<'f> Reader<'f> {
     }
 
     /// Reads one of several words.
-    pub(crate) fn choice<T: Copy>(&mut self, node: &Node<'_>, kind: &str, all: &[(&'static str, T)]) -> Option<T> {
+    pub(crate) fn choice<T: Copy>(
+        &mut self,
+        node: &SyntaxNode<'_>,
+        kind: &str,
+        all: &[(&'static str, T)],
+    ) -> Option<T> {
         let words: Vec<_> = all.iter().map(|&(word, _)| word).collect();
         let wanted = format!("{kind} ({})", listed(&words).replace(" and ", " or "));
         match &node.value {
@@ -185,15 +190,15 @@ impl<'f> Reader<'f> {
     /// Returns the values of all items that can be read; fewer after a cancel.
     pub(crate) fn each<'n, T>(
         &mut self,
-        items: &'n [Node<'n>],
-        read: impl Fn(&mut Self, &'n Node<'n>) -> Option<T>,
+        items: &'n [SyntaxNode<'n>],
+        read: impl Fn(&mut Self, &'n SyntaxNode<'n>) -> Option<T>,
     ) -> Vec<T> {
         let watcher = self.watcher;
         items.iter().take_while(|_| !watcher.is_gone()).filter_map(|item| read(self, item)).collect()
     }
 
     /// Returns the items of `[...]`, or of `(...)` without names.
-    pub(crate) fn list<'n>(&mut self, node: &'n Node<'n>, wanted: &str) -> Option<&'n [Node<'n>]> {
+    pub(crate) fn list<'n>(&mut self, node: &'n SyntaxNode<'n>, wanted: &str) -> Option<&'n [SyntaxNode<'n>]> {
         if let Some(items) = values(node) {
             return Some(items);
         }
@@ -208,7 +213,7 @@ impl<'f> Reader<'f> {
 
     // Values --------------------------------------------------------------------------------------------------------
 
-    pub(crate) fn boolean(&mut self, node: &Node<'_>) -> Option<bool> {
+    pub(crate) fn boolean(&mut self, node: &SyntaxNode<'_>) -> Option<bool> {
         if let Value::Bool(value) = node.value {
             return Some(value);
         }
@@ -217,7 +222,7 @@ impl<'f> Reader<'f> {
     }
 
     /// Reads a finite number.
-    pub(crate) fn number(&mut self, node: &Node<'_>) -> Option<WrittenNumber> {
+    pub(crate) fn number(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenNumber> {
         let Value::Number(value) = node.value else {
             self.mismatch(node, "a number");
             return None;
@@ -231,21 +236,25 @@ impl<'f> Reader<'f> {
         }
     }
 
-    pub(crate) fn point(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
+    pub(crate) fn point(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
         self.vector(node, "a point (x, y, z)")
     }
 
-    pub(crate) fn direction(&mut self, node: &Node<'_>) -> Option<WrittenVector> {
+    pub(crate) fn direction(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
         self.vector(node, "a direction (x, y, z)")
     }
 
-    fn vector(&mut self, node: &Node<'_>, wanted: &str) -> Option<WrittenVector> {
+    fn vector(&mut self, node: &SyntaxNode<'_>, wanted: &str) -> Option<WrittenVector> {
         let components = self.numbers(node, wanted)?;
         Some(WrittenVector { components, span: node.span })
     }
 
     /// Reads exactly `N` numbers in parentheses or brackets.
-    pub(crate) fn numbers<const N: usize>(&mut self, node: &Node<'_>, wanted: &str) -> Option<[WrittenNumber; N]> {
+    pub(crate) fn numbers<const N: usize>(
+        &mut self,
+        node: &SyntaxNode<'_>,
+        wanted: &str,
+    ) -> Option<[WrittenNumber; N]> {
         let Some(items) = values(node).filter(|items| items.len() == N) else {
             self.mismatch(node, wanted);
             return None;
@@ -257,7 +266,7 @@ impl<'f> Reader<'f> {
 }
 
 /// Returns the values of `[...]` or of `(...)` without names.
-pub(crate) fn values<'n>(node: &'n Node<'n>) -> Option<&'n [Node<'n>]> {
+pub(crate) fn values<'n>(node: &'n SyntaxNode<'n>) -> Option<&'n [SyntaxNode<'n>]> {
     match &node.value {
         Value::List(items) => Some(items),
         Value::Group(group) => match &**group {
@@ -268,7 +277,7 @@ pub(crate) fn values<'n>(node: &'n Node<'n>) -> Option<&'n [Node<'n>]> {
     }
 }
 
-fn is_word(node: &Node<'_>, word: &str) -> bool {
+fn is_word(node: &SyntaxNode<'_>, word: &str) -> bool {
     matches!(&node.value, Value::Group(group)
         if group.body == Body::Nothing && group.name.is_some_and(|name| name.text == word))
 }
@@ -311,7 +320,7 @@ fn unknown_variant(name: Name<'_>, kind: &str, known: &[&str]) -> String {
 }
 
 /// Describes what was found, for a message.
-pub(crate) fn description(node: &Node<'_>) -> String {
+pub(crate) fn description(node: &SyntaxNode<'_>) -> String {
     match &node.value {
         Value::Bool(value) => value.to_string(),
         Value::Number(_) => "a number".to_owned(),
@@ -328,7 +337,7 @@ pub(crate) fn description(node: &Node<'_>) -> String {
 }
 
 /// Describes what was found in brackets, for a message.
-pub(crate) fn group_of_values(items: &[Node<'_>], a_group_of: &str) -> String {
+pub(crate) fn group_of_values(items: &[SyntaxNode<'_>], a_group_of: &str) -> String {
     let numbers = items.iter().all(|item| matches!(item.value, Value::Number(_)));
     match (items.len(), numbers) {
         (0, _) => "nothing in brackets".to_owned(),
