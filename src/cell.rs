@@ -7,8 +7,8 @@ use crate::framebuffer::{Resolution, ResolutionError};
 use crate::grid::{Grid, Size};
 use crate::text::{ParseError, named};
 use crate::tone::Picture;
-use inks::Inks;
-use kind::{Fill, Kind};
+use glyph_kind::{Fill, GlyphKind};
+use ink_converter::InkConverter;
 use std::fmt;
 use std::str::FromStr;
 
@@ -16,9 +16,9 @@ mod blue_noise;
 mod colors;
 #[cfg(test)]
 mod dots;
+mod glyph_kind;
 mod half;
-mod inks;
-mod kind;
+mod ink_converter;
 mod pair;
 mod palette;
 mod ramp;
@@ -40,7 +40,7 @@ pub struct CellMode {
 
 crate::table::table! {
     /// A kind of glyphs in the cells of a picture.
-    pub enum Glyphs: Kind {
+    pub enum Glyphs: GlyphKind {
         /// Half blocks: two pixels, one above the other.
         Half = half::KIND;
         /// The printable ASCII character whose ink lies where the picture has its light.
@@ -158,7 +158,7 @@ pub fn grid_from_picture(mode: CellMode, picture: &Picture) -> Grid {
 pub struct Painter {
     mode: CellMode,
     light_background: bool,
-    inks: Inks,
+    inks: InkConverter,
 }
 
 impl fmt::Debug for Painter {
@@ -172,7 +172,7 @@ impl fmt::Debug for Painter {
 impl Painter {
     /// Returns a painter for a terminal that writes light on dark, which matters where its own colours are used.
     pub fn new(mode: CellMode) -> Self {
-        Self { mode, light_background: false, inks: Inks::of(mode.colors) }
+        Self { mode, light_background: false, inks: InkConverter::of(mode.colors) }
     }
 
     /// Sets whether the terminal writes dark on light: light pixels then are left blank.
@@ -229,8 +229,8 @@ fn size_in_cells(picture: &Picture, (across, down): (u32, u32)) -> Size {
 
 /// Returns an inverted picture: dark where the picture is light.
 fn negative(picture: &Picture) -> Picture {
-    let turned = |pixel: &Srgb8| Srgb8::new(255 - pixel.r, 255 - pixel.g, 255 - pixel.b);
-    Picture { pixels: picture.pixels.iter().map(turned).collect(), ..*picture }
+    let inverted = |pixel: &Srgb8| Srgb8::new(255 - pixel.r, 255 - pixel.g, 255 - pixel.b);
+    Picture { pixels: picture.pixels.iter().map(inverted).collect(), ..*picture }
 }
 
 #[cfg(test)]

@@ -203,8 +203,8 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
 
 /// Number of consecutive floats in a bucket: those with the same upper half of their bits, which is the sign, the
 /// exponent and the first 7 bits of the mantissa. A bucket is short enough to contain at most one of the 255 steps.
-const BUCKET: u32 = 1 << 16;
-const BUCKETS: usize = 1 << 16;
+const BUCKET_LEN: u32 = 1 << 16;
+const BUCKET_COUNT: usize = 1 << 16;
 
 /// The transfer function, tabulated.
 struct Transfer {
@@ -215,7 +215,7 @@ struct Transfer {
     bits_at_step: [u32; 256],
     /// The code of the least light in each bucket. Buckets beyond what a screen can show are never used in practice;
     /// with them, light need not be clamped first.
-    first_code: [u8; BUCKETS],
+    first_code: [u8; BUCKET_COUNT],
 }
 
 impl Transfer {
@@ -233,7 +233,7 @@ impl Transfer {
     fn srgb8(&self, linear: f32) -> u8 {
         // Negative floats order differently by their bits. NaN becomes black, too.
         let bits = if linear > 0.0 { linear } else { 0.0 }.to_bits();
-        let code = self.first_code[(bits / BUCKET) as usize];
+        let code = self.first_code[(bits / BUCKET_LEN) as usize];
         code + u8::from(bits >= self.bits_at_step[usize::from(code)])
     }
 }
@@ -245,20 +245,20 @@ impl Transfer {
     #[expect(clippy::large_stack_arrays, reason = "it is on no stack but the compiler's")]
     const fn new() -> Self {
         let mut transfer =
-            Self { linear_from_srgb8: [0.0; 256], bits_at_step: [u32::MAX; 256], first_code: [0; BUCKETS] };
+            Self { linear_from_srgb8: [0.0; 256], bits_at_step: [u32::MAX; 256], first_code: [0; BUCKET_COUNT] };
         let mut code = 0;
         while code < 256 {
-            transfer.linear_from_srgb8[code] = decoded(code as f64 / 255.0) as f32;
+            transfer.linear_from_srgb8[code] = const_linear_from_srgb(code as f64 / 255.0) as f32;
             if code < 255 {
-                let step = least_f32_at_or_above(decoded((code as f64 + 0.5) / 255.0));
+                let step = least_f32_at_or_above(const_linear_from_srgb((code as f64 + 0.5) / 255.0));
                 transfer.bits_at_step[code] = step.to_bits();
             }
             code += 1;
         }
         let mut code = 0;
         let mut bucket = 0;
-        while bucket < BUCKETS {
-            while transfer.bits_at_step[code].div_ceil(BUCKET) as usize <= bucket {
+        while bucket < BUCKET_COUNT {
+            while transfer.bits_at_step[code].div_ceil(BUCKET_LEN) as usize <= bucket {
                 code += 1;
             }
             transfer.first_code[bucket] = code as u8;
@@ -269,13 +269,13 @@ impl Transfer {
 }
 
 /// [`linear_from_srgb`] as a `const fn`.
-const fn decoded(encoded: f64) -> f64 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { to_the_2_4((encoded + 0.055) / 1.055) }
+const fn const_linear_from_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { pow_2_4((encoded + 0.055) / 1.055) }
 }
 
 /// Returns x^2.4 for x in (0, 1]: x squared times the fifth root of x squared, by Newton's method, which converges from
 /// 1 downwards.
-const fn to_the_2_4(number: f64) -> f64 {
+const fn pow_2_4(number: f64) -> f64 {
     let square = number * number;
     let mut root = 1.0;
     loop {

@@ -161,7 +161,7 @@ impl Grid {
     /// # Panics
     /// If it has more than 16,777,216 cells.
     pub fn new(size: Size) -> Self {
-        Self { size, cells: vec![Cell::BLANK; Self::count(size)] }
+        Self { size, cells: vec![Cell::BLANK; Self::checked_cell_count(size)] }
     }
 
     /// Makes all of it blank, at that size.
@@ -170,7 +170,7 @@ impl Grid {
     /// If it has more than 16,777,216 cells.
     #[doc(hidden)]
     pub fn clear(&mut self, size: Size) {
-        let count = Self::count(size);
+        let count = Self::checked_cell_count(size);
         self.size = size;
         self.cells.clear();
         self.cells.resize(count, Cell::BLANK);
@@ -182,10 +182,10 @@ impl Grid {
     /// If it has more than 16,777,216 cells.
     #[doc(hidden)]
     pub fn foreign(size: Size) -> Self {
-        Self { size, cells: vec![Cell::FOREIGN; Self::count(size)] }
+        Self { size, cells: vec![Cell::FOREIGN; Self::checked_cell_count(size)] }
     }
 
-    fn count(size: Size) -> usize {
+    fn checked_cell_count(size: Size) -> usize {
         let count = size.cell_count();
         assert!(count <= Self::MAX_CELLS, "a grid of {count} cells is too large; it may have {}", Self::MAX_CELLS);
         count
@@ -276,8 +276,8 @@ impl Grid {
     #[doc(hidden)]
     pub fn put(&mut self, column: u16, row: u16, cell: &Cell, columns: u16) {
         let end = column.saturating_add(columns.max(1));
-        self.split(column, row);
-        self.split(end, row);
+        self.split_wide_glyph(column, row);
+        self.split_wide_glyph(end, row);
         for covered in column + 1..end {
             *self.cell_mut(covered, row) = Cell { glyph: Glyph::Covered, ..cell.clone() };
         }
@@ -285,7 +285,7 @@ impl Grid {
     }
 
     /// If something stands on both sides of that column's left edge, it becomes blanks in its colours.
-    fn split(&mut self, column: u16, row: u16) {
+    fn split_wide_glyph(&mut self, column: u16, row: u16) {
         if column >= self.size.columns || self.cell(column, row).glyph != Glyph::Covered {
             return;
         }

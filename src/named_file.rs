@@ -16,9 +16,9 @@ mod posix;
 mod refusal;
 
 #[cfg(not(feature = "live"))]
-use plain::{open, wait};
+use plain::{open, wait_until_readable};
 #[cfg(feature = "live")]
-use posix::{open, wait};
+use posix::{open, wait_until_readable};
 pub use refusal::reason;
 use refusal::refused;
 
@@ -32,9 +32,9 @@ pub enum Accepted {
 }
 
 /// Bytes between two reports to the watcher: 1 MiB, which a disk delivers in about a millisecond.
-const STRIDE: u64 = 1 << 20;
+const CHUNK_LEN: u64 = 1 << 20;
 
-/// Returns all bytes of the file at `path`, limited to `most(bytes so far)`, which may depend on the file's beginning.
+/// Returns all bytes of the file at `path`, limited to `max_len(bytes so far)`, which may depend on the file's beginning.
 ///
 /// Reports the number of bytes read to the watcher, but not that the file is needed. After a cancel reading ends with
 /// [`ErrorKind::Interrupted`]. Waits for a pipe for a second at a time. Memory grows with the bytes read, not with the
@@ -46,7 +46,7 @@ const STRIDE: u64 = 1 << 20;
 pub fn read(
     path: &Path,
     accepted: Accepted,
-    most: impl Fn(&[u8]) -> usize,
+    max_len: impl Fn(&[u8]) -> usize,
     watcher: &Watcher<'_>,
 ) -> io::Result<Vec<u8>> {
     let (mut file, size) = open(path, accepted)?;
@@ -58,22 +58,22 @@ pub fn read(
         if watcher.tell(Progress { work, done: bytes.len(), total: size }).is_err() {
             return Err(ErrorKind::Interrupted.into());
         }
-        if read_on(&mut file, &mut bytes)? {
+        if read_chunk(&mut file, &mut bytes)? {
             return Ok(bytes);
         }
         // Checked before memory is reserved: virtual files claim up to 2^63 bytes.
-        let most = most(&bytes);
-        if bytes.len().max(size) > most {
-            return Err(too_large(most));
+        let max_len = max_len(&bytes);
+        if bytes.len().max(size) > max_len {
+            return Err(too_large(max_len));
         }
         bytes.try_reserve_exact((size + 1).saturating_sub(bytes.len()))?;
     }
 }
 
-/// Reads the next bytes, up to [`STRIDE`], and returns whether the file ended.
-fn read_on(file: &mut File, bytes: &mut Vec<u8>) -> io::Result<bool> {
-    wait(file)?;
-    match file.take(STRIDE).read_to_end(bytes) {
+/// Reads the next bytes, up to [`CHUNK_LEN`], and returns whether the file ended.
+fn read_chunk(file: &mut File, bytes: &mut Vec<u8>) -> io::Result<bool> {
+    wait_until_readable(file)?;
+    match file.take(CHUNK_LEN).read_to_end(bytes) {
         Ok(count) => Ok(count == 0),
         // `bytes` holds what the pipe has delivered so far.
         Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(false),
@@ -81,12 +81,12 @@ fn read_on(file: &mut File, bytes: &mut Vec<u8>) -> io::Result<bool> {
     }
 }
 
-fn too_large(most: usize) -> io::Error {
-    let size = match most {
-        _ if most.is_multiple_of(1 << 30) => format!("{} GiB", most >> 30),
-        _ if most.is_multiple_of(1 << 20) => format!("{} MiB", most >> 20),
-        _ if most.is_multiple_of(1 << 10) => format!("{} KiB", most >> 10),
-        _ => format!("{most} bytes"),
+fn too_large(max_len: usize) -> io::Error {
+    let size = match max_len {
+        _ if max_len.is_multiple_of(1 << 30) => format!("{} GiB", max_len >> 30),
+        _ if max_len.is_multiple_of(1 << 20) => format!("{} MiB", max_len >> 20),
+        _ if max_len.is_multiple_of(1 << 10) => format!("{} KiB", max_len >> 10),
+        _ => format!("{max_len} bytes"),
     };
     refused(ErrorKind::FileTooLarge, format!("the file is larger than {size}, too large to be read"))
 }
@@ -97,8 +97,8 @@ mod tests {
     use std::fs;
     use std::ops::ControlFlow;
 
-    fn read_up_to(most: usize, path: &Path, accepted: Accepted) -> Result<Vec<u8>, String> {
-        read(path, accepted, |_| most, &Watcher::patient()).map_err(|error| reason(&error))
+    fn read_up_to(max_len: usize, path: &Path, accepted: Accepted) -> Result<Vec<u8>, String> {
+        read(path, accepted, |_| max_len, &Watcher::patient()).map_err(|error| reason(&error))
     }
 
     #[test]
@@ -112,8 +112,8 @@ mod tests {
         assert_eq!(read_up_to(size - 1, &path, Accepted::Files), too_large("3145727 bytes"));
         assert_eq!(read_up_to(2 << 20, &path, Accepted::Files), too_large("2 MiB"));
         // The first bytes determine the limit.
-        let most = |bytes: &[u8]| if bytes.starts_with(&[7]) { 64 << 10 } else { usize::MAX };
-        let error = read(&path, Accepted::Files, most, &Watcher::patient()).expect_err("too large");
+        let max_len = |bytes: &[u8]| if bytes.starts_with(&[7]) { 64 << 10 } else { usize::MAX };
+        let error = read(&path, Accepted::Files, max_len, &Watcher::patient()).expect_err("too large");
         assert_eq!(Err(reason(&error)), too_large("64 KiB"));
         // The claimed size alone is enough.
         File::create(&path).and_then(|file| file.set_len(1 << 42)).expect("a sparse file can be made");

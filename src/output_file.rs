@@ -39,20 +39,20 @@ use temporary::Temporary;
 pub struct OutputFile {
     /// The path after following symbolic links.
     target: PathBuf,
-    place: Place,
+    destination: Destination,
 }
 
 /// The place of the contents until the file is finished, and how they get to the target.
 #[derive(Debug)]
-enum Place {
+enum Destination {
     /// Takes the name, whether or not a file has got it meanwhile.
     New(Temporary),
     /// Takes the name if it is still unused.
-    Unused(Temporary),
+    NewOnly(Temporary),
     /// Takes the name, owner and mode of an existing file with this metadata.
-    Over(Temporary, Metadata),
+    Replace(Temporary, Metadata),
     /// Overwrites the bytes of an existing file.
-    Within(Vec<u8>),
+    InPlace(Vec<u8>),
 }
 
 impl OutputFile {
@@ -62,16 +62,16 @@ impl OutputFile {
     /// If that is a folder, a stream (see [`open_stream`]) or a file that may not be written, or the folder does not
     /// allow a new file.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let target = target::followed(path);
-        let place = match fs::metadata(path) {
-            Ok(existing) => over(&target, existing)?,
+        let target = target::resolve_links(path);
+        let destination = match fs::metadata(path) {
+            Ok(existing) => destination_over(&target, existing)?,
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 target::check_names_a_file(&target)?;
-                Place::New(Temporary::new_file(&target)?)
+                Destination::New(Temporary::new_file(&target)?)
             }
             Err(error) => return Err(error),
         };
-        Ok(Self { target, place })
+        Ok(Self { target, destination })
     }
 
     /// Starts a file with an unused name.
@@ -83,14 +83,18 @@ impl OutputFile {
         match fs::symlink_metadata(path) {
             Ok(_) => Err(io::ErrorKind::AlreadyExists.into()),
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-            Err(_) => Ok(Self { target: path.to_owned(), place: Place::Unused(Temporary::new_file(path)?) }),
+            Err(_) => {
+                Ok(Self { target: path.to_owned(), destination: Destination::NewOnly(Temporary::new_file(path)?) })
+            }
         }
     }
 
     /// Removes the temporary files that killed processes of this user left in the folder. It reads the whole folder:
     /// once is enough for many files.
     pub fn remove_stale(&self) {
-        if let Place::New(temporary) | Place::Unused(temporary) | Place::Over(temporary, _) = &self.place {
+        if let Destination::New(temporary) | Destination::NewOnly(temporary) | Destination::Replace(temporary, _) =
+            &self.destination
+        {
             temporary.remove_stale();
         }
     }
@@ -101,20 +105,24 @@ impl OutputFile {
     /// If it cannot be written or renamed; the target is then unchanged.
     pub fn finish(self) -> io::Result<()> {
         let target = &self.target;
-        match self.place {
-            Place::New(mut temporary) => temporary.sync().and_then(|()| temporary.rename(target)),
-            Place::Unused(mut temporary) => temporary.sync().and_then(|()| take_name(&mut temporary, target)),
-            Place::Over(mut temporary, existing) => replace(&mut temporary, &existing, target),
-            Place::Within(contents) => in_place::write(target, &contents),
+        match self.destination {
+            Destination::New(mut temporary) => temporary.sync().and_then(|()| temporary.rename(target)),
+            Destination::NewOnly(mut temporary) => {
+                temporary.sync().and_then(|()| rename_to_unused(&mut temporary, target))
+            }
+            Destination::Replace(mut temporary, existing) => rename_or_overwrite(&mut temporary, &existing, target),
+            Destination::InPlace(contents) => in_place::write(target, &contents),
         }
     }
 }
 
 impl Write for OutputFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match &mut self.place {
-            Place::New(temporary) | Place::Unused(temporary) | Place::Over(temporary, _) => temporary.write(bytes),
-            Place::Within(contents) => contents.write(bytes),
+        match &mut self.destination {
+            Destination::New(temporary) | Destination::NewOnly(temporary) | Destination::Replace(temporary, _) => {
+                temporary.write(bytes)
+            }
+            Destination::InPlace(contents) => contents.write(bytes),
         }
     }
 
@@ -124,18 +132,18 @@ impl Write for OutputFile {
 }
 
 /// Returns how to write the contents over this existing file.
-fn over(target: &Path, existing: Metadata) -> io::Result<Place> {
+fn destination_over(target: &Path, existing: Metadata) -> io::Result<Destination> {
     target::check_writable(target, &existing)?;
     match Temporary::private(target) {
-        Ok(temporary) => Ok(Place::Over(temporary, existing)),
-        Err(error) if is_refused(&error) => Ok(Place::Within(Vec::new())),
+        Ok(temporary) => Ok(Destination::Replace(temporary, existing)),
+        Err(error) if is_replacement_refused(&error) => Ok(Destination::InPlace(Vec::new())),
         Err(error) => Err(error),
     }
 }
 
 /// Reserves the name first by an empty file: system calls that leave an existing file alone (`link`, `renameat2`) are
 /// not supported by all file systems.
-fn take_name(temporary: &mut Temporary, target: &Path) -> io::Result<()> {
+fn rename_to_unused(temporary: &mut Temporary, target: &Path) -> io::Result<()> {
     File::create_new(target)?;
     temporary.rename(target).inspect_err(|_| {
         let _ = fs::remove_file(target);
@@ -143,11 +151,11 @@ fn take_name(temporary: &mut Temporary, target: &Path) -> io::Result<()> {
 }
 
 /// Replaces by a rename, or in place where a rename would change more than the contents.
-fn replace(temporary: &mut Temporary, existing: &Metadata, target: &Path) -> io::Result<()> {
-    if existing.nlink() == 1 && temporary.become_like(existing).is_ok() {
+fn rename_or_overwrite(temporary: &mut Temporary, existing: &Metadata, target: &Path) -> io::Result<()> {
+    if existing.nlink() == 1 && temporary.copy_owner_and_mode(existing).is_ok() {
         temporary.sync()?;
         match temporary.rename(target) {
-            Err(error) if is_refused(&error) => {}
+            Err(error) if is_replacement_refused(&error) => {}
             done => return done,
         }
     }
@@ -156,7 +164,7 @@ fn replace(temporary: &mut Temporary, existing: &Metadata, target: &Path) -> io:
 
 /// Returns whether a folder does not allow a new file or a replaced name (another user's file in a sticky folder, a
 /// mount point), although the file itself may be writable.
-fn is_refused(error: &io::Error) -> bool {
+fn is_replacement_refused(error: &io::Error) -> bool {
     use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem, ResourceBusy};
     matches!(error.kind(), PermissionDenied | ReadOnlyFilesystem | ResourceBusy)
 }

@@ -12,7 +12,7 @@ use std::convert::Infallible;
 use std::num::NonZeroU32;
 
 /// Implements both traits by a serialized form: the conversion to it, and the checked conversion back.
-macro_rules! written_as {
+macro_rules! serialize_as {
     ($($Type:ty as $Form:ty: $to:expr, $from:expr;)*) => {
         $(impl Serialize for $Type {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -30,7 +30,7 @@ macro_rules! written_as {
     };
 }
 
-written_as! {
+serialize_as! {
     LinearRgb as [f32; 3]: |light| [light.r, light.g, light.b], |channels| Ok::<_, Infallible>(Self::from(channels));
     Srgb8 as [u8; 3]: |color| [color.r, color.g, color.b], |channels| Ok::<_, Infallible>(Self::from(channels));
     Size as SizeForm: |&Size { columns, rows }| SizeForm { columns, rows },

@@ -1,11 +1,11 @@
 //! A dot for each light pixel: a cell kind for tests, which shows that a file and a row in the table are all that one
 //! takes.
 
-use super::kind::{Fill, Kind};
+use super::glyph_kind::{Fill, GlyphKind};
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
 
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: GlyphKind = GlyphKind {
     name: "dots",
     help: "a dot for each pixel that is light",
     title: "dots",

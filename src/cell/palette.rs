@@ -20,7 +20,7 @@ enum Candidates {
     /// The cube and the greys of the 256 colours.
     Cube(Cube),
     /// A list of colours, numbered from 0.
-    Few(Vec<Candidate>),
+    List(Vec<Candidate>),
 }
 
 /// A colour of the palette.
@@ -40,7 +40,7 @@ impl Candidate {
 type Mix = [u8; 16];
 
 /// Number of levels per channel for which mixes are cached; a value between two levels is dithered to them.
-const STEPS: usize = 32;
+const CACHE_LEVELS: usize = 32;
 
 impl Palette {
     /// Returns the palette of the 240 colours that users do not change.
@@ -49,49 +49,49 @@ impl Palette {
     }
 
     /// Returns a palette of these colours, numbered by their index.
-    pub(super) fn few(colors: &[Srgb8]) -> Self {
-        Self::of(Candidates::Few((0..).zip(colors).map(|(index, &color)| Candidate::new(index, color)).collect()))
+    pub(super) fn from_colors(colors: &[Srgb8]) -> Self {
+        Self::of(Candidates::List((0..).zip(colors).map(|(index, &color)| Candidate::new(index, color)).collect()))
     }
 
     fn of(candidates: Candidates) -> Self {
-        Self { candidates, mixes: vec![None; STEPS * STEPS * STEPS] }
+        Self { candidates, mixes: vec![None; CACHE_LEVELS * CACHE_LEVELS * CACHE_LEVELS] }
     }
 
     /// Returns the number of the colour for this pixel of the screen.
     pub(super) fn index(&mut self, color: Srgb8, x: usize, y: usize) -> u8 {
         // Far enough away in the tile to be independent of the other threshold.
         let between = usize::from(threshold(x + 13, y + 19)).min(254);
-        let step = |code: u8| (usize::from(code) * (STEPS - 1) + between) / 255;
+        let step = |code: u8| (usize::from(code) * (CACHE_LEVELS - 1) + between) / 255;
         let steps = [color.r, color.g, color.b].map(step);
         let candidates = &self.candidates;
-        let mix =
-            self.mixes[(steps[0] * STEPS + steps[1]) * STEPS + steps[2]].get_or_insert_with(|| candidates.mix(steps));
+        let mix = self.mixes[(steps[0] * CACHE_LEVELS + steps[1]) * CACHE_LEVELS + steps[2]]
+            .get_or_insert_with(|| candidates.mix(steps));
         mix[usize::from(threshold(x, y)) * mix.len() / 256]
     }
 }
 
 impl Candidates {
     fn mix(&self, steps: [usize; 3]) -> Mix {
-        let [r, g, b] = steps.map(|step| linear_from_srgb(step as f64 / (STEPS - 1) as f64) as f32);
+        let [r, g, b] = steps.map(|step| linear_from_srgb(step as f64 / (CACHE_LEVELS - 1) as f64) as f32);
         let light = LinearRgb::new(r, g, b);
         match self {
-            Self::Cube(cube) => mix(light, &cube.around(light)),
-            Self::Few(candidates) => mix(light, candidates),
+            Self::Cube(cube) => mix(light, &cube.neighbours(light)),
+            Self::List(candidates) => mix(light, candidates),
         }
     }
 }
 
 /// Share of a mix's remaining error that the next colour compensates. The full error would give the exact mean, by
 /// colours far from it, which look worse than a slightly wrong mean.
-const MADE_UP: f32 = 0.6;
+const ERROR_FEEDBACK: f32 = 0.6;
 
 /// Returns colours whose mean is near the light.
 fn mix(light: LinearRgb, candidates: &[Candidate]) -> Mix {
-    let mut lacks = LinearRgb::BLACK;
+    let mut error = LinearRgb::BLACK;
     let mut chosen = [candidates[0]; 16];
-    for place in &mut chosen {
-        *place = nearest(light + lacks * MADE_UP, candidates);
-        lacks += light + place.light * -1.0;
+    for slot in &mut chosen {
+        *slot = nearest(light + error * ERROR_FEEDBACK, candidates);
+        error += light + slot.light * -1.0;
     }
     chosen.sort_by(|a, b| a.light.luminance().total_cmp(&b.light.luminance()));
     chosen.map(|candidate| candidate.index)
@@ -132,9 +132,9 @@ impl Cube {
 
     /// Returns the eight corners of the cell of levels around the light, and the two greys around its luminance: mixes
     /// of near colours have the least grain.
-    fn around(&self, light: LinearRgb) -> [Candidate; 10] {
-        let [r, g, b] = [light.r, light.g, light.b].map(|channel| below(&self.levels, channel));
-        let grey = below(&self.greys, light.luminance());
+    fn neighbours(&self, light: LinearRgb) -> [Candidate; 10] {
+        let [r, g, b] = [light.r, light.g, light.b].map(|channel| level_below(&self.levels, channel));
+        let grey = level_below(&self.greys, light.luminance());
         std::array::from_fn(|k| match k {
             8.. => self.colors[216 + grey + k - 8],
             corner => self.colors[36 * (r + corner / 4) + 6 * (g + corner / 2 % 2) + b + corner % 2],
@@ -143,6 +143,6 @@ impl Cube {
 }
 
 /// Returns the highest level not above the channel, except the last one, so that another follows.
-fn below(levels: &[f32], channel: f32) -> usize {
+fn level_below(levels: &[f32], channel: f32) -> usize {
     levels[1..levels.len() - 1].iter().take_while(|&&level| level <= channel).count()
 }

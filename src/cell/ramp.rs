@@ -1,13 +1,13 @@
 //! The ASCII ramp: a character by lightness, for terminals without colour and for golden text frames.
 
-use super::kind::{Fill, Kind};
+use super::glyph_kind::{Fill, GlyphKind};
 use super::pair;
 use crate::color::{LinearRgb, Srgb8};
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
 use std::sync::LazyLock;
 
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: GlyphKind = GlyphKind {
     name: "ramp",
     help: "one of ten characters, by lightness",
     title: "characters by lightness",

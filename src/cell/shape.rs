@@ -4,7 +4,7 @@
 //! samples of each after a blur. Without the blur, a glyph that fits a cell in detail wins over one of the right
 //! lightness, and the picture gets dark and spotty.
 
-use super::kind::{Fill, Kind};
+use super::glyph_kind::{Fill, GlyphKind};
 use crate::color::Srgb8;
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
@@ -12,19 +12,19 @@ use std::sync::LazyLock;
 
 mod glyphs;
 
-use glyphs::{ACROSS, DOWN, INK};
+use glyphs::{INK, SAMPLE_COLUMNS, SAMPLE_ROWS};
 
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: GlyphKind = GlyphKind {
     name: "shape",
     help: "the character of ASCII that has its ink where the picture has its light",
     title: "characters by shape",
-    pixels_per_cell: (ACROSS as u32, DOWN as u32),
+    pixels_per_cell: (SAMPLE_COLUMNS as u32, SAMPLE_ROWS as u32),
     has_blocks: false,
     plain: None,
     fill: Fill::Lightness(fill),
 };
 
-const SAMPLES: usize = ACROSS * DOWN;
+const SAMPLES: usize = SAMPLE_COLUMNS * SAMPLE_ROWS;
 /// One sample for each part of a cell, row by row from the top.
 type Samples = [f32; SAMPLES];
 
@@ -41,10 +41,10 @@ fn fill(grid: &mut Grid, picture: &Picture) {
 
 /// Returns the lightness of a cell's pixels; beyond the picture's edge the edge is continued.
 fn samples(picture: &Picture, column: u16, row: u16) -> Samples {
-    let (left, top) = (usize::from(column) * ACROSS, usize::from(row) * DOWN);
+    let (left, top) = (usize::from(column) * SAMPLE_COLUMNS, usize::from(row) * SAMPLE_ROWS);
     let (last_x, last_y) = (picture.width as usize - 1, picture.height as usize - 1);
     std::array::from_fn(|at| {
-        let (x, y) = ((left + at % ACROSS).min(last_x), (top + at / ACROSS).min(last_y));
+        let (x, y) = ((left + at % SAMPLE_COLUMNS).min(last_x), (top + at / SAMPLE_COLUMNS).min(last_y));
         lightness(picture.pixels[y * picture.width as usize + x])
     })
 }
@@ -68,10 +68,12 @@ static MATCHER: LazyLock<Matcher> = LazyLock::new(|| {
     let inks = INK.map(|ink| ink.map(|part| f32::from(part) / 255.0));
     // Scaled so that the densest glyph is white.
     let white = inks.iter().map(|ink| ink.iter().sum::<f32>() / SAMPLES as f32).fold(0.0, f32::max);
-    let seen = inks.map(|ink| blurred(&blurred(&ink)));
+    let blurred_inks = inks.map(|ink| blurred(&blurred(&ink)));
     Matcher {
-        weights: std::array::from_fn(|sample| seen.map(|seen| 2.0 * white * seen[sample])),
-        squares: std::array::from_fn(|glyph| inks[glyph].iter().zip(&seen[glyph]).map(|(ink, seen)| ink * seen).sum()),
+        weights: std::array::from_fn(|sample| blurred_inks.map(|ink| 2.0 * white * ink[sample])),
+        squares: std::array::from_fn(|glyph| {
+            inks[glyph].iter().zip(&blurred_inks[glyph]).map(|(ink, blurred)| ink * blurred).sum()
+        }),
     }
 });
 
@@ -96,30 +98,33 @@ impl Matcher {
 /// Returns samples after a Gaussian blur whose standard deviation is 0.35 of the cell's width, on a screen full of such
 /// cells.
 fn blurred(samples: &Samples) -> Samples {
-    let across: [f32; ACROSS] = shares(0.35 * ACROSS as f64);
-    let down: [f32; DOWN] = shares(0.175 * DOWN as f64);
+    let across: [f32; SAMPLE_COLUMNS] = gaussian_weights(0.35 * SAMPLE_COLUMNS as f64);
+    let down: [f32; SAMPLE_ROWS] = gaussian_weights(0.175 * SAMPLE_ROWS as f64);
     std::array::from_fn(|to| {
-        let share = |from: usize| {
-            let (x, y) = (ACROSS + to % ACROSS - from % ACROSS, DOWN + to / ACROSS - from / ACROSS);
-            across[x % ACROSS] * down[y % DOWN]
+        let weight = |from: usize| {
+            let (x, y) = (
+                SAMPLE_COLUMNS + to % SAMPLE_COLUMNS - from % SAMPLE_COLUMNS,
+                SAMPLE_ROWS + to / SAMPLE_COLUMNS - from / SAMPLE_COLUMNS,
+            );
+            across[x % SAMPLE_COLUMNS] * down[y % SAMPLE_ROWS]
         };
-        samples.iter().enumerate().map(|(from, sample)| share(from) * sample).sum()
+        samples.iter().enumerate().map(|(from, sample)| weight(from) * sample).sum()
     })
 }
 
 /// Returns the weights of a sample itself, the next one and so on, in a row that wraps around.
-fn shares<const N: usize>(deviation: f64) -> [f32; N] {
-    let mut shares = [0.0; N];
-    shares[0] = 1.0;
+fn gaussian_weights<const N: usize>(deviation: f64) -> [f32; N] {
+    let mut weights = [0.0; N];
+    weights[0] = 1.0;
     for distance in 1..8 * N {
-        let far = distance as f64 / deviation;
-        let share = libm::exp(-0.5 * far * far);
+        let deviations = distance as f64 / deviation;
+        let weight = libm::exp(-0.5 * deviations * deviations);
         // One to the right, one to the left.
-        shares[distance % N] += share;
-        shares[(N - distance % N) % N] += share;
+        weights[distance % N] += weight;
+        weights[(N - distance % N) % N] += weight;
     }
-    let sum: f64 = shares.iter().sum();
-    shares.map(|share| (share / sum) as f32)
+    let sum: f64 = weights.iter().sum();
+    weights.map(|weight| (weight / sum) as f32)
 }
 
 #[cfg(test)]

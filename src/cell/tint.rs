@@ -1,6 +1,6 @@
 //! Colours for characters: the glyph shows the lightness of a cell, its colour the hue.
 
-use super::inks::Inks;
+use super::ink_converter::InkConverter;
 use crate::color::{LinearRgb, Srgb8};
 use crate::grid::Grid;
 use crate::tone::Picture;
@@ -16,14 +16,14 @@ pub(super) fn brightness(picture: &Picture) -> Picture {
 
 /// Colours each cell's character by the mean of its pixels at full brightness, on black. Where the terminal's own
 /// background is light, the ink is dark.
-pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u32), inks: &mut Inks) {
+pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u32), inks: &mut InkConverter) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
-            let color = brightest(mean(picture, pixels_per_cell, column, row));
+            let color = at_full_brightness(mean(picture, pixels_per_cell, column, row));
             let cell = grid.cell_mut(column, row);
-            cell.bg = inks.black();
+            cell.bg = inks.background();
             if cell.glyph != ' ' {
-                cell.fg = inks.ink(color, column.into(), row.into());
+                cell.fg = inks.ink_at(color, column.into(), row.into());
             }
         }
     }
@@ -43,8 +43,8 @@ fn mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) ->
 }
 
 /// Returns the same hue with its brightest channel at the maximum; black stays black.
-fn brightest(color: Srgb8) -> Srgb8 {
-    let most = u32::from(color.r.max(color.g).max(color.b).max(1));
-    let scaled = |channel: u8| (u32::from(channel) * 255 / most) as u8; // no channel is above the most
+fn at_full_brightness(color: Srgb8) -> Srgb8 {
+    let max = u32::from(color.r.max(color.g).max(color.b).max(1));
+    let scaled = |channel: u8| (u32::from(channel) * 255 / max) as u8; // no channel is above the max
     Srgb8::new(scaled(color.r), scaled(color.g), scaled(color.b))
 }

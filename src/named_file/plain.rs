@@ -30,6 +30,6 @@ fn check(data: &Metadata) -> io::Result<()> {
 
 /// Returns at once: a plain file always has bytes to read, or its end.
 #[expect(clippy::unnecessary_wraps, reason = "a pipe may fail, where pipes are read")]
-pub(super) fn wait(_: &File) -> io::Result<()> {
+pub(super) fn wait_until_readable(_: &File) -> io::Result<()> {
     Ok(())
 }

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 /// Limit on the time without bytes from a pipe. A program that writes into `<(...)` has started by then, and a longer
 /// wait looks like a hang.
-const PATIENCE: Duration = Duration::from_secs(1);
+const PIPE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Opens a file and returns its size, if known: a pipe has none, and a file may grow.
 pub(super) fn open(path: &Path, accepted: Accepted) -> io::Result<(File, u64)> {
@@ -48,8 +48,8 @@ fn is_null(data: &Metadata) -> bool {
 }
 
 /// Waits until there are bytes to read, or the end. A plain file is always ready.
-pub(super) fn wait(file: &File) -> io::Result<()> {
-    let deadline = Instant::now() + PATIENCE;
+pub(super) fn wait_until_readable(file: &File) -> io::Result<()> {
+    let deadline = Instant::now() + PIPE_TIMEOUT;
     loop {
         let left = Timespec::try_from(deadline.saturating_duration_since(Instant::now())).ok();
         match poll(&mut [PollFd::new(file, PollFlags::IN)], left.as_ref()) {

@@ -14,8 +14,8 @@ pub(super) fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
     // Closing the file unlocks it. Not `flock`: `flock FILE termtrace frame ... -o FILE` would wait for itself. Some
     // file systems have no locks.
     let _ = retry_on_intr(|| fcntl_lock(&file, FlockOperation::LockExclusive));
-    let old = Old::read(&file, contents.len())?;
-    put(&file, contents).map_err(|error| match old.put_back(&file) {
+    let old = OldContents::read(&file, contents.len())?;
+    overwrite(&file, contents).map_err(|error| match old.restore(&file) {
         Ok(()) => error,
         Err(_) => io::Error::new(error.kind(), format!("its old contents are lost in part: {error}")),
     })
@@ -26,7 +26,7 @@ fn open(path: &Path) -> io::Result<File> {
     File::options().read(true).write(true).open(path).or_else(|_| File::options().write(true).open(path))
 }
 
-fn put(mut file: &File, contents: &[u8]) -> io::Result<()> {
+fn overwrite(mut file: &File, contents: &[u8]) -> io::Result<()> {
     file.rewind()?;
     file.write_all(contents)?;
     file.set_len(contents.len() as u64)?;
@@ -34,21 +34,21 @@ fn put(mut file: &File, contents: &[u8]) -> io::Result<()> {
 }
 
 /// The old contents, to be restored on failure.
-struct Old {
+struct OldContents {
     /// The first bytes, which are overwritten.
     start: io::Result<Vec<u8>>,
     length: u64,
 }
 
-impl Old {
-    fn read(file: &File, most: usize) -> io::Result<Self> {
+impl OldContents {
+    fn read(file: &File, max_len: usize) -> io::Result<Self> {
         let mut start = Vec::new();
-        let read = file.take(most as u64).read_to_end(&mut start);
+        let read = file.take(max_len as u64).read_to_end(&mut start);
         Ok(Self { start: read.map(|_| start), length: file.metadata()?.len() })
     }
 
     /// Restores only what was overwritten: where writing failed, it would fail again.
-    fn put_back(self, mut file: &File) -> io::Result<()> {
+    fn restore(self, mut file: &File) -> io::Result<()> {
         let written = file.stream_position()? as usize;
         let start = self.start?;
         file.write_all_at(&start[..written.min(start.len())], 0)?;

@@ -8,7 +8,7 @@ use std::iter::successors;
 use std::path::{Path, PathBuf};
 
 /// Limit on links followed, as in Linux. The system has followed them before, and found no loop.
-const MOST_LINKS: usize = 40;
+const MAX_FOLLOWED_LINKS: usize = 40;
 
 /// Opens a target that can only be written directly: a device, a pipe, a system file (`/proc/...`), or a descriptor
 /// (`/dev/stdout`), which may refer to a plain file that another process has open. `None` for everything else.
@@ -19,7 +19,7 @@ const MOST_LINKS: usize = 40;
 pub fn open_stream(path: &Path) -> io::Result<Option<File>> {
     let is_stream = match fs::metadata(path) {
         Ok(data) if data.is_dir() => false,
-        Ok(data) => !data.is_file() || chain(path).any(|place| is_the_systems(&place)),
+        Ok(data) => !data.is_file() || link_chain(path).any(|path| is_system_path(&path)),
         Err(error) if error.kind() == io::ErrorKind::NotFound => false,
         Err(error) => return Err(error),
     };
@@ -27,8 +27,8 @@ pub fn open_stream(path: &Path) -> io::Result<Option<File>> {
 }
 
 /// Returns the path after all symbolic links, whether or not something exists there.
-pub(super) fn followed(path: &Path) -> PathBuf {
-    chain(path).last().unwrap_or_else(|| path.to_owned())
+pub(super) fn resolve_links(path: &Path) -> PathBuf {
+    link_chain(path).last().unwrap_or_else(|| path.to_owned())
 }
 
 /// Checks that there is a plain file that this process may write. Checked by `access`, not by opening it: a watcher
@@ -57,15 +57,15 @@ pub(super) fn folder_of(path: &Path) -> &Path {
 }
 
 /// Returns the path and the target of each symbolic link.
-fn chain(path: &Path) -> impl Iterator<Item = PathBuf> {
-    let next = |place: &PathBuf| fs::read_link(place).ok().map(|to| folder_of(place).join(to));
-    successors(Some(path.to_owned()), next).take(MOST_LINKS + 1)
+fn link_chain(path: &Path) -> impl Iterator<Item = PathBuf> {
+    let next = |path: &PathBuf| fs::read_link(path).ok().map(|to| folder_of(path).join(to));
+    successors(Some(path.to_owned()), next).take(MAX_FOLLOWED_LINKS + 1)
 }
 
 /// Returns whether a name belongs to the system: a descriptor or a kernel file. (Below `/dev` there are folders for
 /// everybody, such as `/dev/shm`.)
-fn is_the_systems(place: &Path) -> bool {
-    let folder = folder_of(place).canonicalize();
+fn is_system_path(path: &Path) -> bool {
+    let folder = folder_of(path).canonicalize();
     folder.is_ok_and(|folder| {
         folder.starts_with("/proc") || ["/dev", "/dev/fd"].iter().any(|system| folder == Path::new(system))
     })

@@ -13,11 +13,11 @@ use std::os::unix::fs::{MetadataExt, OpenOptionsExt, fchown};
 use std::path::{Path, PathBuf};
 
 /// Names are `.termtrace-PROCESS-NUMBER.tmp`.
-const START: &str = ".termtrace-";
-const END: &str = ".tmp";
+const NAME_PREFIX: &str = ".termtrace-";
+const NAME_SUFFIX: &str = ".tmp";
 
 /// Limit on the names tried: more than a process writes at once, or than earlier processes with its number can leave.
-const MOST_NAMES: u32 = 1000;
+const MAX_NAME_ATTEMPTS: u32 = 1000;
 
 /// A locked temporary file, removed when dropped.
 #[derive(Debug)]
@@ -30,21 +30,21 @@ pub(super) struct Temporary {
 impl Temporary {
     /// Creates one for a new file, with the mode that the umask gives.
     pub(super) fn new_file(target: &Path) -> io::Result<Self> {
-        Self::beside(target, 0o666)
+        Self::create_beside(target, 0o666)
     }
 
     /// Creates one for a file that already has a mode and may be secret.
     pub(super) fn private(target: &Path) -> io::Result<Self> {
-        Self::beside(target, 0o600)
+        Self::create_beside(target, 0o600)
     }
 
-    fn beside(target: &Path, mode: u32) -> io::Result<Self> {
+    fn create_beside(target: &Path, mode: u32) -> io::Result<Self> {
         let process = std::process::id();
-        for number in 0..MOST_NAMES {
-            let path = folder_of(target).join(format!("{START}{process}-{number}{END}"));
+        for number in 0..MAX_NAME_ATTEMPTS {
+            let path = folder_of(target).join(format!("{NAME_PREFIX}{process}-{number}{NAME_SUFFIX}"));
             match OpenOptions::new().read(true).write(true).create_new(true).mode(mode).open(&path) {
                 Ok(file) => {
-                    if let Some(temporary) = Self::claim(path, file)? {
+                    if let Some(temporary) = Self::lock_new(path, file)? {
                         return Ok(temporary);
                     }
                 }
@@ -57,17 +57,17 @@ impl Temporary {
     }
 
     /// Locks a file just created; `None` if another process takes it for a leftover.
-    fn claim(path: PathBuf, file: File) -> io::Result<Option<Self>> {
+    fn lock_new(path: PathBuf, file: File) -> io::Result<Option<Self>> {
         // Where the file system has no locks, no other process gets one to remove it either.
         let is_taken = try_lock(&file) == Err(Errno::WOULDBLOCK);
-        if is_taken || !is_at(&file, &path)? {
+        if is_taken || !has_path(&file, &path)? {
             return Ok(None);
         }
         Ok(Some(Self { path: Some(path), file }))
     }
 
     /// Sets the owner and mode of another file.
-    pub(super) fn become_like(&self, other: &Metadata) -> io::Result<()> {
+    pub(super) fn copy_owner_and_mode(&self, other: &Metadata) -> io::Result<()> {
         let own = self.file.metadata()?;
         if (own.uid(), own.gid()) != (other.uid(), other.gid()) {
             fchown(&self.file, Some(other.uid()), Some(other.gid()))?;
@@ -103,7 +103,7 @@ impl Temporary {
     pub(super) fn remove_stale(&self) {
         let Some((path, own)) = self.path.as_deref().zip(self.file.metadata().ok()) else { return };
         for entry in fs::read_dir(folder_of(path)).into_iter().flatten().flatten() {
-            if is_temporary(&entry.file_name()) {
+            if is_temporary_name(&entry.file_name()) {
                 // Not ours, or gone already.
                 let _ = remove_if_stale(&entry.path(), own.uid());
             }
@@ -136,7 +136,7 @@ fn remove_if_stale(path: &Path, owner: u32) -> io::Result<()> {
     if data.is_file() && data.uid() == owner {
         // Opened for writing, because some network file systems lock only such files.
         let file = File::options().write(true).open(path)?;
-        if try_lock(&file).is_ok() && is_at(&file, path)? {
+        if try_lock(&file).is_ok() && has_path(&file, path)? {
             fs::remove_file(path)?;
         }
     }
@@ -149,7 +149,7 @@ fn try_lock(file: &File) -> rustix::io::Result<()> {
 }
 
 /// Returns whether the file has this name.
-fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+fn has_path(file: &File, path: &Path) -> io::Result<bool> {
     let own = file.metadata()?;
     match fs::symlink_metadata(path) {
         Ok(there) => Ok((there.dev(), there.ino()) == (own.dev(), own.ino())),
@@ -159,8 +159,9 @@ fn is_at(file: &File, path: &Path) -> io::Result<bool> {
 }
 
 /// Returns whether a name matches our pattern exactly.
-fn is_temporary(name: &OsStr) -> bool {
-    let numbers = name.to_str().and_then(|name| name.strip_prefix(START)?.strip_suffix(END)?.split_once('-'));
+fn is_temporary_name(name: &OsStr) -> bool {
+    let numbers =
+        name.to_str().and_then(|name| name.strip_prefix(NAME_PREFIX)?.strip_suffix(NAME_SUFFIX)?.split_once('-'));
     let is_number = |text: &str| text.parse::<u32>().is_ok_and(|number| number.to_string() == text);
     numbers.is_some_and(|(process, number)| is_number(process) && is_number(number))
 }
@@ -184,7 +185,7 @@ mod tests {
             (".termtrace-99999999999-0.tmp", false),
             (".termtrace-x-0.tmp", false),
         ] {
-            assert_eq!(is_temporary(OsStr::new(name)), expected, "{name}");
+            assert_eq!(is_temporary_name(OsStr::new(name)), expected, "{name}");
         }
     }
 
@@ -196,10 +197,10 @@ mod tests {
         let made = || File::create_new(&path).expect("the name is unused");
         let removed = made();
         fs::remove_file(&path).expect("it is there");
-        assert!(Temporary::claim(path.clone(), removed).expect("it can be looked at").is_none());
+        assert!(Temporary::lock_new(path.clone(), removed).expect("it can be looked at").is_none());
         let (locked, other) = (made(), File::open(&path).expect("it is there"));
         other.lock().expect("nobody has it");
-        assert!(Temporary::claim(path.clone(), locked).expect("it can be looked at").is_none());
+        assert!(Temporary::lock_new(path.clone(), locked).expect("it can be looked at").is_none());
         assert!(path.exists(), "who has the lock removes it");
     }
 }

@@ -252,7 +252,7 @@ fn in_place_all_old_bytes_go() {
     let file = folder.old("x");
     let inode = fs::metadata(&file).expect("it is there").ino();
     for contents in [&b"short"[..], b"", &OLD.repeat(1000)] {
-        let mut output = OutputFile { target: file.clone(), place: Place::Within(Vec::new()) };
+        let mut output = OutputFile { target: file.clone(), destination: Destination::InPlace(Vec::new()) };
         output.write_all(contents).and_then(|()| output.finish()).expect("it can be written");
         assert_eq!(folder.read("x"), contents);
     }

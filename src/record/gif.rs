@@ -55,7 +55,8 @@ impl<W: Write> Gif<W> {
         }
         let rgb = picture.to_bytes();
         // The palette is chosen from the picture's own pixels; neither of its sides exceeds the GIF's.
-        let mut frame = gif::Frame::from_rgb_speed(width as u16, height as u16, &rgb, haste(picture.pixels.len()));
+        let mut frame =
+            gif::Frame::from_rgb_speed(width as u16, height as u16, &rgb, sampling_step(picture.pixels.len()));
         frame.buffer = self.enlarged(&frame.buffer).into();
         (frame.width, frame.height) = self.size;
         frame.delay = self.delay();
@@ -98,14 +99,18 @@ impl<W: Write> Gif<W> {
 pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
     let pixel_aspect = resolution.pixel_aspect();
     let [width, height] = [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(scale));
-    let longer = |side: u64, by: f32| ((side as f64 * f64::from(by)).round() as u64).max(side);
-    if pixel_aspect < 1.0 { (longer(width, 1.0 / pixel_aspect), height) } else { (width, longer(height, pixel_aspect)) }
+    let stretched = |side: u64, by: f32| ((side as f64 * f64::from(by)).round() as u64).max(side);
+    if pixel_aspect < 1.0 {
+        (stretched(width, 1.0 / pixel_aspect), height)
+    } else {
+        (width, stretched(height, pixel_aspect))
+    }
 }
 
 /// Returns the quantiser's sampling step for a picture of this many pixels, from 1 (every pixel) to 30, for some 50,000
 /// samples.
-fn haste(pixels: usize) -> i32 {
-    i32::try_from(pixels / 50_000).map_or(30, |haste| haste.clamp(1, 30))
+fn sampling_step(pixels: usize) -> i32 {
+    i32::try_from(pixels / 50_000).map_or(30, |sampling_step| sampling_step.clamp(1, 30))
 }
 
 fn invalid(why: &str) -> io::Error {

@@ -37,16 +37,16 @@ impl SceneState {
 
     /// Starts a drag at a position inside the picture, until [`release`](Self::release). Returns whether it is inside.
     pub fn press(&mut self, at: Position, grip: Grip) -> bool {
-        self.hold(self.ray_through(at).map(|_| (grip, at)));
-        self.held().is_some()
+        self.set_drag_state(self.ray_through(at).map(|_| (grip, at)));
+        self.drag_state().is_some()
     }
 
     /// Drags to a position, which may be outside the pane. Does nothing without a drag.
     pub fn drag(&mut self, to: Position) {
-        let (Some((grip, from)), Some(size)) = (self.held(), self.size()) else { return };
-        self.hold(Some((grip, to)));
-        let way = |from: u16, to: u16| f32::from(to) - f32::from(from);
-        let by = Vec2::new(way(from.x, to.x), way(from.y, to.y)) / size;
+        let (Some((grip, from)), Some(size)) = (self.drag_state(), self.size()) else { return };
+        self.set_drag_state(Some((grip, to)));
+        let delta = |from: u16, to: u16| f32::from(to) - f32::from(from);
+        let by = Vec2::new(delta(from.x, to.x), delta(from.y, to.y)) / size;
         let aspect_ratio = self.aspect_ratio();
         self.move_camera(match grip {
             Grip::Turn => self.camera().dragged_around(by, aspect_ratio),
@@ -56,7 +56,7 @@ impl SceneState {
 
     /// Ends a drag.
     pub fn release(&mut self) {
-        self.hold(None);
+        self.set_drag_state(None);
     }
 
     /// Moves the eye towards the point shown at a position, which keeps its place in the picture, by notches of the

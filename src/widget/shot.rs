@@ -43,13 +43,13 @@ impl Shot {
     }
 
     /// Returns whether both give the same picture.
-    pub(super) fn is_same(&self, other: &Self) -> bool {
+    pub(super) fn has_same_picture_as(&self, other: &Self) -> bool {
         let of = |shot: &Self| (shot.camera, shot.size, shot.options);
         self.scene.is_copy_of(&other.scene) && of(self) == of(other)
     }
 
     /// Returns the number of samples to which the picture is refined after a first one with a single sample a pixel.
-    fn refined_to(&self) -> Option<NonZeroU32> {
+    fn refinement_samples(&self) -> Option<NonZeroU32> {
         match self.options.sampling {
             Sampling::UpTo(samples) if samples > NonZeroU32::MIN && self.options.map.refines() => Some(samples),
             _ => None,
@@ -59,7 +59,7 @@ impl Shot {
 
 /// The cells of a shot.
 #[derive(Debug)]
-pub(super) struct Shown {
+pub(super) struct RenderedShot {
     pub(super) shot: Shot,
     /// The cells, from (0, 0) on.
     pub(super) cells: Buffer,
@@ -75,7 +75,7 @@ pub(super) struct Tracer {
 
 impl Tracer {
     /// Traces a shot.
-    pub(super) fn trace(&mut self, shot: Shot) -> Shown {
+    pub(super) fn trace(&mut self, shot: Shot) -> RenderedShot {
         let Options { map, sampling, .. } = shot.options;
         let picture = maps::picture(map, &shot.scene, &shot.camera, shot.resolution, sampling);
         self.shown(shot, &picture, true)
@@ -86,14 +86,14 @@ impl Tracer {
     ///
     /// # Errors
     /// [`Cancelled`], if the token is cancelled, which `deliver` may do.
-    pub(super) fn trace_in_steps(
+    pub(super) fn trace_progressively(
         &mut self,
         shot: Shot,
         token: &Cancellation,
-        mut deliver: impl FnMut(Shown),
+        mut deliver: impl FnMut(RenderedShot),
     ) -> Result<(), Cancelled> {
         let Shot { scene, camera, options, .. } = &shot;
-        let Some(samples) = shot.refined_to() else {
+        let Some(samples) = shot.refinement_samples() else {
             let Options { map, sampling, .. } = *options;
             let seen = maps::trace(map, Executor::Cancellable(token), scene, camera, shot.resolution, sampling)?;
             deliver(self.shown(shot, &seen.picture, true));
@@ -107,10 +107,10 @@ impl Tracer {
         Ok(())
     }
 
-    fn shown(&mut self, shot: Shot, picture: &Picture, is_final: bool) -> Shown {
+    fn shown(&mut self, shot: Shot, picture: &Picture, is_final: bool) -> RenderedShot {
         let mode = shot.options.cells;
         let painter = self.painter.take().filter(|painter| painter.mode() == mode);
         let grid = self.painter.insert(painter.unwrap_or_else(|| Painter::new(mode))).grid(picture);
-        Shown { shot, cells: Buffer::from(&grid), is_final }
+        RenderedShot { shot, cells: Buffer::from(&grid), is_final }
     }
 }

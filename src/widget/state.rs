@@ -1,6 +1,6 @@
 //! The state of a pane between draw calls.
 
-use super::shot::{Shot, Shown, Tracer};
+use super::shot::{RenderedShot, Shot, Tracer};
 use super::worker::Worker;
 use crate::camera::{Camera, Grip};
 use crate::grid::Size;
@@ -20,12 +20,12 @@ pub struct SceneState {
     /// The length that limits the distance of the eye from its target.
     scale: f32,
     /// The kind of the current drag, and the last position of the pointer.
-    held: Option<(Grip, Position)>,
+    drag_state: Option<(Grip, Position)>,
     /// The area of the last draw call.
     area: Rect,
     /// The shot that the last draw call requested.
-    wanted: Option<Shot>,
-    shown: Option<Shown>,
+    requested: Option<Shot>,
+    shown: Option<RenderedShot>,
     tracer: Tracer,
     worker: Option<Worker>,
 }
@@ -33,7 +33,7 @@ pub struct SceneState {
 impl fmt::Debug for SceneState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut state = f.debug_struct("SceneState");
-        state.field("camera", &self.camera).field("area", &self.area).field("held", &self.held);
+        state.field("camera", &self.camera).field("area", &self.area).field("drag", &self.drag_state);
         state.field("is_current", &self.is_current()).finish_non_exhaustive()
     }
 }
@@ -44,9 +44,9 @@ impl SceneState {
         Self {
             camera: *camera,
             scale: camera.target_distance(),
-            held: None,
+            drag_state: None,
             area: Rect::ZERO,
-            wanted: None,
+            requested: None,
             shown: None,
             tracer: Tracer::default(),
             worker: None,
@@ -90,20 +90,20 @@ impl SceneState {
     }
 
     /// Returns the kind of the current drag and the last position of the pointer; `None` without a drag.
-    pub(super) fn held(&self) -> Option<(Grip, Position)> {
-        self.held
+    pub(super) fn drag_state(&self) -> Option<(Grip, Position)> {
+        self.drag_state
     }
 
     /// Starts or ends a drag.
-    pub(super) fn hold(&mut self, held: Option<(Grip, Position)>) {
-        self.held = held;
+    pub(super) fn set_drag_state(&mut self, drag_state: Option<(Grip, Position)>) {
+        self.drag_state = drag_state;
     }
 
     /// Returns whether the pane shows the picture that the last draw call requested, with all samples, and the camera
     /// has not changed since. In the background, `wake` is called before this becomes true.
     pub fn is_current(&self) -> bool {
-        let (Some(shown), Some(wanted)) = (&self.shown, &self.wanted) else { return false };
-        shown.is_final && shown.shot.is_same(wanted) && self.camera == wanted.camera
+        let (Some(shown), Some(requested)) = (&self.shown, &self.requested) else { return false };
+        shown.is_final && shown.shot.has_same_picture_as(requested) && self.camera == requested.camera
     }
 
     /// Returns the closest hit in `scene` of the ray through the middle of a cell; `None` outside the picture, and if
@@ -115,7 +115,7 @@ impl SceneState {
     /// Returns the cell that shows a point of the scene, visible or not; `None` outside the picture, and behind the
     /// eye.
     pub fn cell_of(&self, point: Vec3) -> Option<Position> {
-        let (Shown { shot, .. }, part) = (self.shown.as_ref()?, self.part()?);
+        let (RenderedShot { shot, .. }, part) = (self.shown.as_ref()?, self.covered_area()?);
         let place = shot.camera.place_of(point, shot.resolution.aspect_ratio())?;
         let cell = (place * self.size()?).floor();
         let is_inside =
@@ -131,12 +131,12 @@ impl SceneState {
 
     /// Returns the aspect ratio of the last requested picture; 1 before the first.
     pub(super) fn aspect_ratio(&self) -> f32 {
-        self.wanted.as_ref().map_or(1.0, |wanted| wanted.resolution.aspect_ratio())
+        self.requested.as_ref().map_or(1.0, |requested| requested.resolution.aspect_ratio())
     }
 
     /// Returns the eye ray through the middle of a cell of the last picture.
     pub(super) fn ray_through(&self, at: Position) -> Option<Ray> {
-        let (Shown { shot, .. }, part) = (self.shown.as_ref()?, self.part()?);
+        let (RenderedShot { shot, .. }, part) = (self.shown.as_ref()?, self.covered_area()?);
         if !part.contains(at) {
             return None;
         }
@@ -146,7 +146,7 @@ impl SceneState {
     }
 
     /// Returns the part of the pane that the last picture covers, which is smaller than a pane that has grown since.
-    fn part(&self) -> Option<Rect> {
+    fn covered_area(&self) -> Option<Rect> {
         let size = self.shown.as_ref()?.shot.size;
         Some(self.area.intersection(Rect { width: size.columns, height: size.rows, ..self.area }))
     }
@@ -161,23 +161,23 @@ impl SceneState {
     ///
     /// # Panics
     /// With the payload of a panic in the background thread.
-    pub(super) fn show(&mut self, shot: Shot, area: Rect) -> Option<(&Shown, Rect)> {
+    pub(super) fn show(&mut self, shot: Shot, area: Rect) -> Option<(&RenderedShot, Rect)> {
         self.area = area;
-        let is_new = !self.wanted.as_ref().is_some_and(|wanted| wanted.is_same(&shot));
+        let is_new = !self.requested.as_ref().is_some_and(|requested| requested.has_same_picture_as(&shot));
         if is_new {
-            self.wanted = Some(shot.clone());
+            self.requested = Some(shot.clone());
         }
         match &self.worker {
             Some(worker) => {
                 if is_new {
-                    worker.want(shot);
+                    worker.request(shot);
                 }
                 self.shown = worker.take().or(self.shown.take());
             }
             None if is_new => self.shown = Some(self.tracer.trace(shot)),
             None => {}
         }
-        let part = self.part()?;
+        let part = self.covered_area()?;
         self.shown.as_ref().map(|shown| (shown, part))
     }
 
@@ -191,7 +191,7 @@ impl SceneState {
 
     /// Returns whether the background thread has started on the last request.
     #[cfg(test)]
-    pub(super) fn is_in_work(&self) -> bool {
-        self.worker.as_ref().is_some_and(Worker::is_in_work)
+    pub(super) fn has_started(&self) -> bool {
+        self.worker.as_ref().is_some_and(Worker::has_started)
     }
 }

@@ -267,7 +267,7 @@ fn to_drop_a_state_gives_up_what_is_in_work() {
     let (wake, woken) = channel::<()>();
     let mut state = SceneState::new(scene.camera()).in_background(move || _ = wake.send(()));
     drawn(&SceneView::new(&scene).sampling(NonZeroU32::MAX), AREA, &mut state);
-    while !state.is_in_work() {
+    while !state.has_started() {
         std::thread::yield_now();
     }
     drop(state);

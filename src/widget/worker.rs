@@ -1,6 +1,6 @@
 //! The background thread that traces the pictures of a pane.
 
-use super::shot::{Shot, Shown, Tracer};
+use super::shot::{RenderedShot, Shot, Tracer};
 use crate::progress::Cancellation;
 use std::any::Any;
 use std::cell::Cell;
@@ -11,28 +11,28 @@ use std::thread::{self, JoinHandle};
 
 /// The drawing thread's handle of the background thread.
 pub(super) struct Worker {
-    desk: Arc<Desk>,
+    shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// The state shared by both threads.
 #[derive(Default)]
-struct Desk {
-    post: Mutex<Post>,
+struct Shared {
+    state: Mutex<SharedState>,
     /// Notified of a new request.
-    ordered: Condvar,
+    request_added: Condvar,
 }
 
 #[derive(Default)]
-struct Post {
+struct SharedState {
     /// The next shot, replaced by a newer one.
-    wanted: Option<Shot>,
+    requested: Option<Shot>,
     /// The token of the shot in progress.
     token: Cancellation,
     /// Whether a picture of the shot in progress has been delivered, so that a newer shot cancels the rest.
     is_refining: bool,
     /// The newest picture that has not been taken.
-    done: Option<Shown>,
+    finished: Option<RenderedShot>,
     /// The payload of a panic in the thread.
     panic: Option<Box<dyn Any + Send>>,
     is_closed: bool,
@@ -41,8 +41,8 @@ struct Post {
 impl Worker {
     /// Starts the thread, which calls `wake` after each picture.
     pub(super) fn start(wake: impl Fn() + Send + 'static) -> io::Result<Self> {
-        let desk = Arc::new(Desk::default());
-        let own = Arc::clone(&desk);
+        let shared = Arc::new(Shared::default());
+        let own = Arc::clone(&shared);
         let thread = thread::Builder::new().name("termtrace pane".to_owned()).spawn(move || {
             let is_waking = Cell::new(false);
             let wake = || {
@@ -58,73 +58,73 @@ impl Worker {
                 }
             }
         })?;
-        Ok(Self { desk, thread: Some(thread) })
+        Ok(Self { shared, thread: Some(thread) })
     }
 
     /// Requests a shot, which replaces one that has not been started.
-    pub(super) fn want(&self, shot: Shot) {
-        let mut post = self.desk.lock();
-        post.wanted = Some(shot);
-        if post.is_refining {
-            post.token.cancel();
+    pub(super) fn request(&self, shot: Shot) {
+        let mut state = self.shared.lock();
+        state.requested = Some(shot);
+        if state.is_refining {
+            state.token.cancel();
         }
-        self.desk.ordered.notify_one();
+        self.shared.request_added.notify_one();
     }
 
     /// Takes the newest picture finished since the last call.
     ///
     /// # Panics
     /// With the payload of a panic in the thread.
-    pub(super) fn take(&self) -> Option<Shown> {
-        let mut post = self.desk.lock();
-        if let Some(panic) = post.panic.take() {
-            drop(post);
+    pub(super) fn take(&self) -> Option<RenderedShot> {
+        let mut state = self.shared.lock();
+        if let Some(panic) = state.panic.take() {
+            drop(state);
             // The panic hook has already printed the message.
             resume_unwind(panic);
         }
-        post.done.take()
+        state.finished.take()
     }
 
     /// Returns whether no request is waiting.
     #[cfg(test)]
-    pub(super) fn is_in_work(&self) -> bool {
-        self.desk.lock().wanted.is_none()
+    pub(super) fn has_started(&self) -> bool {
+        self.shared.lock().requested.is_none()
     }
 }
 
 impl Drop for Worker {
     /// Cancels the shot in progress and joins the thread, which takes the time of 256 rays on each tracing thread.
     fn drop(&mut self) {
-        let mut post = self.desk.lock();
-        post.is_closed = true;
-        post.token.cancel();
-        drop(post);
-        self.desk.ordered.notify_one();
+        let mut state = self.shared.lock();
+        state.is_closed = true;
+        state.token.cancel();
+        drop(state);
+        self.shared.request_added.notify_one();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
     }
 }
 
-impl Desk {
-    fn lock(&self) -> MutexGuard<'_, Post> {
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, SharedState> {
         // No code that can panic runs while the lock is held.
-        self.post.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Waits for the next shot; `None` when the state is dropped.
     fn next(&self) -> Option<(Shot, Cancellation)> {
-        let mut post = self.lock();
+        let mut state = self.lock();
         loop {
-            if post.is_closed {
+            if state.is_closed {
                 return None;
             }
-            if let Some(shot) = post.wanted.take() {
-                post.token = Cancellation::default();
-                post.is_refining = false;
-                return Some((shot, post.token.clone()));
+            if let Some(shot) = state.requested.take() {
+                state.token = Cancellation::default();
+                state.is_refining = false;
+                return Some((shot, state.token.clone()));
             }
-            post = self.ordered.wait(post).unwrap_or_else(PoisonError::into_inner);
+            state = self.request_added.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
@@ -132,19 +132,19 @@ impl Desk {
         let mut tracer = Tracer::default();
         while let Some((shot, token)) = self.next() {
             // The pictures delivered before a cancel stay valid.
-            let _ = tracer.trace_in_steps(shot, &token, |shown| {
+            let _ = tracer.trace_progressively(shot, &token, |shown| {
                 self.deliver(shown);
                 wake();
             });
         }
     }
 
-    fn deliver(&self, shown: Shown) {
-        let mut post = self.lock();
-        post.is_refining = !shown.is_final;
-        if post.is_refining && post.wanted.is_some() {
-            post.token.cancel();
+    fn deliver(&self, shown: RenderedShot) {
+        let mut state = self.lock();
+        state.is_refining = !shown.is_final;
+        if state.is_refining && state.requested.is_some() {
+            state.token.cancel();
         }
-        post.done = Some(shown);
+        state.finished = Some(shown);
     }
 }

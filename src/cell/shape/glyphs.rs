@@ -1,13 +1,13 @@
 //! Made by `glyphs.py` beside this file: the ink of the printable characters of ASCII in `DejaVu` Sans Mono.
 
 /// Parts of a cell, from left to right.
-pub(super) const ACROSS: usize = 2;
+pub(super) const SAMPLE_COLUMNS: usize = 2;
 /// Parts of a cell, from top to bottom.
-pub(super) const DOWN: usize = 4;
+pub(super) const SAMPLE_ROWS: usize = 4;
 
 /// How much of each part the characters from space on cover, row by row from the top; 255 is all of it.
 #[rustfmt::skip]
-pub(super) const INK: [[u8; ACROSS * DOWN]; 95] = [
+pub(super) const INK: [[u8; SAMPLE_COLUMNS * SAMPLE_ROWS]; 95] = [
     [  0,   0,   0,   0,   0,   0,   0,   0], // space
     [ 13,  13,  41,  43,  23,  24,   8,   8], // !
     [ 22,  22,  45,  45,   0,   0,   0,   0], // "

@@ -1,12 +1,12 @@
 //! The properties of a cell kind.
 
 use super::Glyphs;
-use super::inks::Inks;
+use super::ink_converter::InkConverter;
 use crate::grid::Grid;
 use crate::tone::Picture;
 
 /// Everything particular to a cell kind.
-pub(super) struct Kind {
+pub(super) struct GlyphKind {
     pub(super) name: &'static str,
     pub(super) help: &'static str,
     pub(super) title: &'static str,
@@ -20,7 +20,7 @@ pub(super) struct Kind {
 /// The way to fill cells, once per frame.
 pub(super) enum Fill {
     /// Fills glyphs and colours together.
-    Colored(fn(&mut Grid, &Picture, &mut Inks)),
+    Colored(fn(&mut Grid, &Picture, &mut InkConverter)),
     /// Fills glyphs that show lightness; colours, if any, are added afterwards.
     Lightness(fn(&mut Grid, &Picture)),
 }

@@ -6,38 +6,38 @@ use crate::color::Srgb8;
 use crate::grid::Ink;
 
 /// The colours of a terminal.
-pub(super) enum Inks {
+pub(super) enum InkConverter {
     /// Its own two, dark and light, as numbers 0 and 1 of a palette.
-    Own(Palette),
+    Monochrome(Palette),
     /// Some of the 256 colours, and which of them is black.
     Indexed(Palette, u8),
     /// All colours.
     Truecolor,
 }
 
-impl Inks {
+impl InkConverter {
     pub(super) fn of(colors: Colors) -> Self {
         match colors {
-            Colors::None => Self::Own(Palette::few(&[Srgb8::new(0, 0, 0), Srgb8::new(255, 255, 255)])),
-            Colors::Indexed16(values) => Self::Indexed(Palette::few(&values), 0),
+            Colors::None => Self::Monochrome(Palette::from_colors(&[Srgb8::new(0, 0, 0), Srgb8::new(255, 255, 255)])),
+            Colors::Indexed16(values) => Self::Indexed(Palette::from_colors(&values), 0),
             Colors::Indexed256 => Self::Indexed(Palette::cube(), 16),
             Colors::Truecolor => Self::Truecolor,
         }
     }
 
     /// Returns the ink for a pixel of the screen.
-    pub(super) fn ink(&mut self, color: Srgb8, x: usize, y: usize) -> Ink {
+    pub(super) fn ink_at(&mut self, color: Srgb8, x: usize, y: usize) -> Ink {
         match self {
-            Self::Own(_) => Ink::Default,
+            Self::Monochrome(_) => Ink::Default,
             Self::Indexed(palette, _) => Ink::Indexed(palette.index(color, x, y)),
             Self::Truecolor => Ink::Rgb(color),
         }
     }
 
     /// Returns the ink behind characters.
-    pub(super) fn black(&self) -> Ink {
+    pub(super) fn background(&self) -> Ink {
         match self {
-            Self::Own(_) => Ink::Default,
+            Self::Monochrome(_) => Ink::Default,
             Self::Indexed(_, black) => Ink::Indexed(*black),
             Self::Truecolor => Ink::Rgb(Srgb8::new(0, 0, 0)),
         }
