@@ -5,7 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::bvh::Bvh;
-use crate::lanes::{Answers, Eight, LANES, Lanes};
+use crate::lanes::{Eight, LANES, LaneMask, Lanes};
 use crate::progress::{Cancelled, Progress, Watcher, Work};
 use crate::shape::{Endless, Part, Shape, SideBySide, Surface, surfaces};
 use crate::simd;
@@ -57,10 +57,10 @@ impl PartIds<Eight> {
         N::load(&self.object).has_bits(object).bits()
     }
 
-    /// One of them in each place, as [`Lanes::pick`] has it.
+    /// One of them in each place, as [`Lanes::gather`] has it.
     #[inline(always)]
-    pub(crate) fn pick<N: Lanes>(&self, lanes: N) -> PartIds<N> {
-        PartIds { object: N::load(&self.object).pick(lanes), part: N::load(&self.part).pick(lanes) }
+    pub(crate) fn gather<N: Lanes>(&self, lanes: N) -> PartIds<N> {
+        PartIds { object: N::load(&self.object).gather(lanes), part: N::load(&self.part).gather(lanes) }
     }
 }
 

@@ -4,7 +4,7 @@
 //! bit. So what is found does not depend on how the tree was built, nor on the way in which it is gone through.
 
 use crate::bounds::Bounds;
-use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Number, Vector, set_bits};
+use crate::lanes::{Eight, LANES, LaneMask, Lanes, Mask, Number, Vector, set_bits};
 use crate::ray::{Interval, Rays};
 use crate::simd;
 use glam::Vec3;

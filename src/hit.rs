@@ -5,11 +5,11 @@
 
 use crate::accel::{Accelerator, PartId};
 use crate::bvh::{GROUPS, Queue, Stack};
-use crate::lanes::{Answers, Eight, LANES, Lanes, set_bits};
+use crate::lanes::{Eight, LANES, LaneMask, Lanes, set_bits};
 use crate::ray::{EightRays, Interval, Probe, Ray, Rays};
 use crate::scene::Scene;
 use crate::shape::{Part, Surface};
-use crate::simd::{self, Work};
+use crate::simd::{self, SimdKernel};
 use packet::PacketRays;
 use single::SingleRay;
 
@@ -120,7 +120,7 @@ pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mu
     let accel = scene.accelerator();
     match kernel {
         Kernel::Scalar => closest_single::<Eight>(accel, rays, &mut Queue::default(), hits),
-        _ => simd::run(ClosestHits { kernel, accel, rays, hits }),
+        _ => simd::dispatch(ClosestHits { kernel, accel, rays, hits }),
     }
 }
 
@@ -130,7 +130,7 @@ pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Inter
     let accel = scene.accelerator();
     match kernel {
         Kernel::Scalar => any_single::<Eight>(accel, rays, within, &mut Queue::default(), hit_masks),
-        _ => simd::run(AnyHits { kernel, accel, rays, within, hit_masks }),
+        _ => simd::dispatch(AnyHits { kernel, accel, rays, within, hit_masks }),
     }
 }
 
@@ -150,14 +150,14 @@ pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
 
 /// [`closest_hit`], with a observer of what the ray is tested against.
 pub fn closest_hit_observed(scene: &Scene, ray: &Ray, observer: &mut impl Observer) -> Option<Hit> {
-    let (t, primitive) = simd::run(Observed::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, observer });
+    let (t, primitive) = simd::dispatch(Observed::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, observer });
     let PartId { object, part } = scene.accelerator().id(primitive?);
     Some(Hit { t, object, part })
 }
 
 /// [`any_hit`], with a observer of what the ray is tested against. Returns what it met, which need not be the closest.
 pub fn any_hit_observed(scene: &Scene, ray: &Ray, within: Interval, observer: &mut impl Observer) -> Option<Hit> {
-    let (_, primitive) = simd::run(Observed::<_, ANY> { scene, ray, within, observer });
+    let (_, primitive) = simd::dispatch(Observed::<_, ANY> { scene, ray, within, observer });
     let PartId { object, part } = scene.accelerator().id(primitive?);
     let t = scene.objects()[object as usize].shape.part(part).closest_crossing(&Probe::new(*ray), within)?;
     Some(Hit { t, object, part })
@@ -171,7 +171,7 @@ struct Observed<'w, W, const ANY: bool> {
     observer: &'w mut W,
 }
 
-impl<W: Observer, const ANY: bool> Work for Observed<'_, W, ANY> {
+impl<W: Observer, const ANY: bool> SimdKernel for Observed<'_, W, ANY> {
     type Output = (f32, Option<u32>);
 
     #[inline(always)]
@@ -205,7 +205,7 @@ struct ClosestHits<'w> {
     hits: &'w mut Vec<EightHits>,
 }
 
-impl Work for ClosestHits<'_> {
+impl SimdKernel for ClosestHits<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -254,7 +254,7 @@ struct AnyHits<'w> {
     hit_masks: &'w mut Vec<u32>,
 }
 
-impl Work for AnyHits<'_> {
+impl SimdKernel for AnyHits<'_> {
     type Output = ();
 
     #[inline(always)]

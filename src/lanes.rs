@@ -38,17 +38,17 @@ pub trait Number:
     fn le(self, other: Self) -> Self::Mask;
 
     /// `yes` where the answer was yes, else `no`.
-    fn select(answer: Self::Mask, yes: Self, no: Self) -> Self;
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
     /// What the formula gives for the numbers in each place: for what is rare and only known of one at a time.
-    fn each<const IN: usize, const OUT: usize>(
+    fn map_lanes<const IN: usize, const OUT: usize>(
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],
     ) -> [Self; OUT];
 
     /// Whether they are the same. NaN is not.
     #[inline(always)]
-    fn same(self, other: Self) -> Self::Mask {
+    fn eq(self, other: Self) -> Self::Mask {
         self.le(other) & other.le(self)
     }
 
@@ -75,7 +75,7 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
 }
 
 /// What can be done with any eight numbers.
-pub trait Work {
+pub trait SimdKernel {
     /// What comes of it.
     type Output;
 
@@ -84,9 +84,9 @@ pub trait Work {
 }
 
 /// Eight numbers, in whatever the CPU has for them.
-pub trait Lanes: Number<Mask: Answers> {
+pub trait Lanes: Number<Mask: LaneMask> {
     /// Does the work in a function of its own, which has all registers to itself.
-    fn apart<W: Work>(work: W) -> W::Output;
+    fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output;
 
     /// From memory.
     fn load(numbers: &Eight) -> Self;
@@ -111,7 +111,7 @@ pub trait Lanes: Number<Mask: Answers> {
 
     /// One of them in each place: the one whose number is the lowest three bits of what `lanes` has there.
     #[inline(always)]
-    fn pick(self, lanes: Self) -> Self {
+    fn gather(self, lanes: Self) -> Self {
         let (mut picked, numbers, lanes) = (Eight::ZERO, self.store(), lanes.store());
         for (picked, lane) in picked.0.iter_mut().zip(lanes.0) {
             *picked = numbers.0[lane.to_bits() as usize % LANES];
@@ -121,39 +121,39 @@ pub trait Lanes: Number<Mask: Answers> {
 
     /// The greatest of them; none is NaN.
     #[inline(always)]
-    fn greatest(self) -> f32 {
-        self.store().greatest()
+    fn reduce_max(self) -> f32 {
+        self.store().reduce_max()
     }
 
-    /// The answers that these [bits](Answers::bits) stand for.
-    fn answers(bits: u32) -> Self::Mask;
+    /// The answers that these [bits](LaneMask::bits) stand for.
+    fn mask_from_bits(bits: u32) -> Self::Mask;
 
     /// Whether the number has these bits.
     fn has_bits(self, bits: u32) -> Self::Mask;
 
     /// The least of each eight; none is NaN.
     #[inline(always)]
-    fn least_of_each(eights: &[Self; LANES]) -> Self {
-        let mut least = Eight([0.0; LANES]);
-        for (least, eight) in least.0.iter_mut().zip(eights) {
-            *least = eight.store().least();
+    fn min_of_each(eights: &[Self; LANES]) -> Self {
+        let mut min = Eight([0.0; LANES]);
+        for (min, eight) in min.0.iter_mut().zip(eights) {
+            *min = eight.store().reduce_min();
         }
-        Self::load(&least)
+        Self::load(&min)
     }
 
     /// The greatest of each eight; none is NaN.
     #[inline(always)]
-    fn greatest_of_each(eights: &[Self; LANES]) -> Self {
-        let mut greatest = Eight([0.0; LANES]);
-        for (greatest, eight) in greatest.0.iter_mut().zip(eights) {
-            *greatest = eight.store().greatest();
+    fn max_of_each(eights: &[Self; LANES]) -> Self {
+        let mut max = Eight([0.0; LANES]);
+        for (max, eight) in max.0.iter_mut().zip(eights) {
+            *max = eight.store().reduce_max();
         }
-        Self::load(&greatest)
+        Self::load(&max)
     }
 }
 
 /// Eight answers.
-pub trait Answers: Mask {
+pub trait LaneMask: Mask {
     /// A bit for each, 1 for yes; the first is the lowest.
     fn bits(self) -> u32;
 }
@@ -192,12 +192,12 @@ impl Number for f32 {
     }
 
     #[inline(always)]
-    fn select(answer: bool, yes: Self, no: Self) -> Self {
-        if answer { yes } else { no }
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
     }
 
     #[inline(always)]
-    fn each<const IN: usize, const OUT: usize>(
+    fn map_lanes<const IN: usize, const OUT: usize>(
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],
     ) -> [Self; OUT] {
@@ -242,7 +242,7 @@ pub struct Eight(pub [f32; LANES]);
 /// Eight answers: all bits of one are set for yes, none for no.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(32))]
-pub struct EightAnswers([u32; LANES]);
+pub struct Mask32x8([u32; LANES]);
 
 macro_rules! eight_by_eight {
     ($($operation:ident $function:ident $operator:tt)*) => {
@@ -274,7 +274,7 @@ impl Eight {
 
     /// The least of them; none is NaN.
     #[inline(always)]
-    pub fn least(self) -> f32 {
+    pub fn reduce_min(self) -> f32 {
         let Self([a, b, c, d, e, f, g, h]) = self;
         let min = <f32 as Number>::min;
         min(min(min(a, b), min(c, d)), min(min(e, f), min(g, h)))
@@ -282,20 +282,20 @@ impl Eight {
 
     /// The greatest of them; none is NaN.
     #[inline(always)]
-    pub fn greatest(self) -> f32 {
+    pub fn reduce_max(self) -> f32 {
         let Self([a, b, c, d, e, f, g, h]) = self;
         let max = <f32 as Number>::max;
         max(max(max(a, b), max(c, d)), max(max(e, f), max(g, h)))
     }
 
     #[inline(always)]
-    fn answers(self, other: Self, ask: impl Fn(f32, f32) -> bool) -> EightAnswers {
-        EightAnswers(from_fn(|lane| if ask(self.0[lane], other.0[lane]) { u32::MAX } else { 0 }))
+    fn compare(self, other: Self, compare: impl Fn(f32, f32) -> bool) -> Mask32x8 {
+        Mask32x8(from_fn(|lane| if compare(self.0[lane], other.0[lane]) { u32::MAX } else { 0 }))
     }
 }
 
 impl Number for Eight {
-    type Mask = EightAnswers;
+    type Mask = Mask32x8;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -318,22 +318,22 @@ impl Number for Eight {
     }
 
     #[inline(always)]
-    fn lt(self, other: Self) -> EightAnswers {
-        self.answers(other, |a, b| a < b)
+    fn lt(self, other: Self) -> Mask32x8 {
+        self.compare(other, |a, b| a < b)
     }
 
     #[inline(always)]
-    fn le(self, other: Self) -> EightAnswers {
-        self.answers(other, |a, b| a <= b)
+    fn le(self, other: Self) -> Mask32x8 {
+        self.compare(other, |a, b| a <= b)
     }
 
     #[inline(always)]
-    fn select(EightAnswers(answers): EightAnswers, Self(yes): Self, Self(no): Self) -> Self {
-        let bits = |lane: usize| (yes[lane].to_bits() & answers[lane]) | (no[lane].to_bits() & !answers[lane]);
+    fn select(Mask32x8(mask): Mask32x8, Self(yes): Self, Self(no): Self) -> Self {
+        let bits = |lane: usize| (yes[lane].to_bits() & mask[lane]) | (no[lane].to_bits() & !mask[lane]);
         Self(from_fn(|lane| f32::from_bits(bits(lane))))
     }
 
-    fn each<const IN: usize, const OUT: usize>(
+    fn map_lanes<const IN: usize, const OUT: usize>(
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],
     ) -> [Self; OUT] {
@@ -350,8 +350,8 @@ impl Number for Eight {
 
 impl Lanes for Eight {
     #[inline(never)]
-    fn apart<W: Work>(work: W) -> W::Output {
-        work.run::<Self>()
+    fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output {
+        kernel.run::<Self>()
     }
 
     #[inline(always)]
@@ -365,24 +365,24 @@ impl Lanes for Eight {
     }
 
     #[inline(always)]
-    fn answers(bits: u32) -> EightAnswers {
-        EightAnswers(from_fn(|lane| if bits >> lane & 1 == 1 { u32::MAX } else { 0 }))
+    fn mask_from_bits(bits: u32) -> Mask32x8 {
+        Mask32x8(from_fn(|lane| if bits >> lane & 1 == 1 { u32::MAX } else { 0 }))
     }
 
     #[inline(always)]
-    fn has_bits(self, bits: u32) -> EightAnswers {
-        EightAnswers(self.0.map(|number| if number.to_bits() == bits { u32::MAX } else { 0 }))
+    fn has_bits(self, bits: u32) -> Mask32x8 {
+        Mask32x8(self.0.map(|number| if number.to_bits() == bits { u32::MAX } else { 0 }))
     }
 }
 
-impl Answers for EightAnswers {
+impl LaneMask for Mask32x8 {
     #[inline(always)]
     fn bits(self) -> u32 {
-        self.0.into_iter().rev().fold(0, |bits, answer| bits << 1 | answer & 1)
+        self.0.into_iter().rev().fold(0, |bits, lane| bits << 1 | lane & 1)
     }
 }
 
-impl BitAnd for EightAnswers {
+impl BitAnd for Mask32x8 {
     type Output = Self;
 
     #[inline(always)]
@@ -391,7 +391,7 @@ impl BitAnd for EightAnswers {
     }
 }
 
-impl BitOr for EightAnswers {
+impl BitOr for Mask32x8 {
     type Output = Self;
 
     #[inline(always)]
@@ -400,23 +400,23 @@ impl BitOr for EightAnswers {
     }
 }
 
-impl Not for EightAnswers {
+impl Not for Mask32x8 {
     type Output = Self;
 
     #[inline(always)]
     fn not(self) -> Self {
-        Self(self.0.map(|answer| !answer))
+        Self(self.0.map(|lane| !lane))
     }
 }
 
-impl Mask for EightAnswers {
+impl Mask for Mask32x8 {
     #[inline(always)]
     fn any(self) -> bool {
-        self.0.into_iter().fold(0, |any, answer| any | answer) != 0
+        self.0.into_iter().fold(0, |any, lane| any | lane) != 0
     }
 
     #[inline(always)]
     fn all(self) -> bool {
-        self.0.into_iter().fold(u32::MAX, |all, answer| all & answer) != 0
+        self.0.into_iter().fold(u32::MAX, |all, lane| all & lane) != 0
     }
 }

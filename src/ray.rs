@@ -1,6 +1,6 @@
 //! A ray: the half line { origin + t * direction | t >= 0 } of the lecture.
 
-use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Mask, Number, Vector};
+use crate::lanes::{ALL, Eight, LANES, LaneMask, Lanes, Mask, Number, Vector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
@@ -238,7 +238,7 @@ impl<M: Mask> Longest<M> {
     }
 }
 
-impl<M: Answers> Longest<M> {
+impl<M: LaneMask> Longest<M> {
     /// Of one of them: never `Each`.
     #[inline(always)]
     fn of_lane(self, lane: usize) -> Self {

@@ -12,13 +12,13 @@
 
 use crate::color::LinearRgb;
 use crate::hit::{self, EightHits, Kernel};
-use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Number, Vector, set_bits};
+use crate::lanes::{ALL, Eight, LANES, LaneMask, Lanes, Number, Vector, set_bits};
 use crate::light::Light;
 use crate::material::Material;
 use crate::ray::{EightRays, Ray};
 use crate::scene::{Background, Object, Scene};
 use crate::shape::SurfacePoint;
-use crate::simd::{self, Work};
+use crate::simd::{self, SimdKernel};
 use glam::Vec3;
 
 mod points;
@@ -66,9 +66,9 @@ pub fn arriving_light(
     arriving.clear();
     arriving.resize(points.len(), EightArriving { light: ambient, lit_by: [0; LANES] });
     for (number, light) in scene.lights().iter().enumerate() {
-        simd::run(AimShadowRays { light, points, shadows });
+        simd::dispatch(AimShadowRays { light, points, shadows });
         shadow_rays += shadows.trace(scene, light);
-        simd::run(AddUnblocked { number, shadows, arriving });
+        simd::dispatch(AddUnblocked { number, shadows, arriving });
     }
     shadow_rays
 }
@@ -80,7 +80,7 @@ struct AimShadowRays<'w> {
     shadows: &'w mut ShadowRays,
 }
 
-impl Work for AimShadowRays<'_> {
+impl SimdKernel for AimShadowRays<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -123,7 +123,7 @@ struct AddUnblocked<'w> {
     arriving: &'w mut [EightArriving],
 }
 
-impl Work for AddUnblocked<'_> {
+impl SimdKernel for AddUnblocked<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -133,7 +133,7 @@ impl Work for AddUnblocked<'_> {
             let lit = rays[at].asked & !blocked[at];
             for (sum, more) in arriving.light.iter_mut().zip(&lights[at]) {
                 let dark = N::load(sum);
-                *sum = N::select(N::answers(lit), dark + N::load(more), dark).store();
+                *sum = N::select(N::mask_from_bits(lit), dark + N::load(more), dark).store();
             }
             for (lane, lit_by) in arriving.lit_by.iter_mut().enumerate() {
                 *lit_by |= (lit >> lane & 1) << (number % 32);
@@ -145,7 +145,7 @@ impl Work for AddUnblocked<'_> {
 /// A ray to the light from each point.
 pub fn shadow_rays(light: &Light, points: &[EightPoints], rays: &mut Vec<EightRays>) {
     rays.clear();
-    simd::run(Shadows { light, points, rays });
+    simd::dispatch(Shadows { light, points, rays });
 }
 
 struct Shadows<'w> {
@@ -154,7 +154,7 @@ struct Shadows<'w> {
     rays: &'w mut Vec<EightRays>,
 }
 
-impl Work for Shadows<'_> {
+impl SimdKernel for Shadows<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -174,7 +174,7 @@ fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32)
     if active == ALL || active == 0 {
         return rays;
     }
-    let (one, is_active) = (rays.ray(active.trailing_zeros() as usize % LANES), N::answers(active));
+    let (one, is_active) = (rays.ray(active.trailing_zeros() as usize % LANES), N::mask_from_bits(active));
     EightRays {
         origin: Vector::select(is_active, origin, Vector::splat(one.origin)).store(),
         direction: Vector::select(is_active, direction, Vector::splat(one.direction)).store(),
@@ -194,7 +194,7 @@ pub fn reflect(
     lights: &mut Vec<EightLights>,
 ) {
     lights.clear();
-    simd::run(Reflect { scene, rays, steps, hits, points, arriving, lights });
+    simd::dispatch(Reflect { scene, rays, steps, hits, points, arriving, lights });
 }
 
 struct Reflect<'w> {
@@ -207,7 +207,7 @@ struct Reflect<'w> {
     lights: &'w mut Vec<EightLights>,
 }
 
-impl Work for Reflect<'_> {
+impl SimdKernel for Reflect<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -224,7 +224,7 @@ impl Work for Reflect<'_> {
                 let reflectance = self.reflectances::<N>(&self.scene.objects()[object as usize], at, same);
                 for (channel, light) in light.iter_mut().enumerate() {
                     let reflected = reflectance[channel] * N::load(&self.arriving[at].light[channel]);
-                    *light = N::select(N::answers(same), reflected, *light);
+                    *light = N::select(N::mask_from_bits(same), reflected, *light);
                 }
                 left &= !same;
             }

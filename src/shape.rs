@@ -173,8 +173,8 @@ pub trait SideBySide: Copy {
     /// One of them, the same in every place, for several rays.
     fn splat<N: Lanes>(&self, lane: usize) -> Self::Of<N>;
 
-    /// One of them in each place, for several rays, as [`Lanes::pick`] has it.
-    fn pick<N: Lanes>(&self, lanes: N) -> Self::Of<N>;
+    /// One of them in each place, for several rays, as [`Lanes::gather`] has it.
+    fn gather<N: Lanes>(&self, lanes: N) -> Self::Of<N>;
 
     /// `yes` where the answer was yes, else `no`.
     fn select<N: Lanes>(answer: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;

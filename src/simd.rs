@@ -1,6 +1,6 @@
 //! What the CPU at hand can do: eight numbers in one register where it has such.
 //!
-//! Work over [`Lanes`](crate::lanes::Lanes) is compiled once for each set of instructions, and [`run`] asks the CPU which
+//! SimdKernel over [`Lanes`](crate::lanes::Lanes) is compiled once for each set of instructions, and [`dispatch`] asks the CPU which
 //! of them it has. What is on the way has to be inlined (`#[inline(always)]`) down to here: only then is it made of those
 //! instructions. None of them is but what IEEE 754 defines to the last bit; none multiplies and adds at once.
 //!
@@ -10,32 +10,32 @@
 
 use crate::lanes::Eight;
 
-pub use crate::lanes::Work;
+pub use crate::lanes::SimdKernel;
 pub use prefetch::prefetch;
 
 /// Does the work with the best that this CPU has.
 #[inline]
-pub fn run<W: Work>(work: W) -> W::Output {
+pub fn dispatch<K: SimdKernel>(kernel: K) -> K::Output {
     #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
     if has_avx512() {
         // SAFETY: the CPU was asked right here.
-        return unsafe { avx512::run(work) };
+        return unsafe { avx512::run(kernel) };
     }
     #[cfg(target_arch = "x86_64")]
     return if has_avx2() {
         // SAFETY: the CPU was asked right here.
-        unsafe { avx2::run(work) }
+        unsafe { avx2::run(kernel) }
     } else {
-        sse2::run(work)
+        sse2::run(kernel)
     };
     #[cfg(not(target_arch = "x86_64"))]
-    run_scalar(work)
+    run_scalar(kernel)
 }
 
 /// Does the work with plain arrays: the truth that all else is tested against.
 #[inline]
-pub fn run_scalar<W: Work>(work: W) -> W::Output {
-    work.run::<Eight>()
+pub fn run_scalar<K: SimdKernel>(kernel: K) -> K::Output {
+    kernel.run::<Eight>()
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -73,12 +73,12 @@ mod prefetch;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::{Answers, LANES, Lanes};
+    use crate::lanes::{LANES, LaneMask, Lanes};
 
     /// Each operation on pairs of eight, in a row: numbers as bits, and answers.
     struct All<'w>(&'w [[Eight; 2]]);
 
-    impl Work for All<'_> {
+    impl SimdKernel for All<'_> {
         type Output = Vec<[u32; LANES]>;
 
         #[inline(always)]
@@ -87,21 +87,21 @@ mod tests {
             for [a, b] in self.0 {
                 let (x, y) = (N::load(a), N::load(b));
                 let numbers = [x + y, x - y, x * y, x / y, -x, x.sqrt(), x.abs(), x.floor(), x.max(y), x.min(y)];
-                let answers = [x.lt(y), x.le(y), x.same(y), x.lt(y) & x.le(y), x.lt(y) | y.lt(x), !x.lt(y)];
-                let chosen = answers.map(|answer| N::select(answer, x, y));
-                let each = N::each([x, y], |[x, y]| [y, x]);
+                let masks = [x.lt(y), x.le(y), x.eq(y), x.lt(y) & x.le(y), x.lt(y) | y.lt(x), !x.lt(y)];
+                let chosen = masks.map(|mask| N::select(mask, x, y));
+                let mapped = N::map_lanes([x, y], |[x, y]| [y, x]);
                 let one = |lane: usize| [x.splat_lane(lane), N::splat(x.lane(lane))];
                 let spread = (0..LANES).flat_map(one).chain([N::splat(b.0[0])]);
                 let all_numbers =
-                    numbers.into_iter().chain(chosen).chain(each).chain(spread).chain([x.pick(y), y.pick(x)]);
+                    numbers.into_iter().chain(chosen).chain(mapped).chain(spread).chain([x.gather(y), y.gather(x)]);
                 // Which NaN comes of an operation is nobody's business: none is ever seen.
                 let bits = |number: f32| if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() };
                 all.extend(all_numbers.map(|numbers| numbers.store().0.map(bits)));
-                let marks = [N::answers(0b1010_0110), x.has_bits(a.0[3].to_bits())];
-                all.extend(answers.into_iter().chain(marks).map(|mask| [mask.bits(); LANES]));
+                let from_bits = [N::mask_from_bits(0b1010_0110), x.has_bits(a.0[3].to_bits())];
+                all.extend(masks.into_iter().chain(from_bits).map(|mask| [mask.bits(); LANES]));
                 let whole = [x, y, x.abs(), y.abs(), -x.abs(), x, y, x].map(|x| N::select(x.lt(N::splat(9.0)), x, y));
-                let whole = whole.map(|x| N::select(x.same(x), x, N::splat(0.5)));
-                let ends = [N::least_of_each(&whole), N::greatest_of_each(&whole), N::splat(whole[0].greatest())];
+                let whole = whole.map(|x| N::select(x.eq(x), x, N::splat(0.5)));
+                let ends = [N::min_of_each(&whole), N::max_of_each(&whole), N::splat(whole[0].reduce_max())];
                 all.extend(ends.map(|ends| (ends + N::splat(0.0)).store().0.map(f32::to_bits)));
             }
             all
@@ -127,7 +127,7 @@ mod tests {
             let differs = truth.iter().zip(&found).position(|(truth, found)| truth != found);
             assert_eq!(differs.map(|at| (at, truth[at], found[at])), None, "{instructions}");
         };
-        check(run(All(&pairs)), "the best");
+        check(dispatch(All(&pairs)), "the best");
         #[cfg(target_arch = "x86_64")]
         {
             check(sse2::run(All(&pairs)), "SSE2");

@@ -6,7 +6,7 @@
 //! Wald and Shirley, Geometric and Arithmetic Culling Methods for Entire Ray Packets, 2006.)
 
 use super::{Bvh, Child, Prefetch, Stack, Waiting, in_any_order, nearest_first};
-use crate::lanes::{Answers, LANES, Lanes, Mask, Vector, set_bits};
+use crate::lanes::{LANES, LaneMask, Lanes, Mask, Vector, set_bits};
 use crate::ray::Rays;
 
 /// So many groups of eight rays are a packet.
@@ -57,13 +57,13 @@ const BEHIND: f32 = 1.0 / (RATIO * RATIO * 1_048_576.0);
 /// Between what the numbers of each group lie.
 #[inline(always)]
 fn extremes<N: Lanes>(groups: [N; GROUPS]) -> [N; 2] {
-    [N::least_of_each(&groups), N::greatest_of_each(&groups)]
+    [N::min_of_each(&groups), N::max_of_each(&groups)]
 }
 
 /// The least of the first and the greatest of the second.
 #[inline(always)]
 fn extreme<N: Lanes>([low, high]: [N; 2]) -> [N; 2] {
-    [N::splat(low.store().least()), N::splat(high.store().greatest())]
+    [N::splat(low.store().reduce_min()), N::splat(high.store().reduce_max())]
 }
 
 impl<N: Lanes> Hull<N> {

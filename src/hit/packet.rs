@@ -6,7 +6,7 @@ use crate::accel::{self, Accelerator, List, Tree};
 use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Prefetch, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
-use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Vector, set_bits};
+use crate::lanes::{Eight, LANES, LaneMask, Lanes, Mask, Vector, set_bits};
 use crate::ray::{EightRays, Interval, Pencil, Rays};
 use crate::shape::{Crossable, Endless, SideBySide};
 use std::ops::Range;
@@ -90,7 +90,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         }
         if has_trees {
             self.reset(rays.len()..GROUPS);
-            self.reach = N::greatest_of_each(&self.t).store();
+            self.reach = N::max_of_each(&self.t).store();
             for group in rays.len()..GROUPS {
                 self.groups[group] = self.groups[0];
             }
@@ -153,7 +153,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     #[inline(always)]
     fn test_unculled(&self, rays: &Rays<N>, active: u32) -> GroupHits<N, ANY> {
         let accel = self.accel;
-        let t = N::select(N::answers(active), N::splat(self.within.max), N::splat(TERMINATED));
+        let t = N::select(N::mask_from_bits(active), N::splat(self.within.max), N::splat(TERMINATED));
         let mut hits = GroupHits { t, primitive: N::splat(index_as_lane(NO_PRIMITIVE)) };
         accel.visit(&mut Unculled { hits: &mut hits, rays, min: N::splat(self.within.min), accel });
         hits
@@ -171,14 +171,14 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     /// Finds how far any ray still reaches, after rays have met something.
     #[inline(always)]
     fn update_farthest(&mut self) {
-        self.farthest = N::load(&self.reach).greatest();
+        self.farthest = N::load(&self.reach).reduce_max();
     }
 
     #[inline(always)]
     fn set(&mut self, group: usize, GroupHits { t, primitive }: GroupHits<N, ANY>) {
         self.t[group] = t;
         self.primitive[group] = primitive;
-        self.reach.0[group] = t.greatest();
+        self.reach.0[group] = t.reduce_max();
     }
 }
 
@@ -206,11 +206,11 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
         if ANY {
             return self.record(crosses & t.le(self.t), N::splat(TERMINATED), primitive);
         }
-        let is_as_close = crosses & t.same(self.t);
+        let is_as_close = crosses & t.eq(self.t);
         let mut is_closest = crosses & t.lt(self.t);
         if is_as_close.any() {
             let first = precedes_in_scene(accel, primitive, &self.primitive.store());
-            is_closest = is_closest | (is_as_close & N::answers(first));
+            is_closest = is_closest | (is_as_close & N::mask_from_bits(first));
         }
         self.record(is_closest, t, primitive)
     }
@@ -426,6 +426,6 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> InTree<'_, '_, N, S, ANY> {
         }
         self.rays.t[group] = N::load(&t);
         self.rays.primitive[group] = N::load(&primitive);
-        self.rays.reach.0[group] = t.greatest();
+        self.rays.reach.0[group] = t.reduce_max();
     }
 }

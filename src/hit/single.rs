@@ -3,7 +3,7 @@
 use super::observer::{NoObserver, Observer, PrimitiveTest};
 use crate::accel::{Accelerator, List, PartId, Tree, Visitor};
 use crate::bvh::{Child, LeafVisitor, Prefetch, Queue};
-use crate::lanes::{Answers, Eight, Lanes, Work, set_bits};
+use crate::lanes::{Eight, LaneMask, Lanes, SimdKernel, set_bits};
 use crate::ray::{Interval, Rays};
 use crate::shape::{Crossable, Endless, SideBySide};
 use std::ops::ControlFlow;
@@ -90,7 +90,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         if ANY && self.primitive.is_some() {
             return;
         }
-        N::apart(Search { ray: self, from, tree, queue });
+        N::call_no_inline(Search { ray: self, from, tree, queue });
     }
 
     #[inline(always)]
@@ -158,7 +158,7 @@ struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     queue: &'a mut Queue,
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool, W: Observer> Work for Search<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S: SideBySide, const ANY: bool, W: Observer> SimdKernel for Search<'_, '_, N, S, ANY, W> {
     type Output = ();
 
     /// The numbers are those that the ray has.

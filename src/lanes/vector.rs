@@ -42,8 +42,8 @@ impl<N: Number> Vector<N> {
 
     /// `yes` where the answer was yes, else `no`.
     #[inline(always)]
-    pub fn select(answer: N::Mask, yes: Self, no: Self) -> Self {
-        Self { x: N::select(answer, yes.x, no.x), y: N::select(answer, yes.y, no.y), z: N::select(answer, yes.z, no.z) }
+    pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        Self { x: N::select(mask, yes.x, no.x), y: N::select(mask, yes.y, no.y), z: N::select(mask, yes.z, no.z) }
     }
 
     /// The cross product.
@@ -93,10 +93,10 @@ impl Vector<Eight> {
 }
 
 impl<N: Lanes> Vector<N> {
-    /// One of the eight in each place, as [`Lanes::pick`] has it.
+    /// One of the eight in each place, as [`Lanes::gather`] has it.
     #[inline(always)]
-    pub(crate) fn pick(self, lanes: N) -> Self {
-        Self { x: self.x.pick(lanes), y: self.y.pick(lanes), z: self.z.pick(lanes) }
+    pub(crate) fn gather(self, lanes: N) -> Self {
+        Self { x: self.x.gather(lanes), y: self.y.gather(lanes), z: self.z.gather(lanes) }
     }
 
     /// One of the eight, everywhere.

@@ -103,8 +103,8 @@ fn mean_sign<N: Number>(middle: N, width: N) -> N {
     // Across a single edge: the part before it less the part after it.
     let over_one = sign * ((last - start) - (end - last)) / (end - start);
     let over_more = (integrated_sign(end) - integrated_sign(start)) / (end - start);
-    let over_edges = N::select((last - first).same(one), over_one, over_more);
-    let mean = N::select(first.same(last), sign, over_edges);
+    let over_edges = N::select((last - first).eq(one), over_one, over_more);
+    let mean = N::select(first.eq(last), sign, over_edges);
     // Beyond this width the mean is practically zero, and intervals may be infinite or NaN.
     N::select(width.lt(N::splat(1e6)), mean, zero)
 }
@@ -121,5 +121,5 @@ fn integrated_sign<N: Number>(x: N) -> N {
 #[inline(always)]
 fn is_even<N: Number>(whole: N) -> N::Mask {
     let half = whole * N::splat(0.5);
-    half.floor().same(half)
+    half.floor().eq(half)
 }

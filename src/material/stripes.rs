@@ -21,7 +21,7 @@ impl Reflecting for Stripes {
     #[inline(always)]
     fn reflectance<N: Number>(&self, [u, _]: [N; 2], _: [N; 2]) -> [N; 3] {
         let half = N::splat(0.5) * u.floor();
-        let is_even = half.floor().same(half);
+        let is_even = half.floor().eq(half);
         let ([r0, g0, b0], [r1, g1, b1]) = (bands::<N>(self.a), bands::<N>(self.b));
         [N::select(is_even, r0, r1), N::select(is_even, g0, g1), N::select(is_even, b0, b1)]
     }

@@ -71,17 +71,17 @@ impl<N: Lanes> Pencil<N> {
             let length = rays.shear.length;
             are_usual = are_usual & N::splat(USUAL[0]).le(length) & length.le(N::splat(USUAL[1]));
         }
-        let (x0, x1) = (N::least_of_each(&xs), N::greatest_of_each(&xs));
-        let (y0, y1) = (N::least_of_each(&ys), N::greatest_of_each(&ys));
+        let (x0, x1) = (N::min_of_each(&xs), N::max_of_each(&xs));
+        let (y0, y1) = (N::min_of_each(&ys), N::max_of_each(&ys));
         let half = N::splat(0.5);
         let middles = [(x0 + x1) * half, (y0 + y1) * half];
         // So much that no rounding makes it too little.
         let more = N::splat(1.0 + 1.0 / 4_194_304.0);
         let reaches = [(x1 - middles[0]).max(middles[0] - x0) * more, (y1 - middles[1]).max(middles[1] - y0) * more];
         let width = x0.abs().max(x1.abs()).max(y0.abs().max(y1.abs()));
-        let width = N::splat(width.greatest());
+        let width = N::splat(width.reduce_max());
         let depths = if share_axis && are_usual.all() {
-            [N::splat(depths[0].store().least()), N::splat(depths[1].greatest())]
+            [N::splat(depths[0].store().reduce_min()), N::splat(depths[1].reduce_max())]
         } else {
             [N::splat(f32::NEG_INFINITY), N::splat(f32::INFINITY)]
         };
@@ -106,7 +106,7 @@ fn farthest<N: Lanes>(groups: &[Rays<N>; LANES], t: N, point: Vector<N>) -> N {
         // In this order, so that NaN is left out: what is not finite meets nothing, whoever goes with it.
         farthest = (rays.origin + rays.direction * t - point).largest().max(farthest);
     }
-    N::splat(farthest.greatest())
+    N::splat(farthest.reduce_max())
 }
 
 #[cfg(test)]

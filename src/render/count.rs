@@ -63,7 +63,7 @@ fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
     for hits in hits.iter() {
         counts.hits += u64::from(hits.hit_mask.count_ones());
         // Zero for rays without a hit: a sum without branches.
-        let depths = Eight::select(Eight::answers(hits.hit_mask), hits.t, Eight::ZERO);
+        let depths = Eight::select(Eight::mask_from_bits(hits.hit_mask), hits.t, Eight::ZERO);
         counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
     }
     for light in scene.lights().iter().filter(|_| scene.shadows()) {

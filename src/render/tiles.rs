@@ -9,7 +9,7 @@ use crate::camera::{Camera, EyeRays};
 use crate::framebuffer::Resolution;
 use crate::lanes::{ALL, Eight, LANES, Lanes, Number, Vector};
 use crate::ray::EightRays;
-use crate::simd::{self, Work};
+use crate::simd::{self, SimdKernel};
 use glam::Vec3;
 use std::ops::Range;
 
@@ -130,7 +130,7 @@ impl Tiles {
     /// Computes the eye rays of a batch, one for each of these pixels of the tile.
     pub(super) fn make_eye_rays(&self, tile: usize, pixels: &[u8], batch: &SampleBatch, rays: &mut Vec<EightRays>) {
         rays.clear();
-        simd::run(MakeEyeRays { tiles: self, tile, pixels, batch, rays });
+        simd::dispatch(MakeEyeRays { tiles: self, tile, pixels, batch, rays });
     }
 
     /// Returns the position of a sample in the picture: the lecture's (qu, qv), with (0, 0) at the lower left corner.
@@ -199,7 +199,7 @@ struct MakeEyeRays<'w> {
     rays: &'w mut Vec<EightRays>,
 }
 
-impl Work for MakeEyeRays<'_> {
+impl SimdKernel for MakeEyeRays<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -2,11 +2,11 @@
 
 use crate::accel::{Accelerator, List, PartId, PartIds, Tree, Visitor};
 use crate::hit::EightHits;
-use crate::lanes::{ALL, Answers, Eight, LANES, Lanes, Vector, set_bits};
+use crate::lanes::{ALL, Eight, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
 use crate::scene::Scene;
 use crate::shape::{AtCrossing, Endless, Part, Points, SideBySide};
-use crate::simd::{self, Work};
+use crate::simd::{self, SimdKernel};
 use glam::Vec2;
 
 /// The surfaces that eight rays have met.
@@ -51,7 +51,7 @@ impl EightPoints {
 /// The surface at each hit.
 pub fn surface_points(scene: &Scene, rays: &[EightRays], hits: &[EightHits], points: &mut Vec<EightPoints>) {
     points.resize(hits.len(), EightPoints::NONE);
-    simd::run(SurfacePoints { scene, rays, hits, points });
+    simd::dispatch(SurfacePoints { scene, rays, hits, points });
 }
 
 struct SurfacePoints<'w> {
@@ -61,7 +61,7 @@ struct SurfacePoints<'w> {
     points: &'w mut [EightPoints],
 }
 
-impl Work for SurfacePoints<'_> {
+impl SimdKernel for SurfacePoints<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -92,8 +92,8 @@ fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &Eight
         if lanes == ALL {
             (points, ids) = (found, whose);
         } else {
-            points = Points::select(N::answers(lanes), found, points);
-            ids = PartIds::select(N::answers(lanes), whose, ids);
+            points = Points::select(N::mask_from_bits(lanes), found, points);
+            ids = PartIds::select(N::mask_from_bits(lanes), whose, ids);
         }
         left &= !lanes;
     }
@@ -146,13 +146,13 @@ fn surfaces_in_tree<N: Lanes, S: SideBySide>(
     // Most often all stand in one leaf. Who has met nothing here is given whatever it has, and that is not looked at.
     let first = first_primitive(lanes);
     let (leaf, ids) = tree.leaf(first);
-    let (mut shapes, mut whose) = (leaf.pick(in_leaf), ids.pick(in_leaf));
+    let (mut shapes, mut whose) = (leaf.gather(in_leaf), ids.gather(in_leaf));
     let mut left = lanes & !leaves.has_bits(first / LANES as u32).bits();
     while left != 0 {
         let primitive = first_primitive(left);
         let ((leaf, ids), are_here) = (tree.leaf(primitive), leaves.has_bits(primitive / LANES as u32));
-        shapes = S::select(are_here, leaf.pick(in_leaf), shapes);
-        whose = PartIds::select(are_here, ids.pick(in_leaf), whose);
+        shapes = S::select(are_here, leaf.gather(in_leaf), shapes);
+        whose = PartIds::select(are_here, ids.gather(in_leaf), whose);
         left &= !are_here.bits();
     }
     (lanes, whose, shapes.points_at(&Rays::load(rays, S::NEED_SHEAR), N::load(&hits.t)))

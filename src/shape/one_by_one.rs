@@ -1,7 +1,7 @@
 //! Eight surfaces of any kind, tested one after the other.
 
 use super::{AtCrossing, Crossable, Points, Side, SideBySide, Surface};
-use crate::lanes::{Answers, Eight, LANES, Lanes, Vector};
+use crate::lanes::{Eight, LANES, LaneMask, Lanes, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::Vec3;
 use std::array::from_fn;
@@ -29,7 +29,7 @@ impl<S: Surface + Copy + Sync> SideBySide for OneByOne<S> {
     }
 
     #[inline(always)]
-    fn pick<N: Lanes>(&self, lanes: N) -> Self {
+    fn gather<N: Lanes>(&self, lanes: N) -> Self {
         let lanes = lanes.store();
         Self(from_fn(|lane| self.0[lanes.0[lane].to_bits() as usize % LANES]))
     }
@@ -52,7 +52,7 @@ impl<S: Surface, N: Lanes> Crossable<N> for OneByOne<S> {
                 t.0[lane] = crossing;
             }
         }
-        (crosses != 0).then(|| (N::answers(crosses), N::load(&t)))
+        (crosses != 0).then(|| (N::mask_from_bits(crosses), N::load(&t)))
     }
 
     fn boxes(&self) -> [Vector<N>; 2] {
@@ -84,7 +84,7 @@ impl<S: Surface, N: Lanes> AtCrossing<N> for OneByOne<S> {
         Points {
             position: position.load(),
             facing: facing.load(),
-            is_front: N::answers(is_front),
+            is_front: N::mask_from_bits(is_front),
             clearance: N::load(&clearance),
             uv: [N::load(&uv[0]), N::load(&uv[1])],
         }

@@ -164,9 +164,9 @@ impl SideBySide for Balls<Eight> {
     }
 
     #[inline(always)]
-    fn pick<N: Lanes>(&self, lanes: N) -> Balls<N> {
+    fn gather<N: Lanes>(&self, lanes: N) -> Balls<N> {
         let Balls { center, radius } = self.load::<N>();
-        Balls { center: center.pick(lanes), radius: radius.pick(lanes) }
+        Balls { center: center.gather(lanes), radius: radius.gather(lanes) }
     }
 
     #[inline(always)]

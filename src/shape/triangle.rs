@@ -121,7 +121,7 @@ impl<N: Number> Corners<N> {
         let ([a, b, c], o, d) = (self.0, rays.origin, rays.direction);
         let asked = N::select(is_close, one, zero);
         let numbers = [asked, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, o.x, o.y, o.z, d.x, d.y, d.z];
-        let [crosses, x, y, z, exact_t] = N::each(numbers, close_crossing);
+        let [crosses, x, y, z, exact_t] = N::map_lanes(numbers, close_crossing);
         let weights = Vector::select(is_close, Vector { x, y, z }, weights);
         let crossing = Crossing { weights, sum: N::select(is_close, one, sum), t: N::select(is_close, exact_t, t) };
         (agree | (is_close & zero.lt(crosses)), crossing)
@@ -238,9 +238,9 @@ impl SideBySide for Corners<Eight> {
     }
 
     #[inline(always)]
-    fn pick<N: Lanes>(&self, lanes: N) -> Corners<N> {
+    fn gather<N: Lanes>(&self, lanes: N) -> Corners<N> {
         let [a, b, c] = self.load::<N>().0;
-        Corners([a.pick(lanes), b.pick(lanes), c.pick(lanes)])
+        Corners([a.gather(lanes), b.gather(lanes), c.gather(lanes)])
     }
 
     #[inline(always)]

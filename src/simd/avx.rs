@@ -2,8 +2,8 @@
 
 #![allow(unsafe_code)]
 
-use super::sse2::each;
-use crate::lanes::{Answers, Eight, LANES, Lanes, Number, Work};
+use super::sse2::map_lanes;
+use crate::lanes::{Eight, LANES, LaneMask, Lanes, Number, SimdKernel};
 use std::arch::x86_64::{
     __m256, _mm256_add_ps, _mm256_andnot_ps, _mm256_castps_si256, _mm256_cvtss_f32, _mm256_div_ps, _mm256_floor_ps,
     _mm256_load_ps, _mm256_max_ps, _mm256_min_ps, _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_permutevar8x32_ps,
@@ -13,13 +13,13 @@ use std::arch::x86_64::{
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Answers for eight numbers in a register, and the instructions that give them.
-pub(super) trait Marks: Answers {
+/// LaneMask for eight numbers in a register, and the instructions that give them.
+pub(super) trait MaskOps: LaneMask {
     /// Does the work with registers that have such answers.
     ///
     /// # Safety
     /// The CPU has the instructions that they need.
-    unsafe fn run<W: Work>(work: W) -> W::Output;
+    unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output;
 
     /// [`Number::lt`].
     fn lt(a: __m256, b: __m256) -> Self;
@@ -30,14 +30,14 @@ pub(super) trait Marks: Answers {
     /// [`Number::select`].
     fn select(self, yes: __m256, no: __m256) -> __m256;
 
-    /// [`Lanes::answers`].
-    fn of_bits(bits: u32) -> Self;
+    /// [`Lanes::mask_from_bits`].
+    fn from_bits(bits: u32) -> Self;
 
     /// [`Lanes::has_bits`].
     fn has_bits(numbers: __m256, bits: u32) -> Self;
 }
 
-/// Only [`Marks::run`] has work done with it: where there is one, the CPU has AVX2.
+/// Only [`MaskOps::run`] has work done with it: where there is one, the CPU has AVX2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Register<M>(__m256, PhantomData<M>);
 
@@ -96,7 +96,7 @@ impl<M> Neg for Register<M> {
     }
 }
 
-impl<M: Marks> Number for Register<M> {
+impl<M: MaskOps> Number for Register<M> {
     type Mask = M;
 
     #[inline(always)]
@@ -130,8 +130,8 @@ impl<M: Marks> Number for Register<M> {
     }
 
     #[inline(always)]
-    fn select(answer: M, yes: Self, no: Self) -> Self {
-        Self::of(answer.select(yes.0, no.0))
+    fn select(mask: M, yes: Self, no: Self) -> Self {
+        Self::of(mask.select(yes.0, no.0))
     }
 
     /// Of the instruction, too: where one is NaN and where both are zero, the second.
@@ -146,19 +146,19 @@ impl<M: Marks> Number for Register<M> {
     }
 
     #[inline(always)]
-    fn each<const IN: usize, const OUT: usize>(
+    fn map_lanes<const IN: usize, const OUT: usize>(
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],
     ) -> [Self; OUT] {
-        each(numbers, formula)
+        map_lanes(numbers, formula)
     }
 }
 
-impl<M: Marks> Lanes for Register<M> {
+impl<M: MaskOps> Lanes for Register<M> {
     #[inline(always)]
-    fn apart<W: Work>(work: W) -> W::Output {
-        // SAFETY: outside this module the type is only named within `Marks::run`, whose caller has promised the same.
-        unsafe { M::run(work) }
+    fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output {
+        // SAFETY: outside this module the type is only named within `MaskOps::run`, whose caller has promised the same.
+        unsafe { M::run(kernel) }
     }
 
     #[inline(always)]
@@ -180,20 +180,20 @@ impl<M: Marks> Lanes for Register<M> {
     }
 
     #[inline(always)]
-    fn pick(self, lanes: Self) -> Self {
+    fn gather(self, lanes: Self) -> Self {
         Self::of(avx!(_mm256_permutevar8x32_ps(self.0, _mm256_castps_si256(lanes.0))))
     }
 
     #[inline(always)]
-    fn greatest(self) -> f32 {
+    fn reduce_max(self) -> f32 {
         let fours = self.max(Self::of(avx!(_mm256_permute2f128_ps::<0x01>(self.0, self.0))));
         let twos = fours.max(Self::of(avx!(_mm256_shuffle_ps::<0b01_00_11_10>(fours.0, fours.0))));
         avx!(_mm256_cvtss_f32(twos.max(Self::of(_mm256_shuffle_ps::<0b10_11_00_01>(twos.0, twos.0))).0))
     }
 
     #[inline(always)]
-    fn answers(bits: u32) -> M {
-        M::of_bits(bits)
+    fn mask_from_bits(bits: u32) -> M {
+        M::from_bits(bits)
     }
 
     #[inline(always)]
@@ -202,25 +202,25 @@ impl<M: Marks> Lanes for Register<M> {
     }
 
     #[inline(always)]
-    fn least_of_each(eights: &[Self; LANES]) -> Self {
+    fn min_of_each(eights: &[Self; LANES]) -> Self {
         of_each!(min, eights)
     }
 
     #[inline(always)]
-    fn greatest_of_each(eights: &[Self; LANES]) -> Self {
+    fn max_of_each(eights: &[Self; LANES]) -> Self {
         of_each!(max, eights)
     }
 }
 
 /// The first and the last numbers of both, neighbours beside each other.
 #[inline(always)]
-fn neighbours<M: Marks>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
+fn neighbours<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([Register::of(_mm256_unpacklo_ps(a.0, b.0)), Register::of(_mm256_unpackhi_ps(a.0, b.0))])
 }
 
 /// The first and the last pairs of both.
 #[inline(always)]
-fn pairs<M: Marks>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
+fn pairs<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([
         Register::of(_mm256_shuffle_ps::<0b01_00_01_00>(a.0, b.0)),
         Register::of(_mm256_shuffle_ps::<0b11_10_11_10>(a.0, b.0)),
@@ -229,7 +229,7 @@ fn pairs<M: Marks>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
 
 /// The first and the last halves of both.
 #[inline(always)]
-fn halves<M: Marks>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
+fn halves<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([
         Register::of(_mm256_permute2f128_ps::<0x20>(a.0, b.0)),
         Register::of(_mm256_permute2f128_ps::<0x31>(a.0, b.0)),

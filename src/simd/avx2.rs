@@ -2,8 +2,8 @@
 
 #![allow(unsafe_code)]
 
-use super::avx::{Marks, Register, avx};
-use crate::lanes::{Answers, LANES, Mask, Work};
+use super::avx::{MaskOps, Register, avx};
+use crate::lanes::{LANES, LaneMask, Mask, SimdKernel};
 use std::arch::x86_64::{
     __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_and_si256, _mm256_blendv_ps, _mm256_castps_si256,
     _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_movemask_ps, _mm256_or_ps, _mm256_set1_epi32,
@@ -15,24 +15,24 @@ use std::ops::{BitAnd, BitOr, Not};
 ///
 /// # Safety
 /// The CPU has AVX2, BMI1, LZCNT and POPCNT.
-pub(super) unsafe fn run<W: Work>(work: W) -> W::Output {
+pub(super) unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
     // SAFETY: as the caller has promised.
-    unsafe { Mask256::run(work) }
+    unsafe { Mask256::run(kernel) }
 }
 
 /// All bits of a number are set for yes, none for no.
 #[derive(Clone, Copy, Debug)]
 struct Mask256(__m256);
 
-impl Marks for Mask256 {
-    unsafe fn run<W: Work>(work: W) -> W::Output {
+impl MaskOps for Mask256 {
+    unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-        fn compiled_for_avx2<W: Work>(work: W) -> W::Output {
-            work.run::<Register<Mask256>>()
+        fn compiled_for_avx2<K: SimdKernel>(kernel: K) -> K::Output {
+            kernel.run::<Register<Mask256>>()
         }
         // SAFETY: as the caller has promised.
-        unsafe { compiled_for_avx2(work) }
+        unsafe { compiled_for_avx2(kernel) }
     }
 
     #[inline(always)]
@@ -51,7 +51,7 @@ impl Marks for Mask256 {
     }
 
     #[inline(always)]
-    fn of_bits(bits: u32) -> Self {
+    fn from_bits(bits: u32) -> Self {
         let each = avx!(_mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
         let own = avx!(_mm256_and_si256(_mm256_set1_epi32(bits.cast_signed()), each));
         Self(avx!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(own, each))))
@@ -103,7 +103,7 @@ impl Mask for Mask256 {
     }
 }
 
-impl Answers for Mask256 {
+impl LaneMask for Mask256 {
     #[inline(always)]
     fn bits(self) -> u32 {
         avx!(_mm256_movemask_ps(self.0)).cast_unsigned()

@@ -3,8 +3,8 @@
 
 #![allow(unsafe_code)]
 
-use super::avx::{Marks, Register, avx};
-use crate::lanes::{Answers, Mask, Work};
+use super::avx::{MaskOps, Register, avx};
+use crate::lanes::{LaneMask, Mask, SimdKernel};
 use std::arch::x86_64::{
     __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_castps_si256, _mm256_cmp_ps_mask, _mm256_cmpeq_epi32_mask,
     _mm256_mask_blend_ps, _mm256_set1_epi32,
@@ -15,24 +15,24 @@ use std::ops::{BitAnd, BitOr, Not};
 ///
 /// # Safety
 /// The CPU has AVX-512 (F, VL, DQ, BW), AVX2, BMI1, BMI2, LZCNT and POPCNT.
-pub(super) unsafe fn run<W: Work>(work: W) -> W::Output {
+pub(super) unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
     // SAFETY: as the caller has promised.
-    unsafe { Bits::run(work) }
+    unsafe { Bitmask::run(kernel) }
 }
 
-/// A bit for each number, 1 for yes. Only [`Marks::run`] has work done with it: where there is one, the CPU has AVX-512.
+/// A bit for each number, 1 for yes. Only [`MaskOps::run`] has work done with it: where there is one, the CPU has AVX-512.
 #[derive(Clone, Copy, Debug)]
-struct Bits(u8);
+struct Bitmask(u8);
 
-impl Marks for Bits {
-    unsafe fn run<W: Work>(work: W) -> W::Output {
+impl MaskOps for Bitmask {
+    unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,bmi1,bmi2,lzcnt,popcnt")]
-        fn compiled_for_avx512<W: Work>(work: W) -> W::Output {
-            work.run::<Register<Bits>>()
+        fn compiled_for_avx512<K: SimdKernel>(kernel: K) -> K::Output {
+            kernel.run::<Register<Bitmask>>()
         }
         // SAFETY: as the caller has promised.
-        unsafe { compiled_for_avx512(work) }
+        unsafe { compiled_for_avx512(kernel) }
     }
 
     #[inline(always)]
@@ -51,7 +51,7 @@ impl Marks for Bits {
     }
 
     #[inline(always)]
-    fn of_bits(bits: u32) -> Self {
+    fn from_bits(bits: u32) -> Self {
         Self(bits as u8)
     }
 
@@ -62,7 +62,7 @@ impl Marks for Bits {
     }
 }
 
-impl BitAnd for Bits {
+impl BitAnd for Bitmask {
     type Output = Self;
 
     #[inline(always)]
@@ -71,7 +71,7 @@ impl BitAnd for Bits {
     }
 }
 
-impl BitOr for Bits {
+impl BitOr for Bitmask {
     type Output = Self;
 
     #[inline(always)]
@@ -80,7 +80,7 @@ impl BitOr for Bits {
     }
 }
 
-impl Not for Bits {
+impl Not for Bitmask {
     type Output = Self;
 
     #[inline(always)]
@@ -89,7 +89,7 @@ impl Not for Bits {
     }
 }
 
-impl Mask for Bits {
+impl Mask for Bitmask {
     #[inline(always)]
     fn any(self) -> bool {
         self.0 != 0
@@ -101,7 +101,7 @@ impl Mask for Bits {
     }
 }
 
-impl Answers for Bits {
+impl LaneMask for Bitmask {
     #[inline(always)]
     fn bits(self) -> u32 {
         self.0.into()

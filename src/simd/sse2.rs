@@ -2,8 +2,8 @@
 
 #![allow(unsafe_code)]
 
-use super::Work;
-use crate::lanes::{Answers, Eight, LANES, Lanes, Mask, Number};
+use super::SimdKernel;
+use crate::lanes::{Eight, LANES, LaneMask, Lanes, Mask, Number};
 use std::arch::x86_64::{
     __m128, _mm_add_ps, _mm_and_ps, _mm_and_si128, _mm_andnot_ps, _mm_castps_si128, _mm_castsi128_ps, _mm_cmpeq_epi32,
     _mm_cmple_ps, _mm_cmplt_ps, _mm_cvtepi32_ps, _mm_cvttps_epi32, _mm_div_ps, _mm_load_ps, _mm_max_ps, _mm_min_ps,
@@ -14,13 +14,13 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Does the work with the registers of SSE2.
 #[inline(never)]
-pub(super) fn run<W: Work>(work: W) -> W::Output {
-    work.run::<Registers>()
+pub(super) fn run<K: SimdKernel>(kernel: K) -> K::Output {
+    kernel.run::<Registers>()
 }
 
-/// [`Number::each`] of what is in registers.
+/// [`Number::map_lanes`] of what is in registers.
 #[inline(always)]
-pub(super) fn each<N: Lanes, const IN: usize, const OUT: usize>(
+pub(super) fn map_lanes<N: Lanes, const IN: usize, const OUT: usize>(
     numbers: [N; IN],
     formula: impl Fn([f32; IN]) -> [f32; OUT],
 ) -> [N; OUT] {
@@ -29,7 +29,7 @@ pub(super) fn each<N: Lanes, const IN: usize, const OUT: usize>(
         *stored = numbers.store();
     }
     let mut results = [N::splat(0.0); OUT];
-    for (results, stored) in results.iter_mut().zip(Eight::each(stored, formula)) {
+    for (results, stored) in results.iter_mut().zip(Eight::map_lanes(stored, formula)) {
         *results = N::load(&stored);
     }
     results
@@ -60,8 +60,8 @@ fn both(a: [__m128; 2], b: [__m128; 2], instruction: impl Fn(__m128, __m128) -> 
 }
 
 #[inline(always)]
-fn select(answer: __m128, yes: __m128, no: __m128) -> __m128 {
-    sse!(_mm_or_ps(_mm_and_ps(answer, yes), _mm_andnot_ps(answer, no)))
+fn select(mask: __m128, yes: __m128, no: __m128) -> __m128 {
+    sse!(_mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no)))
 }
 
 /// Rounded towards zero, and one less where that is greater; where it cannot be told so, the number is whole or NaN.
@@ -154,8 +154,8 @@ impl Number for Registers {
     }
 
     #[inline(always)]
-    fn select(Masks(answer): Masks, yes: Self, no: Self) -> Self {
-        Self([select(answer[0], yes.0[0], no.0[0]), select(answer[1], yes.0[1], no.0[1])])
+    fn select(Masks(mask): Masks, yes: Self, no: Self) -> Self {
+        Self([select(mask[0], yes.0[0], no.0[0]), select(mask[1], yes.0[1], no.0[1])])
     }
 
     /// Of the instruction, too: where one is NaN and where both are zero, the second.
@@ -170,18 +170,18 @@ impl Number for Registers {
     }
 
     #[inline(always)]
-    fn each<const IN: usize, const OUT: usize>(
+    fn map_lanes<const IN: usize, const OUT: usize>(
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],
     ) -> [Self; OUT] {
-        each(numbers, formula)
+        map_lanes(numbers, formula)
     }
 }
 
 impl Lanes for Registers {
     #[inline(always)]
-    fn apart<W: Work>(work: W) -> W::Output {
-        run(work)
+    fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output {
+        run(kernel)
     }
 
     #[inline(always)]
@@ -200,7 +200,7 @@ impl Lanes for Registers {
     }
 
     #[inline(always)]
-    fn answers(bits: u32) -> Masks {
+    fn mask_from_bits(bits: u32) -> Masks {
         let has = |each| {
             sse!(_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(bits.cast_signed()), each), each)))
         };
@@ -228,7 +228,7 @@ impl Mask for Masks {
     }
 }
 
-impl Answers for Masks {
+impl LaneMask for Masks {
     #[inline(always)]
     fn bits(self) -> u32 {
         let [first, last] = self.0;

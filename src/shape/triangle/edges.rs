@@ -1,7 +1,7 @@
 //! Triangles as they are seen from a pencil's apex.
 
 use super::Corners;
-use crate::lanes::{Answers, Eight, Lanes, Vector};
+use crate::lanes::{Eight, LaneMask, Lanes, Vector};
 use crate::ray::Pencil;
 
 /// What tells of eight triangles beforehand which rays of a pencil pass them by, and how much doubt there is of the others.
@@ -83,7 +83,7 @@ impl<N: Lanes> Corners<N> {
 #[cfg(test)]
 mod tests {
     use super::super::Triangle;
-    use crate::lanes::{Answers, Eight, LANES, Number};
+    use crate::lanes::{Eight, LANES, LaneMask, Number};
     use crate::ray::{EightRays, Pencil, Ray, Rays};
     use crate::shape::triangle::{Corners, doubt};
     use crate::shape::{Crossable, SideBySide};
@@ -203,7 +203,7 @@ mod tests {
             for lane in 0..LANES {
                 let (shape, rough) = (shapes.splat::<Eight>(lane), edges.rough.0[lane]);
                 for (group, rays) in groups.iter().enumerate() {
-                    let own = doubt(shape.sheared(rays), rays.shear.length).greatest();
+                    let own = doubt(shape.sheared(rays), rays.shear.length).reduce_max();
                     assert!(own <= rough, "seed {seed}: triangle {lane}, group {group}: {own} and {rough}");
                     assert_eq!(found(&shape, rays, rough), found(&shape, rays, f32::INFINITY), "seed {seed}");
                     all += usize::from(rough.is_finite());
