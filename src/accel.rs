@@ -5,7 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::bvh::Bvh;
-use crate::lanes::{Eight, LANES, LaneMask, Lanes};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes};
 use crate::progress::{Cancelled, Progress, Watcher, Work};
 use crate::shape::{Endless, Part, Shape, SideBySide, Surface, surfaces};
 use crate::simd;
@@ -34,14 +34,14 @@ pub(crate) struct PartIds<N> {
     part: N,
 }
 
-impl PartIds<Eight> {
+impl PartIds<F32x8> {
     /// Eight times the first part of the first object.
-    pub(crate) const ZERO: Self = Self { object: Eight::ZERO, part: Eight::ZERO };
+    pub(crate) const ZERO: Self = Self { object: F32x8::ZERO, part: F32x8::ZERO };
 
     fn of(ids: [PartId; LANES]) -> Self {
         Self {
-            object: Eight(ids.map(|id| f32::from_bits(id.object))),
-            part: Eight(ids.map(|id| f32::from_bits(id.part))),
+            object: F32x8(ids.map(|id| f32::from_bits(id.object))),
+            part: F32x8(ids.map(|id| f32::from_bits(id.part))),
         }
     }
 
@@ -73,13 +73,13 @@ impl<N: Lanes> PartIds<N> {
 
     /// `yes` where the answer was yes, else `no`.
     #[inline(always)]
-    pub(crate) fn select(answer: N::Mask, yes: Self, no: Self) -> Self {
-        Self { object: N::select(answer, yes.object, no.object), part: N::select(answer, yes.part, no.part) }
+    pub(crate) fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        Self { object: N::select(mask, yes.object, no.object), part: N::select(mask, yes.part, no.part) }
     }
 
     /// To memory.
     #[inline(always)]
-    pub(crate) fn store(self) -> PartIds<Eight> {
+    pub(crate) fn store(self) -> PartIds<F32x8> {
         PartIds { object: self.object.store(), part: self.part.store() }
     }
 }
@@ -233,7 +233,7 @@ pub(crate) struct Tree<S> {
     pub(crate) leaves: Vec<S>,
     /// Whose they are, apart: that is asked only of what is met. (The last one's stands in the places that are left over,
     /// too.)
-    ids: Vec<PartIds<Eight>>,
+    ids: Vec<PartIds<F32x8>>,
     /// The place of the first of them.
     pub(crate) first: u32,
     /// How many there are, where the tree is but one leaf and leaves nothing out; else 0.
@@ -378,7 +378,7 @@ impl<S> Tree<S> {
 
     /// The leaf in which that place is, and whose its parts are.
     #[inline(always)]
-    pub(crate) fn leaf(&self, place: u32) -> (&S, &PartIds<Eight>) {
+    pub(crate) fn leaf(&self, place: u32) -> (&S, &PartIds<F32x8>) {
         let leaf = (place - self.first) as usize / LANES;
         (&self.leaves[leaf], &self.ids[leaf])
     }

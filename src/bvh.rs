@@ -4,7 +4,7 @@
 //! bit. So what is found does not depend on how the tree was built, nor on the way in which it is gone through.
 
 use crate::bounds::Bounds;
-use crate::lanes::{Eight, LANES, LaneMask, Lanes, Mask, Number, Vector, set_bits};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, Number, Vector, set_bits};
 use crate::ray::{Interval, Rays};
 use crate::simd;
 use glam::Vec3;
@@ -56,12 +56,12 @@ impl Leaves {
 struct Node {
     children: [Child; LANES],
     /// Along each axis from where to where. Of what is lacking, from beyond all to before all: no ray meets it.
-    bounds: [[Eight; 2]; 3],
+    bounds: [[F32x8; 2]; 3],
 }
 
 impl Node {
     const EMPTY: Self = Self {
-        bounds: [[Eight([f32::INFINITY; LANES]), Eight([f32::NEG_INFINITY; LANES])]; 3],
+        bounds: [[F32x8([f32::INFINITY; LANES]), F32x8([f32::NEG_INFINITY; LANES])]; 3],
         children: [Child::node(0); LANES],
     };
 
@@ -369,7 +369,7 @@ fn nearest_first(
     node: &Node,
     parent: Child,
     mut is_met: u32,
-    starts: &Eight,
+    starts: &F32x8,
     waiting: &mut Vec<Waiting>,
 ) -> Option<Waiting> {
     let mut take = || {
@@ -402,7 +402,7 @@ fn in_any_order(
     node: &Node,
     parent: Child,
     is_met: u32,
-    starts: &Eight,
+    starts: &F32x8,
     waiting: &mut Vec<Waiting>,
 ) -> Option<Waiting> {
     let mut last = None;

@@ -5,7 +5,7 @@
 
 use crate::accel::{Accelerator, PartId};
 use crate::bvh::{GROUPS, Queue, Stack};
-use crate::lanes::{Eight, LANES, LaneMask, Lanes, set_bits};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, set_bits};
 use crate::ray::{EightRays, Interval, Probe, Ray, Rays};
 use crate::scene::Scene;
 use crate::shape::{Part, Surface};
@@ -59,9 +59,9 @@ pub struct EightHits {
     /// Which of them have met anything, a bit for each.
     pub hit_mask: u32,
     /// Where on the ray, of those that have.
-    pub t: Eight,
+    pub t: F32x8,
     /// The place of the part that was met, or [`NO_PRIMITIVE`](Self::NO_PRIMITIVE): its bits.
-    primitives: Eight,
+    primitives: F32x8,
 }
 
 impl EightHits {
@@ -89,7 +89,7 @@ impl EightHits {
     /// In which leaf, of all that there are: the bits of these numbers.
     #[inline(always)]
     pub(crate) fn leaf_indices<N: Lanes>(&self) -> N {
-        let mut leaves = Eight::ZERO;
+        let mut leaves = F32x8::ZERO;
         for (leaf, primitive) in leaves.0.iter_mut().zip(self.primitives.0) {
             *leaf = f32::from_bits(primitive.to_bits() / LANES as u32);
         }
@@ -119,7 +119,7 @@ pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mu
     hits.clear();
     let accel = scene.accelerator();
     match kernel {
-        Kernel::Scalar => closest_single::<Eight>(accel, rays, &mut Queue::default(), hits),
+        Kernel::Scalar => closest_single::<F32x8>(accel, rays, &mut Queue::default(), hits),
         _ => simd::dispatch(ClosestHits { kernel, accel, rays, hits }),
     }
 }
@@ -129,7 +129,7 @@ pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Inter
     hit_masks.clear();
     let accel = scene.accelerator();
     match kernel {
-        Kernel::Scalar => any_single::<Eight>(accel, rays, within, &mut Queue::default(), hit_masks),
+        Kernel::Scalar => any_single::<F32x8>(accel, rays, within, &mut Queue::default(), hit_masks),
         _ => simd::dispatch(AnyHits { kernel, accel, rays, within, hit_masks }),
     }
 }
@@ -230,8 +230,8 @@ impl SimdKernel for ClosestHits<'_> {
 #[inline(always)]
 fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], queue: &mut Queue, hits: &mut Vec<EightHits>) {
     for rays in rays {
-        let nothing = Eight([f32::from_bits(EightHits::NO_PRIMITIVE); LANES]);
-        let mut hit = EightHits { hit_mask: 0, t: Eight::ZERO, primitives: nothing };
+        let nothing = F32x8([f32::from_bits(EightHits::NO_PRIMITIVE); LANES]);
+        let mut hit = EightHits { hit_mask: 0, t: F32x8::ZERO, primitives: nothing };
         // What tests have in common is reckoned for all eight at once.
         let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.asked) {

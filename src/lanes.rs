@@ -1,7 +1,7 @@
 //! One number, or eight side by side: a formula that is written for any [`Number`] can be asked for one ray or for eight.
 //!
 //! All that they can do are operations that IEEE 754 defines to the last bit, so that a ray among eight gets the bits that
-//! it gets alone. [`Eight`] are a plain array, which any CPU can work with; [`simd`](crate::simd) has those that fit one
+//! it gets alone. [`F32x8`] are a plain array, which any CPU can work with; [`simd`](crate::simd) has those that fit one
 //! register.
 
 use std::array::from_fn;
@@ -89,10 +89,10 @@ pub trait Lanes: Number<Mask: LaneMask> {
     fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output;
 
     /// From memory.
-    fn load(numbers: &Eight) -> Self;
+    fn load(numbers: &F32x8) -> Self;
 
     /// To memory.
-    fn store(self) -> Eight;
+    fn store(self) -> F32x8;
 
     /// One of them: `lane` is less than [`LANES`].
     ///
@@ -112,7 +112,7 @@ pub trait Lanes: Number<Mask: LaneMask> {
     /// One of them in each place: the one whose number is the lowest three bits of what `lanes` has there.
     #[inline(always)]
     fn gather(self, lanes: Self) -> Self {
-        let (mut picked, numbers, lanes) = (Eight::ZERO, self.store(), lanes.store());
+        let (mut picked, numbers, lanes) = (F32x8::ZERO, self.store(), lanes.store());
         for (picked, lane) in picked.0.iter_mut().zip(lanes.0) {
             *picked = numbers.0[lane.to_bits() as usize % LANES];
         }
@@ -134,7 +134,7 @@ pub trait Lanes: Number<Mask: LaneMask> {
     /// The least of each eight; none is NaN.
     #[inline(always)]
     fn min_of_each(eights: &[Self; LANES]) -> Self {
-        let mut min = Eight([0.0; LANES]);
+        let mut min = F32x8([0.0; LANES]);
         for (min, eight) in min.0.iter_mut().zip(eights) {
             *min = eight.store().reduce_min();
         }
@@ -144,7 +144,7 @@ pub trait Lanes: Number<Mask: LaneMask> {
     /// The greatest of each eight; none is NaN.
     #[inline(always)]
     fn max_of_each(eights: &[Self; LANES]) -> Self {
-        let mut max = Eight([0.0; LANES]);
+        let mut max = F32x8([0.0; LANES]);
         for (max, eight) in max.0.iter_mut().zip(eights) {
             *max = eight.store().reduce_max();
         }
@@ -237,7 +237,7 @@ pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
 /// Eight numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
-pub struct Eight(pub [f32; LANES]);
+pub struct F32x8(pub [f32; LANES]);
 
 /// Eight answers: all bits of one are set for yes, none for no.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -246,7 +246,7 @@ pub struct Mask32x8([u32; LANES]);
 
 macro_rules! eight_by_eight {
     ($($operation:ident $function:ident $operator:tt)*) => {
-        $(impl $operation for Eight {
+        $(impl $operation for F32x8 {
             type Output = Self;
 
             #[inline(always)]
@@ -259,7 +259,7 @@ macro_rules! eight_by_eight {
 
 eight_by_eight! { Add add + Sub sub - Mul mul * Div div / }
 
-impl Neg for Eight {
+impl Neg for F32x8 {
     type Output = Self;
 
     #[inline(always)]
@@ -268,7 +268,7 @@ impl Neg for Eight {
     }
 }
 
-impl Eight {
+impl F32x8 {
     /// Eight times nothing.
     pub const ZERO: Self = Self([0.0; LANES]);
 
@@ -294,7 +294,7 @@ impl Eight {
     }
 }
 
-impl Number for Eight {
+impl Number for F32x8 {
     type Mask = Mask32x8;
 
     #[inline(always)]
@@ -348,19 +348,19 @@ impl Number for Eight {
     }
 }
 
-impl Lanes for Eight {
+impl Lanes for F32x8 {
     #[inline(never)]
     fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output {
         kernel.run::<Self>()
     }
 
     #[inline(always)]
-    fn load(numbers: &Eight) -> Self {
+    fn load(numbers: &F32x8) -> Self {
         *numbers
     }
 
     #[inline(always)]
-    fn store(self) -> Eight {
+    fn store(self) -> F32x8 {
         self
     }
 

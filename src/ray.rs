@@ -1,6 +1,6 @@
 //! A ray: the half line { origin + t * direction | t >= 0 } of the lecture.
 
-use crate::lanes::{ALL, Eight, LANES, LaneMask, Lanes, Mask, Number, Vector};
+use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Mask, Number, Vector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
@@ -94,9 +94,9 @@ impl<N: Lanes> Rays<N> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EightRays {
     /// Where each begins.
-    pub origin: Vector<Eight>,
+    pub origin: Vector<F32x8>,
     /// Where it goes; not zero.
-    pub direction: Vector<Eight>,
+    pub direction: Vector<F32x8>,
     /// Which of them are asked about, a bit for each, the first the lowest. In the place of the others stands one of
     /// these; if there are none, anything.
     pub asked: u32,

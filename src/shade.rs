@@ -12,7 +12,7 @@
 
 use crate::color::LinearRgb;
 use crate::hit::{self, EightHits, Kernel};
-use crate::lanes::{ALL, Eight, LANES, LaneMask, Lanes, Number, Vector, set_bits};
+use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Number, Vector, set_bits};
 use crate::light::Light;
 use crate::material::Material;
 use crate::ray::{EightRays, Ray};
@@ -26,7 +26,7 @@ mod points;
 pub use points::{EightPoints, surface_points};
 
 /// The light that eight rays bring, channel by channel.
-pub type EightLights = [Eight; 3];
+pub type EightLights = [F32x8; 3];
 
 /// One of the eight.
 #[inline(always)]
@@ -61,7 +61,7 @@ pub fn arriving_light(
     arriving: &mut Vec<EightArriving>,
 ) -> u64 {
     let LinearRgb { r, g, b } = scene.ambient();
-    let ambient = [r, g, b].map(|channel| Eight([channel; LANES]));
+    let ambient = [r, g, b].map(|channel| F32x8([channel; LANES]));
     let mut shadow_rays = 0;
     arriving.clear();
     arriving.resize(points.len(), EightArriving { light: ambient, lit_by: [0; LANES] });
@@ -241,7 +241,7 @@ impl Reflect<'_> {
         let points = &self.points[at];
         match (&object.material, &object.shape) {
             (Material::Own, shape) => {
-                let mut channels = [Eight::ZERO; 3];
+                let mut channels = [F32x8::ZERO; 3];
                 for lane in set_bits(own) {
                     let reflectance = shape.part(points.ids.id(lane).part).own_reflectance(points.uv(lane));
                     let LinearRgb { r, g, b } = reflectance.unwrap_or(Material::DEFAULT_REFLECTANCE);

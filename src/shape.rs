@@ -118,12 +118,12 @@ impl<N: Number> Points<N> {
 
     /// `yes` where the answer was yes, else `no`.
     #[inline(always)]
-    pub fn select(answer: N::Mask, yes: Self, no: Self) -> Self {
-        let of_two = |yes: N, no: N| N::select(answer, yes, no);
+    pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        let of_two = |yes: N, no: N| N::select(mask, yes, no);
         Self {
-            position: Vector::select(answer, yes.position, no.position),
-            facing: Vector::select(answer, yes.facing, no.facing),
-            is_front: answer & yes.is_front | !answer & no.is_front,
+            position: Vector::select(mask, yes.position, no.position),
+            facing: Vector::select(mask, yes.facing, no.facing),
+            is_front: mask & yes.is_front | !mask & no.is_front,
             clearance: of_two(yes.clearance, no.clearance),
             uv: [of_two(yes.uv[0], no.uv[0]), of_two(yes.uv[1], no.uv[1])],
         }
@@ -177,7 +177,7 @@ pub trait SideBySide: Copy {
     fn gather<N: Lanes>(&self, lanes: N) -> Self::Of<N>;
 
     /// `yes` where the answer was yes, else `no`.
-    fn select<N: Lanes>(answer: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;
+    fn select<N: Lanes>(mask: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;
 
     /// Whether they have [`edges`](Self::edges).
     const HAVE_EDGES: bool = false;
@@ -235,9 +235,9 @@ const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 macro_rules! surfaces {
     ($with:ident) => {
         $with! {
-            tree spheres: Sphere as $crate::shape::Balls<$crate::lanes::Eight>, "All points at one distance from a centre.";
+            tree spheres: Sphere as $crate::shape::Balls<$crate::lanes::F32x8>, "All points at one distance from a centre.";
             list planes: Plane as $crate::shape::Plane, "All points whose difference to a given one is perpendicular to the normal.";
-            tree triangles: Triangle as $crate::shape::Corners<$crate::lanes::Eight>, "What lies between three points.";
+            tree triangles: Triangle as $crate::shape::Corners<$crate::lanes::F32x8>, "What lies between three points.";
             #[cfg(test)]
             tree cubes: Cube as $crate::shape::OneByOne<$crate::shape::Cube>, "All points at one distance from a centre, along the axis along which they are farthest.";
         }

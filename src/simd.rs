@@ -8,7 +8,7 @@
 
 #![allow(unsafe_code)]
 
-use crate::lanes::Eight;
+use crate::lanes::F32x8;
 
 pub use crate::lanes::SimdKernel;
 pub use prefetch::prefetch;
@@ -35,7 +35,7 @@ pub fn dispatch<K: SimdKernel>(kernel: K) -> K::Output {
 /// Does the work with plain arrays: the truth that all else is tested against.
 #[inline]
 pub fn run_scalar<K: SimdKernel>(kernel: K) -> K::Output {
-    kernel.run::<Eight>()
+    kernel.run::<F32x8>()
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -76,7 +76,7 @@ mod tests {
     use crate::lanes::{LANES, LaneMask, Lanes};
 
     /// Each operation on pairs of eight, in a row: numbers as bits, and answers.
-    struct All<'w>(&'w [[Eight; 2]]);
+    struct All<'w>(&'w [[F32x8; 2]]);
 
     impl SimdKernel for All<'_> {
         type Output = Vec<[u32; LANES]>;
@@ -117,7 +117,7 @@ mod tests {
         edges.extend(edges.clone().iter().map(|edge| -edge));
         edges.push(f32::NAN);
         let eights =
-            |from: usize, step: usize| Eight(std::array::from_fn(|lane| edges[(from + step * lane) % edges.len()]));
+            |from: usize, step: usize| F32x8(std::array::from_fn(|lane| edges[(from + step * lane) % edges.len()]));
         let pairs: Vec<_> = (0..edges.len())
             .flat_map(|from| (0..edges.len()).map(move |other| [(from, 1), (other, 3)]))
             .map(|places| places.map(|(from, step)| eights(from, step)))

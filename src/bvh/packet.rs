@@ -289,7 +289,7 @@ mod tests {
     use super::super::Node;
     use super::*;
     use crate::bounds::crossed;
-    use crate::lanes::{Eight, Number};
+    use crate::lanes::{F32x8, Number};
     use crate::ray::{EightRays, Ray};
     use glam::Vec3;
     use std::array::from_fn;
@@ -320,7 +320,7 @@ mod tests {
 
     /// Rays in a narrow or a wide packet, with directions and distances of all sizes, and boxes ahead of them, behind them,
     /// flat ones, and those that touch an origin.
-    fn story(seed: u64) -> ([EightRays; GROUPS], [[Vector<Eight>; 2]; 2]) {
+    fn story(seed: u64) -> ([EightRays; GROUPS], [[Vector<F32x8>; 2]; 2]) {
         let (mut numbers, (length, scale)) = (Numbers(seed), sizes(seed));
         let width = two_to(-((seed / 54 % 14) as i32));
         let (origin, direction) = (numbers.vector(), numbers.vector());
@@ -352,14 +352,14 @@ mod tests {
         let (mut met, mut missed, mut kept) = (0, 0, 0);
         for seed in 0..20_000 {
             let (rays, boxes) = story(seed);
-            let groups: [Rays<Eight>; GROUPS] = from_fn(|group| Rays::load(&rays[group], false));
+            let groups: [Rays<F32x8>; GROUPS] = from_fn(|group| Rays::load(&rays[group], false));
             let packet = Packet::of(&groups);
             // Rays this way and that, whose products f32 rounds to zero, may be said to meet what is behind them.
             let (length, scale) = sizes(seed);
             if scale / length < two_to(-60) && packet.senses.contains(&Sense::Mixed) {
                 continue;
             }
-            let within = [Eight::ZERO, <Eight as Number>::splat(f32::MAX)];
+            let within = [F32x8::ZERO, <F32x8 as Number>::splat(f32::MAX)];
             let [starts, ends] = packet.crossed(Node::EMPTY.boxes(), within);
             assert_eq!(starts.le(ends).bits(), 0, "seed {seed}: a box that is lacking is met");
             for boxes in boxes {
@@ -371,7 +371,7 @@ mod tests {
                     let by_groups = by_starts.le(by_ends).bits();
                     for (group, rays) in groups.iter().enumerate() {
                         let [enters, leaves] = crossed(one, rays);
-                        let by_rays = enters.max(Eight::ZERO).le(leaves.min(<Eight as Number>::splat(f32::MAX))).bits();
+                        let by_rays = enters.max(F32x8::ZERO).le(leaves.min(<F32x8 as Number>::splat(f32::MAX))).bits();
                         let may_meet = by_all >> lane & by_groups >> group & 1 == 1;
                         assert!(by_rays == 0 || may_meet, "seed {seed}: box {lane}, group {group}");
                         let first = set_bits(by_rays).map(|ray| enters.0[ray].max(0.0)).fold(f32::MAX, f32::min);

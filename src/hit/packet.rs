@@ -6,7 +6,7 @@ use crate::accel::{self, Accelerator, List, Tree};
 use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Prefetch, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
-use crate::lanes::{Eight, LANES, LaneMask, Lanes, Mask, Vector, set_bits};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, Vector, set_bits};
 use crate::ray::{EightRays, Interval, Pencil, Rays};
 use crate::shape::{Crossable, Endless, SideBySide};
 use std::ops::Range;
@@ -23,7 +23,7 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     /// The bits of its place.
     primitive: [N; GROUPS],
     /// The greatest t of each group.
-    reach: Eight,
+    reach: F32x8,
     /// The greatest t of all, or one that was; kept, as it is asked for at each node and leaf.
     farthest: f32,
     /// How often one of the rays has left the packet at a node.
@@ -56,7 +56,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
             within,
             t: [N::splat(TERMINATED); GROUPS],
             primitive: [N::splat(index_as_lane(NO_PRIMITIVE)); GROUPS],
-            reach: Eight([TERMINATED; LANES]),
+            reach: F32x8([TERMINATED; LANES]),
             farthest: TERMINATED,
             rays_left: 0,
             leaves: 0,
@@ -267,7 +267,7 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> 
 
 /// Which of the others it stands before in the scene: a bit for each.
 #[cold]
-fn precedes_in_scene(accel: &Accelerator, primitive: u32, others: &Eight) -> u32 {
+fn precedes_in_scene(accel: &Accelerator, primitive: u32, others: &F32x8) -> u32 {
     let is_first = |other: u32| other == NO_PRIMITIVE || accel.id(primitive) < accel.id(other);
     others.0.iter().rev().fold(0, |first, other| first << 1 | u32::from(is_first(other.to_bits())))
 }
@@ -334,7 +334,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
         };
         let rough = match &edges {
             Some(edges) => edges.rough,
-            None => Eight([f32::INFINITY; LANES]),
+            None => F32x8([f32::INFINITY; LANES]),
         };
         let [low, high] = [boxes[0].store(), boxes[1].store()];
         // All that are to be tested, a bit for each: a loop over them is guessed wrong once, at its end.

@@ -3,7 +3,7 @@
 use super::observer::{NoObserver, Observer, PrimitiveTest};
 use crate::accel::{Accelerator, List, PartId, Tree, Visitor};
 use crate::bvh::{Child, LeafVisitor, Prefetch, Queue};
-use crate::lanes::{Eight, LaneMask, Lanes, SimdKernel, set_bits};
+use crate::lanes::{F32x8, LaneMask, Lanes, SimdKernel, set_bits};
 use crate::ray::{Interval, Rays};
 use crate::shape::{Crossable, Endless, SideBySide};
 use std::ops::ControlFlow;
@@ -113,7 +113,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
 
     /// Tells the observer of a leaf's parts.
     fn report_tests(&mut self, parts: impl Iterator<Item = PartId>, crossing: Option<(N::Mask, N)>) {
-        let (crosses, t) = crossing.map_or((0, Eight::ZERO), |(crosses, t)| (crosses.bits(), t.store()));
+        let (crosses, t) = crossing.map_or((0, F32x8::ZERO), |(crosses, t)| (crosses.bits(), t.store()));
         for (lane, id) in parts.enumerate() {
             self.observer.primitive_tested(PrimitiveTest::of(id, (crosses >> lane & 1 == 1).then_some(t.0[lane])));
         }

@@ -1,6 +1,6 @@
 //! Three coordinates, for one point or for several side by side.
 
-use super::{Eight, LANES, Lanes, Number};
+use super::{F32x8, LANES, Lanes, Number};
 use glam::Vec3;
 use std::ops::{Add, Mul, Sub};
 
@@ -63,14 +63,14 @@ impl<N: Number> Vector<N> {
     }
 }
 
-impl Vector<Eight> {
+impl Vector<F32x8> {
     /// Eight times nothing.
-    pub const ZERO: Self = Self { x: Eight::ZERO, y: Eight::ZERO, z: Eight::ZERO };
+    pub const ZERO: Self = Self { x: F32x8::ZERO, y: F32x8::ZERO, z: F32x8::ZERO };
 
     /// Eight vectors side by side.
     #[inline(always)]
     pub fn of(vectors: [Vec3; LANES]) -> Self {
-        Self { x: Eight(vectors.map(|v| v.x)), y: Eight(vectors.map(|v| v.y)), z: Eight(vectors.map(|v| v.z)) }
+        Self { x: F32x8(vectors.map(|v| v.x)), y: F32x8(vectors.map(|v| v.y)), z: F32x8(vectors.map(|v| v.z)) }
     }
 
     /// The same in what the CPU has.
@@ -107,7 +107,7 @@ impl<N: Lanes> Vector<N> {
 
     /// To memory.
     #[inline(always)]
-    pub fn store(self) -> Vector<Eight> {
+    pub fn store(self) -> Vector<F32x8> {
         Vector { x: self.x.store(), y: self.y.store(), z: self.z.store() }
     }
 }

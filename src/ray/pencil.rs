@@ -112,18 +112,18 @@ fn farthest<N: Lanes>(groups: &[Rays<N>; LANES], t: N, point: Vector<N>) -> N {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Eight;
+    use crate::lanes::F32x8;
     use crate::ray::{EightRays, Ray};
     use glam::Vec3;
     use std::array::from_fn;
 
     /// A packet of rays from one point, but for some.
-    fn pencil(others: &[(usize, usize, Ray)]) -> Option<Pencil<Eight>> {
+    fn pencil(others: &[(usize, usize, Ray)]) -> Option<Pencil<F32x8>> {
         let mut rays = [[Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, 1.0) }; LANES]; LANES];
         for &(group, lane, ray) in others {
             rays[group][lane] = ray;
         }
-        let groups: [Rays<Eight>; LANES] = from_fn(|group| Rays::load(&EightRays::of(&rays[group]), true));
+        let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&EightRays::of(&rays[group]), true));
         Pencil::of(&groups)
     }
 

@@ -7,7 +7,7 @@ use super::{Executor, Sampling};
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::hit::{self, Kernel};
-use crate::lanes::{Eight, Lanes, Number};
+use crate::lanes::{F32x8, Lanes, Number};
 use crate::scene::Scene;
 use crate::shade::{self, ShadowRays};
 use std::num::NonZeroU32;
@@ -63,7 +63,7 @@ fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
     for hits in hits.iter() {
         counts.hits += u64::from(hits.hit_mask.count_ones());
         // Zero for rays without a hit: a sum without branches.
-        let depths = Eight::select(Eight::mask_from_bits(hits.hit_mask), hits.t, Eight::ZERO);
+        let depths = F32x8::select(F32x8::mask_from_bits(hits.hit_mask), hits.t, F32x8::ZERO);
         counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
     }
     for light in scene.lights().iter().filter(|_| scene.shadows()) {

@@ -1,6 +1,6 @@
 //! The number and positions of a pixel's samples.
 
-use crate::lanes::{Eight, LANES};
+use crate::lanes::{F32x8, LANES};
 use std::borrow::Cow;
 use std::num::NonZeroU32;
 use std::ops::Range;
@@ -50,7 +50,7 @@ pub(super) const PASSES: [Range<u32>; 4] = [0..1, 1..4, 4..16, 16..64];
 pub(super) struct SampleBatch {
     pub(super) samples: Range<u32>,
     /// Positions of the batch's samples in their pixels, in groups of eight.
-    pub(super) positions: [[Eight; 2]; MAX_BATCH_RAYS / LANES],
+    pub(super) positions: [[F32x8; 2]; MAX_BATCH_RAYS / LANES],
 }
 
 /// Limit on the rays in a batch: their arrays fit the first-level cache.
@@ -93,7 +93,7 @@ fn split(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
 
 impl SampleBatch {
     pub(super) fn of(samples: Range<u32>) -> Self {
-        let mut batch = Self { samples, positions: [[Eight::ZERO; 2]; MAX_BATCH_RAYS / LANES] };
+        let mut batch = Self { samples, positions: [[F32x8::ZERO; 2]; MAX_BATCH_RAYS / LANES] };
         for ray in 0..MAX_BATCH_RAYS {
             let (x, y) = sample_position(batch.samples.start + (ray % batch.per_pixel()) as u32);
             let [all_x, all_y] = &mut batch.positions[ray / LANES];

@@ -7,7 +7,7 @@ use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::framebuffer::Resolution;
 use crate::hit::Hit;
-use crate::lanes::{Eight, LANES};
+use crate::lanes::{F32x8, LANES};
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade;
@@ -66,7 +66,7 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     buffers.trace(&job, tile, &batch, 0..1);
     let [arriving, light] = [&buffers.arriving[0].light, &buffers.lights[0]].map(|lights| shade::lane_light(lights, 0));
     // The reflectance is the reflected light where the arriving light is 1.
-    buffers.arriving[0].light = [Eight([1.0; LANES]); 3];
+    buffers.arriving[0].light = [F32x8([1.0; LANES]); 3];
     buffers.reflect(&job, &batch);
     PixelTrace {
         q: tiles.q([x as f32, y as f32], sample_position(0).into()).into(),

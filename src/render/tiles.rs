@@ -7,7 +7,7 @@
 use super::sampling::{SampleBatch, footprint_share};
 use crate::camera::{Camera, EyeRays};
 use crate::framebuffer::Resolution;
-use crate::lanes::{ALL, Eight, LANES, Lanes, Number, Vector};
+use crate::lanes::{ALL, F32x8, LANES, Lanes, Number, Vector};
 use crate::ray::EightRays;
 use crate::simd::{self, SimdKernel};
 use glam::Vec3;
@@ -209,7 +209,7 @@ impl SimdKernel for MakeEyeRays<'_> {
         let [left, top] = tiles.corner(tile).map(|at| N::splat(at as f32));
         let origin = Vector::splat(eye_rays.eye());
         for (pixels, &[mut sx, mut sy]) in pixels.chunks(LANES).zip(&batch.positions) {
-            let [mut x, mut y] = [Eight::ZERO; 2];
+            let [mut x, mut y] = [F32x8::ZERO; 2];
             let last = pixels.len() - 1;
             for lane in 0..LANES {
                 let pixel = usize::from(pixels[lane.min(last)]);

@@ -5,7 +5,7 @@ use super::steps::{Buffers, RenderJob, Stage};
 use super::tiles::{PIXELS, Tiles};
 use super::{Executor, Rendered};
 use crate::framebuffer::Framebuffer;
-use crate::lanes::{Eight, LANES};
+use crate::lanes::{F32x8, LANES};
 use crate::scene::Scene;
 use crate::shade::{self, EightLights};
 use std::ops::Range;
@@ -16,7 +16,7 @@ pub(super) fn render(executor: Executor<'_>, scene: &Scene, tiles: &Tiles, sampl
     let parts = tiles.split(framebuffer.pixels_mut());
     let (batches, share) = (SampleBatches::of(0..samples), 1.0 / samples as f32);
     let cost = executor.trace(&RenderJob::new(scene, tiles, Stage::Reflected), parts, |tile, mut part| {
-        let mut sums = [[Eight::ZERO; 3]; PIXELS / LANES];
+        let mut sums = [[F32x8::ZERO; 3]; PIXELS / LANES];
         tile.trace(&batches, |buffers, batch, pixels| add_lights(&mut sums, buffers, batch, pixels));
         tiles.write_all(&tile.buffers.active, |at| shade::lane_light(&sums[at / LANES], at % LANES) * share, &mut part);
     });

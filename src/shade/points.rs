@@ -2,7 +2,7 @@
 
 use crate::accel::{Accelerator, List, PartId, PartIds, Tree, Visitor};
 use crate::hit::EightHits;
-use crate::lanes::{ALL, Eight, LANES, LaneMask, Lanes, Vector, set_bits};
+use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
 use crate::scene::Scene;
 use crate::shape::{AtCrossing, Endless, Part, Points, SideBySide};
@@ -15,13 +15,13 @@ pub struct EightPoints {
     /// Which of the rays have met one, a bit for each. What stands for the others has no meaning.
     pub hit_mask: u32,
     /// Whose it is.
-    pub(super) ids: PartIds<Eight>,
+    pub(super) ids: PartIds<F32x8>,
     /// As [`SurfacePoint`](crate::shape::SurfacePoint) has them.
-    pub(super) position: Vector<Eight>,
-    pub(super) shading_normal: Vector<Eight>,
-    pub(super) geometric_normal: Vector<Eight>,
-    pub(super) clearance: Eight,
-    pub(super) uv: [Eight; 2],
+    pub(super) position: Vector<F32x8>,
+    pub(super) shading_normal: Vector<F32x8>,
+    pub(super) geometric_normal: Vector<F32x8>,
+    pub(super) clearance: F32x8,
+    pub(super) uv: [F32x8; 2],
 }
 
 impl EightPoints {
@@ -32,8 +32,8 @@ impl EightPoints {
         position: Vector::ZERO,
         shading_normal: Vector::ZERO,
         geometric_normal: Vector::ZERO,
-        clearance: Eight::ZERO,
-        uv: [Eight::ZERO; 2],
+        clearance: F32x8::ZERO,
+        uv: [F32x8::ZERO; 2],
     };
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Eight surfaces of any kind, tested one after the other.
 
 use super::{AtCrossing, Crossable, Points, Side, SideBySide, Surface};
-use crate::lanes::{Eight, LANES, LaneMask, Lanes, Vector};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::Vec3;
 use std::array::from_fn;
@@ -35,15 +35,15 @@ impl<S: Surface + Copy + Sync> SideBySide for OneByOne<S> {
     }
 
     #[inline(always)]
-    fn select<N: Lanes>(answer: N::Mask, yes: Self, no: Self) -> Self {
-        let bits = answer.bits();
+    fn select<N: Lanes>(mask: N::Mask, yes: Self, no: Self) -> Self {
+        let bits = mask.bits();
         Self(from_fn(|lane| if bits >> lane & 1 == 1 { yes.0[lane] } else { no.0[lane] }))
     }
 }
 
 impl<S: Surface, N: Lanes> Crossable<N> for OneByOne<S> {
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
-        let (min, mut crosses, mut t) = (min.store(), 0, Eight::ZERO);
+        let (min, mut crosses, mut t) = (min.store(), 0, F32x8::ZERO);
         for (lane, surface) in self.0.iter().enumerate() {
             let within = Interval { min: min.0[lane], max: f32::MAX };
             let probe = Probe::new(ray_of(rays, lane));
@@ -72,7 +72,7 @@ impl<S: Surface, N: Lanes> AtCrossing<N> for OneByOne<S> {
             Some(surface.at_crossing(&ray_of(rays, lane), t.0[lane]))
         });
         let (mut position, mut facing) = (Vector::ZERO, Vector::ZERO);
-        let (mut is_front, mut clearance, mut uv) = (0, Eight::ZERO, [Eight::ZERO; 2]);
+        let (mut is_front, mut clearance, mut uv) = (0, F32x8::ZERO, [F32x8::ZERO; 2]);
         for (lane, point) in points.iter().enumerate() {
             let Some(point) = point else { continue };
             position.put(lane, point.position);

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::bounds::{Bounds, crossed};
 use crate::checks;
-use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
+use crate::lanes::{F32x8, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
 use crate::text::number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -141,7 +141,7 @@ impl<N: Number> AtCrossing<N> for Balls<N> {
     }
 }
 
-impl SideBySide for Balls<Eight> {
+impl SideBySide for Balls<F32x8> {
     type Shape = Sphere;
     type Of<N: Lanes> = Balls<N>;
 
@@ -149,7 +149,7 @@ impl SideBySide for Balls<Eight> {
         let sphere = |lane: usize| shapes.get(lane).copied().unwrap_or(NOWHERE);
         Self {
             center: Vector::of(from_fn(|lane| sphere(lane).center)),
-            radius: Eight(from_fn(|lane| sphere(lane).radius)),
+            radius: F32x8(from_fn(|lane| sphere(lane).radius)),
         }
     }
 
@@ -170,11 +170,8 @@ impl SideBySide for Balls<Eight> {
     }
 
     #[inline(always)]
-    fn select<N: Lanes>(answer: N::Mask, yes: Balls<N>, no: Balls<N>) -> Balls<N> {
-        Balls {
-            center: Vector::select(answer, yes.center, no.center),
-            radius: N::select(answer, yes.radius, no.radius),
-        }
+    fn select<N: Lanes>(mask: N::Mask, yes: Balls<N>, no: Balls<N>) -> Balls<N> {
+        Balls { center: Vector::select(mask, yes.center, no.center), radius: N::select(mask, yes.radius, no.radius) }
     }
 }
 

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::bounds::{Bounds, crossed};
 use crate::checks::{self, SceneFault};
-use crate::lanes::{Eight, Lanes, Mask, Number, Vector};
+use crate::lanes::{F32x8, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Pencil, Probe, Ray, Rays, nearest_in, sheared_exactly};
 use crate::scene_text::{Span, SyntaxNode};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
@@ -208,7 +208,7 @@ impl<N: Number> Crossable<N> for Corners<N> {
     }
 }
 
-impl SideBySide for Corners<Eight> {
+impl SideBySide for Corners<F32x8> {
     type Shape = Triangle;
     type Of<N: Lanes> = Corners<N>;
 
@@ -244,8 +244,8 @@ impl SideBySide for Corners<Eight> {
     }
 
     #[inline(always)]
-    fn select<N: Lanes>(answer: N::Mask, Corners([a, b, c]): Corners<N>, Corners(no): Corners<N>) -> Corners<N> {
-        let of_two = |yes, no| Vector::select(answer, yes, no);
+    fn select<N: Lanes>(mask: N::Mask, Corners([a, b, c]): Corners<N>, Corners(no): Corners<N>) -> Corners<N> {
+        let of_two = |yes, no| Vector::select(mask, yes, no);
         Corners([of_two(a, no[0]), of_two(b, no[1]), of_two(c, no[2])])
     }
 }

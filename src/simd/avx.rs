@@ -3,7 +3,7 @@
 #![allow(unsafe_code)]
 
 use super::sse2::map_lanes;
-use crate::lanes::{Eight, LANES, LaneMask, Lanes, Number, SimdKernel};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Number, SimdKernel};
 use std::arch::x86_64::{
     __m256, _mm256_add_ps, _mm256_andnot_ps, _mm256_castps_si256, _mm256_cvtss_f32, _mm256_div_ps, _mm256_floor_ps,
     _mm256_load_ps, _mm256_max_ps, _mm256_min_ps, _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_permutevar8x32_ps,
@@ -52,7 +52,7 @@ impl<M> Register<M> {
 macro_rules! avx {
     ($instruction:expr) => {
         // SAFETY: the CPU has AVX2, as `Register` says, and where masks are asked for AVX-512, as theirs says; what is
-        // loaded and stored is a whole and aligned `Eight`.
+        // loaded and stored is a whole and aligned `F32x8`.
         unsafe { $instruction }
     };
 }
@@ -162,13 +162,13 @@ impl<M: MaskOps> Lanes for Register<M> {
     }
 
     #[inline(always)]
-    fn load(numbers: &Eight) -> Self {
+    fn load(numbers: &F32x8) -> Self {
         Self::of(avx!(_mm256_load_ps(numbers.0.as_ptr())))
     }
 
     #[inline(always)]
-    fn store(self) -> Eight {
-        let mut numbers = Eight([0.0; LANES]);
+    fn store(self) -> F32x8 {
+        let mut numbers = F32x8([0.0; LANES]);
         avx!(_mm256_store_ps(numbers.0.as_mut_ptr(), self.0));
         numbers
     }

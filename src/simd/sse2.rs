@@ -3,7 +3,7 @@
 #![allow(unsafe_code)]
 
 use super::SimdKernel;
-use crate::lanes::{Eight, LANES, LaneMask, Lanes, Mask, Number};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, Number};
 use std::arch::x86_64::{
     __m128, _mm_add_ps, _mm_and_ps, _mm_and_si128, _mm_andnot_ps, _mm_castps_si128, _mm_castsi128_ps, _mm_cmpeq_epi32,
     _mm_cmple_ps, _mm_cmplt_ps, _mm_cvtepi32_ps, _mm_cvttps_epi32, _mm_div_ps, _mm_load_ps, _mm_max_ps, _mm_min_ps,
@@ -24,12 +24,12 @@ pub(super) fn map_lanes<N: Lanes, const IN: usize, const OUT: usize>(
     numbers: [N; IN],
     formula: impl Fn([f32; IN]) -> [f32; OUT],
 ) -> [N; OUT] {
-    let mut stored = [Eight::ZERO; IN];
+    let mut stored = [F32x8::ZERO; IN];
     for (stored, numbers) in stored.iter_mut().zip(numbers) {
         *stored = numbers.store();
     }
     let mut results = [N::splat(0.0); OUT];
-    for (results, stored) in results.iter_mut().zip(Eight::map_lanes(stored, formula)) {
+    for (results, stored) in results.iter_mut().zip(F32x8::map_lanes(stored, formula)) {
         *results = N::load(&stored);
     }
     results
@@ -49,7 +49,7 @@ const WHOLE: f32 = 8_388_608.0;
 /// An instruction of SSE2.
 macro_rules! sse {
     ($instruction:expr) => {
-        // SAFETY: every x86-64 has SSE2; what is loaded and stored is four numbers of an `Eight`, which is aligned.
+        // SAFETY: every x86-64 has SSE2; what is loaded and stored is four numbers of an `F32x8`, which is aligned.
         unsafe { $instruction }
     };
 }
@@ -185,14 +185,14 @@ impl Lanes for Registers {
     }
 
     #[inline(always)]
-    fn load(numbers: &Eight) -> Self {
+    fn load(numbers: &F32x8) -> Self {
         let (first, last) = numbers.0.split_at(LANES / 2);
         Self(sse!([_mm_load_ps(first.as_ptr()), _mm_load_ps(last.as_ptr())]))
     }
 
     #[inline(always)]
-    fn store(self) -> Eight {
-        let mut numbers = Eight::ZERO;
+    fn store(self) -> F32x8 {
+        let mut numbers = F32x8::ZERO;
         let (first, last) = numbers.0.split_at_mut(LANES / 2);
         sse!(_mm_store_ps(first.as_mut_ptr(), self.0[0]));
         sse!(_mm_store_ps(last.as_mut_ptr(), self.0[1]));

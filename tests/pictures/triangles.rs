@@ -11,7 +11,7 @@ use termtrace::internals::hit::{
     Kernel, Observer, PrimitiveTest, any_hit, any_hit_observed, any_hits, closest_hit, closest_hit_observed,
     closest_hits,
 };
-use termtrace::internals::lanes::{ALL, Eight, LANES, set_bits};
+use termtrace::internals::lanes::{ALL, F32x8, LANES, set_bits};
 use termtrace::internals::light::LightSource;
 use termtrace::internals::mesh_file::MeshFile;
 use termtrace::internals::ray::{EightRays, Interval, Probe, Ray, Rays};
@@ -504,7 +504,7 @@ fn a_tree_is_never_too_deep_for_its_stack() {
     let (bvh, leaves) = Bvh::new(&boxes);
     let ray = Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 1.0, 0.0) };
     let mut count = Count(&leaves, 0);
-    let rays = Rays::<Eight>::load(&EightRays::of(&[ray]), false);
+    let rays = Rays::<F32x8>::load(&EightRays::of(&[ray]), false);
     bvh.visit(bvh.root().unwrap(), &rays, Interval::IN_FRONT, &mut Queue::default(), &mut count);
     assert_eq!(count.1, boxes.len(), "the ray meets them all");
 }

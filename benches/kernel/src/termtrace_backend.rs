@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::Instant;
 use termtrace::internals::hit::{self, EightHits, Kernel};
-use termtrace::internals::lanes::{Eight, Vector};
+use termtrace::internals::lanes::{F32x8, Vector};
 use termtrace::internals::mesh_file::MeshFile;
 use termtrace::internals::ray::{EightRays, Ray};
 use termtrace::internals::shade::{self, EightPoints};
@@ -93,8 +93,8 @@ impl Termtrace {
 /// Rays through four by two pixels, those inside the tile.
 fn eye_rays(f: &Frame, [x, y]: [u32; 2], [x1, y1]: [u32; 2]) -> EightRays {
     let (across, down) =
-        (Eight([0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]), Eight([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]));
-    let (at_x, at_y) = (Eight([x as f32; 8]) + across, Eight([y as f32; 8]) + down);
+        (F32x8([0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]), F32x8([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]));
+    let (at_x, at_y) = (F32x8([x as f32; 8]) + across, F32x8([y as f32; 8]) + down);
     let [d00, du, dv] = [f.d00, f.du, f.dv].map(|v| Vector::splat(vec3(v)));
     let is_inside = |lane: u32| x + lane % 4 < x1 && y + lane / 4 < y1;
     let asked = if is_inside(7) {

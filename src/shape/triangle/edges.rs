@@ -1,7 +1,7 @@
 //! Triangles as they are seen from a pencil's apex.
 
 use super::Corners;
-use crate::lanes::{Eight, LaneMask, Lanes, Vector};
+use crate::lanes::{F32x8, LaneMask, Lanes, Vector};
 use crate::ray::Pencil;
 
 /// What tells of eight triangles beforehand which rays of a pencil pass them by, and how much doubt there is of the others.
@@ -12,11 +12,11 @@ use crate::ray::Pencil;
 /// sign for the whole group, beyond all doubt, no ray of it crosses the triangle, neither in f32 nor in f64.
 pub struct Edges {
     /// What stands before the place's x and y, and what is added, for each corner.
-    weights: [Vector<Eight>; 3],
+    weights: [Vector<F32x8>; 3],
     /// By how much they may be off, at most.
-    doubt: Eight,
+    doubt: F32x8,
     /// By how much the weights of any ray of the pencil may be off in the test itself, at most: no less than its own doubt.
-    pub rough: Eight,
+    pub rough: F32x8,
 }
 
 impl Edges {
@@ -35,7 +35,7 @@ impl Edges {
 
 /// Between what a weight lies for the rays of each group.
 #[inline(always)]
-fn range<N: Lanes>(weight: &Vector<Eight>, lane: usize, pencil: &Pencil<N>) -> [N; 2] {
+fn range<N: Lanes>(weight: &Vector<F32x8>, lane: usize, pencil: &Pencil<N>) -> [N; 2] {
     let Vector { x, y, z } = Vector::<N>::splat(weight.of_lane(lane));
     let middle = pencil.middles[0] * x + pencil.middles[1] * y + z;
     let reach = pencil.reaches[0] * x.abs() + pencil.reaches[1] * y.abs();
@@ -83,7 +83,7 @@ impl<N: Lanes> Corners<N> {
 #[cfg(test)]
 mod tests {
     use super::super::Triangle;
-    use crate::lanes::{Eight, LANES, LaneMask, Number};
+    use crate::lanes::{F32x8, LANES, LaneMask, Number};
     use crate::ray::{EightRays, Pencil, Ray, Rays};
     use crate::shape::triangle::{Corners, doubt};
     use crate::shape::{Crossable, SideBySide};
@@ -155,9 +155,9 @@ mod tests {
     }
 
     /// What the test finds that goes by `rough` first: t where a ray crosses the triangle.
-    fn found(shape: &Corners<Eight>, rays: &Rays<Eight>, rough: f32) -> Option<[u32; LANES]> {
-        let crossing = shape.first_crossing_in_pencil(rays, Eight::ZERO, Eight::splat(rough));
-        crossing.map(|(crosses, t)| Eight::select(crosses, t, Eight::splat(-1.0)).0.map(f32::to_bits))
+    fn found(shape: &Corners<F32x8>, rays: &Rays<F32x8>, rough: f32) -> Option<[u32; LANES]> {
+        let crossing = shape.first_crossing_in_pencil(rays, F32x8::ZERO, F32x8::splat(rough));
+        crossing.map(|(crosses, t)| F32x8::select(crosses, t, F32x8::splat(-1.0)).0.map(f32::to_bits))
     }
 
     /// However long or short directions are, and whoever else is among the rays.
@@ -177,12 +177,12 @@ mod tests {
         for (one, other) in stories.into_iter().chain([(forward, endless)]) {
             let mut rays = [[one; LANES]; LANES];
             rays[3][5] = other;
-            let groups: [Rays<Eight>; LANES] = from_fn(|group| Rays::load(&EightRays::of(&rays[group]), true));
+            let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&EightRays::of(&rays[group]), true));
             let pencil = Pencil::of(&groups).expect("all begin in one point");
-            let shapes = Corners::<Eight>::of(&[across, along, close].map(Triangle::unchecked));
+            let shapes = Corners::<F32x8>::of(&[across, along, close].map(Triangle::unchecked));
             let edges = shapes.edges(&pencil);
             for lane in 0..3 {
-                let (shape, rough) = (shapes.splat::<Eight>(lane), edges.rough.0[lane]);
+                let (shape, rough) = (shapes.splat::<F32x8>(lane), edges.rough.0[lane]);
                 for rays in &groups {
                     assert_eq!(found(&shape, rays, rough), found(&shape, rays, f32::INFINITY), "{one:?} {lane}");
                 }
@@ -196,12 +196,12 @@ mod tests {
         let (mut near, mut all) = (0, 0);
         for seed in 0..6_000 {
             let (triangles, rays) = story(seed);
-            let groups: [Rays<Eight>; LANES] = from_fn(|group| Rays::load(&rays[group], true));
+            let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&rays[group], true));
             let Some(pencil) = Pencil::of(&groups) else { continue };
-            let shapes = Corners::<Eight>::of(&triangles);
+            let shapes = Corners::<F32x8>::of(&triangles);
             let edges = shapes.edges(&pencil);
             for lane in 0..LANES {
-                let (shape, rough) = (shapes.splat::<Eight>(lane), edges.rough.0[lane]);
+                let (shape, rough) = (shapes.splat::<F32x8>(lane), edges.rough.0[lane]);
                 for (group, rays) in groups.iter().enumerate() {
                     let own = doubt(shape.sheared(rays), rays.shear.length).reduce_max();
                     assert!(own <= rough, "seed {seed}: triangle {lane}, group {group}: {own} and {rough}");
@@ -220,15 +220,15 @@ mod tests {
         let (mut passing, mut missing, mut pencils) = (0, 0, [0; 2]);
         for seed in 0..6_000 {
             let (triangles, rays) = story(seed);
-            let groups: [Rays<Eight>; LANES] = from_fn(|group| Rays::load(&rays[group], true));
-            let shapes = Corners::<Eight>::of(&triangles);
+            let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&rays[group], true));
+            let shapes = Corners::<F32x8>::of(&triangles);
             let Some(pencil) = Pencil::of(&groups) else { continue };
             let edges = shapes.edges(&pencil);
             pencils[usize::from(is_backward(seed))] += 1;
             for lane in 0..LANES {
                 let passed_by = edges.passed_by(lane, &pencil);
                 for (group, rays) in groups.iter().enumerate() {
-                    let crossing = shapes.splat::<Eight>(lane).first_crossing(rays, Eight::splat(f32::MIN));
+                    let crossing = shapes.splat::<F32x8>(lane).first_crossing(rays, F32x8::splat(f32::MIN));
                     let crosses = crossing.map_or(0, |(crosses, _)| crosses.bits());
                     let is_passed_by = passed_by >> group & 1 == 1;
                     assert!(!is_passed_by || crosses == 0, "seed {seed}: triangle {lane}, group {group}: {crosses:b}");
