@@ -6,7 +6,7 @@
 use crate::bounds::Bounds;
 use crate::bvh::Bvh;
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes};
-use crate::progress::{Cancelled, Progress, Watcher, Work};
+use crate::progress::{Cancelled, Progress, Reporter, Work};
 use crate::shape::{Endless, Part, Shape, SideBySide, Surface, surfaces};
 use crate::simd;
 use crate::threads;
@@ -253,12 +253,12 @@ impl Accelerator {
         built
     }
 
-    /// [`new`](Self::new), until the watcher cancels it.
+    /// [`new`](Self::new), until the reporter cancels it.
     pub(crate) fn new_or_cancel<'s>(
         shapes: impl Iterator<Item = &'s Shape>,
-        watcher: &Watcher<'_>,
+        reporter: &Reporter<'_>,
     ) -> Result<Self, Cancelled> {
-        Self::reporting(shapes, &|progress| watcher.tell(progress))
+        Self::reporting(shapes, &|progress| reporter.report(progress))
     }
 
     fn reporting<'s, E: Send>(

@@ -4,7 +4,7 @@
 //! without a writer, more bytes than there is memory. [`read`] is the only way to the bytes behind a name. Standard
 //! input has no name: the command line reads it, up to a size.
 
-use crate::progress::{Progress, Watcher, Work};
+use crate::progress::{Progress, Reporter, Work};
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
@@ -31,12 +31,12 @@ pub enum Accepted {
     FilesAndPipes,
 }
 
-/// Bytes between two reports to the watcher: 1 MiB, which a disk delivers in about a millisecond.
+/// Bytes between two reports to the reporter: 1 MiB, which a disk delivers in about a millisecond.
 const CHUNK_LEN: u64 = 1 << 20;
 
 /// Returns all bytes of the file at `path`, limited to `max_len(bytes so far)`, which may depend on the file's beginning.
 ///
-/// Reports the number of bytes read to the watcher, but not that the file is needed. After a cancel reading ends with
+/// Reports the number of bytes read to the reporter, but not that the file is needed. After a cancel reading ends with
 /// [`ErrorKind::Interrupted`]. Waits for a pipe for a second at a time. Memory grows with the bytes read, not with the
 /// size that is claimed for them.
 ///
@@ -47,7 +47,7 @@ pub fn read(
     path: &Path,
     accepted: Accepted,
     max_len: impl Fn(&[u8]) -> usize,
-    watcher: &Watcher<'_>,
+    reporter: &Reporter<'_>,
 ) -> io::Result<Vec<u8>> {
     let (mut file, size) = open(path, accepted)?;
     let size = usize::try_from(size).unwrap_or(usize::MAX);
@@ -55,7 +55,7 @@ pub fn read(
     let mut bytes = Vec::new();
     loop {
         let work = Work::Reading(name.clone().into_owned());
-        if watcher.tell(Progress { work, done: bytes.len(), total: size }).is_err() {
+        if reporter.report(Progress { work, done: bytes.len(), total: size }).is_err() {
             return Err(ErrorKind::Interrupted.into());
         }
         if read_chunk(&mut file, &mut bytes)? {
@@ -98,7 +98,7 @@ mod tests {
     use std::ops::ControlFlow;
 
     fn read_up_to(max_len: usize, path: &Path, accepted: Accepted) -> Result<Vec<u8>, String> {
-        read(path, accepted, |_| max_len, &Watcher::patient()).map_err(|error| reason(&error))
+        read(path, accepted, |_| max_len, &Reporter::silent()).map_err(|error| reason(&error))
     }
 
     #[test]
@@ -113,23 +113,23 @@ mod tests {
         assert_eq!(read_up_to(2 << 20, &path, Accepted::Files), too_large("2 MiB"));
         // The first bytes determine the limit.
         let max_len = |bytes: &[u8]| if bytes.starts_with(&[7]) { 64 << 10 } else { usize::MAX };
-        let error = read(&path, Accepted::Files, max_len, &Watcher::patient()).expect_err("too large");
+        let error = read(&path, Accepted::Files, max_len, &Reporter::silent()).expect_err("too large");
         assert_eq!(Err(reason(&error)), too_large("64 KiB"));
         // The claimed size alone is enough.
         File::create(&path).and_then(|file| file.set_len(1 << 42)).expect("a sparse file can be made");
         assert_eq!(read_up_to(1 << 30, &path, Accepted::Files), too_large("1 GiB"));
     }
 
-    /// The watcher is asked between two waits.
+    /// The reporter is asked between two waits.
     #[test]
     fn reading_ends_when_the_watcher_has_gone() {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let path = folder.path().join("file");
         fs::write(&path, vec![7; 3 << 20]).expect("written");
-        let hear = |progress: Progress| {
+        let on_progress = |progress: Progress| {
             if progress.done < 2 << 20 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
-        let error = read(&path, Accepted::Files, |_| usize::MAX, &Watcher::new(&hear)).expect_err("given up");
+        let error = read(&path, Accepted::Files, |_| usize::MAX, &Reporter::new(&on_progress)).expect_err("given up");
         assert_eq!(error.kind(), ErrorKind::Interrupted);
     }
 }

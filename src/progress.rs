@@ -38,21 +38,21 @@ pub enum Work {
 }
 
 /// A receiver of progress reports, which may come from any thread, and through which the work can be cancelled.
-pub struct Watcher<'w> {
-    hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
-    hear_need: Option<&'w (dyn Fn(&Path) + Sync)>,
+pub struct Reporter<'w> {
+    on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
+    on_dependency: Option<&'w (dyn Fn(&Path) + Sync)>,
     cancellation: Cancellation,
 }
 
-impl<'w> Watcher<'w> {
-    /// Reports progress to `hear`, and cancels the work when it returns `Break`.
-    pub fn new(hear: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
-        Self { hear, hear_need: None, cancellation: Cancellation::default() }
+impl<'w> Reporter<'w> {
+    /// Reports progress to `on_progress`, and cancels the work when it returns `Break`.
+    pub fn new(on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
+        Self { on_progress, on_dependency: None, cancellation: Cancellation::default() }
     }
 
-    /// Reports each file to `hear_need` as well, before it is opened.
-    pub fn with_needs(self, hear_need: &'w (dyn Fn(&Path) + Sync)) -> Self {
-        Self { hear_need: Some(hear_need), ..self }
+    /// Reports each file to `on_dependency` as well, before it is opened.
+    pub fn with_dependencies(self, on_dependency: &'w (dyn Fn(&Path) + Sync)) -> Self {
+        Self { on_dependency: Some(on_dependency), ..self }
     }
 
     /// Cancels the work also when this token is cancelled.
@@ -60,31 +60,31 @@ impl<'w> Watcher<'w> {
         Self { cancellation: cancellation.clone(), ..self }
     }
 
-    /// Returns a watcher that ignores reports and never cancels.
-    pub fn patient() -> Watcher<'static> {
-        Watcher::new(&|_| ControlFlow::Continue(()))
+    /// Returns a reporter that ignores reports and never cancels.
+    pub fn silent() -> Reporter<'static> {
+        Reporter::new(&|_| ControlFlow::Continue(()))
     }
 
     /// Reports progress.
     ///
     /// # Errors
     /// [`Cancelled`], if the work is cancelled.
-    pub fn tell(&self, progress: Progress) -> Result<(), Cancelled> {
-        if (self.hear)(progress).is_break() {
+    pub fn report(&self, progress: Progress) -> Result<(), Cancelled> {
+        if (self.on_progress)(progress).is_break() {
             self.cancellation.cancel();
         }
-        if self.is_gone() { Err(Cancelled) } else { Ok(()) }
+        if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
     /// Reports a file that the work needs, which may be missing.
-    pub fn needs(&self, file: &Path) {
-        if let Some(hear) = self.hear_need {
-            hear(file);
+    pub fn report_dependency(&self, file: &Path) {
+        if let Some(on_dependency) = self.on_dependency {
+            on_dependency(file);
         }
     }
 
     /// Returns whether the work is cancelled.
-    pub fn is_gone(&self) -> bool {
+    pub fn is_cancelled(&self) -> bool {
         self.cancellation.is_cancelled()
     }
 }

@@ -15,7 +15,7 @@ pub use path::{PathFile, WrittenKeyframe};
 
 use crate::light::WrittenLight;
 use crate::material::WrittenMaterial;
-use crate::progress::Watcher;
+use crate::progress::Reporter;
 use crate::scene_text::{Faults, SyntaxNode, Value};
 use crate::shape::WrittenShape;
 use crate::written::{Fields, NodeReader, Spanned, WrittenColor, WrittenNumber};
@@ -101,8 +101,8 @@ pub struct WrittenObject {
 
 impl SceneFile {
     /// Reads a scene from its tree; anything else is added to `faults`. After a cancel the lists end early.
-    pub fn read(root: &SyntaxNode<'_>, watcher: &Watcher<'_>, faults: &mut Faults) -> Self {
-        let mut reader = NodeReader::new(faults, watcher);
+    pub fn read(root: &SyntaxNode<'_>, reporter: &Reporter<'_>, faults: &mut Faults) -> Self {
+        let mut reader = NodeReader::new(faults, reporter);
         let Some(fields) = reader.root(root) else {
             return Self::default();
         };

@@ -8,7 +8,7 @@ use crate::framebuffer::Resolution;
 use crate::grid::Size;
 use crate::hit::{self, Kernel};
 use crate::maps::Map;
-use crate::progress::Watcher;
+use crate::progress::Reporter;
 use crate::ray::{Interval, Ray};
 use crate::render::{self, ProgressiveRender, Sampling};
 use crate::scene::{Draft, Scene};
@@ -56,7 +56,7 @@ fn builds(work: impl FnOnce() + Send) -> u32 {
 #[test]
 fn a_scene_is_built_once_whichever_way_it_is_made() {
     assert_eq!(builds(|| drop(Scene::from_ron("x", SPHERES).expect("a scene"))), 1);
-    let draft = || Draft::from_bytes("x", SPHERES.as_bytes(), &Watcher::patient()).expect("a scene");
+    let draft = || Draft::from_bytes("x", SPHERES.as_bytes(), &Reporter::silent()).expect("a scene");
     assert_eq!(builds(|| drop(draft())), 0);
     assert_eq!(builds(|| drop(draft().finish())), 1);
 }

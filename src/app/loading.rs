@@ -6,7 +6,7 @@
 
 use super::source::Source;
 use super::watching::Needed;
-use crate::progress::{Cancellation, Progress, Watcher};
+use crate::progress::{Cancellation, Progress, Reporter};
 use crate::scene::{Draft, Scene};
 use crate::terminal::{self, Waker};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -231,12 +231,12 @@ fn load<'p, E: Send>(
     relieve: &(dyn Fn() + Sync),
     pool: impl FnOnce() -> Option<&'p ThreadPool>,
 ) {
-    let hear = |progress| {
+    let on_progress = |progress| {
         teller.tell_progress(progress);
         ControlFlow::Continue(())
     };
     let needed = Mutex::new(Vec::new());
-    let hear_need = |file: &Path| {
+    let on_dependency = |file: &Path| {
         let file = Needed::now(file);
         if file.is_other() {
             relieve();
@@ -245,27 +245,27 @@ fn load<'p, E: Send>(
             needed.push(file);
         }
     };
-    let watcher = Watcher::new(&hear).with_needs(&hear_need).cancelled_by(cancellation);
-    let read = source.read(&watcher);
+    let reporter = Reporter::new(&on_progress).with_dependencies(&on_dependency).cancelled_by(cancellation);
+    let read = source.read(&reporter);
     let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
     teller.tell(News::Needs(needed));
     match read {
         // The result of a cancelled load is not wanted, whatever it is.
         _ if cancellation.is_cancelled() => {}
         Ok(draft) => match pool() {
-            Some(pool) => pool.install(|| build(draft, &watcher, teller)),
-            None => build(draft, &watcher, teller),
+            Some(pool) => pool.install(|| build(draft, &reporter, teller)),
+            None => build(draft, &reporter, teller),
         },
         Err(fault) => teller.tell(News::Fault(fault)),
     }
 }
 
-fn build<E>(draft: Draft, watcher: &Watcher<'_>, teller: &Teller<'_, E>) {
+fn build<E>(draft: Draft, reporter: &Reporter<'_>, teller: &Teller<'_, E>) {
     if let Some(sketch) = draft.sketch() {
         teller.tell(News::Sketch(sketch));
     }
     let _ = terminal::reach_in_thread("build");
-    if let Ok(scene) = draft.build_or_cancel(watcher) {
+    if let Ok(scene) = draft.build_or_cancel(reporter) {
         teller.tell(News::Scene(scene));
     }
 }
@@ -283,9 +283,9 @@ mod tests {
         Loader::start(None, waker).expect("a thread can be started")
     }
 
-    fn draft(watcher: &Watcher<'_>) -> Draft {
+    fn draft(reporter: &Reporter<'_>) -> Draft {
         let text = b"(camera: (eye: (0, 0, 5), target: (0, 0, 0)))";
-        Draft::from_bytes("x", text, watcher).expect("the scene is fine")
+        Draft::from_bytes("x", text, reporter).expect("the scene is fine")
     }
 
     /// Waits until the load ends and returns whether it gave a scene.
@@ -299,14 +299,14 @@ mod tests {
         let (begun, at_work, most) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)), Arc::default());
         let source = |is_last: bool| {
             let (begun, at_work, most) = (Arc::clone(&begun), Arc::clone(&at_work), Arc::<AtomicUsize>::clone(&most));
-            Source::new("x", move |watcher| {
+            Source::new("x", move |reporter| {
                 begun.fetch_add(1, Ordering::SeqCst);
                 most.fetch_max(1 + at_work.fetch_add(1, Ordering::SeqCst), Ordering::SeqCst);
-                while !is_last && !watcher.is_gone() {
+                while !is_last && !reporter.is_cancelled() {
                     thread::yield_now();
                 }
                 at_work.fetch_sub(1, Ordering::SeqCst);
-                Ok(draft(watcher))
+                Ok(draft(reporter))
             })
         };
         let loader = loader();
@@ -332,17 +332,17 @@ mod tests {
         assert!(made.is_ok_and(|status| status.success()), "a pipe with a name can be made");
         let (told, opens) = channel();
         let path = pipe.clone();
-        let waiting = Source::new("pipe", move |watcher| {
-            watcher.needs(&path);
+        let waiting = Source::new("pipe", move |reporter| {
+            reporter.report_dependency(&path);
             let _ = told.send(());
             let _ = fs::read(&path);
-            Ok(draft(watcher))
+            Ok(draft(reporter))
         });
         let loader = loader();
         let first = loader.load(waiting).expect("the thread lives");
         opens.recv().expect("it begins");
         drop(first);
-        let second = loader.load(Source::new("x", |watcher| Ok(draft(watcher)))).expect("the thread lives");
+        let second = loader.load(Source::new("x", |reporter| Ok(draft(reporter)))).expect("the thread lives");
         assert!(has_scene(&second));
         // Opens the writing end, so that the waiting thread ends.
         drop(fs::OpenOptions::new().write(true).open(&pipe));
@@ -353,6 +353,6 @@ mod tests {
         let loader = loader();
         let panics = loader.load(Source::new("x", |_| panic!("a test"))).expect("the thread lives");
         assert!(panics.news.iter().any(|news| matches!(news, News::Panic(_))));
-        assert!(has_scene(&loader.load(Source::new("x", |watcher| Ok(draft(watcher)))).expect("the thread lives")));
+        assert!(has_scene(&loader.load(Source::new("x", |reporter| Ok(draft(reporter)))).expect("the thread lives")));
     }
 }

@@ -1,7 +1,7 @@
 //! The source of a scene.
 
 use crate::mesh_file;
-use crate::progress::{Cancelled, Unfinished, Watcher};
+use crate::progress::{Cancelled, Reporter, Unfinished};
 use crate::scene::{Draft, LoadError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -25,21 +25,21 @@ pub(super) struct Named {
     pub(super) orbited: bool,
 }
 
-type Read<E> = dyn Fn(&Watcher<'_>) -> Result<Draft, E> + Send + Sync;
+type Read<E> = dyn Fn(&Reporter<'_>) -> Result<Draft, E> + Send + Sync;
 
 impl Source {
     /// Returns the scene or mesh in the file at `path`. A mesh starts in orbit mode.
     pub fn of_file(path: &Path) -> Self {
         let (name, file) = (path.to_string_lossy().into_owned(), path.to_owned());
         let is_mesh = mesh_file::is_mesh(&name, &[]);
-        let source = Self::new(name, move |watcher| draft(&file, watcher));
+        let source = Self::new(name, move |reporter| draft(&file, reporter));
         let source = source.with_file(path.to_owned());
         if is_mesh { source.orbited() } else { source }
     }
 }
 
-fn draft(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
-    Draft::load(path, watcher).map_err(|unfinished| match unfinished {
+fn draft(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
+    Draft::load(path, reporter).map_err(|unfinished| match unfinished {
         Unfinished::Failed(error) => error,
         Unfinished::Cancelled => LoadError::CannotRead { path: path.to_owned(), error: io::Error::other(Cancelled) },
     })
@@ -48,13 +48,13 @@ fn draft(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, LoadError> {
 impl<E> Source<E> {
     /// Returns a source that calls `read`, with the name shown to the user.
     ///
-    /// `read` should return soon after its watcher [is gone](Watcher::is_gone), with any result: one scene is read at a
-    /// time, and the next one waits for it. Only after reporting a pipe to its watcher may it block for ever. The files
-    /// that it reports as [needed](Watcher::needs) are watched, and the scene is read again when one changes.
+    /// `read` should return soon after its reporter [is cancelled](Reporter::is_cancelled), with any result: one scene is read at a
+    /// time, and the next one waits for it. Only after reporting a pipe to its reporter may it block for ever. The files
+    /// that it reports as [dependencies](Reporter::report_dependency) are watched, and the scene is read again when one changes.
     #[doc(hidden)]
     pub fn new(
         name: impl Into<String>,
-        read: impl Fn(&Watcher<'_>) -> Result<Draft, E> + Send + Sync + 'static,
+        read: impl Fn(&Reporter<'_>) -> Result<Draft, E> + Send + Sync + 'static,
     ) -> Self {
         Self { named: Named { name: name.into(), file: None, orbited: false }, read: Arc::new(read) }
     }
@@ -80,8 +80,8 @@ impl<E> Source<E> {
     /// # Errors
     /// The error of `read`.
     #[doc(hidden)]
-    pub fn read(&self, watcher: &Watcher<'_>) -> Result<Draft, E> {
-        (self.read)(watcher)
+    pub fn read(&self, reporter: &Reporter<'_>) -> Result<Draft, E> {
+        (self.read)(reporter)
     }
 }
 

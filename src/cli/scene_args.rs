@@ -5,7 +5,7 @@ use super::scene_source::SceneSource;
 use clap::Args;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
-use termtrace::internals::progress::Watcher;
+use termtrace::internals::progress::Reporter;
 use termtrace::internals::scene::Draft;
 use termtrace::{Camera, CameraError, Pose, Scene};
 
@@ -71,9 +71,9 @@ pub(super) struct CameraArgs {
 }
 
 impl CameraArgs {
-    /// The scene as it is to be looked at, not built yet, until the watcher cancels it.
-    pub(super) fn draft(&self, source: &SceneSource, watcher: &Watcher<'_>) -> Result<Draft, Failure> {
-        let draft = source.draft(watcher)?;
+    /// The scene as it is to be looked at, not built yet, until the reporter cancels it.
+    pub(super) fn draft(&self, source: &SceneSource, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
+        let draft = source.draft(reporter)?;
         let camera = self.camera(draft.camera()).map_err(usage)?;
         Ok(draft.with_camera(camera))
     }

@@ -5,7 +5,7 @@ use super::suggestions;
 use std::fmt;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use termtrace::internals::progress::{Unfinished, Watcher};
+use termtrace::internals::progress::{Reporter, Unfinished};
 use termtrace::internals::scene::Draft;
 use termtrace::{LoadError, Scene, SceneError};
 
@@ -31,15 +31,15 @@ impl SceneSource {
 
     /// The scene as it was written.
     pub(super) fn load(&self) -> Result<Scene, Failure> {
-        self.draft(&Watcher::patient()).map(Draft::finish)
+        self.draft(&Reporter::silent()).map(Draft::finish)
     }
 
-    /// The scene, not built yet, until the watcher cancels it.
-    pub(super) fn draft(&self, watcher: &Watcher<'_>) -> Result<Draft, Failure> {
+    /// The scene, not built yet, until the reporter cancels it.
+    pub(super) fn draft(&self, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
         match self {
-            Self::File(path) => Draft::load(path, watcher).map_err(|error| not_loaded(path, error)),
-            Self::Stdin(text) => Draft::from_bytes("standard input", text, watcher).map_err(wrong),
-            Self::BuiltIn => Draft::from_bytes("built-in scene", BUILT_IN.as_bytes(), watcher).map_err(wrong),
+            Self::File(path) => Draft::load(path, reporter).map_err(|error| not_loaded(path, error)),
+            Self::Stdin(text) => Draft::from_bytes("standard input", text, reporter).map_err(wrong),
+            Self::BuiltIn => Draft::from_bytes("built-in scene", BUILT_IN.as_bytes(), reporter).map_err(wrong),
         }
     }
 }

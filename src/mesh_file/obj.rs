@@ -20,7 +20,7 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Mete
     let mut reader =
         ObjReader { text, mesh: MeshBuilder::default(), library: None, corners: FaceCorners::default(), side_files };
     while reader.text.go_to_statement() {
-        meter.reach(reader.text.at())?;
+        meter.advance_to(reader.text.at())?;
         reader.statement()?;
     }
     let ObjReader { mut mesh, library, .. } = reader;

@@ -6,7 +6,7 @@ use super::side_files::SideFiles;
 use super::{MAX_MESH_BYTES, MeshError, MeshFile, gltf, obj, ply, stl};
 use crate::memory;
 use crate::named_file::{self, Accepted};
-use crate::progress::{Meter, Unfinished, Watcher};
+use crate::progress::{Meter, Reporter, Unfinished};
 use std::io;
 use std::path::Path;
 
@@ -21,16 +21,16 @@ impl MeshFile {
         bytes: &[u8],
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     ) -> Result<Self, MeshError> {
-        Self::parse(name, bytes, open, &Watcher::patient()).map_err(Unfinished::failure)
+        Self::parse(name, bytes, open, &Reporter::silent()).map_err(Unfinished::failure)
     }
 
     fn parse(
         name: &str,
         bytes: &[u8],
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
-        watcher: &Watcher<'_>,
+        reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
-        read(name, bytes, &mut SideFiles::new(name, open), watcher).map_err(|fault| fault.into_error(name, bytes))
+        read(name, bytes, &mut SideFiles::new(name, open), reporter).map_err(|fault| fault.into_error(name, bytes))
     }
 
     /// Loads a mesh file.
@@ -48,42 +48,42 @@ impl MeshFile {
     /// # Errors
     /// If the file cannot be read, or as [`MeshFile::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, MeshError> {
-        Self::load_or_cancel(path, &Watcher::patient()).map_err(Unfinished::failure)
+        Self::load_or_cancel(path, &Reporter::silent()).map_err(Unfinished::failure)
     }
 
-    /// Loads as [`load`](Self::load) does, until the watcher cancels it.
+    /// Loads as [`load`](Self::load) does, until the reporter cancels it.
     ///
     /// # Errors
-    /// As [`MeshFile::load`], and if the watcher cancels it.
-    pub fn load_or_cancel(path: &Path, watcher: &Watcher<'_>) -> Result<Self, Unfinished<MeshError>> {
-        Self::read_whole(path, Accepted::FilesAndPipes, watcher)
+    /// As [`MeshFile::load`], and if the reporter cancels it.
+    pub fn load_or_cancel(path: &Path, reporter: &Reporter<'_>) -> Result<Self, Unfinished<MeshError>> {
+        Self::read_whole(path, Accepted::FilesAndPipes, reporter)
     }
 
     /// Loads a mesh file if it is of an accepted kind.
     pub(crate) fn read_whole(
         path: &Path,
         accepted: Accepted,
-        watcher: &Watcher<'_>,
+        reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
-        let read = named_file::read(path, accepted, |_| MAX_MESH_BYTES, watcher);
-        if watcher.is_gone() {
+        let read = named_file::read(path, accepted, |_| MAX_MESH_BYTES, reporter);
+        if reporter.is_cancelled() {
             return Err(Unfinished::Cancelled);
         }
         let bytes = read.map_err(|error| {
             Unfinished::Failed(MeshError::of_file(&path.to_string_lossy(), &named_file::reason(&error)))
         })?;
-        Self::of_file(path, &bytes, watcher)
+        Self::of_file(path, &bytes, reporter)
     }
 
     /// Returns the mesh of these bytes of the file at `path`. Side files are read from the same folder.
-    pub(crate) fn of_file(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Self, Unfinished<MeshError>> {
+    pub(crate) fn of_file(path: &Path, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Self, Unfinished<MeshError>> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut open = |relative: &Path| {
             let path = folder.join(relative);
-            watcher.needs(&path);
-            named_file::read(&path, Accepted::Files, |_| MAX_MESH_BYTES, watcher)
+            reporter.report_dependency(&path);
+            named_file::read(&path, Accepted::Files, |_| MAX_MESH_BYTES, reporter)
         };
-        Self::parse(&path.to_string_lossy(), bytes, &mut open, watcher)
+        Self::parse(&path.to_string_lossy(), bytes, &mut open, reporter)
     }
 }
 
@@ -97,12 +97,12 @@ fn read(
     name: &str,
     bytes: &[u8],
     side_files: &mut SideFiles<'_>,
-    watcher: &Watcher<'_>,
+    reporter: &Reporter<'_>,
 ) -> Result<MeshFile, MeshFault> {
     if bytes.len() > MAX_MESH_BYTES {
         return Err(MeshFault::of_file("the file is larger than 2 GiB, too large to be read"));
     }
-    let meter = Meter::new(watcher, name, bytes.len());
+    let meter = Meter::new(reporter, name, bytes.len());
     has_memory(bytes.len() * PEAK_PER_BYTE, "to read it")?;
     let mesh = match format::recognised(name, bytes)? {
         MeshFormat::Obj => obj::read(bytes, side_files, meter),

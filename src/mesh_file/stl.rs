@@ -45,7 +45,7 @@ pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile
     }
     let mut mesh = MeshBuilder { positions: Vec::with_capacity(3 * facets.len()), ..MeshBuilder::default() };
     for (i, facet) in facets.enumerate() {
-        meter.reach(HEADER + i * FACET)?;
+        meter.advance_to(HEADER + i * FACET)?;
         for corner in 0..3 {
             let at = 12 + 12 * corner;
             mesh.positions.push(vertex_from(&facet[at..at + 12], HEADER + i * FACET + at)?);
@@ -69,7 +69,7 @@ fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, MeshFault> {
 pub(super) fn read_text(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     let mut reader = TextReader { text: TextCursor::new(bytes), mesh: MeshBuilder::default(), open: None };
     while reader.text.go_to_statement() {
-        meter.reach(reader.text.at())?;
+        meter.advance_to(reader.text.at())?;
         reader.statement()?;
     }
     if reader.open.is_some() {

@@ -3,17 +3,17 @@
 
 use super::{MeshError, MeshFile};
 use crate::named_file::Accepted;
-use crate::progress::{Unfinished, Watcher};
+use crate::progress::{Reporter, Unfinished};
 use std::path::Path;
 
 impl MeshFile {
     /// Always fails.
-    pub(crate) fn read_whole(path: &Path, _: Accepted, watcher: &Watcher<'_>) -> Result<Self, Unfinished<MeshError>> {
-        Self::of_file(path, &[], watcher)
+    pub(crate) fn read_whole(path: &Path, _: Accepted, reporter: &Reporter<'_>) -> Result<Self, Unfinished<MeshError>> {
+        Self::of_file(path, &[], reporter)
     }
 
     /// Always fails.
-    pub(crate) fn of_file(path: &Path, _: &[u8], _: &Watcher<'_>) -> Result<Self, Unfinished<MeshError>> {
+    pub(crate) fn of_file(path: &Path, _: &[u8], _: &Reporter<'_>) -> Result<Self, Unfinished<MeshError>> {
         let message = "meshes are read with the feature `mesh` of the crate termtrace, which is off in this program";
         Err(Unfinished::Failed(MeshError::of_file(&path.to_string_lossy(), message)))
     }

@@ -65,7 +65,7 @@ pub(super) fn wait_until_readable(file: &File) -> io::Result<()> {
 mod tests {
     use super::*;
     use crate::named_file::{read, reason};
-    use crate::progress::Watcher;
+    use crate::progress::Reporter;
     use nix::sys::stat::Mode;
     use nix::unistd::mkfifo;
     use std::fs;
@@ -74,7 +74,7 @@ mod tests {
     use std::path::PathBuf;
 
     fn read_up_to(most: usize, path: &Path, accepted: Accepted) -> Result<Vec<u8>, String> {
-        read(path, accepted, |_| most, &Watcher::patient()).map_err(|error| reason(&error))
+        read(path, accepted, |_| most, &Reporter::silent()).map_err(|error| reason(&error))
     }
 
     fn fifo(folder: &Path) -> PathBuf {

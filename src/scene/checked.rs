@@ -10,7 +10,7 @@ use super::{Background, Checked, Draft, Object, ToneCurve};
 use crate::checks;
 use crate::color::{LinearRgb, Srgb8};
 use crate::material::{Material, WrittenMaterial};
-use crate::progress::Watcher;
+use crate::progress::Reporter;
 use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
 use crate::shape::{Meshes, without_coordinates};
@@ -22,7 +22,7 @@ use std::collections::HashMap;
 pub(super) fn check(
     file: &SceneFile,
     meshes: &mut dyn Meshes,
-    watcher: &Watcher<'_>,
+    reporter: &Reporter<'_>,
     faults: &mut Faults,
 ) -> Option<Draft> {
     let mut validator = Validator { faults };
@@ -32,7 +32,7 @@ pub(super) fn check(
     let ambient = file.ambient.and_then(|color| validator.light_color(color));
     let lights = file.lights.iter().filter_map(|light| light.check(&mut validator)).collect();
     let exposure = file.exposure.and_then(|written| validator.accept(written.span, checks::exposure(written.value)));
-    let objects = validator.objects(file, meshes, watcher);
+    let objects = validator.objects(file, meshes, reporter);
     if !faults.is_empty() {
         return None;
     }
@@ -66,7 +66,7 @@ impl Validator<'_> {
 
     // Objects -------------------------------------------------------------------------------------------------------
 
-    fn objects(&mut self, file: &SceneFile, meshes: &mut dyn Meshes, watcher: &Watcher<'_>) -> Vec<Object> {
+    fn objects(&mut self, file: &SceneFile, meshes: &mut dyn Meshes, reporter: &Reporter<'_>) -> Vec<Object> {
         let mut materials = HashMap::new();
         for NamedMaterial { name, material } in &file.materials {
             let checked = material.as_ref().map(|written| CheckedMaterial { written, material: written.check(self) });
@@ -77,7 +77,7 @@ impl Validator<'_> {
             let (shape, material) = (shape?, material?);
             Some(Object { shape, material })
         };
-        file.objects.iter().take_while(|_| !watcher.is_gone()).filter_map(object).collect()
+        file.objects.iter().take_while(|_| !reporter.is_cancelled()).filter_map(object).collect()
     }
 
     fn material_of(

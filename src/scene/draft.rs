@@ -3,7 +3,7 @@
 use super::{Checked, Scene};
 use crate::accel::Accelerator;
 use crate::camera::Camera;
-use crate::progress::{Cancelled, Watcher};
+use crate::progress::{Cancelled, Reporter};
 use std::sync::Arc;
 
 /// A scene whose trees are not built yet, so that no ray can be traced in it.
@@ -29,12 +29,12 @@ impl Draft {
         self
     }
 
-    /// Builds the trees on all threads of the current rayon pool, until the watcher cancels it.
+    /// Builds the trees on all threads of the current rayon pool, until the reporter cancels it.
     ///
     /// # Errors
-    /// [`Cancelled`], if the watcher cancels.
-    pub fn build_or_cancel(self, watcher: &Watcher<'_>) -> Result<Scene, Cancelled> {
-        let accelerator = Accelerator::new_or_cancel(self.checked.shapes(), watcher)?.into();
+    /// [`Cancelled`], if the reporter cancels.
+    pub fn build_or_cancel(self, reporter: &Reporter<'_>) -> Result<Scene, Cancelled> {
+        let accelerator = Accelerator::new_or_cancel(self.checked.shapes(), reporter)?.into();
         Ok(Scene { checked: self.checked, accelerator })
     }
 

@@ -6,7 +6,7 @@ use crate::camera_path::CameraPath;
 use crate::memory;
 use crate::mesh_file::{self, MeshError, MeshFile};
 use crate::named_file::{self, Accepted};
-use crate::progress::{Progress, Unfinished, Watcher};
+use crate::progress::{Progress, Reporter, Unfinished};
 use crate::scene_file::{PathFile, SceneFile};
 use crate::scene_text::{MAX_TEXT_BYTES, SceneError, read, read_or_cancel, text_from};
 use crate::shape;
@@ -40,7 +40,7 @@ impl Scene {
     /// The first fault of the syntax; if there is none, all others: unknown and missing fields, wrong types, and values
     /// out of range.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
-        draft(name, text, &Watcher::patient()).map(Draft::finish).map_err(Unfinished::failure)
+        draft(name, text, &Reporter::silent()).map(Draft::finish).map_err(Unfinished::failure)
     }
 
     /// Returns the scene of a file's bytes, which should be UTF-8 text.
@@ -74,10 +74,10 @@ impl Scene {
     /// # Errors
     /// If the file cannot be read, or as [`Scene::from_bytes`].
     pub fn load(path: &Path) -> Result<Self, LoadError> {
-        load(path, &Watcher::patient()).map(Draft::finish).map_err(Unfinished::failure)
+        load(path, &Reporter::silent()).map(Draft::finish).map_err(Unfinished::failure)
     }
 
-    /// Loads as [`Scene::load`] does and reports progress to `hear`, from any thread. The load is cancelled when `hear`
+    /// Loads as [`Scene::load`] does and reports progress to `on_progress`, from any thread. The load is cancelled when `on_progress`
     /// returns `Break`.
     ///
     /// ```
@@ -95,53 +95,54 @@ impl Scene {
     /// As [`Scene::load`], and [`Unfinished::Cancelled`] if the work was cancelled.
     pub fn load_watched(
         path: &Path,
-        hear: impl Fn(Progress) -> ControlFlow<()> + Sync,
+        on_progress: impl Fn(Progress) -> ControlFlow<()> + Sync,
     ) -> Result<Self, Unfinished<LoadError>> {
-        let watcher = Watcher::new(&hear);
-        Ok(Draft::load(path, &watcher)?.build_or_cancel(&watcher)?)
+        let reporter = Reporter::new(&on_progress);
+        Ok(Draft::load(path, &reporter)?.build_or_cancel(&reporter)?)
     }
 }
 
 impl Draft {
-    /// Reads as [`Scene::from_bytes`] does without building trees, until the watcher cancels it.
+    /// Reads as [`Scene::from_bytes`] does without building trees, until the reporter cancels it.
     ///
     /// # Errors
-    /// As [`Scene::from_bytes`], and if the watcher cancels.
-    pub fn from_bytes(name: &str, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Self, Unfinished<SceneError>> {
-        draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, watcher)
+    /// As [`Scene::from_bytes`], and if the reporter cancels.
+    pub fn from_bytes(name: &str, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Self, Unfinished<SceneError>> {
+        draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, reporter)
     }
 
-    /// Reads as [`Scene::load`] does without building trees, until the watcher cancels it.
+    /// Reads as [`Scene::load`] does without building trees, until the reporter cancels it.
     ///
     /// # Errors
-    /// As [`Scene::load`], and if the watcher cancels.
-    pub fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Self, Unfinished<LoadError>> {
-        // A cancelled read may end with another error: waiting for a pipe fails when the watcher is gone.
-        load(path, watcher).map_err(|unfinished| if watcher.is_gone() { Unfinished::Cancelled } else { unfinished })
+    /// As [`Scene::load`], and if the reporter cancels.
+    pub fn load(path: &Path, reporter: &Reporter<'_>) -> Result<Self, Unfinished<LoadError>> {
+        // A cancelled read may end with another error: waiting for a pipe fails when the reporter is gone.
+        load(path, reporter)
+            .map_err(|unfinished| if reporter.is_cancelled() { Unfinished::Cancelled } else { unfinished })
     }
 }
 
-fn load(path: &Path, watcher: &Watcher<'_>) -> Result<Draft, Unfinished<LoadError>> {
+fn load(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadError>> {
     let name = path.to_string_lossy();
-    watcher.needs(path);
+    reporter.report_dependency(path);
     let is_mesh = |bytes: &[u8]| mesh_file::is_mesh(&name, bytes);
     let most = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_MESH_BYTES } else { MAX_TEXT_BYTES };
-    let bytes = bytes_of(path, most, watcher)?;
+    let bytes = bytes_of(path, most, reporter)?;
     if is_mesh(&bytes) {
-        return around_mesh(path, &bytes, watcher);
+        return around_mesh(path, &bytes, reporter);
     }
     memory::check(bytes.len() * PEAK_PER_TEXT_BYTE)
         .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error: error.into() })?;
     let text = text_from(&name, &bytes).map_err(LoadError::Scene)?;
-    draft(&name, text, watcher).map_err(|unfinished| unfinished.map(LoadError::Scene))
+    draft(&name, text, reporter).map_err(|unfinished| unfinished.map(LoadError::Scene))
 }
 
-fn draft(name: &str, text: &str, watcher: &Watcher<'_>) -> Result<Draft, Unfinished<SceneError>> {
-    let mut meshes = Meshes::beside(Path::new(name), watcher);
-    read_or_cancel(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", watcher, |root, faults| {
-        let file = SceneFile::read(&root, watcher, faults);
+fn draft(name: &str, text: &str, reporter: &Reporter<'_>) -> Result<Draft, Unfinished<SceneError>> {
+    let mut meshes = Meshes::beside(Path::new(name), reporter);
+    read_or_cancel(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", reporter, |root, faults| {
+        let file = SceneFile::read(&root, reporter, faults);
         drop(root);
-        checked::check(&file, &mut meshes, watcher, faults)
+        checked::check(&file, &mut meshes, reporter, faults)
     })
 }
 
@@ -184,7 +185,7 @@ impl CameraPath {
     /// # Errors
     /// If the file cannot be read, or as [`CameraPath::from_bytes`].
     pub fn load(path: &Path, camera: &Camera) -> Result<Self, LoadError> {
-        let bytes = bytes_of(path, |_| MAX_TEXT_BYTES, &Watcher::patient())?;
+        let bytes = bytes_of(path, |_| MAX_TEXT_BYTES, &Reporter::silent())?;
         Ok(Self::from_bytes(&path.to_string_lossy(), &bytes, camera)?)
     }
 }
@@ -267,8 +268,8 @@ impl From<SceneError> for LoadError {
     }
 }
 
-fn around_mesh(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Draft, Unfinished<LoadError>> {
-    let mesh = MeshFile::of_file(path, bytes, watcher).map_err(|unfinished| unfinished.map(LoadError::Mesh))?;
+fn around_mesh(path: &Path, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadError>> {
+    let mesh = MeshFile::of_file(path, bytes, reporter).map_err(|unfinished| unfinished.map(LoadError::Mesh))?;
     Draft::of_mesh(mesh).ok_or_else(|| LoadError::Unseen { path: path.to_owned() }.into())
 }
 
@@ -276,12 +277,12 @@ fn around_mesh(path: &Path, bytes: &[u8], watcher: &Watcher<'_>) -> Result<Draft
 struct Meshes<'w> {
     folder: PathBuf,
     read: HashMap<PathBuf, MeshFile>,
-    watcher: &'w Watcher<'w>,
+    reporter: &'w Reporter<'w>,
 }
 
 impl<'w> Meshes<'w> {
-    fn beside(scene: &Path, watcher: &'w Watcher<'w>) -> Self {
-        Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), read: HashMap::new(), watcher }
+    fn beside(scene: &Path, reporter: &'w Reporter<'w>) -> Self {
+        Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), read: HashMap::new(), reporter }
     }
 }
 
@@ -291,8 +292,8 @@ impl shape::Meshes for Meshes<'_> {
         if let Some(mesh) = self.read.get(&path) {
             return Ok(mesh.clone());
         }
-        self.watcher.needs(&path);
-        let mesh = MeshFile::read_whole(&path, Accepted::Files, self.watcher);
+        self.reporter.report_dependency(&path);
+        let mesh = MeshFile::read_whole(&path, Accepted::Files, self.reporter);
         let mesh = mesh.map_err(|unfinished| unfinished.map(|error| error.to_string()))?;
         self.read.insert(path, mesh.clone());
         Ok(mesh)
@@ -304,7 +305,7 @@ impl shape::Meshes for Meshes<'_> {
 const PEAK_PER_TEXT_BYTE: usize = 32;
 
 /// Reads the bytes of a file named by the user.
-fn bytes_of(path: &Path, most: impl Fn(&[u8]) -> usize, watcher: &Watcher<'_>) -> Result<Vec<u8>, LoadError> {
-    named_file::read(path, Accepted::FilesAndPipes, most, watcher)
+fn bytes_of(path: &Path, most: impl Fn(&[u8]) -> usize, reporter: &Reporter<'_>) -> Result<Vec<u8>, LoadError> {
+    named_file::read(path, Accepted::FilesAndPipes, most, reporter)
         .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error })
 }

@@ -1,7 +1,7 @@
 //! Insertion of a view into a scene file's text, which keeps all other bytes, comments and blanks included.
 
 use crate::camera::Camera;
-use crate::progress::Watcher;
+use crate::progress::Reporter;
 use crate::scene_file::SceneFile;
 use crate::scene_text::{Body, Faults, Field, SyntaxNode, Value, parse};
 
@@ -91,7 +91,7 @@ fn inserted(text: &str, additions: Vec<Addition>) -> String {
 /// Returns the number of views in a text.
 fn count(text: &str) -> Option<usize> {
     let root = parse(text).ok()?;
-    Some(SceneFile::read(&root, &Watcher::patient(), &mut Faults::default()).views.len())
+    Some(SceneFile::read(&root, &Reporter::silent(), &mut Faults::default()).views.len())
 }
 
 fn fields<'n, 'a>(node: &'n SyntaxNode<'a>) -> Option<&'n [Field<'a>]> {

@@ -1,6 +1,6 @@
 //! Camera paths as written.
 
-use crate::progress::Watcher;
+use crate::progress::Reporter;
 use crate::scene_text::{Faults, Span, SyntaxNode};
 use crate::written::{NodeReader, WrittenNumber, WrittenVector};
 
@@ -32,8 +32,8 @@ impl PathFile {
     /// Reads a camera path from its tree; anything else is added to `faults`.
     pub fn read(root: &SyntaxNode<'_>, faults: &mut Faults) -> Self {
         const FORM: &str = "a camera path (keyframes: [(time: ..., eye: ..., target: ...), ...])";
-        let watcher = Watcher::patient();
-        let mut reader = NodeReader::new(faults, &watcher);
+        let reporter = Reporter::silent();
+        let mut reader = NodeReader::new(faults, &reporter);
         let fields = reader.fields(root, "a camera path", FORM, &["keyframes"]);
         Self { keyframes: fields.and_then(|fields| reader.required(&fields, "keyframes", NodeReader::keyframes)) }
     }

@@ -3,17 +3,17 @@
 use super::fault::{clipped, line_and_column, quoted};
 use super::tokens::{Token, Tokens};
 use super::{Body, Fault, Field, Group, MAX_NESTING, Name, Span, SyntaxNode, Value};
-use crate::progress::{Meter, Unfinished, Watcher};
+use crate::progress::{Meter, Reporter, Unfinished};
 
 /// Parses the single value of a text.
 ///
 /// # Errors
 /// The first fault, if the text is not RON.
 pub fn parse(text: &str) -> Result<SyntaxNode<'_>, Fault> {
-    parse_or_cancel(text, Meter::new(&Watcher::patient(), "", text.len())).map_err(Unfinished::failure)
+    parse_or_cancel(text, Meter::new(&Reporter::silent(), "", text.len())).map_err(Unfinished::failure)
 }
 
-/// Parses as [`parse`] does, until the meter's watcher cancels it.
+/// Parses as [`parse`] does, until the meter's reporter cancels it.
 pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<SyntaxNode<'a>> {
     let mut tokens = Tokens::new(text);
     tokens.skip_attributes()?;
@@ -63,7 +63,7 @@ impl<'a> Parser<'a, '_> {
 
     fn value(&mut self) -> Parsed<SyntaxNode<'a>> {
         let start = self.span.start;
-        self.meter.reach(start as usize)?;
+        self.meter.advance_to(start as usize)?;
         let value = match self.next {
             Token::Word(word) => return self.word(word),
             Token::Open('(') => Value::Group(Box::new(Group { name: None, body: self.body()? })),

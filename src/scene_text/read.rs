@@ -2,7 +2,7 @@
 
 use super::parser::parse_or_cancel;
 use super::{Fault, Faults, MAX_TEXT_BYTES, SceneError, Span, SyntaxNode};
-use crate::progress::{Meter, Unfinished, Watcher};
+use crate::progress::{Meter, Reporter, Unfinished};
 
 /// Returns what `check` makes of a text's tree.
 ///
@@ -17,32 +17,32 @@ pub fn read<T>(
     check: impl FnOnce(&SyntaxNode<'_>, &mut Faults) -> Option<T>,
 ) -> Result<T, SceneError> {
     let check = |root: SyntaxNode<'_>, faults: &mut Faults| check(&root, faults);
-    read_or_cancel(name, text, smallest, &Watcher::patient(), check).map_err(Unfinished::failure)
+    read_or_cancel(name, text, smallest, &Reporter::silent(), check).map_err(Unfinished::failure)
 }
 
-/// Reads as [`read`] does and reports progress to the watcher, which may cancel it.
+/// Reads as [`read`] does and reports progress to the reporter, which may cancel it.
 ///
 /// `check` owns the tree, so that it can free it before it has finished: for a scene of 400,000 spheres the peak is 394
 /// MB instead of 462. After a cancel its result is ignored.
 ///
 /// # Errors
-/// As [`read`], and if the watcher cancels.
+/// As [`read`], and if the reporter cancels.
 pub(crate) fn read_or_cancel<'a, T>(
     name: &str,
     text: &'a str,
     smallest: &str,
-    watcher: &Watcher<'_>,
+    reporter: &Reporter<'_>,
     check: impl FnOnce(SyntaxNode<'a>, &mut Faults) -> Option<T>,
 ) -> Result<T, Unfinished<SceneError>> {
     let root = check_size(text.len())
         .and_then(|()| not_empty(text, smallest))
         .and_then(|()| no_nul(text.as_bytes()))
         .map_err(Unfinished::Failed)
-        .and_then(|()| parse_or_cancel(text, Meter::new(watcher, name, text.len())))
+        .and_then(|()| parse_or_cancel(text, Meter::new(reporter, name, text.len())))
         .map_err(|unfinished| unfinished.map(|fault| SceneError::new(name, text, fault)))?;
     let mut faults = Faults::default();
     let checked = check(root, &mut faults);
-    if watcher.is_gone() {
+    if reporter.is_cancelled() {
         return Err(Unfinished::Cancelled);
     }
     checked.ok_or_else(|| Unfinished::Failed(SceneError::new(name, text, faults)))

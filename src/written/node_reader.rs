@@ -2,14 +2,14 @@
 
 use super::{Spanned, WrittenNumber, WrittenVector};
 use crate::checks;
-use crate::progress::Watcher;
+use crate::progress::Reporter;
 use crate::scene_text::{Body, Faults, Field, Group, Name, Span, SyntaxNode, Value, clipped, quoted};
 use crate::text::{closest, listed};
 
 /// Reads values and reports faults.
 pub struct NodeReader<'f> {
     faults: &'f mut Faults,
-    watcher: &'f Watcher<'f>,
+    reporter: &'f Reporter<'f>,
 }
 
 /// The fields of a group, found by name.
@@ -41,8 +41,8 @@ impl<'n> Fields<'n> {
 }
 
 impl<'f> NodeReader<'f> {
-    pub(crate) fn new(faults: &'f mut Faults, watcher: &'f Watcher<'f>) -> Self {
-        Self { faults, watcher }
+    pub(crate) fn new(faults: &'f mut Faults, reporter: &'f Reporter<'f>) -> Self {
+        Self { faults, reporter }
     }
 
     pub(crate) fn fault(&mut self, span: Span, message: impl FnOnce() -> String) {
@@ -193,8 +193,8 @@ impl<'f> NodeReader<'f> {
         items: &'n [SyntaxNode<'n>],
         read: impl Fn(&mut Self, &'n SyntaxNode<'n>) -> Option<T>,
     ) -> Vec<T> {
-        let watcher = self.watcher;
-        items.iter().take_while(|_| !watcher.is_gone()).filter_map(|item| read(self, item)).collect()
+        let reporter = self.reporter;
+        items.iter().take_while(|_| !reporter.is_cancelled()).filter_map(|item| read(self, item)).collect()
     }
 
     /// Returns the items of `[...]`, or of `(...)` without names.

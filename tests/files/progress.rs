@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 use termtrace::internals::mesh_file::MeshFile;
-use termtrace::internals::progress::{Cancellation, Unfinished, Watcher};
+use termtrace::internals::progress::{Cancellation, Reporter, Unfinished};
 use termtrace::internals::scene::Draft;
 use termtrace::internals::scene_file::SceneFile;
 use termtrace::internals::scene_text::{Faults, parse};
@@ -20,14 +20,14 @@ fn read(triangles: u32) -> MeshFile {
 }
 
 /// What somebody hears who waits for some work, and goes after so many reports.
-fn heard<T>(most: usize, work: impl FnOnce(&Watcher<'_>) -> T) -> (Vec<Progress>, T) {
+fn heard<T>(most: usize, work: impl FnOnce(&Reporter<'_>) -> T) -> (Vec<Progress>, T) {
     let heard = Mutex::new(Vec::new());
-    let hear = |progress| {
+    let on_progress = |progress| {
         let mut heard = heard.lock().expect("nobody panics");
         heard.push(progress);
         if heard.len() < most { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
-    let done = work(&Watcher::new(&hear));
+    let done = work(&Reporter::new(&on_progress));
     (heard.into_inner().expect("nobody panics"), done)
 }
 
@@ -50,7 +50,7 @@ fn reading_is_watched_and_can_be_given_up() {
         let path = folder.path().join(writer.name);
         let size = written(&mesh, writer.name).len();
         fs::write(&path, written(&mesh, writer.name)).expect("a file can be written");
-        let load = |watcher: &Watcher<'_>| unless_cancelled(MeshFile::load_or_cancel(&path, watcher));
+        let load = |reporter: &Reporter<'_>| unless_cancelled(MeshFile::load_or_cancel(&path, reporter));
         let (reports, read) = heard(usize::MAX, load);
         assert_eq!(read, Some(MeshFile::load(&path).expect("it is a mesh")), "{}", writer.name);
         assert_steps(&reports, &Work::Reading(path.to_string_lossy().into()), 1 << 20, size);
@@ -86,7 +86,7 @@ fn a_scenes_meshes_are_watched() {
     let scene = folder.path().join("scene.ron");
     let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Mesh(path: "ball.stl")])"#;
     fs::write(&scene, text).expect("a file can be written");
-    let load = |watcher: &Watcher<'_>| unless_cancelled(Draft::load(&scene, watcher));
+    let load = |reporter: &Reporter<'_>| unless_cancelled(Draft::load(&scene, reporter));
     let (reports, draft) = heard(usize::MAX, load);
     assert!(draft.map(Draft::finish) == Some(Scene::load(&scene).expect("it is a scene")), "the same scene");
     assert!(reports.iter().any(|report| matches!(&report.work, Work::Parsing(name) if name.ends_with("ball.stl"))));
@@ -104,7 +104,7 @@ fn balls(count: usize) -> String {
 #[test]
 fn a_scenes_text_is_watched_and_can_be_given_up() {
     let text = balls(30_000);
-    let load = |watcher: &Watcher<'_>| unless_cancelled(Draft::from_bytes("x.ron", text.as_bytes(), watcher));
+    let load = |reporter: &Reporter<'_>| unless_cancelled(Draft::from_bytes("x.ron", text.as_bytes(), reporter));
     let (reports, draft) = heard(usize::MAX, load);
     assert!(draft.is_some_and(|draft| draft.finish().objects().len() == 30_000));
     assert_steps(&reports, &Work::Parsing("x.ron".to_owned()), 256 << 10, text.len());
@@ -118,30 +118,30 @@ fn a_scenes_text_is_watched_and_can_be_given_up() {
 #[test]
 fn a_scenes_objects_are_given_up() {
     let cancelled = Cancellation::default();
-    let hear = |_| ControlFlow::Continue(());
-    let watcher = Watcher::new(&hear).cancelled_by(&cancelled);
+    let on_progress = |_| ControlFlow::Continue(());
+    let reporter = Reporter::new(&on_progress).cancelled_by(&cancelled);
     let (text, mut faults) = (balls(10), Faults::default());
     let root = parse(&text).expect("it is RON");
-    assert_eq!(SceneFile::read(&root, &watcher, &mut faults).objects.len(), 10);
+    assert_eq!(SceneFile::read(&root, &reporter, &mut faults).objects.len(), 10);
     cancelled.cancel();
-    assert_eq!(SceneFile::read(&root, &watcher, &mut faults).objects.len(), 0);
+    assert_eq!(SceneFile::read(&root, &reporter, &mut faults).objects.len(), 0);
     // While the objects are checked: at the first mesh.
     let cancelled = Cancellation::default();
     let needed = Mutex::new(0);
-    let hear_need = |_: &Path| {
+    let on_dependency = |_: &Path| {
         *needed.lock().expect("nobody panics") += 1;
         cancelled.cancel();
     };
-    let watcher = Watcher::new(&hear).with_needs(&hear_need).cancelled_by(&cancelled);
+    let reporter = Reporter::new(&on_progress).with_dependencies(&on_dependency).cancelled_by(&cancelled);
     let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Mesh(path: "a.obj"), Mesh(path: "b.obj")])"#;
-    assert!(matches!(Draft::from_bytes("x.ron", text.as_bytes(), &watcher), Err(Unfinished::Cancelled)));
+    assert!(matches!(Draft::from_bytes("x.ron", text.as_bytes(), &reporter), Err(Unfinished::Cancelled)));
     assert_eq!(needed.into_inner().expect("nobody panics"), 1, "meshes");
 }
 
 #[test]
 fn building_is_watched_and_can_be_given_up() {
     let draft = Draft::of_mesh(read(100_000)).expect("it has a size");
-    let build = |watcher: &Watcher<'_>| draft.clone().build_or_cancel(watcher).ok();
+    let build = |reporter: &Reporter<'_>| draft.clone().build_or_cancel(reporter).ok();
     let (reports, scene) = heard(usize::MAX, build);
     let total = scene.as_ref().map_or(0, |scene| scene.objects()[0].shape.part_count() as usize);
     assert!(scene == Some(draft.clone().finish()), "the same scene");

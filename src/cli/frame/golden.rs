@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 use termtrace::export::Format;
 use termtrace::internals::named_file::{self, Accepted};
-use termtrace::internals::progress::Watcher;
+use termtrace::internals::progress::Reporter;
 use termtrace::internals::text::visible;
 
 /// The most bytes that a golden frame has: 16 MiB, as any text that is read, or four times as many as the frame that it is
@@ -15,7 +15,7 @@ const MAX_GOLDEN_BYTES: usize = 16 << 20;
 /// Done if the file holds exactly this frame; else a diff goes to standard output.
 pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult {
     let most = MAX_GOLDEN_BYTES.max(4 * frame.len());
-    let golden = named_file::read(path, Accepted::FilesAndPipes, |_| most, &Watcher::patient()).map_err(|error| {
+    let golden = named_file::read(path, Accepted::FilesAndPipes, |_| most, &Reporter::silent()).map_err(|error| {
         let reason = match error.kind() {
             io::ErrorKind::NotFound => "no such golden frame; --bless writes it".to_owned(),
             _ => named_file::reason(&error),

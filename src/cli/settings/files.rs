@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 use termtrace::LoadError;
 use termtrace::internals::named_file::{self, Accepted};
-use termtrace::internals::progress::Watcher;
+use termtrace::internals::progress::Reporter;
 use termtrace::internals::scene_text::text_from;
 
 /// The most bytes that a file of the user's has: 64 KiB, more than ten times the whole table of keys with what each command
@@ -21,7 +21,7 @@ impl UserFile {
     /// The file of that name; `None` if there is none, or no place for one.
     pub(in crate::cli) fn read(name: &str) -> Result<Option<Self>, LoadError> {
         let Some(path) = path_of(name) else { return Ok(None) };
-        match named_file::read(&path, Accepted::FilesAndPipes, |_| MAX_USER_FILE_BYTES, &Watcher::patient()) {
+        match named_file::read(&path, Accepted::FilesAndPipes, |_| MAX_USER_FILE_BYTES, &Reporter::silent()) {
             Ok(bytes) => {
                 let text = text_from(&path.to_string_lossy(), &bytes)?.to_owned();
                 Ok(Some(Self { path, text }))

@@ -50,7 +50,7 @@ impl RowReader for AsciiRows<'_> {
     #[inline]
     fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
         if self.text.go_to_statement() {
-            return Ok(self.meter.reach(self.text.at())?);
+            return Ok(self.meter.advance_to(self.text.at())?);
         }
         let Element { name, count, .. } = element;
         Err(MeshFault::in_text(
@@ -151,7 +151,7 @@ impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
     #[inline]
     fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
         if self.at < self.bytes.len() {
-            return Ok(self.meter.reach(self.at)?);
+            return Ok(self.meter.advance_to(self.at)?);
         }
         let Element { name, count, .. } = element;
         Err(MeshFault::at_byte(self.at, format!("the file ends after {row} of {count} rows of the element {name}")))
