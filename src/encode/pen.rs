@@ -24,8 +24,8 @@ impl Pen {
     /// saves bytes on a screen does not change files.
     pub(crate) fn write_cell(&mut self, cell: &Cell, bytes: &mut Vec<u8>) {
         let wanted = self.as_it_stands(cell);
-        self.become_pen(Self { fg: self.before_colors(wanted.attributes).fg, ..wanted }, bytes);
-        self.become_pen(wanted, bytes);
+        self.say(Self { fg: self.before_colors(wanted.attributes).fg, ..wanted }, Wording::Long, bytes);
+        self.say(wanted, Wording::Long, bytes);
         write_glyph(&cell.glyph, bytes);
     }
 
@@ -76,25 +76,37 @@ impl Pen {
         pen
     }
 
-    /// The pen once the attributes are these: terminals disagree on how to switch single ones off, so all is switched off
-    /// first, colours too, which is understood everywhere. Only for the exchange of the two colours they all know an off
-    /// of its own.
+    /// The pen once the attributes are these. Adding some keeps the colours. Terminals disagree on how to switch single ones
+    /// off, so all is switched off first, colours too, which is understood everywhere; only for the exchange of the two
+    /// colours they all know an off of its own.
     pub(super) fn before_colors(self, attributes: Attributes) -> Self {
         let from = if self.starts_anew(attributes) { Self::default() } else { self };
         Self { attributes, ..from }
     }
 
-    /// Whether all is switched off on the way to these attributes.
+    /// Whether all is switched off on the way to these attributes: where one is lost, or where one that is gained would
+    /// not have the effect that it has from nothing. One of the first eight colours that becomes bold, said in its short
+    /// form, as it may have been, would be a bright one in many terminals (see [`ink_len`]); and some take bold and dim, or
+    /// the speeds of blinking, for one thing, of which the last said counts.
     fn starts_anew(&self, attributes: Attributes) -> bool {
-        !Attributes::REVERSED.contains(self.attributes ^ attributes)
+        let (lost, gained) = (self.attributes.difference(attributes), attributes.difference(self.attributes));
+        let comes_before = |first, second| gained.contains(first) && self.attributes.contains(second);
+        !Attributes::REVERSED.contains(lost)
+            || (gained.contains(Attributes::BOLD) && is_basic(self.fg))
+            || comes_before(Attributes::BOLD, Attributes::DIM)
+            || comes_before(Attributes::SLOW_BLINK, Attributes::RAPID_BLINK)
     }
 
-    /// The code on the way to these attributes that exchanges the two colours, or ends that, where nothing starts anew.
-    fn exchange(&self, attributes: Attributes) -> Option<&'static [u8]> {
-        if self.attributes == attributes || self.starts_anew(attributes) {
-            return None;
-        }
-        Some(if attributes.contains(Attributes::REVERSED) { b"7" } else { b"27" })
+    /// The codes on the way to these attributes.
+    fn attribute_codes(&self, attributes: Attributes) -> impl Iterator<Item = &'static [u8]> {
+        let starts_anew = self.starts_anew(attributes);
+        let from = if starts_anew { Attributes::empty() } else { self.attributes };
+        let off: Option<&[u8]> = match starts_anew {
+            true => Some(b"0"),
+            false if from.difference(attributes).is_empty() => None,
+            false => Some(b"27"),
+        };
+        off.into_iter().chain(codes_of(attributes.difference(from)))
     }
 
     /// How many bytes [`become_pen`](Self::become_pen) takes.
@@ -105,6 +117,10 @@ impl Pen {
     /// The same where [`ink_lens`](Self::ink_lens) of the wanted pen are known.
     #[inline]
     pub(super) fn cost_of_inks(&self, wanted: &Self, lens: [usize; 2]) -> usize {
+        // A picture's cells have a colour behind them.
+        if wanted.bg == Ink::Default && *wanted == Self::default() {
+            return if self == wanted { 0 } else { RESET.len() };
+        }
         if self.attributes == wanted.attributes {
             self.cost_of_colors(0, wanted, lens)
         } else {
@@ -114,20 +130,18 @@ impl Pen {
 
     /// How many bytes it takes to say each of its two colours.
     pub(super) fn ink_lens(&self) -> [usize; 2] {
-        [1 + ink_len(self.fg), 1 + ink_len(self.bg)]
+        let [fg, bg] = self.wordings(Wording::Short);
+        [1 + ink_len(self.fg, fg), 1 + ink_len(self.bg, bg)]
     }
 
     /// The same where attributes change.
     fn cost_of_all(&self, wanted: &Self, lens: [usize; 2]) -> usize {
-        if self.starts_anew(wanted.attributes) {
-            let codes = attribute_codes(wanted.attributes).count();
-            return 4 + 2 * codes + self.before_colors(wanted.attributes).cost_of_colors(0, wanted, lens);
-        }
-        let exchange = self.exchange(wanted.attributes).map_or(0, |code| 1 + code.len());
-        self.cost_of_colors(exchange, wanted, lens)
+        let codes = self.attribute_codes(wanted.attributes).map(|code| 1 + code.len()).sum();
+        let split = if self.is_split(wanted, Wording::Short) { 2 } else { 0 };
+        self.before_colors(wanted.attributes).cost_of_colors(codes, wanted, lens) + split
     }
 
-    /// The same for the colours, and for a code that took so many bytes in their sequence.
+    /// The same for the colours, and for codes that took so many bytes in their sequence.
     #[inline(always)]
     fn cost_of_colors(&self, code: usize, wanted: &Self, [fg, bg]: [usize; 2]) -> usize {
         let fg = if self.fg == wanted.fg { 0 } else { fg };
@@ -137,26 +151,33 @@ impl Pen {
         underline + if codes == 0 { 0 } else { 2 + codes }
     }
 
-    /// Says what differs: attributes that start anew in one sequence, the colours in another, the line's in a third. (All
-    /// in one could be more numbers than some terminals take.)
+    /// Says what differs: the attributes and the colours in one sequence, the line's in another.
     pub(super) fn become_pen(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
-        if self.starts_anew(wanted.attributes) {
-            bytes.extend_from_slice(b"\x1b[0");
-            for code in attribute_codes(wanted.attributes) {
-                bytes.extend_from_slice(&[b';', code]);
-            }
-            bytes.push(b'm');
+        if *self != wanted && wanted == Self::default() {
+            bytes.extend_from_slice(RESET);
+            *self = wanted;
+        } else {
+            self.say(wanted, Wording::Short, bytes);
         }
-        let from = self.before_colors(wanted.attributes);
+    }
+
+    /// The same in that wording.
+    fn say(&mut self, wanted: Self, wording: Wording, bytes: &mut Vec<u8>) {
         let mut lead: &[u8] = b"\x1b[";
-        if let Some(code) = self.exchange(wanted.attributes) {
+        for code in self.attribute_codes(wanted.attributes) {
             bytes.extend_from_slice(mem::replace(&mut lead, b";"));
             bytes.extend_from_slice(code);
         }
-        for (from, to, tens) in [(from.fg, wanted.fg, b'3'), (from.bg, wanted.bg, b'4')] {
+        if self.is_split(&wanted, wording) {
+            bytes.push(b'm');
+            lead = b"\x1b[";
+        }
+        let from = self.before_colors(wanted.attributes);
+        let [fg, bg] = wanted.wordings(wording);
+        for (from, to, tens, wording) in [(from.fg, wanted.fg, b'3', fg), (from.bg, wanted.bg, b'4', bg)] {
             if from != to {
                 bytes.extend_from_slice(mem::replace(&mut lead, b";"));
-                write_ink(to, tens, bytes);
+                write_ink(to, tens, wording, bytes);
             }
         }
         if lead == b";" {
@@ -167,6 +188,42 @@ impl Pen {
         }
         *self = wanted;
     }
+
+    /// Whether the attributes and the colours are more numbers than one sequence may have.
+    fn is_split(&self, wanted: &Self, wording: Wording) -> bool {
+        let from = self.before_colors(wanted.attributes);
+        let [fg, bg] = wanted.wordings(wording);
+        let numbers = |from: Ink, to: Ink, wording| if from == to { 0 } else { ink_numbers(to, wording) };
+        let colors = numbers(from.fg, wanted.fg, fg) + numbers(from.bg, wanted.bg, bg);
+        let attributes = self.attribute_codes(wanted.attributes).count();
+        attributes > 0 && colors > 0 && attributes + colors > MOST_NUMBERS
+    }
+
+    /// How its two colours may be said: a bold one of the first eight only in full.
+    fn wordings(&self, wording: Wording) -> [Wording; 2] {
+        let fg = if self.attributes.contains(Attributes::BOLD) { Wording::Long } else { wording };
+        [fg, wording]
+    }
+}
+
+/// All back to the terminal's own.
+const RESET: &[u8] = b"\x1b[m";
+
+/// How many numbers a sequence has at most: some terminals pass over those behind the sixteenth.
+const MOST_NUMBERS: usize = 16;
+
+/// How one of the first eight colours is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wording {
+    /// In two digits.
+    Short,
+    /// As any of the 256.
+    Long,
+}
+
+/// Whether it is one of the first eight colours, which have codes of their own.
+fn is_basic(ink: Ink) -> bool {
+    matches!(ink, Ink::Indexed(..8))
 }
 
 /// Whether nobody can tell the two cells apart.
@@ -204,9 +261,12 @@ pub(super) fn write_char(character: char, bytes: &mut Vec<u8>) {
 }
 
 /// The numbers of one colour; the first begins with a 3 for the character's, a 4 for the one behind it.
-fn write_ink(ink: Ink, tens: u8, bytes: &mut Vec<u8>) {
+fn write_ink(ink: Ink, tens: u8, wording: Wording, bytes: &mut Vec<u8>) {
     match ink {
         Ink::Default => bytes.extend_from_slice(&[tens, b'9']),
+        Ink::Indexed(index) if is_basic(ink) && wording == Wording::Short => {
+            bytes.extend_from_slice(&[tens, b'0' + index]);
+        }
         Ink::Indexed(index) => {
             bytes.extend_from_slice(&[tens, b'8', b';', b'5', b';']);
             write_number(index.into(), bytes);
@@ -218,12 +278,24 @@ fn write_ink(ink: Ink, tens: u8, bytes: &mut Vec<u8>) {
     }
 }
 
-/// How many bytes [`write_ink`] takes.
-fn ink_len(ink: Ink) -> usize {
+/// How many bytes [`write_ink`] takes. (The bright ones of the named colours have no short form: not everything that knows
+/// `38;5` knows 90 to 97.)
+fn ink_len(ink: Ink, wording: Wording) -> usize {
     match ink {
         Ink::Default => 2,
+        Ink::Indexed(_) if is_basic(ink) && wording == Wording::Short => 2,
         Ink::Indexed(index) => 5 + digits(index.into()),
         Ink::Rgb(color) => 7 + [color.r, color.g, color.b].into_iter().map(band_digits).sum::<usize>(),
+    }
+}
+
+/// How many numbers it writes.
+fn ink_numbers(ink: Ink, wording: Wording) -> usize {
+    match ink {
+        Ink::Default => 1,
+        Ink::Indexed(_) if is_basic(ink) && wording == Wording::Short => 1,
+        Ink::Indexed(_) => 3,
+        Ink::Rgb(_) => 5,
     }
 }
 
@@ -252,23 +324,23 @@ fn write_underline(ink: Ink, bytes: &mut Vec<u8>) {
 fn underline_len(ink: Ink) -> usize {
     match ink {
         Ink::Default => 5,
-        Ink::Indexed(_) => 3 + ink_len(ink),
-        Ink::Rgb(_) => 4 + ink_len(ink),
+        Ink::Indexed(_) => 3 + ink_len(ink, Wording::Long),
+        Ink::Rgb(_) => 4 + ink_len(ink, Wording::Long),
     }
 }
 
 /// The number of each attributes that is on, in rising order.
-fn attribute_codes(attributes: Attributes) -> impl Iterator<Item = u8> {
-    const CODES: [(Attributes, u8); 9] = [
-        (Attributes::BOLD, b'1'),
-        (Attributes::DIM, b'2'),
-        (Attributes::ITALIC, b'3'),
-        (Attributes::UNDERLINED, b'4'),
-        (Attributes::SLOW_BLINK, b'5'),
-        (Attributes::RAPID_BLINK, b'6'),
-        (Attributes::REVERSED, b'7'),
-        (Attributes::HIDDEN, b'8'),
-        (Attributes::CROSSED_OUT, b'9'),
+fn codes_of(attributes: Attributes) -> impl Iterator<Item = &'static [u8]> {
+    const CODES: [(Attributes, &[u8]); 9] = [
+        (Attributes::BOLD, b"1"),
+        (Attributes::DIM, b"2"),
+        (Attributes::ITALIC, b"3"),
+        (Attributes::UNDERLINED, b"4"),
+        (Attributes::SLOW_BLINK, b"5"),
+        (Attributes::RAPID_BLINK, b"6"),
+        (Attributes::REVERSED, b"7"),
+        (Attributes::HIDDEN, b"8"),
+        (Attributes::CROSSED_OUT, b"9"),
     ];
     CODES.into_iter().filter(move |&(flag, _)| attributes.contains(flag)).map(|(_, code)| code)
 }

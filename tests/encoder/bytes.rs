@@ -40,6 +40,49 @@ fn a_first_frame_says_each_colour_once() {
     );
 }
 
+/// The first eight colours take two digits, but not where they are bold: many terminals would brighten them.
+#[test]
+fn the_first_colours_are_short() {
+    let mut encoder = Encoder::new();
+    let mut grid = flat(&Cell::BLANK);
+    encoded(&mut encoder, &grid);
+    let cell = |index, attributes| Cell { attributes, ..Cell::new('x', Ink::Indexed(index), Ink::Indexed(index)) };
+    for (index, attributes, expected) in [
+        (3, Attributes::empty(), "\x1b[33;43mx"),
+        // Not what was said before, brightened.
+        (3, Attributes::BOLD, "\x1b[0;1;38;5;3;43mx"),
+        (4, Attributes::BOLD, "\x1b[38;5;4;44mx"),
+        (7, Attributes::empty(), "\x1b[0;37;47mx"),
+        (8, Attributes::empty(), "\x1b[38;5;8;48;5;8mx"),
+        (8, Attributes::BOLD, "\x1b[1mx"),
+        (8, Attributes::BOLD | Attributes::DIM, "\x1b[2mx"),
+        // The other way round some terminals would end bold.
+        (9, Attributes::DIM, "\x1b[0;2;38;5;9;48;5;9mx"),
+        (9, Attributes::DIM | Attributes::BOLD, "\x1b[0;1;2;38;5;9;48;5;9mx"),
+    ] {
+        *grid.cell_mut(0, 0) = cell(index, attributes);
+        assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[H{expected}"), "{index} {attributes:?}");
+    }
+    *grid.cell_mut(0, 0) = Cell::new('y', Ink::Default, Ink::Default);
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[my");
+}
+
+/// A sequence has sixteen numbers at most.
+#[test]
+fn long_sequences_are_split() {
+    let mut encoder = Encoder::new();
+    let mut grid = flat(&Cell { attributes: Attributes::BOLD, ..Cell::new('x', A, A) });
+    encoded(&mut encoder, &grid);
+    let many = Attributes::all().difference(Attributes::BOLD | Attributes::DIM);
+    for (attributes, expected) in [
+        (many, "\x1b[0;3;4;5;6;7;8;9m\x1b[38;2;1;2;3;48;2;200;100;0mx"),
+        (Attributes::REVERSED, "\x1b[0;7;38;2;1;2;3;48;2;200;100;0mx"),
+    ] {
+        *grid.cell_mut(0, 0) = Cell { attributes, ..Cell::new('x', C, B) };
+        assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[H{expected}"), "{attributes:?}");
+    }
+}
+
 /// CUP, SGR of only the colour that differs from the pen, and the character.
 #[test]
 fn one_changed_cell_is_a_place_a_colour_and_a_character() {
@@ -59,7 +102,7 @@ fn one_changed_cell_is_a_place_a_colour_and_a_character() {
         (Cell::new('▄', B, A), "\x1b[2;4H▄"),
         (Cell::new('▄', B, B), "\x1b[2;4H\x1b[48;2;200;100;0m▄"),
         (Cell::new('x', Ink::Default, B), "\x1b[2;4H\x1b[39mx"),
-        (Cell::new('x', Ink::Indexed(7), Ink::Indexed(255)), "\x1b[2;4H\x1b[38;5;7;48;5;255mx"),
+        (Cell::new('x', Ink::Indexed(7), Ink::Indexed(255)), "\x1b[2;4H\x1b[37;48;5;255mx"),
         (Cell::BLANK, "\x1b[2;4H\x1b[49m "),
     ] {
         grid.cell_mut(3, 1).clone_from(&cell);
@@ -69,26 +112,21 @@ fn one_changed_cell_is_a_place_a_colour_and_a_character() {
 }
 
 #[test]
-fn modifiers_begin_with_all_off() {
+fn attributes_are_added_and_all_switched_off_together() {
     let mut encoder = Encoder::new();
     let mut grid = flat(&Cell::new('x', A, B));
     encoded(&mut encoder, &grid);
     let bold = Cell { attributes: Attributes::BOLD | Attributes::UNDERLINED, ..Cell::new('x', A, B) };
     *grid.cell_mut(0, 0) = bold.clone();
-    let colours = "\x1b[38;2;10;20;30;48;2;200;100;0m";
-    assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[H\x1b[0;1;4m{colours}x"));
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[1;4mx");
     *grid.cell_mut(1, 0) = Cell { attributes: Attributes::BOLD | Attributes::UNDERLINED, ..Cell::new(' ', C, B) };
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[1;2H\x1b[38;2;1;2;3m ", "the line under a space is seen");
     *grid.cell_mut(0, 0) = Cell::new('x', A, B);
-    assert_eq!(encoded(&mut encoder, &grid), format!("\x1b[H\x1b[0m{colours}x"));
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[0;38;2;10;20;30;48;2;200;100;0mx");
     *grid.cell_mut(0, 0) = bold;
     encoded(&mut encoder, &grid);
     *grid.cell_mut(0, 0) = Cell::new(' ', A, B);
-    assert_eq!(
-        encoded(&mut encoder, &grid),
-        "\x1b[H\x1b[0m\x1b[48;2;200;100;0m ",
-        "a plain space's colour is not seen"
-    );
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[0;48;2;200;100;0m ", "a plain space's colour is not seen");
 }
 
 /// Neighbours follow each other. A gap of one is written again, if the pen is right for it: a byte instead of three. After
@@ -174,9 +212,9 @@ fn a_space_takes_the_colour_that_glyphs_have() {
     let reversed = Cell { attributes: Attributes::REVERSED, ..x(C, B) };
     assert_eq!(cells([space(C), space(C), reversed.clone(), space(C)]), "\x1b[H\x1b[7m  x ");
     let bold = Cell { attributes: Attributes::BOLD, ..x(C, B) };
-    let colors = "\x1b[38;2;1;2;3;48;2;200;100;0m";
-    assert_eq!(cells([space(C), space(C), bold, reversed]), format!("\x1b[1;3H\x1b[0;1m{colors}x\x1b[0;7m{colors}x"));
-    let default = "\x1b[H\x1b[27;39;48;2;1;2;3mx\x1b[49m \x1b[48;2;1;2;3m  ";
+    let anew = "\x1b[1;3H\x1b[27;1mx\x1b[0;7;38;2;1;2;3;48;2;200;100;0mx";
+    assert_eq!(cells([space(C), space(C), bold, reversed]), anew);
+    let default = "\x1b[H\x1b[27;39;48;2;1;2;3mx\x1b[m \x1b[48;2;1;2;3m  ";
     assert_eq!(cells([x(Ink::Default, C), space(Ink::Default), space(C), space(C)]), default);
 }
 
@@ -190,7 +228,7 @@ fn an_exchanged_space_keeps_its_colour() {
     *grid.cell_mut(2, 0) = Cell { attributes: Attributes::REVERSED, ..Cell::new('x', Ink::Indexed(9), two) };
     assert_eq!(
         encoded(&mut Encoder::new().with_order(Order::Color), &grid),
-        "\x1b[0m\x1b[H\x1b[38;5;1;48;5;200mx\x1b[7m \x1b[38;5;9mx"
+        "\x1b[0m\x1b[H\x1b[31;48;5;200mx\x1b[7m \x1b[38;5;9mx"
     );
 }
 
@@ -276,15 +314,14 @@ fn underlines_have_a_colour() {
     let underlined = |underline, attributes| Cell { underline, attributes, ..Cell::new('x', A, B) };
     let mut grid = flat(&underlined(Ink::Default, Attributes::UNDERLINED));
     encoded(&mut encoder, &grid);
-    let colours = "\x1b[38;2;10;20;30;48;2;200;100;0m";
     for (underline, attributes, expected) in [
         (A, Attributes::UNDERLINED, "\x1b[58:2::10:20:30mx"),
         (Ink::Indexed(7), Attributes::UNDERLINED, "\x1b[58:5:7mx"),
         (Ink::Default, Attributes::UNDERLINED, "\x1b[59mx"),
         (C, Attributes::UNDERLINED, "\x1b[58:2::1:2:3mx"),
-        (C, Attributes::empty(), &format!("\x1b[0m{colours}x")),
+        (C, Attributes::empty(), "\x1b[0;38;2;10;20;30;48;2;200;100;0mx"),
         (A, Attributes::empty(), ""),
-        (A, Attributes::ITALIC | Attributes::UNDERLINED, &format!("\x1b[0;3;4m{colours}\x1b[58:2::10:20:30mx")),
+        (A, Attributes::ITALIC | Attributes::UNDERLINED, "\x1b[3;4m\x1b[58:2::10:20:30mx"),
     ] {
         *grid.cell_mut(0, 0) = underlined(underline, attributes);
         let place = if expected.is_empty() { "" } else { "\x1b[H" };
