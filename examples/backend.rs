@@ -17,29 +17,28 @@ fn main() -> io::Result<()> {
         return Ok(());
     }
     terminal::enable_raw_mode()?;
-    execute!(io::stdout(), EnterAlternateScreen)?;
-    let result = run();
-    execute!(io::stdout(), LeaveAlternateScreen)?;
+    let encoder = Encoder::new().with_order(Order::Color).with_synchronized_output(true);
+    // Where there was CrosstermBackend::new(io::stdout()).
+    let backend = EncoderBackend::new(io::stdout(), terminal::size()?)
+        .with_encoder(encoder)
+        .sized_by(|| Ok(terminal::size()?.into()));
+    let mut terminal = Terminal::new(backend)?;
+    execute!(terminal.backend_mut(), EnterAlternateScreen)?;
+    let result = run(&mut terminal);
+    execute!(terminal.backend_mut(), LeaveAlternateScreen)?;
     terminal::disable_raw_mode()?;
     result
 }
 
-fn run() -> io::Result<()> {
-    let encoder = Encoder::new().with_order(Order::Color).with_synchronized_output(true);
-    // Where there was CrosstermBackend::new(io::stdout()).
-    let backend = EncoderBackend::new(io::stdout(), terminal::size()?).with_encoder(encoder);
-    let mut terminal = Terminal::new(backend)?;
+fn run(terminal: &mut Terminal<EncoderBackend<io::Stdout>>) -> io::Result<()> {
     let start = Instant::now();
     loop {
         terminal.draw(|frame| draw(frame, start.elapsed().as_secs_f64()))?;
         if !event::poll(Duration::from_millis(40))? {
             continue;
         }
-        match event::read()? {
-            // The backend never asks the terminal for its size.
-            Event::Resize(columns, rows) => terminal.backend_mut().resize((columns, rows)),
-            Event::Key(_) => return Ok(()),
-            _ => {}
+        if let Event::Key(_) = event::read()? {
+            return Ok(());
         }
     }
 }

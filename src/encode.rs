@@ -14,9 +14,10 @@
 //! [`EncoderBackend`] is an encoder for ratatui's programs.
 //!
 //! The escape sequences used are the safe core that every terminal and multiplexer understands: CUP, CUF, CHA, CR, BS,
-//! LF and SGR with `38;2`/`48;2`, with `7`/`27` (also for spaces of a colour that the pen has for glyphs), and with
-//! `58:2`, the colour of an underline, which those that do not know it pass over. Nothing that repeats, erases or
-//! scrolls. A terminal in raw mode is taken for granted: a line feed keeps the column.
+//! LF and SGR with `38;2`/`48;2`, with 30 to 37 and 40 to 47 for the first eight colours, with `7`/`27` (also for spaces of
+//! a colour that the pen has for glyphs), and with `58:2`, the colour of an underline, which those that do not know it pass
+//! over. Nothing that repeats, erases or scrolls, but what ratatui asks a backend to scroll. A terminal in raw mode is
+//! taken for granted: a line feed keeps the column.
 
 use crate::grid::{Cell, Glyph, Grid, Size};
 
@@ -190,9 +191,15 @@ impl Encoder {
     /// Appends the bytes that make the terminal show `wanted`, or something near it for a while; none if it does already.
     #[doc(hidden)]
     pub fn encode_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) {
-        let Some(caps) = lossy::Caps::of(allowance.quality) else { return self.encode(wanted, bytes) };
+        let start = bytes.len();
+        self.draw_within(wanted, allowance, bytes);
+        self.bracket(start, bytes);
+    }
+
+    /// Appends such a frame without its brackets; returns where the cursor is after it, if that is certain.
+    fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<Place> {
+        let Some(caps) = lossy::Caps::of(allowance.quality) else { return self.draw(wanted, bytes) };
         self.stillness.note(wanted, allowance.now);
-        let before = bytes.len();
         let known = self.take_known(wanted.size(), bytes);
         let has_waited = |at| self.stillness.due(at) <= allowance.now;
         let plan = lossy::Plan::new(lossy::Frame {
@@ -208,16 +215,16 @@ impl Encoder {
         let refines_from = plan.fewest_writes(true);
         let mut writes = plan.writes();
         let start = bytes.len();
-        let next = loop {
+        let (next, cursor) = loop {
             let mut next = known.clone();
-            self.write(&plan.grid(writes), &mut next, bytes);
+            let cursor = self.write(&plan.grid(writes), &mut next, bytes);
             let taken = bytes.len() - start + self.bracket_len();
             let refines = writes > refines_from;
             let (limit, fewest) = if refines { (usual, refines_from) } else { (most, plan.fewest_writes(false)) };
             // One at least, or all might wait for ever.
             let fewest = fewest.max(1);
             if taken <= limit || writes <= fewest {
-                break next;
+                break (next, cursor);
             }
             bytes.truncate(start);
             // A little less than the share that fits, so that few tries are needed.
@@ -228,7 +235,7 @@ impl Encoder {
         let refines = plan.inexact(&next.shown).map(|at| self.stillness.due(at)).max();
         self.due = if is_cut { Some(allowance.now) } else { refines };
         self.known = Some(next);
-        self.bracket(before, bytes);
+        cursor
     }
 
     /// When to encode the last wanted grid again, if nothing else is wanted until then: what is not shown exactly yet is

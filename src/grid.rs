@@ -5,6 +5,8 @@
 
 use crate::color::Srgb8;
 use std::fmt;
+#[cfg(feature = "backend")]
+use std::ops::Range;
 use std::sync::Arc;
 
 mod attributes;
@@ -297,12 +299,31 @@ impl Grid {
         }
     }
 
-    /// Moves everything up by so many rows; blanks come in at the bottom.
+    /// Moves the content of these rows up by `by` rows; blank rows come in below it. Rows outside the grid are ignored.
     #[cfg(feature = "backend")]
-    pub(crate) fn scroll_up(&mut self, rows: u16) {
-        let gone = Size { rows: rows.min(self.size.rows), ..self.size }.cell_count();
-        self.cells.drain(..gone);
-        self.cells.resize(self.size.cell_count(), Cell::BLANK);
+    pub(crate) fn scroll_up(&mut self, region: Range<u16>, by: u16) {
+        let (cells, shift) = self.region(region, by);
+        cells.rotate_left(shift);
+        let kept = cells.len() - shift;
+        cells[kept..].fill(Cell::BLANK);
+    }
+
+    /// Moves the content of these rows down by `by` rows; blank rows come in above it. Rows outside the grid are ignored.
+    #[cfg(feature = "scrolling-regions")]
+    pub(crate) fn scroll_down(&mut self, region: Range<u16>, by: u16) {
+        let (cells, shift) = self.region(region, by);
+        cells.rotate_right(shift);
+        cells[..shift].fill(Cell::BLANK);
+    }
+
+    /// Returns the cells of these rows, and how many cells `by` of the rows have.
+    #[cfg(feature = "backend")]
+    fn region(&mut self, region: Range<u16>, by: u16) -> (&mut [Cell], usize) {
+        let end = region.end.min(self.size.rows);
+        let start = region.start.min(end);
+        let cells_of = |rows: u16| Size { rows, ..self.size }.cell_count();
+        let (cells, shift) = (cells_of(start)..cells_of(end), cells_of(by.min(end - start)));
+        (&mut self.cells[cells], shift)
     }
 
     fn index(&self, column: u16, row: u16) -> usize {

@@ -1,19 +1,28 @@
 //! The encoder as a backend of ratatui: any ratatui program sends its bytes.
 //!
-//! ratatui says what changes, cell by cell; here that changes a wanted grid, and `flush` sends what the terminal does
-//! not show yet, in one write.
+//! ratatui names the cells that change; here they change a wanted grid, and `flush` sends what the terminal does not show
+//! yet, in one write.
 
-use super::Encoder;
-use super::moves::{Move, Place};
-use crate::grid::{Cell, Grid};
+mod calls;
+mod cursor;
+mod limits;
+#[cfg(feature = "scrolling-regions")]
+mod regions;
+
+use super::moves::Place;
+use super::{Encoder, Quality};
+use crate::grid::{self, Cell, Grid};
 use crate::overlay;
-use ratatui_core::backend::{Backend, ClearType, WindowSize};
-use ratatui_core::layout::{Position, Rect, Size};
+use cursor::Cursor;
+use limits::Limits;
+use ratatui_core::backend::WindowSize;
+use ratatui_core::layout::{Position, Size};
+use std::fmt;
 use std::io::{self, Write};
-use std::iter;
 use std::ops::Range;
+use std::time::Duration;
 
-/// A [`ratatui_core::backend::Backend`] on any [`Write`], for programs that read their keys elsewhere.
+/// A [`Backend`](ratatui_core::backend::Backend) on any [`Write`], in place of `CrosstermBackend` and its like.
 ///
 /// ```
 /// use ratatui::{Terminal, widgets::Gauge};
@@ -25,98 +34,213 @@ use std::ops::Range;
 /// # Ok::<(), std::io::Error>(())
 /// ```
 ///
-/// It never asks the terminal anything. The size is what its owner says ([`new`](Self::new) and
-/// [`resize`](Self::resize)); the cursor is where it was last put: by `set_cursor_position`, behind the last cell that
-/// was drawn, or down by the lines appended. A program with an inline viewport calls `set_cursor_position` with where
-/// the cursor is, before it begins and after a resize.
+/// The terminal has to be in raw mode. What the program has not drawn is left as it is until the program clears it.
+/// Clearing writes blanks, even where there should be some already, which mends a screen on which something else has
+/// written.
 ///
-/// What the program has not drawn is left as it is until the program clears it. Clearing is writing blanks, even where
-/// they should be already: it mends a screen on which something else has written. The terminal has to be in raw mode.
-#[derive(Debug)]
+/// # The size of the window and the place of the cursor
+///
+/// By itself the backend asks the terminal nothing. Its size is the one given to [`new`](Self::new), and the cursor is
+/// where it was last put: by `set_cursor_position`, behind the last cell that was drawn, or down by the lines appended.
+/// With [`sized_by`](Self::sized_by) it asks for the size, so that
+/// [`Terminal::autoresize`](ratatui_core::terminal::Terminal::autoresize), which each `draw` calls, follows the window.
+/// With [`located_by`](Self::located_by) it asks where the cursor is when that is unknown, which an inline viewport needs
+/// at its beginning and after a resize; without it, the program calls `set_cursor_position` there.
+///
+/// ```no_run
+/// use termtrace::EncoderBackend;
+///
+/// let backend = EncoderBackend::new(std::io::stdout(), crossterm::terminal::size()?)
+///     .sized_by(|| Ok(crossterm::terminal::size()?.into()))
+///     .located_by(|| Ok(crossterm::cursor::position()?.into()));
+/// # Ok::<(), std::io::Error>(())
+/// ```
+///
+/// # Other bytes
+///
+/// The backend is itself a [`Write`], so `execute!(terminal.backend_mut(), EnterAlternateScreen)` works: the bytes go out
+/// as they are, after everything that was drawn before them. As they may have done anything, nothing is assumed about the
+/// screen, the colours or the cursor afterwards, and nothing is drawn again by itself: neither what stood on the screen
+/// before, nor the cursor in its place. That is right behind `LeaveAlternateScreen`, where the screen is the shell's
+/// again. Bytes that change what the screen shows have to be followed by
+/// [`Terminal::clear`](ratatui_core::terminal::Terminal::clear), as with any other backend. Bytes that leave a mode changed
+/// in which the terminal writes differently (origin mode, insert mode, no wrapping, a character set, a scrolling region)
+/// have to be followed by those that reset it before anything is drawn.
+///
+/// # Scrolling regions
+///
+/// ratatui's feature `scrolling-regions` adds two methods to the trait of backends, so this backend only compiles if it has
+/// them too. As cargo unifies features, one dependency that turns ratatui's feature on is enough to miss them ("not all
+/// trait items implemented, missing: `scroll_region_up`, `scroll_region_down`"). Then this crate's feature of the same name
+/// has to be on as well:
+///
+/// ```toml
+/// [dependencies]
+/// ratatui = { version = "0.30", features = ["scrolling-regions"] }
+/// termtrace = { version = "0.1", features = ["scrolling-regions"] }
+/// ```
+///
+/// With it `insert_before` scrolls what stands above an inline viewport, and the viewport is not drawn again.
 pub struct EncoderBackend<W> {
     writer: W,
     encoder: Encoder,
+    limits: Option<Limits>,
     wanted: Grid,
     window: WindowSize,
+    ask_size: Option<Query<Size>>,
+    ask_position: Option<Query<Position>>,
+    /// Where the cursor was last put.
+    position: Position,
+    /// The cursor as it is to be.
     cursor: Cursor,
     /// The cursor as the terminal has it, as far as that is known.
     shown_cursor: Cursor,
     /// Between `draw` and `flush`: what is said of the cursor goes out with the frame.
     drawing: bool,
+    /// The last bytes that went out were not ours.
+    gave_way: bool,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Cursor {
-    position: Option<Position>,
-    visible: Option<bool>,
-}
+/// A question to the terminal.
+type Query<T> = Box<dyn Fn() -> io::Result<T> + Send + Sync>;
 
-impl<W: Write> EncoderBackend<W> {
-    /// For a terminal of that size of which nothing else is known, with the cursor at the top left.
+impl<W> EncoderBackend<W> {
+    /// Creates a backend for a terminal of that size of which nothing else is known.
     pub fn new(writer: W, size: impl Into<Size>) -> Self {
         let mut backend = Self {
             writer,
             encoder: Encoder::new(),
-            wanted: Grid::new(crate::grid::Size::new(0, 0)),
+            limits: None,
+            wanted: Grid::new(grid::Size::new(0, 0)),
             window: WindowSize { columns_rows: Size::ZERO, pixels: Size::ZERO },
+            ask_size: None,
+            ask_position: None,
+            position: Position::ORIGIN,
             cursor: Cursor::default(),
             shown_cursor: Cursor::default(),
             drawing: false,
+            gave_way: false,
         };
         backend.resize(size);
         backend
     }
 
-    /// With another encoder, say in another order.
+    /// Sets the encoder, for instance one with another order.
     pub fn with_encoder(mut self, encoder: Encoder) -> Self {
         self.encoder = encoder;
         self.forget();
         self
     }
 
-    /// The terminal has that size now, and may show anything. Its size in pixels is not known any more.
+    /// Lets frames differ from what was drawn, as [`Encoder::encode_within`] does: text is always exact, pictures of half
+    /// blocks are within `quality` while they change and exact half a second later. `clock` gives the time from any fixed
+    /// start.
+    ///
+    /// A program that only draws when something happens has to draw once more, half a second or later after a picture has
+    /// changed; one that draws many times a second need not care.
+    ///
+    /// ```
+    /// use ratatui::{Terminal, widgets::Paragraph};
+    /// use std::time::Instant;
+    /// use termtrace::{EncoderBackend, Quality};
+    ///
+    /// let start = Instant::now();
+    /// let backend = EncoderBackend::new(Vec::new(), (80, 24)).with_quality(Quality::Equal, move || start.elapsed());
+    /// let mut terminal = Terminal::new(backend)?;
+    /// terminal.draw(|frame| frame.render_widget(Paragraph::new("text is exact"), frame.area()))?;
+    /// assert_eq!(terminal.size()?.height, 24);
+    /// # Ok::<(), std::io::Error>(())
+    /// ```
+    pub fn with_quality(mut self, quality: Quality, clock: impl FnMut() -> Duration + Send + Sync + 'static) -> Self {
+        self.limits = Some(Limits::new(quality, Box::new(clock)));
+        self
+    }
+
+    /// Limits the bytes a second that frames take, where [`with_quality`](Self::with_quality) was given
+    /// [`Quality::Equal`] or [`Quality::Fast`]: what does not fit, the least errors of pictures, waits for a later frame.
+    /// Text never waits, nor what replaces text or an unknown screen. Without a quality it does nothing.
+    #[doc(hidden)]
+    pub fn with_max_rate(mut self, bytes_per_second: u32) -> Self {
+        self.limits = self.limits.map(|limits| limits.with_max_rate(bytes_per_second));
+        self
+    }
+
+    /// Asks that function for the size of the window, in columns and rows, each time that it matters.
+    ///
+    /// A window that becomes smaller and large again between two frames goes unnoticed, as with any backend.
+    pub fn sized_by(mut self, ask: impl Fn() -> io::Result<Size> + Send + Sync + 'static) -> Self {
+        self.ask_size = Some(Box::new(ask));
+        self
+    }
+
+    /// Asks that function for the cursor's column and row, counted from 0, where they are not known otherwise.
+    pub fn located_by(mut self, ask: impl Fn() -> io::Result<Position> + Send + Sync + 'static) -> Self {
+        self.ask_position = Some(Box::new(ask));
+        self
+    }
+
+    /// Sets the size of the window, of which nothing else is known from here on, not even its size in pixels.
+    #[doc(hidden)]
     pub fn resize(&mut self, size: impl Into<Size>) {
         let Size { width, height } = size.into();
         self.window = WindowSize { columns_rows: Size { width, height }, pixels: Size::ZERO };
-        self.wanted = Grid::foreign(crate::grid::Size::new(width, height));
-        self.move_cursor(self.position());
-        self.forget();
+        self.position = self.inside(self.position);
+        self.abandon_screen();
     }
 
-    /// The size of the window in pixels, for [`window_size`](Backend::window_size); 0 by 0 until it is said.
+    /// Sets the size of the window in pixels, for [`window_size`](ratatui_core::backend::Backend::window_size); 0 by 0
+    /// until then.
     #[doc(hidden)]
     pub fn set_pixels(&mut self, pixels: impl Into<Size>) {
         self.window.pixels = pixels.into();
     }
 
-    /// Where the bytes go.
+    /// Returns when, by the clock of [`with_quality`](Self::with_quality), the next frame is due if nothing else is drawn
+    /// until then; `None` if the screen shows exactly what was drawn.
+    #[doc(hidden)]
+    pub fn due(&self) -> Option<Duration> {
+        let limits = self.limits.as_ref()?;
+        self.encoder.due().map(|due| limits.due(due))
+    }
+
+    /// Returns the writer.
     #[doc(hidden)]
     pub fn writer(&self) -> &W {
         &self.writer
     }
 
-    /// Where the bytes go, to write something else in between. What changes the screen has to be followed by
-    /// [`Terminal::clear`](ratatui_core::terminal::Terminal::clear).
+    /// Returns the writer, for bytes that leave the screen, the colours and the cursor as they are (a title, the
+    /// clipboard). Others are written to the backend itself.
     #[doc(hidden)]
     pub fn writer_mut(&mut self) -> &mut W {
         &mut self.writer
     }
 
-    /// Nothing is known of the screen, and the next flush says it all.
+    /// Nothing is known of the screen.
     fn forget(&mut self) {
         self.encoder.forget();
         self.shown_cursor = Cursor::default();
     }
 
-    fn position(&self) -> Position {
-        self.cursor.position.unwrap_or_default()
+    /// Nothing is known of the screen, and nothing is wanted on it but what is drawn from here on.
+    fn abandon_screen(&mut self) {
+        let Size { width, height } = self.window.columns_rows;
+        self.wanted = Grid::foreign(grid::Size::new(width, height));
+        self.cursor.position = None;
+        self.drawing = false;
+        self.forget();
     }
 
-    /// The cursor is on the screen, wherever it is put.
-    fn move_cursor(&mut self, to: Position) {
+    /// The place on the screen that is nearest.
+    fn inside(&self, Position { x, y }: Position) -> Position {
         let Size { width, height } = self.window.columns_rows;
-        let inside = Position::new(to.x.min(width.saturating_sub(1)), to.y.min(height.saturating_sub(1)));
-        self.cursor.position = Some(inside);
+        Position::new(x.min(width.saturating_sub(1)), y.min(height.saturating_sub(1)))
+    }
+
+    /// Wants the cursor there, or as near as the screen has a place.
+    fn put_cursor(&mut self, to: Position) {
+        self.position = self.inside(to);
+        self.cursor.position = Some(self.position);
     }
 
     /// Wants a cell; how many columns it takes. ratatui draws what has changed: where nothing has, it must know of
@@ -130,7 +254,12 @@ impl<W: Write> EncoderBackend<W> {
         columns
     }
 
-    /// Blanks in these cells, counted row by row from the top.
+    /// What is said of the cursor goes out with the next frame.
+    fn begin_frame(&mut self) {
+        self.drawing = true;
+    }
+
+    /// Wants blanks in these cells, counted row by row from the top, whatever they show.
     fn blank(&mut self, cells: Range<usize>) {
         let columns = usize::from(self.window.columns_rows.width);
         for at in cells.start..cells.end.min(self.wanted.cells().len()) {
@@ -139,12 +268,39 @@ impl<W: Write> EncoderBackend<W> {
             self.encoder.forget_cell(Place { column, row });
         }
     }
+}
 
-    /// What the terminal does not show yet, the cursor included.
-    fn unsent(&mut self) -> Vec<u8> {
+impl<W: Write> EncoderBackend<W> {
+    /// Takes over the size of the window, if it has another one now.
+    fn follow_window(&mut self) -> io::Result<()> {
+        if let Some(ask) = &self.ask_size {
+            let size = ask()?;
+            if size != self.window.columns_rows {
+                self.resize(size);
+            }
+        }
+        Ok(())
+    }
+
+    /// Where the cursor is, or is to be.
+    fn locate(&mut self) -> io::Result<Position> {
+        if self.cursor.position.or(self.shown_cursor.position).is_none()
+            && let Some(ask) = &self.ask_position
+        {
+            self.position = self.inside(ask()?);
+            self.shown_cursor.position = Some(self.position);
+        }
+        Ok(self.position)
+    }
+
+    /// Returns what the terminal does not show yet, the cursor included; `limits` may hold some of it back.
+    fn frame(&mut self, limits: Option<&mut Limits>) -> Vec<u8> {
         self.drawing = false;
         let mut bytes = Vec::new();
-        let end = self.encoder.draw(&self.wanted, &mut bytes);
+        let end = match limits {
+            Some(limits) => self.encoder.draw_within(&self.wanted, limits.allowance(), &mut bytes),
+            None => self.encoder.draw(&self.wanted, &mut bytes),
+        };
         if bytes.is_empty() {
             self.shown_cursor.become_cursor(self.cursor, &mut bytes);
             return bytes;
@@ -157,134 +313,125 @@ impl<W: Write> EncoderBackend<W> {
         bytes
     }
 
-    fn send(&mut self) -> io::Result<()> {
-        let bytes = self.unsent();
-        self.write(&bytes)
+    /// Returns what is not sent yet, with the pen down: what stands before bytes that act on the screen as it is.
+    fn outstanding(&mut self) -> Vec<u8> {
+        if self.drawing || !self.encoder.knows_screen() { self.frame(None) } else { Vec::new() }
     }
 
-    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+    fn send_frame(&mut self) -> io::Result<()> {
+        let mut limits = self.limits.take();
+        let bytes = self.frame(limits.as_mut());
+        if let Some(limits) = &mut limits {
+            limits.note_sent(bytes.len());
+        }
+        self.limits = limits;
+        self.send(&bytes)
+    }
+
+    /// Sends everything that was drawn, exactly.
+    fn send_exactly(&mut self) -> io::Result<()> {
+        let bytes = self.frame(None);
+        self.send(&bytes)
+    }
+
+    /// Sends what is new of the cursor, unless it goes out with a frame.
+    fn send_cursor(&mut self) -> io::Result<()> {
+        if self.drawing {
+            return Ok(());
+        }
+        let mut bytes = Vec::new();
+        self.shown_cursor.become_cursor(self.cursor, &mut bytes);
+        self.send(&bytes)
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.gave_way &= bytes.is_empty();
         self.encoder.send(bytes, &mut self.writer).inspect_err(|_| self.shown_cursor = Cursor::default())
     }
 
     fn set_visible(&mut self, visible: bool) -> io::Result<()> {
         self.cursor.visible = Some(visible);
-        if self.drawing {
-            return Ok(());
+        if !self.drawing {
+            self.shown_cursor.visible = None;
         }
-        self.shown_cursor.visible = None;
-        self.send()
-    }
-}
-
-impl Cursor {
-    /// Says what differs.
-    fn become_cursor(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
-        if let Some(Position { x, y }) = wanted.position
-            && self.position != wanted.position
-        {
-            Move::To(Place { column: x, row: y }).write(bytes);
-        }
-        if let Some(visible) = wanted.visible
-            && self.visible != wanted.visible
-        {
-            bytes.extend_from_slice(if visible { b"\x1b[?25h" } else { b"\x1b[?25l" });
-        }
-        *self = wanted;
-    }
-}
-
-impl<W: Write> Backend for EncoderBackend<W> {
-    type Error = io::Error;
-
-    /// Sends nothing yet. What a wide character covers is not drawn, even if it is in `content`.
-    fn draw<'a, I>(&mut self, content: I) -> io::Result<()>
-    where
-        I: Iterator<Item = (u16, u16, &'a ratatui_core::buffer::Cell)>,
-    {
-        self.drawing = true;
-        let Size { width, height } = self.window.columns_rows;
-        let mut covered = Rect::ZERO;
-        for (x, y, cell) in content {
-            if x >= width || y >= height || covered.contains(Position::new(x, y)) {
-                continue;
-            }
-            let end = x + self.draw_cell(Position::new(x, y), cell);
-            covered = Rect::new(x + 1, y, end - x - 1, 1);
-            self.move_cursor(Position::new(end, y));
-        }
-        Ok(())
+        self.send_cursor()
     }
 
-    fn append_lines(&mut self, lines: u16) -> io::Result<()> {
-        // Line feeds depend on where the cursor is.
-        self.shown_cursor.position = None;
-        let mut bytes = self.unsent();
-        let Position { x, y } = self.position();
-        let below = self.window.columns_rows.height.saturating_sub(1).saturating_sub(y);
-        let scrolled = lines.saturating_sub(below);
-        bytes.extend(iter::repeat_n(b'\n', lines.into()));
-        self.encoder.scroll_up(scrolled);
-        self.wanted.scroll_up(scrolled);
-        self.move_cursor(Position::new(x, y.saturating_add(lines)));
-        self.shown_cursor.position = self.cursor.position;
-        self.write(&bytes)
-    }
-
-    fn hide_cursor(&mut self) -> io::Result<()> {
-        self.set_visible(false)
-    }
-
-    fn show_cursor(&mut self) -> io::Result<()> {
-        self.set_visible(true)
-    }
-
-    /// Where it was last put.
-    fn get_cursor_position(&mut self) -> io::Result<Position> {
-        Ok(self.position())
-    }
-
-    fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
+    fn set_position(&mut self, position: Position) -> io::Result<()> {
         if !self.drawing {
             // Something else may have moved it.
             self.shown_cursor.position = None;
         }
-        self.move_cursor(position.into());
-        self.send()
+        self.put_cursor(position);
+        self.send_cursor()
     }
 
-    fn clear(&mut self) -> io::Result<()> {
-        self.clear_region(ClearType::All)
+    /// Line feeds from where the cursor is; the rows that go out at the top go into the scrollback.
+    fn feed_lines(&mut self, lines: u16) -> io::Result<()> {
+        let Position { x, y } = self.locate()?;
+        self.put_cursor(Position::new(x, y));
+        let mut bytes = self.outstanding();
+        self.shown_cursor.become_cursor(self.cursor, &mut bytes);
+        let height = self.window.columns_rows.height;
+        let scrolled = lines.saturating_sub(height.saturating_sub(1).saturating_sub(y));
+        bytes.extend(std::iter::repeat_n(b'\n', lines.into()));
+        self.encoder.scroll_up(0..height, scrolled);
+        self.wanted.scroll_up(0..height, scrolled);
+        self.put_cursor(Position::new(x, y.saturating_add(lines)));
+        self.shown_cursor.position = self.cursor.position;
+        self.send(&bytes)
     }
 
-    fn clear_region(&mut self, clear_type: ClearType) -> io::Result<()> {
-        if clear_type == ClearType::All {
-            self.forget();
+    /// The rows have been scrolled, and the cursor is at the top left.
+    #[cfg(feature = "scrolling-regions")]
+    fn note_scrolled(&mut self, region: Range<u16>, by: u16, way: regions::Way) {
+        match way {
+            regions::Way::Up => {
+                self.encoder.scroll_up(region.clone(), by);
+                self.wanted.scroll_up(region, by);
+            }
+            regions::Way::Down => {
+                self.encoder.scroll_down(region.clone(), by);
+                self.wanted.scroll_down(region, by);
+            }
         }
-        let columns = usize::from(self.window.columns_rows.width);
-        let Position { x, y } = self.position();
-        let (line, next_line) = (usize::from(y) * columns, (usize::from(y) + 1) * columns);
-        let at = line + usize::from(x);
-        self.blank(match clear_type {
-            ClearType::All => 0..usize::MAX,
-            ClearType::AfterCursor => at..usize::MAX,
-            ClearType::BeforeCursor => 0..at + 1,
-            ClearType::CurrentLine => line..next_line,
-            ClearType::UntilNewLine => at..next_line,
-        });
-        self.send()
+        self.position = Position::ORIGIN;
+        self.cursor.position = None;
+        self.shown_cursor.position = Some(Position::ORIGIN);
     }
 
-    fn size(&self) -> io::Result<Size> {
-        Ok(self.window.columns_rows)
+    /// Before bytes of the program's own: what was drawn is on the screen, and nothing is known of it afterwards.
+    fn give_way(&mut self) -> io::Result<()> {
+        // Not between the pieces of one escape sequence.
+        if !self.gave_way {
+            if self.drawing || self.encoder.is_inexact() {
+                self.send_exactly()?;
+            }
+            self.abandon_screen();
+            self.gave_way = true;
+        }
+        Ok(())
     }
+}
 
-    fn window_size(&mut self) -> io::Result<WindowSize> {
-        Ok(self.window)
+/// For the program's own escape sequences (see [above](Self#other-bytes)).
+impl<W: Write> Write for EncoderBackend<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.give_way()?;
+        self.writer.write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.send()?;
-        // There may be more than ours in it.
         self.writer.flush()
+    }
+}
+
+impl<W: fmt::Debug> fmt::Debug for EncoderBackend<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("EncoderBackend")
+            .field("writer", &self.writer)
+            .field("size", &self.window.columns_rows)
+            .field("position", &self.position)
+            .finish_non_exhaustive()
     }
 }

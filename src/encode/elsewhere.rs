@@ -4,6 +4,7 @@ use super::Encoder;
 use super::moves::Place;
 use super::pen::Pen;
 use crate::grid::Cell;
+use std::ops::Range;
 
 impl Encoder {
     /// Marks a cell as unknown.
@@ -13,20 +14,36 @@ impl Encoder {
         }
     }
 
+    /// Returns whether anything is known of the terminal; its pen is then reset between the frames of a backend.
+    pub(super) fn knows_screen(&self) -> bool {
+        self.known.is_some()
+    }
+
+    /// Returns whether the terminal is known to show something that is only near what is wanted.
+    pub(super) fn is_inexact(&self) -> bool {
+        self.known.is_some() && self.due.is_some()
+    }
+
     /// Resets the pen, so that foreign output does not get its colours.
     pub(super) fn reset_pen(&mut self, bytes: &mut Vec<u8>) {
-        if let Some(known) = &mut self.known
-            && known.pen != Pen::default()
-        {
-            known.pen.reset(bytes);
+        if let Some(known) = &mut self.known {
+            known.pen.become_pen(Pen::default(), bytes);
         }
     }
 
-    /// Records that the screen's contents have moved up by this many rows. (Many terminals fill the new rows with the
+    /// Records that the contents of `region` have moved up by `by` rows. (Many terminals fill the new rows with the
     /// pen's colour, so the pen must have been reset.)
-    pub(super) fn scroll_up(&mut self, rows: u16) {
+    pub(super) fn scroll_up(&mut self, region: Range<u16>, by: u16) {
         if let Some(known) = &mut self.known {
-            known.shown.scroll_up(rows);
+            known.shown.scroll_up(region, by);
+        }
+    }
+
+    /// Records that the contents of `region` have moved down by `by` rows.
+    #[cfg(feature = "scrolling-regions")]
+    pub(super) fn scroll_down(&mut self, region: Range<u16>, by: u16) {
+        if let Some(known) = &mut self.known {
+            known.shown.scroll_down(region, by);
         }
     }
 }

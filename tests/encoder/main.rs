@@ -11,6 +11,7 @@ mod lossy;
 mod near;
 mod overlay;
 mod pictures;
+mod program;
 #[path = "../../benches/bytes/scenes.rs"]
 mod scenes;
 mod screens;
