@@ -5,10 +5,12 @@
 //! - `cargo bench --bench bytes -- FOLDER` takes the folder's sequences in place of the four. They are raw frames in files
 //!   named `NAME_COLSxROWS.rgb`: all frames one after another, COLS x 2 ROWS sRGB pixels each, 3 bytes a pixel, row by row
 //!   from the top;
+//! - `cargo bench --bench bytes -- --programs` runs two programs of ratatui on both backends, which otherwise come last;
 //! - `cargo bench --bench bytes -- --test` only sees whether it runs.
 //!
 //! Bytes are the mean of all frames after the first. Times are CPU time, the best of five, cells filled included.
 
+mod programs;
 mod scenes;
 mod seen;
 mod send;
@@ -29,6 +31,7 @@ struct Options {
     folder: Option<PathBuf>,
     seeds: Vec<u64>,
     is_test: bool,
+    only_programs: bool,
 }
 
 impl Options {
@@ -40,6 +43,7 @@ impl Options {
                 // Cargo's own.
                 "--bench" => {}
                 "--test" => options.is_test = true,
+                "--programs" => options.only_programs = true,
                 "--seed" => {
                     let number = arguments.next().and_then(|number| number.parse().ok());
                     options.seeds.push(number.expect("--seed takes a number"));
@@ -162,6 +166,9 @@ fn drawn(options: &Options) -> Vec<Frames> {
 
 fn main() {
     let options = Options::from_arguments();
+    if options.only_programs {
+        return programs::print(options.is_test);
+    }
     let mut sequences = given(&options);
     sequences.extend(drawn(&options));
     let mut sizes: Vec<Size> = sequences.iter().map(|frames| frames.size).collect();
@@ -171,5 +178,8 @@ fn main() {
         let of_size = sequences.extract_if(.., |frames| frames.size == size);
         let measured: Vec<Measured> = of_size.map(|frames| frames.measured(options.rounds())).collect();
         table::print(&format!("{}x{}", size.columns, size.rows), &measured);
+    }
+    if options.folder.is_none() {
+        programs::print(options.is_test);
     }
 }

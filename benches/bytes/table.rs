@@ -75,10 +75,7 @@ fn quality(name: &str, sequences: &[Measured], caps: (f64, f32), of: impl Fn(&Me
     row(&format!("{name}: last change to rest (at most 1 s)"), sequences, |m| {
         marked(format!("{:.2} s", of(m).rest.as_secs_f64()), of(m).rest <= Duration::from_secs(1))
     });
-    row(&format!("{name}: exact then"), sequences, |m| {
-        let exact = of(m).is_exact;
-        marked(if exact { "yes" } else { "no" }.into(), exact)
-    });
+    row(&format!("{name}: exact then"), sequences, |m| yes(of(m).is_exact));
 }
 
 fn head(title: &str, sequences: &[Measured]) {
@@ -94,16 +91,20 @@ fn row(name: &str, sequences: &[Measured], value: impl Fn(&Measured) -> String) 
 
 /// Fractions, each judged by its first two decimals, rounded.
 fn fractions(name: &str, sequences: &[Measured], wanted: &Wanted, value: impl Fn(&Measured) -> f64) {
-    row(name, sequences, |measured| {
-        let value = value(measured);
-        match wanted.of(measured) {
-            Some(wanted) => {
-                let value_is_within = (value * 100.0).round() <= wanted * 100.0 + 1e-9;
-                marked(format!("{value:.3} ({wanted:.2})"), value_is_within)
-            }
-            None => format!("{value:.3}"),
-        }
-    });
+    row(name, sequences, |measured| limited(value(measured), wanted.of(measured).unwrap_or(f64::INFINITY)));
+}
+
+/// A fraction with what is wanted of it, if anything is.
+pub(crate) fn limited(value: f64, wanted: f64) -> String {
+    if wanted.is_infinite() {
+        return format!("{value:.3}");
+    }
+    marked(format!("{value:.3} ({wanted:.2})"), (value * 100.0).round() <= wanted * 100.0 + 1e-9)
+}
+
+/// Whether it is so, as it should be.
+pub(crate) fn yes(is_so: bool) -> String {
+    marked(if is_so { "yes" } else { "no" }.into(), is_so)
 }
 
 fn marked(text: String, is_within: bool) -> String {
