@@ -9,6 +9,8 @@ mod kind;
 mod paint;
 #[cfg(feature = "png")]
 mod png;
+mod sgr;
+mod snapshot;
 mod svg;
 #[cfg(test)]
 mod tally;
@@ -17,11 +19,13 @@ mod text;
 pub use ansi::ansi;
 #[doc(hidden)]
 pub use ansi::printed;
+pub use difference::{Difference, compare};
 pub use html::html;
 #[doc(hidden)]
 pub use kind::Contents;
 #[cfg(feature = "png")]
 pub use png::{ExportError, png};
+pub use snapshot::{framed, styled};
 pub use svg::svg;
 pub use text::text;
 
@@ -118,10 +122,10 @@ impl Format {
         matches!(self.contents(), Contents::Pixels(_))
     }
 
-    /// How a file of it differs from the golden one of that name, in lines for a person.
+    /// Returns how a file of it differs from the golden one, in lines for a person.
     #[doc(hidden)]
-    pub fn difference(self, golden: &[u8], file: &[u8], name: &str) -> String {
-        (self.row().difference)(golden, file, name)
+    pub fn difference(self, golden: &[u8], file: &[u8]) -> String {
+        (self.row().difference)(golden, file)
     }
 }
 
@@ -203,7 +207,7 @@ mod tests {
         let Contents::Cells { has_colors: false, write } = format.contents() else { panic!("{format:?}") };
         let file = write(&grid, Colors::None, USUAL_CELL_ASPECT);
         assert_eq!(String::from_utf8_lossy(&file), "  6\n");
-        assert!(format.difference(b"  5\n", &file, "golden").ends_with("-  5\n+  6\n"));
+        assert!(format.difference(b"  5\n", &file).ends_with("- 1 |  5|\n+ 1 |  6|\n       ^\n"));
     }
 
     #[test]

@@ -336,7 +336,7 @@ pub use explain::{Explanation, explain};
 
 // Cells and text.
 pub use cell::{CellMode, Colors, Glyphs, Painter};
-pub use export::{frame_grid, text_frame};
+pub use export::{Difference, compare, frame_grid, text_frame};
 pub use grid::{Cell, Glyph, Grid, Ink, Size};
 
 // ratatui.

@@ -1,206 +1,294 @@
-//! How two files differ that are lines of text.
+//! Where two texts of a screen's rows differ.
 
-use crate::text::visible_lines;
-use std::fmt::Write;
-use std::iter::repeat_n;
-use std::ops::Range;
+use super::sgr::{self, Look};
+use crate::text::visible_char;
+use std::fmt;
+use unicode_width::UnicodeWidthChar;
 
-/// How many unchanged lines are shown before and after a change.
-const CONTEXT: usize = 1;
+/// How many differing rows are shown at most: more than most screens have.
+const MOST_SHOWN: usize = 60;
 
-/// The most pairs of lines that are compared. Texts that differ in more, such as two files of 2,000 lines with nothing in
-/// common at either end, are shown as one change.
-const MOST_PAIRS: usize = 1 << 22;
-
-/// A line of both files, of the golden one only, or of the other one only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Line<'a> {
-    Kept(&'a str),
-    Gone(&'a str),
-    New(&'a str),
+/// Compares two frames as text, plain or with colours as [`ansi`](super::ansi()) writes them, row by row; `None` if they
+/// are equal.
+///
+/// ```
+/// use termtrace::compare;
+///
+/// let difference = compare("  -+-  \n  +*+  \n", "  -+-  \n  +#+  \n").expect("they differ");
+/// assert_eq!(difference.to_string(), "\
+/// 1 of 2 rows differs: line 2, column 4
+///   1 |  -+-  |
+/// - 2 |  +*+  |
+/// + 2 |  +#+  |
+///         ^
+/// ");
+/// assert_eq!(compare("equal\n", "equal\n"), None);
+/// ```
+pub fn compare(expected: &str, found: &str) -> Option<Difference> {
+    if expected == found {
+        return None;
+    }
+    let [expected_rows, found_rows] = [expected, found].map(rows);
+    let same = expected_rows.iter().zip(&found_rows).take_while(|(a, b)| a == b).count();
+    let left = expected_rows.len().min(found_rows.len()) - same;
+    let mut same_after = 0;
+    if expected_rows.len() != found_rows.len() {
+        let from_end = expected_rows.iter().rev().zip(found_rows.iter().rev());
+        same_after = from_end.take(left).take_while(|(a, b)| a == b).count();
+    }
+    Some(Difference {
+        ends: [expected, found].map(|text| text.ends_with('\n')),
+        expected: expected_rows,
+        found: found_rows,
+        same,
+        same_after,
+    })
 }
 
-/// Returns what differs line by line, as `diff -u` writes it; nothing if the files are the same.
-pub(super) fn by_lines(golden: &[u8], file: &[u8], name: &str) -> String {
-    let [golden, file] = [golden, file].map(String::from_utf8_lossy);
-    // A golden file may be anything.
-    visible_lines(&unified(&golden, &file, name))
+/// Where and how two texts differ.
+///
+/// Its [`Display`](fmt::Display) form is a few lines for a person: how many rows differ and where the first one does, the
+/// rows that were expected (`-`) and found (`+`) between bars that show where they end, a mark below each differing cell,
+/// and a row of context on either side. Lines and columns are counted from 1 there, as editors do. It contains no escape
+/// sequences; the alternate form (`{:#}`) colours the rows red and green for a terminal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    expected: Vec<Row>,
+    found: Vec<Row>,
+    /// How many rows are equal at the top.
+    same: usize,
+    /// How many are equal at the bottom, where the texts have unequally many.
+    same_after: usize,
+    /// Whether each text ends with a line feed.
+    ends: [bool; 2],
 }
 
-fn unified(golden: &str, file: &str, name: &str) -> String {
-    let [golden, file] = [golden, file].map(|text| text.split_inclusive('\n').collect::<Vec<_>>());
-    let lines = aligned(&golden, &file);
-    let mut text = String::new();
-    for hunk in hunks(&lines) {
-        if text.is_empty() {
-            let _ = writeln!(text, "--- {name}\n+++ this frame");
+/// What is seen in each place of a row, and how.
+type Row = Vec<(char, Look)>;
+
+fn rows(text: &str) -> Vec<Row> {
+    let text = text.strip_suffix('\n').unwrap_or(text);
+    text.split('\n').map(sgr::row).collect()
+}
+
+/// How many cells a character takes.
+fn columns(character: char) -> usize {
+    visible_char(character).width().unwrap_or(1)
+}
+
+fn width(row: &[(char, Look)]) -> usize {
+    row.iter().map(|&(character, _)| columns(character)).sum()
+}
+
+/// The marks below what differs, up to the end of the shorter row, and one behind it.
+fn marks(a: &Row, b: &Row) -> String {
+    let mut marks = String::new();
+    for (a, b) in a.iter().zip(b) {
+        let mark = if a == b { ' ' } else { '^' };
+        marks.extend(std::iter::repeat_n(mark, columns(a.0).max(columns(b.0))));
+    }
+    if a.len() != b.len() {
+        marks.push('^');
+    }
+    marks.trim_end().to_owned()
+}
+
+impl Difference {
+    /// Returns the first differing row, counted from 0; where one text has more rows, the first that only it has.
+    #[doc(hidden)]
+    pub fn row(&self) -> usize {
+        self.same
+    }
+
+    /// Returns the first differing cell in that row, counted from 0.
+    #[doc(hidden)]
+    pub fn column(&self) -> usize {
+        let (Some(a), Some(b)) = (self.expected.get(self.same), self.found.get(self.same)) else { return 0 };
+        let same = a.iter().zip(b).take_while(|(a, b)| a == b).count();
+        width(&a[..same])
+    }
+
+    /// The rows of each text that are not equal at its top or bottom, by number.
+    fn middle(&self) -> [usize; 2] {
+        [&self.expected, &self.found].map(|rows| rows.len() - self.same_after)
+    }
+
+    /// The numbers of the rows that differ, where both texts have equally many.
+    fn differing(&self) -> impl Iterator<Item = usize> {
+        let pairs = self.expected.iter().zip(&self.found).enumerate();
+        pairs.filter(|(_, (a, b))| a != b).map(|(row, _)| row)
+    }
+
+    fn write_summary(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = |rows: &[Row]| (rows.iter().map(|row| width(row)).max().unwrap_or(0), rows.len());
+        let (expected, found) = (size(&self.expected), size(&self.found));
+        if expected != found {
+            writeln!(f, "{}x{} characters were expected, {}x{} found", expected.0, expected.1, found.0, found.1)?;
         }
-        let _ = writeln!(text, "@@ -{} +{} @@", range(&lines, &hunk, is_old), range(&lines, &hunk, is_new));
-        for line in &lines[hunk] {
-            let (tag, line) = match line {
-                Line::Kept(line) => (' ', line),
-                Line::Gone(line) => ('-', line),
-                Line::New(line) => ('+', line),
-            };
-            let end = if line.ends_with('\n') { "" } else { "\n\\ No newline at end of file\n" };
-            let _ = write!(text, "{tag}{line}{end}");
+        let (line, column) = (self.row() + 1, self.column() + 1);
+        if expected.1 != found.1 {
+            return writeln!(f, "the first difference: line {line}, column {column}");
+        }
+        match self.differing().count() {
+            0 if self.ends[0] != self.ends[1] => {
+                let which = if self.ends[0] { "expected" } else { "found" };
+                writeln!(f, "only the text that was {which} ends with a line feed")
+            }
+            0 => writeln!(f, "only escape sequences that change nothing differ"),
+            1 => writeln!(f, "1 of {} rows differs: line {line}, column {column}", expected.1),
+            count => writeln!(f, "{count} of {} rows differ, first line {line}, column {column}", expected.1),
         }
     }
-    text
-}
 
-fn is_old(line: &Line<'_>) -> bool {
-    !matches!(line, Line::New(_))
-}
-
-fn is_new(line: &Line<'_>) -> bool {
-    !matches!(line, Line::Gone(_))
-}
-
-/// Returns the lines of both files in one order, with as few changes as there can be; what is gone comes before what is
-/// new in its place.
-fn aligned<'a>(golden: &[&'a str], file: &[&'a str]) -> Vec<Line<'a>> {
-    let equal = |(a, b): &(&&str, &&str)| a == b;
-    let start = golden.iter().zip(file).take_while(equal).count();
-    let (golden, file, before) = (&golden[start..], &file[start..], &golden[..start]);
-    let end = golden.iter().rev().zip(file.iter().rev()).take_while(equal).count();
-    let (golden, after) = golden.split_at(golden.len() - end);
-    let file = &file[..file.len() - end];
-
-    let mut lines: Vec<_> = before.iter().map(|&line| Line::Kept(line)).collect();
-    align_changed(golden, file, &mut lines);
-    lines.extend(after.iter().map(|&line| Line::Kept(line)));
-    lines
-}
-
-/// The same for the part between what both begin and end with.
-fn align_changed<'a>(golden: &[&'a str], file: &[&'a str], lines: &mut Vec<Line<'a>>) {
-    let common = (golden.len() * file.len() <= MOST_PAIRS).then(|| common_lengths(golden, file));
-    let common = |i: usize, j: usize| common.as_ref().map_or(0, |lengths| lengths[i * (file.len() + 1) + j]);
-    let (mut i, mut j) = (0, 0);
-    while i < golden.len() && j < file.len() {
-        if golden[i] == file[j] && common(i, j) > 0 {
-            lines.push(Line::Kept(golden[i]));
-            (i, j) = (i + 1, j + 1);
-        } else if common(i + 1, j) >= common(i, j + 1) {
-            lines.push(Line::Gone(golden[i]));
-            i += 1;
-        } else {
-            lines.push(Line::New(file[j]));
-            j += 1;
-        }
-    }
-    lines.extend(golden[i..].iter().map(|&line| Line::Gone(line)));
-    lines.extend(file[j..].iter().map(|&line| Line::New(line)));
-}
-
-/// Returns for each pair of places how many lines the rests of both files have in common at most, row by row.
-fn common_lengths(golden: &[&str], file: &[&str]) -> Vec<u32> {
-    let width = file.len() + 1;
-    let mut lengths: Vec<u32> = repeat_n(0, (golden.len() + 1) * width).collect();
-    for (i, golden) in golden.iter().enumerate().rev() {
-        for (j, file) in file.iter().enumerate().rev() {
-            lengths[i * width + j] = if golden == file {
-                lengths[(i + 1) * width + j + 1] + 1
+    /// Rows that correspond, one by one.
+    fn write_pairs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let differing: Vec<usize> = self.differing().take(MOST_SHOWN).collect();
+        let is_near = |row: usize| differing.iter().any(|&other| row.abs_diff(other) <= 1);
+        let mut last = None;
+        for (row, (a, b)) in self.expected.iter().zip(&self.found).enumerate().filter(|&(row, _)| is_near(row)) {
+            if last.is_some_and(|last| last + 1 != row) {
+                writeln!(f, "  ...")?;
+            }
+            last = Some(row);
+            if a == b {
+                self.write_row(f, ' ', row, a)?;
+            } else if !differing.contains(&row) {
+                break;
             } else {
-                lengths[(i + 1) * width + j].max(lengths[i * width + j + 1])
-            };
+                self.write_row(f, '-', row, a)?;
+                self.write_row(f, '+', row, b)?;
+                self.write_marks(f, a, b)?;
+            }
+        }
+        match self.differing().count() - differing.len() {
+            0 => Ok(()),
+            more => writeln!(f, "  ... and {more} more"),
         }
     }
-    lengths
-}
 
-/// Returns where lines have changed, with the lines around them.
-fn hunks(lines: &[Line<'_>]) -> Vec<Range<usize>> {
-    let mut hunks: Vec<Range<usize>> = Vec::new();
-    for (at, _) in lines.iter().enumerate().filter(|(_, line)| !matches!(line, Line::Kept(_))) {
-        let around = at.saturating_sub(CONTEXT)..(at + 1 + CONTEXT).min(lines.len());
-        match hunks.last_mut().filter(|last| around.start <= last.end) {
-            Some(last) => last.end = around.end,
-            None => hunks.push(around),
+    /// Rows that were replaced by more or fewer.
+    fn write_block(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [expected_end, found_end] = self.middle();
+        if let Some(before) = self.same.checked_sub(1) {
+            self.write_row(f, ' ', before, &self.expected[before])?;
         }
+        for (sign, rows, end) in [('-', &self.expected, expected_end), ('+', &self.found, found_end)] {
+            for (row, text) in rows.iter().enumerate().take(end).skip(self.same).take(MOST_SHOWN) {
+                self.write_row(f, sign, row, text)?;
+            }
+            if end - self.same > MOST_SHOWN {
+                writeln!(f, "{sign} ... and {} more", end - self.same - MOST_SHOWN)?;
+            }
+        }
+        if let Some(after) = self.found.get(found_end) {
+            self.write_row(f, ' ', found_end, after)?;
+        }
+        Ok(())
     }
-    hunks
+
+    /// How many digits the largest line number has.
+    fn digits(&self) -> usize {
+        self.expected.len().max(self.found.len()).to_string().len()
+    }
+
+    fn write_row(&self, f: &mut fmt::Formatter<'_>, sign: char, row: usize, text: &Row) -> fmt::Result {
+        let text: String = text.iter().map(|&(character, _)| visible_char(character)).collect();
+        let (on, off) = match sign {
+            '-' if f.alternate() => ("\x1b[31m", "\x1b[m"),
+            '+' if f.alternate() => ("\x1b[32m", "\x1b[m"),
+            _ => ("", ""),
+        };
+        writeln!(f, "{on}{sign} {:digits$} |{text}|{off}", row + 1, digits = self.digits())
+    }
+
+    /// The marks; where only colours differ, those of the first cell.
+    fn write_marks(&self, f: &mut fmt::Formatter<'_>, a: &Row, b: &Row) -> fmt::Result {
+        write!(f, "  {:digits$}  {}", "", marks(a, b), digits = self.digits())?;
+        let glyphs = |row: &Row| row.iter().map(|&(character, _)| character).collect::<Vec<_>>();
+        if glyphs(a) == glyphs(b)
+            && let Some(((_, was), (_, is))) = a.iter().zip(b).find(|(a, b)| a != b)
+        {
+            write!(f, " {was} became {is}")?;
+        }
+        writeln!(f)
+    }
 }
 
-/// Returns the hunk's first line, counted from 1, and how many there are, in the file whose lines these are. An empty range
-/// begins at the line before it.
-fn range(lines: &[Line<'_>], hunk: &Range<usize>, is_in_file: fn(&Line<'_>) -> bool) -> String {
-    let count = |lines: &[Line<'_>]| lines.iter().filter(|line| is_in_file(line)).count();
-    let before = count(&lines[..hunk.start]);
-    match count(&lines[hunk.clone()]) {
-        0 => format!("{before},0"),
-        1 => (before + 1).to_string(),
-        length => format!("{},{length}", before + 1),
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write_summary(f)?;
+        if self.expected.len() == self.found.len() { self.write_pairs(f) } else { self.write_block(f) }
     }
+}
+
+/// How a file of text differs from the golden one, for a person.
+pub(super) fn by_rows(golden: &[u8], file: &[u8]) -> String {
+    let [expected, found] = [golden, file].map(String::from_utf8_lossy);
+    // A golden file may be anything.
+    compare(&expected, &found)
+        .map_or_else(|| "only bytes that are not text differ\n".to_owned(), |difference| difference.to_string())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-    use similar::TextDiff;
 
-    fn by_similar(golden: &str, file: &str) -> String {
-        let difference = TextDiff::from_lines(golden, file);
-        difference.unified_diff().context_radius(CONTEXT).header("golden", "this frame").to_string()
-    }
-
-    fn changes(difference: &str) -> usize {
-        difference.lines().skip(2).filter(|line| line.starts_with(['+', '-'])).count()
-    }
-
-    /// Every line of one letter, so that most are there several times.
-    fn text() -> impl Strategy<Value = String> {
-        (prop::collection::vec("[a-c]", 0..12), any::<bool>()).prop_map(|(lines, ends)| {
-            let text = lines.join("\n");
-            if ends { text + "\n" } else { text }
-        })
-    }
-
-    fn numbered(word: &str, numbers: Range<usize>) -> String {
-        let mut text = String::new();
-        for number in numbers {
-            let _ = writeln!(text, "{word}{number}");
-        }
-        text
+    #[track_caller]
+    fn shown(expected: &str, found: &str) -> String {
+        compare(expected, found).expect("they differ").to_string()
     }
 
     #[test]
-    fn it_is_written_as_others_write_it() {
-        let rows = numbered("row ", 0..20);
-        for file in [
-            rows.clone(),
-            rows.replace("row 7\n", "row seven\n"),
-            rows.replace("row 7\n", "").replace("row 9\n", "9\n9\n"),
-            rows.replace("row 7\n", "7\n").replace("row 11\n", ""),
-            rows.replace("row 0\n", "").replace("row 19\n", "row 19"),
-            rows.replace("row", "line"),
-            String::new(),
-        ] {
-            for (golden, file) in [(&rows, &file), (&file, &rows)] {
-                assert_eq!(unified(golden, file, "golden"), by_similar(golden, file));
-            }
-        }
+    fn rows_far_apart_each_have_their_neighbours() {
+        let text = |a, b| format!("1\n{a}\n3\n4\n5\n{b}\n");
+        let expected = "2 of 6 rows differ, first line 2, column 1\n  1 |1|\n- 2 |2|\n+ 2 |x|\n     ^\n  3 |3|\n  ...\n  5 \
+                        |5|\n- 6 |6|\n+ 6 |66|\n      ^\n";
+        let with_size = format!("1x6 characters were expected, 2x6 found\n{expected}");
+        assert_eq!(shown(&text("2", "6"), &text("x", "66")), with_size);
+    }
+
+    /// What stands before and after is not said to have changed.
+    #[test]
+    fn rows_that_were_put_in_are_found() {
+        let expected = "1x3 characters were expected, 1x4 found\nthe first difference: line 3, column 1\n  2 |b|\n+ 3 |x|\n  \
+                        4 |c|\n";
+        assert_eq!(shown("a\nb\nc\n", "a\nb\nx\nc\n"), expected);
+        assert!(shown("a\na\n", "a\n").contains("\n- 2 |a|\n"));
     }
 
     #[test]
-    fn more_lines_than_can_be_compared_are_one_change() {
-        let difference = unified(&numbered("", 0..3000), &numbered("", 1500..4500), "golden");
-        assert_eq!((changes(&difference), difference.matches("@@ ").count()), (6000, 1));
+    fn blanks_and_line_feeds_at_the_end_count() {
+        assert!(shown("a  \n", "a\n").contains("\n- 1 |a  |\n+ 1 |a|\n      ^\n"));
+        assert_eq!(shown("a\n", "a"), "only the text that was expected ends with a line feed\n");
+        assert_eq!(shown("a", "a\n"), "only the text that was found ends with a line feed\n");
     }
 
-    proptest! {
-        #[test]
-        fn no_shorter_way_is_found(golden in text(), file in text()) {
-            let [ours, theirs] = [unified(&golden, &file, "golden"), by_similar(&golden, &file)];
-            prop_assert!(changes(&ours) <= changes(&theirs), "{ours}\n{theirs}");
-            let lines = aligned(&golden.split_inclusive('\n').collect::<Vec<_>>(), &file.split_inclusive('\n').collect::<Vec<_>>());
-            let of = |is_in_file: fn(&Line<'_>) -> bool| -> String {
-                let text = |line: &Line<'_>| match *line { Line::Kept(text) | Line::Gone(text) | Line::New(text) => text.to_owned() };
-                lines.iter().filter(|line| is_in_file(line)).map(text).collect()
-            };
-            prop_assert_eq!((of(is_old), of(is_new)), (golden, file));
+    /// Marks stand below the cells, also behind wide characters.
+    #[test]
+    fn wide_characters_take_two_columns() {
+        let difference = compare("世界x\n", "世界y\n").expect("they differ");
+        assert_eq!(difference.column(), 4);
+        assert!(difference.to_string().ends_with("|\n         ^\n"), "{difference}");
+    }
+
+    #[test]
+    fn colours_are_compared_and_named() {
+        let line = |bands: &str| format!("\x1b[38;2;1;2;3mab\x1b[38;2;{bands}mc\x1b[39;1md\x1b[0m\n");
+        let difference = compare(&line("4;5;6"), &line("4;5;7")).expect("they differ");
+        assert_eq!((difference.row(), difference.column()), (0, 2));
+        let text = difference.to_string();
+        assert!(text.contains("- 1 |abcd|\n+ 1 |abcd|\n       ^ 38;2;4;5;6 became 38;2;4;5;7\n"), "{text}");
+        assert!(!text.contains('\x1b'));
+        assert!(format!("{difference:#}").contains("\x1b[32m+ 1 |abcd|\x1b[m\n"));
+    }
+
+    /// Whatever stands in a golden file, it does nothing to the terminal.
+    #[test]
+    fn no_escape_sequence_is_passed_on() {
+        for strange in ["\x1b[2J", "\x07\r", "\x1b", "\x1b[", "\x1b[38;5m\x1b[1;;m\x1b[99999999999m"] {
+            let text = shown(&format!("{strange}a\n"), "b\n");
+            assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");
         }
+        assert_eq!(shown("\x1b[ma\n", "a\n"), "only escape sequences that change nothing differ\n");
     }
 }

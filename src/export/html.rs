@@ -14,7 +14,7 @@ pub(super) const KIND: Kind = Kind {
     command: "WriteHtml",
     title: "HTML page",
     contents: Contents::Cells { has_colors: true, write: |grid, _, aspect| html(grid, aspect).into_bytes() },
-    difference: difference::by_lines,
+    difference: difference::by_rows,
 };
 
 /// The grid as a page by itself, of its right shape in any font: cells are as wide as the font's characters, and

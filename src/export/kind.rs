@@ -15,8 +15,8 @@ pub(super) struct Kind {
     pub(super) command: &'static str,
     pub(super) title: &'static str,
     pub(super) contents: Contents,
-    /// From the golden file, the new one, and the golden one's name.
-    pub(super) difference: fn(&[u8], &[u8], &str) -> String,
+    /// How the second of two files differs from the first, the golden one.
+    pub(super) difference: fn(&[u8], &[u8]) -> String,
 }
 
 /// What files of a format are made of, and the function that makes them.

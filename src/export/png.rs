@@ -13,7 +13,7 @@ pub(super) const KIND: Kind = Kind {
     command: "WritePng",
     title: "PNG picture",
     contents: Contents::Pixels(|picture, aspect, scale| png(picture, aspect, scale).map_err(io::Error::other)),
-    difference: |golden, file, _| difference(golden, file),
+    difference,
 };
 
 /// Returns the file of a picture with each pixel a square of `scale` by `scale`, marked as sRGB; pixels of another shape

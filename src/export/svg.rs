@@ -14,7 +14,7 @@ pub(super) const KIND: Kind = Kind {
     command: "WriteSvg",
     title: "SVG drawing",
     contents: Contents::Cells { has_colors: true, write: |grid, _, aspect| svg(grid, aspect).into_bytes() },
-    difference: difference::by_lines,
+    difference: difference::by_rows,
 };
 
 /// The width of a cell.

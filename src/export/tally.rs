@@ -15,7 +15,7 @@ pub(super) const KIND: Kind = Kind {
     command: "WriteTally",
     title: "tally",
     contents: Contents::Cells { has_colors: false, write: |grid, _, _| tally(grid).into_bytes() },
-    difference: difference::by_lines,
+    difference: difference::by_rows,
 };
 
 fn tally(grid: &Grid) -> String {

@@ -12,7 +12,7 @@ pub(super) const KIND: Kind = Kind {
     command: "WriteText",
     title: "plain text",
     contents: Contents::Cells { has_colors: false, write: |grid, _, _| text(grid).into_bytes() },
-    difference: difference::by_lines,
+    difference: difference::by_rows,
 };
 
 /// The grid's characters without colours: one line for each row, with all its trailing spaces.

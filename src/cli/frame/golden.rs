@@ -26,7 +26,7 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult 
         return Ok(());
     }
     let name = visible(&path.display().to_string());
-    let difference = format.difference(&golden, frame, &name);
+    let difference = format.difference(&golden, frame);
     write_stdout(format!("{name}: the frame differs\n{difference}").as_bytes())?;
     Err(Failure::Reported(1))
 }

@@ -1,0 +1,77 @@
+//! A row of ANSI text -> its characters and how each looks.
+
+use std::fmt;
+use std::iter::Peekable;
+use std::str::{Chars, Split};
+
+/// The colours and attributes of a character, as the parameters of the escape sequences that set them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Look {
+    fg: String,
+    bg: String,
+    others: Vec<String>,
+}
+
+/// Returns the characters of a row with their looks; only sequences of colours and attributes (SGR) are read.
+pub(super) fn row(text: &str) -> Vec<(char, Look)> {
+    let mut row = Vec::new();
+    let mut look = Look::default();
+    let mut characters = text.chars();
+    loop {
+        if let Some(numbers) = take_sgr(&mut characters) {
+            look.apply(numbers);
+        } else if let Some(character) = characters.next() {
+            row.push((character, look.clone()));
+        } else {
+            return row;
+        }
+    }
+}
+
+/// The numbers of the sequence that comes next, if one does.
+fn take_sgr<'a>(characters: &mut Chars<'a>) -> Option<&'a str> {
+    let rest = characters.as_str().strip_prefix("\x1b[")?;
+    let (numbers, after) = rest.split_at(rest.find(|c: char| !matches!(c, '0'..='9' | ';' | ':'))?);
+    *characters = after.strip_prefix('m')?.chars();
+    Some(numbers)
+}
+
+impl Look {
+    fn apply(&mut self, numbers: &str) {
+        let mut numbers = numbers.split(';').peekable();
+        while let Some(number) = numbers.next() {
+            match number {
+                "" | "0" => *self = Self::default(),
+                "38" => self.fg = color("38", &mut numbers),
+                "48" => self.bg = color("48", &mut numbers),
+                "39" => self.fg.clear(),
+                "49" => self.bg.clear(),
+                "27" => self.others.retain(|other| other != "7"),
+                _ if matches!(number.as_bytes(), [b'3' | b'9', b'0'..=b'7']) => number.clone_into(&mut self.fg),
+                _ if matches!(number.as_bytes(), [b'4', b'0'..=b'7'] | [b'1', b'0', b'0'..=b'7']) => {
+                    number.clone_into(&mut self.bg);
+                }
+                _ => self.others.push(number.to_owned()),
+            }
+        }
+    }
+}
+
+/// One of the 256 or a truecolor, with the numbers that belong to it.
+fn color(first: &str, numbers: &mut Peekable<Split<'_, char>>) -> String {
+    let count = match numbers.peek() {
+        Some(&"5") => 2,
+        Some(&"2") => 4,
+        _ => 0,
+    };
+    numbers.take(count).fold(first.to_owned(), |color, number| color + ";" + number)
+}
+
+/// The parameters, or `default`.
+impl fmt::Display for Look {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [&self.fg, &self.bg].into_iter().chain(&self.others).filter(|part| !part.is_empty());
+        let parts: Vec<&str> = parts.map(String::as_str).collect();
+        f.write_str(if parts.is_empty() { "default".to_owned() } else { parts.join(";") }.as_str())
+    }
+}

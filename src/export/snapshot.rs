@@ -1,0 +1,234 @@
+//! Grid -> text for snapshot tests.
+
+use super::text::text;
+use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
+use std::collections::HashMap;
+use std::fmt::Write;
+
+/// Returns the grid's characters in a frame, below its size: for snapshot tools that cut blanks off the ends of a text.
+///
+/// [insta](https://docs.rs/insta), for one, trims what it compares, so that of [`text`](super::text()) the blank rows at the
+/// end, and with them the height, are not tested. Here they are.
+///
+/// ```
+/// use termtrace::{CellMode, Scene, Size, export::framed, frame_grid};
+///
+/// let scene = Scene::from_ron("ball.ron", r##"(
+///     camera: (eye: (0, 0, 4), target: (0, 0, 0)),
+///     lights: [Point(position: (0, 0, 4), intensity: 10)],
+///     objects: [Sphere(center: (0, 0, 0), radius: 1)],
+/// )"##)?;
+/// let grid = frame_grid(&scene, CellMode::RAMP, Size::new(12, 6), 2.0);
+/// insta::assert_snapshot!(framed(&grid), @r"
+/// 12x6
+/// +------------+
+/// |            |
+/// |   -+**+-   |
+/// |  -#%@@%#-  |
+/// |  -#%@@%#-  |
+/// |   -+**+-   |
+/// |            |
+/// +------------+
+/// ");
+/// # Ok::<(), termtrace::SceneError>(())
+/// ```
+pub fn framed(grid: &Grid) -> String {
+    let mut out = size_line(grid);
+    let border = border(usize::from(grid.size().columns));
+    out.push_str(&border);
+    for line in text(grid).lines() {
+        let _ = writeln!(out, "|{line}|");
+    }
+    out.push_str(&border);
+    out
+}
+
+/// Returns the grid's characters in a frame, a second frame with a letter for how each cell looks, and the meaning of the
+/// letters: colours and attributes in a form that a person can review, and of which nothing is lost.
+///
+/// A dot is the terminal's own colours. The letters are given in the order in which the looks first appear; beyond 62 of
+/// them each cell has two, or three.
+///
+/// ```
+/// use ratatui::{buffer::Buffer, style::Stylize, text::Line, widgets::Widget};
+/// use termtrace::{Grid, Size, export::styled, lay_over};
+///
+/// let mut buffer = Buffer::empty((0, 0, 10, 2).into());
+/// Line::from(vec!["ok".green().bold(), " or ".into(), "not".white().on_red()]).render(buffer.area, &mut buffer);
+/// let mut grid = Grid::new(Size::new(10, 2));
+/// lay_over(&mut grid, &buffer);
+/// insta::assert_snapshot!(styled(&grid), @r"
+/// 10x2
+/// +----------+
+/// |ok or not |
+/// |          |
+/// +----------+
+/// |aa....bbb.|
+/// |..........|
+/// +----------+
+/// a: color 2, bold
+/// b: color 15 on color 1
+/// ");
+/// ```
+pub fn styled(grid: &Grid) -> String {
+    let mut out = framed(grid);
+    let legend = Legend::of(grid);
+    for row in grid.rows() {
+        let codes: String = row.iter().map(|cell| legend.code(cell)).collect();
+        let _ = writeln!(out, "|{codes}|");
+    }
+    out.push_str(&border(usize::from(grid.size().columns) * legend.letters));
+    for (number, look) in legend.looks.iter().enumerate() {
+        let _ = writeln!(out, "{}: {}", legend.letters_of(number), look.words());
+    }
+    out
+}
+
+fn size_line(grid: &Grid) -> String {
+    format!("{}x{}\n", grid.size().columns, grid.size().rows)
+}
+
+fn border(columns: usize) -> String {
+    format!("+{}+\n", "-".repeat(columns))
+}
+
+/// All but the glyph of a cell.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Look {
+    fg: Ink,
+    bg: Ink,
+    underline: Ink,
+    attributes: Attributes,
+    is_foreign: bool,
+}
+
+impl Look {
+    fn of(cell: &Cell) -> Self {
+        let &Cell { fg, bg, underline, attributes, .. } = cell;
+        Self { fg, bg, underline, attributes, is_foreign: cell.glyph == Glyph::Foreign }
+    }
+
+    fn is_plain(self) -> bool {
+        self == Self::of(&Cell::BLANK)
+    }
+
+    fn words(self) -> String {
+        let mut words = match (self.fg, self.bg) {
+            (fg, Ink::Default) => ink(fg),
+            (fg, bg) => format!("{} on {}", ink(fg), ink(bg)),
+        };
+        for (attributes, name) in ATTRIBUTES {
+            if self.attributes.contains(attributes) {
+                let _ = write!(words, ", {name}");
+            }
+        }
+        if self.underline != Ink::Default {
+            let _ = write!(words, ", line in {}", ink(self.underline));
+        }
+        if self.is_foreign { words + ", left as it is" } else { words }
+    }
+}
+
+const ATTRIBUTES: [(Attributes, &str); 9] = [
+    (Attributes::BOLD, "bold"),
+    (Attributes::DIM, "dim"),
+    (Attributes::ITALIC, "italic"),
+    (Attributes::UNDERLINED, "underlined"),
+    (Attributes::SLOW_BLINK, "slow blink"),
+    (Attributes::RAPID_BLINK, "rapid blink"),
+    (Attributes::REVERSED, "reversed"),
+    (Attributes::HIDDEN, "hidden"),
+    (Attributes::CROSSED_OUT, "crossed out"),
+];
+
+fn ink(ink: Ink) -> String {
+    match ink {
+        Ink::Default => "default".to_owned(),
+        Ink::Indexed(index) => format!("color {index}"),
+        Ink::Rgb(color) => format!("#{:02x}{:02x}{:02x}", color.r, color.g, color.b),
+    }
+}
+
+const LETTERS: &[u8; 62] = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+
+/// The letters of the looks that a grid has.
+struct Legend {
+    looks: Vec<Look>,
+    numbers: HashMap<Look, usize>,
+    /// How many letters each has.
+    letters: usize,
+}
+
+impl Legend {
+    fn of(grid: &Grid) -> Self {
+        let (mut looks, mut numbers) = (Vec::new(), HashMap::new());
+        for look in grid.cells().iter().map(Look::of).filter(|look| !look.is_plain()) {
+            numbers.entry(look).or_insert_with(|| {
+                looks.push(look);
+                looks.len() - 1
+            });
+        }
+        // A grid has less than 2^32 cells.
+        let letters = (1..=6).find(|&letters| LETTERS.len().pow(letters) >= looks.len()).unwrap_or(6);
+        Self { looks, numbers, letters: letters as usize }
+    }
+
+    fn code(&self, cell: &Cell) -> String {
+        self.numbers.get(&Look::of(cell)).map_or_else(|| ".".repeat(self.letters), |&number| self.letters_of(number))
+    }
+
+    fn letters_of(&self, number: usize) -> String {
+        let digit = |place: usize| LETTERS[number / LETTERS.len().pow(place as u32) % LETTERS.len()];
+        (0..self.letters).rev().map(|place| char::from(digit(place))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Srgb8;
+    use crate::grid::Size;
+
+    /// Nothing is lost to a tool that trims: not the size, not a blank row.
+    #[test]
+    fn blanks_are_within_the_frame() {
+        for (size, expected) in [
+            (Size::new(3, 2), "3x2\n+---+\n|   |\n|   |\n+---+\n"),
+            (Size::new(0, 0), "0x0\n++\n++\n"),
+            (Size::new(2, 0), "2x0\n+--+\n+--+\n"),
+        ] {
+            let framed = framed(&Grid::new(size));
+            assert_eq!(framed, expected);
+            assert_eq!(framed.trim_end().lines().count(), expected.lines().count());
+        }
+    }
+
+    /// Each look has letters of its own, however many there are.
+    #[test]
+    fn looks_in_any_number_are_told_apart() {
+        for columns in [1, 62, 63, 300, 4000] {
+            let mut grid = Grid::new(Size::new(columns, 1));
+            for (at, cell) in (0_u32..).zip(grid.cells_mut()) {
+                let [_, r, g, b] = at.to_be_bytes();
+                *cell = Cell::new('x', Ink::Rgb(Srgb8::new(r, g, b)), Ink::Default);
+            }
+            let styled = styled(&grid);
+            let legend: std::collections::BTreeSet<&str> =
+                styled.lines().skip(6).filter_map(|line| Some(line.split_once(": ")?.0)).collect();
+            assert_eq!(legend.len(), usize::from(columns));
+            let letters = usize::from(columns > 62) + usize::from(columns > 62 * 62) + 1;
+            assert!(legend.iter().all(|code| code.len() == letters), "{legend:?}");
+        }
+    }
+
+    #[test]
+    fn all_that_a_cell_can_be_is_said() {
+        let mut grid = Grid::new(Size::new(2, 1));
+        let cell = Cell { underline: Ink::Indexed(3), attributes: Attributes::all(), ..Cell::BLANK };
+        *grid.cell_mut(0, 0) = Cell { bg: Ink::Rgb(Srgb8::new(1, 2, 255)), ..cell };
+        *grid.cell_mut(1, 0) = Cell::FOREIGN;
+        let attributes = "bold, dim, italic, underlined, slow blink, rapid blink, reversed, hidden, crossed out";
+        let expected = format!("\na: default on #0102ff, {attributes}, line in color 3\nb: default, left as it is\n");
+        assert!(styled(&grid).ends_with(&expected), "{}", styled(&grid));
+    }
+}
