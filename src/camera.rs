@@ -278,6 +278,7 @@ impl ViewRectangle {
     ///
     /// # Errors
     /// Unless each of them is greater than 0 and finite, and each side between 1e-6 and 1e6 focal lengths.
+    #[doc(hidden)]
     pub fn from_focal_length(focal_length: f32, width: f32, height: f32) -> Result<Self, CameraError> {
         let (width, height) = (width / focal_length, height / focal_length);
         if !(focal_length > 0.0 && is_length(width) && is_length(height)) {
@@ -340,6 +341,7 @@ impl ViewRectangle {
     ///
     /// # Errors
     /// Unless the shift is finite, and at most 1000 heights either way.
+    #[doc(hidden)]
     pub fn with_shift(self, shift: Vec2) -> Result<Self, CameraError> {
         if !shift.is_finite() {
             return Err(CameraError::NotFinite);

@@ -57,6 +57,7 @@ impl Resolution {
     ///
     /// # Errors
     /// [`ResolutionError::PixelAspect`], unless it is greater than 0 and finite.
+    #[doc(hidden)]
     pub const fn with_pixel_aspect(self, pixel_aspect: f32) -> Result<Self, ResolutionError> {
         if pixel_aspect > 0.0 && pixel_aspect.is_finite() {
             Ok(Self { pixel_aspect, ..self })
@@ -66,11 +67,13 @@ impl Resolution {
     }
 
     /// Returns the number of pixels in a row.
+    #[doc(hidden)]
     pub const fn width(&self) -> u32 {
         self.width
     }
 
     /// Returns the number of rows of pixels.
+    #[doc(hidden)]
     pub const fn height(&self) -> u32 {
         self.height
     }

@@ -17,6 +17,7 @@ pub enum Colors {
 
 impl Colors {
     /// Sixteen colours with xterm's default values.
+    #[doc(hidden)]
     pub const SIXTEEN: Self = Self::Indexed16(XTERM_16);
 }
 
