@@ -14,10 +14,10 @@
 //! [`EncoderBackend`] is an encoder for ratatui's programs.
 //!
 //! The escape sequences used are the safe core that every terminal and multiplexer understands: CUP, CUF, CHA, CR, BS,
-//! LF and SGR with `38;2`/`48;2`, with 30 to 37 and 40 to 47 for the first eight colours, with `7`/`27` (also for spaces of
-//! a colour that the pen has for glyphs), and with `58:2`, the colour of an underline, which those that do not know it pass
-//! over. Nothing that repeats, erases or scrolls, but what ratatui asks a backend to scroll. A terminal in raw mode is
-//! taken for granted: a line feed keeps the column.
+//! LF and SGR with `38;2`/`48;2`, with 30 to 37 and 40 to 47 for the first eight colours, with `7`/`27` (also for
+//! spaces of a colour that the pen has for glyphs), and with `58:2`, the colour of an underline, which those that do
+//! not know it pass over. Nothing that repeats, erases or scrolls, but what ratatui asks a backend to scroll. A
+//! terminal in raw mode is taken for granted: a line feed keeps the column.
 
 use crate::grid::{Cell, Glyph, Grid, Size};
 
@@ -78,9 +78,9 @@ pub struct Allowance {
     /// When it is sent, from any start that all frames share.
     pub now: Duration,
     /// The most bytes that it should take: what does not fit, the least errors, waits for a later frame, even if it
-    /// exceeds the quality's caps. `None`: nothing that exceeds them waits. Exact colours also wait beyond 8 bytes for each
-    /// cell of the screen, of which tmux throws away what it cannot take. (Text never waits, nor what has to replace text or
-    /// an unknown screen, nor the largest error, and with [`Quality::Exact`] nothing does.)
+    /// exceeds the quality's caps. `None`: nothing that exceeds them waits. Exact colours also wait beyond 8 bytes for
+    /// each cell of the screen, of which tmux throws away what it cannot take. (Text never waits, nor what has to
+    /// replace text or an unknown screen, nor the largest error, and with [`Quality::Exact`] nothing does.)
     pub most_bytes: Option<usize>,
 }
 
@@ -106,8 +106,8 @@ struct Known {
     pen: Pen,
 }
 
-/// tmux holds back what it cannot pass on, and throws it away when it is more than this for each cell of the screen (its
-/// `TTY_BLOCK_START`).
+/// tmux holds back what it cannot pass on, and throws it away when it is more than this for each cell of the screen
+/// (its `TTY_BLOCK_START`).
 const BYTES_PER_CELL: usize = 8;
 
 /// What makes a terminal hold the screen back (DEC private mode 2026).
@@ -133,9 +133,9 @@ impl Encoder {
         self.order = order;
     }
 
-    /// Whether a half-block cell may be written with either half, whichever saves a change of colour: right where a cell
-    /// has an even number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and their
-    /// mix would show.
+    /// Whether a half-block cell may be written with either half, whichever saves a change of colour: right where a
+    /// cell has an even number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and
+    /// their mix would show.
     #[doc(hidden)]
     pub fn with_upper_half(self, upper_half: bool) -> Self {
         Self { upper_half, ..self }
@@ -147,8 +147,8 @@ impl Encoder {
         self.upper_half = upper_half;
     }
 
-    /// Whether frames stand in the brackets of synchronized output: a terminal that knows them shows each frame at once,
-    /// others pass over them.
+    /// Whether frames stand in the brackets of synchronized output: a terminal that knows them shows each frame at
+    /// once, others pass over them.
     #[doc(hidden)]
     pub fn with_synchronized_output(self, synchronized: bool) -> Self {
         Self { synchronized, ..self }
@@ -188,7 +188,8 @@ impl Encoder {
         self.send(&bytes, writer)
     }
 
-    /// Appends the bytes that make the terminal show `wanted`, or something near it for a while; none if it does already.
+    /// Appends the bytes that make the terminal show `wanted`, or something near it for a while; none if it does
+    /// already.
     #[doc(hidden)]
     pub fn encode_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) {
         let start = bytes.len();
@@ -238,8 +239,8 @@ impl Encoder {
         cursor
     }
 
-    /// When to encode the last wanted grid again, if nothing else is wanted until then: what is not shown exactly yet is
-    /// to be so then. `None`: all is exact, and nothing would be sent.
+    /// When to encode the last wanted grid again, if nothing else is wanted until then: what is not shown exactly yet
+    /// is to be so then. `None`: all is exact, and nothing would be sent.
     #[doc(hidden)]
     pub fn due(&self) -> Option<Duration> {
         self.due
@@ -303,8 +304,8 @@ impl Encoder {
     }
 }
 
-/// Makes the grid show what is wanted; the places that are to be written for it, row by row. A covered cell is never one,
-/// nor a foreign one.
+/// Makes the grid show what is wanted; the places that are to be written for it, row by row. A covered cell is never
+/// one, nor a foreign one.
 fn update(shown: &mut Grid, wanted: &Grid) -> Vec<Place> {
     let mut changed = Vec::new();
     for ((shown, wanted), row) in shown.rows_mut().zip(wanted.rows()).zip(0..) {

@@ -42,7 +42,8 @@ use std::num::NonZeroU32;
 use std::str::FromStr;
 
 crate::table::table! {
-    /// What a file with a picture can be, in the order of the keys that ask for it.
+    /// The formats of files with a picture, in the order of the keys that ask for them.
+    #[doc(hidden)]
     pub enum Format: Kind {
         /// Its pixels: [`png()`].
         #[cfg(feature = "png")]
@@ -175,12 +176,14 @@ impl FromStr for Format {
 /// ```
 ///
 /// # Panics
-/// If the screen has more pixels than [a picture may have](crate::framebuffer::Resolution::MAX_PIXELS): two for each cell.
+/// If the screen has more pixels than [a picture may have](crate::framebuffer::Resolution::MAX_PIXELS): two for each
+/// cell.
 pub fn text_frame(scene: &Scene, size: Size) -> String {
     text(&frame_grid(scene, CellMode::RAMP, size, USUAL_CELL_ASPECT))
 }
 
-/// Returns the scene's own view as the cells of a screen of that size and cell aspect, one ray through each pixel's centre.
+/// Returns the scene's own view as the cells of a screen of that size and cell aspect, one ray through each pixel's
+/// centre.
 ///
 /// # Panics
 /// If [`cell::resolution`] is an error: for a screen with more pixels than a picture may have, or an aspect that is not

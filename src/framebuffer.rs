@@ -67,13 +67,11 @@ impl Resolution {
     }
 
     /// Returns the number of pixels in a row.
-    #[doc(hidden)]
     pub const fn width(&self) -> u32 {
         self.width
     }
 
     /// Returns the number of rows of pixels.
-    #[doc(hidden)]
     pub const fn height(&self) -> u32 {
         self.height
     }

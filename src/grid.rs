@@ -271,7 +271,8 @@ impl Grid {
         &mut self.cells[index]
     }
 
-    /// Puts a cell there whose glyph takes so many columns. Half of something wide is nothing: what it cuts becomes blanks.
+    /// Puts a cell there whose glyph takes so many columns. Half of something wide is nothing: what it cuts becomes
+    /// blanks.
     ///
     /// # Panics
     /// Outside the grid.
@@ -308,7 +309,8 @@ impl Grid {
         cells[kept..].fill(Cell::BLANK);
     }
 
-    /// Moves the content of these rows down by `by` rows; blank rows come in above it. Rows outside the grid are ignored.
+    /// Moves the content of these rows down by `by` rows; blank rows come in above it. Rows outside the grid are
+    /// ignored.
     #[cfg(feature = "scrolling-regions")]
     pub(crate) fn scroll_down(&mut self, region: Range<u16>, by: u16) {
         let (cells, shift) = self.region(region, by);

@@ -76,8 +76,9 @@
 //! | `ratatui` | ratatui's buffers laid over cells, on `ratatui-core` alone | 33 |
 //! | `underline-color` | the colours of their underlines; all of the program's ratatui backends must have theirs on | 33 |
 //! | `backend` | the encoder as a backend of ratatui; includes `ratatui` | 33 |
+//! | `scrolling-regions` | the same beside ratatui's feature of this name; includes `backend` | 33 |
 //! | `serde` | cameras, colours, sizes, maps and samplings in the formats of serde, checked when they are read | 11 |
-//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif`, `cast` and the last three | 92 |
+//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif`, `cast` and the last four | 92 |
 //! | `cli` | the program `termtrace`, by default | 107 |
 //!
 //! A program that only uses the library turns the default off:
@@ -317,7 +318,7 @@ pub use light::{Falloff, Light, PointLight};
 pub use material::Material;
 pub use mesh_file::MeshError;
 pub use scene::{Background, Object, SceneBuilder, SceneFault, ToneCurve};
-pub use shape::{Mesh, Plane, Shape, ShapeError, Sphere, Triangle};
+pub use shape::{Mesh, Plane, Shape, Sphere, Triangle};
 
 // Cameras over time.
 pub use camera_path::CameraPath;

@@ -4,12 +4,12 @@
 /// else about a row follows from its constant, so that a new row is one line here and one file with the constant.
 macro_rules! table {
     (
-        $(#[doc = $about:literal])*
+        $(#[$about:meta])*
         pub enum $Table:ident: $Kind:ty {
             $($(#[doc = $doc:literal])* $(#[cfg($condition:meta)])? $Row:ident = $kind:expr;)*
         }
     ) => {
-        $(#[doc = $about])*
+        $(#[$about])*
         #[non_exhaustive]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum $Table {

@@ -2,10 +2,11 @@
 //!
 //! - `cargo bench --bench bytes` makes four sequences of 120 frames at two sizes;
 //! - `cargo bench --bench bytes -- --seed N` adds two that are drawn from the seed;
-//! - `cargo bench --bench bytes -- FOLDER` takes the folder's sequences in place of the four. They are raw frames in files
-//!   named `NAME_COLSxROWS.rgb`: all frames one after another, COLS x 2 ROWS sRGB pixels each, 3 bytes a pixel, row by row
-//!   from the top;
-//! - `cargo bench --bench bytes -- --programs` runs two programs of ratatui on both backends, which otherwise come last;
+//! - `cargo bench --bench bytes -- FOLDER` takes the folder's sequences in place of the four. They are raw frames in
+//!   files named `NAME_COLSxROWS.rgb`: all frames one after another, COLS x 2 ROWS sRGB pixels each, 3 bytes a pixel,
+//!   row by row from the top;
+//! - `cargo bench --bench bytes -- --programs` runs two programs of ratatui on both backends, which otherwise come
+//!   last;
 //! - `cargo bench --bench bytes -- --test` only sees whether it runs.
 //!
 //! Bytes are the mean of all frames after the first. Times are CPU time, the best of five, cells filled included.

@@ -1,7 +1,7 @@
 //! The encoder as a backend of ratatui: any ratatui program sends its bytes.
 //!
-//! ratatui names the cells that change; here they change a wanted grid, and `flush` sends what the terminal does not show
-//! yet, in one write.
+//! ratatui names the cells that change; here they change a wanted grid, and `flush` sends what the terminal does not
+//! show yet, in one write.
 
 mod calls;
 mod cursor;
@@ -28,9 +28,11 @@ use std::time::Duration;
 /// use ratatui::{Terminal, widgets::Gauge};
 /// use termtrace::EncoderBackend;
 ///
-/// let mut terminal = Terminal::new(EncoderBackend::new(Vec::new(), (80, 24)))?;
+/// let mut bytes = Vec::new();
+/// let mut terminal = Terminal::new(EncoderBackend::new(&mut bytes, (80, 24)))?;
 /// terminal.draw(|frame| frame.render_widget(Gauge::default().percent(42), frame.area()))?;
-/// assert!(terminal.backend().writer().starts_with(b"\x1b["));
+/// drop(terminal);
+/// assert!(bytes.starts_with(b"\x1b["));
 /// # Ok::<(), std::io::Error>(())
 /// ```
 ///
@@ -44,8 +46,8 @@ use std::time::Duration;
 /// where it was last put: by `set_cursor_position`, behind the last cell that was drawn, or down by the lines appended.
 /// With [`sized_by`](Self::sized_by) it asks for the size, so that
 /// [`Terminal::autoresize`](ratatui_core::terminal::Terminal::autoresize), which each `draw` calls, follows the window.
-/// With [`located_by`](Self::located_by) it asks where the cursor is when that is unknown, which an inline viewport needs
-/// at its beginning and after a resize; without it, the program calls `set_cursor_position` there.
+/// With [`located_by`](Self::located_by) it asks where the cursor is when that is unknown, which an inline viewport
+/// needs at its beginning and after a resize; without it, the program calls `set_cursor_position` there.
 ///
 /// ```no_run
 /// use termtrace::EncoderBackend;
@@ -58,21 +60,21 @@ use std::time::Duration;
 ///
 /// # Other bytes
 ///
-/// The backend is itself a [`Write`], so `execute!(terminal.backend_mut(), EnterAlternateScreen)` works: the bytes go out
-/// as they are, after everything that was drawn before them. As they may have done anything, nothing is assumed about the
-/// screen, the colours or the cursor afterwards, and nothing is drawn again by itself: neither what stood on the screen
-/// before, nor the cursor in its place. That is right behind `LeaveAlternateScreen`, where the screen is the shell's
-/// again. Bytes that change what the screen shows have to be followed by
-/// [`Terminal::clear`](ratatui_core::terminal::Terminal::clear), as with any other backend. Bytes that leave a mode changed
-/// in which the terminal writes differently (origin mode, insert mode, no wrapping, a character set, a scrolling region)
-/// have to be followed by those that reset it before anything is drawn.
+/// The backend is itself a [`Write`], so `execute!(terminal.backend_mut(), EnterAlternateScreen)` works: the bytes go
+/// out as they are, after everything that was drawn before them. As they may have done anything, nothing is assumed
+/// about the screen, the colours or the cursor afterwards, and nothing is drawn again by itself: neither what stood on
+/// the screen before, nor the cursor in its place. That is right behind `LeaveAlternateScreen`, where the screen is the
+/// shell's again. Bytes that change what the screen shows have to be followed by
+/// [`Terminal::clear`](ratatui_core::terminal::Terminal::clear), as with any other backend. Bytes that leave a mode
+/// changed in which the terminal writes differently (origin mode, insert mode, no wrapping, a character set, a
+/// scrolling region) have to be followed by those that reset it before anything is drawn.
 ///
 /// # Scrolling regions
 ///
-/// ratatui's feature `scrolling-regions` adds two methods to the trait of backends, so this backend only compiles if it has
-/// them too. As cargo unifies features, one dependency that turns ratatui's feature on is enough to miss them ("not all
-/// trait items implemented, missing: `scroll_region_up`, `scroll_region_down`"). Then this crate's feature of the same name
-/// has to be on as well:
+/// ratatui's feature `scrolling-regions` adds two methods to the trait of backends, so this backend only compiles if it
+/// has them too. As cargo unifies features, one dependency that turns ratatui's feature on is enough to miss them ("not
+/// all trait items implemented, missing: `scroll_region_up`, `scroll_region_down`"). Then this crate's feature of the
+/// same name has to be on as well:
 ///
 /// ```toml
 /// [dependencies]
@@ -132,12 +134,12 @@ impl<W> EncoderBackend<W> {
         self
     }
 
-    /// Lets frames differ from what was drawn, as [`Encoder::encode_within`] does: text is always exact, pictures of half
-    /// blocks are within `quality` while they change and exact half a second later. `clock` gives the time from any fixed
-    /// start.
+    /// Lets frames differ from what was drawn, as [`Encoder::encode_within`] does: text is always exact, pictures of
+    /// half blocks are within `quality` while they change and exact half a second later. `clock` gives the time from
+    /// any fixed start.
     ///
-    /// A program that only draws when something happens has to draw once more, half a second or later after a picture has
-    /// changed; one that draws many times a second need not care.
+    /// A program that only draws when something happens has to draw once more, half a second or later after a picture
+    /// has changed; one that draws many times a second need not care.
     ///
     /// ```
     /// use ratatui::{Terminal, widgets::Paragraph};
@@ -157,9 +159,8 @@ impl<W> EncoderBackend<W> {
     }
 
     /// Limits the bytes a second that frames take, where [`with_quality`](Self::with_quality) was given
-    /// [`Quality::Equal`] or [`Quality::Fast`]: what does not fit, the least errors of pictures, waits for a later frame.
-    /// Text never waits, nor what replaces text or an unknown screen. Without a quality it does nothing.
-    #[doc(hidden)]
+    /// [`Quality::Equal`] or [`Quality::Fast`]: what does not fit, the least errors of pictures, waits for a later
+    /// frame. Text never waits, nor what replaces text or an unknown screen. Without a quality it does nothing.
     pub fn with_max_rate(mut self, bytes_per_second: u32) -> Self {
         self.limits = self.limits.map(|limits| limits.with_max_rate(bytes_per_second));
         self
@@ -195,8 +196,8 @@ impl<W> EncoderBackend<W> {
         self.window.pixels = pixels.into();
     }
 
-    /// Returns when, by the clock of [`with_quality`](Self::with_quality), the next frame is due if nothing else is drawn
-    /// until then; `None` if the screen shows exactly what was drawn.
+    /// Returns when, by the clock of [`with_quality`](Self::with_quality), the next frame is due if nothing else is
+    /// drawn until then; `None` if the screen shows exactly what was drawn.
     #[doc(hidden)]
     pub fn due(&self) -> Option<Duration> {
         let limits = self.limits.as_ref()?;

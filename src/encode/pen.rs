@@ -20,8 +20,8 @@ impl Pen {
         *self = Self::default();
     }
 
-    /// The cell's character in its colours, for a file; only what differs from the pen is said, one colour at a time: what
-    /// saves bytes on a screen does not change files.
+    /// The cell's character in its colours, for a file; only what differs from the pen is said, one colour at a time:
+    /// what saves bytes on a screen does not change files.
     pub(crate) fn write_cell(&mut self, cell: &Cell, bytes: &mut Vec<u8>) {
         let wanted = self.as_it_stands(cell);
         self.say(Self { fg: self.before_colors(wanted.attributes).fg, ..wanted }, Wording::Long, bytes);
@@ -29,9 +29,9 @@ impl Pen {
         write_glyph(&cell.glyph, bytes);
     }
 
-    /// The pen with which the cell is to be written. A plain space of the colour that the pen has for glyphs is cheapest
-    /// with the pen's two colours exchanged: to say so takes four bytes, to say the colour again, as the one behind, about
-    /// nineteen.
+    /// The pen with which the cell is to be written. A plain space of the colour that the pen has for glyphs is
+    /// cheapest with the pen's two colours exchanged: to say so takes four bytes, to say the colour again, as the one
+    /// behind, about nineteen.
     #[inline]
     pub(super) fn wanted_by(&self, cell: &Cell) -> Self {
         // Nearly every cell of a picture.
@@ -53,8 +53,8 @@ impl Pen {
         if self.cost_of(&exchanged) < self.cost_of(&plain) { exchanged } else { plain }
     }
 
-    /// Whether a space looks like the cell when the pen's two colours are exchanged. The terminal's own colour for glyphs
-    /// cannot be said behind them.
+    /// Whether a space looks like the cell when the pen's two colours are exchanged. The terminal's own colour for
+    /// glyphs cannot be said behind them.
     fn can_be_exchanged_for(&self, cell: &Cell) -> bool {
         is_plain_space(cell)
             && self.fg == cell.bg
@@ -76,18 +76,18 @@ impl Pen {
         pen
     }
 
-    /// The pen once the attributes are these. Adding some keeps the colours. Terminals disagree on how to switch single ones
-    /// off, so all is switched off first, colours too, which is understood everywhere; only for the exchange of the two
-    /// colours they all know an off of its own.
+    /// The pen once the attributes are these. Adding some keeps the colours. Terminals disagree on how to switch single
+    /// ones off, so all is switched off first, colours too, which is understood everywhere; only for the exchange of
+    /// the two colours they all know an off of its own.
     pub(super) fn before_colors(self, attributes: Attributes) -> Self {
         let from = if self.starts_anew(attributes) { Self::default() } else { self };
         Self { attributes, ..from }
     }
 
     /// Whether all is switched off on the way to these attributes: where one is lost, or where one that is gained would
-    /// not have the effect that it has from nothing. One of the first eight colours that becomes bold, said in its short
-    /// form, as it may have been, would be a bright one in many terminals (see [`ink_len`]); and some take bold and dim, or
-    /// the speeds of blinking, for one thing, of which the last said counts.
+    /// not have the effect that it has from nothing. One of the first eight colours that becomes bold, said in its
+    /// short form, as it may have been, would be a bright one in many terminals (see [`ink_len`]); and some take bold
+    /// and dim, or the speeds of blinking, for one thing, of which the last said counts.
     fn starts_anew(&self, attributes: Attributes) -> bool {
         let (lost, gained) = (self.attributes.difference(attributes), attributes.difference(self.attributes));
         let comes_before = |first, second| gained.contains(first) && self.attributes.contains(second);
@@ -278,8 +278,8 @@ fn write_ink(ink: Ink, tens: u8, wording: Wording, bytes: &mut Vec<u8>) {
     }
 }
 
-/// How many bytes [`write_ink`] takes. (The bright ones of the named colours have no short form: not everything that knows
-/// `38;5` knows 90 to 97.)
+/// How many bytes [`write_ink`] takes. (The bright ones of the named colours have no short form: not everything that
+/// knows `38;5` knows 90 to 97.)
 fn ink_len(ink: Ink, wording: Wording) -> usize {
     match ink {
         Ink::Default => 2,

@@ -40,8 +40,16 @@ impl fmt::Display for Name {
     }
 }
 
+/// All lines, each with a line feed.
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.lines().iter().try_for_each(|line| writeln!(f, "{line}"))
+    }
+}
+
 impl Explanation {
     /// Returns the whole explanation as lines of ASCII without control characters.
+    #[doc(hidden)]
     pub fn lines(&self) -> Vec<String> {
         let [i, j] = self.pixel;
         let mut lines = vec![

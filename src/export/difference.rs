@@ -8,8 +8,8 @@ use unicode_width::UnicodeWidthChar;
 /// How many differing rows are shown at most: more than most screens have.
 const MOST_SHOWN: usize = 60;
 
-/// Compares two frames as text, plain or with colours as [`ansi`](super::ansi()) writes them, row by row; `None` if they
-/// are equal.
+/// Compares two frames as text, plain or with colours as [`ansi`](super::ansi()) writes them, row by row; `None` if
+/// they are equal.
 ///
 /// ```
 /// use termtrace::compare;
@@ -47,10 +47,10 @@ pub fn compare(expected: &str, found: &str) -> Option<Difference> {
 
 /// Where and how two texts differ.
 ///
-/// Its [`Display`](fmt::Display) form is a few lines for a person: how many rows differ and where the first one does, the
-/// rows that were expected (`-`) and found (`+`) between bars that show where they end, a mark below each differing cell,
-/// and a row of context on either side. Lines and columns are counted from 1 there, as editors do. It contains no escape
-/// sequences; the alternate form (`{:#}`) colours the rows red and green for a terminal.
+/// Its [`Display`](fmt::Display) form is a few lines for a person: how many rows differ and where the first one does,
+/// the rows that were expected (`-`) and found (`+`) between bars that show where they end, a mark below each differing
+/// cell, and a row of context on either side. Lines and columns are counted from 1 there, as editors do. It contains no
+/// escape sequences; the alternate form (`{:#}`) colours the rows red and green for a terminal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     expected: Vec<Row>,

@@ -16,8 +16,8 @@ pub(super) const KIND: Kind = Kind {
     difference,
 };
 
-/// Returns the file of a picture with each pixel a square of `scale` by `scale`, marked as sRGB; pixels of another shape
-/// than square are marked too.
+/// Returns the file of a picture with each pixel a square of `scale` by `scale`, marked as sRGB; pixels of another
+/// shape than square are marked too.
 ///
 /// # Errors
 /// If the picture has no pixels, or more than a [`Resolution`] may have when it is scaled; and unless `pixel_aspect` is

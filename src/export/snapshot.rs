@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 /// Returns the grid's characters in a frame, below its size: for snapshot tools that cut blanks off the ends of a text.
 ///
-/// [insta](https://docs.rs/insta), for one, trims what it compares, so that of [`text`](super::text()) the blank rows at the
-/// end, and with them the height, are not tested. Here they are.
+/// [insta](https://docs.rs/insta), for one, trims what it compares, so that of [`text`](super::text()) the blank rows
+/// at the end, and with them the height, are not tested. Here they are.
 ///
 /// ```
 /// use termtrace::{CellMode, Scene, Size, export::framed, frame_grid};
@@ -43,11 +43,11 @@ pub fn framed(grid: &Grid) -> String {
     out
 }
 
-/// Returns the grid's characters in a frame, a second frame with a letter for how each cell looks, and the meaning of the
-/// letters: colours and attributes in a form that a person can review, and of which nothing is lost.
+/// Returns the grid's characters in a frame, a second frame with a letter for how each cell looks, and the meaning of
+/// the letters: colours and attributes in a form that a person can review, and of which nothing is lost.
 ///
-/// A dot is the terminal's own colours. The letters are given in the order in which the looks first appear; beyond 62 of
-/// them each cell has two, or three.
+/// A dot is the terminal's own colours. The letters are given in the order in which the looks first appear; beyond 62
+/// of them each cell has two, or three.
 ///
 /// ```
 /// use ratatui::{buffer::Buffer, style::Stylize, text::Line, widgets::Widget};

@@ -1,6 +1,6 @@
 //! A mesh: triangles that share their corners.
 
-use super::{CheckedShape, Meshes, Shape, ShapeError, Surface, SurfacePoint, Triangle};
+use super::{CheckedShape, Meshes, Shape, Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
 use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
@@ -33,9 +33,9 @@ impl Mesh {
     /// # Errors
     /// If it reaches beyond ±1e9.
     #[doc(hidden)]
-    pub fn new(file: MeshFile) -> Result<Self, ShapeError> {
+    pub fn new(file: MeshFile) -> Result<Self, SceneFault> {
         if !checks::are_near(file.positions()) {
-            return Err(SceneFault::new("positions", checks::MESH_TOO_FAR).into());
+            return Err(SceneFault::new("positions", checks::MESH_TOO_FAR));
         }
         Ok(Self { file })
     }
@@ -53,20 +53,20 @@ impl Mesh {
     ///
     /// let error = Mesh::from_triangles(corners, vec![[0, 1, 4]]).unwrap_err();
     /// assert_eq!(error.to_string(), "indices[0] is [0, 1, 4]: position 4 does not exist: there are 4");
-    /// # Ok::<(), termtrace::ShapeError>(())
+    /// # Ok::<(), termtrace::SceneFault>(())
     /// ```
     ///
     /// # Errors
     /// Unless all coordinates lie within ±1e9, there is at least one triangle and no more than [`MAX_TRIANGLES`], and each
     /// index has its position.
-    pub fn from_triangles(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> Result<Self, ShapeError> {
+    pub fn from_triangles(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> Result<Self, SceneFault> {
         for (at, &position) in positions.iter().enumerate() {
             checks::checked_point(format_args!("positions[{at}]"), position)?;
         }
         for (at, corners) in indices.iter().enumerate() {
             if let Some(missing) = corners.iter().find(|&&index| index as usize >= positions.len()) {
                 let message = format!("position {missing} does not exist: there are {}", positions.len());
-                return Err(SceneFault::new(format!("indices[{at}] is {corners:?}"), message).into());
+                return Err(SceneFault::new(format!("indices[{at}] is {corners:?}"), message));
             }
         }
         let count = indices.len();

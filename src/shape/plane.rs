@@ -2,11 +2,11 @@
 
 use super::equation::quotient;
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, Meshes, Points, Shape, ShapeError, Step,
-    Surface, SurfacePoint,
+    AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, Meshes, Points, Shape, Step, Surface,
+    SurfacePoint,
 };
 use crate::bounds::Bounds;
-use crate::checks;
+use crate::checks::{self, SceneFault};
 use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
@@ -27,7 +27,7 @@ impl Plane {
     ///
     /// # Errors
     /// Unless all coordinates lie within ±1e9, and the normal has a length.
-    pub fn new(point: Vec3, normal: Vec3) -> Result<Self, ShapeError> {
+    pub fn new(point: Vec3, normal: Vec3) -> Result<Self, SceneFault> {
         let point = checks::checked_point("point", point)?;
         Ok(Self::unchecked(point, checks::checked_direction("normal", normal)?))
     }

@@ -1,11 +1,11 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, ShapeError, SideBySide, Step,
-    Surface, SurfacePoint,
+    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SideBySide, Step, Surface,
+    SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
-use crate::checks;
+use crate::checks::{self, SceneFault};
 use crate::lanes::{F32x8, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
 use crate::text::number;
@@ -31,7 +31,7 @@ impl Sphere {
     ///
     /// # Errors
     /// Unless the centre's coordinates lie within ±1e9, and the radius between 1e-9 and 1e9.
-    pub fn new(center: Vec3, radius: f32) -> Result<Self, ShapeError> {
+    pub fn new(center: Vec3, radius: f32) -> Result<Self, SceneFault> {
         let center = checks::checked_point("center", center)?;
         let radius = checks::checked_number("radius", radius, |radius| checks::length("radius", radius))?;
         Ok(Self { center, radius })

@@ -3,8 +3,8 @@
 use super::described::sides;
 use super::equation::quotient;
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, ShapeError, SideBySide, Step,
-    Surface, SurfacePoint,
+    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SideBySide, Step, Surface,
+    SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
 use crate::checks::{self, SceneFault};
@@ -255,7 +255,7 @@ impl Triangle {
     ///
     /// # Errors
     /// Unless all coordinates lie within ±1e9, and the corners not on one line.
-    pub fn new(corners: [Vec3; 3]) -> Result<Self, ShapeError> {
+    pub fn new(corners: [Vec3; 3]) -> Result<Self, SceneFault> {
         for (name, corner) in ["corners[0]", "corners[1]", "corners[2]"].into_iter().zip(corners) {
             checks::checked_point(name, corner)?;
         }

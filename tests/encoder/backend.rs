@@ -391,8 +391,8 @@ fn the_cursor_is_not_believed_to_be_there() {
     pair.draw(render);
 }
 
-/// A terminal that takes a cluster apart writes over what stands behind it, which is then sent again; not so what is not
-/// the program's.
+/// A terminal that takes a cluster apart writes over what stands behind it, which is then sent again; not so what is
+/// not the program's.
 #[test]
 fn what_stands_behind_a_cluster() {
     let line = Wire::new(SIZE);
@@ -635,8 +635,8 @@ fn without_modes(bytes: &str) -> String {
         .fold(bytes.to_owned(), |bytes, mode| bytes.replace(mode, ""))
 }
 
-/// A ratatui program on the strict model: what it shows is what the program has drawn, the lines below in their colours,
-/// what is wide, and clusters.
+/// A ratatui program on the strict model: what it shows is what the program has drawn, the lines below in their
+/// colours, what is wide, and clusters.
 pub(crate) struct Strict {
     terminal: Terminal<EncoderBackend<Vec<u8>>>,
     screens: Screens,
@@ -686,8 +686,8 @@ fn render(buffers: &[Buffer], frame: &mut Frame<'_>) {
     }
 }
 
-/// No cell of a row stands on the second half of another, or goes over the edge; that half has the first one's style, or
-/// ratatui would not say what is to be there once only the first is gone.
+/// No cell of a row stands on the second half of another, or goes over the edge; that half has the first one's style,
+/// or ratatui would not say what is to be there once only the first is gone.
 fn halve(buffer: &mut Buffer, y: u16) {
     let right = buffer.area.right();
     let mut x = buffer.area.left();
@@ -710,8 +710,8 @@ fn encoder() -> impl Strategy<Value = Encoder> {
 }
 
 /// What the emulators take from ratatui's own backend as they do from ours: bold and dim are one scale to them, of two
-/// speeds of blinking one is switched off with the other, the colour of a line they take for other things, and of half a
-/// wide character they make what they like.
+/// speeds of blinking one is switched off with the other, the colour of a line they take for other things, and of half
+/// a wide character they make what they like.
 pub(crate) fn commonly_known(mut buffer: Buffer) -> Buffer {
     for cell in &mut buffer.content {
         if cell.cell_width() != 1 {

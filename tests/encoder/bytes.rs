@@ -129,8 +129,8 @@ fn attributes_are_added_and_all_switched_off_together() {
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[0;48;2;200;100;0m ", "a plain space's colour is not seen");
 }
 
-/// Neighbours follow each other. A gap of one is written again, if the pen is right for it: a byte instead of three. After
-/// the last column nobody knows where the cursor is; from anywhere else a line feed goes down.
+/// Neighbours follow each other. A gap of one is written again, if the pen is right for it: a byte instead of three.
+/// After the last column nobody knows where the cursor is; from anywhere else a line feed goes down.
 #[test]
 fn a_run_of_changes_says_its_place_once() {
     let mut encoder = Encoder::new();
@@ -177,8 +177,8 @@ fn cells_of_the_same_colours_follow_each_other() {
     );
 }
 
-/// With either half a cell looks the same: the second one wants only one other colour. Never the terminal's own colours:
-/// the one for characters is not the one behind them.
+/// With either half a cell looks the same: the second one wants only one other colour. Never the terminal's own
+/// colours: the one for characters is not the one behind them.
 #[test]
 fn either_half_saves_a_colour() {
     let mut grid = Grid::new(Size::new(2, 1));

@@ -177,8 +177,8 @@ impl Stage {
                 for (place, cell) in changes {
                     put_at(&mut self.grid, place % count, cell);
                 }
-                // Each may also have cut a wide character to its left and to its right; and with a cluster all that stands
-                // behind it in its row may be written again.
+                // Each may also have cut a wide character to its left and to its right; and with a cluster all that
+                // stands behind it in its row may be written again.
                 let cells = if matches!(self.clusters, Clusters::None) { 3 } else { 3 * 12 };
                 return changes.len() * cells * MOST_BYTES;
             }

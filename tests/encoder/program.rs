@@ -1,5 +1,5 @@
-//! What a whole program does with its backend besides drawing: its own escape sequences, a window that changes, a quality,
-//! a rate, scrolling.
+//! What a whole program does with its backend besides drawing: its own escape sequences, a window that changes, a
+//! quality, a rate, scrolling.
 
 use super::backend::{Pair, SIZE, Wire, full, shell};
 use ratatui::backend::Backend;
@@ -308,7 +308,8 @@ fn lines_are_inserted_above_any_viewport() {
     }
 }
 
-/// Any region, either way, by any number of rows: as ratatui's own model of a terminal has it, and the next frame is right.
+/// Any region, either way, by any number of rows: as ratatui's own model of a terminal has it, and the next frame is
+/// right.
 #[cfg(feature = "scrolling-regions")]
 #[test]
 fn any_region_is_scrolled() {

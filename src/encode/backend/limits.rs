@@ -3,8 +3,8 @@
 use crate::encode::{Allowance, Quality};
 use std::time::Duration;
 
-/// So much of the rate may be ahead of its time: a frame of a program that draws seldom is not held back for longer, and
-/// one that draws 30 times a second has a third of it for each frame.
+/// So much of the rate may be ahead of its time: a frame of a program that draws seldom is not held back for longer,
+/// and one that draws 30 times a second has a third of it for each frame.
 const AHEAD: Duration = Duration::from_millis(100);
 
 /// A quality, the time, and what is left of a rate.

@@ -1,8 +1,8 @@
 //! Scrolling some rows of the screen: DECSTBM, SU, SD, and what is within their reach.
 //!
 //! A region has two rows at least: many terminals pass over the sequence for a region of one, and what comes behind it
-//! would scroll the whole screen. ratatui asks for it all the same: to bring the first row of a screen that it fills into
-//! the scrollback.
+//! would scroll the whole screen. ratatui asks for it all the same: to bring the first row of a screen that it fills
+//! into the scrollback.
 
 use super::EncoderBackend;
 use crate::encode::moves::{Move, Place};
@@ -19,8 +19,8 @@ pub(super) enum Way {
 }
 
 impl<W: Write> EncoderBackend<W> {
-    /// Scrolls these rows by so many; blank ones come in. What goes out at the screen's top goes into the scrollback. The
-    /// cursor is at the top left afterwards.
+    /// Scrolls these rows by so many; blank ones come in. What goes out at the screen's top goes into the scrollback.
+    /// The cursor is at the top left afterwards.
     pub(super) fn scroll(&mut self, region: Range<u16>, by: u16, way: Way) -> io::Result<()> {
         let height = self.window.columns_rows.height;
         let end = region.end.min(height);
@@ -50,7 +50,8 @@ impl<W: Write> EncoderBackend<W> {
     }
 }
 
-/// The whole screen; the cursor ends at the top left. Upwards by line feeds, of which every terminal keeps what goes out.
+/// The whole screen; the cursor ends at the top left. Upwards by line feeds, of which every terminal keeps what goes
+/// out.
 fn scroll_screen(height: u16, by: u16, way: Way, bytes: &mut Vec<u8>) {
     match way {
         Way::Up => {
