@@ -14,14 +14,14 @@
 //! (`Recovering`): frames are sent one at a time, until a reply arrives or the terminal is considered silent
 //! (`Silent`). The state decides:
 //!
-//! | State      | next frame                                  | query              | left by                               |
-//! |------------|---------------------------------------------|--------------------|---------------------------------------|
-//! | Unasked    | at the rate                                 | none               | nothing                               |
-//! | Unheard    | when a reply or the timeout has come        | each frame, alone  | a reply, the timeout                  |
-//! | Steady     | when the congestion window has room         | each frame, alone  | the timeout, a reply to another query |
-//! | Recovering | when a reply or the timeout has come; small | each frame         | a reply, patience                     |
-//! | Settling   | at the rate                                 | none               | no reply for a second                 |
-//! | Silent     | at the rate, 30 a second                    | one at a time      | a reply                               |
+//! | State      | next frame                                  | query             | left by                               |
+//! |------------|---------------------------------------------|-------------------|---------------------------------------|
+//! | Unqueried  | at the rate                                 | none              | nothing                               |
+//! | Unanswered | when a reply or the timeout has come        | each frame, alone | a reply, the timeout                  |
+//! | Steady     | when the congestion window has room         | each frame, alone | the timeout, a reply to another query |
+//! | Recovering | when a reply or the timeout has come; small | each frame        | a reply, patience                     |
+//! | Resyncing  | at the rate                                 | none              | no reply for a second                 |
+//! | Silent     | at the rate, 30 a second                    | one at a time     | a reply                               |
 //!
 //! Pure: the time is passed in, and there is no I/O.
 //!
@@ -36,46 +36,46 @@
 //! assert!(frame.ends_with(b"\x1b[c"), "a query ends it");
 //! // Until its reply comes there is room for no other frame.
 //! assert!(link.free_at(ms(1)) > ms(100));
-//! link.answer(ms(3));
+//! link.receive_attributes(ms(3));
 //! assert!(link.free_at(ms(4)) <= ms(4));
 //! ```
 
 use std::time::Duration;
 
 mod alignment;
-mod blind;
+mod initial_window;
 mod estimates;
 mod ledger;
-mod replies;
+mod reply_tracker;
 
 use estimates::Rate;
-use replies::{Replies, State};
+use reply_tracker::{ReplyTracker, State};
 
 /// A link is slow if it transmits fewer than this many screens per second.
-const SMOOTH: f64 = 16.0;
+const SMOOTH_SCREENS_PER_SECOND: f64 = 16.0;
 /// Least number of frames per second on a slow link; each frame may take its share of the rate. The smaller a frame,
 /// the sooner its reply shows that the link has become slower, and the less is in flight until then.
-const FRAMES_PER_SECOND: f64 = 36.0;
+const SLOW_LINK_FRAME_RATE: f64 = 36.0;
 /// Number of bytes that a frame may always take: smaller frames cannot show that the rate was estimated too low.
-const LEAST_BYTES: usize = 200;
+const MIN_FRAME_BYTES: usize = 200;
 /// Share of the estimated rate that is used, which leaves room for an error of the estimate.
-const SHARE: f64 = 0.86;
+const PACING_GAIN: f64 = 0.86;
 /// Substitute for a transmission time that cannot be computed.
-const LONGEST: Duration = Duration::from_secs(1);
+const MAX_TRANSMISSION_TIME: Duration = Duration::from_secs(1);
 /// Delay by which bytes may be sent without losing their share of the rate.
-const CREDIT: Duration = Duration::from_millis(20);
+const BURST_CREDIT: Duration = Duration::from_millis(20);
 /// Least time between two frames.
-const FRAME: Duration = Duration::from_micros(16_667);
+const FRAME_TIME: Duration = Duration::from_micros(16_667);
 /// Least time between two frames if the terminal does not reply.
-const SILENT_FRAME: Duration = Duration::from_micros(33_334);
+const SILENT_FRAME_TIME: Duration = Duration::from_micros(33_334);
 
 /// A link and the estimates of it.
 pub struct Link {
     max_rate: Option<f64>,
     frame: Duration,
-    replies: Replies,
+    replies: ReplyTracker,
     /// Share of its limit that the last frame used.
-    fill: f64,
+    utilisation: f64,
     /// Time at which everything sent has been transmitted at the used rate.
     free_at: Duration,
     /// The same time without credit for earlier pauses.
@@ -88,7 +88,7 @@ pub struct Limit {
     /// The link's rate in bytes per second, if it is slow.
     pub rate: Option<f64>,
     /// Limit on the bytes of a frame.
-    pub most_bytes: usize,
+    pub max_bytes: usize,
 }
 
 impl Link {
@@ -96,42 +96,42 @@ impl Link {
     pub fn new(max_rate: Option<u32>, max_frames: Option<f32>, may_ask: bool) -> Self {
         Self {
             max_rate: max_rate.map(f64::from),
-            frame: max_frames.map_or(FRAME, |fps| FRAME.max(Duration::from_secs_f32(1.0 / fps))),
-            replies: Replies::new(may_ask),
-            fill: 0.0,
+            frame: max_frames.map_or(FRAME_TIME, |fps| FRAME_TIME.max(Duration::from_secs_f32(1.0 / fps))),
+            replies: ReplyTracker::new(may_ask),
+            utilisation: 0.0,
             free_at: Duration::ZERO,
             drained_at: Duration::ZERO,
         }
     }
 
     /// Records a reply to DA1.
-    pub fn answer(&mut self, now: Duration) {
-        self.replies.answer(now);
+    pub fn receive_attributes(&mut self, now: Duration) {
+        self.replies.receive_attributes(now);
     }
 
     /// Records a report of a mode. Returns whether it is the reply to a query in flight: a duplicate, a late one, or
     /// one to another query is not.
-    pub fn answer_mode(&mut self, mode: u16, now: Duration) -> bool {
-        self.replies.answer_mode(mode, now)
+    pub fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
+        self.replies.receive_mode(mode, now)
     }
 
     /// Forgets the queries in flight, because another program has had the terminal.
-    pub fn forget(&mut self) {
-        self.replies.forget();
+    pub fn forget_queries(&mut self) {
+        self.replies.forget_queries();
     }
 
     /// Returns the least time between two frames.
     pub fn frame_time(&self) -> Duration {
-        if self.replies.answers() { self.frame } else { self.frame.max(SILENT_FRAME) }
+        if self.replies.is_responsive() { self.frame } else { self.frame.max(SILENT_FRAME_TIME) }
     }
 
     /// Returns the number of frames per second on a slow link.
     fn frames_per_second(&self) -> f64 {
-        FRAMES_PER_SECOND.min(1.0 / self.frame_time().as_secs_f64())
+        SLOW_LINK_FRAME_RATE.min(1.0 / self.frame_time().as_secs_f64())
     }
 
     /// Returns each such frame's share of a rate, in bytes.
-    fn share(&self, rate: Rate) -> f64 {
+    fn frame_bytes(&self, rate: Rate) -> f64 {
         rate.bytes_per_second / self.frames_per_second()
     }
 
@@ -145,17 +145,17 @@ impl Link {
     /// Returns the time at which another frame may be sent, if no reply arrives before.
     fn has_room_at(&self, now: Duration) -> Duration {
         match self.replies.state {
-            State::Settling { .. } if self.replies.is_blind() => self.replies.blind.opens_at(true),
-            State::Unasked | State::Silent | State::Settling { .. } => Duration::ZERO,
+            State::Resyncing { .. } if self.replies.lacks_rate() => self.replies.initial_window.opens_at(true),
+            State::Unqueried | State::Silent | State::Resyncing { .. } => Duration::ZERO,
             State::Recovering { until } => {
-                let opens_at = if self.replies.is_blind() {
-                    self.replies.blind.opens_at(self.replies.heard.is_some())
+                let opens_at = if self.replies.lacks_rate() {
+                    self.replies.initial_window.opens_at(self.replies.last_reply.is_some())
                 } else {
                     Duration::ZERO
                 };
                 opens_at.max(self.replies.times_out_at().unwrap_or_default()).min(until)
             }
-            State::Unheard | State::Steady => self.window_opens_at(now),
+            State::Unanswered | State::Steady => self.window_opens_at(now),
         }
     }
 
@@ -164,10 +164,10 @@ impl Link {
         let Some(times_out_at) = self.replies.times_out_at() else { return Duration::ZERO };
         if self.replies.is_late(now) {
             times_out_at
-        } else if self.replies.ledger.in_flight() <= self.window() {
+        } else if self.replies.ledger.bytes_in_flight() <= self.congestion_window() {
             Duration::ZERO
         } else if self.has_room_beside_largest() {
-            self.replies.passed_at()
+            self.replies.idle_at()
         } else {
             times_out_at
         }
@@ -175,31 +175,33 @@ impl Link {
 
     /// Returns the limits for a frame sent now, on a link for screens of `screen` bytes; `None` without limits.
     pub fn limit(&mut self, screen: usize, now: Duration) -> Option<Limit> {
-        self.replies.look_at_clock(now);
-        let blind = self.replies.is_blind().then(|| Limit { rate: None, most_bytes: self.replies.blind.most_bytes() });
-        self.slow(screen).or(blind)
+        self.replies.check_timeouts(now);
+        let initial =
+            self.replies.lacks_rate().then(|| Limit { rate: None, max_bytes: self.replies.initial_window.max_bytes() });
+        self.slow_limit(screen).or(initial)
     }
 
     /// Returns whether at most the bandwidth-delay product is in flight beside one large frame, which was sent at a
     /// higher rate. The next frame then need not wait for the whole round trip of its reply.
     fn has_room_beside_largest(&self) -> bool {
         let Some(rate) = self.replies.rates.best().filter(|_| self.is_slow()) else { return false };
-        let largest = self.replies.ledger.live().map(|query| query.bytes as f64).fold(0.0, f64::max);
-        self.replies.ledger.in_flight() - largest + self.fill * self.share(rate) <= self.bandwidth_delay_product(rate)
+        let largest = self.replies.ledger.in_flight().map(|query| query.bytes as f64).fold(0.0, f64::max);
+        self.replies.ledger.bytes_in_flight() - largest + self.utilisation * self.frame_bytes(rate)
+            <= self.bandwidth_delay_product(rate)
     }
 
     /// Returns the rate of a link that is slow for screens of this many bytes, and a frame's limit.
-    pub fn slow(&mut self, screen: usize) -> Option<Limit> {
+    pub fn slow_limit(&mut self, screen: usize) -> Option<Limit> {
         let limit = self.max_rate.unwrap_or(f64::INFINITY);
         let measured = self.replies.rates.best();
-        let smooth = screen as f64 * SMOOTH;
+        let smooth = screen as f64 * SMOOTH_SCREENS_PER_SECOND;
         let rate = measured.map_or(f64::INFINITY, |rate| rate.bytes_per_second).min(limit);
         // Hysteresis: slow once a screen does not fit, fast once two do, unchanged in between.
         let is_sure = limit < smooth || measured.is_some_and(|rate| rate.is_limit);
         let slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.is_slow();
         self.replies.set_slow(slow);
-        let most_bytes = LEAST_BYTES.max((rate / self.frames_per_second()) as usize);
-        slow.then_some(Limit { rate: Some(rate), most_bytes })
+        let max_bytes = MIN_FRAME_BYTES.max((rate / self.frames_per_second()) as usize);
+        slow.then_some(Limit { rate: Some(rate), max_bytes })
     }
 
     /// Returns whether the link was slow at the last check.
@@ -209,32 +211,32 @@ impl Link {
 
     /// Appends a query to a frame that is sent now.
     pub fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
-        self.replies.look_at_clock(now);
-        if self.replies.asks() {
-            self.replies.ask(frame, true, now);
+        self.replies.check_timeouts(now);
+        if self.replies.queries_frames() {
+            self.replies.append_query(frame, true, now);
         }
         self.replies.spend(frame.len(), now);
-        self.fill = self.replies.rates.best().map_or(0.0, |rate| frame.len() as f64 / self.share(rate));
-        self.count(frame.len(), now);
+        self.utilisation = self.replies.rates.best().map_or(0.0, |rate| frame.len() as f64 / self.frame_bytes(rate));
+        self.record_sent(frame.len(), now);
     }
 
     /// Returns a query without a frame if one is due; otherwise no bytes. Its round trip is the link's own, whatever
     /// the rate.
     pub fn probe(&mut self, now: Duration) -> Vec<u8> {
-        self.replies.look_at_clock(now);
+        self.replies.check_timeouts(now);
         let mut bytes = Vec::new();
         if self.replies.is_probe_due(now) {
             self.replies.probe(&mut bytes, now);
-            self.count(bytes.len(), now);
+            self.record_sent(bytes.len(), now);
         }
         bytes
     }
 
     /// Returns the congestion window: the bytes in flight up to which another frame is sent.
-    fn window(&self) -> f64 {
+    fn congestion_window(&self) -> f64 {
         let Some(rate) = self.replies.rates.best() else { return 0.0 };
         // Other frames may use what a frame leaves of its share.
-        let spare = if self.is_slow() { ((1.0 - self.fill) * self.share(rate)).max(0.0) } else { 0.0 };
+        let spare = if self.is_slow() { ((1.0 - self.utilisation) * self.frame_bytes(rate)).max(0.0) } else { 0.0 };
         // The first replies may mislead if one of them is lost or duplicated: the window at most doubles with each
         // round trip, as in TCP's slow start.
         (self.bandwidth_delay_product(rate) + spare).min(self.replies.delivered)
@@ -245,14 +247,14 @@ impl Link {
         rate.bytes_per_second * self.replies.round_trip.shortest().as_secs_f64()
     }
 
-    fn count(&mut self, bytes: usize, now: Duration) {
+    fn record_sent(&mut self, bytes: usize, now: Duration) {
         let measured = self.replies.rates.best().filter(|rate| rate.is_limit || self.is_slow());
         // Without replies, an estimate that is too low would never be corrected.
-        let share = if matches!(self.replies.state, State::Settling { .. }) { SHARE / 2.0 } else { SHARE };
+        let share = if matches!(self.replies.state, State::Resyncing { .. }) { PACING_GAIN / 2.0 } else { PACING_GAIN };
         let measured = measured.map_or(f64::INFINITY, |rate| share * rate.bytes_per_second);
         let rate = measured.min(self.max_rate.unwrap_or(f64::INFINITY));
-        let takes = Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(LONGEST);
-        self.free_at = self.free_at.max(now.saturating_sub(CREDIT)) + takes;
+        let takes = Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(MAX_TRANSMISSION_TIME);
+        self.free_at = self.free_at.max(now.saturating_sub(BURST_CREDIT)) + takes;
         self.drained_at = self.drained_at.max(now) + takes;
     }
 }

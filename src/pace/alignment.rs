@@ -6,17 +6,17 @@
 //! replies arrive exactly when those to the next query are due; on a link that has become slower they do not.
 
 use super::ledger::InFlight;
-use super::{LEAST_BYTES, LONGEST};
+use super::{MAX_TRANSMISSION_TIME, MIN_FRAME_BYTES};
 use std::time::Duration;
 
 /// Number of consecutive replies at the time of the next query's until one is considered lost: one more than occur
-/// while a queue drains (see [`STRICT`]).
-const ENOUGH: u32 = 4;
+/// while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
+const MIN_MISALIGNED_REPLIES: u32 = 4;
 /// Tolerance for a reply to the second oldest query. A queue that drains by a seventh of the interval between two
 /// frames stays within it for three of them.
-const STRICT: Duration = Duration::from_millis(5);
+const SECOND_QUERY_TOLERANCE: Duration = Duration::from_millis(5);
 /// Tolerance for a reply to the oldest query: in doubt the count is right.
-const LENIENT: Duration = Duration::from_millis(10);
+const OLDEST_QUERY_TOLERANCE: Duration = Duration::from_millis(10);
 
 /// The evidence for a misalignment.
 #[derive(Default)]
@@ -25,13 +25,13 @@ pub(super) struct Alignment {
     /// loss.
     rate: Option<f64>,
     /// Number of consecutive replies at the time of the one to the second oldest query.
-    behind: u32,
+    misaligned: u32,
 }
 
 impl Alignment {
     /// Counts a reply that arrives now while these queries are in flight, oldest first. Returns whether this and the
     /// previous replies show that one is lost.
-    pub(super) fn is_behind<'a>(
+    pub(super) fn is_misaligned<'a>(
         &mut self,
         queries: impl IntoIterator<Item = &'a InFlight>,
         round_trip: Duration,
@@ -39,25 +39,26 @@ impl Alignment {
         now: Duration,
     ) -> bool {
         let is_on_time = |query: &InFlight, rate: f64, tolerance: Duration| {
-            let takes = Duration::try_from_secs_f64(query.bytes as f64 / rate).unwrap_or(LONGEST);
+            let takes = Duration::try_from_secs_f64(query.bytes as f64 / rate).unwrap_or(MAX_TRANSMISSION_TIME);
             (query.sent + takes + round_trip).abs_diff(now) <= tolerance
         };
         let mut queries = queries.into_iter();
         if let Some(oldest) = queries.next() {
-            if is_on_time(oldest, rate, LENIENT) {
+            if is_on_time(oldest, rate, OLDEST_QUERY_TOLERANCE) {
                 self.rate = Some(rate);
             }
             let fits = |query: &InFlight, tolerance| {
                 // The rate may be known from misaligned replies alone. Small frames then show that it is not the
                 // link's.
-                let is_small = query.bytes <= LEAST_BYTES;
+                let is_small = query.bytes <= MIN_FRAME_BYTES;
                 is_on_time(query, self.rate.unwrap_or(rate), tolerance)
                     || is_small && is_on_time(query, f64::INFINITY, tolerance)
             };
-            let is_behind = !fits(oldest, LENIENT) && queries.next().is_some_and(|next| fits(next, STRICT));
-            self.behind = if is_behind { self.behind + 1 } else { 0 };
+            let is_misaligned = !fits(oldest, OLDEST_QUERY_TOLERANCE)
+                && queries.next().is_some_and(|next| fits(next, SECOND_QUERY_TOLERANCE));
+            self.misaligned = if is_misaligned { self.misaligned + 1 } else { 0 };
         }
-        self.behind >= ENOUGH
+        self.misaligned >= MIN_MISALIGNED_REPLIES
     }
 }
 
@@ -74,9 +75,9 @@ mod tests {
         (0..frames).find(|&number| {
             let mut ledger = Ledger::default();
             let sent = (number..number + 8).map(|number| ms(25 * number as u64));
-            sent.for_each(|sent| ledger.ask(Query::Counted, 1_000, sent));
+            sent.for_each(|sent| ledger.record(Query::Counted, 1_000, sent));
             let now = ms(25 * number as u64 + 220 + later(number));
-            alignment.is_behind(ledger.counted(), ms(200), 50_000.0, now)
+            alignment.is_misaligned(ledger.counted(), ms(200), 50_000.0, now)
         })
     }
 

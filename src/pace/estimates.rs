@@ -8,13 +8,13 @@ const ROUND_TRIP_AGE: Duration = Duration::from_secs(5);
 /// Time for which the highest rate is kept if there are others.
 const RATE_AGE: Duration = Duration::from_millis(500);
 /// A frame with less transmission time was not limited by the link: it gives a lower bound of the rate only.
-const SHORT: Duration = Duration::from_millis(20);
+const MIN_SERVICE_TIME: Duration = Duration::from_millis(20);
 /// Part of a short time that may be jitter.
-const CHANCE: Duration = Duration::from_millis(5);
+const JITTER: Duration = Duration::from_millis(5);
 /// Weight of previous measurements: jitter of single frames averages out.
-const MEMORY: f64 = 0.75;
+const SMOOTHING: f64 = 0.75;
 /// Least number of bytes for a frame to give the rate, unless the rate is so low that even those take long.
-const TELLING: f64 = 512.0;
+const MIN_SAMPLE_BYTES: f64 = 512.0;
 
 /// The shortest round trip.
 #[derive(Default)]
@@ -41,7 +41,7 @@ impl RoundTrip {
     }
 
     /// Drops the estimate because the route may have changed; it remains the expected value.
-    pub(super) fn doubt(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         *self = Self { before: self.expected(), ..Self::default() };
     }
 
@@ -56,8 +56,8 @@ impl RoundTrip {
     }
 
     /// Returns whether a round trip is so short that the reply must belong to another query.
-    pub(super) fn is_far_above(&self, round_trip: Duration) -> bool {
-        round_trip + CHANCE < self.shortest().mul_f64(0.9)
+    pub(super) fn is_implausible(&self, round_trip: Duration) -> bool {
+        round_trip + JITTER < self.shortest().mul_f64(0.9)
     }
 
     /// Returns the estimate; zero without one.
@@ -68,17 +68,17 @@ impl RoundTrip {
 
 /// A busy period: back-to-back transmission. Times are arrivals of replies minus one full round trip.
 #[derive(Default)]
-pub(super) struct Busy {
+pub(super) struct BusyPeriod {
     since: Duration,
     until: Duration,
     bytes: usize,
 }
 
-impl Busy {
+impl BusyPeriod {
     /// Records that bytes sent at `sent` have been transmitted. Returns the bytes and the time that give the rate.
     /// Bytes that waited behind others count only together with them: alone they would seem slower than they were.
     pub(super) fn take(&mut self, sent: Duration, bytes: usize, passed: Duration) -> (usize, Duration) {
-        if sent + SHORT >= self.until {
+        if sent + MIN_SERVICE_TIME >= self.until {
             (self.since, self.bytes) = (sent, 0);
         }
         self.until = passed;
@@ -116,20 +116,20 @@ impl Rates {
         let bytes = bytes as f64;
         // One of the previous rates is kept even after a pause.
         let (best, limit) = (self.best(), self.limit());
-        if bytes < best.map_or(TELLING, |best| TELLING.min(best.bytes_per_second / 50.0)) {
+        if bytes < best.map_or(MIN_SAMPLE_BYTES, |best| MIN_SAMPLE_BYTES.min(best.bytes_per_second / 50.0)) {
             return;
         }
         self.rates.retain(|&(at, _)| now.saturating_sub(at) < RATE_AGE);
         let before = std::mem::take(&mut self.last);
-        let rate = if service >= SHORT {
+        let rate = if service >= MIN_SERVICE_TIME {
             let (more, longer) = if is_late { Default::default() } else { before };
             let (bytes, service) = (bytes + more, service + longer);
-            self.last = (MEMORY * bytes, service.mul_f64(MEMORY));
+            self.last = (SMOOTHING * bytes, service.mul_f64(SMOOTHING));
             let bytes_per_second = bytes / service.as_secs_f64();
             self.rates.retain(|(_, rate)| !is_late || rate.bytes_per_second <= bytes_per_second);
             Rate { bytes_per_second, is_limit: true }
         } else {
-            let shown = (bytes / (service + CHANCE).as_secs_f64()).min(2.0 * limit);
+            let shown = (bytes / (service + JITTER).as_secs_f64()).min(2.0 * limit);
             let shown = Rate { bytes_per_second: shown, is_limit: false };
             best.filter(|best| best.bytes_per_second >= shown.bytes_per_second).unwrap_or(shown)
         };
@@ -137,7 +137,7 @@ impl Rates {
     }
 
     /// Drops rates that may stem from mismatched replies: only low ones are kept, if there are any.
-    pub(super) fn doubt(&mut self) {
+    pub(super) fn keep_limits(&mut self) {
         if self.rates.iter().any(|(_, rate)| rate.is_limit) {
             self.rates.retain(|(_, rate)| rate.is_limit);
         }

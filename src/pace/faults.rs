@@ -1,6 +1,6 @@
 //! A terminal that loses, duplicates, garbles and delays replies, on a virtual clock.
 
-use super::replies::Tagging;
+use super::reply_tracker::TagSupport;
 use super::tests::ms;
 use super::*;
 use crate::protocol::FENCE;
@@ -111,8 +111,8 @@ impl World {
             let come: Vec<_> = self.due.extract_if(.., |(at, _)| *at <= now).collect();
             for (_, reply) in come {
                 match reply {
-                    Reply::Attributes => self.link.answer(now),
-                    Reply::Mode(mode) => drop(self.link.answer_mode(mode, now)),
+                    Reply::Attributes => self.link.receive_attributes(now),
+                    Reply::Mode(mode) => drop(self.link.receive_mode(mode, now)),
                 }
                 if self.link.replies.round_trip.is_known() {
                     self.first_reply.get_or_insert(now);
@@ -129,7 +129,7 @@ impl World {
         self.begun = self.now;
         let probe = self.link.probe(self.now);
         self.pass_on(&probe);
-        let limit = self.link.limit(SCREEN, self.now).map_or(self.wanted, |limit| limit.most_bytes.min(self.wanted));
+        let limit = self.link.limit(SCREEN, self.now).map_or(self.wanted, |limit| limit.max_bytes.min(self.wanted));
         let mut frame = vec![b'x'; limit - 11];
         self.link.send(&mut frame, self.now);
         let seen = self.pass_on(&frame);
@@ -293,32 +293,32 @@ fn a_terminal_that_replies_again_gets_all_frames_again() {
 #[test]
 fn a_lost_reply_is_known_as_soon_as_the_next_one_comes() {
     let mut link = Link::new(None, None, true);
-    link.replies.tagging = Tagging::Known;
+    link.replies.tag_support = TagSupport::Known;
     for at in [0, 10, 20] {
         link.send(&mut b"frame".to_vec(), ms(at));
     }
-    assert_eq!(link.replies.ledger.live().count(), 3);
-    assert!(link.answer_mode(202, ms(12)));
-    assert_eq!(link.replies.ledger.live().count(), 1);
+    assert_eq!(link.replies.ledger.in_flight().count(), 3);
+    assert!(link.receive_mode(202, ms(12)));
+    assert_eq!(link.replies.ledger.in_flight().count(), 1);
     // Late, foreign, and of an existing mode.
     for mode in [201, 202, 700, 2026] {
-        assert!(!link.answer_mode(mode, ms(13)));
+        assert!(!link.receive_mode(mode, ms(13)));
     }
-    assert!(link.answer_mode(203, ms(22)));
-    assert_eq!((link.replies.ledger.live().count(), link.replies.state), (0, State::Steady));
+    assert!(link.receive_mode(203, ms(22)));
+    assert_eq!((link.replies.ledger.in_flight().count(), link.replies.state), (0, State::Steady));
 }
 
 /// Otherwise each of them might be lost, one a second, and the round trip would be that of frames.
 #[test]
 fn a_lost_query_without_a_frame_is_sent_again() {
     let mut link = Link::new(None, None, true);
-    link.replies.tagging = Tagging::Known;
+    link.replies.tag_support = TagSupport::Known;
     assert_ne!(link.probe(ms(0)), b"");
     link.send(&mut b"frame".to_vec(), ms(0));
     assert_eq!(link.probe(ms(1)), b"");
-    assert!(link.answer_mode(202, ms(2)), "the reply to the frame");
+    assert!(link.receive_mode(202, ms(2)), "the reply to the frame");
     assert_ne!(link.probe(ms(3)), b"");
-    assert!(link.answer_mode(203, ms(4)));
+    assert!(link.receive_mode(203, ms(4)));
     assert_eq!(link.probe(ms(5)), b"", "that one was answered");
 }
 
@@ -329,7 +329,7 @@ fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
     world.run(ms(2_000));
     world.tags = false;
     world.run(ms(8_000));
-    assert_eq!(world.link.replies.tagging, Tagging::Possible);
+    assert_eq!(world.link.replies.tag_support, TagSupport::Possible);
     let since = world.now.saturating_sub(ms(1_000));
     assert!(world.frames.iter().filter(|frame| frame.0 >= since).count() >= 55);
 }

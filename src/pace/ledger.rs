@@ -12,7 +12,7 @@ use std::time::Duration;
 
 /// Limit on the queries kept after their timeout: those sent while the first picture is on its way through a very slow
 /// link, one every 150 to 200 ms for 10 s.
-const MOST_GIVEN_UP: usize = 64;
+const MAX_TIMED_OUT_QUERIES: usize = 64;
 
 /// The kind of query behind a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub(super) struct InFlight {
     /// Number of bytes that it ends; 0 for a query alone.
     pub(super) bytes: usize,
     /// Whether its timeout has passed, and no later reply has shown that to be spurious.
-    given_up: bool,
+    timed_out: bool,
     /// Whether its timeout has ever passed.
     late: bool,
 }
@@ -59,23 +59,23 @@ pub(super) struct Matched {
     pub(super) bytes: usize,
     /// Sending time of the oldest query in flight before it whose reply is lost, and the bytes up to this one: all of
     /// them have arrived.
-    pub(super) run: (Duration, usize),
+    pub(super) acked: (Duration, usize),
     /// Whether the reply to a query without a frame is among the lost ones.
     pub(super) lost_probe: bool,
-    pub(super) trust: Trust,
+    pub(super) validity: Validity,
 }
 
 /// The conclusions that a match allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Trust {
+pub(super) enum Validity {
     /// The reply is this query's, and no query before it has timed out: it gives round trip and rate.
-    Sure,
+    Exact,
     /// The reply is this query's, but older bytes may precede it on a slow link: it gives the round trip.
     AfterLoss,
     /// The reply is this query's, after its timeout, which was spurious.
-    Late,
+    Spurious,
     /// The reply may be an older query's: it shows only that the terminal replies.
-    Doubtful,
+    Ambiguous,
 }
 
 /// The queries in flight, oldest first, and those that have timed out.
@@ -99,48 +99,48 @@ impl Ledger {
     }
 
     /// Records a query that is sent now behind this many bytes.
-    pub(super) fn ask(&mut self, query: Query, bytes: usize, now: Duration) {
-        self.queries.push_back(InFlight { query, sent: now, bytes, given_up: false, late: false });
+    pub(super) fn record(&mut self, query: Query, bytes: usize, now: Duration) {
+        self.queries.push_back(InFlight { query, sent: now, bytes, timed_out: false, late: false });
     }
 
     /// Returns the queries that have not timed out, oldest first.
-    pub(super) fn live(&self) -> impl Iterator<Item = &InFlight> {
-        self.queries.iter().filter(|query| !query.given_up)
+    pub(super) fn in_flight(&self) -> impl Iterator<Item = &InFlight> {
+        self.queries.iter().filter(|query| !query.timed_out)
     }
 
     /// Returns the oldest query that has not timed out.
     pub(super) fn oldest(&self) -> Option<&InFlight> {
-        self.live().next()
+        self.in_flight().next()
     }
 
     /// Returns whether a reply may belong to a query that has timed out.
     pub(super) fn is_ambiguous(&self) -> bool {
-        self.queries.iter().any(|query| query.given_up && query.query.is_counted())
+        self.queries.iter().any(|query| query.timed_out && query.query.is_counted())
     }
 
     /// Returns the time at which the last query was sent.
-    pub(super) fn newest(&self) -> Option<Duration> {
+    pub(super) fn last_sent(&self) -> Option<Duration> {
         self.queries.back().map(|query| query.sent)
     }
 
     /// Returns the bytes that are neither confirmed by a reply nor timed out.
-    pub(super) fn in_flight(&self) -> f64 {
-        self.live().map(|query| query.bytes as f64).sum()
+    pub(super) fn bytes_in_flight(&self) -> f64 {
+        self.in_flight().map(|query| query.bytes as f64).sum()
     }
 
     /// Records a timeout: all queries in flight time out.
-    pub(super) fn give_up(&mut self) {
+    pub(super) fn time_out_all(&mut self) {
         for query in &mut self.queries {
-            (query.given_up, query.late) = (true, true);
+            (query.timed_out, query.late) = (true, true);
         }
-        let surplus = self.queries.len().saturating_sub(MOST_GIVEN_UP);
+        let surplus = self.queries.len().saturating_sub(MAX_TIMED_OUT_QUERIES);
         self.queries.drain(..surplus);
     }
 
     /// Records that the timeout was spurious: the remaining queries are in flight after all (as after Eifel detection).
-    pub(super) fn revive(&mut self) {
+    pub(super) fn undo_timeout(&mut self) {
         for query in &mut self.queries {
-            query.given_up = false;
+            query.timed_out = false;
         }
     }
 
@@ -150,7 +150,7 @@ impl Ledger {
     }
 
     /// Matches a reply with a number. `None` if it belongs to no query.
-    pub(super) fn take_tagged(&mut self, tag: Tag) -> Option<Matched> {
+    pub(super) fn match_tagged(&mut self, tag: Tag) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.tag() == Some(tag))?;
         Some(self.take(at))
     }
@@ -161,32 +161,32 @@ impl Ledger {
     }
 
     /// Matches a reply without a number to the oldest query, if it belongs to that.
-    pub(super) fn take_oldest(&mut self) -> Option<Matched> {
+    pub(super) fn match_oldest(&mut self) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.is_counted())?;
         Some(self.take(at))
     }
 
     /// Matches a reply without a number to the newest query sent by `sent`.
-    pub(super) fn take_newest_sent_by(&mut self, latest: Duration) -> Option<Matched> {
+    pub(super) fn match_newest_sent_by(&mut self, latest: Duration) -> Option<Matched> {
         let fits = |query: &InFlight| query.query.is_counted() && query.sent <= latest;
         let at = self.queries.iter().rposition(fits)?;
-        Some(Matched { trust: Trust::Doubtful, ..self.take(at) })
+        Some(Matched { validity: Validity::Ambiguous, ..self.take(at) })
     }
 
     /// Removes the query at this index and all older ones.
     fn take(&mut self, at: usize) -> Matched {
         let InFlight { query, sent, bytes, late, .. } = self.queries[at];
-        let mut run = (sent, bytes);
-        let mut trust = if late { Trust::Late } else { Trust::Sure };
+        let mut acked = (sent, bytes);
+        let mut validity = if late { Validity::Spurious } else { Validity::Exact };
         let mut lost_probe = false;
         for older in self.queries.drain(..=at).take(at) {
             lost_probe |= older.bytes == 0;
-            if !older.given_up {
-                run = (run.0.min(older.sent), run.1 + older.bytes);
+            if !older.timed_out {
+                acked = (acked.0.min(older.sent), acked.1 + older.bytes);
             } else if !late {
-                trust = Trust::AfterLoss;
+                validity = Validity::AfterLoss;
             }
         }
-        Matched { query, sent, bytes, run, lost_probe, trust }
+        Matched { query, sent, bytes, acked, lost_probe, validity }
     }
 }

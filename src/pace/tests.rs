@@ -27,17 +27,17 @@ pub(super) struct World {
     pub(super) link: Link,
     pub(super) rate: f64,
     pub(super) round_trip: Duration,
-    pub(super) answers: bool,
+    pub(super) replies: bool,
     /// Size of frames, unless the link is slow and they are to fit.
     pub(super) frame: usize,
     pub(super) fits: bool,
     /// Share of their limit that frames use.
-    pub(super) fill: f64,
+    pub(super) utilisation: f64,
     pub(super) now: Duration,
     pub(super) begun: Duration,
     pub(super) sent: Vec<Sent>,
     /// Arrival times of replies, with the bytes that they confirm.
-    pub(super) answers_due: VecDeque<(Duration, usize)>,
+    pub(super) replies_due: VecDeque<(Duration, usize)>,
     pub(super) in_flight: usize,
     /// The most bytes in flight beyond the link's rate times its round trip and one frame.
     pub(super) excess: f64,
@@ -49,14 +49,14 @@ impl World {
             link: Link::new(None, None, true),
             rate,
             round_trip,
-            answers: true,
+            replies: true,
             frame: SCREEN,
             fits: true,
-            fill: 1.0,
+            utilisation: 1.0,
             now: ms(1_000),
             begun: Duration::ZERO,
             sent: Vec::new(),
-            answers_due: VecDeque::new(),
+            replies_due: VecDeque::new(),
             in_flight: 0,
             excess: f64::MIN,
         }
@@ -67,7 +67,7 @@ impl World {
         while self.now < end {
             self.now += ms(1);
             self.pass_on();
-            self.hear();
+            self.receive();
             self.send();
         }
     }
@@ -82,7 +82,7 @@ impl World {
         while self.now < end {
             self.now += ms(1);
             self.pass_on();
-            self.hear();
+            self.receive();
         }
     }
 
@@ -97,17 +97,17 @@ impl World {
                 break;
             }
             sent.seen = Some(self.now + self.round_trip / 2);
-            if self.answers && sent.asks {
-                self.answers_due.push_back((self.now + self.round_trip, sent.bytes));
+            if self.replies && sent.asks {
+                self.replies_due.push_back((self.now + self.round_trip, sent.bytes));
             }
         }
     }
 
-    fn hear(&mut self) {
-        while self.answers_due.front().is_some_and(|answer| answer.0 <= self.now) {
-            let Some((_, bytes)) = self.answers_due.pop_front() else { break };
+    fn receive(&mut self) {
+        while self.replies_due.front().is_some_and(|reply| reply.0 <= self.now) {
+            let Some((_, bytes)) = self.replies_due.pop_front() else { break };
             self.in_flight -= bytes;
-            self.link.answer(self.now);
+            self.link.receive_attributes(self.now);
         }
     }
 
@@ -122,7 +122,7 @@ impl World {
         }
         let limit = self.link.limit(SCREEN, self.now);
         let most = limit.filter(|_| self.fits).map_or(self.frame, |limit| {
-            let most = (limit.most_bytes as f64 * self.fill) as usize;
+            let most = (limit.max_bytes as f64 * self.utilisation) as usize;
             most.min(self.frame)
         });
         let mut frame = vec![b'x'; most.saturating_sub(FENCE.len()).max(1)];
@@ -183,14 +183,14 @@ fn keys_are_soon_seen_at_full_throughput() {
 /// Frames as the encoder leaves them: parts that do not fit are left out in steps.
 #[test]
 fn frames_below_their_share_fill_the_link_too() {
-    for fill in [0.75, 0.8, 0.83, 0.9] {
-        let mut world = World { fill, ..World::new(50_000.0, ms(200)) };
+    for utilisation in [0.75, 0.8, 0.83, 0.9] {
+        let mut world = World { utilisation, ..World::new(50_000.0, ms(200)) };
         world.run(ms(3_000));
         world.excess = f64::MIN;
         let from = world.now;
         world.run(ms(20_000));
         let [_, share] = world.throughput(from, world.now);
-        assert!(share >= 0.86, "{share} of the link with {fill} of each frame");
+        assert!(share >= 0.86, "{share} of the link with {utilisation} of each frame");
         assert!(world.excess <= 0.0, "{} bytes too many in flight", world.excess);
     }
 }
@@ -220,7 +220,7 @@ fn any_link_is_used_and_never_overfilled() {
 #[test]
 fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
     let late = |phase: u64| {
-        let mut world = World { fill: 0.93, ..World::new(50_000.0, ms(200)) };
+        let mut world = World { utilisation: 0.93, ..World::new(50_000.0, ms(200)) };
         world.run(ms(10_000 + phase));
         world.rate /= 10.0;
         let dropped = world.now;
@@ -238,10 +238,10 @@ fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
 fn a_link_that_becomes_fast_is_fast_soon() {
     let mut world = World::new(20_000.0, ms(100));
     world.run(ms(5_000));
-    assert!(world.link.slow(SCREEN).is_some());
+    assert!(world.link.slow_limit(SCREEN).is_some());
     world.rate = 1e8;
     world.run(ms(3_000));
-    assert_eq!(world.link.slow(SCREEN), None);
+    assert_eq!(world.link.slow_limit(SCREEN), None);
     let [fps, _] = world.throughput(world.ago(1_000), world.now);
     assert!(fps > 55.0, "{fps} fps");
 }
@@ -253,7 +253,7 @@ fn a_fast_link_is_never_slow() {
         for round_trip in [0, 16, 30, 120] {
             let mut world = World { frame, ..World::new(1e7, ms(round_trip)) };
             world.run(ms(2_000));
-            assert_eq!(world.link.slow(SCREEN), None, "{frame} bytes, {round_trip} ms");
+            assert_eq!(world.link.slow_limit(SCREEN), None, "{frame} bytes, {round_trip} ms");
             let [fps, _] = world.throughput(world.ago(1_000), world.now);
             assert!(fps > if round_trip < 17 { 55.0 } else { 7.0 }, "{frame} bytes, {round_trip} ms: {fps} fps");
         }
@@ -268,22 +268,22 @@ fn a_pause_does_not_make_a_link_slow_for_long() {
     world.run(ms(400));
     world.rate = 1e7;
     world.run(ms(100));
-    assert_eq!(world.link.slow(SCREEN), None);
+    assert_eq!(world.link.slow_limit(SCREEN), None);
 }
 
 /// The first picture arrives at once, the next bytes .4 s later, and from the first second on thirty times a second.
 #[test]
 fn a_terminal_that_never_answers_gets_thirty_frames_a_second() {
-    let mut world = World { answers: false, ..World::new(1e7, ms(2)) };
+    let mut world = World { replies: false, ..World::new(1e7, ms(2)) };
     world.run(ms(400));
     assert_eq!(world.sent.iter().filter(|sent| sent.is_frame).count(), 1);
     world.run(ms(2_600));
     let [fps, _] = world.throughput(world.ago(2_000), world.now);
     assert!((28.0..=30.1).contains(&fps), "{fps} fps");
-    assert_eq!(world.link.slow(SCREEN), None);
-    assert!(world.link.replies.ledger.live().count() <= 8, "nobody waits for many answers");
+    assert_eq!(world.link.slow_limit(SCREEN), None);
+    assert!(world.link.replies.ledger.in_flight().count() <= 8, "few outstanding queries");
     // It was slow at the start.
-    world.answers = true;
+    world.replies = true;
     world.run(ms(2_000));
     let [fps, _] = world.throughput(world.ago(1_000), world.now);
     assert!(fps > 55.0, "{fps} fps");
@@ -293,7 +293,7 @@ fn a_terminal_that_never_answers_gets_thirty_frames_a_second() {
 fn a_terminal_that_falls_silent_is_waited_for_a_while() {
     let mut world = World::new(1e7, ms(20));
     world.run(ms(1_000));
-    world.answers = false;
+    world.replies = false;
     world.run(ms(4_000));
     let [fps, _] = world.throughput(world.ago(2_000), world.now);
     assert!((28.0..=30.1).contains(&fps), "{fps} fps");
@@ -303,7 +303,7 @@ fn a_terminal_that_falls_silent_is_waited_for_a_while() {
 fn a_lost_answer_is_forgotten() {
     let mut world = World { frame: 2_000, ..World::new(1e7, ms(20)) };
     world.run(ms(1_000));
-    let lost = world.answers_due.pop_front();
+    let lost = world.replies_due.pop_front();
     assert!(lost.is_some());
     world.run(ms(3_000));
     let [fps, _] = world.throughput(world.ago(1_000), world.now);
@@ -333,7 +333,7 @@ fn answers_too_many_do_no_lasting_harm() {
     let mut world = World::new(50_000.0, ms(200));
     world.run(ms(5_000));
     for _ in 0..40 {
-        world.link.answer(world.now);
+        world.link.receive_attributes(world.now);
         world.run(ms(37));
     }
     // Each reply is matched to another frame until there is a pause.
@@ -374,7 +374,7 @@ fn a_shorter_way_is_noticed() {
         }
         let shortest = world.link.replies.round_trip.shortest();
         assert!(shortest <= ms(round_trip + 30), "{shortest:?} of {round_trip} ms");
-        assert_eq!(world.link.slow(SCREEN).is_some(), rate < 1e6, "{rate} B/s, {round_trip} ms");
+        assert_eq!(world.link.slow_limit(SCREEN).is_some(), rate < 1e6, "{rate} B/s, {round_trip} ms");
     }
 }
 
@@ -408,7 +408,7 @@ fn an_old_limit_does_not_last() {
     world.run(ms(5_000));
     (world.frame, world.fits) = (SCREEN, true);
     world.run(ms(1_000));
-    assert_eq!(world.link.slow(SCREEN), None);
+    assert_eq!(world.link.slow_limit(SCREEN), None);
 }
 
 #[test]

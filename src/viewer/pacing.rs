@@ -92,16 +92,16 @@ impl Pacing {
 
     /// Records a reply to the query that every terminal answers.
     pub(super) fn take_reply(&mut self, now: Duration) {
-        self.link.answer(now);
+        self.link.receive_attributes(now);
     }
 
     /// Records a report of a private mode, and returns whether it answers a frame's query.
     pub(super) fn take_mode(&mut self, mode: u16, now: Duration) -> bool {
-        self.link.answer_mode(mode, now)
+        self.link.receive_mode(mode, now)
     }
 
     /// Forgets the outstanding queries, because another program has had the terminal.
     pub(super) fn forget_replies(&mut self) {
-        self.link.forget();
+        self.link.forget_queries();
     }
 }

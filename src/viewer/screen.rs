@@ -276,7 +276,7 @@ impl Screen {
         if std::mem::take(&mut self.erases) {
             bytes.extend_from_slice(if cell_mode.colors == Colors::None { ERASE } else { RESET_ERASE });
         }
-        let most_bytes = limit.map(|limit| limit.most_bytes);
+        let most_bytes = limit.map(|limit| limit.max_bytes);
         let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, most_bytes };
         self.encoder.encode_within(grid, allowance, bytes);
         self.drawn = Some(now);
@@ -361,7 +361,7 @@ mod tests {
             trace: Duration::ZERO,
         };
         let grid = export::frame_grid(&scene, capabilities.cell_mode, size, 2.0);
-        let slow = Some(Limit { rate: Some(1e5), most_bytes: usize::MAX });
+        let slow = Some(Limit { rate: Some(1e5), max_bytes: usize::MAX });
         let exact = Some(Quality::Exact);
         for (asked, link, order) in [
             (None, None, Order::Raster),

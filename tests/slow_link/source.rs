@@ -22,7 +22,7 @@ pub(crate) fn run(mut terminal: File) {
         if left.is_zero() {
             begun = start.elapsed();
             // It tells how the link is found, and has what frames may take settled.
-            let slow = link.slow(80 * 24 * 8).is_some();
+            let slow = link.slow_limit(80 * 24 * 8).is_some();
             let mut bytes = link.probe(begun);
             let mut frame = frame(eye, slow);
             link.send(&mut frame, begun);
@@ -43,7 +43,7 @@ pub(crate) fn run(mut terminal: File) {
         parser.feed(&buffer[..count], &mut inputs);
         for input in inputs {
             match input {
-                Input::Reply(Reply::DeviceAttributes(_)) => link.answer(start.elapsed()),
+                Input::Reply(Reply::DeviceAttributes(_)) => link.receive_attributes(start.elapsed()),
                 Input::Event(event) => match event.as_key_press_event().and_then(|key| key.code.as_char()) {
                     Some('a') => eye[0] -= 1,
                     Some('d') => eye[0] += 1,

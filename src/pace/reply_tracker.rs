@@ -1,95 +1,95 @@
 //! The state of the terminal's replies: what they show, and what follows if they are missing.
 
 use super::alignment::Alignment;
-use super::blind::Blind;
-use super::estimates::{Busy, Rates, RoundTrip};
-use super::ledger::{InFlight, Ledger, Matched, Query, Trust};
-use super::{FRAME, LONGEST};
+use super::estimates::{BusyPeriod, Rates, RoundTrip};
+use super::initial_window::InitialWindow;
+use super::ledger::{InFlight, Ledger, Matched, Query, Validity};
+use super::{FRAME_TIME, MAX_TRANSMISSION_TIME};
 use crate::protocol::{FENCE, Tag};
 use std::time::Duration;
 
 /// Timeout beyond the expected time of a reply, after which a frame is sent without it. A local terminal replies within
 /// milliseconds, or within 100 ms while it is busy; with this timeout a key that waits for it is visible within 250 ms.
-const TIMEOUT: Duration = Duration::from_millis(150);
+const RTO_MARGIN: Duration = Duration::from_millis(150);
 /// The same timeout for a slow link, where a frame sent too early queues behind others: a link that becomes ten times
 /// slower has its replies 280 ms apart.
-const SLOW_TIMEOUT: Duration = Duration::from_millis(300);
+const SLOW_RTO_MARGIN: Duration = Duration::from_millis(300);
 /// Limit on doublings of the timeout while it may have been too short: 2.4 s.
-const MOST_BACKOFF: u32 = 3;
+const MAX_BACKOFF: u32 = 3;
 /// Timeout after the first frame, before any reply: a key pressed at once is visible within 500 ms.
-const FIRST_TIMEOUT: Duration = Duration::from_millis(400);
+const FIRST_RTO: Duration = Duration::from_millis(400);
 /// Time without replies after a timeout until the terminal is considered silent: two more timeouts.
-const PATIENCE: Duration = Duration::from_millis(300);
+const SILENCE_TIMEOUT: Duration = Duration::from_millis(300);
 /// The same time for a slow link. Frames sent without replies to a terminal that pauses for a moment queue there.
-const SLOW_PATIENCE: Duration = Duration::from_secs(1);
-/// The same time if no reply has ever arrived: with [`FIRST_TIMEOUT`] a second after the first frame.
-const FIRST_PATIENCE: Duration = Duration::from_millis(600);
+const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
+/// The same time if no reply has ever arrived: with [`FIRST_RTO`] a second after the first frame.
+const FIRST_SILENCE_TIMEOUT: Duration = Duration::from_millis(600);
 /// The same time if the rate is unknown: the first picture may be on its way through a link of 2 KB/s, which full
-/// frames without replies would fill for minutes. Until then small frames show keys (see [`Blind`]).
-const BLIND_PATIENCE: Duration = Duration::from_secs(10);
+/// frames without replies would fill for minutes. Until then small frames show keys (see [`InitialWindow`]).
+const UNKNOWN_RATE_SILENCE_TIMEOUT: Duration = Duration::from_secs(10);
 /// Interval between queries to a silent terminal.
-const SILENT_TIMEOUT: Duration = Duration::from_millis(500);
+const SILENT_QUERY_INTERVAL: Duration = Duration::from_millis(500);
 /// Time without replies after which all outstanding ones count as received or lost.
-const SETTLED: Duration = Duration::from_secs(1);
+const RESYNC_TIME: Duration = Duration::from_secs(1);
 /// A terminal with a shortest round trip below this is near: the order of several late replies does not matter.
-const NEAR: Duration = Duration::from_millis(20);
+const LOCAL_ROUND_TRIP: Duration = Duration::from_millis(20);
 /// Tolerance by which a reply may exceed the shortest round trip and count as immediate.
-const AT_ONCE: Duration = Duration::from_millis(10);
+const IMMEDIATE_REPLY_TOLERANCE: Duration = Duration::from_millis(10);
 /// A reply later than this comes from a terminal that was suspended, and gives no round trip.
-const STOOD_STILL: Duration = Duration::from_secs(1);
+const MAX_ROUND_TRIP: Duration = Duration::from_secs(1);
 
 /// Delay of a reply on a slow link that shows that the link has become slower.
-const LATE: Duration = Duration::from_millis(50);
+const LATE_REPLY_MARGIN: Duration = Duration::from_millis(50);
 /// Interval between queries alone while frames are sent.
-const PROBE: Duration = Duration::from_secs(1);
+const PROBE_INTERVAL: Duration = Duration::from_secs(1);
 /// Number of bytes after which a rate that was never the limit is relied on: four frames.
-const TRUSTED: f64 = 60_000.0;
+const MIN_DELIVERED_BYTES: f64 = 60_000.0;
 
 /// The queries and the conclusions from their replies.
-pub(super) struct Replies {
+pub(super) struct ReplyTracker {
     pub(super) state: State,
     pub(super) ledger: Ledger,
     alignment: Alignment,
-    pub(super) tagging: Tagging,
+    pub(super) tag_support: TagSupport,
     /// Whether the second reply to a query of both kinds is outstanding.
-    echo: bool,
+    awaits_second_reply: bool,
     /// Time of the last reply, if any.
-    pub(super) heard: Option<Duration>,
+    pub(super) last_reply: Option<Duration>,
     /// Number of consecutive timeouts that may have been too short.
     backoff: u32,
     /// Time of the last query without a frame.
-    probed: Option<Duration>,
+    last_probe: Option<Duration>,
     pub(super) round_trip: RoundTrip,
     pub(super) rates: Rates,
-    busy: Busy,
+    busy_period: BusyPeriod,
     /// Number of bytes known to have arrived since the terminal was silent (slow start).
     pub(super) delivered: f64,
     /// Whether the link was slow at the last check.
     slow: bool,
-    pub(super) blind: Blind,
+    pub(super) initial_window: InitialWindow,
 }
 
 /// The state of the terminal's replies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum State {
     /// Queries are not sent: the terminal might print them.
-    Unasked,
+    Unqueried,
     /// No reply has arrived yet, and none is late.
-    Unheard,
+    Unanswered,
     /// Replies arrive in time.
     Steady,
     /// A reply is late: frames are sent one at a time. Holds the time at which the terminal is considered silent.
     Recovering { until: Duration },
     /// The match of replies to queries is unknown: no query is sent until replies stop. Holds the time of the last
     /// reply.
-    Settling { heard: Duration },
+    Resyncing { last_reply: Duration },
     /// The terminal is considered silent.
     Silent,
 }
 
 /// Whether the terminal repeats the number of a nonexistent mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tagging {
+pub(super) enum TagSupport {
     /// It has reported no mode, and might print the query.
     Unknown,
     /// It reports modes; a query of both kinds finds out.
@@ -98,23 +98,23 @@ pub(super) enum Tagging {
     Known,
 }
 
-impl Replies {
+impl ReplyTracker {
     pub(super) fn new(may_ask: bool) -> Self {
         Self {
-            state: if may_ask { State::Unheard } else { State::Unasked },
+            state: if may_ask { State::Unanswered } else { State::Unqueried },
             ledger: Ledger::default(),
             alignment: Alignment::default(),
-            tagging: Tagging::Unknown,
-            echo: false,
-            heard: None,
+            tag_support: TagSupport::Unknown,
+            awaits_second_reply: false,
+            last_reply: None,
             backoff: 0,
-            probed: None,
+            last_probe: None,
             round_trip: RoundTrip::default(),
             rates: Rates::default(),
-            busy: Busy::default(),
+            busy_period: BusyPeriod::default(),
             delivered: 0.0,
             slow: false,
-            blind: Blind::default(),
+            initial_window: InitialWindow::default(),
         }
     }
 
@@ -128,164 +128,164 @@ impl Replies {
 
     /// Returns a query without a frame: its round trip is the link's own.
     pub(super) fn probe(&mut self, bytes: &mut Vec<u8>, now: Duration) {
-        self.probed = Some(now);
-        self.ask(bytes, false, now);
+        self.last_probe = Some(now);
+        self.append_query(bytes, false, now);
     }
 
     /// Returns whether a frame sent now ends with a query.
-    pub(super) fn asks(&self) -> bool {
+    pub(super) fn queries_frames(&self) -> bool {
         match self.state {
-            State::Unheard | State::Steady | State::Recovering { .. } => true,
+            State::Unanswered | State::Steady | State::Recovering { .. } => true,
             // The next query only after the timeout of the last one.
             State::Silent => self.ledger.oldest().is_none(),
-            State::Unasked | State::Settling { .. } => false,
+            State::Unqueried | State::Resyncing { .. } => false,
         }
     }
 
     /// Counts bytes that are sent now, if the rate is unknown.
     pub(super) fn spend(&mut self, bytes: usize, now: Duration) {
-        if self.is_blind() {
-            self.blind.spend(bytes, now);
+        if self.lacks_rate() {
+            self.initial_window.spend(bytes, now);
         }
     }
 
-    pub(super) fn answers(&self) -> bool {
-        !matches!(self.state, State::Unasked | State::Silent)
+    pub(super) fn is_responsive(&self) -> bool {
+        !matches!(self.state, State::Unqueried | State::Silent)
     }
 
     /// Returns whether bytes sent now are sent without knowing the rate.
-    pub(super) fn is_blind(&self) -> bool {
-        matches!(self.state, State::Recovering { .. } | State::Settling { .. }) && !self.knows_rate()
+    pub(super) fn lacks_rate(&self) -> bool {
+        matches!(self.state, State::Recovering { .. } | State::Resyncing { .. }) && !self.knows_rate()
     }
 
     /// Returns whether the rate can be relied on: one that was never reached can be after enough bytes have arrived.
     pub(super) fn knows_rate(&self) -> bool {
-        self.rates.best().is_some_and(|rate| rate.is_limit || self.delivered >= TRUSTED)
+        self.rates.best().is_some_and(|rate| rate.is_limit || self.delivered >= MIN_DELIVERED_BYTES)
     }
 
     /// Returns whether a reply on a slow link is late: the link is slower than estimated, and more bytes would only
     /// queue.
     pub(super) fn is_late(&self, now: Duration) -> bool {
-        self.slow && self.ledger.oldest().is_some_and(|oldest| now > self.due(oldest) + LATE)
+        self.slow && self.ledger.oldest().is_some_and(|oldest| now > self.reply_due_at(oldest) + LATE_REPLY_MARGIN)
     }
 
     /// Returns the expected time of the reply to the oldest query in flight.
-    pub(super) fn due(&self, oldest: &InFlight) -> Duration {
-        self.passes(self.busy.until(), oldest) + self.round_trip.expected()
+    pub(super) fn reply_due_at(&self, oldest: &InFlight) -> Duration {
+        self.transmitted_at(self.busy_period.until(), oldest) + self.round_trip.expected()
     }
 
     /// Returns the time at which the link has transmitted everything in flight, as far as replies show.
-    pub(super) fn passed_at(&self) -> Duration {
-        self.ledger.live().fold(self.busy.until(), |free_at, query| self.passes(free_at, query))
+    pub(super) fn idle_at(&self) -> Duration {
+        self.ledger.in_flight().fold(self.busy_period.until(), |free_at, query| self.transmitted_at(free_at, query))
     }
 
     /// Returns the time at which the link, if idle by then, has transmitted the bytes up to a query.
-    pub(super) fn passes(&self, free_at: Duration, query: &InFlight) -> Duration {
-        free_at.max(query.sent) + self.takes(query.bytes)
+    pub(super) fn transmitted_at(&self, free_at: Duration, query: &InFlight) -> Duration {
+        free_at.max(query.sent) + self.transmission_time(query.bytes)
     }
 
     /// Returns the transmission time of this many bytes; zero if the rate is unknown.
-    pub(super) fn takes(&self, bytes: usize) -> Duration {
+    pub(super) fn transmission_time(&self, bytes: usize) -> Duration {
         let rate = self.rates.best().map_or(f64::INFINITY, |rate| rate.bytes_per_second);
-        Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(LONGEST)
+        Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(MAX_TRANSMISSION_TIME)
     }
 
     pub(super) fn is_probe_due(&self, now: Duration) -> bool {
-        let asks = matches!(self.state, State::Unheard | State::Steady);
-        asks && self.probed.is_none_or(|last| now >= last + PROBE)
+        let asks = matches!(self.state, State::Unanswered | State::Steady);
+        asks && self.last_probe.is_none_or(|last| now >= last + PROBE_INTERVAL)
     }
 
     /// Appends a query to bytes that are sent now, and records it with their number if they are a frame.
-    pub(super) fn ask(&mut self, bytes: &mut Vec<u8>, is_frame: bool, now: Duration) {
-        let query = self.query();
+    pub(super) fn append_query(&mut self, bytes: &mut Vec<u8>, is_frame: bool, now: Duration) {
+        let query = self.next_query();
         if let Query::Tagged(tag) | Query::Both(tag) = query {
             bytes.extend_from_slice(&tag.query());
         }
         if let Query::Counted | Query::Both(_) = query {
             bytes.extend_from_slice(FENCE);
         }
-        self.ledger.ask(query, if is_frame { bytes.len() } else { 0 }, now);
+        self.ledger.record(query, if is_frame { bytes.len() } else { 0 }, now);
     }
 
     /// Returns the next query. In doubt it is of both kinds: another terminal may have taken the place of the previous
     /// one.
-    pub(super) fn query(&mut self) -> Query {
+    pub(super) fn next_query(&mut self) -> Query {
         let doubts = matches!(self.state, State::Recovering { .. } | State::Silent);
-        match self.tagging {
-            Tagging::Known if self.state != State::Silent => Query::Tagged(self.ledger.next_tag()),
-            Tagging::Possible | Tagging::Known if doubts => Query::Both(self.ledger.next_tag()),
+        match self.tag_support {
+            TagSupport::Known if self.state != State::Silent => Query::Tagged(self.ledger.next_tag()),
+            TagSupport::Possible | TagSupport::Known if doubts => Query::Both(self.ledger.next_tag()),
             _ => Query::Counted,
         }
     }
 
     /// Forgets the queries in flight, because another program has had the terminal.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn forget_queries(&mut self) {
         self.ledger.clear();
-        self.echo = false;
-        if matches!(self.state, State::Recovering { .. } | State::Settling { .. }) {
+        self.awaits_second_reply = false;
+        if matches!(self.state, State::Recovering { .. } | State::Resyncing { .. }) {
             self.state = State::Steady;
         }
     }
 
     /// Records a reply to DA1.
-    pub(super) fn answer(&mut self, now: Duration) {
-        if let State::Settling { heard } = &mut self.state {
-            *heard = now;
+    pub(super) fn receive_attributes(&mut self, now: Duration) {
+        if let State::Resyncing { last_reply } = &mut self.state {
+            *last_reply = now;
         }
-        if std::mem::take(&mut self.echo) {
+        if std::mem::take(&mut self.awaits_second_reply) {
             return;
         }
         // A reply without an outstanding query, such as a duplicate, shows nothing.
         let Some(oldest) = self.ledger.counted().next().map(|oldest| oldest.sent) else { return };
-        if self.is_behind(now) {
-            return self.settle(now);
+        if self.is_misaligned(now) {
+            return self.resync(now);
         }
-        let first = self.heard.replace(now).is_none();
+        let first = self.last_reply.replace(now).is_none();
         let in_order =
-            !self.ledger.is_ambiguous() || self.state != State::Silent && (first || self.is_first_pictures(now));
+            !self.ledger.is_ambiguous() || self.state != State::Silent && (first || self.is_reply_to_first_frame(now));
         if !in_order && self.slow {
-            self.backoff = MOST_BACKOFF.min(self.backoff + 1);
+            self.backoff = MAX_BACKOFF.min(self.backoff + 1);
         }
         let is_unclear = if in_order { self.is_too_early(oldest, now) } else { self.slow };
         if is_unclear {
-            return self.settle(now);
+            return self.resync(now);
         }
         let matched = if in_order {
-            self.ledger.take_oldest()
+            self.ledger.match_oldest()
         } else {
             // The shortest round trip of a near terminal may be that of its busy start.
             let least =
-                if self.is_near() { Duration::ZERO } else { self.round_trip.shortest().mul_f64(0.9).min(FRAME) };
+                if self.is_local() { Duration::ZERO } else { self.round_trip.shortest().mul_f64(0.9).min(FRAME_TIME) };
             let latest = now.saturating_sub(least);
-            self.ledger.take_newest_sent_by(latest)
+            self.ledger.match_newest_sent_by(latest)
         };
         if matched.is_some_and(|matched| matches!(matched.query, Query::Both(_))) {
             // It has skipped the tag.
-            self.tagging = Tagging::Possible;
+            self.tag_support = TagSupport::Possible;
         }
         self.take(matched, now);
     }
 
     /// Drops the estimates because the route may have changed: the window grows from its start.
-    fn start_slowly(&mut self) {
-        self.round_trip.doubt();
+    fn restart_slow_start(&mut self) {
+        self.round_trip.invalidate();
         self.delivered = 0.0;
     }
 
     /// Records a report of a mode. Returns whether it is the reply to a query in flight: a duplicate, a late one, or
     /// one to another query is not.
-    pub(super) fn answer_mode(&mut self, mode: u16, now: Duration) -> bool {
-        if self.tagging == Tagging::Unknown {
-            self.tagging = Tagging::Possible;
+    pub(super) fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
+        if self.tag_support == TagSupport::Unknown {
+            self.tag_support = TagSupport::Possible;
         }
         let Some(tag) = Tag::of_mode(mode) else { return false };
-        let matched = self.ledger.take_tagged(tag);
+        let matched = self.ledger.match_tagged(tag);
         if matched.is_some() || tag == Tag::FIRST {
-            self.tagging = Tagging::Known;
+            self.tag_support = TagSupport::Known;
         }
         if let Some(Matched { query, .. }) = matched {
-            self.echo = matches!(query, Query::Both(_));
-            self.heard = Some(now);
+            self.awaits_second_reply = matches!(query, Query::Both(_));
+            self.last_reply = Some(now);
             self.take(matched, now);
         }
         matched.is_some()
@@ -293,46 +293,46 @@ impl Replies {
 
     /// Returns whether a reply without a number that arrives now shows that one of a slow link was lost, which no
     /// timeout does between consecutive frames.
-    fn is_behind(&mut self, now: Duration) -> bool {
+    fn is_misaligned(&mut self, now: Duration) -> bool {
         let Some(rate) = self.rates.best().filter(|_| self.slow && !self.ledger.is_ambiguous()) else { return false };
         let round_trip = self.round_trip.shortest();
-        self.alignment.is_behind(self.ledger.counted(), round_trip, rate.bytes_per_second, now)
+        self.alignment.is_misaligned(self.ledger.counted(), round_trip, rate.bytes_per_second, now)
     }
 
     /// Returns whether a reply that arrives now belongs to another query, or the route has become shorter.
     fn is_too_early(&self, sent: Duration, now: Duration) -> bool {
-        self.round_trip.is_far_above(now.saturating_sub(sent))
+        self.round_trip.is_implausible(now.saturating_sub(sent))
     }
 
     /// Returns whether a reply that arrives now, and may be late, is the one to the first picture rather than to the
     /// last bytes: through a slow link it takes long, and a near terminal replies at once.
-    fn is_first_pictures(&self, now: Duration) -> bool {
-        let comes_at_once = |sent: Duration| now <= sent + self.round_trip.shortest() + AT_ONCE;
-        let is_lasts = self.is_near() && self.ledger.newest().is_some_and(comes_at_once);
+    fn is_reply_to_first_frame(&self, now: Duration) -> bool {
+        let comes_at_once = |sent: Duration| now <= sent + self.round_trip.shortest() + IMMEDIATE_REPLY_TOLERANCE;
+        let is_lasts = self.is_local() && self.ledger.last_sent().is_some_and(comes_at_once);
         self.rates.best().is_none() && !is_lasts
     }
 
-    fn is_near(&self) -> bool {
-        self.round_trip.is_known() && self.round_trip.shortest() < NEAR
+    fn is_local(&self) -> bool {
+        self.round_trip.is_known() && self.round_trip.shortest() < LOCAL_ROUND_TRIP
     }
 
     /// Handles a reply, with its query if it matches one.
     fn take(&mut self, matched: Option<Matched>, now: Duration) {
         let Some(matched) = matched else { return };
-        self.blind = Blind::default();
-        self.delivered += matched.run.1 as f64;
+        self.initial_window = InitialWindow::default();
+        self.delivered += matched.acked.1 as f64;
         if matched.lost_probe {
-            self.probed = None;
+            self.last_probe = None;
         }
-        if matched.trust == Trust::Late {
-            self.ledger.revive();
+        if matched.validity == Validity::Spurious {
+            self.ledger.undo_timeout();
         }
         // In doubt it is unknown what has arrived, and without a rate too much might be in flight.
-        let is_blind = matched.trust == Trust::Doubtful && !self.knows_rate();
-        self.state = if is_blind { State::Recovering { until: self.silent_at(now) } } else { State::Steady };
+        let is_rate_unknown = matched.validity == Validity::Ambiguous && !self.knows_rate();
+        self.state = if is_rate_unknown { State::Recovering { until: self.silent_at(now) } } else { State::Steady };
         let had_round_trip = self.round_trip.is_known();
         self.take_round_trip(matched, now);
-        let tells_rate = matches!(matched.trust, Trust::Sure | Trust::Late);
+        let tells_rate = matches!(matched.validity, Validity::Exact | Validity::Spurious);
         // The first round trip of a link with a known rate adds nothing to the estimate of the rate.
         if tells_rate && (had_round_trip || self.rates.best().is_none()) {
             self.take_rate(matched, now);
@@ -341,10 +341,10 @@ impl Replies {
 
     fn take_round_trip(&mut self, matched: Matched, now: Duration) {
         let round_trip = now.saturating_sub(matched.sent);
-        match matched.trust {
-            Trust::Doubtful => return,
-            Trust::Late if round_trip >= STOOD_STILL => return,
-            Trust::Sure => self.backoff = 0,
+        match matched.validity {
+            Validity::Ambiguous => return,
+            Validity::Spurious if round_trip >= MAX_ROUND_TRIP => return,
+            Validity::Exact => self.backoff = 0,
             _ => {}
         }
         self.round_trip.take(round_trip, matched.bytes == 0 || !self.slow, now);
@@ -352,40 +352,41 @@ impl Replies {
 
     fn take_rate(&mut self, matched: Matched, now: Duration) {
         // Frames are close together on a slow link, so that the last one's state is that of all.
-        let (sent, bytes) = if self.slow { matched.run } else { (matched.sent, matched.bytes) };
+        let (sent, bytes) = if self.slow { matched.acked } else { (matched.sent, matched.bytes) };
         let passed = now.saturating_sub(self.round_trip.shortest());
-        let is_late = self.slow && passed > self.busy.until().max(sent) + self.takes(bytes) + LATE;
-        let (bytes, service) = self.busy.take(sent, bytes, passed);
+        let is_late = self.slow
+            && passed > self.busy_period.until().max(sent) + self.transmission_time(bytes) + LATE_REPLY_MARGIN;
+        let (bytes, service) = self.busy_period.take(sent, bytes, passed);
         self.rates.take(bytes, service, is_late, now);
     }
 
     /// Starts anew when all replies are in. Until then bytes are sent by the rate alone if that is a slow link's;
     /// another rate may stem from a mismatch.
-    fn settle(&mut self, now: Duration) {
+    fn resync(&mut self, now: Duration) {
         self.ledger.clear();
         self.alignment = Alignment::default();
         if self.slow {
-            self.rates.doubt();
+            self.rates.keep_limits();
         } else {
-            (self.rates, self.blind) = Default::default();
-            self.start_slowly();
+            (self.rates, self.initial_window) = Default::default();
+            self.restart_slow_start();
         }
-        self.state = State::Settling { heard: now };
+        self.state = State::Resyncing { last_reply: now };
     }
 
     /// Returns the time at which the oldest query in flight times out, if any (the retransmission timeout).
     pub(super) fn times_out_at(&self) -> Option<Duration> {
         let oldest = self.ledger.oldest()?;
-        Some(match self.heard {
-            None if self.state == State::Unheard => oldest.sent + FIRST_TIMEOUT,
-            None => oldest.sent + FIRST_PATIENCE / 2,
-            Some(heard) => heard.max(self.due(oldest)) + self.timeout(),
+        Some(match self.last_reply {
+            None if self.state == State::Unanswered => oldest.sent + FIRST_RTO,
+            None => oldest.sent + FIRST_SILENCE_TIMEOUT / 2,
+            Some(last_reply) => last_reply.max(self.reply_due_at(oldest)) + self.timeout(),
         })
     }
 
     /// Returns the timeout beyond the expected time of a reply.
     fn timeout(&self) -> Duration {
-        if self.slow { SLOW_TIMEOUT * (1 << self.backoff) } else { TIMEOUT }
+        if self.slow { SLOW_RTO_MARGIN * (1 << self.backoff) } else { RTO_MARGIN }
     }
 
     /// Returns the time at which a terminal that has missed a timeout is considered silent.
@@ -393,41 +394,41 @@ impl Replies {
         let round_trip = self.round_trip.expected();
         since
             + match () {
-                () if self.heard.is_none() => FIRST_PATIENCE,
-                () if self.slow => self.timeout().max(SLOW_PATIENCE) + 4 * round_trip,
-                () if self.knows_rate() => PATIENCE + round_trip,
-                () => BLIND_PATIENCE,
+                () if self.last_reply.is_none() => FIRST_SILENCE_TIMEOUT,
+                () if self.slow => self.timeout().max(SLOW_SILENCE_TIMEOUT) + 4 * round_trip,
+                () if self.knows_rate() => SILENCE_TIMEOUT + round_trip,
+                () => UNKNOWN_RATE_SILENCE_TIMEOUT,
             }
     }
 
     /// Stops waiting for missing replies.
-    pub(super) fn look_at_clock(&mut self, now: Duration) {
+    pub(super) fn check_timeouts(&mut self, now: Duration) {
         match self.state {
-            State::Unheard | State::Steady | State::Recovering { .. } => {
+            State::Unanswered | State::Steady | State::Recovering { .. } => {
                 if self.times_out_at().is_some_and(|at| now >= at) {
-                    self.ledger.give_up();
+                    self.ledger.time_out_all();
                     if !matches!(self.state, State::Recovering { .. }) {
                         self.state = State::Recovering { until: self.silent_at(now) };
                     }
                 }
             }
             State::Silent => {
-                if self.ledger.oldest().is_some_and(|oldest| now >= oldest.sent + SILENT_TIMEOUT) {
-                    self.ledger.give_up();
+                if self.ledger.oldest().is_some_and(|oldest| now >= oldest.sent + SILENT_QUERY_INTERVAL) {
+                    self.ledger.time_out_all();
                 }
             }
-            State::Settling { heard } if now >= heard + SETTLED + self.round_trip.shortest() => {
-                self.forget();
-                self.round_trip.doubt();
-                self.probed = None;
+            State::Resyncing { last_reply } if now >= last_reply + RESYNC_TIME + self.round_trip.shortest() => {
+                self.forget_queries();
+                self.round_trip.invalidate();
+                self.last_probe = None;
             }
-            State::Unasked | State::Settling { .. } => {}
+            State::Unqueried | State::Resyncing { .. } => {}
         }
         if let State::Recovering { until } = self.state
             && now >= until
         {
-            self.ledger.give_up();
-            self.start_slowly();
+            self.ledger.time_out_all();
+            self.restart_slow_start();
             self.state = State::Silent;
         }
     }
