@@ -14,7 +14,7 @@ mod on_screen;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use motion::{FILLED, framing_distance};
+pub(crate) use motion::{FRAMED_SHARE, framing_distance};
 #[cfg(feature = "ratatui")]
 pub use on_screen::Grip;
 
@@ -126,7 +126,7 @@ impl fmt::Display for CameraError {
 impl std::error::Error for CameraError {}
 
 /// The vertical field of view where none is given, in degrees.
-const USUAL_FOV: f64 = 45.0;
+const DEFAULT_FOV_DEGREES: f64 = 45.0;
 
 impl Camera {
     /// Returns the camera at `eye` that looks at `target`, with +y up and a vertical field of view of 45 degrees.
@@ -147,7 +147,7 @@ impl Camera {
     /// If both are one point, or a coordinate is not within ±1e9; and if the camera would look straight up or down, which
     /// takes another up vector: see [`Camera::new`].
     pub fn look_at(eye: Vec3, target: Vec3) -> Result<Self, CameraError> {
-        Self::new(Pose { eye, target, up: Vec3::Y }, ViewRectangle::from_vertical_fov(radians(USUAL_FOV))?)
+        Self::new(Pose { eye, target, up: Vec3::Y }, ViewRectangle::from_vertical_fov(radians(DEFAULT_FOV_DEGREES))?)
     }
 
     /// Returns the camera with another up vector, of any length from 1e-9 to 1e9.
@@ -230,11 +230,11 @@ impl Basis {
         if ![eye, target, up].into_iter().all(checks::is_near) {
             return Err(CameraError::TooFar);
         }
-        let w = direction(eye - target).ok_or(CameraError::EyeIsTarget)?;
+        let w = unit_vector(eye - target).ok_or(CameraError::EyeIsTarget)?;
         if up != DVec3::ZERO && !checks::is_long(pose.up) {
             return Err(CameraError::UpTooShort);
         }
-        let up = direction(up).ok_or(CameraError::UpIsZero)?;
+        let up = unit_vector(up).ok_or(CameraError::UpIsZero)?;
         let across = up.cross(w);
         // The sine of the angle between up and the view. What a person wrote as parallel is off by f32's rounding.
         if across.length() < 1e-6 {
@@ -246,7 +246,7 @@ impl Basis {
 }
 
 /// Unit length, or nothing for the zero vector. Scaled first: a square must neither overflow nor vanish.
-fn direction(v: DVec3) -> Option<DVec3> {
+fn unit_vector(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     (largest > 0.0).then(|| v / largest).map(|v| v / v.dot(v).sqrt())
 }
@@ -258,7 +258,7 @@ pub(crate) fn radians(degrees: f64) -> f32 {
 
 impl ViewRectangle {
     /// The most that the rectangle can be [shifted](Self::with_shift), in its heights.
-    pub(crate) const LARGEST_SHIFT: f32 = 1e3;
+    pub(crate) const MAX_SHIFT: f32 = 1e3;
 
     /// As wide as the picture; as high as the angle, in radians, that it takes up vertically:
     /// h = 2 f tan(alpha / 2).
@@ -281,7 +281,7 @@ impl ViewRectangle {
     #[doc(hidden)]
     pub fn from_focal_length(focal_length: f32, width: f32, height: f32) -> Result<Self, CameraError> {
         let (width, height) = (width / focal_length, height / focal_length);
-        if !(focal_length > 0.0 && is_length(width) && is_length(height)) {
+        if !(focal_length > 0.0 && is_positive(width) && is_positive(height)) {
             return Err(CameraError::ViewRectangle);
         }
         if ![width, height].into_iter().all(|side| checks::is_ratio(side.into())) {
@@ -292,8 +292,8 @@ impl ViewRectangle {
 
     /// The rectangle with these sides at focal length 1, in the middle.
     #[cfg(feature = "serde")]
-    pub(crate) fn of_sides(width: Option<f32>, height: f32) -> Result<Self, CameraError> {
-        if is_length(height) && width.is_none_or(is_length) {
+    pub(crate) fn from_sides(width: Option<f32>, height: f32) -> Result<Self, CameraError> {
+        if is_positive(height) && width.is_none_or(is_positive) {
             Ok(Self { width, height, shift: Vec2::ZERO })
         } else {
             Err(CameraError::ViewRectangle)
@@ -317,7 +317,7 @@ impl ViewRectangle {
     #[doc(hidden)]
     pub fn scaled(self, factor: f32) -> Result<Self, CameraError> {
         let (width, height) = (self.width.map(|width| width * factor), self.height * factor);
-        if !(is_length(height) && width.is_none_or(is_length)) {
+        if !(is_positive(height) && width.is_none_or(is_positive)) {
             return Err(CameraError::ViewRectangle);
         }
         let scaled = Self { width, height, ..self };
@@ -334,7 +334,7 @@ impl ViewRectangle {
             return Err(CameraError::AspectRatio);
         }
         let width = self.height * aspect_ratio;
-        if is_length(width) { Ok(Self { width: Some(width), ..self }) } else { Err(CameraError::ViewRectangle) }
+        if is_positive(width) { Ok(Self { width: Some(width), ..self }) } else { Err(CameraError::ViewRectangle) }
     }
 
     /// The rectangle off centre: its middle to the right of and above the w axis, in heights of the rectangle.
@@ -346,7 +346,7 @@ impl ViewRectangle {
         if !shift.is_finite() {
             return Err(CameraError::NotFinite);
         }
-        let is_far = shift.abs().max_element() > Self::LARGEST_SHIFT;
+        let is_far = shift.abs().max_element() > Self::MAX_SHIFT;
         if is_far { Err(CameraError::Shift) } else { Ok(Self { shift, ..self }) }
     }
 
@@ -391,7 +391,7 @@ impl ViewRectangle {
     }
 }
 
-fn is_length(x: f32) -> bool {
+fn is_positive(x: f32) -> bool {
     x > 0.0 && x.is_finite()
 }
 

@@ -11,16 +11,16 @@ use std::ops::{Add, Mul, Sub};
 
 /// Where the camera is at each time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CameraPath(Way);
+pub struct CameraPath(PathKind);
 
 #[derive(Clone, Debug, PartialEq)]
-enum Way {
+enum PathKind {
     Orbit {
         camera: Camera,
         seconds: f64,
     },
     /// At least one; their times rise.
-    Through(Vec<Keyframe>),
+    Keyframes(Vec<Keyframe>),
 }
 
 /// A camera that the path is to pass at a time.
@@ -34,21 +34,21 @@ pub struct Keyframe {
 
 /// A time at which the path gives no picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NoView {
+pub struct PathError {
     /// In seconds.
     pub time: f64,
     /// What is wrong with the camera there.
     pub error: CameraError,
 }
 
-impl fmt::Display for NoView {
+impl fmt::Display for PathError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { time, error } = self;
         write!(f, "at {} seconds: {error}", (time * 1000.0).round() / 1000.0)
     }
 }
 
-impl std::error::Error for NoView {}
+impl std::error::Error for PathError {}
 
 impl CameraPath {
     /// Once around the target in that many seconds, which are greater than 0: to the right at first, about the axis
@@ -64,7 +64,7 @@ impl CameraPath {
     /// # Ok::<(), termtrace::SceneError>(())
     /// ```
     pub fn orbit(camera: Camera, seconds: f64) -> Self {
-        Self(Way::Orbit { camera, seconds })
+        Self(PathKind::Orbit { camera, seconds })
     }
 
     /// Through all of these, smoothly, each at its time; before the first and after the last the camera stands still.
@@ -79,15 +79,15 @@ impl CameraPath {
     #[doc(hidden)]
     pub fn through(keyframes: Vec<Keyframe>) -> Option<Self> {
         let rise = keyframes.windows(2).all(|pair| pair[0].time < pair[1].time);
-        (rise && !keyframes.is_empty()).then_some(Self(Way::Through(keyframes)))
+        (rise && !keyframes.is_empty()).then_some(Self(PathKind::Keyframes(keyframes)))
     }
 
     /// When the path ends: back at the first view, or at the last keyframe.
     #[doc(hidden)]
     pub fn seconds(&self) -> f64 {
         match &self.0 {
-            Way::Orbit { seconds, .. } => *seconds,
-            Way::Through(keyframes) => keyframes.last().map_or(0.0, |last| last.time),
+            PathKind::Orbit { seconds, .. } => *seconds,
+            PathKind::Keyframes(keyframes) => keyframes.last().map_or(0.0, |last| last.time),
         }
     }
 
@@ -97,8 +97,8 @@ impl CameraPath {
     /// Where the path gives no picture, as when the eye runs through the target.
     pub fn camera_at(&self, time: f64) -> Result<Camera, CameraError> {
         match &self.0 {
-            Way::Orbit { camera, seconds } => turned(camera, TAU * (time / seconds)),
-            Way::Through(keyframes) => passing(keyframes, time),
+            PathKind::Orbit { camera, seconds } => turned(camera, TAU * (time / seconds)),
+            PathKind::Keyframes(keyframes) => interpolate(keyframes, time),
         }
     }
 
@@ -107,10 +107,10 @@ impl CameraPath {
     /// # Errors
     /// The first time at which there is no picture.
     #[doc(hidden)]
-    pub fn cameras(&self, frames: usize, frames_per_second: u32) -> Result<Vec<Camera>, NoView> {
+    pub fn cameras(&self, frames: usize, frames_per_second: u32) -> Result<Vec<Camera>, PathError> {
         let camera = |frame: usize| {
             let time = frame as f64 / f64::from(frames_per_second);
-            self.camera_at(time).map_err(|error| NoView { time, error })
+            self.camera_at(time).map_err(|error| PathError { time, error })
         };
         (0..frames).map(camera).collect()
     }
@@ -128,35 +128,35 @@ fn turned(camera: &Camera, angle: f64) -> Result<Camera, CameraError> {
     camera.with_pose(Pose { eye: eye.as_vec3(), ..pose })
 }
 
-fn passing(keyframes: &[Keyframe], time: f64) -> Result<Camera, CameraError> {
+fn interpolate(keyframes: &[Keyframe], time: f64) -> Result<Camera, CameraError> {
     let passed = keyframes.partition_point(|keyframe| keyframe.time <= time);
     let before = &keyframes[passed.saturating_sub(1)];
     if passed == 0 || passed == keyframes.len() || before.time == time {
         return Ok(before.camera);
     }
-    let between = Between { keyframes, before: passed - 1, time };
+    let interval = KeyframeInterval { keyframes, before: passed - 1, time };
     let pose = Pose {
-        eye: between.value(|camera| camera.pose().eye.as_dvec3()).as_vec3(),
-        target: between.value(|camera| camera.pose().target.as_dvec3()).as_vec3(),
+        eye: interval.value(|camera| camera.pose().eye.as_dvec3()).as_vec3(),
+        target: interval.value(|camera| camera.pose().target.as_dvec3()).as_vec3(),
         // Only its direction says something.
-        up: between.value(|camera| camera.pose().up.as_dvec3().normalize()).as_vec3(),
+        up: interval.value(|camera| camera.pose().up.as_dvec3().normalize()).as_vec3(),
     };
     let log_height = |camera: &Camera| libm::log(f64::from(camera.rectangle().height()));
-    let zoom = libm::exp(between.value(log_height) - log_height(&before.camera));
+    let zoom = libm::exp(interval.value(log_height) - log_height(&before.camera));
     Camera::new(pose, before.camera.rectangle().scaled(zoom as f32)?)
 }
 
 /// A time between two keyframes.
-struct Between<'a> {
+struct KeyframeInterval<'a> {
     keyframes: &'a [Keyframe],
     /// The index of the earlier one.
     before: usize,
     time: f64,
 }
 
-impl Between<'_> {
+impl KeyframeInterval<'_> {
     /// Something of the camera at that time: the cubic Hermite curve from its values and velocities at both keyframes.
-    fn value<T: Quantity>(&self, of: impl Fn(&Camera) -> T) -> T {
+    fn value<T: Interpolated>(&self, of: impl Fn(&Camera) -> T) -> T {
         let (start, end) = (self.before, self.before + 1);
         let seconds = self.keyframes[end].time - self.keyframes[start].time;
         let t = (self.time - self.keyframes[start].time) / seconds;
@@ -169,7 +169,7 @@ impl Between<'_> {
 
     /// From the keyframe before to the one after; at the ends, from or to the end itself. Nothing where one of them has
     /// the same value: what stands still between two keyframes does not swing out.
-    fn velocity<T: Quantity>(&self, at: usize, of: impl Fn(&Camera) -> T) -> T {
+    fn velocity<T: Interpolated>(&self, at: usize, of: impl Fn(&Camera) -> T) -> T {
         let value = |at: usize| of(&self.keyframes[at].camera);
         let (before, after) = (at.saturating_sub(1), (at + 1).min(self.keyframes.len() - 1));
         let rests = [before, after].into_iter().any(|other| other != at && value(other) == value(at));
@@ -180,11 +180,11 @@ impl Between<'_> {
 }
 
 /// What can lie on a curve.
-trait Quantity: Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> {}
+trait Interpolated: Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> {}
 
-impl Quantity for f64 {}
+impl Interpolated for f64 {}
 
-impl Quantity for DVec3 {}
+impl Interpolated for DVec3 {}
 
 #[cfg(test)]
 mod tests {
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_twice_stands_still() {
+    fn equal_keyframes_hold_the_camera_still() {
         let path = CameraPath::through(vec![
             keyframe(0.0, [0.1, 1.3, 6.7]),
             keyframe(1.0, [5.1, 2.3, 4.7]),
@@ -335,10 +335,10 @@ mod tests {
     }
 
     #[test]
-    fn an_eye_in_the_target_is_told_with_its_time() {
+    fn an_eye_in_the_target_is_an_error_with_its_time() {
         let path = CameraPath::through(vec![keyframe(0.0, [0.0, 0.0, 4.0]), keyframe(2.0, [0.0, 0.0, -4.0])]).unwrap();
         let error = path.cameras(61, 30).unwrap_err();
-        assert_eq!(error, NoView { time: 1.0, error: CameraError::EyeIsTarget });
+        assert_eq!(error, PathError { time: 1.0, error: CameraError::EyeIsTarget });
         assert!(error.to_string().starts_with("at 1 seconds: the eye and the target are the same point"), "{error}");
     }
 

@@ -12,20 +12,25 @@ use crate::text::number;
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use survey::{Covered, Survey};
-use words::{color, distance, percent, place, points};
+use survey::{Coverage, Survey};
+use words::{color, distance, percent, points, position};
 
 mod survey;
 mod words;
 
 /// Limit on the objects, and on the lights, that are described one by one.
-const MOST: usize = 10;
+const MAX_LISTED: usize = 10;
 
 /// Returns a description in English of a picture of this resolution, as lines of sentences. `name` is the scene's.
 pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resolution) -> String {
-    let told = Told { scene, camera, survey: Survey::of(scene, camera, resolution) };
-    let mut text = told.beginning(name);
-    for part in [told.seen(resolution), told.unseen(resolution), told.nothing(), told.lights()] {
+    let description = Description { scene, camera, survey: Survey::of(scene, camera, resolution) };
+    let mut text = description.introduction(name);
+    for part in [
+        description.visible_objects(resolution),
+        description.hidden_objects(resolution),
+        description.background(),
+        description.lights(),
+    ] {
         if !part.is_empty() {
             text += "\n";
             text += &part;
@@ -35,14 +40,14 @@ pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resoluti
 }
 
 /// The subject of the description.
-struct Told<'s> {
+struct Description<'s> {
     scene: &'s Scene,
     camera: &'s Camera,
     survey: Survey,
 }
 
-impl Told<'_> {
-    fn beginning(&self, name: &str) -> String {
+impl Description<'_> {
+    fn introduction(&self, name: &str) -> String {
         let Pose { eye, target, .. } = self.camera.pose();
         let degrees = self.camera.rectangle().vertical_fov().to_degrees();
         format!(
@@ -56,7 +61,7 @@ impl Told<'_> {
     }
 
     /// Describes the objects in the picture, largest first.
-    fn seen(&self, resolution: Resolution) -> String {
+    fn visible_objects(&self, resolution: Resolution) -> String {
         let covered = &self.survey.covered;
         let mut order: Vec<_> = covered.keys().copied().collect();
         order.sort_by_key(|object| (std::cmp::Reverse(covered[object].pixels), *object));
@@ -64,29 +69,33 @@ impl Told<'_> {
             return "No object is in the picture.\n".to_owned();
         }
         let mut text = "In the picture, the largest first:\n".to_owned();
-        for &object in order.iter().take(MOST) {
+        for &object in order.iter().take(MAX_LISTED) {
             let part = &covered[&object];
             let _ = writeln!(
                 text,
                 "- object {}, {}: {}, {} of the picture, {}{}",
                 object + 1,
-                self.what(object, part),
-                place(part.inside(resolution)),
+                self.name_of(object, part),
+                position(part.rect(resolution)),
                 percent(part.pixels, resolution.pixel_count()),
                 distance(part.nearest, part.farthest),
-                self.hides(object)
+                self.occlusions(object)
             );
         }
-        if let Some(rest) = order.get(MOST..).filter(|rest| !rest.is_empty()) {
+        if let Some(rest) = order.get(MAX_LISTED..).filter(|rest| !rest.is_empty()) {
             let pixels: usize = rest.iter().map(|object| covered[object].pixels).sum();
             let share = percent(pixels, resolution.pixel_count());
-            let _ = writeln!(text, "- and {} more, {share} of the picture together", self.kinds(rest.iter().copied()));
+            let _ = writeln!(
+                text,
+                "- and {} more, {share} of the picture together",
+                self.counts_by_kind(rest.iter().copied())
+            );
         }
         text
     }
 
     /// Returns an object's colour, kind and size.
-    fn what(&self, object: u32, part: &Covered) -> String {
+    fn name_of(&self, object: u32, part: &Coverage) -> String {
         let object = &self.scene.objects()[object as usize];
         let own = || color(part.mean_reflectance()).to_owned();
         let color = object.material.described(color).unwrap_or_else(own);
@@ -94,46 +103,46 @@ impl Told<'_> {
     }
 
     /// Describes the objects in front of and behind an object; unbounded objects are behind everything.
-    fn hides(&self, object: u32) -> String {
-        let is_endless = |object: &u32| self.scene.objects()[*object as usize].shape.bounds().is_none();
-        if is_endless(&object) {
+    fn occlusions(&self, object: u32) -> String {
+        let is_unbounded = |object: &u32| self.scene.objects()[*object as usize].shape.bounds().is_none();
+        if is_unbounded(&object) {
             return String::new();
         }
         let list = |objects: Vec<u32>| {
-            let objects: Vec<_> = objects.into_iter().filter(|other| !is_endless(other)).collect();
+            let objects: Vec<_> = objects.into_iter().filter(|other| !is_unbounded(other)).collect();
             (!objects.is_empty()).then(|| numbers(&objects))
         };
         let before = list(self.survey.behind(object)).map(|others| format!("; in front of {others}"));
         let after = list(self.survey.before(object)).map(|others| format!("; partly behind {others}"));
-        let told: String = [before, after].into_iter().flatten().collect();
-        told + self.around(object)
+        let relations: String = [before, after].into_iter().flatten().collect();
+        relations + self.enclosing(object)
     }
 
     /// Returns whether the eye is inside the object.
-    fn around(&self, object: u32) -> &'static str {
+    fn enclosing(&self, object: u32) -> &'static str {
         let shape = &self.scene.objects()[object as usize].shape;
         if shape.encloses(self.camera.pose().eye) { "; the eye is inside it" } else { "" }
     }
 
     /// Describes the objects that are not in the picture, and why.
-    fn unseen(&self, resolution: Resolution) -> String {
+    fn hidden_objects(&self, resolution: Resolution) -> String {
         let count = self.scene.objects().len() as u32;
         let unseen: Vec<_> = (0..count).filter(|object| !self.survey.covered.contains_key(object)).collect();
         if unseen.is_empty() {
             return String::new();
         }
-        if unseen.len() > MOST {
-            return format!("Not seen: {}.\n", self.kinds(unseen.into_iter()));
+        if unseen.len() > MAX_LISTED {
+            return format!("Not seen: {}.\n", self.counts_by_kind(unseen.into_iter()));
         }
         let mut text = "Not seen:\n".to_owned();
         for object in unseen {
-            let why = self.why_unseen(object, resolution);
-            let _ = writeln!(text, "- object {}, {}: {why}", object + 1, self.what(object, &Covered::default()));
+            let why = self.reason_hidden(object, resolution);
+            let _ = writeln!(text, "- object {}, {}: {why}", object + 1, self.name_of(object, &Coverage::default()));
         }
         text
     }
 
-    fn why_unseen(&self, object: u32, resolution: Resolution) -> String {
+    fn reason_hidden(&self, object: u32, resolution: Resolution) -> String {
         let before = self.survey.before(object);
         if !before.is_empty() {
             return format!("hidden behind {}", numbers(&before));
@@ -157,13 +166,13 @@ impl Told<'_> {
         let (qu, qv) = (part(1.0, 0.0), part(0.0, 1.0));
         let outside = [(qu < 0.0, "to the left of the picture"), (qu > 1.0, "to the right of the picture")];
         let mut outside = outside.into_iter().chain([(qv < 0.0, "below the picture"), (qv > 1.0, "above the picture")]);
-        let told = outside.find_map(|(is_so, word)| is_so.then_some(word));
-        told.unwrap_or("too small to be seen, or hidden").to_owned()
+        let position = outside.find_map(|(is_so, word)| is_so.then_some(word));
+        position.unwrap_or("too small to be seen, or hidden").to_owned()
     }
 
     /// Describes the background.
-    fn nothing(&self) -> String {
-        let share = self.survey.nothing;
+    fn background(&self) -> String {
+        let share = self.survey.background_pixels;
         if share == 0 {
             return String::new();
         }
@@ -189,18 +198,22 @@ impl Told<'_> {
         };
         lights.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
         let mut text = if lights.is_empty() { "No lights.\n" } else { "Lights, the strongest first:\n" }.to_owned();
-        for light in lights.iter().take(MOST) {
+        for light in lights.iter().take(MAX_LISTED) {
             let light_color = light.color();
             let brightest = light_color.r.max(light_color.g).max(light_color.b).max(f32::MIN_POSITIVE);
             let to_light = Vec3::from(light.to_light(Vector::<f32>::splat(target)));
             let distance = light.position().map(|position| position.distance(target));
             let distance =
                 distance.map_or_else(String::new, |distance| format!(", {} from the target", number(distance)));
-            let _ =
-                writeln!(text, "- {}, {}{distance}", color(light_color * (1.0 / brightest)), self.comes_from(to_light));
+            let _ = writeln!(
+                text,
+                "- {}, {}{distance}",
+                color(light_color * (1.0 / brightest)),
+                self.direction_of(to_light)
+            );
         }
-        if lights.len() > MOST {
-            let _ = writeln!(text, "- and {} more", lights.len() - MOST);
+        if lights.len() > MAX_LISTED {
+            let _ = writeln!(text, "- and {} more", lights.len() - MAX_LISTED);
         }
         if self.scene.ambient().luminance() > 0.0 {
             text += "A little light comes from everywhere.\n";
@@ -212,7 +225,7 @@ impl Told<'_> {
     }
 
     /// Describes a position relative to the target, as seen by the viewer.
-    fn comes_from(&self, away: Vec3) -> String {
+    fn direction_of(&self, away: Vec3) -> String {
         let basis = self.camera.basis();
         let away = away.normalize_or_zero();
         // Directions more than 30 degrees off an axis are mentioned.
@@ -231,7 +244,7 @@ impl Told<'_> {
     }
 
     /// Returns the number of objects of each kind.
-    fn kinds(&self, objects: impl Iterator<Item = u32>) -> String {
+    fn counts_by_kind(&self, objects: impl Iterator<Item = u32>) -> String {
         let mut counts = BTreeMap::new();
         for object in objects {
             let kind = self.scene.objects()[object as usize].shape.kind();
@@ -255,10 +268,10 @@ fn counted(count: usize, what: &str) -> String {
 
 /// Lists the objects' numbers in the file, from 1; of many, the first few.
 fn numbers(objects: &[u32]) -> String {
-    const FEW: usize = 4;
-    let names: Vec<_> = objects.iter().take(FEW).map(|object| format!("object {}", object + 1)).collect();
+    const MAX_NUMBERS: usize = 4;
+    let names: Vec<_> = objects.iter().take(MAX_NUMBERS).map(|object| format!("object {}", object + 1)).collect();
     let mut words: Vec<_> = names.iter().map(String::as_str).collect();
-    if objects.len() > FEW {
+    if objects.len() > MAX_NUMBERS {
         words.push("others");
     }
     listed(&words)

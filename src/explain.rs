@@ -6,7 +6,7 @@
 mod text;
 
 pub use crate::shape::{Equation, Step};
-pub use text::{Name, WIDTH, cell};
+pub use text::{MAX_LINE_WIDTH, SurfaceName, cell_of_pixel};
 
 use crate::camera::Camera;
 use crate::color::{LinearRgb, Srgb8};
@@ -18,7 +18,7 @@ use crate::render::{PixelTrace, trace_pixel};
 use crate::scene::{Scene, ToneCurve};
 use crate::shade::{self, Incidence};
 use crate::shape::{Surface, SurfacePoint};
-use crate::tone::{shown, tone};
+use crate::tone::{tone, tone_mapped};
 use glam::{Vec2, Vec3};
 
 /// The explanation of a pixel: of its first sample, through its centre.
@@ -40,10 +40,10 @@ pub struct Explanation {
     pub nodes: u32,
     /// The surfaces that the ray was tested against: those that it crosses by increasing t, then the others.
     #[doc(hidden)]
-    pub tested: Vec<Tested>,
+    pub tested: Vec<TestedSurface>,
     /// The hit; `None` if the light is the background's.
     #[doc(hidden)]
-    pub seen: Option<Seen>,
+    pub hit: Option<ShadedHit>,
     /// The light towards the eye.
     pub light: LinearRgb,
     /// The scene's factor for that light,
@@ -58,9 +58,9 @@ pub struct Explanation {
 
 /// A surface that the ray was tested against.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tested {
+pub struct TestedSurface {
     /// Its name.
-    pub name: Name,
+    pub name: SurfaceName,
     /// The t of the first crossing in front of the eye.
     pub t: Option<f32>,
     /// The lecture's equation.
@@ -69,17 +69,17 @@ pub struct Tested {
 
 /// The hit and its light.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct ShadedHit {
     /// The t of the closest crossing in front of the eye.
     pub hit: Hit,
     /// The name of the surface.
-    pub name: Name,
+    pub name: SurfaceName,
     /// The lecture's **p** and **n**, and the visible side.
     pub point: SurfacePoint,
     /// The ambient light.
     pub ambient: LinearRgb,
     /// The contribution of each light.
-    pub lights: Vec<Lit>,
+    pub lights: Vec<LightContribution>,
     /// The sum of the arriving light.
     pub arriving: LinearRgb,
     /// The reflectance.
@@ -88,21 +88,21 @@ pub struct Seen {
 
 /// The contribution of one light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lit {
+pub struct LightContribution {
     /// **l**, the distance, n.l, and the arriving light if nothing is in the way.
     pub incidence: Incidence,
     /// A surface in the way, if any, and its position on the way: 0 is the hit, 1 the light. There may be more.
-    pub blocker: Option<(Name, f32)>,
+    pub blocker: Option<(SurfaceName, f32)>,
 }
 
-impl Lit {
+impl LightContribution {
     /// Returns whether the surface faces the light.
     pub fn faces(&self) -> bool {
         0.0 < self.incidence.cosine
     }
 
     /// Returns the light that it contributes.
-    pub fn contribution(&self) -> LinearRgb {
+    pub fn light(&self) -> LinearRgb {
         if self.faces() && self.blocker.is_none() { self.incidence.light } else { LinearRgb::BLACK }
     }
 }
@@ -125,35 +125,35 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
         ray: trace.ray,
         nodes: recorder.nodes,
         tested: recorder.tested(scene, &trace.ray),
-        seen: trace.hit.map(|hit| seen(scene, &trace, hit)),
+        hit: trace.hit.map(|hit| shaded_hit(scene, &trace, hit)),
         light: trace.light,
         exposure: scene.exposure(),
         tone_curve: scene.tone_curve(),
-        shown: shown(trace.light, scene),
+        shown: tone_mapped(trace.light, scene),
         bytes: tone(&one, scene).pixels[0],
     }
 }
 
-fn seen(scene: &Scene, trace: &PixelTrace, hit: Hit) -> Seen {
+fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
     let point = hit.surface(scene).at_crossing(&trace.ray, hit.t);
-    Seen {
+    ShadedHit {
         hit,
-        name: Name::of(scene, hit.object, hit.part),
+        name: SurfaceName::of(scene, hit.object, hit.part),
         point,
         ambient: scene.ambient(),
-        lights: scene.lights().iter().map(|light| lit(scene, light, &point)).collect(),
+        lights: scene.lights().iter().map(|light| light_contribution(scene, light, &point)).collect(),
         arriving: trace.arriving,
         reflectance: trace.reflectance,
     }
 }
 
-fn lit(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lit {
+fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> LightContribution {
     let incidence = shade::incidence_on_either_side(light, point);
     let ray = shade::shadow_ray(light, point);
     let blocker = (scene.shadows() && 0.0 < incidence.cosine)
         .then(|| hit::any_hit_observed(scene, &ray, light.in_the_way(), &mut TestRecorder::default()))
         .flatten();
-    Lit { incidence, blocker: blocker.map(|hit| (Name::of(scene, hit.object, hit.part), hit.t)) }
+    LightContribution { incidence, blocker: blocker.map(|hit| (SurfaceName::of(scene, hit.object, hit.part), hit.t)) }
 }
 
 /// The observer that records what a ray is tested against.
@@ -174,14 +174,14 @@ impl Observer for TestRecorder {
 }
 
 impl TestRecorder {
-    fn tested(self, scene: &Scene, ray: &Ray) -> Vec<Tested> {
+    fn tested(self, scene: &Scene, ray: &Ray) -> Vec<TestedSurface> {
         let mut tests = self.tests;
         let order = |test: &PrimitiveTest| (test.object, test.part);
         let t = |test: &PrimitiveTest| test.t.unwrap_or(f32::INFINITY);
         tests.sort_by(|a, b| t(a).total_cmp(&t(b)).then(order(a).cmp(&order(b))));
         let tested = |PrimitiveTest { object, part, t }| {
             let equation = scene.objects()[object as usize].shape.part(part).equation(ray);
-            Tested { name: Name::of(scene, object, part), t, equation }
+            TestedSurface { name: SurfaceName::of(scene, object, part), t, equation }
         };
         tests.into_iter().map(tested).collect()
     }

@@ -177,9 +177,9 @@ impl Framebuffer {
     #[doc(hidden)]
     pub fn hash(&self) -> u64 {
         let size = [self.resolution.width, self.resolution.height];
-        let bands = self.pixels.iter().flat_map(|p| [p.r, p.g, p.b]).map(f32::to_bits);
+        let channels = self.pixels.iter().flat_map(|p| [p.r, p.g, p.b]).map(f32::to_bits);
         size.into_iter()
-            .chain(bands)
+            .chain(channels)
             .flat_map(u32::to_le_bytes)
             .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
     }

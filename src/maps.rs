@@ -52,7 +52,7 @@ pub enum Map {
 }
 
 /// The colour of rays without a hit, in all maps except costs and high contrast.
-const NOTHING: Srgb8 = Srgb8::new(16, 20, 56);
+const NO_HIT: Srgb8 = Srgb8::new(16, 20, 56);
 /// The colour of the side of a surface to which its normal points,
 const FRONT: Srgb8 = Srgb8::new(70, 150, 230);
 /// and of the other side.
@@ -213,30 +213,30 @@ fn trace_partial(
     resolution: Resolution,
     sampling: Sampling,
 ) -> TracedMap {
-    let painted = |depth, paint: &(dyn Fn(&GBufferSample) -> Srgb8 + Sync)| {
+    let traced_to = |depth, paint: &(dyn Fn(&GBufferSample) -> Srgb8 + Sync)| {
         let traced = trace_g_buffer_partial(executor, scene, camera, resolution, sampling, depth, paint);
         let [width, height] = [resolution.width(), resolution.height()];
         TracedMap { picture: Picture { width, height, pixels: traced.pixels }, cost: traced.cost }
     };
-    let of_surfaces = |paint: &(dyn Fn(&GBufferSample) -> Srgb8 + Sync)| painted(TraceDepth::Surfaces, paint);
+    let of_surfaces = |paint: &(dyn Fn(&GBufferSample) -> Srgb8 + Sync)| traced_to(TraceDepth::Surfaces, paint);
     match map {
         Map::Shaded => shaded::trace(executor, scene, camera, resolution, sampling),
         Map::Lambert => of_surfaces(&|sample| lambert(scene, sample)),
         Map::Depth => {
             let middle = distance(camera);
-            of_surfaces(&|sample| sample.hit.map_or(NOTHING, |hit| colors::depth(hit.t, middle)))
+            of_surfaces(&|sample| sample.hit.map_or(NO_HIT, |hit| colors::depth(hit.t, middle)))
         }
         Map::Normal => {
-            of_surfaces(&|sample| sample.surface(scene).map_or(NOTHING, |surface| colors::normal(surface.normal)))
+            of_surfaces(&|sample| sample.surface(scene).map_or(NO_HIT, |surface| colors::normal(surface.normal)))
         }
-        Map::Object => of_surfaces(&|sample| sample.hit.map_or(NOTHING, |hit| colors::object(hit.object))),
-        Map::Shadow => painted(TraceDepth::Lights, &|sample| match sample.hit {
+        Map::Object => of_surfaces(&|sample| sample.hit.map_or(NO_HIT, |hit| colors::object(hit.object))),
+        Map::Shadow => traced_to(TraceDepth::Lights, &|sample| match sample.hit {
             Some(_) => colors::share(sample.lit_by.count_ones(), scene.lights().len().min(32) as u32),
-            None => NOTHING,
+            None => NO_HIT,
         }),
         Map::Cost => of_surfaces(&|sample| colors::heat(cost::tests(scene, sample))),
         Map::Facing => of_surfaces(&|sample| match sample.surface(scene).map(|surface| surface.side) {
-            None => NOTHING,
+            None => NO_HIT,
             Some(Side::Front) => FRONT,
             Some(Side::Back) => BACK,
         }),
@@ -246,7 +246,7 @@ fn trace_partial(
 
 /// Returns the sum of the lecture's n.l over all lights, as light.
 fn lambert(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
-    let Some(surface) = sample.surface(scene) else { return NOTHING };
+    let Some(surface) = sample.surface(scene) else { return NO_HIT };
     let cosine = |light| shade::incidence(light, &surface).map_or(0.0, |incidence| incidence.cosine);
     Srgb8::from_linear(LinearRgb::grey(scene.lights().iter().map(cosine).sum()))
 }

@@ -57,7 +57,7 @@ macro_rules! materials {
             pub fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
                 match self {
                     $($(#[$on])* Self::$material(material) => material.reflectance(uv, footprint),)*
-                    Self::Own => bands(Self::DEFAULT_REFLECTANCE),
+                    Self::Own => channels(Self::DEFAULT_REFLECTANCE),
                 }
             }
 
@@ -155,7 +155,6 @@ impl Material {
     ///
     /// # Errors
     /// Unless each channel is within 0 and 1, and the size between 1e-9 and 1e9.
-    /// Unless each band lies within 0 and 1, and the size between 1e-9 and 1e9.
     pub fn checker(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
         Checker::new(a, b, size).map(Self::Checker)
     }
@@ -163,6 +162,6 @@ impl Material {
 
 /// Returns the channels of a colour as constants.
 #[inline(always)]
-fn bands<N: Number>(LinearRgb { r, g, b }: LinearRgb) -> [N; 3] {
+fn channels<N: Number>(LinearRgb { r, g, b }: LinearRgb) -> [N; 3] {
     [N::splat(r), N::splat(g), N::splat(b)]
 }

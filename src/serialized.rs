@@ -100,7 +100,7 @@ impl RectangleForm {
     }
 
     fn checked(self) -> Result<ViewRectangle, CameraError> {
-        ViewRectangle::of_sides(self.width, self.height)?.with_shift(self.shift.into())
+        ViewRectangle::from_sides(self.width, self.height)?.with_shift(self.shift.into())
     }
 }
 

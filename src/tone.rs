@@ -59,27 +59,27 @@ pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     let (curve, exposure) = (scene.tone_curve(), scene.exposure());
     let mut pixels = vec![Srgb8::new(0, 0, 0); framebuffer.pixels().len()];
     let show = |pixels: &mut [Srgb8], lights: &[LinearRgb]| {
-        let shown = Srgb8::all_from_linear(lights.iter().map(|&light| bend(curve, light * exposure)));
+        let shown = Srgb8::all_from_linear(lights.iter().map(|&light| apply_curve(curve, light * exposure)));
         pixels.iter_mut().zip(shown).for_each(|(pixel, shown)| *pixel = shown);
     };
-    if pixels.len() <= ALONE {
+    if pixels.len() <= MIN_PARALLEL_PIXELS {
         show(&mut pixels, framebuffer.pixels());
     } else {
-        threads::for_each_chunk(&mut pixels, framebuffer.pixels(), ALONE, show);
+        threads::for_each_chunk(&mut pixels, framebuffer.pixels(), MIN_PARALLEL_PIXELS, show);
     }
     Picture { width, height, pixels }
 }
 
 /// Least number of pixels for which other threads are woken: for fewer, waking takes longer than it saves.
-const ALONE: usize = 1 << 16;
+const MIN_PARALLEL_PIXELS: usize = 1 << 16;
 
 /// Returns light with the exposure and tone curve of `scene` applied. 1 and more is white.
-pub fn shown(light: LinearRgb, scene: &Scene) -> LinearRgb {
-    bend(scene.tone_curve(), light * scene.exposure())
+pub fn tone_mapped(light: LinearRgb, scene: &Scene) -> LinearRgb {
+    apply_curve(scene.tone_curve(), light * scene.exposure())
 }
 
 /// Returns light after the tone curve.
-fn bend(curve: ToneCurve, light: LinearRgb) -> LinearRgb {
+fn apply_curve(curve: ToneCurve, light: LinearRgb) -> LinearRgb {
     match curve {
         ToneCurve::None => light,
         // Reinhard, Stark, Shirley and Ferwerda 2002, equation 3, applied to the luminance, which keeps hues.

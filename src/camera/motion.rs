@@ -6,18 +6,18 @@ use crate::bounds::Bounds;
 use glam::{BVec3, Vec2, Vec3};
 
 /// The least angle, in radians, between the view and straight up or straight down, where no direction would be vertical.
-const POLE: f32 = 0.02;
+const POLE_MARGIN: f32 = 0.02;
 
 /// The least and the greatest distance from the eye to the target, as multiples of a scene's size: there is always something
 /// between them, and never too much for f32.
-pub(super) const NEAREST: f32 = 1e-3;
-pub(super) const FARTHEST: f32 = 1e4;
+pub(super) const MIN_TARGET_DISTANCE: f32 = 1e-3;
+pub(super) const MAX_TARGET_DISTANCE: f32 = 1e4;
 
 /// The share of the picture's width or height that a framed box fills.
-pub(crate) const FILLED: f32 = 0.95;
+pub(crate) const FRAMED_SHARE: f32 = 0.95;
 
 /// The range of the vertical field of view, in radians: 1 to 150 degrees.
-const FIELD_OF_VIEW: [f32; 2] = [0.017_453_3, 2.617_994];
+const FOV_RANGE: [f32; 2] = [0.017_453_3, 2.617_994];
 
 impl Camera {
     /// Returns the camera after the eye has gone around the target, to the right and upwards, by angles in radians.
@@ -42,7 +42,7 @@ impl Camera {
         }
         let pose = self.pose;
         // An eye that goes to the right has to look to the left.
-        self.at_pose(Pose { eye: pose.target - self.turned_view(right, -up), ..pose })
+        self.with_valid_pose(Pose { eye: pose.target - self.turned_view(right, -up), ..pose })
     }
 
     /// Returns the camera after the view has turned to the right and upwards, by angles in radians. The eye stays where it
@@ -54,7 +54,7 @@ impl Camera {
         if is_no_turn(right, up) {
             return *self;
         }
-        self.at_pose(Pose { target: self.pose.eye + self.turned_view(-right, up), ..self.pose })
+        self.with_valid_pose(Pose { target: self.pose.eye + self.turned_view(-right, up), ..self.pose })
     }
 
     /// Returns the camera after eye and target have moved to the right, along the camera's up vector, and forward, by
@@ -83,7 +83,7 @@ impl Camera {
     #[must_use]
     pub fn zoomed(&self, factor: f32) -> Self {
         let rectangle = self.rectangle;
-        let [least, most] = FIELD_OF_VIEW.map(|angle| 2.0 * libm::tanf(0.5 * angle));
+        let [least, most] = FOV_RANGE.map(|angle| 2.0 * libm::tanf(0.5 * angle));
         let height = rectangle.height();
         let wanted = (factor * height).clamp(least.min(height), most.max(height));
         rectangle.scaled(wanted / height).map_or(*self, |rectangle| self.with_rectangle(rectangle))
@@ -94,7 +94,7 @@ impl Camera {
     #[must_use]
     pub fn framing(&self, bounds: &Bounds, aspect_ratio: f32) -> Self {
         let (width, height, centre) = self.rectangle.fitted_to(aspect_ratio);
-        let half = 0.5 * FILLED * Vec2::new(width, height);
+        let half = 0.5 * FRAMED_SHARE * Vec2::new(width, height);
         let [u, v, w] = [self.basis.u, self.basis.v, self.basis.w];
         let distance = framing_distance(bounds, [u, v, w], half, centre);
         if distance <= 0.0 {
@@ -102,21 +102,21 @@ impl Camera {
         }
         // Where the picture's centre is not straight ahead, the box is where that is.
         let target = centre_of(bounds) - distance * (centre.x * u + centre.y * v);
-        self.at_pose(Pose { eye: target + distance * w, target, ..self.pose })
+        self.with_valid_pose(Pose { eye: target + distance * w, target, ..self.pose })
     }
 
-    /// [`nearer`](Self::nearer), with a distance that stays within [`NEAREST`] and [`FARTHEST`] times the size of a scene.
+    /// [`nearer`](Self::nearer), with a distance that stays within [`MIN_TARGET_DISTANCE`] and [`MAX_TARGET_DISTANCE`] times the size of a scene.
     /// Beyond these limits it can only go back.
     pub(crate) fn nearer_within(&self, factor: f32, size: f32) -> Self {
         let target = self.pose.target;
         let distance = self.target_distance();
         // The spacing of f32 grows with the numbers.
-        let nearest = (NEAREST * size).max(1e-5 * target.abs().max_element()).min(distance);
-        let wanted = (factor * distance).clamp(nearest, (FARTHEST * size).max(distance));
+        let nearest = (MIN_TARGET_DISTANCE * size).max(1e-5 * target.abs().max_element()).min(distance);
+        let wanted = (factor * distance).clamp(nearest, (MAX_TARGET_DISTANCE * size).max(distance));
         if factor == 1.0 || wanted == distance {
             return *self;
         }
-        self.at_pose(Pose { eye: target + wanted * self.basis.w, ..self.pose })
+        self.with_valid_pose(Pose { eye: target + wanted * self.basis.w, ..self.pose })
     }
 
     /// Returns the distance from the eye to the target, in world units.
@@ -127,11 +127,11 @@ impl Camera {
     /// Moves eye and target by the same vector.
     pub(super) fn shifted(&self, by: Vec3) -> Self {
         let Pose { eye, target, up } = self.pose;
-        self.at_pose(Pose { eye: eye + by, target: target + by, up })
+        self.with_valid_pose(Pose { eye: eye + by, target: target + by, up })
     }
 
     /// The camera at that pose, or where it is if that gives no picture.
-    pub(super) fn at_pose(&self, pose: Pose) -> Self {
+    pub(super) fn with_valid_pose(&self, pose: Pose) -> Self {
         self.with_pose(pose).unwrap_or(*self)
     }
 
@@ -146,7 +146,7 @@ impl Camera {
 
     /// As much of an upward turn as the pole leaves. A view that begins beyond the limit may turn away from the pole only.
     fn up_to_the_pole(&self, angle: f32) -> f32 {
-        let limit = std::f32::consts::FRAC_PI_2 - POLE;
+        let limit = std::f32::consts::FRAC_PI_2 - POLE_MARGIN;
         let sine = -self.basis.w.dot(self.pose.up.normalize_or_zero());
         let elevation = libm::asinf(sine.clamp(-1.0, 1.0));
         if angle > 0.0 { angle.min((limit - elevation).max(0.0)) } else { angle.max((-limit - elevation).min(0.0)) }

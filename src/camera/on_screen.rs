@@ -14,15 +14,15 @@ pub enum Grip {
 }
 
 /// The angle around the target for the whole height of the picture, in radians.
-const TURN_OF_HEIGHT: f32 = std::f32::consts::PI;
+const ORBIT_PER_HEIGHT: f32 = std::f32::consts::PI;
 
 /// The share of a distance that a notch of the wheel leaves.
-pub(super) const NOTCH: f32 = 0.88;
+pub(super) const WHEEL_NOTCH_FACTOR: f32 = 0.88;
 
 impl Camera {
     /// Returns where a point is in a picture of that aspect ratio; `None` for a point that is not in front of the eye.
     #[doc(hidden)]
-    pub fn place_of(&self, point: Vec3, aspect_ratio: f32) -> Option<Vec2> {
+    pub fn project(&self, point: Vec3, aspect_ratio: f32) -> Option<Vec2> {
         let (basis, way) = (self.basis, point - self.pose.eye);
         let (width, height, centre) = self.rectangle.fitted_to(aspect_ratio);
         let depth = -way.dot(basis.w);
@@ -39,7 +39,7 @@ impl Camera {
 
     /// Returns the camera after the scene has been dragged to the right and down, about the target.
     pub(crate) fn dragged_around(&self, by: Vec2, aspect_ratio: f32) -> Self {
-        let turn = TURN_OF_HEIGHT * Vec2::new(by.x * aspect_ratio, by.y);
+        let turn = ORBIT_PER_HEIGHT * Vec2::new(by.x * aspect_ratio, by.y);
         self.orbited(-turn.x, turn.y)
     }
 
@@ -54,7 +54,7 @@ impl Camera {
     /// wheel. The target moves as the eye does.
     #[cfg(feature = "live")]
     pub(crate) fn wheeled(&self, point: Vec3, notches: f32) -> Self {
-        let factor = libm::powf(NOTCH, notches);
+        let factor = libm::powf(WHEEL_NOTCH_FACTOR, notches);
         self.shifted((1.0 - factor) * (point - self.pose.eye))
     }
 
@@ -62,10 +62,10 @@ impl Camera {
     /// of the wheel, in a scene of that size.
     pub(crate) fn wheeled_around(&self, point: Vec3, notches: f32, size: f32) -> Self {
         let Pose { eye, target, up } = self.pose;
-        let after = self.nearer_within(libm::powf(NOTCH, notches), size);
+        let after = self.nearer_within(libm::powf(WHEEL_NOTCH_FACTOR, notches), size);
         let factor = after.target_distance() / self.target_distance();
         let moved = point + factor * (target - point);
-        self.at_pose(Pose { eye: moved + factor * (eye - target), target: moved, up })
+        self.with_valid_pose(Pose { eye: moved + factor * (eye - target), target: moved, up })
     }
 
     /// Returns a point after it has been dragged to the right and down in the picture, in which it stays as deep as it is.
@@ -81,7 +81,7 @@ impl Camera {
     #[doc(hidden)]
     pub fn point_wheeled(&self, point: Vec3, notches: f32) -> Vec3 {
         let eye = self.pose.eye;
-        eye + libm::powf(NOTCH, -notches) * (point - eye)
+        eye + libm::powf(WHEEL_NOTCH_FACTOR, -notches) * (point - eye)
     }
 
     /// A distance in the picture as one on the plane at distance 1.

@@ -2,8 +2,8 @@
 
 #![cfg(feature = "ratatui")]
 
-use super::motion::{FARTHEST, NEAREST};
-use super::on_screen::NOTCH;
+use super::motion::{MAX_TARGET_DISTANCE, MIN_TARGET_DISTANCE};
+use super::on_screen::WHEEL_NOTCH_FACTOR;
 use super::*;
 use crate::bounds::Bounds;
 
@@ -14,7 +14,7 @@ fn camera(eye: Vec3, target: Vec3) -> Camera {
 
 /// The part of the picture's half width and height that a point is to the right of the middle and above it.
 fn place(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Vec2 {
-    let place = camera.place_of(point, aspect_ratio).expect("it is in front of the eye");
+    let place = camera.project(point, aspect_ratio).expect("it is in front of the eye");
     (2.0 * place - 1.0) * Vec2::new(1.0, -1.0)
 }
 
@@ -24,12 +24,16 @@ fn a_point_is_where_its_ray_is() {
     let shifted = camera.with_rectangle(camera.rectangle().with_shift(Vec2::new(0.2, -0.3)).expect("finite"));
     for camera in [camera, shifted] {
         let ray = camera.eye_rays(1.6).through(0.3, 0.6);
-        assert!(camera.place_of(ray.at(4.0), 1.6).expect("in front").abs_diff_eq(Vec2::new(0.3, 0.4), 1e-5));
-        assert_eq!(camera.place_of(ray.at(-1.0), 1.6), None);
-        assert_eq!(camera.place_of(ray.origin, 1.6), None);
+        assert!(camera.project(ray.at(4.0), 1.6).expect("in front").abs_diff_eq(Vec2::new(0.3, 0.4), 1e-5));
+        assert_eq!(camera.project(ray.at(-1.0), 1.6), None);
+        assert_eq!(camera.project(ray.origin, 1.6), None);
         let dragged = camera.point_dragged(ray.at(4.0), Vec2::new(0.1, 0.2), 1.6);
-        assert!(camera.place_of(dragged, 1.6).expect("in front").abs_diff_eq(Vec2::new(0.4, 0.6), 1e-5));
-        assert!(camera.point_wheeled(ray.at(4.0), 2.0).abs_diff_eq(ray.at(4.0 / (NOTCH * NOTCH)), 1e-4));
+        assert!(camera.project(dragged, 1.6).expect("in front").abs_diff_eq(Vec2::new(0.4, 0.6), 1e-5));
+        assert!(
+            camera
+                .point_wheeled(ray.at(4.0), 2.0)
+                .abs_diff_eq(ray.at(4.0 / (WHEEL_NOTCH_FACTOR * WHEEL_NOTCH_FACTOR)), 1e-4)
+        );
         let behind = camera.point_dragged(ray.at(-1.0), Vec2::new(0.1, 0.0), 1.6);
         assert!((behind - ray.at(-1.0)).dot(camera.basis().u) > 0.0, "as on the screen");
     }
@@ -55,7 +59,7 @@ fn all_corners_of_what_is_framed_are_in_the_picture_and_one_is_at_its_side() {
                     assert!(after.basis().w.abs_diff_eq(before.basis().w, 1e-4), "the direction stays");
                     let places = corners(&bounds).map(|corner| place(&after, corner, aspect_ratio).abs().max_element());
                     let most = places.fold(0.0, f32::max);
-                    assert!((most - FILLED).abs() < 1e-3, "{bounds:?} {eye} {aspect_ratio} {shift}: {most}");
+                    assert!((most - FRAMED_SHARE).abs() < 1e-3, "{bounds:?} {eye} {aspect_ratio} {shift}: {most}");
                 }
             }
         }
@@ -94,7 +98,7 @@ fn the_eye_never_goes_through_the_target_nor_to_infinity() {
             near = near.nearer_within(0.5, size);
             far = far.nearer_within(2.0, size);
         }
-        for (camera, distance) in [(near, NEAREST * size), (far, FARTHEST * size)] {
+        for (camera, distance) in [(near, MIN_TARGET_DISTANCE * size), (far, MAX_TARGET_DISTANCE * size)] {
             assert_eq!(camera.basis().w, Vec3::Z);
             assert!((camera.pose().eye.z / distance - 1.0).abs() < 1e-3, "{:?}", camera.pose());
         }
@@ -119,7 +123,7 @@ fn a_field_of_view_has_its_limits() {
 }
 
 #[test]
-fn what_is_dragged_follows() {
+fn a_dragged_point_follows_the_pointer() {
     let start = camera(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO);
     let aspect_ratio = 1.6;
     let by = Vec2::new(0.2, 0.1);
@@ -143,7 +147,7 @@ fn the_wheel_comes_nearer_to_a_point_which_stays_where_it_is() {
     for point in [Vec3::new(1.0, 0.5, 1.0), Vec3::new(-1.0, 0.0, -20.0)] {
         for notches in [1.0, -1.0, 7.0] {
             let nearer = [start.wheeled_around(point, notches, 1.0), start.wheeled(point, notches)];
-            let share = libm::powf(NOTCH, notches);
+            let share = libm::powf(WHEEL_NOTCH_FACTOR, notches);
             for (after, target) in nearer.into_iter().zip([5.0 * share, 5.0]) {
                 assert!(place(&after, point, 1.6).abs_diff_eq(place(&start, point, 1.6), 1e-4), "{notches}");
                 let found = after.pose().eye.distance(point) / start.pose().eye.distance(point);
@@ -158,7 +162,7 @@ fn the_wheel_comes_nearer_to_a_point_which_stays_where_it_is() {
 
 /// Drags and notches in any order: the picture stays upright, and the eye away from the target.
 #[test]
-fn whatever_the_mouse_does_there_is_a_picture() {
+fn any_mouse_motion_leaves_a_valid_camera() {
     for size in [1e-6, 1.0, 1e8] {
         let mut camera = camera(size * Vec3::new(0.0, 1.0, 2.0), Vec3::ZERO);
         let mut seed = 1u32;
@@ -181,7 +185,10 @@ fn whatever_the_mouse_does_there_is_a_picture() {
             let (pose, basis) = (camera.pose(), camera.basis());
             assert!(pose.eye.is_finite() && basis.v.y > 0.0, "{step} {pose:?}");
             let distance = pose.eye.distance(pose.target);
-            assert!(distance >= 0.99 * NEAREST * size && distance <= 1.01 * FARTHEST * size, "{step} {distance}");
+            assert!(
+                distance >= 0.99 * MIN_TARGET_DISTANCE * size && distance <= 1.01 * MAX_TARGET_DISTANCE * size,
+                "{step} {distance}"
+            );
         }
     }
 }

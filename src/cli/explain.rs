@@ -4,7 +4,7 @@ use super::outcome::{CommandResult, usage, write_stdout};
 use super::picture::SizeArgs;
 use super::scene_args::SceneArgs;
 use clap::Args;
-use termtrace::internals::explain::cell;
+use termtrace::internals::explain::cell_of_pixel;
 use termtrace::{CellMode, explain};
 
 const MEANING: &str = "\
@@ -40,7 +40,7 @@ pub(super) fn run(args: &ExplainArgs) -> CommandResult {
     }
     let scene = args.scene.load()?;
     let explanation = explain(&scene, scene.camera(), resolution, args.pixel);
-    let lines = explanation.lines().into_iter().chain([cell(args.pixel, mode)]);
+    let lines = explanation.lines().into_iter().chain([cell_of_pixel(args.pixel, mode)]);
     write_stdout(lines.map(|line| line + "\n").collect::<String>().as_bytes())
 }
 

@@ -13,18 +13,18 @@ use std::num::NonZeroU32;
 
 /// The content of a pixel.
 #[derive(Clone, Copy)]
-struct Spot {
+struct PixelContent {
     object: u32,
     /// The distance from the eye.
     distance: f32,
     reflectance: LinearRgb,
     /// The next objects behind it.
-    behind: [Option<u32>; DEEP],
+    behind: [Option<u32>; MAX_OCCLUDED],
 }
 
 /// The part of the picture that an object covers.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Covered {
+pub(super) struct Coverage {
     /// Number of pixels.
     pub(super) pixels: usize,
     /// Distances of its nearest and farthest visible point from the eye.
@@ -41,26 +41,26 @@ pub(super) struct Covered {
 
 /// A rectangle in the picture, in parts of its width and height, from the upper left.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Inside {
+pub(super) struct PictureRect {
     /// Its middle.
     pub(super) middle: [f32; 2],
     /// Its width and height.
     pub(super) extent: [f32; 2],
 }
 
-impl Covered {
-    fn add(&mut self, spot: &Spot, x: u32, y: u32) {
+impl Coverage {
+    fn add(&mut self, content: &PixelContent, x: u32, y: u32) {
         if self.pixels == 0 {
             *self = Self { nearest: f32::MAX, columns: [x, x], rows: [y, y], ..Self::default() };
         }
         self.pixels += 1;
-        self.nearest = self.nearest.min(spot.distance);
-        self.farthest = self.farthest.max(spot.distance);
+        self.nearest = self.nearest.min(content.distance);
+        self.farthest = self.farthest.max(content.distance);
         self.sum[0] += u64::from(x);
         self.sum[1] += u64::from(y);
         self.columns = [self.columns[0].min(x), self.columns[1].max(x + 1)];
         self.rows = [self.rows[0].min(y), self.rows[1].max(y + 1)];
-        self.reflectance += spot.reflectance;
+        self.reflectance += content.reflectance;
     }
 
     pub(super) fn mean_reflectance(&self) -> LinearRgb {
@@ -70,41 +70,42 @@ impl Covered {
         }
     }
 
-    pub(super) fn inside(&self, resolution: Resolution) -> Inside {
+    pub(super) fn rect(&self, resolution: Resolution) -> PictureRect {
         let sides = [resolution.width(), resolution.height()].map(|side| side as f32);
         let middle = [0, 1].map(|axis| (self.sum[axis] as f32 / self.pixels as f32 + 0.5) / sides[axis]);
         let extent = [self.columns, self.rows].map(|[first, end]| (end - first) as f32);
-        Inside { middle, extent: [extent[0] / sides[0], extent[1] / sides[1]] }
+        PictureRect { middle, extent: [extent[0] / sides[0], extent[1] / sides[1]] }
     }
 }
 
 /// The survey of a picture.
 pub(super) struct Survey {
     /// The part covered by each visible object.
-    pub(super) covered: BTreeMap<u32, Covered>,
+    pub(super) covered: BTreeMap<u32, Coverage>,
     /// Number of pixels in which the first object is in front of the second.
     hides: BTreeMap<(u32, u32), usize>,
     /// Number of pixels without an object, and of all pixels.
-    pub(super) nothing: usize,
+    pub(super) background_pixels: usize,
     pub(super) pixels: usize,
 }
 
 impl Survey {
     pub(super) fn of(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
         let one = Sampling::Each(NonZeroU32::MIN);
-        let see = |sample: &GBufferSample| spot(scene, sample);
-        let spots =
+        let see = |sample: &GBufferSample| content(scene, sample);
+        let contents =
             trace_g_buffer_partial(Executor::Pool, scene, camera, resolution, one, TraceDepth::Surfaces, see).pixels;
-        let mut survey = Self { covered: BTreeMap::new(), hides: BTreeMap::new(), nothing: 0, pixels: spots.len() };
-        for (at, spot) in (0..).zip(&spots) {
-            let Some(spot) = spot else {
-                survey.nothing += 1;
+        let mut survey =
+            Self { covered: BTreeMap::new(), hides: BTreeMap::new(), background_pixels: 0, pixels: contents.len() };
+        for (at, content) in (0..).zip(&contents) {
+            let Some(content) = content else {
+                survey.background_pixels += 1;
                 continue;
             };
-            let covered = survey.covered.entry(spot.object).or_default();
-            covered.add(spot, at % resolution.width(), at / resolution.width());
-            for behind in spot.behind.into_iter().flatten() {
-                *survey.hides.entry((spot.object, behind)).or_default() += 1;
+            let covered = survey.covered.entry(content.object).or_default();
+            covered.add(content, at % resolution.width(), at / resolution.width());
+            for behind in content.behind.into_iter().flatten() {
+                *survey.hides.entry((content.object, behind)).or_default() += 1;
             }
         }
         survey
@@ -114,28 +115,30 @@ impl Survey {
     pub(super) fn behind(&self, object: u32) -> Vec<u32> {
         let of_object = self.hides.range((object, 0)..=(object, u32::MAX));
         of_object
-            .filter(|&(&(_, behind), &pixels)| self.is_much(behind, pixels))
+            .filter(|&(&(_, behind), &pixels)| self.is_significant(behind, pixels))
             .map(|(&(_, behind), _)| behind)
             .collect()
     }
 
     /// Returns the objects that partly hide an object.
     pub(super) fn before(&self, object: u32) -> Vec<u32> {
-        let of_object =
-            self.hides.iter().filter(|&(&(_, behind), &pixels)| behind == object && self.is_much(object, pixels));
+        let of_object = self
+            .hides
+            .iter()
+            .filter(|&(&(_, behind), &pixels)| behind == object && self.is_significant(object, pixels));
         of_object.map(|(&(before, _), _)| before).collect()
     }
 
     /// Returns whether this many pixels are worth mentioning: a twentieth of the object's visible part.
-    fn is_much(&self, object: u32, pixels: usize) -> bool {
+    fn is_significant(&self, object: u32, pixels: usize) -> bool {
         20 * pixels >= self.covered.get(&object).map_or(0, |covered| covered.pixels)
     }
 }
 
-fn spot(scene: &Scene, sample: &GBufferSample) -> Option<Spot> {
+fn content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> {
     let (hit, surface) = (sample.hit?, sample.surface(scene)?);
     let own = hit.surface(scene).own_reflectance(surface.uv);
-    Some(Spot {
+    Some(PixelContent {
         object: hit.object,
         distance: hit.t * sample.ray.direction.length(),
         reflectance: own.unwrap_or(Material::DEFAULT_REFLECTANCE),
@@ -144,15 +147,15 @@ fn spot(scene: &Scene, sample: &GBufferSample) -> Option<Spot> {
 }
 
 /// Limits on the number of objects that are found behind the visible one,
-const DEEP: usize = 3;
+const MAX_OCCLUDED: usize = 3;
 /// and on the surfaces that are passed on the way.
-const LAYERS: usize = 12;
+const MAX_LAYERS: usize = 12;
 
 /// Returns the next objects that the ray would hit without the visible one.
-fn behind(scene: &Scene, mut sample: GBufferSample) -> [Option<u32>; DEEP] {
+fn behind(scene: &Scene, mut sample: GBufferSample) -> [Option<u32>; MAX_OCCLUDED] {
     let seen = sample.hit.map(|hit| hit.object);
-    let (mut found, mut count) = ([None; DEEP], 0);
-    for _ in 0..LAYERS {
+    let (mut found, mut count) = ([None; MAX_OCCLUDED], 0);
+    for _ in 0..MAX_LAYERS {
         let Some(surface) = sample.surface(scene) else { break };
         // Starts as far behind the surface as a shadow ray starts in front of it.
         let origin = surface.position - surface.facing * surface.clearance;
@@ -163,7 +166,7 @@ fn behind(scene: &Scene, mut sample: GBufferSample) -> [Option<u32>; DEEP] {
             found[count] = object;
             count += 1;
         }
-        if count == DEEP {
+        if count == MAX_OCCLUDED {
             break;
         }
     }

@@ -1,6 +1,6 @@
 //! Numbers, colours and positions in words.
 
-use super::survey::Inside;
+use super::survey::PictureRect;
 use crate::color::{LinearRgb, Oklab, Srgb8};
 use crate::text::number;
 use glam::Vec3;
@@ -75,25 +75,25 @@ pub(super) fn percent(part: usize, of: usize) -> String {
 }
 
 /// Returns where in the picture a rectangle is.
-pub(super) fn place(inside: Inside) -> &'static str {
-    const MOST: f32 = 0.8;
+pub(super) fn position(rect: PictureRect) -> &'static str {
+    const FULL_EXTENT: f32 = 0.8;
     /// Returns left or top, middle, right or bottom, or across all.
     fn third(middle: f32, extent: f32) -> usize {
         match middle {
-            _ if extent > MOST => 3,
+            _ if extent > FULL_EXTENT => 3,
             m if m < 0.42 => 0,
             m if m > 0.58 => 2,
             _ => 1,
         }
     }
-    const PLACES: [[&str; 4]; 4] = [
+    const POSITIONS: [[&str; 4]; 4] = [
         ["upper left", "at the top", "upper right", "across the top"],
         ["on the left", "in the middle", "on the right", "across the middle"],
         ["lower left", "at the bottom", "lower right", "across the bottom"],
         ["all along the left", "from top to bottom in the middle", "all along the right", "all over the picture"],
     ];
-    let Inside { middle, extent } = inside;
-    PLACES[third(middle[1], extent[1])][third(middle[0], extent[0])]
+    let PictureRect { middle, extent } = rect;
+    POSITIONS[third(middle[1], extent[1])][third(middle[0], extent[0])]
 }
 
 #[cfg(test)]
@@ -125,8 +125,8 @@ mod tests {
     }
 
     #[test]
-    fn places_are_told_as_people_tell_them() {
-        let at = |x, y, width, height| place(Inside { middle: [x, y], extent: [width, height] });
+    fn positions_have_everyday_words() {
+        let at = |x, y, width, height| position(PictureRect { middle: [x, y], extent: [width, height] });
         assert_eq!(at(0.1, 0.1, 0.2, 0.2), "upper left");
         assert_eq!(at(0.5, 0.5, 0.2, 0.2), "in the middle");
         assert_eq!(at(0.9, 0.5, 0.2, 0.2), "on the right");

@@ -1,6 +1,6 @@
 //! An explanation as text: short lines in the lecture's symbols, for a panel or a page.
 
-use super::{Equation, Explanation, Lit, Seen, Step, Tested};
+use super::{Equation, Explanation, LightContribution, ShadedHit, Step, TestedSurface};
 use crate::capabilities::CellMode;
 use crate::color::LinearRgb;
 use crate::scene::{Scene, ToneCurve};
@@ -9,18 +9,18 @@ use glam::Vec3;
 use std::fmt;
 
 /// Limit on the width of a line in columns, unless a number has unusually many digits.
-pub const WIDTH: usize = 35;
+pub const MAX_LINE_WIDTH: usize = 35;
 
 /// The name of a surface: the number of its object in the scene file, from 1, and its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Name {
+pub struct SurfaceName {
     object: u32,
     kind: &'static str,
     /// The number of a mesh's triangle, from 1.
     face: Option<u32>,
 }
 
-impl Name {
+impl SurfaceName {
     pub(super) fn of(scene: &Scene, object: u32, part: u32) -> Self {
         let (kind, face) = match &scene.objects()[object as usize].shape {
             Shape::Mesh(_) => ("face", Some(part + 1)),
@@ -30,7 +30,7 @@ impl Name {
     }
 }
 
-impl fmt::Display for Name {
+impl fmt::Display for SurfaceName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { object, kind, face } = self;
         match face {
@@ -60,8 +60,8 @@ impl Explanation {
             vector("d", self.ray.direction),
         ];
         self.add_tests(&mut lines);
-        match &self.seen {
-            Some(seen) => self.add_seen(seen, &mut lines),
+        match &self.hit {
+            Some(shaded) => self.add_hit(shaded, &mut lines),
             None => lines.extend([String::new(), "nothing in front: background".to_owned()]),
         }
         lines.push(light("L", self.light));
@@ -80,27 +80,27 @@ impl Explanation {
         }
     }
 
-    fn add_seen(&self, seen: &Seen, lines: &mut Vec<String>) {
+    fn add_hit(&self, shaded: &ShadedHit, lines: &mut Vec<String>) {
         lines.push(String::new());
-        lines.push(format!("in front: {}, t = {}", seen.name, number(seen.hit.t).trim_start()));
+        lines.push(format!("in front: {}, t = {}", shaded.name, number(shaded.hit.t).trim_start()));
         if let Some(closest) = self.tested.first() {
             add_equation(&closest.equation, lines);
         }
-        let side = match seen.point.side {
+        let side = match shaded.point.side {
             Side::Front => "front",
             Side::Back => "back",
         };
         lines.extend([
-            vector("p", seen.point.position),
-            vector("n", seen.point.normal),
+            vector("p", shaded.point.position),
+            vector("n", shaded.point.normal),
             format!("seen from the {side}"),
         ]);
-        for (number, lit) in (1..).zip(&seen.lights) {
-            add_light(number, lit, lines);
+        for (number, contribution) in (1..).zip(&shaded.lights) {
+            add_light(number, contribution, lines);
         }
         lines.push(String::new());
-        lines.extend([light("ambient", seen.ambient), light("sum", seen.arriving)]);
-        lines.push(light("reflected", seen.reflectance));
+        lines.extend([light("ambient", shaded.ambient), light("sum", shaded.arriving)]);
+        lines.push(light("reflected", shaded.reflectance));
     }
 
     fn add_tone(&self, lines: &mut Vec<String>) {
@@ -117,7 +117,7 @@ impl Explanation {
 }
 
 /// Returns the screen cell that shows a pixel, and the pixel's position in it.
-pub fn cell([x, y]: [u32; 2], mode: CellMode) -> String {
+pub fn cell_of_pixel([x, y]: [u32; 2], mode: CellMode) -> String {
     let (across, down) = mode.pixels_per_cell();
     let place = match (across, down) {
         (1, 2) => ["upper half", "lower half"][(y % 2) as usize].to_owned(),
@@ -127,7 +127,7 @@ pub fn cell([x, y]: [u32; 2], mode: CellMode) -> String {
 }
 
 /// Returns the t of a tested surface, first as in the picture, then the other roots of the equation.
-fn crossings(Tested { t, equation, .. }: &Tested) -> String {
+fn crossings(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
     let Equation { roots, without_root, is_outside, .. } = equation;
     if roots.is_empty() {
         return format!("  {without_root}");
@@ -153,8 +153,8 @@ fn add_equation(equation: &Equation, lines: &mut Vec<String>) {
     }));
 }
 
-fn add_light(at: usize, lit: &Lit, lines: &mut Vec<String>) {
-    let incidence = &lit.incidence;
+fn add_light(at: usize, contribution: &LightContribution, lines: &mut Vec<String>) {
+    let incidence = &contribution.incidence;
     lines.push(String::new());
     lines.push(match incidence.distance {
         f32::INFINITY => format!("light {at}: infinitely far"),
@@ -162,10 +162,10 @@ fn add_light(at: usize, lit: &Lit, lines: &mut Vec<String>) {
     });
     lines.push(vector("l", incidence.l));
     let n_l = number(incidence.cosine);
-    match lit.blocker {
-        _ if !lit.faces() => lines.push(format!("n.l{n_l}, faces away")),
+    match contribution.blocker {
+        _ if !contribution.faces() => lines.push(format!("n.l{n_l}, faces away")),
         Some((name, _)) => lines.extend([format!("n.l{n_l}, in the shadow of"), format!("  {name}")]),
-        None => lines.extend([format!("n.l{n_l}, lit"), light("+", lit.contribution())]),
+        None => lines.extend([format!("n.l{n_l}, lit"), light("+", contribution.light())]),
     }
 }
 
@@ -174,7 +174,7 @@ fn vector(name: &str, Vec3 { x, y, z }: Vec3) -> String {
 }
 
 fn light(name: &str, LinearRgb { r, g, b }: LinearRgb) -> String {
-    let [r, g, b] = [r, g, b].map(|band| format!("{:>8}", number(band).trim_start()));
+    let [r, g, b] = [r, g, b].map(|channel| format!("{:>8}", number(channel).trim_start()));
     format!("{name:<9}{r} {g} {b}")
 }
 

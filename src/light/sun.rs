@@ -84,8 +84,8 @@ mod tests {
     #[test]
     fn it_is_described_and_explained() {
         let scene = read("Sun(direction: (0, 0, 1))", "");
-        let told = describe("sun.ron", &scene, scene.camera(), Resolution::square(40, 40));
-        assert!(told.contains("- white, from below\n"), "{told}");
+        let text = describe("sun.ron", &scene, scene.camera(), Resolution::square(40, 40));
+        assert!(text.contains("- white, from below\n"), "{text}");
         let explained = explain(&scene, scene.camera(), Resolution::square(9, 9), [4, 4]).lines().join("\n");
         assert!(explained.contains("light 1: infinitely far"), "{explained}");
     }

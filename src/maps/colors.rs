@@ -4,13 +4,13 @@ use crate::color::Srgb8;
 use glam::Vec3;
 
 /// Converts 0..=1 to a channel of a colour.
-fn band(share: f32) -> u8 {
+fn channel(share: f32) -> u8 {
     (share * 255.0 + 0.5) as u8
 }
 
 fn grey(share: f32) -> Srgb8 {
-    let band = band(share);
-    Srgb8::new(band, band, band)
+    let channel = channel(share);
+    Srgb8::new(channel, channel, channel)
 }
 
 /// Returns white at 0, half the light at `middle`, black at infinity; the slope is greatest near `middle`.
@@ -21,7 +21,7 @@ pub(super) fn depth(t: f32, middle: f32) -> Srgb8 {
 
 /// Converts a unit normal's coordinates from -1..=1 to channels.
 pub(super) fn normal(n: Vec3) -> Srgb8 {
-    let [r, g, b] = n.to_array().map(|coordinate| band(0.5 * coordinate + 0.5));
+    let [r, g, b] = n.to_array().map(|coordinate| channel(0.5 * coordinate + 0.5));
     Srgb8::new(r, g, b)
 }
 
@@ -35,17 +35,17 @@ pub(super) fn share(count: u32, of: u32) -> Srgb8 {
 /// count, in three lightnesses.
 pub(super) fn object(number: u32) -> Srgb8 {
     const GOLDEN: u32 = 2_654_435_769; // 2^32 / 1.618...
-    const BRIGHTEST: [f32; 3] = [1.0, 0.72, 0.86];
-    const LEAST: [f32; 3] = [0.2, 0.08, 0.5];
+    const MAX_CHANNELS: [f32; 3] = [1.0, 0.72, 0.86];
+    const MIN_CHANNELS: [f32; 3] = [0.2, 0.08, 0.5];
     // The first hue is a warm red.
     let hue = 6.0 * (number.wrapping_mul(GOLDEN) >> 8) as f32 / 16_777_216.0;
     let level = (number % 3) as usize;
-    let of_band = |middle: f32| {
+    let channel_of = |middle: f32| {
         let away = (hue - middle).abs();
         let near = (2.0 - away.min(6.0 - away)).clamp(0.0, 1.0);
-        band(BRIGHTEST[level] * (LEAST[level] + (1.0 - LEAST[level]) * near))
+        channel(MAX_CHANNELS[level] * (MIN_CHANNELS[level] + (1.0 - MIN_CHANNELS[level]) * near))
     };
-    Srgb8::new(of_band(0.0), of_band(2.0), of_band(4.0))
+    Srgb8::new(channel_of(0.0), channel_of(2.0), channel_of(4.0))
 }
 
 /// The colours of 1, 4, 16 and so on.
@@ -61,7 +61,7 @@ pub(super) fn heat(count: u32) -> Srgb8 {
     let place = (0.5 * halves).min((HEAT.len() - 1) as f32);
     let first = (place as usize).min(HEAT.len() - 2);
     let part = place - first as f32;
-    let [r, g, b] = [0, 1, 2].map(|at| band(HEAT[first][at] * (1.0 - part) + HEAT[first + 1][at] * part));
+    let [r, g, b] = [0, 1, 2].map(|at| channel(HEAT[first][at] * (1.0 - part) + HEAT[first + 1][at] * part));
     Srgb8::new(r, g, b)
 }
 
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn heat_has_a_colour_for_each_power_of_four() {
-        let at = |power: usize| HEAT[power].map(band);
+        let at = |power: usize| HEAT[power].map(channel);
         for (count, power) in [(0, 0), (1, 0), (4, 1), (16, 2), (64, 3), (256, 4), (1024, 5), (u32::MAX, 5)] {
             let Srgb8 { r, g, b } = heat(count);
             assert_eq!([r, g, b], at(power), "{count}");

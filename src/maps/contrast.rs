@@ -16,7 +16,7 @@ const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
 const WHITE: Srgb8 = Srgb8::new(255, 255, 255);
 
 /// Threshold for white: half of white as perceived, CIE 1976 L* 50.
-const MIDDLE: f32 = 0.184;
+const WHITE_THRESHOLD: f32 = 0.184;
 
 pub(super) fn trace(
     executor: Executor<'_>,
@@ -34,14 +34,14 @@ pub(super) fn trace(
         });
     let mut cost = light.cost;
     cost += objects.cost;
-    TracedMap { picture: drawn(&light.picture, &objects.pixels), cost }
+    TracedMap { picture: outlined(&light.picture, &objects.pixels), cost }
 }
 
 /// Returns the picture in two colours, where each pixel shows the object with this number.
-fn drawn(picture: &Picture, objects: &[u32]) -> Picture {
+fn outlined(picture: &Picture, objects: &[u32]) -> Picture {
     let width = picture.width as usize;
     let is_white: Vec<_> =
-        picture.pixels.iter().map(|&pixel| LinearRgb::from_srgb8(pixel).luminance() >= MIDDLE).collect();
+        picture.pixels.iter().map(|&pixel| LinearRgb::from_srgb8(pixel).luminance() >= WHITE_THRESHOLD).collect();
     let ink = |at: usize| {
         let blends = |other: usize| {
             objects.get(other).is_some_and(|&object| object != objects[at]) && is_white[other] == is_white[at]
@@ -58,12 +58,12 @@ mod tests {
 
     /// There is a line between two objects of the same colour, none between two that differ, and none at the border.
     #[test]
-    fn lines_part_what_would_run_together() {
+    fn lines_separate_objects_of_the_same_colour() {
         let [light, dark] = [Srgb8::new(200, 200, 200), Srgb8::new(90, 90, 90)];
         let picture =
             Picture { width: 4, height: 2, pixels: [[light, light, light, dark], [light, light, dark, dark]].concat() };
-        let drawn = drawn(&picture, &[1, 1, 2, 3, 1, 1, 3, 3]);
-        let rows: Vec<String> = drawn
+        let outlined = outlined(&picture, &[1, 1, 2, 3, 1, 1, 3, 3]);
+        let rows: Vec<String> = outlined
             .pixels
             .chunks(4)
             .map(|row| row.iter().map(|&pixel| if pixel == WHITE { '@' } else { ' ' }).collect())

@@ -1,6 +1,6 @@
 //! Squares of two reflectances.
 
-use super::{Reflecting, bands};
+use super::{Reflecting, channels};
 use crate::checks::{self, SceneFault};
 use crate::color::{LinearRgb, Srgb8};
 use crate::lanes::Number;
@@ -44,7 +44,7 @@ impl Reflecting for Checker {
         let balance = mean_sign(uv[0] / size, footprint[0] / size) * mean_sign(uv[1] / size, footprint[1] / size);
         let half = N::splat(0.5);
         let [of_a, of_b] = [half + half * balance, half - half * balance];
-        let ([r0, g0, b0], [r1, g1, b1]) = (bands::<N>(self.a), bands::<N>(self.b));
+        let ([r0, g0, b0], [r1, g1, b1]) = (channels::<N>(self.a), channels::<N>(self.b));
         [r0 * of_a + r1 * of_b, g0 * of_a + g1 * of_b, b0 * of_a + b1 * of_b]
     }
 

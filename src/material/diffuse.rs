@@ -1,6 +1,6 @@
 //! One reflectance.
 
-use super::{Reflecting, bands};
+use super::{Reflecting, channels};
 use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
 use crate::lanes::Number;
@@ -30,7 +30,7 @@ impl Diffuse {
 impl Reflecting for Diffuse {
     #[inline(always)]
     fn reflectance<N: Number>(&self, _: [N; 2], _: [N; 2]) -> [N; 3] {
-        bands(self.reflectance)
+        channels(self.reflectance)
     }
 
     fn described(&self, name: fn(LinearRgb) -> &'static str) -> String {

@@ -1,7 +1,7 @@
 //! Stripes of two reflectances: a material for tests, which shows that a file and a line in the table are all that one
 //! takes.
 
-use super::{Reflecting, bands};
+use super::{Reflecting, channels};
 use crate::color::LinearRgb;
 use crate::lanes::Number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor};
@@ -22,7 +22,7 @@ impl Reflecting for Stripes {
     fn reflectance<N: Number>(&self, [u, _]: [N; 2], _: [N; 2]) -> [N; 3] {
         let half = N::splat(0.5) * u.floor();
         let is_even = half.floor().eq(half);
-        let ([r0, g0, b0], [r1, g1, b1]) = (bands::<N>(self.a), bands::<N>(self.b));
+        let ([r0, g0, b0], [r1, g1, b1]) = (channels::<N>(self.a), channels::<N>(self.b));
         [N::select(is_even, r0, r1), N::select(is_even, g0, g1), N::select(is_even, b0, b1)]
     }
 

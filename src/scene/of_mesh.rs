@@ -2,7 +2,7 @@
 
 use super::{Background, Checked, Draft, Object, Scene};
 use crate::bounds::Bounds;
-use crate::camera::{Camera, FILLED, Pose, ViewRectangle, framing_distance};
+use crate::camera::{Camera, FRAMED_SHARE, Pose, ViewRectangle, framing_distance};
 use crate::color::{LinearRgb, Srgb8};
 use crate::light::{Falloff, Light, PointLight};
 use crate::material::Material;
@@ -17,7 +17,7 @@ const TOWARDS_EYE: Vec3 = Vec3::new(0.45, 0.4, 1.0);
 const FIELD_OF_VIEW: f32 = 0.698_131_7;
 
 /// Tangent of half the field of view, less a margin.
-const WITHIN: f32 = FILLED * 0.363_970_23;
+const WITHIN: f32 = FRAMED_SHARE * 0.363_970_23;
 
 /// Least aspect ratio of a picture that shows the whole mesh.
 const ASPECT_RATIO: f32 = 4.0 / 3.0;

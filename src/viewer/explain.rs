@@ -11,7 +11,7 @@ use super::layers::{Canvas, Layer, Level};
 use super::look::{self, Look};
 use crate::capabilities::CellMode;
 use crate::control::{Command, Mode};
-use crate::explain::{Explanation, cell, explain};
+use crate::explain::{Explanation, cell_of_pixel, explain};
 use crate::framebuffer::Resolution;
 use crate::overlay;
 use crate::render::Sampling;
@@ -133,7 +133,7 @@ impl Explaining {
 
     fn lines(&self, mode: CellMode) -> Vec<String> {
         let mut lines = self.explanation.lines();
-        lines.push(cell(self.pixel, mode));
+        lines.push(cell_of_pixel(self.pixel, mode));
         lines.extend(self.notes.iter().cloned());
         lines
     }

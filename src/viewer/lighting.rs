@@ -27,7 +27,7 @@ impl Viewer {
             self.say("this scene has no light that could be moved");
             return;
         };
-        let is_seen = |camera: Camera| at.is_some_and(|at| camera.place_of(at, 1.0).is_some());
+        let is_seen = |camera: Camera| at.is_some_and(|at| camera.project(at, 1.0).is_some());
         let behind = if camera.is_some_and(is_seen) { "" } else { ", behind the eye" };
         self.mark_light();
         let hint = self.hint(Command::Help, "shows its keys");
@@ -99,7 +99,7 @@ impl Viewer {
 /// The light in front of the eye that is nearest to the pointer on the screen, or any if there is none in front of it.
 fn nearest(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
     let away = |position: Vec3| {
-        let place = camera.place_of(position, aspect_ratio);
+        let place = camera.project(position, aspect_ratio);
         place.map_or(f32::INFINITY, |place| ((place - pointer) * Vec2::new(aspect_ratio, 1.0)).length())
     };
     let lights = lights.iter().enumerate().filter_map(|(light, of)| Some((light, away(of.position()?))));

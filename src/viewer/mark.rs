@@ -32,7 +32,7 @@ impl Layer for LightMark {
 /// Where the mark of a light is over a frame: in the left one of two pictures.
 fn place(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
     let (part, _) = frame.part_at([0, 0]);
-    let place = frame.camera().place_of(light, part.aspect_ratio())?;
+    let place = frame.camera().project(light, part.aspect_ratio())?;
     let columns = f32::from(screen.width) * part.width() as f32 / frame.resolution().width() as f32;
     Some(area(screen, place.x * columns, place.y * f32::from(screen.height)))
 }

@@ -116,7 +116,7 @@ impl SceneState {
     /// eye.
     pub fn cell_of(&self, point: Vec3) -> Option<Position> {
         let (RenderedShot { shot, .. }, part) = (self.shown.as_ref()?, self.covered_area()?);
-        let place = shot.camera.place_of(point, shot.resolution.aspect_ratio())?;
+        let place = shot.camera.project(point, shot.resolution.aspect_ratio())?;
         let cell = (place * self.size()?).floor();
         let is_inside =
             cell.cmpge(Vec2::ZERO).all() && cell.cmplt(Vec2::new(part.width.into(), part.height.into())).all();

@@ -63,7 +63,7 @@ fn the_left_button_looks_around_in_flight() {
     let found = after(BALL, &drag(LEFT, [20, 6], [24, 6]));
     assert_eq!(found.pose().eye, start.eye);
     // What was in the middle has gone with the pointer.
-    let at = found.place_of(start.target, ASPECT_RATIO).expect("it is in front of the eye");
+    let at = found.project(start.target, ASPECT_RATIO).expect("it is in front of the eye");
     assert!(at.abs_diff_eq(Vec2::new(0.6, 0.5), 5e-3), "{at}");
 }
 
@@ -73,7 +73,7 @@ fn the_other_buttons_and_shift_shift_the_picture() {
         for scene in [TEAPOT, BALL] {
             let start = *load(scene).camera();
             let found = after(scene, &drag(button, [10, 3], [14, 6]));
-            let at = found.place_of(start.pose().target, ASPECT_RATIO).expect("it is in front of the eye");
+            let at = found.project(start.pose().target, ASPECT_RATIO).expect("it is in front of the eye");
             assert!(at.abs_diff_eq(Vec2::new(0.6, 0.75), 1e-4), "{button} {at}");
             assert_near(found.basis().w, start.basis().w);
         }
@@ -86,7 +86,7 @@ fn the_wheel_comes_nearer_to_what_is_under_the_pointer() {
     // In the middle it is the ball, which is four away.
     let two = report(WHEEL_UP, [20, 6], 'M').repeat(2);
     let nearer = after(BALL, &two).pose();
-    let middle = start.place_of(Vec3::new(0.0, 1.0, 1.0), ASPECT_RATIO).expect("in front");
+    let middle = start.project(Vec3::new(0.0, 1.0, 1.0), ASPECT_RATIO).expect("in front");
     assert!(middle.abs_diff_eq(Vec2::splat(0.5), 1e-6));
     assert!((nearer.eye.z - (1.0 + 4.0 * 0.88 * 0.88)).abs() < 0.02, "{nearer:?}");
     assert!((nearer.eye.distance(nearer.target) - 5.0).abs() < 1e-4, "in flight the target goes with the eye");
@@ -97,7 +97,7 @@ fn the_wheel_comes_nearer_to_what_is_under_the_pointer() {
     let floor = ray.at(-ray.origin.y / ray.direction.y);
     for code in [WHEEL_UP, WHEEL_DOWN] {
         let found = after(BALL, &report(code, at, 'M'));
-        let there = found.place_of(floor, ASPECT_RATIO).expect("in front");
+        let there = found.project(floor, ASPECT_RATIO).expect("in front");
         assert!((there - place).abs().max_element() < 0.03, "{there} is not {place}");
         let share = found.pose().eye.distance(floor) / start.pose().eye.distance(floor);
         let wanted = if code == WHEEL_UP { 0.88 } else { 1.0 / 0.88 };

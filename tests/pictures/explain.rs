@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use termtrace::internals::explain::WIDTH;
+use termtrace::internals::explain::MAX_LINE_WIDTH;
 use termtrace::{Explanation, LinearRgb, Picture, Resolution, Scene, ToneCurve, explain, render, tone};
 
 fn shipped_scenes() -> Vec<(PathBuf, Scene)> {
@@ -29,16 +29,16 @@ fn pixels() -> impl Iterator<Item = [u32; 2]> {
 /// What the explanation says comes to what it says that it comes to, to the bit.
 #[track_caller]
 fn adds_up(scene: &Scene, explanation: &Explanation) {
-    let Explanation { tested, seen, light, .. } = explanation;
+    let Explanation { tested, hit: seen, light, .. } = explanation;
     let closest = tested.first().and_then(|tested| Some((tested.name, tested.t?)));
     assert_eq!(closest, seen.as_ref().map(|seen| (seen.name, seen.hit.t)), "{explanation:?}");
     if let Some(seen) = seen {
         let sum = seen.lights.iter().filter(|lit| lit.faces() && lit.blocker.is_none());
-        let sum = sum.fold(seen.ambient, |sum, lit| sum + lit.contribution());
+        let sum = sum.fold(seen.ambient, |sum, lit| sum + lit.light());
         assert_eq!(sum, seen.arriving, "{explanation:?}");
         assert_eq!(sum * seen.reflectance, *light, "{explanation:?}");
     }
-    assert_eq!(explanation.shown, termtrace::internals::tone::shown(*light, scene));
+    assert_eq!(explanation.shown, termtrace::internals::tone::tone_mapped(*light, scene));
     let through = scene.camera().eye_rays(SIZE.aspect_ratio()).through(explanation.q.x, explanation.q.y);
     assert_eq!(explanation.ray, through);
 }
@@ -84,7 +84,7 @@ fn equations_and_lines_say_the_same_as_the_picture() {
                 assert!(agrees, "{} {pixel:?}: {tested:?}", path.display());
             }
             for line in explanation.lines() {
-                assert!(line.len() <= WIDTH, "{} {pixel:?}: {line:?}", path.display());
+                assert!(line.len() <= MAX_LINE_WIDTH, "{} {pixel:?}: {line:?}", path.display());
                 assert!(line.bytes().all(|byte| (b' '..=b'~').contains(&byte)), "{line:?}");
             }
         }

@@ -154,7 +154,7 @@ impl Validator<'_> {
     }
 
     fn shift(&mut self, written: &[WrittenNumber; 2]) -> Option<Vec2> {
-        let too_far = |number: &&WrittenNumber| number.value.abs() > f64::from(ViewRectangle::LARGEST_SHIFT);
+        let too_far = |number: &&WrittenNumber| number.value.abs() > f64::from(ViewRectangle::MAX_SHIFT);
         if let Some(number) = written.iter().find(too_far) {
             return self.camera_fault(number.span, CameraError::Shift);
         }

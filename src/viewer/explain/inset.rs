@@ -2,7 +2,7 @@
 
 use crate::camera::{Basis, Camera};
 use crate::capabilities::{CellMode, Colors};
-use crate::explain::{Explanation, Lit};
+use crate::explain::{Explanation, LightContribution};
 use crate::framebuffer::Resolution;
 use crate::light::Light;
 use crate::scene::Scene;
@@ -36,32 +36,33 @@ pub(super) struct Inset {
 const FAR: f32 = 1.5;
 
 /// Distance at which the view rectangle is drawn, as a share of the ray. Only the ratios of its distance and sides
-/// matter, so it is drawn where it is seen well.
+/// matter, so it is drawn where it is shaded well.
 const NEAR: f32 = 0.3;
 
 impl Inset {
     pub(super) fn of(scene: &Scene, camera: &Camera, explanation: &Explanation) -> Self {
         let (Basis { v, w, .. }, eye) = (camera.basis(), explanation.ray.origin);
         let from_side = |point: Vec3| Vec2::new((eye - point).dot(w), (point - eye).dot(v));
-        let seen = explanation.seen.as_ref();
+        let shaded = explanation.hit.as_ref();
         let pose = camera.pose();
-        let t = seen.map_or_else(|| FAR * pose.eye.distance(pose.target), |seen| seen.hit.t);
+        let t = shaded.map_or_else(|| FAR * pose.eye.distance(pose.target), |shaded| shaded.hit.t);
         let rays = camera.eye_rays(explanation.resolution.aspect_ratio());
         let near = NEAR * t;
-        let ball = seen.and_then(|seen| seen.hit.surface(scene).circle());
+        let ball = shaded.and_then(|shaded| shaded.hit.surface(scene).circle());
         let ball = ball.map(|(center, radius)| (from_side(center), radius));
-        let lights = seen.map_or(Vec::new(), |seen| {
+        let lights = shaded.map_or(Vec::new(), |shaded| {
             // For a light at infinity its direction is drawn, as long as the ray.
-            let far = |lit: &Lit| seen.point.position + lit.incidence.l * t;
-            let end = |(light, lit): (&Light, &Lit)| from_side(light.position().unwrap_or_else(|| far(lit)));
-            let ends = scene.lights().iter().zip(&seen.lights).map(end);
-            ends.zip(&seen.lights).map(|(end, lit)| (end, lit.faces() && lit.blocker.is_none())).collect()
+            let far = |lit: &LightContribution| shaded.point.position + lit.incidence.l * t;
+            let end =
+                |(light, lit): (&Light, &LightContribution)| from_side(light.position().unwrap_or_else(|| far(lit)));
+            let ends = scene.lights().iter().zip(&shaded.lights).map(end);
+            ends.zip(&shaded.lights).map(|(end, lit)| (end, lit.faces() && lit.blocker.is_none())).collect()
         });
         Self {
             rectangle: [0.0, 1.0].map(|qv| from_side(rays.through(explanation.q.x, qv).at(near))),
             q: from_side(explanation.ray.at(near)),
             end: from_side(explanation.ray.at(t)),
-            is_met: seen.is_some(),
+            is_met: shaded.is_some(),
             ball,
             lights,
         }

@@ -2,13 +2,13 @@
 
 use super::Explaining;
 use crate::capabilities::CellMode;
-use crate::explain::WIDTH;
+use crate::explain::MAX_LINE_WIDTH;
 use crate::viewer::look::Look;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
 
 /// Width of the panel, with its border and a blank on each side.
-const PANEL: u16 = WIDTH as u16 + 4;
+const PANEL: u16 = MAX_LINE_WIDTH as u16 + 4;
 
 /// Rows at the bottom of the screen that are reserved for others.
 const FOOT: u16 = 2;
