@@ -21,19 +21,19 @@ use std::ops::RangeInclusive;
 /// The capabilities that cells depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capabilities {
-    /// How pixels become cells.
+    /// The mode in which pixels become cells.
     pub cell_mode: CellMode,
     /// The cell aspect: a cell's height divided by its width, greater than 0.
     pub cell_aspect: f32,
-    /// Whether the upper and the lower half block meet in the same line: only then may a picture mix them.
+    /// Whether the upper and the lower half block meet in the same line of pixels, so that a picture may mix them.
     pub halves_meet: bool,
-    /// Whether the terminal writes dark on light: without other colours more ink then is less light.
+    /// Whether the terminal's default colours are dark text on a light background.
     pub light_background: bool,
-    /// Whether it supports synchronized output, which shows each frame at once.
+    /// Whether the terminal supports synchronized output (DEC mode 2026), which shows each frame at once.
     pub synchronized_output: bool,
 }
 
-/// The cell aspect of an unknown terminal.
+/// The cell aspect of an unknown terminal: monospace fonts have cells of about 1:2.
 pub const USUAL_CELL_ASPECT: f32 = 2.0;
 
 /// The range of plausible cell aspects. Values outside it are errors of a user or a program.
@@ -42,38 +42,48 @@ pub const CELL_ASPECT_RANGE: RangeInclusive<f32> = 0.1..=10.0;
 /// The user's choice of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorChoice {
-    /// As many as the terminal probably has.
+    /// The colours that detection finds.
     #[default]
     Auto,
-    /// At least sixteen, whatever `NO_COLOR` says.
+    /// At least sixteen colours, even if `NO_COLOR` is set.
     Always,
-    /// None.
+    /// No colours.
     Never,
-    /// Exactly these.
+    /// Exactly these colours.
     Exactly(Colors),
 }
 
-/// Returns a cell's height over its width, from a window's size in cells and in pixels. `None` where that is not between
-/// 0.25 and 8: many terminals leave the pixels at 0.
+/// Returns a cell's height over its width, from the size of a window in cells and in pixels.
+///
+/// Returns `None` if the result is not between 0.25 and 8: many terminals leave the size in pixels at 0.
+///
+/// ```
+/// use termtrace::cell_aspect_of;
+///
+/// assert_eq!(cell_aspect_of(80, 24, 800, 480), Some(2.0));
+/// assert_eq!(cell_aspect_of(80, 24, 0, 0), None);
+/// ```
 pub fn cell_aspect(columns: u16, rows: u16, width: u16, height: u16) -> Option<f32> {
-    // Cells have whole pixels; a window may be a few pixels larger than its cells.
+    // Cells have whole pixels, and a window may be a few pixels larger than its cells: so integer division.
     let cell_width = width.checked_div(columns)?;
     let cell_height = height.checked_div(rows)?;
     let aspect = f32::from(cell_height) / f32::from(cell_width);
-    // Some terminals fill these fields with garbage.
+    // Some terminals fill these fields with garbage; a wrong aspect is worse than the default.
     is_plausible_cell_aspect(aspect).then_some(aspect)
 }
 
-/// Returns whether a cell may have that height over its width.
+/// Returns whether a cell aspect is plausible: in 0.25..=8, beyond any terminal's font.
 pub(crate) fn is_plausible_cell_aspect(aspect: f32) -> bool {
     (0.25..=8.0).contains(&aspect)
 }
 
-/// Returns whether the two half blocks meet in the same line, from a window's height in cells and in pixels: if a cell
-/// has an even number of pixel rows. With an odd number, some terminals give the middle row to either half, others to
-/// the glyph, and a mix would be visible.
+/// Returns whether the two half blocks meet in the same line, from a window's height in cells and pixels.
+///
+/// They do if a cell has an even number of pixel rows.
+// Compared pixel by pixel: xterm, st, kitty, alacritty and foot all split even cells in the same line. With an odd
+// number, some give the middle row to either half, others to the glyph, and a mix is visible.
 pub fn halves_meet(rows: u16, height: u16) -> bool {
-    // A remainder may be a border, or show that the size is not a multiple of cells.
+    // With a remainder (a border, or a size that is no multiple of cells) the cell's height is uncertain.
     let cell_height = height.checked_div(rows).filter(|cell_height| cell_height * rows == height);
     cell_height.is_some_and(|cell_height| cell_height > 0 && cell_height % 2 == 0)
 }
@@ -92,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn cell_aspect_needs_a_sensible_window() {
+    fn a_cell_aspect_needs_a_plausible_window() {
         for (columns, rows, width, height, expected) in [
             (80, 24, 800, 480, Some(2.0)),
             (80, 24, 800, 456, Some(1.9)),

@@ -1,6 +1,6 @@
-//! Cells from pixels: a picture to a grid.
+//! Conversion of a picture's pixels to the cells of a grid.
 //!
-//! A cell kind is one file here, with its `mod` line, and one row of the table of [`Glyphs`].
+//! A glyph kind is one file of this folder, with its `mod` line, and one row of the table of [`Glyphs`].
 
 use crate::color::Srgb8;
 use crate::framebuffer::{Resolution, ResolutionError};
@@ -29,56 +29,56 @@ pub use colors::Colors;
 pub(crate) use colors::xterm_color;
 pub use ramp::RAMP;
 
-/// The mode in which pixels become cells: glyphs and colours.
+/// The mode in which pixels become cells: a kind of glyphs and a set of colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CellMode {
-    /// The kind of glyphs.
+    /// The glyph kind.
     pub glyphs: Glyphs,
-    /// The colours.
+    /// The set of colours.
     pub colors: Colors,
 }
 
 crate::table::table! {
-    /// A kind of glyphs in the cells of a picture.
+    /// A glyph kind: the glyphs by which the cells of a picture show its pixels.
     pub enum Glyphs: GlyphKind {
-        /// Half blocks: two pixels, one above the other.
+        /// Half blocks: two pixels per cell, one above the other.
         Half = half::KIND;
-        /// The printable ASCII character whose ink lies where the picture has its light.
+        /// The printable ASCII character whose ink is distributed most like the light of eight pixels.
         Shape = shape::KIND;
-        /// A character of a fixed ramp, by lightness alone.
+        /// One of ten ASCII characters, by the lightness of two pixels.
         Ramp = ramp::KIND;
-        /// A dot or nothing; exists in tests only.
+        /// A dot for a light pixel; exists in tests only.
         #[cfg(test)]
         Dots = dots::KIND;
     }
 }
 
 impl Glyphs {
-    /// Returns the name by which users choose the kind.
+    /// Returns the name of the kind on the command line and in files.
     #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// Returns the kind with this name.
+    /// Returns the kind with this name, if there is one.
     #[doc(hidden)]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|glyphs| glyphs.name() == name)
     }
 
-    /// Returns a description for the help of the command line.
+    /// Returns the description in the command line's help.
     #[doc(hidden)]
     pub const fn help(self) -> &'static str {
         self.row().help
     }
 
-    /// Returns a short description for reports.
+    /// Returns the description in reports such as `termtrace doctor`.
     #[doc(hidden)]
     pub const fn title(self) -> &'static str {
         self.row().title
     }
 
-    /// Returns whether the glyphs are block characters; panels use block characters if a terminal can show them.
+    /// Returns whether the glyphs are block characters, so that panels may use them too.
     #[doc(hidden)]
     pub const fn has_blocks(self) -> bool {
         self.row().has_blocks
@@ -91,7 +91,7 @@ impl fmt::Display for Glyphs {
     }
 }
 
-/// Parses the name of a kind.
+/// Parses the name of a glyph kind.
 ///
 /// ```
 /// use termtrace::Glyphs;
@@ -111,11 +111,18 @@ impl FromStr for Glyphs {
 impl CellMode {
     /// Half blocks in truecolor.
     pub const HALF_BLOCK: Self = Self { glyphs: Glyphs::Half, colors: Colors::Truecolor };
-    /// The ramp in the terminal's own colours: the text of golden frames.
+    /// The ramp in the terminal's default colours: the mode of golden text frames.
     pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
 
-    /// Returns the resolution to render for a screen of this size whose cells have this aspect (height divided by
-    /// width).
+    /// Returns the resolution of a picture for a screen of this size and cell aspect (height / width).
+    ///
+    /// ```
+    /// use termtrace::{CellMode, Size};
+    ///
+    /// let resolution = CellMode::HALF_BLOCK.resolution(Size::new(80, 24), 2.0)?;
+    /// assert_eq!((resolution.width(), resolution.height()), (80, 48));
+    /// # Ok::<(), termtrace::ResolutionError>(())
+    /// ```
     ///
     /// # Errors
     /// If the screen has more pixels than a picture may have, or the aspect is not greater than 0 and finite.
@@ -129,24 +136,24 @@ impl CellMode {
         self.glyphs.row().pixels_per_cell
     }
 
-    /// Returns the mode in which text without colours shows the same pixels.
+    /// Returns the mode without colours that shows the same pixels.
     #[doc(hidden)]
     pub fn plain(self) -> Self {
         Self { glyphs: self.glyphs.row().plain.unwrap_or(self.glyphs), colors: Colors::None }
     }
 }
 
-/// Returns the resolution to render for a screen of this size whose cells have this aspect (height divided by width).
+/// Returns the resolution of a picture for a screen of this size and cell aspect (height / width).
 ///
 /// # Errors
 /// If the screen has more pixels than a picture may have, or the aspect is not greater than 0 and finite.
 pub fn resolution(mode: CellMode, size: Size, cell_aspect: f32) -> Result<Resolution, ResolutionError> {
     let (across, down) = mode.pixels_per_cell();
     Resolution::new(u32::from(size.columns) * across, u32::from(size.rows) * down)?
-        .with_pixel_aspect(cell_aspect * across as f32 / down as f32)
+        .with_pixel_aspect(cell_aspect * across as f32 / down as f32) // 1 for half blocks in cells of aspect 2
 }
 
-/// Returns the cells of a picture, as a new [`Painter`] paints them.
+/// Returns the cells of a picture, painted by a new [`Painter`].
 ///
 /// # Panics
 /// If the picture needs more than 65,535 columns or rows.
@@ -154,7 +161,16 @@ pub fn grid_from_picture(mode: CellMode, picture: &Picture) -> Grid {
     Painter::new(mode).grid(picture)
 }
 
-/// A converter of pictures into cells, which caches mixes of few colours from frame to frame.
+/// A converter of pictures into cells, which caches the mixes of palette colours between frames.
+///
+/// ```
+/// use termtrace::{CellMode, Painter, Picture, Size, Srgb8};
+///
+/// let picture = Picture::from_pixels(3, 2, vec![Srgb8::new(90, 160, 40); 6]).ok_or("3 by 2 pixels")?;
+/// let grid = Painter::new(CellMode::HALF_BLOCK).grid(&picture);
+/// assert_eq!(grid.size(), Size::new(3, 1));
+/// # Ok::<(), &str>(())
+/// ```
 pub struct Painter {
     mode: CellMode,
     light_background: bool,
@@ -170,25 +186,26 @@ impl fmt::Debug for Painter {
 }
 
 impl Painter {
-    /// Returns a painter for a terminal that writes light on dark, which matters where its own colours are used.
+    /// Returns a painter for a terminal with light text on a dark background.
     pub fn new(mode: CellMode) -> Self {
         Self { mode, light_background: false, inks: InkConverter::of(mode.colors) }
     }
 
-    /// Sets whether the terminal writes dark on light: light pixels then are left blank.
+    /// Sets whether the background is light. In the default colours light pixels are then left blank.
     #[doc(hidden)]
     pub fn with_light_background(self, light_background: bool) -> Self {
         Self { light_background, ..self }
     }
 
-    /// Returns the mode.
+    /// Returns the cell mode.
     #[doc(hidden)]
     pub fn mode(&self) -> CellMode {
         self.mode
     }
 
-    /// Returns the cells of a picture, a function of nothing else. Cells at the right and lower edge may be filled in
-    /// part only.
+    /// Returns the cells of a picture. They depend on nothing else, in particular not on earlier pictures.
+    ///
+    /// Cells at the right and the lower edge may be filled only in part.
     ///
     /// # Panics
     /// If the picture needs more than 65,535 columns or rows.
@@ -206,9 +223,12 @@ impl Painter {
     pub fn paint(&mut self, picture: &Picture, grid: &mut Grid) {
         let pixels_per_cell = self.mode.pixels_per_cell();
         grid.clear(size_in_cells(picture, pixels_per_cell));
+        // With colours the glyphs are written on black whatever the background is, so only default colours are
+        // inverted.
         let has_colors = self.mode.colors != Colors::None;
         let negative = (self.light_background && !has_colors).then(|| negative(picture));
         let picture = negative.as_ref().unwrap_or(picture);
+        // One dynamic call per frame: the loop over the cells is inside, so that it is compiled for its kind.
         match self.mode.glyphs.row().fill {
             Fill::Colored(fill) => fill(grid, picture, &mut self.inks),
             Fill::Lightness(fill) if !has_colors => fill(grid, picture),
@@ -227,7 +247,7 @@ fn size_in_cells(picture: &Picture, (across, down): (u32, u32)) -> Size {
     Size::new(cells(picture.width, across), cells(picture.height, down))
 }
 
-/// Returns an inverted picture: dark where the picture is light.
+/// Returns the picture with each channel inverted, so that light becomes dark.
 fn negative(picture: &Picture) -> Picture {
     let inverted = |pixel: &Srgb8| Srgb8::new(255 - pixel.r, 255 - pixel.g, 255 - pixel.b);
     Picture { pixels: picture.pixels.iter().map(inverted).collect(), ..*picture }
@@ -242,9 +262,9 @@ mod tests {
     const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
     const BLUE: Srgb8 = Srgb8::new(0, 0, 255);
 
-    /// The file, its `mod` line and its row are all that this kind takes.
+    /// The kind consists of one file, its `mod` line and its row of the table.
     #[test]
-    fn a_kind_that_only_tests_have_is_found_and_painted() {
+    fn a_glyph_kind_for_tests_is_found_and_painted() {
         let glyphs = Glyphs::from_name("dots").expect("by its name");
         let picture = Picture { width: 2, height: 1, pixels: vec![BLUE, BLACK] };
         let mode = CellMode { glyphs, colors: Colors::Truecolor };
@@ -258,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn kinds_have_names_of_their_own_and_plain_ones_of_as_many_pixels() {
+    fn glyph_kinds_have_unique_names_and_plain_kinds_of_equal_pixel_counts() {
         let mut names = HashSet::new();
         for &glyphs in Glyphs::ALL {
             assert!(names.insert(glyphs.name()), "{glyphs:?}");

@@ -22,23 +22,23 @@ use posix::{open, wait_until_readable};
 pub use refusal::reason;
 use refusal::refused;
 
-/// The kinds of files that are accepted.
+/// The kinds of files that a read accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Accepted {
-    /// Plain files: for names given in a file, which may come from a stranger.
+    /// Plain files: for names given in a scene file, which may come from a stranger.
     Files,
     /// Plain files, pipes (such as `<(...)` in a shell) and `/dev/null`: for names given by the user.
     FilesAndPipes,
 }
 
-/// Bytes between two reports to the reporter: 1 MiB, which a disk delivers in about a millisecond.
+/// Number of bytes between two progress reports: 1 MiB.
+// A disk delivers them in about a millisecond: short enough for a cancel, long enough that reports cost nothing.
 const CHUNK_LEN: u64 = 1 << 20;
 
-/// Returns all bytes of the file at `path`, limited to `max_len(bytes so far)`, which may depend on the file's beginning.
+/// Returns all bytes of the file at `path`, at most `max_len(bytes so far)`.
 ///
-/// Reports the number of bytes read to the reporter, but not that the file is needed. After a cancel reading ends with
-/// [`ErrorKind::Interrupted`]. Waits for a pipe for a second at a time. Memory grows with the bytes read, not with the
-/// size that is claimed for them.
+/// The limit may depend on the file's first bytes, which tell its format. The number of bytes read is
+/// reported; after a cancel reading ends with [`ErrorKind::Interrupted`]. A pipe is waited for, a second at a time.
 ///
 /// # Errors
 /// The system's error; another kind of file than accepted; a pipe that delivers nothing for a second
@@ -53,6 +53,7 @@ pub fn read(
     let size = usize::try_from(size).unwrap_or(usize::MAX);
     let name = path.to_string_lossy();
     let mut bytes = Vec::new();
+    // Before these limits `/dev/zero` as a golden frame took 4 GB, and a pipe without a writer blocked for ever.
     loop {
         let work = Work::Reading(name.clone().into_owned());
         if reporter.report(Progress { work, done: bytes.len(), total: size }).is_err() {
@@ -70,7 +71,7 @@ pub fn read(
     }
 }
 
-/// Reads the next bytes, up to [`CHUNK_LEN`], and returns whether the file ended.
+/// Reads the next bytes, at most [`CHUNK_LEN`], and returns whether the file ended.
 fn read_chunk(file: &mut File, bytes: &mut Vec<u8>) -> io::Result<bool> {
     wait_until_readable(file)?;
     match file.take(CHUNK_LEN).read_to_end(bytes) {
@@ -102,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_bytes_as_allowed_are_read_and_no_more() {
+    fn no_more_bytes_than_allowed_are_read() {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let path = folder.path().join("file");
         let size = 3 << 20;
@@ -120,9 +121,9 @@ mod tests {
         assert_eq!(read_up_to(1 << 30, &path, Accepted::Files), too_large("1 GiB"));
     }
 
-    /// The reporter is asked between two waits.
+    /// The reporter is called between two chunks.
     #[test]
-    fn reading_ends_when_the_watcher_has_gone() {
+    fn a_cancelled_read_ends() {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let path = folder.path().join("file");
         fs::write(&path, vec![7; 3 << 20]).expect("written");

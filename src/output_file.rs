@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 pub use target::open_stream;
 use temporary::Temporary;
 
-/// A file that gets its name when it is finished.
+/// A file that takes its name when it is finished.
 #[derive(Debug)]
 pub struct OutputFile {
     /// The path after following symbolic links.
@@ -42,25 +42,25 @@ pub struct OutputFile {
     destination: Destination,
 }
 
-/// The place of the contents until the file is finished, and how they get to the target.
+/// The storage of the contents until the file is finished, and their way to the target.
 #[derive(Debug)]
 enum Destination {
-    /// Takes the name, whether or not a file has got it meanwhile.
+    /// A temporary file that takes the name, even if another file has taken it meanwhile.
     New(Temporary),
-    /// Takes the name if it is still unused.
+    /// A temporary file that takes the name if it is still unused.
     NewOnly(Temporary),
-    /// Takes the name, owner and mode of an existing file with this metadata.
+    /// A temporary file that takes the name, owner and mode of an existing file with this metadata.
     Replace(Temporary, Metadata),
-    /// Overwrites the bytes of an existing file.
+    /// A buffer that overwrites the bytes of an existing file.
     InPlace(Vec<u8>),
 }
 
 impl OutputFile {
-    /// Starts a file that replaces what the path leads to, if anything.
+    /// Starts a file that replaces the file at the path, if there is one.
     ///
     /// # Errors
-    /// If that is a folder, a stream (see [`open_stream`]) or a file that may not be written, or the folder does not
-    /// allow a new file.
+    /// If the path leads to a folder, a stream (see [`open_stream`]) or a file that may not be written, or the folder
+    /// does not allow a new file.
     pub fn create(path: &Path) -> io::Result<Self> {
         let target = target::resolve_links(path);
         let destination = match fs::metadata(path) {
@@ -74,7 +74,7 @@ impl OutputFile {
         Ok(Self { target, destination })
     }
 
-    /// Starts a file with an unused name.
+    /// Starts a file whose name must be unused.
     ///
     /// # Errors
     /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), here or from [`finish`](Self::finish), if the name is used,
@@ -89,8 +89,9 @@ impl OutputFile {
         }
     }
 
-    /// Removes the temporary files that killed processes of this user left in the folder. It reads the whole folder:
-    /// once is enough for many files.
+    /// Removes the temporary files that killed processes of this user left in the folder.
+    ///
+    /// The whole folder is read, so one call should serve many files.
     pub fn remove_stale(&self) {
         if let Destination::New(temporary) | Destination::NewOnly(temporary) | Destination::Replace(temporary, _) =
             &self.destination
@@ -131,7 +132,7 @@ impl Write for OutputFile {
     }
 }
 
-/// Returns how to write the contents over this existing file.
+/// Returns the destination of contents that replace an existing file.
 fn destination_over(target: &Path, existing: Metadata) -> io::Result<Destination> {
     target::check_writable(target, &existing)?;
     match Temporary::private(target) {
@@ -141,8 +142,9 @@ fn destination_over(target: &Path, existing: Metadata) -> io::Result<Destination
     }
 }
 
-/// Reserves the name first by an empty file: system calls that leave an existing file alone (`link`, `renameat2`) are
-/// not supported by all file systems.
+/// Renames the temporary file to a name that must be unused.
+// An empty file reserves the name first: system calls that leave an existing file alone (`link`, `renameat2`) are not
+// supported by all file systems.
 fn rename_to_unused(temporary: &mut Temporary, target: &Path) -> io::Result<()> {
     File::create_new(target)?;
     temporary.rename(target).inspect_err(|_| {
@@ -150,9 +152,10 @@ fn rename_to_unused(temporary: &mut Temporary, target: &Path) -> io::Result<()> 
     })
 }
 
-/// Replaces by a rename, or in place where a rename would change more than the contents.
+/// Replaces a file by a rename, or in place if a rename would change more than its contents.
 fn rename_or_overwrite(temporary: &mut Temporary, existing: &Metadata, target: &Path) -> io::Result<()> {
     if existing.nlink() == 1 && temporary.copy_owner_and_mode(existing).is_ok() {
+        // Before the rename: otherwise some file systems keep an empty file under the name after a power failure.
         temporary.sync()?;
         match temporary.rename(target) {
             Err(error) if is_replacement_refused(&error) => {}
@@ -162,8 +165,8 @@ fn rename_or_overwrite(temporary: &mut Temporary, existing: &Metadata, target: &
     in_place::write(target, &temporary.contents()?)
 }
 
-/// Returns whether a folder does not allow a new file or a replaced name (another user's file in a sticky folder, a
-/// mount point), although the file itself may be writable.
+/// Returns whether the folder refuses a new file or a replaced name, although the file may be writable.
+// That is so for another user's file in a sticky folder, and for a mount point.
 fn is_replacement_refused(error: &io::Error) -> bool {
     use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem, ResourceBusy};
     matches!(error.kind(), PermissionDenied | ReadOnlyFilesystem | ResourceBusy)

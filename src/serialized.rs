@@ -1,4 +1,4 @@
-//! Serialization of plain values by serde. Invariants are checked when a value is deserialized.
+//! Serialization of plain values by serde, with their invariants checked when they are deserialized.
 
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle};
 use crate::color::{LinearRgb, Srgb8};
@@ -11,7 +11,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::convert::Infallible;
 use std::num::NonZeroU32;
 
-/// Implements both traits by a serialized form: the conversion to it, and the checked conversion back.
+/// Implements both traits by a serialized form: a conversion to it, and a checked conversion back.
+// In one file, not derived at the types: derived impls would bypass the constructors' checks, and private fields would
+// become part of the format.
 macro_rules! serialize_as {
     ($($Type:ty as $Form:ty: $to:expr, $from:expr;)*) => {
         $(impl Serialize for $Type {
@@ -156,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_kept() {
+    fn values_survive_a_round_trip() {
         assert_kept(&LinearRgb::new(0.1, 2.0, 1e-9));
         assert_kept(&Srgb8::new(1, 2, 255));
         assert_kept(&Size::new(80, 24));
@@ -168,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_type_promises_is_checked() {
+    fn invariants_are_checked() {
         assert!(error::<Map>("\"dept\"").contains("did you mean \"depth\"?"));
         assert!(error::<Attributes>("512").contains("nine bits"));
         assert!(

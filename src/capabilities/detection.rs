@@ -2,16 +2,16 @@
 
 use super::{ColorChoice, Colors, Glyphs};
 
-/// An answer and its source.
+/// A detected value and its source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Detected<T> {
-    /// The answer.
+    /// The value.
     pub value: T,
     /// The source.
     pub source: Source,
 }
 
-/// A source of answers about a terminal.
+/// A source of values about a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The user, by a flag or a setting.
@@ -28,14 +28,13 @@ pub enum Source {
     Assumed,
 }
 
-/// The sources that detection may query.
+/// The inputs of detection.
 pub struct Clues<'a> {
     /// Returns the value of an environment variable.
     pub variable: &'a dyn Fn(&str) -> Option<String>,
-    /// Whether the terminal kept a 24-bit colour, if it has replied (DECRQSS of SGR).
+    /// Whether the terminal kept a 24-bit colour, if it replied (DECRQSS of SGR).
     pub truecolor_reply: Option<bool>,
-    /// Returns terminfo's number of colours of a terminal with this name, if known: see
-    /// [`terminfo_colors`](super::terminfo_colors).
+    /// Returns the colours of a terminal name in terminfo, if known (`terminfo_colors` with the feature `live`).
     pub terminfo: &'a dyn Fn(&str) -> Option<Colors>,
 }
 
@@ -44,9 +43,11 @@ pub type GlyphChoice = Option<Glyphs>;
 
 /// Returns the colours to use.
 ///
-/// The first of these that answers decides: the flag; `NO_COLOR`; `COLORTERM`; the terminal's own reply; terminfo's
-/// flags; the name in `TERM`, if it is known for truecolor; terminfo's number; the name. `CLICOLOR_FORCE`,
-/// `FORCE_COLOR` and `--color=always` set a minimum.
+/// The first source with a value decides: the flag; `NO_COLOR`; `COLORTERM`; the terminal's reply; terminfo's truecolor
+/// flags; the name in `TERM`, if it implies truecolor; terminfo's number; the name. `CLICOLOR_FORCE`, `FORCE_COLOR` and
+/// `--color=always` set a minimum.
+// `COLORTERM` before the reply, because it is known before the first frame; the reply before terminfo, because
+// terminals with truecolor share the entry `xterm-256color`.
 pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
     let least = match choice {
         ColorChoice::Never => return Detected { value: Colors::None, source: Source::User },
@@ -61,7 +62,7 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
-/// Returns the glyphs to use: half blocks, unless they would be garbage, or there is no colour to distinguish them.
+/// Returns the glyphs to use: half blocks, unless the locale cannot encode them or there are no colours.
 pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) -> Detected<Glyphs> {
     if let Some(value) = choice {
         return Detected { value, source: Source::User };
@@ -74,7 +75,7 @@ pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) 
             let value = if is_utf8(&locale) { Glyphs::Half } else { Glyphs::Shape };
             Detected { value, source: Source::Variable(name) }
         }
-        // Without a contrary sign UTF-8 is assumed: current terminals show it.
+        // Without a locale (as in many containers and ssh sessions) UTF-8 is assumed: current terminals show it.
         None => Detected { value: Glyphs::Half, source: Source::Assumed },
     }
 }
@@ -84,17 +85,20 @@ fn value(clues: &Clues<'_>, name: &str) -> Option<String> {
     (clues.variable)(name).filter(|value| !value.is_empty())
 }
 
-/// Returns the request of the user's variables; a forced level is a minimum.
+/// Returns the colours that the user's environment variables request; a forced level is a minimum.
 pub(super) fn requested_by_variable(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     refused(clues).or_else(|| forced(clues))
 }
 
-/// The convention of no-color.org: set, and not empty.
+/// Returns no colours if `NO_COLOR` is set and not empty, by the convention of no-color.org.
 fn refused(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     value(clues, "NO_COLOR").map(|_| Detected { value: Colors::None, source: Source::Variable("NO_COLOR") })
 }
 
-/// The conventions of bixense.com/clicolors and of Node: a level, or just that there is to be colour.
+/// Returns the colours that `CLICOLOR_FORCE` or `FORCE_COLOR` requests.
+///
+/// The conventions are those of bixense.com/clicolors, where any value but 0 requests colour, and of Node, with levels
+/// 0 to 3.
 fn forced(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let found = |value, name| Some(Detected { value, source: Source::Variable(name) });
     if value(clues, "CLICOLOR_FORCE").is_some_and(|force| force != "0") {
@@ -109,21 +113,23 @@ fn forced(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     found(value, "FORCE_COLOR")
 }
 
-/// Other values than these two announce colour, but not how many.
+/// Returns truecolor if `COLORTERM` announces it.
+// Other values than these two announce colour, but not how many.
 pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let colorterm = value(clues, "COLORTERM")?.to_ascii_lowercase();
     let is_truecolor = colorterm == "truecolor" || colorterm == "24bit";
     is_truecolor.then_some(Detected { value: Colors::Truecolor, source: Source::Variable("COLORTERM") })
 }
 
-/// A terminal that did not keep the colour may have any smaller number.
+/// Returns truecolor if the terminal kept the test colour.
+// A terminal that did not may have any smaller number of colours, so the later sources decide.
 fn replied(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let kept = clues.truecolor_reply?;
     kept.then_some(Detected { value: Colors::Truecolor, source: Source::Reply })
 }
 
-/// terminfo's flags, then what is known of the name, then terminfo's number, which is too low for names of truecolor
-/// terminals.
+/// Returns the colours by terminfo and the name in `TERM`.
+// terminfo's number is 256 for names of truecolor terminals (alacritty, st), so the name precedes the number.
 fn by_term(clues: &Clues<'_>) -> Detected<Colors> {
     let (terminfo, name) = (by_terminfo(clues), by_name(clues));
     match terminfo {
@@ -137,7 +143,8 @@ fn by_terminfo(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     Some(Detected { value, source: Source::Terminfo })
 }
 
-/// By conventions of names; every emulator of the last twenty years has 256 colours.
+/// Returns the colours by the conventions of terminal names.
+// Unknown names get 256 colours, which every emulator of the last twenty years has.
 fn by_name(clues: &Clues<'_>) -> Detected<Colors> {
     let Some(term) = value(clues, "TERM") else {
         return Detected { value: Colors::Indexed256, source: Source::Assumed };
@@ -158,7 +165,8 @@ fn by_name(clues: &Clues<'_>) -> Detected<Colors> {
     Detected { value, source: Source::Variable("TERM") }
 }
 
-/// The variables that name the locale's character set, in POSIX's order; the first one set counts.
+/// Returns the variable that names the locale's character set, and its value.
+// In POSIX's order: the first one that is set and not empty counts.
 pub(super) fn locale(clues: &Clues<'_>) -> Option<(&'static str, String)> {
     ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, value(clues, name)?)))
 }
@@ -192,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_to_answer_for_colours_is_believed() {
+    fn the_first_source_with_a_value_decides_the_colours() {
         let variable = Source::Variable;
         let xterm = ("TERM", "xterm-256color");
         let truecolor = ("COLORTERM", "truecolor");

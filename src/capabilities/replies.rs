@@ -1,19 +1,19 @@
-//! A terminal's answers to queries, as plain values.
+//! A terminal's replies to queries, as plain values.
 
 use crate::color::{LinearRgb, Srgb8};
 
-/// The answers so far. `None`: no answer.
+/// The replies received so far; a field is `None` without a reply.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Replies {
-    /// Whether it kept [`TEST_COLOR`] as its background colour (DECRQSS of SGR).
+    /// Whether the terminal kept [`TEST_COLOR`] as the background colour (DECRQSS of SGR).
     pub truecolor: Option<bool>,
-    /// Whether it supports synchronized output (DECRQM of mode 2026).
+    /// Whether the terminal supports synchronized output (DECRQM of mode 2026).
     pub synchronized_output: Option<bool>,
-    /// Whether it supports the kitty keyboard protocol; there is no reply for "no".
+    /// Whether the terminal supports the kitty keyboard protocol; never `Some(false)`, as no reply means "no".
     pub kitty_keyboard: Option<bool>,
-    /// Whether it supports SGR mouse reports (DECRQM of mode 1006).
+    /// Whether the terminal supports SGR mouse reports (DECRQM of mode 1006).
     pub sgr_mouse: Option<bool>,
-    /// Whether it supports mouse reports in pixels (DECRQM of mode 1016).
+    /// Whether the terminal supports mouse reports in pixels (DECRQM of mode 1016).
     pub pixel_mouse: Option<bool>,
     /// A cell's width and height in pixels (`CSI 16 t`).
     pub cell_pixels: Option<(u16, u16)>,
@@ -25,12 +25,14 @@ pub struct Replies {
     pub block_width: Option<u16>,
 }
 
-/// The background colour that is set before the colour is queried: none of the 256.
+/// The background colour that is set before the query of the current rendition.
+// None of the 256 palette colours: a terminal without truecolor replies with the nearest of them.
 pub const TEST_COLOR: Srgb8 = Srgb8::new(1, 2, 3);
 
 impl Replies {
-    /// Records the state of a private mode as reported by DECRPM: 0 not recognised, 4 permanently reset.
+    /// Records the state of a private mode as reported by DECRPM.
     pub fn take_mode(&mut self, mode: u16, state: u16) {
+        // 0 means not recognised, 4 permanently reset; 1 to 3 are set, reset and permanently set.
         let known = Some(matches!(state, 1..=3));
         match mode {
             2026 => self.synchronized_output = known,
@@ -40,7 +42,7 @@ impl Replies {
         }
     }
 
-    /// Records a colour, such as `11;rgb:1e1e/1e1e/1e1e`: the contents of an operating system command.
+    /// Records a colour from the contents of an OSC reply, such as `11;rgb:1e1e/1e1e/1e1e`.
     pub fn take_osc(&mut self, text: &[u8]) {
         let Ok(text) = std::str::from_utf8(text) else { return };
         if let Some(color) = text.strip_prefix("11;") {
@@ -52,34 +54,37 @@ impl Replies {
         }
     }
 
-    /// Records the current rendition, such as `1$r0;48:2::1:2:3m`. A refusal (`0$r`) gives no answer.
+    /// Records whether the current rendition, such as `1$r0;48:2::1:2:3m`, contains [`TEST_COLOR`].
+    ///
+    /// A refusal (`0$r`) records nothing.
     pub fn take_dcs(&mut self, text: &[u8]) {
         let rendition = std::str::from_utf8(text).ok().and_then(|text| text.strip_prefix("1$r")?.strip_suffix('m'));
         if let Some(rendition) = rendition {
             let Srgb8 { r, g, b } = TEST_COLOR;
-            // Separated in either way, with or without a colour space.
+            // Terminals reply with semicolons or colons, and with or without the (empty) colour space, which is skipped
+            // here.
             let numbers: Vec<u8> = rendition.split([';', ':']).filter_map(|number| number.parse().ok()).collect();
             self.truecolor = Some(numbers.windows(5).any(|numbers| numbers == [48, 2, r, g, b]));
         }
     }
 
-    /// Records the cursor's column after a half block in the first column, both from 1.
+    /// Records the width of a half block, from the cursor's column (from 1) after one in the first column.
     pub fn take_cursor(&mut self, column: u16) {
         // On a screen of one column the cursor cannot move past the block.
         self.block_width = column.checked_sub(1).filter(|&width| width > 0);
     }
 
-    /// Returns whether the background is light.
+    /// Returns whether the background is light, if its colour is known.
     pub fn light_background(&self) -> Option<bool> {
-        // Mid-grey reflects 18 % of the light.
+        // The threshold is mid-grey, which reflects 18 % of the light: lightness L* = 50.
         self.background.map(|color| LinearRgb::from_srgb8(color).luminance() > 0.18)
     }
 }
 
-/// Parses `rgb:R/G/B` or `rgba:R/G/B/A` with one to four hexadecimal digits each, as X11 writes it, or `#rrggbb`.
+/// Parses X11's `rgb:R/G/B` or `rgba:R/G/B/A` (one to four hexadecimal digits each), or `#rrggbb`.
 fn parse_color(text: &str) -> Option<Srgb8> {
     let [r, g, b] = if let Some(digits) = text.strip_prefix('#') {
-        // By bytes, so that no character is split.
+        // `get` returns `None` inside a character of several bytes, where an index would panic.
         let pair = |at: usize| digits.get(at..at + 2).filter(|_| digits.len() == 6);
         [pair(0)?, pair(2)?, pair(4)?]
     } else {
@@ -90,7 +95,7 @@ fn parse_color(text: &str) -> Option<Srgb8> {
     Some(Srgb8::new(parse_channel(r)?, parse_channel(g)?, parse_channel(b)?))
 }
 
-/// Scales a number from its digits' largest value to 8 bits.
+/// Parses a channel of one to four hexadecimal digits, scaled from its largest value to 255.
 fn parse_channel(digits: &str) -> Option<u8> {
     let is_hex = matches!(digits.len(), 1..=4) && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
     let value = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex)?;
@@ -124,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn backgrounds_and_the_sixteen_colours_are_kept() {
+    fn background_and_palette_replies_are_recorded() {
         let mut replies = Replies::default();
         for text in
             ["11;rgb:ff/ff/ff", "4;15;rgb:1/2/3", "4;16;rgb:1/2/3", "4;x;rgb:1/2/3", "4;1;?", "10;#000000", "11;?"]
@@ -150,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn truecolor_is_what_keeps_the_colour() {
+    fn truecolor_terminals_keep_the_test_colour() {
         for (text, expected) in [
             ("1$r48;2;1;2;3m", Some(true)),
             ("1$r0;48:2::1:2:3m", Some(true)),
@@ -170,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn modes_are_known_or_not() {
+    fn mode_states_1_to_3_mean_support() {
         for (state, known) in [(0, false), (1, true), (2, true), (3, true), (4, false), (9, false)] {
             let mut replies = Replies::default();
             for mode in [2026, 1006, 1016, 7] {
@@ -182,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blocks_width_is_where_the_cursor_went() {
+    fn a_blocks_width_follows_from_the_cursor_column() {
         for (column, width) in [(0, None), (1, None), (2, Some(1)), (3, Some(2)), (4, Some(3))] {
             let mut replies = Replies::default();
             replies.take_cursor(column);

@@ -1,12 +1,14 @@
-//! The terminfo database's number of colours.
+//! The number of colours in the terminfo database.
 
 use super::Colors;
 use termini::{NumberCapability, TermInfo};
 
-/// Returns the colours of a terminal with this name, if the database has it: truecolor by the capabilities `RGB` and
-/// `Tc`, otherwise by their number. The database is searched where ncurses does, which the environment may set.
+/// Returns the colours of a terminal name, if the terminfo database has an entry for it.
+///
+/// The extended capabilities `RGB` and `Tc` mean truecolor; otherwise the number of colours decides. The database is
+/// searched in the folders of ncurses, which environment variables may set.
 pub fn terminfo_colors(term: &str) -> Option<Colors> {
-    // A name is not a path: only files of the database are read.
+    // `TERM` comes from outside: only files of the database are read, no path.
     if term.contains('/') {
         return None;
     }
@@ -45,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_by_flag_then_by_number() {
+    fn the_flag_precedes_the_number() {
         for (colors, flag, expected) in [
             (Some(256), "AX", Colors::Indexed256),
             (Some(256), "Tc", Colors::Truecolor),
@@ -60,9 +62,9 @@ mod tests {
         }
     }
 
-    /// Every truncated entry, and every entry with one byte changed, gives an answer or none, and no panic.
+    /// Every truncated entry, and every entry with one byte changed, is parsed or refused without a panic.
     #[test]
-    fn broken_entries_are_no_answer() {
+    fn broken_entries_do_not_panic() {
         let whole = entry(Some(256), "Tc");
         for end in 0..whole.len() {
             let _ = TermInfo::parse(&whole[..end]).map(|entry| entry_colors(&entry));
@@ -78,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn names_that_nobody_has_are_no_answer() {
+    fn unknown_names_have_no_entry() {
         for name in ["", "no-such-terminal", "../x/xterm", "/etc/passwd", ".", "..", "x\0y"] {
             assert_eq!(terminfo_colors(name), None, "{name:?}");
         }

@@ -1,19 +1,22 @@
-//! Blue noise: thresholds for dithering that never clump.
+//! Blue noise: dither thresholds without visible clusters.
 //!
-//! Made by void and cluster (Robert Ulichney, "The void-and-cluster method for dither array generation", 1993) in
-//! integers from a fixed seed, so that it is the same on every machine, when it is first needed.
+//! The thresholds are made by void and cluster (Robert Ulichney, "The void-and-cluster method for dither array
+//! generation", 1993) at the first use, in integers and from a fixed seed, so that they are the same on every machine.
 
 use std::sync::LazyLock;
 
-/// Side of the tile in pixels, after which the pattern repeats.
+/// Side in pixels of the tile by which the thresholds repeat.
+// Four times the 256 thresholds, so that each occurs four times and the filter (radius 6) does not reach around the
+// tile.
 const TILE_SIDE: usize = 32;
 const TILE_PIXELS: usize = TILE_SIDE * TILE_SIDE;
 
-/// Returns the threshold of a pixel. In a tile each of 0..=255 occurs equally often.
+/// Returns the threshold of a pixel. In a tile each value of 0..=255 occurs equally often.
 pub(super) fn threshold(x: usize, y: usize) -> u8 {
     THRESHOLDS[y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE]
 }
 
+/// The thresholds of a tile, row by row.
 static THRESHOLDS: LazyLock<[u8; TILE_PIXELS]> = LazyLock::new(|| {
     let mut thresholds = [0; TILE_PIXELS];
     for (rank, pixel) in ranked_pixels().into_iter().enumerate() {
@@ -22,13 +25,14 @@ static THRESHOLDS: LazyLock<[u8; TILE_PIXELS]> = LazyLock::new(|| {
     thresholds
 });
 
-/// Returns the pixels in the order in which they light up as a flat grey gets lighter: each time the one farthest from
-/// all lit ones.
+/// Returns the pixels in the order in which they light up as a flat grey gets lighter.
+///
+/// Each next pixel is the largest void: the one farthest from all lit pixels.
 fn ranked_pixels() -> Vec<usize> {
     let mut lit = initial_pattern();
     let mut dark = lit.clone();
     let mut order: Vec<usize> = Vec::with_capacity(TILE_PIXELS);
-    // Backwards from there: the last one to light up was the most crowded.
+    // Backwards from the initial pattern: the last pixel to light up was the tightest cluster.
     while let Some(pixel) = dark.tightest_cluster() {
         dark.toggle(pixel);
         order.push(pixel);
@@ -41,10 +45,10 @@ fn ranked_pixels() -> Vec<usize> {
     order
 }
 
-/// Returns a tenth of the pixels, moved from clusters into voids until no move helps.
+/// Returns a pattern of a tenth of the pixels, moved from clusters to voids until no move helps.
 fn initial_pattern() -> Pattern {
     let mut pattern = Pattern { is_lit: [false; TILE_PIXELS], density: [0; TILE_PIXELS] };
-    // The quick and dirty generator of Numerical Recipes: any start will do.
+    // The linear congruential generator of Numerical Recipes: the moves below remove any structure of the start.
     let mut state = 1_u32;
     for _ in 0..TILE_PIXELS / 10 {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -58,13 +62,14 @@ fn initial_pattern() -> Pattern {
         pattern.toggle(from);
         let Some(to) = pattern.largest_void() else { return pattern };
         pattern.toggle(to);
+        // The pixel returned to its place: the pattern has converged.
         if to == from {
             return pattern;
         }
     }
 }
 
-/// The lit pixels, and how crowded each pixel is by them.
+/// A pattern of lit pixels, and the filtered density of lit pixels around each pixel.
 #[derive(Clone)]
 struct Pattern {
     is_lit: [bool; TILE_PIXELS],
@@ -72,12 +77,13 @@ struct Pattern {
 }
 
 impl Pattern {
-    /// Sets or clears a pixel.
+    /// Lights a dark pixel, or clears a lit one.
     fn toggle(&mut self, pixel: usize) {
         self.is_lit[pixel] ^= true;
         let sign = if self.is_lit[pixel] { 1 } else { -1 };
         let (x, y) = (pixel % TILE_SIDE, pixel / TILE_SIDE);
         for (at, density) in self.density.iter_mut().enumerate() {
+            // The Gaussian is separable. Integers keep the sums exact, so ties are the same everywhere.
             *density +=
                 sign * GAUSSIAN[wrapped_distance(y, at / TILE_SIDE)] * GAUSSIAN[wrapped_distance(x, at % TILE_SIDE)];
         }
@@ -92,13 +98,13 @@ impl Pattern {
     }
 }
 
-/// Returns the distance of two columns or rows of the repeating pattern.
+/// Returns the distance of two columns, or rows, of the repeating tile.
 fn wrapped_distance(a: usize, b: usize) -> usize {
     let distance = a.abs_diff(b);
     distance.min(TILE_SIDE - distance)
 }
 
-/// Returns a Gaussian of 1.5 pixels, Ulichney's choice: `10,000 exp(-d^2 / 4.5)`.
+/// The filter by distance `d` in pixels: `10,000 exp(-d^2 / 4.5)`, with Ulichney's sigma of 1.5 pixels.
 const GAUSSIAN: [i32; TILE_SIDE / 2 + 1] = [10_000, 8_007, 4_111, 1_353, 286, 39, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 
 #[cfg(test)]
@@ -106,15 +112,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_threshold_comes_as_often() {
+    fn thresholds_are_equally_frequent() {
         let mut counts = [0; 256];
         THRESHOLDS.iter().for_each(|&threshold| counts[usize::from(threshold)] += 1);
         assert_eq!(counts, [TILE_PIXELS / 256; 256]);
     }
 
-    /// Blue noise has almost nothing in the means of blocks; white noise has 74 / 4 = 18 there.
+    /// The means of blocks of 16 pixels hardly vary; those of white noise deviate by 74 / 4 = 18.
     #[test]
-    fn the_noise_is_blue() {
+    fn block_means_vary_less_than_those_of_white_noise() {
         let mean = |x: usize, y: usize| {
             let block = (0..16).map(|k| f64::from(threshold(x + k % 4, y + k / 4)));
             block.sum::<f64>() / 16.0 - 127.5

@@ -1,15 +1,15 @@
-//! The sets of colours that cells may have.
+//! The sets of colours that a terminal's cells may have.
 
 use crate::color::Srgb8;
 
-/// A set of colours, fewer before more.
+/// A set of colours. Smaller sets are less than larger ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Colors {
-    /// The terminal's own two: no colour is sent.
+    /// The terminal's two default colours: no colour is sent.
     None,
-    /// Sixteen colours with these values, which users choose in their terminals.
+    /// The first sixteen palette colours, with the values that the terminal's theme gives them.
     Indexed16([Srgb8; 16]),
-    /// The 240 of 256 colours that are the same in every terminal: a cube of six levels per channel, and 24 greys.
+    /// The 240 of the 256 palette colours that themes leave alone: a cube of six levels per channel, and 24 greys.
     Indexed256,
     /// Every 8-bit sRGB colour.
     Truecolor,
@@ -21,7 +21,8 @@ impl Colors {
     pub const SIXTEEN: Self = Self::Indexed16(XTERM_16);
 }
 
-/// xterm's defaults for the sixteen colours.
+/// xterm's defaults of the sixteen colours.
+// They stand in until the terminal reports its own values (OSC 4).
 const XTERM_16: [Srgb8; 16] = [
     Srgb8::new(0, 0, 0),
     Srgb8::new(205, 0, 0),
@@ -41,8 +42,9 @@ const XTERM_16: [Srgb8; 16] = [
     Srgb8::new(255, 255, 255),
 ];
 
-/// Returns the colour with this number, of 256, in xterm: sixteen that users change, a cube of six levels per channel,
-/// and greys.
+/// Returns xterm's default value of a palette colour.
+///
+/// Colours 0..=15 are the theme's, 16..=231 a cube of six levels per channel, 232..=255 greys.
 pub(crate) fn xterm_color(index: u8) -> Srgb8 {
     const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
     match index {

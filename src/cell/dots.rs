@@ -1,5 +1,6 @@
-//! A dot for each light pixel: a cell kind for tests, which shows that a file and a row in the table are all that one
-//! takes.
+//! A dot for each light pixel: a glyph kind that exists in tests only.
+//!
+//! The kind shows that a file and a row in the table suffice to add one.
 
 use super::glyph_kind::{Fill, GlyphKind};
 use crate::grid::{Cell, Grid, Ink};

@@ -1,26 +1,27 @@
-//! The properties of a cell kind.
+//! The properties of a glyph kind.
 
 use super::Glyphs;
 use super::ink_converter::InkConverter;
 use crate::grid::Grid;
 use crate::tone::Picture;
 
-/// Everything particular to a cell kind.
+/// A row of the table of glyph kinds: everything that distinguishes one.
+// One constant per kind: before, a new kind took edits in nine files.
 pub(super) struct GlyphKind {
     pub(super) name: &'static str,
     pub(super) help: &'static str,
     pub(super) title: &'static str,
     pub(super) pixels_per_cell: (u32, u32),
     pub(super) has_blocks: bool,
-    /// The kind used without colours, with the same number of pixels per cell; `None` if this one works without.
+    /// The kind to use without colours, with equal pixels per cell; `None` if this one needs no colours.
     pub(super) plain: Option<Glyphs>,
     pub(super) fill: Fill,
 }
 
-/// The way to fill cells, once per frame.
+/// The function that fills the cells of a frame.
 pub(super) enum Fill {
-    /// Fills glyphs and colours together.
+    /// A function that fills glyphs and colours together.
     Colored(fn(&mut Grid, &Picture, &mut InkConverter)),
-    /// Fills glyphs that show lightness; colours, if any, are added afterwards.
+    /// A function that fills glyphs by lightness; [`tint`](super::tint) adds the colours.
     Lightness(fn(&mut Grid, &Picture)),
 }

@@ -1,4 +1,4 @@
-//! Half blocks: each half of a cell is a pixel.
+//! Half blocks: each half of a cell shows a pixel.
 
 use super::Glyphs;
 use super::glyph_kind::{Fill, GlyphKind};
@@ -14,14 +14,15 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     title: "half blocks",
     pixels_per_cell: (1, 2),
     has_blocks: true,
-    // Without colours a half could only be on or off, which shows little.
+    // Without colours a half is either on or off, which shows less of a picture than ten characters do.
     plain: Some(Glyphs::Ramp),
     fill: Fill::Colored(fill),
 };
 
-/// Returns a lower half block in the lower pixel's colour on the upper pixel's. The upper half block would do as well,
-/// but where the font draws it, it covers a pixel row of the wrong half at odd cell heights; a single glyph everywhere
-/// keeps the split straight. Two equal halves are a space: a full block shows hairlines in some fonts.
+/// Fills each cell with a lower half block in the lower pixel's colour on the upper pixel's.
+// The upper half block would do as well, but at odd cell heights some terminals split the two glyphs one row
+// of pixels apart, and a mix of them shows; one glyph everywhere keeps the split straight. The encoder mixes them where
+// the height is even and that saves bytes. Equal halves are a space: full blocks show hairlines in some fonts.
 fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
     if let InkConverter::Monochrome(palette) = inks {
         return fill_without_colors(grid, picture, palette);
@@ -35,13 +36,14 @@ fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
             *grid.cell_mut(column, row) = match lower {
                 Some(lower) if lower != upper => Cell::new('▄', lower, upper),
                 Some(_) => Cell::new(' ', Ink::Default, upper),
+                // Below the picture: the lower half keeps the default background.
                 None => Cell::new('▀', upper, Ink::Default),
             };
         }
     }
 }
 
-/// Returns the glyph without colours, where each half is on or off.
+/// Fills each cell with the block whose halves are on where the dithered pixels are light.
 fn fill_without_colors(grid: &mut Grid, picture: &Picture, palette: &mut Palette) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {

@@ -1,4 +1,4 @@
-//! The ASCII ramp: a character by lightness, for terminals without colour and for golden text frames.
+//! The ASCII ramp: one of ten characters by lightness, for terminals without colour and golden text frames.
 
 use super::glyph_kind::{Fill, GlyphKind};
 use super::pair;
@@ -17,10 +17,11 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     fill: Fill::Lightness(fill),
 };
 
-/// The characters from dark to light. Users' snapshots depend on them: changing them is a breaking change.
+/// The characters from dark to light.
+// Users' snapshots contain them: a change would be a breaking change.
 pub const RAMP: &[u8; 10] = b" .:-=+*#%@";
 
-/// Fills each cell by the mean light of its pixels.
+/// Fills each cell with the character of its pixels' mean luminance.
 fn fill(grid: &mut Grid, picture: &Picture) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
@@ -35,17 +36,18 @@ fn luminance(pixel: Srgb8) -> f32 {
     LinearRgb::from_srgb8(pixel).luminance()
 }
 
-/// Steps are equal in lightness, so that equal steps of the ramp look equal.
+/// Returns the character of a luminance.
+// Steps are equal in lightness L*, not in luminance, so that they look equal.
 fn glyph(luminance: f32) -> char {
     let step = LUMINANCE_AT_STEP.iter().take_while(|&&least| luminance >= least).count();
     char::from(RAMP[step])
 }
 
-/// The luminance from which each character but the first is used: lightness L* = 100 k / 10.
+/// The least luminance of each character but the first: that of lightness L* = 100 k / 10.
 static LUMINANCE_AT_STEP: LazyLock<[f32; RAMP.len() - 1]> =
     LazyLock::new(|| std::array::from_fn(|k| luminance_from_lightness((k + 1) as f64 / RAMP.len() as f64) as f32));
 
-/// Returns CIE 1976 Y of L*; white is 1 for both.
+/// Returns the luminance Y of a lightness L* (CIE 1976), where white is 1 for both.
 fn luminance_from_lightness(lightness: f64) -> f64 {
     if lightness > 0.08 { libm::pow((lightness + 0.16) / 1.16, 3.0) } else { lightness * 27.0 / 24_389.0 * 100.0 }
 }
@@ -55,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn grey_of_each_tenth_of_lightness_has_its_character() {
+    fn each_tenth_of_lightness_has_its_character() {
         // L* of these sRGB greys is 5, 15, ... 95 (CIE's formula, computed by hand).
         let greys = [17, 38, 59, 82, 106, 131, 157, 184, 212, 240];
         let text: String = greys.iter().map(|&grey| glyph(luminance(Srgb8::new(grey, grey, grey)))).collect();
@@ -63,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn black_and_white_are_the_ends() {
+    fn black_and_white_have_the_first_and_last_character() {
         assert_eq!(glyph(0.0), ' ');
         assert_eq!(glyph(1.0), '@');
     }

@@ -1,11 +1,13 @@
-//! Colours for characters: the glyph shows the lightness of a cell, its colour the hue.
+//! Colours of characters: the glyph shows the lightness of a cell, its colour the hue.
 
 use super::ink_converter::InkConverter;
 use crate::color::{LinearRgb, Srgb8};
 use crate::grid::Grid;
 use crate::tone::Picture;
 
-/// Returns each pixel as the grey of its brightest channel, for glyphs whose colour has a channel at full brightness.
+/// Returns the picture with each pixel replaced by the grey of its brightest channel.
+// The glyph's colour has one channel at the maximum, so the coverage has to supply the brightness of that channel; by
+// luminance, saturated blue would get hardly any ink.
 pub(super) fn brightness(picture: &Picture) -> Picture {
     let grey = |pixel: &Srgb8| {
         let brightest = pixel.r.max(pixel.g).max(pixel.b);
@@ -14,14 +16,14 @@ pub(super) fn brightness(picture: &Picture) -> Picture {
     Picture { pixels: picture.pixels.iter().map(grey).collect(), ..*picture }
 }
 
-/// Colours each cell's character by the mean of its pixels at full brightness, on black. Where the terminal's own
-/// background is light, the ink is dark.
+/// Colours each cell's character by its pixels' mean light at full brightness, on black.
 pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u32), inks: &mut InkConverter) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
             let color = at_full_brightness(mean(picture, pixels_per_cell, column, row));
             let cell = grid.cell_mut(column, row);
             cell.bg = inks.background();
+            // A blank shows no colour, and each change of colour takes bytes.
             if cell.glyph != ' ' {
                 cell.fg = inks.ink_at(color, column.into(), row.into());
             }
@@ -29,7 +31,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u3
     }
 }
 
-/// Returns the mean light of a cell's pixels.
+/// Returns the mean of a cell's pixels, taken in linear light.
 fn mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) -> Srgb8 {
     let (left, top) = (u32::from(column) * across, u32::from(row) * down);
     let (right, bottom) = ((left + across).min(picture.width), (top + down).min(picture.height));
@@ -42,9 +44,9 @@ fn mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) ->
     Srgb8::from_linear(light * (1.0 / ((right - left) * (bottom - top)) as f32))
 }
 
-/// Returns the same hue with its brightest channel at the maximum; black stays black.
+/// Scales a colour so that its brightest channel is 255; black stays black.
 fn at_full_brightness(color: Srgb8) -> Srgb8 {
     let max = u32::from(color.r.max(color.g).max(color.b).max(1));
-    let scaled = |channel: u8| (u32::from(channel) * 255 / max) as u8; // no channel is above the max
+    let scaled = |channel: u8| (u32::from(channel) * 255 / max) as u8; // no channel exceeds `max`
     Srgb8::new(scaled(color.r), scaled(color.g), scaled(color.b))
 }

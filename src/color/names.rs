@@ -2,7 +2,8 @@
 
 use super::Srgb8;
 
-/// The named colours of CSS Color Module Level 4, sorted by name.
+/// The named colours of CSS Color Module Level 4, sorted by name for the binary search.
+// A table of our own: the crates with these names also parse CSS colour functions, which scene files do not allow.
 const CSS: [(&str, [u8; 3]); 148] = [
     ("aliceblue", [240, 248, 255]),
     ("antiquewhite", [250, 235, 215]),
@@ -163,7 +164,7 @@ impl Srgb8 {
         Some(Self::new(r, g, b))
     }
 
-    /// Returns all names of colours.
+    /// Returns all colour names in alphabetical order.
     pub(crate) fn names() -> impl Iterator<Item = &'static str> {
         CSS.into_iter().map(|(name, _)| name)
     }

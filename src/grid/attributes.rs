@@ -4,30 +4,31 @@ use std::fmt;
 use std::ops::{BitAnd, BitOr, BitXor};
 
 /// A set of text attributes: bold, underlined and so on.
+// A type of our own, not ratatui's `Modifier`, so that grids and the encoder need no ratatui.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Attributes(u16);
 
 impl Attributes {
-    /// More intense, or heavier.
+    /// Bold: more intense, or heavier (SGR 1).
     pub const BOLD: Self = Self(1);
-    /// Less intense.
+    /// Dim: less intense (SGR 2).
     pub const DIM: Self = Self(1 << 1);
-    /// Slanted.
+    /// Italic (SGR 3).
     pub const ITALIC: Self = Self(1 << 2);
-    /// With a line below.
+    /// Underlined (SGR 4).
     pub const UNDERLINED: Self = Self(1 << 3);
-    /// Blinking, less than 150 times a minute.
+    /// Blinking less than 150 times a minute (SGR 5).
     pub const SLOW_BLINK: Self = Self(1 << 4);
-    /// Blinking, 150 times a minute or more.
+    /// Blinking 150 times a minute or more (SGR 6).
     pub const RAPID_BLINK: Self = Self(1 << 5);
-    /// With its two colours exchanged.
+    /// With the colours of glyph and background exchanged (SGR 7).
     pub const REVERSED: Self = Self(1 << 6);
-    /// Not shown.
+    /// Hidden (SGR 8).
     pub const HIDDEN: Self = Self(1 << 7);
-    /// With a line through the middle.
+    /// Crossed out (SGR 9).
     pub const CROSSED_OUT: Self = Self(1 << 8);
 
-    /// Each attribute and its name, in the order of SGR's codes, which are 1 to 9.
+    /// The attributes and their names, in the order of their SGR codes 1 to 9.
     const NAMES: [(Self, &'static str); 9] = [
         (Self::BOLD, "BOLD"),
         (Self::DIM, "DIM"),
@@ -40,31 +41,31 @@ impl Attributes {
         (Self::CROSSED_OUT, "CROSSED_OUT"),
     ];
 
-    /// Returns the set without any.
+    /// Returns the empty set.
     #[doc(hidden)]
     pub const fn empty() -> Self {
         Self(0)
     }
 
-    /// Returns the set of all nine.
+    /// Returns the set of all nine attributes.
     #[doc(hidden)]
     pub const fn all() -> Self {
         Self((1 << Self::NAMES.len()) - 1)
     }
 
-    /// Returns the attributes of these bits, [`BOLD`](Self::BOLD) first; the seven highest mean nothing.
+    /// Returns the attributes of these bits, [`BOLD`](Self::BOLD) lowest; the seven highest bits are ignored.
     #[doc(hidden)]
     pub const fn from_bits_truncate(bits: u16) -> Self {
         Self(bits & Self::all().0)
     }
 
-    /// Returns its bits, [`BOLD`](Self::BOLD) first.
+    /// Returns the bits of the set, [`BOLD`](Self::BOLD) lowest.
     #[doc(hidden)]
     pub const fn bits(self) -> u16 {
         self.0
     }
 
-    /// Returns whether there are none.
+    /// Returns whether the set is empty.
     #[doc(hidden)]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
@@ -75,31 +76,31 @@ impl Attributes {
         self.0 & other.0 == other.0
     }
 
-    /// Returns what is in either set.
+    /// Returns the union of both sets.
     #[doc(hidden)]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Returns what is in this set and not in `other`.
+    /// Returns the attributes of this set that are not in `other`.
     #[doc(hidden)]
     pub const fn difference(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Adds all of `other`.
+    /// Adds all attributes of `other`.
     #[doc(hidden)]
     pub const fn insert(&mut self, other: Self) {
         *self = self.union(other);
     }
 
-    /// Takes all of `other` away.
+    /// Removes all attributes of `other`.
     #[doc(hidden)]
     pub const fn remove(&mut self, other: Self) {
         *self = self.difference(other);
     }
 
-    /// Returns the attributes one by one, in the order of SGR's codes.
+    /// Returns the attributes of the set as sets of one, in the order of their SGR codes.
     #[doc(hidden)]
     pub fn iter(self) -> impl Iterator<Item = Self> {
         Self::NAMES.into_iter().map(|(one, _)| one).filter(move |&one| self.contains(one))
@@ -136,7 +137,7 @@ impl FromIterator<Self> for Attributes {
     }
 }
 
-/// Its names: `BOLD | ITALIC`.
+/// Writes the names of the attributes: `BOLD | ITALIC`.
 impl fmt::Debug for Attributes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names = Self::NAMES.into_iter().filter(|&(one, _)| self.contains(one)).map(|(_, name)| name);
@@ -149,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_attribute_has_a_bit_of_its_own() {
+    fn attributes_have_distinct_bits() {
         let apart: Vec<_> = Attributes::all().iter().collect();
         for (at, &one) in apart.iter().enumerate() {
             let before: Attributes = apart[..at].iter().copied().collect();
@@ -160,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn sets_are_told_apart() {
+    fn set_operations_agree_with_the_bits() {
         let (bold, line) = (Attributes::BOLD, Attributes::UNDERLINED);
         let mut both = bold | line;
         assert!(both.contains(line) && !both.contains(line | Attributes::DIM));

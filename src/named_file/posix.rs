@@ -10,8 +10,8 @@ use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Limit on the time without bytes from a pipe. A program that writes into `<(...)` has started by then, and a longer
-/// wait looks like a hang.
+/// Longest time without bytes from a pipe.
+// A program that writes into `<(...)` has started by then, and a longer wait looks like a hang.
 const PIPE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Opens a file and returns its size, if known: a pipe has none, and a file may grow.
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_accepted_is_read() {
+    fn only_accepted_kinds_of_files_are_read() {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let (file, socket) = (folder.path().join("file"), folder.path().join("socket"));
         fs::write(&file, "hello").expect("written");
@@ -107,7 +107,7 @@ mod tests {
 
     /// The writer waits until its last bytes have been read: the reader then has found the pipe empty, or is about to.
     #[test]
-    fn a_pipe_is_read_to_its_end_however_slowly_it_comes() {
+    fn a_slow_pipe_is_read_to_its_end() {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let path = fifo(folder.path());
         let parts: Vec<_> = (0..40).map(|part| vec![part; 100_000]).collect();
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pipe_without_end_is_given_up() {
+    fn a_pipe_without_end_is_refused_at_the_limit() {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let path = fifo(folder.path());
         let writer = path.clone();

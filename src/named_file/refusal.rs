@@ -3,11 +3,13 @@
 use std::fmt;
 use std::io::{self, ErrorKind};
 
-/// An error with a message of our own.
+/// Returns an error with a message of our own.
 pub(super) fn refused(kind: ErrorKind, message: String) -> io::Error {
     io::Error::new(kind, Refusal(message))
 }
 
+/// The payload of our own errors.
+// A type of its own, so that `reason` recognises messages that need no prefix.
 #[derive(Debug)]
 struct Refusal(String);
 
@@ -19,7 +21,8 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// Returns the reason in the words that follow a file's name and a colon in a message.
+/// Returns the message of an error, to follow a file's name and a colon.
+// The system's own messages end with "(os error 2)", which helps no user, so the common ones are replaced.
 pub fn reason(error: &io::Error) -> String {
     match error.kind() {
         _ if error.get_ref().and_then(|inner| inner.downcast_ref::<Refusal>()).is_some() => error.to_string(),

@@ -1,4 +1,4 @@
-//! Writing over a file's old bytes, where it cannot be replaced.
+//! Writing over the old bytes of a file that cannot be replaced.
 
 use rustix::fs::{FlockOperation, fcntl_lock};
 use rustix::io::retry_on_intr;
@@ -7,12 +7,13 @@ use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
-/// Writes the whole contents. The old bytes are overwritten before the length changes: a file that does not grow needs
-/// no space, and if the space for growing is missing, all old bytes can be written back.
+/// Writes the whole contents over a file, and restores the old ones if that fails.
+// The old bytes are overwritten before the length changes: a file that does not grow needs no space, and if the space
+// for growing is missing, all old bytes can be written back. Truncating first would give their space away.
 pub(super) fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
     let file = open(path)?;
-    // Closing the file unlocks it. Not `flock`: `flock FILE termtrace frame ... -o FILE` would wait for itself. Some
-    // file systems have no locks.
+    // Closing the file unlocks it. `flock` is not used, because `flock FILE termtrace frame ... -o FILE` would wait for
+    // itself. An error is ignored: some file systems have no locks.
     let _ = retry_on_intr(|| fcntl_lock(&file, FlockOperation::LockExclusive));
     let old = OldContents::read(&file, contents.len())?;
     overwrite(&file, contents).map_err(|error| match old.restore(&file) {
@@ -21,7 +22,8 @@ pub(super) fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
     })
 }
 
-/// The old bytes of a file that can be written but not read are lost on failure.
+/// Opens the file for reading and writing, or for writing alone if it may not be read.
+// The old bytes of a file that may not be read are lost if writing fails.
 fn open(path: &Path) -> io::Result<File> {
     File::options().read(true).write(true).open(path).or_else(|_| File::options().write(true).open(path))
 }
@@ -33,9 +35,9 @@ fn overwrite(mut file: &File, contents: &[u8]) -> io::Result<()> {
     file.sync_all()
 }
 
-/// The old contents, to be restored on failure.
+/// The old contents, to be restored if writing fails.
 struct OldContents {
-    /// The first bytes, which are overwritten.
+    /// The first bytes, which the new contents overwrite.
     start: io::Result<Vec<u8>>,
     length: u64,
 }
@@ -47,7 +49,8 @@ impl OldContents {
         Ok(Self { start: read.map(|_| start), length: file.metadata()?.len() })
     }
 
-    /// Restores only what was overwritten: where writing failed, it would fail again.
+    /// Writes the overwritten bytes back and restores the length.
+    // Only the bytes before the failure: beyond it, writing would fail again.
     fn restore(self, mut file: &File) -> io::Result<()> {
         let written = file.stream_position()? as usize;
         let start = self.start?;

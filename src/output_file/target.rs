@@ -1,4 +1,4 @@
-//! The target of a path, and whether it may be written.
+//! The target of a path, and the check that it may be written.
 
 use rustix::fs::{Access, access};
 use rustix::io::Errno;
@@ -7,14 +7,17 @@ use std::io;
 use std::iter::successors;
 use std::path::{Path, PathBuf};
 
-/// Limit on links followed, as in Linux. The system has followed them before, and found no loop.
+/// Largest number of symbolic links followed: Linux's limit.
+// The system has resolved the path before, so this limit only ends a loop made in between.
 const MAX_FOLLOWED_LINKS: usize = 40;
 
-/// Opens a target that can only be written directly: a device, a pipe, a system file (`/proc/...`), or a descriptor
-/// (`/dev/stdout`), which may refer to a plain file that another process has open. `None` for everything else.
+/// Opens a target that can only be written directly; returns `None` for everything else.
+///
+/// Such a target is a device, a pipe, a system file (`/proc/...`), or a descriptor (`/dev/stdout`), which may refer to
+/// a plain file that another process has open.
 ///
 /// # Errors
-/// If it cannot be opened, or the path cannot be followed.
+/// If the target cannot be opened, or the path cannot be resolved.
 /// If it cannot be opened, or the path cannot be followed.
 pub fn open_stream(path: &Path) -> io::Result<Option<File>> {
     let is_stream = match fs::metadata(path) {
@@ -26,13 +29,14 @@ pub fn open_stream(path: &Path) -> io::Result<Option<File>> {
     is_stream.then(|| File::options().write(true).truncate(true).open(path)).transpose()
 }
 
-/// Returns the path after all symbolic links, whether or not something exists there.
+/// Returns the path after all symbolic links, which need not exist.
+// Not `canonicalize`, which requires that the target exists: a dangling link gets its target created.
 pub(super) fn resolve_links(path: &Path) -> PathBuf {
     link_chain(path).last().unwrap_or_else(|| path.to_owned())
 }
 
-/// Checks that there is a plain file that this process may write. Checked by `access`, not by opening it: a watcher
-/// would take the closed file for a new one.
+/// Checks that the target is a plain file that this process may write.
+// By `access`, not by opening it: a file watcher would take the close for a change.
 pub(super) fn check_writable(path: &Path, data: &Metadata) -> io::Result<()> {
     if data.is_dir() {
         return Err(Errno::ISDIR.into());
@@ -43,7 +47,8 @@ pub(super) fn check_writable(path: &Path, data: &Metadata) -> io::Result<()> {
     Ok(access(path, Access::WRITE_OK)?)
 }
 
-/// Checks that a file can have this name; otherwise the rename would fail after everything is written.
+/// Checks that a file can have this name.
+// Otherwise the rename would fail, after everything has been written.
 pub(super) fn check_names_a_file(path: &Path) -> io::Result<()> {
     match path.as_os_str().as_encoded_bytes() {
         [] => Err(Errno::NOENT.into()),
@@ -52,18 +57,19 @@ pub(super) fn check_names_a_file(path: &Path) -> io::Result<()> {
     }
 }
 
+/// Returns the folder that contains the path.
 pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."))
 }
 
-/// Returns the path and the target of each symbolic link.
+/// Returns the path, followed by the target of each symbolic link on the way.
 fn link_chain(path: &Path) -> impl Iterator<Item = PathBuf> {
     let next = |path: &PathBuf| fs::read_link(path).ok().map(|to| folder_of(path).join(to));
     successors(Some(path.to_owned()), next).take(MAX_FOLLOWED_LINKS + 1)
 }
 
-/// Returns whether a name belongs to the system: a descriptor or a kernel file. (Below `/dev` there are folders for
-/// everybody, such as `/dev/shm`.)
+/// Returns whether a path is a descriptor or a kernel file.
+// Not everything below `/dev`: folders such as `/dev/shm` hold users' files.
 fn is_system_path(path: &Path) -> bool {
     let folder = folder_of(path).canonicalize();
     folder.is_ok_and(|folder| {

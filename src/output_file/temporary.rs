@@ -1,4 +1,4 @@
-//! Temporary files: created, renamed, and found again if their process was killed.
+//! Temporary files: their creation, renaming, and removal after their process was killed.
 //!
 //! Each is locked (`flock`) while its process lives. Creating and locking are two steps; if another process takes an
 //! unlocked file for a leftover in between, the creator notices that the file is gone and creates another.
@@ -12,28 +12,31 @@ use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt, fchown};
 use std::path::{Path, PathBuf};
 
-/// Names are `.termtrace-PROCESS-NUMBER.tmp`.
+/// Start of a temporary file's name, which is `.termtrace-PROCESS-NUMBER.tmp`.
 const NAME_PREFIX: &str = ".termtrace-";
+/// End of a temporary file's name.
 const NAME_SUFFIX: &str = ".tmp";
 
-/// Limit on the names tried: more than a process writes at once, or than earlier processes with its number can leave.
+/// Largest number of names tried.
+// More than a process writes at once, and than killed processes with the same number leave.
 const MAX_NAME_ATTEMPTS: u32 = 1000;
 
 /// A locked temporary file, removed when dropped.
 #[derive(Debug)]
 pub(super) struct Temporary {
-    /// `None` after it was renamed or removed.
+    /// The path; `None` after a rename.
     path: Option<PathBuf>,
     file: File,
 }
 
 impl Temporary {
-    /// Creates one for a new file, with the mode that the umask gives.
+    /// Creates a temporary file for a new file, with the mode that the umask gives.
     pub(super) fn new_file(target: &Path) -> io::Result<Self> {
         Self::create_beside(target, 0o666)
     }
 
-    /// Creates one for a file that already has a mode and may be secret.
+    /// Creates a temporary file for an existing one, readable by its owner only.
+    // The existing file may be secret, so its mode is copied only when the contents are complete.
     pub(super) fn private(target: &Path) -> io::Result<Self> {
         Self::create_beside(target, 0o600)
     }
@@ -48,7 +51,7 @@ impl Temporary {
                         return Ok(temporary);
                     }
                 }
-                // Used by a process with the same number in a container, or a leftover.
+                // The name of a leftover, or of a process with the same number in another container.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
@@ -56,9 +59,9 @@ impl Temporary {
         Err(io::Error::other("its folder is full of temporary files"))
     }
 
-    /// Locks a file just created; `None` if another process takes it for a leftover.
+    /// Locks a file just created; returns `None` if another process removes it as a leftover.
     fn lock_new(path: PathBuf, file: File) -> io::Result<Option<Self>> {
-        // Where the file system has no locks, no other process gets one to remove it either.
+        // On a file system without locks no other process gets one to remove the file either.
         let is_taken = try_lock(&file) == Err(Errno::WOULDBLOCK);
         if is_taken || !has_path(&file, &path)? {
             return Ok(None);
@@ -99,12 +102,12 @@ impl Temporary {
         Ok(contents)
     }
 
-    /// Removes the files like this one in its folder, of the same owner, whose processes have ended.
+    /// Removes temporary files of the same owner in this folder whose processes have ended.
     pub(super) fn remove_stale(&self) {
         let Some((path, own)) = self.path.as_deref().zip(self.file.metadata().ok()) else { return };
         for entry in fs::read_dir(folder_of(path)).into_iter().flatten().flatten() {
             if is_temporary_name(&entry.file_name()) {
-                // Not ours, or gone already.
+                // Errors are ignored: the file is another user's, or already removed.
                 let _ = remove_if_stale(&entry.path(), own.uid());
             }
         }
@@ -129,8 +132,9 @@ impl Drop for Temporary {
     }
 }
 
-/// A living writer holds the lock. With the lock ours, the file has no writer; and if it still has the name, no other
-/// process can take the name from it.
+/// Removes a temporary file that no process has locked.
+// A living writer holds the lock. If we hold it, the file has no writer; and if the file still has the name, no other
+// process can take the name from it.
 fn remove_if_stale(path: &Path, owner: u32) -> io::Result<()> {
     let data = fs::symlink_metadata(path)?;
     if data.is_file() && data.uid() == owner {
@@ -143,12 +147,13 @@ fn remove_if_stale(path: &Path, owner: u32) -> io::Result<()> {
     Ok(())
 }
 
-/// Locks the file unless another process has. (The standard library's function requires Rust 1.89.)
+/// Locks the file, unless another process has locked it.
+// The standard library's `File::try_lock` requires Rust 1.89; the crate supports 1.88.
 fn try_lock(file: &File) -> rustix::io::Result<()> {
     flock(file, FlockOperation::NonBlockingLockExclusive)
 }
 
-/// Returns whether the file has this name.
+/// Returns whether the path refers to this file.
 fn has_path(file: &File, path: &Path) -> io::Result<bool> {
     let own = file.metadata()?;
     match fs::symlink_metadata(path) {
@@ -158,7 +163,7 @@ fn has_path(file: &File, path: &Path) -> io::Result<bool> {
     }
 }
 
-/// Returns whether a name matches our pattern exactly.
+/// Returns whether a name is exactly one of a temporary file.
 fn is_temporary_name(name: &OsStr) -> bool {
     let numbers =
         name.to_str().and_then(|name| name.strip_prefix(NAME_PREFIX)?.strip_suffix(NAME_SUFFIX)?.split_once('-'));
@@ -171,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_our_own_names_are_temporary() {
+    fn only_exact_names_are_temporary() {
         for (name, expected) in [
             (".termtrace-1-0.tmp", true),
             (".termtrace-4194304-999.tmp", true),
@@ -191,7 +196,7 @@ mod tests {
 
     /// Another process may look at the folder between the creation of a file and its lock.
     #[test]
-    fn a_file_taken_for_a_leftover_is_not_written() {
+    fn a_file_claimed_as_a_leftover_is_not_written() {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let path = folder.path().join(".termtrace-1-0.tmp");
         let made = || File::create_new(&path).expect("the name is unused");
@@ -199,8 +204,8 @@ mod tests {
         fs::remove_file(&path).expect("it is there");
         assert!(Temporary::lock_new(path.clone(), removed).expect("it can be looked at").is_none());
         let (locked, other) = (made(), File::open(&path).expect("it is there"));
-        other.lock().expect("nobody has it");
+        other.lock().expect("no process has locked it");
         assert!(Temporary::lock_new(path.clone(), locked).expect("it can be looked at").is_none());
-        assert!(path.exists(), "who has the lock removes it");
+        assert!(path.exists(), "the process with the lock removes it");
     }
 }

@@ -2,7 +2,7 @@ use super::*;
 use std::os::unix::fs::{PermissionsExt, chown, symlink};
 use tempfile::TempDir;
 
-const OLD: &[u8] = b"what stood there";
+const OLD: &[u8] = b"the old contents";
 
 struct Folder(TempDir);
 
@@ -15,7 +15,7 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// With a file that has the old contents.
+    /// Creates a file with the old contents.
     fn old(&self, name: &str) -> PathBuf {
         fs::write(self.path(name), OLD).expect("the file can be written");
         self.path(name)
@@ -52,7 +52,7 @@ fn set_mode(path: &Path, mode: u32) {
 }
 
 #[test]
-fn the_old_file_stands_until_the_new_one_is_finished() {
+fn the_old_file_stays_until_the_new_one_is_finished() {
     let folder = Folder::new();
     let old = folder.old("x");
     let file = begun(&old, b"new");
@@ -99,7 +99,7 @@ fn an_existing_file_keeps_owner_and_mode() {
 }
 
 #[test]
-fn what_is_written_for_a_secret_file_is_secret() {
+fn the_temporary_file_of_a_secret_file_is_secret() {
     let folder = Folder::new();
     let file = folder.old("x");
     set_mode(&file, 0o640);
@@ -130,7 +130,7 @@ fn symbolic_links_are_followed_and_stay() {
 }
 
 #[test]
-fn what_cannot_be_a_file_is_refused_at_once() {
+fn an_impossible_target_is_refused_at_once() {
     let folder = Folder::new();
     symlink("missing/x", folder.path("nowhere")).expect("a link can be made");
     symlink("loop", folder.path("loop")).expect("a link can be made");
@@ -146,7 +146,7 @@ fn what_cannot_be_a_file_is_refused_at_once() {
 
 /// A name of 255 bytes has no room for an ending.
 #[test]
-fn a_name_may_be_as_long_as_any() {
+fn a_name_may_have_255_bytes() {
     let folder = Folder::new();
     let name = "x".repeat(255);
     write(&folder.path(&name), b"new");
@@ -154,7 +154,7 @@ fn a_name_may_be_as_long_as_any() {
 }
 
 #[test]
-fn a_hard_link_is_not_cut() {
+fn a_hard_link_is_preserved() {
     let folder = Folder::new();
     let file = folder.old("x");
     fs::hard_link(&file, folder.path("y")).expect("a link can be made");
@@ -166,7 +166,7 @@ fn a_hard_link_is_not_cut() {
 }
 
 #[test]
-fn streams_are_told_from_files() {
+fn streams_are_distinguished_from_files() {
     let folder = Folder::new();
     let is_stream = |path: &Path| open_stream(path).expect("it can be looked at").is_some();
     let file = folder.old("x");
@@ -177,7 +177,7 @@ fn streams_are_told_from_files() {
         assert!(!is_stream(&folder.path(name)), "{name}");
     }
     assert_eq!(folder.read("x"), OLD);
-    // A descriptor of a plain file: whoever opened it would not see one that takes its name.
+    // A descriptor of a plain file: the process that opened it would not see a file that takes the name.
     if cfg!(target_os = "linux") {
         use std::os::fd::AsRawFd;
         let open = File::options().append(true).open(&file).expect("it is there");
@@ -190,7 +190,7 @@ fn streams_are_told_from_files() {
 }
 
 #[test]
-fn a_name_that_is_used_is_not_taken() {
+fn a_used_name_is_not_overwritten() {
     let folder = Folder::new();
     folder.old("x");
     symlink("missing", folder.path("dangling")).expect("a link can be made");
@@ -198,7 +198,7 @@ fn a_name_that_is_used_is_not_taken() {
     for name in ["x", "dangling"] {
         assert!(is_used(OutputFile::create_new(&folder.path(name)).map(drop)), "{name}");
     }
-    // Nor if another takes it meanwhile.
+    // The name may also be taken meanwhile.
     let file = OutputFile::create_new(&folder.path("y")).expect("it can be begun");
     folder.old("y");
     assert!(is_used(file.finish()));
@@ -206,7 +206,7 @@ fn a_name_that_is_used_is_not_taken() {
 }
 
 #[test]
-fn only_what_a_dead_writer_left_is_removed() {
+fn only_leftovers_of_dead_writers_are_removed() {
     let folder = Folder::new();
     let (first, second) = (begun(&folder.path("x"), b"first"), begun(&folder.path("y"), b"second"));
     let living = folder.names();
@@ -233,7 +233,7 @@ fn only_what_a_dead_writer_left_is_removed() {
 }
 
 #[test]
-fn of_two_writers_of_a_name_the_later_one_has_it() {
+fn the_later_of_two_writers_gets_the_name() {
     let folder = Folder::new();
     for there in [false, true] {
         let file = folder.path("x");
@@ -245,9 +245,9 @@ fn of_two_writers_of_a_name_the_later_one_has_it() {
     }
 }
 
-/// As where its folder takes no new file.
+/// Without a folder that allows a new file, the file is overwritten.
 #[test]
-fn in_place_all_old_bytes_go() {
+fn writing_in_place_replaces_all_old_bytes() {
     let folder = Folder::new();
     let file = folder.old("x");
     let inode = fs::metadata(&file).expect("it is there").ino();

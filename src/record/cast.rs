@@ -1,4 +1,4 @@
-//! Asciicasts.
+//! Recording of asciicasts.
 
 use crate::encode::{Allowance, Encoder, Quality};
 use crate::grid::{Grid, Size};
@@ -6,22 +6,34 @@ use std::fmt;
 use std::io::{self, Write};
 use std::time::Duration;
 
-/// An asciicast (version 2, as asciinema plays it) of an encoder's bytes: one output event for each frame, empty if
-/// nothing is to be sent, at the frame's number divided by the frame rate. The last frame, which stays on the screen,
-/// is exact whatever the quality.
+/// An asciicast (version 2, the format of asciinema) of an encoder's bytes.
 ///
-/// It contains frames only: no modes are switched, and no queries are sent to the viewer's terminal.
+/// Each frame is one output event, empty if nothing is to be sent, at the frame's number divided by the frame rate. The
+/// last frame, which stays on the screen, is exact with every quality. The cast contains frames only: it switches no
+/// modes, and sends no queries to the viewer's terminal.
+///
+/// ```
+/// use termtrace::{Cast, Encoder, Grid, Size};
+///
+/// let size = Size::new(80, 24);
+/// let mut cast = Cast::begin(Vec::new(), size, Encoder::new(), 30)?;
+/// cast.frame(Grid::new(size))?;
+/// let file = cast.end()?;
+/// assert!(file.starts_with(br#"{"version":2,"width":80,"height":24}"#));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub struct Cast<W: Write> {
     out: W,
     encoder: Encoder,
     quality: Quality,
-    /// Limit on the bytes per second.
+    /// The limit on bytes per second.
     max_rate: Option<u32>,
     frames_per_second: u32,
     frame: u64,
-    /// Time at which everything sent has arrived at that rate.
+    /// The time at which everything sent has arrived at this rate.
     free_at: Duration,
-    /// The last frame and its bytes, which may be incomplete.
+    /// The last frame and its bytes, which may not show the frame exactly.
+    // Written one frame late, because only `end` knows which frame is the last.
     last: Option<(Grid, Vec<u8>)>,
 }
 
@@ -34,7 +46,7 @@ impl<W: Write> fmt::Debug for Cast<W> {
 }
 
 impl<W: Write> Cast<W> {
-    /// Starts a film for a terminal of this size.
+    /// Starts a film for a terminal of this size in cells.
     ///
     /// # Errors
     /// If writing fails.
@@ -46,21 +58,22 @@ impl<W: Write> Cast<W> {
             encoder,
             quality: Quality::Exact,
             max_rate: None,
-            frames_per_second: frames_per_second.max(1),
+            frames_per_second: frames_per_second.max(1), // times are divided by it
             frame: 0,
             free_at: Duration::ZERO,
             last: None,
         })
     }
 
-    /// Sets the quality.
+    /// Sets the quality of all frames but the last.
     #[doc(hidden)]
     pub fn with_quality(self, quality: Quality) -> Self {
         Self { quality, ..self }
     }
 
-    /// Sets the rate of the link in bytes per second: while bytes are on their way, frames are dropped (their events
-    /// are empty), except the last frame, which does not wait.
+    /// Sets the rate of the link in bytes per second.
+    ///
+    /// While bytes are on their way, frames are dropped: their events are empty. The last frame is always sent.
     #[doc(hidden)]
     pub fn with_max_rate(self, max_rate: Option<u32>) -> Self {
         Self { max_rate, ..self }
@@ -74,6 +87,7 @@ impl<W: Write> Cast<W> {
         self.write_last()?;
         let mut bytes = Vec::new();
         let now = Duration::from_secs_f64(self.time());
+        // As in the live view, a late frame is dropped, not queued: queued frames would fall behind more and more.
         if self.free_at <= now {
             let most_bytes = self.max_rate.map(|rate| (rate / self.frames_per_second) as usize);
             let allowance = Allowance { quality: self.quality, now, most_bytes };

@@ -1,4 +1,4 @@
-//! GIFs.
+//! Recording of animated GIFs.
 
 use crate::framebuffer::Resolution;
 use crate::tone::Picture;
@@ -6,11 +6,22 @@ use gif::{EncodingError, Repeat};
 use std::fmt;
 use std::io::{self, Write};
 
-/// A GIF that repeats for ever. Viewers take its pixels as square: where the picture's are not, they are repeated along
-/// the longer axis, so that the picture has the right shape.
+/// An animated GIF that repeats for ever.
 ///
-/// Each frame has its own 256 colours. Delays are whole hundredths of a second; the rounding error is carried over to
-/// the next frame, so that the total time is right. (Viewers show delays of less than two hundredths much longer.)
+/// Viewers show the pixels of a GIF as squares. Pixels of another aspect are repeated along their longer axis, so that
+/// the picture has the right shape. Each frame has its own 256 colours. Delays are whole hundredths of a second; the
+/// rounding error is carried over to the next frame, so that the total time is right. (Viewers show delays of less than
+/// two hundredths much longer.)
+///
+/// ```
+/// use termtrace::{Gif, Picture, Resolution, Srgb8};
+///
+/// let picture = Picture::from_pixels(4, 2, vec![Srgb8::new(90, 160, 40); 8]).ok_or("4 by 2 pixels")?;
+/// let mut gif = Gif::begin(Vec::new(), Resolution::new(4, 2)?, 8, 25)?;
+/// gif.frame(&picture)?;
+/// assert!(gif.end()?.starts_with(b"GIF89a"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Gif<W: Write> {
     encoder: gif::Encoder<W>,
     resolution: Resolution,
@@ -29,7 +40,7 @@ impl<W: Write> fmt::Debug for Gif<W> {
 }
 
 impl<W: Write> Gif<W> {
-    /// Starts a film of pictures of this resolution, each pixel `scale` times as large.
+    /// Starts a film of pictures of this resolution, with each pixel `scale` times as large.
     ///
     /// # Errors
     /// If writing fails, or a side of the GIF would exceed 65,535 pixels.
@@ -54,7 +65,8 @@ impl<W: Write> Gif<W> {
             return Err(invalid("all frames of a film have one size"));
         }
         let rgb = picture.to_bytes();
-        // The palette is chosen from the picture's own pixels; neither of its sides exceeds the GIF's.
+        // Quantised before the enlargement, which would only repeat its work. No side exceeds the GIF's, which fits 16
+        // bits.
         let mut frame =
             gif::Frame::from_rgb_speed(width as u16, height as u16, &rgb, sampling_step(picture.pixels.len()));
         frame.buffer = self.enlarged(&frame.buffer).into();
@@ -90,12 +102,12 @@ impl<W: Write> Gif<W> {
     fn delay(&self) -> u16 {
         let second = u64::from(self.frames_per_second.max(1));
         let hundredths = |frame: u64| (100 * frame + second / 2) / second;
-        // At most a hundred.
+        // At most 100, at one frame per second.
         (hundredths(self.frame + 1) - hundredths(self.frame)) as u16
     }
 }
 
-/// Returns the width and height of a GIF of pictures of this resolution with each pixel `scale` times as large.
+/// Returns the width and height of a GIF of this resolution with each pixel `scale` times as large.
 pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
     let pixel_aspect = resolution.pixel_aspect();
     let [width, height] = [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(scale));
@@ -107,8 +119,8 @@ pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
     }
 }
 
-/// Returns the quantiser's sampling step for a picture of this many pixels, from 1 (every pixel) to 30, for some 50,000
-/// samples.
+/// Returns the quantiser's sampling step, from 1 (every pixel) to 30.
+// For about 50,000 samples, which bounds the time per frame whatever the size.
 fn sampling_step(pixels: usize) -> i32 {
     i32::try_from(pixels / 50_000).map_or(30, |sampling_step| sampling_step.clamp(1, 30))
 }

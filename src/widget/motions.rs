@@ -1,4 +1,4 @@
-//! Motions of a pane's camera for keys and the mouse.
+//! Motions of a pane's camera by keys and the mouse.
 
 use super::SceneState;
 use crate::camera::Grip;
@@ -8,8 +8,9 @@ use glam::{Vec2, Vec3};
 use ratatui_core::layout::Position;
 
 impl SceneState {
-    /// Moves the eye around the target, to the right and upwards, by angles in radians: see
-    /// [`Camera::orbited`](crate::camera::Camera::orbited).
+    /// Moves the eye around the target, to the right and upwards, by angles in radians.
+    ///
+    /// See [`Camera::orbited`](crate::camera::Camera::orbited).
     pub fn orbit(&mut self, right: f32, up: f32) {
         self.move_camera(self.camera().orbited(right, up));
     }
@@ -20,14 +21,17 @@ impl SceneState {
         self.move_camera(self.camera().panned(Vec2::new(-right / aspect_ratio, up), aspect_ratio));
     }
 
-    /// Multiplies the distance from the eye to the target by `factor`. The distance stays within 0.001 and 10,000 times
-    /// that of the camera [set](Self::set_camera) last, or of the last [`frame`](Self::frame).
+    /// Multiplies the distance from the eye to the target by `factor`.
+    ///
+    /// The distance stays within 0.001 and 10,000 times that of the camera [set](Self::set_camera) last, or of the last
+    /// [`frame`](Self::frame).
     pub fn nearer(&mut self, factor: f32) {
         self.move_camera(self.camera().nearer_within(factor, self.scale()));
     }
 
-    /// Moves the camera so that all bounded objects of the scene fill the pane, without turning it. Does nothing if
-    /// there are no such objects. Before the first draw call the pane counts as a square.
+    /// Moves the camera so that all bounded objects of the scene fill the pane, without turning it.
+    ///
+    /// Does nothing if there are no such objects. Before the first draw call the pane counts as a square.
     pub fn frame(&mut self, scene: &Scene) {
         if let Some(bounds) = scene.bounds() {
             let camera = self.camera().framing(&bounds, self.aspect_ratio());
@@ -35,13 +39,14 @@ impl SceneState {
         }
     }
 
-    /// Starts a drag at a position inside the picture, until [`release`](Self::release). Returns whether it is inside.
+    /// Starts a drag, until [`release`](Self::release). Returns whether the position is inside the picture.
     pub fn press(&mut self, at: Position, grip: Grip) -> bool {
+        // Outside the picture a previous drag ends, so that a missed release does no harm.
         self.set_drag_state(self.ray_through(at).map(|_| (grip, at)));
         self.drag_state().is_some()
     }
 
-    /// Drags to a position, which may be outside the pane. Does nothing without a drag.
+    /// Continues a drag to a position, which may be outside the pane. Does nothing without a drag.
     pub fn drag(&mut self, to: Position) {
         let (Some((grip, from)), Some(size)) = (self.drag_state(), self.size()) else { return };
         self.set_drag_state(Some((grip, to)));
@@ -59,18 +64,19 @@ impl SceneState {
         self.set_drag_state(None);
     }
 
-    /// Moves the eye towards the point shown at a position, which keeps its place in the picture, by notches of the
-    /// mouse wheel; negative numbers move away. Returns whether the position is inside the picture.
+    /// Moves the eye towards the point shown at a position by notches of the mouse wheel; negative ones move away.
+    ///
+    /// The point keeps its place in the picture. Returns whether the position is inside the picture.
     pub fn scroll(&mut self, scene: &Scene, at: Position, notches: f32) -> bool {
         let Some(point) = self.point_at(scene, at) else { return false };
         self.move_camera(self.camera().wheeled_around(point, notches, self.scale()));
         true
     }
 
-    /// Returns the point shown in a cell; where nothing is hit, a point as far away as the target.
+    /// Returns the point shown in a cell; if the ray hits nothing, the point at the target's distance.
     fn point_at(&self, scene: &Scene, at: Position) -> Option<Vec3> {
         let ray = self.ray_through(at)?;
-        // Along -w, t is the depth.
+        // Eye rays have a component of 1 along -w, so t is the depth, as the target's distance is.
         Some(ray.at(closest_hit(scene, &ray).map_or(self.camera().target_distance(), |hit| hit.t)))
     }
 }

@@ -1,4 +1,4 @@
-//! A picture of a pane: everything that it depends on, and its cells.
+//! The inputs of a pane's picture, its tracing, and its cells.
 
 use crate::camera::Camera;
 use crate::cell::{self, CellMode, Painter};
@@ -21,19 +21,19 @@ pub(super) struct Options {
     pub(super) sampling: Sampling,
 }
 
-/// Everything that a picture depends on.
+/// The inputs of a picture: everything that it depends on.
 #[derive(Clone, Debug)]
 pub(super) struct Shot {
     pub(super) scene: Scene,
     pub(super) camera: Camera,
     pub(super) size: Size,
-    /// The size in pixels, which follows from that in cells.
+    /// The size in pixels, which follows from the size in cells.
     pub(super) resolution: Resolution,
     pub(super) options: Options,
 }
 
 impl Shot {
-    /// Returns the shot of a pane of this size.
+    /// Returns the shot for a pane of this size in cells.
     ///
     /// # Errors
     /// If the pane has more pixels than a picture may have.
@@ -42,13 +42,14 @@ impl Shot {
         Ok(Self { scene: scene.clone(), camera: *camera, size, resolution, options })
     }
 
-    /// Returns whether both give the same picture.
+    /// Returns whether both shots give the same picture.
+    // Scenes are compared by identity: comparing two meshes would take longer than the draw call.
     pub(super) fn has_same_picture_as(&self, other: &Self) -> bool {
         let of = |shot: &Self| (shot.camera, shot.size, shot.options);
         self.scene.is_copy_of(&other.scene) && of(self) == of(other)
     }
 
-    /// Returns the number of samples to which the picture is refined after a first one with a single sample a pixel.
+    /// Returns the samples per pixel of the refinement, if a picture with one sample comes first.
     fn refinement_samples(&self) -> Option<NonZeroU32> {
         match self.options.sampling {
             Sampling::UpTo(samples) if samples > NonZeroU32::MIN && self.options.map.refines() => Some(samples),
@@ -57,7 +58,7 @@ impl Shot {
     }
 }
 
-/// The cells of a shot.
+/// A shot and the cells of its picture.
 #[derive(Debug)]
 pub(super) struct RenderedShot {
     pub(super) shot: Shot,
@@ -67,7 +68,7 @@ pub(super) struct RenderedShot {
     pub(super) is_final: bool,
 }
 
-/// The tracer of shots, which keeps its caches from one picture to the next.
+/// A tracer of shots, which keeps the painter's cache of mixes between pictures.
 #[derive(Default)]
 pub(super) struct Tracer {
     painter: Option<Painter>,
@@ -81,8 +82,9 @@ impl Tracer {
         self.shown(shot, &picture, true)
     }
 
-    /// Traces a shot and delivers it. If the shot asks for more samples at edges, a picture with one sample per pixel
-    /// is delivered first. The samples are those of [`trace`](Self::trace).
+    /// Traces a shot and delivers its picture, after one with a sample per pixel if more are requested.
+    ///
+    /// The final picture equals that of [`trace`](Self::trace).
     ///
     /// # Errors
     /// [`Cancelled`], if the token is cancelled, which `deliver` may do.

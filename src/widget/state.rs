@@ -17,9 +17,9 @@ use std::fmt;
 /// drawn last, which may be older than the camera.
 pub struct SceneState {
     camera: Camera,
-    /// The length that limits the distance of the eye from its target.
+    /// The length relative to which the distance of the eye from its target is limited.
     scale: f32,
-    /// The kind of the current drag, and the last position of the pointer.
+    /// The kind of the current drag and the last position of the pointer.
     drag_state: Option<(Grip, Position)>,
     /// The area of the last draw call.
     area: Rect,
@@ -99,21 +99,24 @@ impl SceneState {
         self.drag_state = drag_state;
     }
 
-    /// Returns whether the pane shows the picture that the last draw call requested, with all samples, and the camera
-    /// has not changed since. In the background, `wake` is called before this becomes true.
+    /// Returns whether the pane shows the requested picture with all samples, of the current camera.
+    ///
+    /// In the background, `wake` is called before this becomes true.
     pub fn is_current(&self) -> bool {
         let (Some(shown), Some(requested)) = (&self.shown, &self.requested) else { return false };
         shown.is_final && shown.shot.has_same_picture_as(requested) && self.camera == requested.camera
     }
 
-    /// Returns the closest hit in `scene` of the ray through the middle of a cell; `None` outside the picture, and if
-    /// the ray hits nothing.
+    /// Returns the closest hit in `scene` of the ray through the middle of a cell.
+    ///
+    /// Returns `None` outside the picture, and if the ray hits nothing.
     pub fn hit(&self, scene: &Scene, at: Position) -> Option<Hit> {
         closest_hit(scene, &self.ray_through(at)?)
     }
 
-    /// Returns the cell that shows a point of the scene, visible or not; `None` outside the picture, and behind the
-    /// eye.
+    /// Returns the cell that shows a point of the scene, whether or not the point is hidden.
+    ///
+    /// Returns `None` outside the picture, and for points behind the eye.
     pub fn cell_of(&self, point: Vec3) -> Option<Position> {
         let (RenderedShot { shot, .. }, part) = (self.shown.as_ref()?, self.covered_area()?);
         let place = shot.camera.project(point, shot.resolution.aspect_ratio())?;
@@ -145,7 +148,8 @@ impl SceneState {
         Some(shot.camera.eye_rays(shot.resolution.aspect_ratio()).through(qu, qv))
     }
 
-    /// Returns the part of the pane that the last picture covers, which is smaller than a pane that has grown since.
+    /// Returns the part of the pane that the last picture covers.
+    // A pane that has grown since shows the old picture in part of its area until the new one arrives.
     fn covered_area(&self) -> Option<Rect> {
         let size = self.shown.as_ref()?.shot.size;
         Some(self.area.intersection(Rect { width: size.columns, height: size.rows, ..self.area }))
@@ -156,8 +160,9 @@ impl SceneState {
         self.area = Rect::ZERO;
     }
 
-    /// Requests the picture of a shot if it is not the last one requested, and returns the picture to draw, with its
-    /// part of the pane.
+    /// Requests the picture of a shot, unless it was the last request, and returns the picture to draw.
+    ///
+    /// The rectangle is the part of the pane that this picture covers.
     ///
     /// # Panics
     /// With the payload of a panic in the background thread.
@@ -181,7 +186,7 @@ impl SceneState {
         self.shown.as_ref().map(|shown| (shown, part))
     }
 
-    /// Marks the shown picture; only another picture removes the mark.
+    /// Writes a mark into the shown picture, which only another picture removes.
     #[cfg(test)]
     pub(super) fn mark(&mut self, mark: &'static str) {
         if let Some(shown) = &mut self.shown {

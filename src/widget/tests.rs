@@ -1,4 +1,4 @@
-//! Panes drawn into buffers, and a worker that is held wherever a test wants it.
+//! Panes drawn into buffers, and a worker that tests can hold between pictures.
 
 use super::state::SceneState;
 use super::view::SceneView;
@@ -26,20 +26,20 @@ fn scene() -> Scene {
     Scene::from_ron("three_spheres.ron", text).expect("the scene is fine")
 }
 
-/// What a view draws into a buffer of `AREA` that is full of `x`.
+/// Returns a buffer of `AREA` full of `x` after a view has been drawn into it.
 fn drawn(view: &SceneView<'_>, area: Rect, state: &mut SceneState) -> Buffer {
     let mut buffer = Buffer::filled(AREA, Cell::new("x"));
     view.render(area, &mut buffer, state);
     buffer
 }
 
-/// A picture of the scene from that camera, traced in the draw call.
+/// Returns the picture of the state's camera, traced in the draw call.
 fn in_place(view: &SceneView<'_>, state: &SceneState) -> Buffer {
     drawn(view, AREA, &mut SceneState::new(state.camera()))
 }
 
 #[test]
-fn a_state_goes_to_any_thread() {
+fn a_state_is_send_and_sync() {
     fn takes<T: Send + Sync>(_: T) {}
     takes(SceneState::new(scene().camera()).in_background(|| {}));
 }
@@ -60,7 +60,7 @@ fn a_pane_shows_the_cells_of_a_frame() {
 }
 
 #[test]
-fn a_number_that_is_no_cells_aspect_is_the_usual_one() {
+fn an_implausible_cell_aspect_is_replaced() {
     let scene = scene();
     let state = SceneState::new(scene.camera());
     let usual = in_place(&SceneView::new(&scene), &state);
@@ -96,7 +96,7 @@ fn a_pane_is_clipped_to_the_buffer() {
 }
 
 #[test]
-fn where_there_are_no_cells_nothing_is_drawn_or_found() {
+fn without_cells_nothing_is_drawn_or_found() {
     let scene = scene();
     let mut state = SceneState::new(scene.camera());
     drawn(&SceneView::new(&scene), AREA, &mut state);
@@ -108,7 +108,7 @@ fn where_there_are_no_cells_nothing_is_drawn_or_found() {
             assert_eq!(buffer, Buffer::filled(AREA, Cell::new("x")));
             assert!(!state.is_current() && !state.press(Position::ORIGIN, Grip::Turn));
         }
-        // A pane that had cells once has none to be found.
+        // The cells of an earlier, larger pane are not found either.
         drawn(&SceneView::new(&scene), area, &mut state);
         assert_eq!(state.cell_of(scene.camera().pose().target), None);
         assert!(AREA.positions().all(|at| state.hit(&scene, at).is_none()));
@@ -116,7 +116,7 @@ fn where_there_are_no_cells_nothing_is_drawn_or_found() {
 }
 
 #[test]
-fn a_pane_that_is_too_large_for_a_picture_stays_as_it_is() {
+fn a_pane_too_large_for_a_picture_is_not_drawn() {
     let scene = scene();
     let shape = CellMode { glyphs: Glyphs::Shape, ..CellMode::HALF_BLOCK };
     let (across, down) = shape.pixels_per_cell();
@@ -128,7 +128,7 @@ fn a_pane_that_is_too_large_for_a_picture_stays_as_it_is() {
 }
 
 #[test]
-fn what_is_shown_already_is_not_traced_again() {
+fn a_shown_picture_is_not_traced_again() {
     let scene = scene();
     let mut state = SceneState::new(scene.camera());
     let view = SceneView::new(&scene);
@@ -154,7 +154,7 @@ fn what_is_shown_already_is_not_traced_again() {
     assert!(is_kept(&brighter, &view.clone().sampling(Sampling::BEST), smaller, 0.0));
 }
 
-/// A state in the background whose thread stands still after each picture, until the test lets it go on.
+/// A state whose background thread stops after each picture, until the test lets it continue.
 struct Held {
     // Dropped first: the state waits for the thread.
     go_on: Sender<()>,
@@ -182,7 +182,7 @@ impl Held {
         self.go_on.send(()).expect("the thread is there");
     }
 
-    /// Ends the thread, and returns how many more pictures it made.
+    /// Ends the thread and returns the number of pictures that it made meanwhile.
     fn end(self) -> usize {
         drop(self.go_on);
         drop(self.state);
@@ -191,7 +191,7 @@ impl Held {
 }
 
 #[test]
-fn of_the_views_asked_for_meanwhile_only_the_newest_is_traced() {
+fn of_several_requests_only_the_newest_is_traced() {
     let scene = scene();
     let view = SceneView::new(&scene);
     let mut held = Held::new(&scene);
@@ -214,7 +214,7 @@ fn of_the_views_asked_for_meanwhile_only_the_newest_is_traced() {
 }
 
 #[test]
-fn samples_follow_a_first_picture_unless_the_view_has_changed() {
+fn refinement_follows_unless_the_view_has_changed() {
     let scene = scene();
     let (one, best) = (SceneView::new(&scene), SceneView::new(&scene).sampling(Sampling::BEST));
     let mut held = Held::new(&scene);
@@ -243,7 +243,7 @@ fn samples_follow_a_first_picture_unless_the_view_has_changed() {
 }
 
 #[test]
-fn a_picture_of_another_size_stays_until_the_next_is_there() {
+fn a_picture_of_another_size_stays_until_the_next_arrives() {
     let scene = scene();
     let view = SceneView::new(&scene);
     let mut held = Held::new(&scene);
@@ -260,9 +260,9 @@ fn a_picture_of_another_size_stays_until_the_next_is_there() {
     assert_eq!((&smaller[(4, 3)], smaller[(5, 3)].symbol()), (&old[(4, 3)], "x"));
 }
 
-/// Without the cancellation it would not end.
+/// Without the cancellation the test would not end.
 #[test]
-fn to_drop_a_state_gives_up_what_is_in_work() {
+fn dropping_a_state_cancels_its_picture() {
     let scene = scene();
     let (wake, woken) = channel::<()>();
     let mut state = SceneState::new(scene.camera()).in_background(move || _ = wake.send(()));
@@ -275,7 +275,7 @@ fn to_drop_a_state_gives_up_what_is_in_work() {
 }
 
 #[test]
-fn a_panic_in_the_background_goes_on_in_a_draw_call() {
+fn a_panic_in_the_background_continues_in_a_draw_call() {
     let scene = scene();
     let view = SceneView::new(&scene);
     let mut state = SceneState::new(scene.camera()).in_background(|| panic!("a test asked for it"));
@@ -289,7 +289,7 @@ fn a_panic_in_the_background_goes_on_in_a_draw_call() {
 }
 
 #[test]
-fn a_point_that_is_seen_in_a_cell_is_in_that_cell() {
+fn the_point_hit_through_a_cell_is_shown_in_this_cell() {
     let scene = scene();
     let view = SceneView::new(&scene).cell_aspect(1.7);
     let area = Rect::new(3, 1, 40, 6);
@@ -311,7 +311,7 @@ fn a_point_that_is_seen_in_a_cell_is_in_that_cell() {
 }
 
 #[test]
-fn what_is_taken_hold_of_follows_the_pointer() {
+fn a_dragged_point_follows_the_pointer() {
     let scene = scene();
     let view = SceneView::new(&scene);
     let mut state = SceneState::new(scene.camera());
@@ -341,7 +341,7 @@ fn what_is_taken_hold_of_follows_the_pointer() {
 }
 
 #[test]
-fn the_wheel_keeps_what_is_under_the_pointer() {
+fn the_wheel_keeps_the_point_under_the_pointer() {
     let scene = scene();
     let view = SceneView::new(&scene);
     let mut state = SceneState::new(scene.camera());

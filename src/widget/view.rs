@@ -1,4 +1,4 @@
-//! The widget of a pane.
+//! The widget that draws a pane.
 
 use super::SceneState;
 use super::shot::{Options, Shot};
@@ -62,8 +62,9 @@ impl<'a> SceneView<'a> {
         Self { options: Options { cells, ..self.options }, ..self }
     }
 
-    /// Sets the cell aspect: a cell's height divided by its width. Implausible numbers, less than 0.25 or more than 8,
-    /// are replaced by 2.
+    /// Sets the cell aspect: a cell's height divided by its width.
+    ///
+    /// Implausible numbers, less than 0.25 or more than 8, are replaced by 2.
     ///
     /// [`cell_aspect_of`](crate::cell_aspect_of) derives it from the size of the terminal's window in pixels:
     ///
@@ -114,6 +115,7 @@ impl StatefulWidget for &SceneView<'_> {
             return;
         };
         let Some((shown, part)) = state.show(shot, area) else { return };
+        // Row by row: cell by cell, each copy would compute and check an index.
         let columns = usize::from(part.width);
         for (from, row) in part.rows().enumerate() {
             let (from, to) = (shown.cells.index_of(0, from as u16), buffer.index_of(row.x, row.y));

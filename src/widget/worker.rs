@@ -15,7 +15,7 @@ pub(super) struct Worker {
     thread: Option<JoinHandle<()>>,
 }
 
-/// The state shared by both threads.
+/// The data shared by the drawing thread and the worker.
 #[derive(Default)]
 struct Shared {
     state: Mutex<SharedState>,
@@ -23,18 +23,22 @@ struct Shared {
     request_added: Condvar,
 }
 
+/// The request, the picture and the progress of the worker.
+// One slot for each instead of channels: a newer request or picture replaces an older one.
 #[derive(Default)]
 struct SharedState {
     /// The next shot, replaced by a newer one.
     requested: Option<Shot>,
     /// The token of the shot in progress.
     token: Cancellation,
-    /// Whether a picture of the shot in progress has been delivered, so that a newer shot cancels the rest.
+    /// Whether a picture of the shot in progress has been delivered.
+    // Only then does a newer request cancel it: otherwise a camera in motion would never get a picture.
     is_refining: bool,
     /// The newest picture that has not been taken.
     finished: Option<RenderedShot>,
     /// The payload of a panic in the thread.
     panic: Option<Box<dyn Any + Send>>,
+    /// Whether the state has been dropped.
     is_closed: bool,
 }
 
@@ -93,7 +97,7 @@ impl Worker {
 }
 
 impl Drop for Worker {
-    /// Cancels the shot in progress and joins the thread, which takes the time of 256 rays on each tracing thread.
+    /// Cancels the shot in progress and joins the thread, after at most 256 more rays on each tracing thread.
     fn drop(&mut self) {
         let mut state = self.shared.lock();
         state.is_closed = true;
@@ -108,7 +112,7 @@ impl Drop for Worker {
 
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, SharedState> {
-        // No code that can panic runs while the lock is held.
+        // No code that can panic runs while the lock is held, so it is never poisoned.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -1,9 +1,9 @@
-"""Prints glyphs.rs: how much of each part of a cell the printable characters of ASCII cover, in DejaVu Sans Mono.
+"""Prints glyphs.rs: the coverage of the samples of a cell by the printable ASCII characters in DejaVu Sans Mono.
 
 usage: python3 glyphs.py [DejaVuSansMono.ttf] >glyphs.rs    (needs Pillow)
 
-A cell is as wide as the font's characters and as high as its lines (ascent and descent); the characters are drawn large,
-so that no hinting of a size shows.
+A cell is as wide as the font's characters and as high as its lines (ascent and descent). The characters are drawn
+large, so that hinting has no effect.
 """
 
 import sys
@@ -20,20 +20,20 @@ height = ascent + descent
 
 
 def ink(character):
-    """The coverage of each part, row by row from the top, 255 for all of it."""
+    """Returns the coverage of each sample, row by row from the top; 255 is full."""
     cell = Image.new("L", (width, height))
     ImageDraw.Draw(cell).text((0, 0), character, font=font, fill=255)
     return list(cell.resize((ACROSS, DOWN), Image.Resampling.BOX).tobytes())
 
 
-print("//! Made by `glyphs.py` beside this file: the ink of the printable characters of ASCII in `DejaVu` Sans Mono.")
+print("//! The ink of the printable ASCII characters in `DejaVu` Sans Mono; made by `glyphs.py` beside this file.")
 print()
-print("/// Parts of a cell, from left to right.")
+print("/// Columns of samples in a cell.")
 print(f"pub(super) const SAMPLE_COLUMNS: usize = {ACROSS};")
-print("/// Parts of a cell, from top to bottom.")
+print("/// Rows of samples in a cell.")
 print(f"pub(super) const SAMPLE_ROWS: usize = {DOWN};")
 print()
-print("/// How much of each part the characters from space on cover, row by row from the top; 255 is all of it.")
+print("/// Coverage of each sample by the characters from space on, row by row from the top; 255 is full.")
 print("#[rustfmt::skip]")
 print("pub(super) const INK: [[u8; SAMPLE_COLUMNS * SAMPLE_ROWS]; 95] = [")
 for code in range(32, 127):

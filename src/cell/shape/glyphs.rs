@@ -1,11 +1,11 @@
-//! Made by `glyphs.py` beside this file: the ink of the printable characters of ASCII in `DejaVu` Sans Mono.
+//! The ink of the printable ASCII characters in `DejaVu` Sans Mono; made by `glyphs.py` beside this file.
 
-/// Parts of a cell, from left to right.
+/// Columns of samples in a cell.
 pub(super) const SAMPLE_COLUMNS: usize = 2;
-/// Parts of a cell, from top to bottom.
+/// Rows of samples in a cell.
 pub(super) const SAMPLE_ROWS: usize = 4;
 
-/// How much of each part the characters from space on cover, row by row from the top; 255 is all of it.
+/// Coverage of each sample by the characters from space on, row by row from the top; 255 is full.
 #[rustfmt::skip]
 pub(super) const INK: [[u8; SAMPLE_COLUMNS * SAMPLE_ROWS]; 95] = [
     [  0,   0,   0,   0,   0,   0,   0,   0], // space
