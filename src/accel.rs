@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::bvh::Bvh;
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes};
 use crate::progress::{Cancelled, Progress, Reporter, Work};
-use crate::shape::{Endless, Part, Shape, SideBySide, Surface, surfaces};
+use crate::shape::{Endless, Part, Shape, SoaLeaf, Surface, surfaces};
 use crate::simd;
 use crate::threads;
 use std::array::from_fn;
@@ -183,7 +183,7 @@ pub(crate) trait Visitor<'a> {
     fn list<S: Endless>(&mut self, list: &'a List<S>);
 
     /// Takes those of one kind that stand in a tree.
-    fn tree<S: SideBySide>(&mut self, tree: &'a Tree<S>);
+    fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>);
 }
 
 /// Parts of one kind that have no end.
@@ -295,7 +295,7 @@ impl Accelerator {
                 self.0 += size_of_val(&list.parts[..]);
             }
 
-            fn tree<S: SideBySide>(&mut self, tree: &'a Tree<S>) {
+            fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
                 self.0 += tree.bytes();
             }
         }
@@ -317,7 +317,7 @@ impl Accelerator {
             }
 
             #[inline(always)]
-            fn tree<S: SideBySide>(&mut self, tree: &'a Tree<S>) {
+            fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
                 if tree.holds(self.0) {
                     self.1 = tree.id(self.0);
                 }
@@ -339,7 +339,7 @@ impl fmt::Debug for Accelerator {
     }
 }
 
-impl<S: SideBySide> Tree<S> {
+impl<S: SoaLeaf> Tree<S> {
     /// Whether there is anything in it whose formula asks for the shear of rays.
     #[inline(always)]
     fn needs_shear(&self) -> bool {
@@ -429,7 +429,7 @@ impl<T: Surface + Copy + Sync> Bounded<T> {
         }
     }
 
-    fn build<S: SideBySide<Shape = T> + Send, E: Send>(
+    fn build<S: SoaLeaf<Shape = T> + Send, E: Send>(
         self,
         first: u32,
         report: &(dyn Fn(usize) -> Result<(), E> + Sync),

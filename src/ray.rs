@@ -4,9 +4,9 @@ use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Mask, Number, Vector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
-mod pencil;
+mod common_origin;
 
-pub use pencil::Pencil;
+pub use common_origin::CommonOrigin;
 
 /// `origin + t * direction`. The direction need not have unit length: t is counted in lengths of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,7 +206,7 @@ impl<N: Number> Shear<N> {
 /// A vector from the ray's origin in the coordinates of [`Shear`], in f64, with x and y multiplied by the direction along
 /// its longest axis. So they need no division, and as f64 holds the product of two f32 whole, they are exact, or where f64
 /// does not reach so far down, off by 2^-53 of themselves.
-pub fn sheared_exactly(from_origin: DVec3, direction: Vec3) -> DVec3 {
+pub fn sheared_in_f64(from_origin: DVec3, direction: Vec3) -> DVec3 {
     let [x, y, z] = match Shear::of(Vector::<f32>::splat(direction)).longest {
         Longest::X => [1, 2, 0],
         Longest::Y => [2, 0, 1],

@@ -2,15 +2,15 @@
 //!
 //! The lecture's way: a surface is given implicitly by f(x) = 0, and putting the ray's x = p + t d into it leaves one
 //! equation in t. Each surface solves its own in a file of its own under `shape/`. To add one, write that file, with an
-//! implementation of [`Surface`], and give it a line in the table `surfaces` here. It is then tested [`OneByOne`]; where
-//! that is too slow, a type that is [`SideBySide`] takes the place of that.
+//! implementation of [`Surface`], and give it a line in the table `surfaces` here. It is then tested [`ScalarLeaf`]; where
+//! that is too slow, a type that is [`SoaLeaf`] takes the place of that.
 //!
 //! This module knows nothing of materials and light.
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::lanes::{Lanes, Number, Vector};
-use crate::ray::{Interval, Pencil, Probe, Ray, Rays};
+use crate::ray::{CommonOrigin, Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub mod cube;
 pub mod described;
 pub mod equation;
 pub mod mesh;
-pub mod one_by_one;
+pub mod scalar_leaf;
 pub mod plane;
 pub mod sphere;
 pub mod triangle;
@@ -30,10 +30,10 @@ pub use cube::Cube;
 pub use described::Described;
 pub use equation::{Equation, Step};
 pub use mesh::{Facet, Mesh};
-pub use one_by_one::OneByOne;
 pub use plane::Plane;
-pub use sphere::{Balls, Sphere};
-pub use triangle::{Corners, Edges, Triangle};
+pub use scalar_leaf::ScalarLeaf;
+pub use sphere::{Sphere, SphereN};
+pub use triangle::{EdgeFunctions, Triangle, TriangleN};
 pub(crate) use written::without_coordinates;
 pub use written::{CheckedShape, Meshes, WrittenShape};
 
@@ -66,9 +66,9 @@ pub trait Crossable<N: Number> {
     /// [`closest_crossing`](Surface::closest_crossing) has it; nothing where there is none at all.
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)>;
 
-    /// The same of rays of a pencil, with what is known of all of them ([`Edges::rough`]); infinite: nothing.
+    /// The same of rays of a pencil, with what is known of all of them ([`EdgeFunctions::packet_error_bound`]); infinite: nothing.
     #[inline(always)]
-    fn first_crossing_in_pencil(&self, rays: &Rays<N>, min: N, _rough: N) -> Option<(N::Mask, N)> {
+    fn first_crossing_with_bound(&self, rays: &Rays<N>, min: N, _error_bound: N) -> Option<(N::Mask, N)> {
         self.first_crossing(rays, min)
     }
 
@@ -152,7 +152,7 @@ pub trait Endless: Surface + Copy {
 }
 
 /// Eight surfaces of one kind, side by side in memory.
-pub trait SideBySide: Copy {
+pub trait SoaLeaf: Copy {
     /// One of them.
     type Shape: Surface + Copy + Sync;
 
@@ -177,12 +177,12 @@ pub trait SideBySide: Copy {
     /// `yes` where the answer was yes, else `no`.
     fn select<N: Lanes>(mask: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;
 
-    /// Whether they have [`edges`](Self::edges).
-    const HAVE_EDGES: bool = false;
+    /// Whether they have [`edge_functions`](Self::edge_functions).
+    const HAVE_EDGE_FUNCTIONS: bool = false;
 
     /// What tells beforehand that rays pass by one of them, where that takes less than the test itself.
     #[inline(always)]
-    fn edges<N: Lanes>(&self, _: &Pencil<N>) -> Option<Edges> {
+    fn edge_functions<N: Lanes>(&self, _: &CommonOrigin<N>) -> Option<EdgeFunctions> {
         None
     }
 }
@@ -233,11 +233,11 @@ const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 macro_rules! surfaces {
     ($with:ident) => {
         $with! {
-            tree spheres: Sphere as $crate::shape::Balls<$crate::lanes::F32x8>, "All points at one distance from a centre.";
+            tree spheres: Sphere as $crate::shape::SphereN<$crate::lanes::F32x8>, "All points at one distance from a centre.";
             list planes: Plane as $crate::shape::Plane, "All points whose difference to a given one is perpendicular to the normal.";
-            tree triangles: Triangle as $crate::shape::Corners<$crate::lanes::F32x8>, "What lies between three points.";
+            tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>, "What lies between three points.";
             #[cfg(test)]
-            tree cubes: Cube as $crate::shape::OneByOne<$crate::shape::Cube>, "All points at one distance from a centre, along the axis along which they are farthest.";
+            tree cubes: Cube as $crate::shape::ScalarLeaf<$crate::shape::Cube>, "All points at one distance from a centre, along the axis along which they are farthest.";
         }
     };
 }

@@ -7,8 +7,8 @@ use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Prefetch, Queue, Visitor};
 use crate::hit::{EightHits, Kernel};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, Vector, set_bits};
-use crate::ray::{EightRays, Interval, Pencil, Rays};
-use crate::shape::{Crossable, Endless, SideBySide};
+use crate::ray::{CommonOrigin, EightRays, Interval, Rays};
+use crate::shape::{Crossable, Endless, SoaLeaf};
 use std::ops::Range;
 
 /// Rays in groups of eight, and what they have met.
@@ -127,7 +127,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     }
 
     #[inline(always)]
-    fn trace_tree<S: SideBySide>(&mut self, tree: &'p Tree<S>, packet: &mut Option<Packet<N>>, stacks: &mut Stacks) {
+    fn trace_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>, packet: &mut Option<Packet<N>>, stacks: &mut Stacks) {
         self.update_farthest();
         if tree.has_tree() && self.farthest >= self.within.min {
             let packet = match packet {
@@ -136,7 +136,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
             };
             let Stacks { packet: stack, single: queue } = stacks;
             let groups = self.rays.len();
-            let mut in_tree = InTree { rays: self, tree, packet, pencil: CommonOriginCache::Unknown, queue };
+            let mut in_tree = InTree { rays: self, tree, packet, common_origin: CommonOriginCache::Unknown, queue };
             match tree.bvh.root() {
                 Some(root) if in_tree.rays.kernel == Kernel::Auto && packet.is_scattered() => {
                     for group in 0..groups {
@@ -160,10 +160,10 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     }
 
     #[inline(always)]
-    fn test<C: Crossable<N>>(&mut self, group: usize, shape: &C, primitive: u32, rough: N) {
+    fn test<C: Crossable<N>>(&mut self, group: usize, shape: &C, primitive: u32, error_bound: N) {
         let mut hits = GroupHits::<N, ANY> { t: self.t[group], primitive: self.primitive[group] };
         let (rays, min) = (&self.groups[group], N::splat(self.within.min));
-        if hits.update(primitive, shape.first_crossing_in_pencil(rays, min, rough), self.accel) {
+        if hits.update(primitive, shape.first_crossing_with_bound(rays, min, error_bound), self.accel) {
             self.set(group, hits);
         }
     }
@@ -191,7 +191,7 @@ struct GroupHits<N, const ANY: bool> {
 impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
     /// Tests all of which there are but a few.
     #[inline(always)]
-    fn test_unculled<S: SideBySide>(&mut self, tree: &Tree<S>, rays: &Rays<N>, min: N, accel: &Accelerator) {
+    fn test_unculled<S: SoaLeaf>(&mut self, tree: &Tree<S>, rays: &Rays<N>, min: N, accel: &Accelerator) {
         let Some(leaf) = tree.leaves.first() else { return };
         for lane in 0..tree.few {
             let shape = leaf.splat(lane);
@@ -238,7 +238,7 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Trees<'_, 'p, N, ANY>
     fn list<S: Endless>(&mut self, _: &'p List<S>) {}
 
     #[inline(always)]
-    fn tree<S: SideBySide>(&mut self, tree: &'p Tree<S>) {
+    fn tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
         self.rays.trace_tree(tree, &mut self.packet, self.stacks);
     }
 }
@@ -260,7 +260,7 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> 
     }
 
     #[inline(always)]
-    fn tree<S: SideBySide>(&mut self, tree: &'p Tree<S>) {
+    fn tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
         self.hits.test_unculled(tree, self.rays, self.min, self.accel);
     }
 }
@@ -277,7 +277,7 @@ struct InTree<'a, 'p, N: Lanes, S, const ANY: bool> {
     rays: &'a mut PacketRays<'p, N, ANY>,
     tree: &'p Tree<S>,
     packet: &'a Packet<N>,
-    pencil: CommonOriginCache<N>,
+    common_origin: CommonOriginCache<N>,
     queue: &'a mut Queue,
 }
 
@@ -286,7 +286,7 @@ struct InTree<'a, 'p, N: Lanes, S, const ANY: bool> {
 enum CommonOriginCache<N: Lanes> {
     Unknown,
     Absent,
-    Found(Pencil<N>),
+    Found(CommonOrigin<N>),
 }
 
 impl<N: Lanes, S, const ANY: bool> Prefetch for InTree<'_, '_, N, S, ANY> {
@@ -296,7 +296,7 @@ impl<N: Lanes, S, const ANY: bool> Prefetch for InTree<'_, '_, N, S, ANY> {
     }
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, ANY> {
+impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, ANY> {
     const NEAREST_FIRST: bool = !ANY;
 
     const LEAST_SPLIT: u32 = split::min_boxes_to_split(ANY);
@@ -328,12 +328,12 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
         }
         self.rays.leaves += 1;
         self.find_common_origin();
-        let edges = match &self.pencil {
-            CommonOriginCache::Found(pencil) => shapes.edges(pencil),
+        let edges = match &self.common_origin {
+            CommonOriginCache::Found(common_origin) => shapes.edge_functions(common_origin),
             _ => None,
         };
-        let rough = match &edges {
-            Some(edges) => edges.rough,
+        let error_bounds = match &edges {
+            Some(edges) => edges.packet_error_bound,
             None => F32x8([f32::INFINITY; LANES]),
         };
         let [low, high] = [boxes[0].store(), boxes[1].store()];
@@ -344,8 +344,8 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
             let [starts, ends] = self.packet.crossed_by_groups(one, [min, self.reach()]);
             let mut groups = starts.le(ends).bits();
             // Any blocker will do, and next to it the edges let few groups off: without them shadow rays are 5 % faster.
-            if let (false, Some(edges), CommonOriginCache::Found(pencil)) = (ANY, &edges, &self.pencil) {
-                groups &= !edges.passed_by(lane, pencil);
+            if let (false, Some(edges), CommonOriginCache::Found(common_origin)) = (ANY, &edges, &self.common_origin) {
+                groups &= !edges.culled_groups(lane, common_origin);
             }
             pairs |= u64::from(groups) << (GROUPS * lane);
         }
@@ -356,7 +356,7 @@ impl<N: Lanes, S: SideBySide, const ANY: bool> Visitor<N> for InTree<'_, '_, N, 
             let (lane, group) =
                 (pairs.trailing_zeros() as usize / GROUPS % LANES, pairs.trailing_zeros() as usize % GROUPS);
             pairs &= pairs.wrapping_sub(1);
-            self.rays.test(group, &shapes.splat(lane), self.tree.place(leaf, lane), N::splat(rough.0[lane]));
+            self.rays.test(group, &shapes.splat(lane), self.tree.place(leaf, lane), N::splat(error_bounds.0[lane]));
         }
         self.rays.update_farthest();
     }
@@ -392,14 +392,14 @@ impl<N: Lanes, const ANY: bool> split::NodeRays for NodeRays<'_, '_, N, ANY> {
     }
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool> InTree<'_, '_, N, S, ANY> {
+impl<N: Lanes, S: SoaLeaf, const ANY: bool> InTree<'_, '_, N, S, ANY> {
     /// Finds the pencil if it was not asked for before.
     #[inline(always)]
     fn find_common_origin(&mut self) {
-        if let CommonOriginCache::Unknown = self.pencil {
-            let pencil = if S::HAVE_EDGES { Pencil::of(&self.rays.groups) } else { None };
-            self.pencil = match pencil {
-                Some(pencil) => CommonOriginCache::Found(pencil),
+        if let CommonOriginCache::Unknown = self.common_origin {
+            let found = if S::HAVE_EDGE_FUNCTIONS { CommonOrigin::of(&self.rays.groups) } else { None };
+            self.common_origin = match found {
+                Some(common_origin) => CommonOriginCache::Found(common_origin),
                 None => CommonOriginCache::Absent,
             };
         }

@@ -5,7 +5,7 @@ use crate::accel::{Accelerator, List, PartId, Tree, Visitor};
 use crate::bvh::{Child, LeafVisitor, Prefetch, Queue};
 use crate::lanes::{F32x8, LaneMask, Lanes, SimdKernel, set_bits};
 use crate::ray::{Interval, Rays};
-use crate::shape::{Crossable, Endless, SideBySide};
+use crate::shape::{Crossable, Endless, SoaLeaf};
 use std::ops::ControlFlow;
 
 /// A ray, and what it has met.
@@ -75,7 +75,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
     }
 
     #[inline(always)]
-    fn trace_tree<S: SideBySide>(&mut self, tree: &Tree<S>, queue: &mut Queue) {
+    fn trace_tree<S: SoaLeaf>(&mut self, tree: &Tree<S>, queue: &mut Queue) {
         match tree.bvh.root() {
             Some(root) if tree.has_tree() => self.trace_from(root, tree, queue),
             // The only leaf: what a tree takes to begin with would be most of the time.
@@ -86,7 +86,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
 
     /// Searches through a part of a tree.
     #[inline(always)]
-    pub(super) fn trace_from<S: SideBySide>(&mut self, from: Child, tree: &Tree<S>, queue: &mut Queue) {
+    pub(super) fn trace_from<S: SoaLeaf>(&mut self, from: Child, tree: &Tree<S>, queue: &mut Queue) {
         if ANY && self.primitive.is_some() {
             return;
         }
@@ -94,7 +94,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
     }
 
     #[inline(always)]
-    fn test<S: SideBySide>(&mut self, rays: &Rays<N>, leaf: usize, tree: &Tree<S>) {
+    fn test<S: SoaLeaf>(&mut self, rays: &Rays<N>, leaf: usize, tree: &Tree<S>) {
         let shapes = tree.leaves[leaf].load::<N>();
         let crossing = shapes.first_crossing(rays, N::splat(self.within.min));
         if W::ENABLED {
@@ -145,7 +145,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> Visitor<'p> for AllPrimitives<'
     }
 
     #[inline(always)]
-    fn tree<S: SideBySide>(&mut self, tree: &'p Tree<S>) {
+    fn tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
         self.ray.trace_tree(tree, self.queue);
     }
 }
@@ -158,7 +158,7 @@ struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     queue: &'a mut Queue,
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool, W: Observer> SimdKernel for Search<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for Search<'_, '_, N, S, ANY, W> {
     type Output = ();
 
     /// The numbers are those that the ray has.
@@ -191,7 +191,7 @@ impl<N: Lanes, S, const ANY: bool, W> Prefetch for InTree<'_, '_, N, S, ANY, W> 
     }
 }
 
-impl<N: Lanes, S: SideBySide, const ANY: bool, W: Observer> LeafVisitor for InTree<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> LeafVisitor for InTree<'_, '_, N, S, ANY, W> {
     #[inline(always)]
     fn boxes(&mut self) {
         self.ray.observer.node_tested();

@@ -5,7 +5,7 @@ use crate::hit::EightHits;
 use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
 use crate::scene::Scene;
-use crate::shape::{AtCrossing, Endless, Part, Points, SideBySide};
+use crate::shape::{AtCrossing, Endless, Part, Points, SoaLeaf};
 use crate::simd::{self, SimdKernel};
 use glam::Vec2;
 
@@ -126,7 +126,7 @@ impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
     }
 
     #[inline(always)]
-    fn tree<S: SideBySide>(&mut self, tree: &'a Tree<S>) {
+    fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
         if tree.holds(self.primitive) {
             self.found = surfaces_in_tree(tree, self.rays, self.hits, self.hits.mask_of_range(tree.first, tree.end()));
         }
@@ -135,7 +135,7 @@ impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
 
 /// What these of the rays have met in a tree: who, whose, and what.
 #[inline(always)]
-fn surfaces_in_tree<N: Lanes, S: SideBySide>(
+fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
     tree: &Tree<S>,
     rays: &EightRays,
     hits: &EightHits,

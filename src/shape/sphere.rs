@@ -1,7 +1,7 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SideBySide, Step, Surface,
+    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SoaLeaf, Step, Surface,
     SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
@@ -55,19 +55,19 @@ impl Sphere {
         self.radius
     }
 
-    fn ball(&self) -> Balls<f32> {
-        Balls { center: Vector::splat(self.center), radius: self.radius }
+    fn lanes(&self) -> SphereN<f32> {
+        SphereN { center: Vector::splat(self.center), radius: self.radius }
     }
 }
 
 /// A sphere, or several side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Balls<N> {
+pub struct SphereN<N> {
     center: Vector<N>,
     radius: N,
 }
 
-impl<N: Number> Balls<N> {
+impl<N: Number> SphereN<N> {
     /// One step of Newton's method towards the root near t. From afar t is a long way, off by units of its own; what is
     /// left to the surface at its end is short, and known better. (Near the edge, where the ray only grazes the sphere,
     /// the step would be one into the blue.)
@@ -82,7 +82,7 @@ impl<N: Number> Balls<N> {
     }
 }
 
-impl<N: Number> Crossable<N> for Balls<N> {
+impl<N: Number> Crossable<N> for SphereN<N> {
     /// A root of f(p + t d) = 0, the lesser if it is not before `min`.
     ///
     /// The lecture solves (d.d) t^2 + 2 (f.d) t + (f.f - r^2) = 0, with f = p - c, by
@@ -131,7 +131,7 @@ impl<N: Number> Crossable<N> for Balls<N> {
     }
 }
 
-impl<N: Number> AtCrossing<N> for Balls<N> {
+impl<N: Number> AtCrossing<N> for SphereN<N> {
     #[inline(always)]
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
         let outward = rays.origin + rays.direction * t - self.center;
@@ -141,9 +141,9 @@ impl<N: Number> AtCrossing<N> for Balls<N> {
     }
 }
 
-impl SideBySide for Balls<F32x8> {
+impl SoaLeaf for SphereN<F32x8> {
     type Shape = Sphere;
-    type Of<N: Lanes> = Balls<N>;
+    type Of<N: Lanes> = SphereN<N>;
 
     fn of(shapes: &[Sphere]) -> Self {
         let sphere = |lane: usize| shapes.get(lane).copied().unwrap_or(NOWHERE);
@@ -154,24 +154,24 @@ impl SideBySide for Balls<F32x8> {
     }
 
     #[inline(always)]
-    fn load<N: Lanes>(&self) -> Balls<N> {
-        Balls { center: self.center.load(), radius: N::load(&self.radius) }
+    fn load<N: Lanes>(&self) -> SphereN<N> {
+        SphereN { center: self.center.load(), radius: N::load(&self.radius) }
     }
 
     #[inline(always)]
-    fn splat<N: Lanes>(&self, lane: usize) -> Balls<N> {
-        Balls { center: Vector::splat(self.center.of_lane(lane)), radius: N::splat(self.radius.0[lane]) }
+    fn splat<N: Lanes>(&self, lane: usize) -> SphereN<N> {
+        SphereN { center: Vector::splat(self.center.of_lane(lane)), radius: N::splat(self.radius.0[lane]) }
     }
 
     #[inline(always)]
-    fn gather<N: Lanes>(&self, lanes: N) -> Balls<N> {
-        let Balls { center, radius } = self.load::<N>();
-        Balls { center: center.gather(lanes), radius: radius.gather(lanes) }
+    fn gather<N: Lanes>(&self, lanes: N) -> SphereN<N> {
+        let SphereN { center, radius } = self.load::<N>();
+        SphereN { center: center.gather(lanes), radius: radius.gather(lanes) }
     }
 
     #[inline(always)]
-    fn select<N: Lanes>(mask: N::Mask, yes: Balls<N>, no: Balls<N>) -> Balls<N> {
-        Balls { center: Vector::select(mask, yes.center, no.center), radius: N::select(mask, yes.radius, no.radius) }
+    fn select<N: Lanes>(mask: N::Mask, yes: SphereN<N>, no: SphereN<N>) -> SphereN<N> {
+        SphereN { center: Vector::select(mask, yes.center, no.center), radius: N::select(mask, yes.radius, no.radius) }
     }
 }
 
@@ -185,12 +185,12 @@ impl Surface for Sphere {
 
     #[inline]
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let (crosses, t) = self.ball().first_crossing(&probe.rays, within.min)?;
+        let (crosses, t) = self.lanes().first_crossing(&probe.rays, within.min)?;
         (crosses && t <= within.max).then_some(t)
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        self.ball().points_at(&Probe::new(*ray).rays, t).point()
+        self.lanes().points_at(&Probe::new(*ray).rays, t).point()
     }
 }
 

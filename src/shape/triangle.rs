@@ -3,21 +3,21 @@
 use super::described::sides;
 use super::equation::quotient;
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SideBySide, Step, Surface,
+    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SoaLeaf, Step, Surface,
     SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
 use crate::checks::{self, SceneFault};
 use crate::lanes::{F32x8, Lanes, Mask, Number, Vector};
-use crate::ray::{Interval, Pencil, Probe, Ray, Rays, nearest_in, sheared_exactly};
+use crate::ray::{CommonOrigin, Interval, Probe, Ray, Rays, nearest_in, sheared_in_f64};
 use crate::scene_text::{Span, SyntaxNode};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
-mod edges;
+mod edge_functions;
 
-pub use edges::Edges;
+pub use edge_functions::EdgeFunctions;
 
 /// All points of the plane through three corners that lie between them. It is seen from both sides; the front is the
 /// one from which the corners go round counterclockwise.
@@ -28,7 +28,7 @@ pub struct Triangle {
 
 /// A triangle's corners, or those of several side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corners<N>([Vector<N>; 3]);
+pub struct TriangleN<N>([Vector<N>; 3]);
 
 /// Where a line crosses a triangle's plane. Nothing here is divided by the sum of the weights.
 #[derive(Clone, Copy)]
@@ -48,7 +48,7 @@ impl<N: Number> Crossing<N> {
     }
 }
 
-impl<N: Number> Corners<N> {
+impl<N: Number> TriangleN<N> {
     /// The test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013). In the ray's own coordinates
     /// it runs along z, and it is inside if the origin of the xy plane lies on the same side of all three edges, or on
     /// them. Where f32 cannot tell on which, f64 does.
@@ -58,12 +58,12 @@ impl<N: Number> Corners<N> {
         self.crossing_of(corners, weights(corners), rays)
     }
 
-    /// The same of rays whose [`doubt`] is no more than `rough`: if that is enough to tell, it need not be known.
+    /// The same of rays whose [`weight_error_bound`] is no more than `rough`: if that is enough to tell, it need not be known.
     #[inline(always)]
-    fn crossing_in_pencil(&self, rays: &Rays<N>, rough: N) -> Option<(N::Mask, Crossing<N>)> {
+    fn crossing_with_bound(&self, rays: &Rays<N>, error_bound: N) -> Option<(N::Mask, Crossing<N>)> {
         let corners = self.sheared(rays);
         let weights = weights(corners);
-        let [agree, differ] = signs(weights, rough);
+        let [agree, differ] = signs(weights, error_bound);
         if !(agree | differ).all() {
             return self.crossing_of(corners, weights, rays);
         }
@@ -84,14 +84,18 @@ impl<N: Number> Corners<N> {
         weights: Vector<N>,
         rays: &Rays<N>,
     ) -> Option<(N::Mask, Crossing<N>)> {
-        let [agree, differ] = signs(weights, doubt(corners, rays.shear.length));
+        let [agree, differ] = signs(weights, weight_error_bound(corners, rays.shear.length));
         // Where there is a triangle at all.
-        let is_close = !(agree | differ) & self.0[0].x.le(N::splat(f32::MAX));
-        if !(agree | is_close).any() {
+        let is_uncertain = !(agree | differ) & self.0[0].x.le(N::splat(f32::MAX));
+        if !(agree | is_uncertain).any() {
             return None;
         }
         let crossing = Crossing::of(corners, weights);
-        if is_close.any() { Some(self.with_close(agree, is_close, crossing, rays)) } else { Some((agree, crossing)) }
+        if is_uncertain.any() {
+            Some(self.resolve_in_f64(agree, is_uncertain, crossing, rays))
+        } else {
+            Some((agree, crossing))
+        }
     }
 
     /// What [`first_crossing`](Crossable::first_crossing) answers.
@@ -110,21 +114,22 @@ impl<N: Number> Corners<N> {
 
     /// The same with those that pass close to an edge.
     #[inline(always)]
-    fn with_close(
+    fn resolve_in_f64(
         &self,
         agree: N::Mask,
-        is_close: N::Mask,
+        is_uncertain: N::Mask,
         Crossing { weights, sum, t }: Crossing<N>,
         rays: &Rays<N>,
     ) -> (N::Mask, Crossing<N>) {
         let (zero, one) = (N::splat(0.0), N::splat(1.0));
         let ([a, b, c], o, d) = (self.0, rays.origin, rays.direction);
-        let asked = N::select(is_close, one, zero);
-        let numbers = [asked, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, o.x, o.y, o.z, d.x, d.y, d.z];
-        let [crosses, x, y, z, exact_t] = N::map_lanes(numbers, close_crossing);
-        let weights = Vector::select(is_close, Vector { x, y, z }, weights);
-        let crossing = Crossing { weights, sum: N::select(is_close, one, sum), t: N::select(is_close, exact_t, t) };
-        (agree | (is_close & zero.lt(crosses)), crossing)
+        let is_active = N::select(is_uncertain, one, zero);
+        let numbers = [is_active, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, o.x, o.y, o.z, d.x, d.y, d.z];
+        let [crosses, x, y, z, exact_t] = N::map_lanes(numbers, crossing_in_f64);
+        let weights = Vector::select(is_uncertain, Vector { x, y, z }, weights);
+        let crossing =
+            Crossing { weights, sum: N::select(is_uncertain, one, sum), t: N::select(is_uncertain, exact_t, t) };
+        (agree | (is_uncertain & zero.lt(crosses)), crossing)
     }
 }
 
@@ -135,13 +140,13 @@ impl<N: Number> Corners<N> {
 /// is for these points on paper, but that it may come out as on the edge: rounding may turn neither of two products past
 /// the other. As that is on both sides, no ray slips through between neighbours.
 #[cold]
-fn close_crossing([is_asked, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, dx, dy, dz]: [f32; 16]) -> [f32; 5] {
-    if is_asked == 0.0 {
+fn crossing_in_f64([is_active, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, dx, dy, dz]: [f32; 16]) -> [f32; 5] {
+    if is_active == 0.0 {
         return [0.0; 5];
     }
     let point = |x, y, z| {
         let from_origin = Vec3::new(x, y, z).as_dvec3() - Vec3::new(ox, oy, oz).as_dvec3();
-        sheared_exactly(from_origin, Vec3::new(dx, dy, dz))
+        sheared_in_f64(from_origin, Vec3::new(dx, dy, dz))
     };
     let [a, b, c] = [point(ax, ay, az), point(bx, by, bz), point(cx, cy, cz)];
     let area = |from: DVec3, to: DVec3| from.x * to.y - from.y * to.x;
@@ -176,7 +181,7 @@ fn area<N: Number>(from: Vector<N>, to: Vector<N>) -> N {
 /// more, s is less than 12 units of r, and no weight, all of them less than 2 s s, is beyond doubt. The last term is for
 /// numbers that are too small for f32 to round so.
 #[inline(always)]
-fn doubt<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
+fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
     let across = a.x.abs().max(a.y.abs()).max(b.x.abs().max(b.y.abs())).max(c.x.abs().max(c.y.abs()));
     let along = a.z.abs().max(b.z.abs()).max(c.z.abs());
     across * (across + along * length) * N::splat(24.0 / 16_777_216.0) + N::splat(f32::MIN_POSITIVE)
@@ -184,21 +189,21 @@ fn doubt<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
 
 /// Whether all of them have one sign, and whether two have different ones: those that are more than `doubt` off zero.
 #[inline(always)]
-fn signs<N: Number>(Vector { x, y, z }: Vector<N>, doubt: N) -> [N::Mask; 2] {
+fn signs<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N::Mask; 2] {
     let (least, greatest) = (x.min(y.min(z)), x.max(y.max(z)));
-    let agree = doubt.lt(least) | greatest.lt(-doubt);
-    [agree, least.lt(-doubt) & doubt.lt(greatest)]
+    let agree = error_bound.lt(least) | greatest.lt(-error_bound);
+    [agree, least.lt(-error_bound) & error_bound.lt(greatest)]
 }
 
-impl<N: Number> Crossable<N> for Corners<N> {
+impl<N: Number> Crossable<N> for TriangleN<N> {
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
         self.first_from(min, rays, self.crossing(rays)?)
     }
 
     #[inline(always)]
-    fn first_crossing_in_pencil(&self, rays: &Rays<N>, min: N, rough: N) -> Option<(N::Mask, N)> {
-        self.first_from(min, rays, self.crossing_in_pencil(rays, rough)?)
+    fn first_crossing_with_bound(&self, rays: &Rays<N>, min: N, error_bound: N) -> Option<(N::Mask, N)> {
+        self.first_from(min, rays, self.crossing_with_bound(rays, error_bound)?)
     }
 
     #[inline(always)]
@@ -208,17 +213,17 @@ impl<N: Number> Crossable<N> for Corners<N> {
     }
 }
 
-impl SideBySide for Corners<F32x8> {
+impl SoaLeaf for TriangleN<F32x8> {
     type Shape = Triangle;
-    type Of<N: Lanes> = Corners<N>;
+    type Of<N: Lanes> = TriangleN<N>;
 
     const NEED_SHEAR: bool = true;
 
-    const HAVE_EDGES: bool = true;
+    const HAVE_EDGE_FUNCTIONS: bool = true;
 
     #[inline(always)]
-    fn edges<N: Lanes>(&self, pencil: &Pencil<N>) -> Option<Edges> {
-        Some(self.load::<N>().edges(pencil))
+    fn edge_functions<N: Lanes>(&self, common_origin: &CommonOrigin<N>) -> Option<EdgeFunctions> {
+        Some(self.load::<N>().edge_functions(common_origin))
     }
 
     fn of(shapes: &[Triangle]) -> Self {
@@ -227,26 +232,30 @@ impl SideBySide for Corners<F32x8> {
     }
 
     #[inline(always)]
-    fn load<N: Lanes>(&self) -> Corners<N> {
-        Corners([self.0[0].load(), self.0[1].load(), self.0[2].load()])
+    fn load<N: Lanes>(&self) -> TriangleN<N> {
+        TriangleN([self.0[0].load(), self.0[1].load(), self.0[2].load()])
     }
 
     #[inline(always)]
-    fn splat<N: Lanes>(&self, lane: usize) -> Corners<N> {
+    fn splat<N: Lanes>(&self, lane: usize) -> TriangleN<N> {
         let [a, b, c] = &self.0;
-        Corners([Vector::splat(a.of_lane(lane)), Vector::splat(b.of_lane(lane)), Vector::splat(c.of_lane(lane))])
+        TriangleN([Vector::splat(a.of_lane(lane)), Vector::splat(b.of_lane(lane)), Vector::splat(c.of_lane(lane))])
     }
 
     #[inline(always)]
-    fn gather<N: Lanes>(&self, lanes: N) -> Corners<N> {
+    fn gather<N: Lanes>(&self, lanes: N) -> TriangleN<N> {
         let [a, b, c] = self.load::<N>().0;
-        Corners([a.gather(lanes), b.gather(lanes), c.gather(lanes)])
+        TriangleN([a.gather(lanes), b.gather(lanes), c.gather(lanes)])
     }
 
     #[inline(always)]
-    fn select<N: Lanes>(mask: N::Mask, Corners([a, b, c]): Corners<N>, Corners(no): Corners<N>) -> Corners<N> {
+    fn select<N: Lanes>(
+        mask: N::Mask,
+        TriangleN([a, b, c]): TriangleN<N>,
+        TriangleN(no): TriangleN<N>,
+    ) -> TriangleN<N> {
         let of_two = |yes, no| Vector::select(mask, yes, no);
-        Corners([of_two(a, no[0]), of_two(b, no[1]), of_two(c, no[2])])
+        TriangleN([of_two(a, no[0]), of_two(b, no[1]), of_two(c, no[2])])
     }
 }
 
@@ -276,8 +285,8 @@ impl Triangle {
         self.corners
     }
 
-    fn single(&self) -> Corners<f32> {
-        Corners(self.corners.map(Vector::splat))
+    fn lanes(&self) -> TriangleN<f32> {
+        TriangleN(self.corners.map(Vector::splat))
     }
 }
 
@@ -292,7 +301,7 @@ fn front_normal<N: Number>(to_b: Vector<N>, to_c: Vector<N>) -> Vector<N> {
     Vector::select(is_direction, normal * factor, Vector::splat(Vec3::Y))
 }
 
-impl<N: Number> AtCrossing<N> for Corners<N> {
+impl<N: Number> AtCrossing<N> for TriangleN<N> {
     #[inline(always)]
     fn points_at(&self, rays: &Rays<N>, _: N) -> Points<N> {
         let [a, b, c] = self.0;
@@ -317,12 +326,12 @@ impl Surface for Triangle {
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let (crosses, t) = self.single().first_crossing(&probe.rays, within.min)?;
+        let (crosses, t) = self.lanes().first_crossing(&probe.rays, within.min)?;
         (crosses && t <= within.max).then_some(t)
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        AtCrossing::points_at(&self.single(), &Probe::new(*ray).rays, t).point()
+        AtCrossing::points_at(&self.lanes(), &Probe::new(*ray).rays, t).point()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Eight surfaces of any kind, tested one after the other.
 
-use super::{AtCrossing, Crossable, Points, Side, SideBySide, Surface};
+use super::{AtCrossing, Crossable, Points, Side, SoaLeaf, Surface};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::Vec3;
@@ -8,9 +8,9 @@ use std::array::from_fn;
 
 /// Eight surfaces whose formula is written for one ray and one surface only.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OneByOne<S>([Option<S>; LANES]);
+pub struct ScalarLeaf<S>([Option<S>; LANES]);
 
-impl<S: Surface + Copy + Sync> SideBySide for OneByOne<S> {
+impl<S: Surface + Copy + Sync> SoaLeaf for ScalarLeaf<S> {
     type Shape = S;
     type Of<N: Lanes> = Self;
 
@@ -41,7 +41,7 @@ impl<S: Surface + Copy + Sync> SideBySide for OneByOne<S> {
     }
 }
 
-impl<S: Surface, N: Lanes> Crossable<N> for OneByOne<S> {
+impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
         let (min, mut crosses, mut t) = (min.store(), 0, F32x8::ZERO);
         for (lane, surface) in self.0.iter().enumerate() {
@@ -64,7 +64,7 @@ impl<S: Surface, N: Lanes> Crossable<N> for OneByOne<S> {
     }
 }
 
-impl<S: Surface, N: Lanes> AtCrossing<N> for OneByOne<S> {
+impl<S: Surface, N: Lanes> AtCrossing<N> for ScalarLeaf<S> {
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
         let t = t.store();
         let points = from_fn::<_, LANES, _>(|lane| {
