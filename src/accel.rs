@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::bvh::Bvh;
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes};
 use crate::progress::{Cancelled, Progress, Reporter, Work};
-use crate::shape::{Endless, Part, Shape, SoaLeaf, Surface, surfaces};
+use crate::shape::{Endless, Primitive, Shape, SoaLeaf, Surface, surfaces};
 use crate::simd;
 use crate::threads;
 use std::array::from_fn;
@@ -20,35 +20,35 @@ mod builds;
 
 /// A part of an object. They are ordered as they stand in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct PartId {
+pub(crate) struct PrimitiveId {
     /// Which of the scene's objects.
     pub(crate) object: u32,
     /// Which of its shape's parts.
-    pub(crate) part: u32,
+    pub(crate) index: u32,
 }
 
 /// Whose parts eight are: the bits of these numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PartIds<N> {
+pub(crate) struct PrimitiveIds<N> {
     object: N,
-    part: N,
+    index: N,
 }
 
-impl PartIds<F32x8> {
+impl PrimitiveIds<F32x8> {
     /// Eight times the first part of the first object.
-    pub(crate) const ZERO: Self = Self { object: F32x8::ZERO, part: F32x8::ZERO };
+    pub(crate) const ZERO: Self = Self { object: F32x8::ZERO, index: F32x8::ZERO };
 
-    fn of(ids: [PartId; LANES]) -> Self {
+    fn of(ids: [PrimitiveId; LANES]) -> Self {
         Self {
             object: F32x8(ids.map(|id| f32::from_bits(id.object))),
-            part: F32x8(ids.map(|id| f32::from_bits(id.part))),
+            index: F32x8(ids.map(|id| f32::from_bits(id.index))),
         }
     }
 
     /// One of them.
     #[inline(always)]
-    pub(crate) fn id(&self, lane: usize) -> PartId {
-        PartId { object: self.object.0[lane].to_bits(), part: self.part.0[lane].to_bits() }
+    pub(crate) fn id(&self, lane: usize) -> PrimitiveId {
+        PrimitiveId { object: self.object.0[lane].to_bits(), index: self.index.0[lane].to_bits() }
     }
 
     /// Which are of that object, a bit for each.
@@ -59,28 +59,28 @@ impl PartIds<F32x8> {
 
     /// One of them in each place, as [`Lanes::gather`] has it.
     #[inline(always)]
-    pub(crate) fn gather<N: Lanes>(&self, lanes: N) -> PartIds<N> {
-        PartIds { object: N::load(&self.object).gather(lanes), part: N::load(&self.part).gather(lanes) }
+    pub(crate) fn gather<N: Lanes>(&self, lanes: N) -> PrimitiveIds<N> {
+        PrimitiveIds { object: N::load(&self.object).gather(lanes), index: N::load(&self.index).gather(lanes) }
     }
 }
 
-impl<N: Lanes> PartIds<N> {
+impl<N: Lanes> PrimitiveIds<N> {
     /// The same everywhere.
     #[inline(always)]
-    pub(crate) fn splat(PartId { object, part }: PartId) -> Self {
-        Self { object: N::splat(f32::from_bits(object)), part: N::splat(f32::from_bits(part)) }
+    pub(crate) fn splat(PrimitiveId { object, index }: PrimitiveId) -> Self {
+        Self { object: N::splat(f32::from_bits(object)), index: N::splat(f32::from_bits(index)) }
     }
 
     /// `yes` where the answer was yes, else `no`.
     #[inline(always)]
     pub(crate) fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
-        Self { object: N::select(mask, yes.object, no.object), part: N::select(mask, yes.part, no.part) }
+        Self { object: N::select(mask, yes.object, no.object), index: N::select(mask, yes.index, no.index) }
     }
 
     /// To memory.
     #[inline(always)]
-    pub(crate) fn store(self) -> PartIds<F32x8> {
-        PartIds { object: self.object.store(), part: self.part.store() }
+    pub(crate) fn store(self) -> PrimitiveIds<F32x8> {
+        PrimitiveIds { object: self.object.store(), index: self.index.store() }
     }
 }
 
@@ -88,7 +88,7 @@ impl<N: Lanes> PartIds<N> {
 macro_rules! only {
     (list of $kept:ty) => { List<$kept> };
     (tree of $kept:ty) => { Tree<$kept> };
-    (list from $surface:ident) => { Vec<(PartId, crate::shape::$surface)> };
+    (list from $surface:ident) => { Vec<(PrimitiveId, crate::shape::$surface)> };
     (tree from $surface:ident) => { Bounded<crate::shape::$surface> };
     (list in list $($then:tt)*) => { $($then)* };
     (tree in tree $($then:tt)*) => { $($then)* };
@@ -140,13 +140,13 @@ macro_rules! accelerator {
         }
 
         impl Listed {
-            fn push(&mut self, id: PartId, part: Part<'_>) {
-                match part {
-                    $($(#[$on])* Part::$surface(surface) => {
+            fn push(&mut self, id: PrimitiveId, primitive: Primitive<'_>) {
+                match primitive {
+                    $($(#[$on])* Primitive::$surface(surface) => {
                         only! { list in $group self.$name.push((id, *surface)); }
                         only! { tree in $group self.$name.push(id, *surface); }
                     })*
-                    Part::Facet(facet) => self.triangles.push(id, *facet.triangle()),
+                    Primitive::Facet(facet) => self.triangles.push(id, *facet.triangle()),
                 }
             }
 
@@ -161,7 +161,7 @@ macro_rules! accelerator {
                 let bounds = self.boxes().copied().reduce(|all, next| all.union(&next));
                 let (mut built, mut end) = (Accelerator { bounds, ..Accelerator::default() }, 0);
                 $($(#[$on])* { only! { list in $group
-                    built.$name = List { first: end, parts: self.$name };
+                    built.$name = List { first: end, primitives: self.$name };
                     end = built.$name.end();
                 } })*
                 end = end.next_multiple_of(LANES as u32);
@@ -189,39 +189,39 @@ pub(crate) trait Visitor<'a> {
 /// Parts of one kind that have no end.
 #[derive(Clone, PartialEq)]
 pub(crate) struct List<S> {
-    parts: Vec<(PartId, S)>,
+    primitives: Vec<(PrimitiveId, S)>,
     /// The place of the first of them.
     first: u32,
 }
 
 impl<S> Default for List<S> {
     fn default() -> Self {
-        Self { parts: Vec::new(), first: 0 }
+        Self { primitives: Vec::new(), first: 0 }
     }
 }
 
 impl<S> List<S> {
     /// The places behind those of all parts.
     fn end(&self) -> u32 {
-        self.first + self.parts.len() as u32
+        self.first + self.primitives.len() as u32
     }
 
     /// Returns whether that place is in the list.
     #[inline(always)]
-    pub(crate) fn holds(&self, place: u32) -> bool {
-        (self.first..self.end()).contains(&place)
+    pub(crate) fn holds(&self, primitive: u32) -> bool {
+        (self.first..self.end()).contains(&primitive)
     }
 
     /// The part of that place.
     #[inline(always)]
-    pub(crate) fn part(&self, place: u32) -> &(PartId, S) {
-        &self.parts[(place - self.first) as usize]
+    pub(crate) fn get(&self, primitive: u32) -> &(PrimitiveId, S) {
+        &self.primitives[(primitive - self.first) as usize]
     }
 
     /// All parts with their places.
     #[inline(always)]
-    pub(crate) fn parts(&self) -> impl Iterator<Item = (u32, &(PartId, S))> {
-        (self.first..).zip(&self.parts)
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, &(PrimitiveId, S))> {
+        (self.first..).zip(&self.primitives)
     }
 }
 
@@ -233,7 +233,7 @@ pub(crate) struct Tree<S> {
     pub(crate) leaves: Vec<S>,
     /// Whose they are, apart: that is asked only of what is met. (The last one's stands in the places that are left over,
     /// too.)
-    ids: Vec<PartIds<F32x8>>,
+    ids: Vec<PrimitiveIds<F32x8>>,
     /// The place of the first of them.
     pub(crate) first: u32,
     /// How many there are, where the tree is but one leaf and leaves nothing out; else 0.
@@ -270,8 +270,8 @@ impl Accelerator {
         let (mut listed, mut has_smooth) = (Listed::default(), false);
         for (object, shape) in (0..).zip(shapes) {
             has_smooth |= matches!(shape, Shape::Mesh(mesh) if mesh.is_smooth());
-            for part in 0..shape.part_count() {
-                listed.push(PartId { object, part }, shape.part(part));
+            for index in 0..shape.primitive_count() {
+                listed.push(PrimitiveId { object, index }, shape.primitive(index));
             }
         }
         let (done, total) = (AtomicUsize::new(0), listed.boxes().count());
@@ -292,7 +292,7 @@ impl Accelerator {
         struct Sum(usize);
         impl<'a> Visitor<'a> for Sum {
             fn list<S: Endless>(&mut self, list: &'a List<S>) {
-                self.0 += size_of_val(&list.parts[..]);
+                self.0 += size_of_val(&list.primitives[..]);
             }
 
             fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
@@ -306,13 +306,13 @@ impl Accelerator {
 
     /// Which part has that place; the first of all if none has.
     #[inline(always)]
-    pub(crate) fn id(&self, place: u32) -> PartId {
-        struct Find(u32, PartId);
+    pub(crate) fn id(&self, primitive: u32) -> PrimitiveId {
+        struct Find(u32, PrimitiveId);
         impl<'a> Visitor<'a> for Find {
             #[inline(always)]
             fn list<S: Endless>(&mut self, list: &'a List<S>) {
                 if list.holds(self.0) {
-                    self.1 = list.part(self.0).0;
+                    self.1 = list.get(self.0).0;
                 }
             }
 
@@ -323,7 +323,7 @@ impl Accelerator {
                 }
             }
         }
-        let mut find = Find(place, PartId { object: 0, part: 0 });
+        let mut find = Find(primitive, PrimitiveId { object: 0, index: 0 });
         self.visit(&mut find);
         find.1
     }
@@ -354,7 +354,7 @@ impl<S> Tree<S> {
 
     /// The place of what stands in that leaf.
     #[inline(always)]
-    pub(crate) fn place(&self, leaf: usize, lane: usize) -> u32 {
+    pub(crate) fn primitive(&self, leaf: usize, lane: usize) -> u32 {
         self.first + (leaf * LANES + lane) as u32
     }
 
@@ -366,8 +366,8 @@ impl<S> Tree<S> {
 
     /// Returns whether that place is in one of the leaves.
     #[inline(always)]
-    pub(crate) fn holds(&self, place: u32) -> bool {
-        (self.first..self.end()).contains(&place)
+    pub(crate) fn holds(&self, primitive: u32) -> bool {
+        (self.first..self.end()).contains(&primitive)
     }
 
     /// Whether its tree leaves anything out.
@@ -378,8 +378,8 @@ impl<S> Tree<S> {
 
     /// The leaf in which that place is, and whose its parts are.
     #[inline(always)]
-    pub(crate) fn leaf(&self, place: u32) -> (&S, &PartIds<F32x8>) {
-        let leaf = (place - self.first) as usize / LANES;
+    pub(crate) fn leaf(&self, primitive: u32) -> (&S, &PrimitiveIds<F32x8>) {
+        let leaf = (primitive - self.first) as usize / LANES;
         (&self.leaves[leaf], &self.ids[leaf])
     }
 
@@ -391,13 +391,13 @@ impl<S> Tree<S> {
 
     /// Whose part has that place.
     #[inline(always)]
-    pub(crate) fn id(&self, place: u32) -> PartId {
-        let at = (place - self.first) as usize;
+    pub(crate) fn id(&self, primitive: u32) -> PrimitiveId {
+        let at = (primitive - self.first) as usize;
         self.ids[at / LANES].id(at % LANES)
     }
 
     /// Whose parts are in that leaf.
-    pub(crate) fn parts(&self, leaf: usize) -> impl Iterator<Item = PartId> {
+    pub(crate) fn primitives(&self, leaf: usize) -> impl Iterator<Item = PrimitiveId> {
         let id = move |lane| self.ids[leaf].id(lane);
         let end = (1..LANES).find(|&at| id(at) == id(at - 1));
         (0..end.unwrap_or(LANES)).map(id)
@@ -409,7 +409,7 @@ const FEW: usize = 1024;
 
 /// Parts of one kind that have bounds, in the order of the scene.
 struct Bounded<T> {
-    ids: Vec<PartId>,
+    ids: Vec<PrimitiveId>,
     shapes: Vec<T>,
     boxes: Vec<Bounds>,
 }
@@ -421,7 +421,7 @@ impl<T> Default for Bounded<T> {
 }
 
 impl<T: Surface + Copy + Sync> Bounded<T> {
-    fn push(&mut self, id: PartId, shape: T) {
+    fn push(&mut self, id: PrimitiveId, shape: T) {
         if let Some(bounds) = shape.bounds() {
             self.ids.push(id);
             self.boxes.push(bounds);
@@ -439,7 +439,7 @@ impl<T: Surface + Copy + Sync> Bounded<T> {
             let numbers = places.boxes(leaf);
             let number = |lane: usize| numbers[lane.min(numbers.len() - 1)] as usize;
             let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)]);
-            (S::of(&shapes[..numbers.len()]), PartIds::of(from_fn(|lane| self.ids[number(lane)])))
+            (S::of(&shapes[..numbers.len()]), PrimitiveIds::of(from_fn(|lane| self.ids[number(lane)])))
         };
         let few = if bvh.is_leaf() { self.ids.len() } else { 0 };
         let count = places.count();

@@ -138,7 +138,7 @@ fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
     let point = hit.surface(scene).at_crossing(&trace.ray, hit.t);
     ShadedHit {
         hit,
-        name: SurfaceName::of(scene, hit.object, hit.part),
+        name: SurfaceName::of(scene, hit.object, hit.primitive),
         point,
         ambient: scene.ambient(),
         lights: scene.lights().iter().map(|light| light_contribution(scene, light, &point)).collect(),
@@ -153,7 +153,10 @@ fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lig
     let blocker = (scene.shadows() && 0.0 < incidence.cosine)
         .then(|| hit::any_hit_observed(scene, &ray, light.in_the_way(), &mut TestRecorder::default()))
         .flatten();
-    LightContribution { incidence, blocker: blocker.map(|hit| (SurfaceName::of(scene, hit.object, hit.part), hit.t)) }
+    LightContribution {
+        incidence,
+        blocker: blocker.map(|hit| (SurfaceName::of(scene, hit.object, hit.primitive), hit.t)),
+    }
 }
 
 /// The observer that records what a ray is tested against.
@@ -176,12 +179,12 @@ impl Observer for TestRecorder {
 impl TestRecorder {
     fn tested(self, scene: &Scene, ray: &Ray) -> Vec<TestedSurface> {
         let mut tests = self.tests;
-        let order = |test: &PrimitiveTest| (test.object, test.part);
+        let order = |test: &PrimitiveTest| (test.object, test.primitive);
         let t = |test: &PrimitiveTest| test.t.unwrap_or(f32::INFINITY);
         tests.sort_by(|a, b| t(a).total_cmp(&t(b)).then(order(a).cmp(&order(b))));
-        let tested = |PrimitiveTest { object, part, t }| {
-            let equation = scene.objects()[object as usize].shape.part(part).equation(ray);
-            TestedSurface { name: SurfaceName::of(scene, object, part), t, equation }
+        let tested = |PrimitiveTest { object, primitive, t }| {
+            let equation = scene.objects()[object as usize].shape.primitive(primitive).equation(ray);
+            TestedSurface { name: SurfaceName::of(scene, object, primitive), t, equation }
         };
         tests.into_iter().map(tested).collect()
     }

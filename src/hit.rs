@@ -3,12 +3,12 @@
 //! Both are asked for many rays at a time, so that the way in which they are traced together is this stage's choice. None
 //! of the ways shows in what is found.
 
-use crate::accel::{Accelerator, PartId};
+use crate::accel::{Accelerator, PrimitiveId};
 use crate::bvh::{GROUPS, Queue, Stack};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, set_bits};
 use crate::ray::{EightRays, Interval, Probe, Ray, Rays};
 use crate::scene::Scene;
-use crate::shape::{Part, Surface};
+use crate::shape::{Primitive, Surface};
 use crate::simd::{self, SimdKernel};
 use packet::PacketRays;
 use single::SingleRay;
@@ -27,15 +27,15 @@ pub struct Hit {
     pub t: f32,
     /// Which of the scene's objects, by its place in [`Scene::objects`].
     pub object: u32,
-    /// Which of its shape's [parts](crate::shape::Shape::part).
-    pub part: u32,
+    /// Which of its shape's [parts](crate::shape::Shape::primitive).
+    pub primitive: u32,
 }
 
 impl Hit {
     /// What was hit.
     #[doc(hidden)]
-    pub fn surface(self, scene: &Scene) -> Part<'_> {
-        scene.objects()[self.object as usize].shape.part(self.part)
+    pub fn surface(self, scene: &Scene) -> Primitive<'_> {
+        scene.objects()[self.object as usize].shape.primitive(self.primitive)
     }
 }
 
@@ -108,8 +108,8 @@ impl EightHits {
     /// In another scene than that it was found in; or if there are not so many.
     pub fn hit(&self, scene: &Scene, lane: usize) -> Option<Hit> {
         (self.hit_mask >> lane & 1 == 1).then(|| {
-            let PartId { object, part } = scene.accelerator().id(self.primitive(lane));
-            Hit { t: self.t.0[lane], object, part }
+            let PrimitiveId { object, index } = scene.accelerator().id(self.primitive(lane));
+            Hit { t: self.t.0[lane], object, primitive: index }
         })
     }
 }
@@ -151,16 +151,16 @@ pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
 /// [`closest_hit`], with a observer of what the ray is tested against.
 pub fn closest_hit_observed(scene: &Scene, ray: &Ray, observer: &mut impl Observer) -> Option<Hit> {
     let (t, primitive) = simd::dispatch(Observed::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, observer });
-    let PartId { object, part } = scene.accelerator().id(primitive?);
-    Some(Hit { t, object, part })
+    let PrimitiveId { object, index } = scene.accelerator().id(primitive?);
+    Some(Hit { t, object, primitive: index })
 }
 
 /// [`any_hit`], with a observer of what the ray is tested against. Returns what it met, which need not be the closest.
 pub fn any_hit_observed(scene: &Scene, ray: &Ray, within: Interval, observer: &mut impl Observer) -> Option<Hit> {
     let (_, primitive) = simd::dispatch(Observed::<_, ANY> { scene, ray, within, observer });
-    let PartId { object, part } = scene.accelerator().id(primitive?);
-    let t = scene.objects()[object as usize].shape.part(part).closest_crossing(&Probe::new(*ray), within)?;
-    Some(Hit { t, object, part })
+    let PrimitiveId { object, index } = scene.accelerator().id(primitive?);
+    let t = scene.objects()[object as usize].shape.primitive(index).closest_crossing(&Probe::new(*ray), within)?;
+    Some(Hit { t, object, primitive: index })
 }
 
 /// A ray by itself that somebody watches.
@@ -234,7 +234,7 @@ fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], queue: &mut
         let mut hit = EightHits { hit_mask: 0, t: F32x8::ZERO, primitives: nothing };
         // What tests have in common is reckoned for all eight at once.
         let eight = Rays::load(rays, accel.needs_shear());
-        for lane in set_bits(rays.asked) {
+        for lane in set_bits(rays.active) {
             let mut ray = SingleRay::<N, CLOSEST>::new(accel, &eight, lane, Interval::IN_FRONT);
             ray.trace(queue);
             if let (t, Some(primitive)) = ray.found() {
@@ -288,7 +288,7 @@ fn any_single<N: Lanes>(
     for rays in rays {
         let mut hit_mask = 0;
         let eight = Rays::load(rays, accel.needs_shear());
-        for lane in set_bits(rays.asked) {
+        for lane in set_bits(rays.active) {
             let mut ray = SingleRay::<N, ANY>::new(accel, &eight, lane, within);
             ray.trace(queue);
             hit_mask |= u32::from(ray.found().1.is_some()) << lane;

@@ -183,7 +183,7 @@
 //!
 //! # What is not here
 //!
-//! No trait objects in the tracer: a [`Shape`] is an enum, its `Part`s are what rays are tested against. A new surface
+//! No trait objects in the tracer: a [`Shape`] is an enum, its `Primitive`s are what rays are tested against. A new surface
 //! is one file under `shape/`, where it implements `Surface`, `Described`, `InSceneFile` and `CheckedShape`, and one
 //! line in the table of `shape`, from which the enums, the lists and trees of `accel`, and what reads, describes and
 //! explains it are made (`shape::cube` is such a surface, for tests). In the same way a material is a file under

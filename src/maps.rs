@@ -226,9 +226,9 @@ fn trace_partial(
             let middle = distance(camera);
             of_surfaces(&|sample| sample.hit.map_or(NO_HIT, |hit| colors::depth(hit.t, middle)))
         }
-        Map::Normal => {
-            of_surfaces(&|sample| sample.surface(scene).map_or(NO_HIT, |surface| colors::normal(surface.normal)))
-        }
+        Map::Normal => of_surfaces(&|sample| {
+            sample.surface(scene).map_or(NO_HIT, |surface| colors::normal(surface.shading_normal))
+        }),
         Map::Object => of_surfaces(&|sample| sample.hit.map_or(NO_HIT, |hit| colors::object(hit.object))),
         Map::Shadow => traced_to(TraceDepth::Lights, &|sample| match sample.hit {
             Some(_) => colors::share(sample.lit_by.count_ones(), scene.lights().len().min(32) as u32),

@@ -99,7 +99,7 @@ pub struct EightRays {
     pub direction: Vector<F32x8>,
     /// Which of them are asked about, a bit for each, the first the lowest. In the place of the others stands one of
     /// these; if there are none, anything.
-    pub asked: u32,
+    pub active: u32,
 }
 
 impl EightRays {
@@ -112,7 +112,7 @@ impl EightRays {
         Self {
             origin: Vector::of(from_fn(|lane| ray(lane).origin)),
             direction: Vector::of(from_fn(|lane| ray(lane).direction)),
-            asked: ALL >> LANES.saturating_sub(rays.len()),
+            active: ALL >> LANES.saturating_sub(rays.len()),
         }
     }
 

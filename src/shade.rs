@@ -113,7 +113,7 @@ impl ShadowRays {
 
 /// How many rays are asked about.
 pub fn count(rays: &[EightRays]) -> u64 {
-    rays.iter().map(|rays| u64::from(rays.asked.count_ones())).sum()
+    rays.iter().map(|rays| u64::from(rays.active.count_ones())).sum()
 }
 
 /// What the light of that number adds to what arrives.
@@ -130,7 +130,7 @@ impl SimdKernel for AddUnblocked<'_> {
     fn run<N: Lanes>(self) {
         let Self { number, shadows: ShadowRays { rays, lights, blocked }, arriving } = self;
         for (at, arriving) in arriving.iter_mut().enumerate() {
-            let lit = rays[at].asked & !blocked[at];
+            let lit = rays[at].active & !blocked[at];
             for (sum, more) in arriving.light.iter_mut().zip(&lights[at]) {
                 let dark = N::load(sum);
                 *sum = N::select(N::mask_from_bits(lit), dark + N::load(more), dark).store();
@@ -170,7 +170,7 @@ impl SimdKernel for Shadows<'_> {
 fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32) -> EightRays {
     let origin = points.position.load() + points.geometric_normal.load() * N::load(&points.clearance);
     let direction = light.to_light(origin);
-    let rays = EightRays { origin: origin.store(), direction: direction.store(), asked: active };
+    let rays = EightRays { origin: origin.store(), direction: direction.store(), active };
     if active == ALL || active == 0 {
         return rays;
     }
@@ -178,7 +178,7 @@ fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32)
     EightRays {
         origin: Vector::select(is_active, origin, Vector::splat(one.origin)).store(),
         direction: Vector::select(is_active, direction, Vector::splat(one.direction)).store(),
-        asked: active,
+        active,
     }
 }
 
@@ -243,7 +243,7 @@ impl Reflect<'_> {
             (Material::Own, shape) => {
                 let mut channels = [F32x8::ZERO; 3];
                 for lane in set_bits(own) {
-                    let reflectance = shape.part(points.ids.id(lane).part).own_reflectance(points.uv(lane));
+                    let reflectance = shape.primitive(points.ids.id(lane).index).own_reflectance(points.uv(lane));
                     let LinearRgb { r, g, b } = reflectance.unwrap_or(Material::DEFAULT_REFLECTANCE);
                     [channels[0].0[lane], channels[1].0[lane], channels[2].0[lane]] = [r, g, b];
                 }
@@ -278,7 +278,7 @@ pub fn incidence(light: &Light, point: &SurfacePoint) -> Option<Incidence> {
 
 /// The same also where the surface faces away from the light.
 pub fn incidence_on_either_side(light: &Light, point: &SurfacePoint) -> Incidence {
-    let (position, normal) = (Vector::<f32>::splat(point.position), Vector::splat(point.normal));
+    let (position, normal) = (Vector::<f32>::splat(point.position), Vector::splat(point.shading_normal));
     let (_, IncidentLight { l, distance, cosine, light: [r, g, b] }) = incident_light(light, position, normal);
     let distance = if light.position().is_some() { distance } else { f32::INFINITY };
     Incidence { l: l.into(), distance, cosine, light: LinearRgb::new(r, g, b) }

@@ -87,8 +87,8 @@ pub trait AtCrossing<N: Number> {
 pub struct Points<N: Number> {
     /// [`SurfacePoint::position`].
     pub position: Vector<N>,
-    /// [`SurfacePoint::facing`].
-    pub facing: Vector<N>,
+    /// [`SurfacePoint::geometric_normal`].
+    pub geometric_normal: Vector<N>,
     /// [`SurfacePoint::side`]: whether the front is seen.
     is_front: N::Mask,
     /// [`SurfacePoint::clearance`].
@@ -103,15 +103,15 @@ impl<N: Number> Points<N> {
     fn seen_by(rays: &Rays<N>, position: Vector<N>, front: Vector<N>, size: N, uv: [N; 2]) -> Self {
         let is_front = rays.direction.dot(front).lt(N::splat(0.0));
         let back = Vector { x: -front.x, y: -front.y, z: -front.z };
-        let facing = Vector::select(is_front, front, back);
-        Self { position, facing, is_front, clearance: N::splat(CLEARANCE) * size, uv }
+        let geometric_normal = Vector::select(is_front, front, back);
+        Self { position, geometric_normal, is_front, clearance: N::splat(CLEARANCE) * size, uv }
     }
 
     /// Where nothing is.
     #[inline(always)]
     pub fn nowhere() -> Self {
         let (zero, zeros) = (N::splat(0.0), Vector::splat(Vec3::ZERO));
-        Self { position: zeros, facing: zeros, is_front: zero.lt(zero), clearance: zero, uv: [zero; 2] }
+        Self { position: zeros, geometric_normal: zeros, is_front: zero.lt(zero), clearance: zero, uv: [zero; 2] }
     }
 
     /// `yes` where the answer was yes, else `no`.
@@ -120,7 +120,7 @@ impl<N: Number> Points<N> {
         let of_two = |yes: N, no: N| N::select(mask, yes, no);
         Self {
             position: Vector::select(mask, yes.position, no.position),
-            facing: Vector::select(mask, yes.facing, no.facing),
+            geometric_normal: Vector::select(mask, yes.geometric_normal, no.geometric_normal),
             is_front: mask & yes.is_front | !mask & no.is_front,
             clearance: of_two(yes.clearance, no.clearance),
             uv: [of_two(yes.uv[0], no.uv[0]), of_two(yes.uv[1], no.uv[1])],
@@ -130,11 +130,11 @@ impl<N: Number> Points<N> {
 
 impl Points<f32> {
     fn point(self) -> SurfacePoint {
-        let facing = self.facing.into();
+        let geometric_normal = self.geometric_normal.into();
         SurfacePoint {
             position: self.position.into(),
-            normal: facing,
-            facing,
+            shading_normal: geometric_normal,
+            geometric_normal,
             side: if self.is_front { Side::Front } else { Side::Back },
             clearance: self.clearance,
             uv: self.uv.into(),
@@ -193,12 +193,12 @@ pub struct SurfacePoint {
     /// The lecture's **p**, moved onto the surface as exactly as f32 can say.
     pub position: Vec3,
     /// The normal **n** on the side that the ray came from. Unit length.
-    pub normal: Vec3,
+    pub shading_normal: Vec3,
     /// The same of the surface as it is, where `normal` is that of a smooth one that it stands for. Unit length.
-    pub facing: Vec3,
+    pub geometric_normal: Vec3,
     /// Which side of the surface is seen.
     pub side: Side,
-    /// How far, along `facing`, the true surface may lie from `position`, and as far again as a ray that starts
+    /// How far, along `geometric_normal`, the true surface may lie from `position`, and as far again as a ray that starts
     /// there needs to be clear of it. In proportion to the coordinates involved; no constant of the scene's size.
     pub clearance: f32,
     /// Coordinates on the surface for a pattern: on a plane in world units, in a triangle the shares of its second and
@@ -211,7 +211,7 @@ impl SurfacePoint {
     /// itself (after Waechter and Binder, Ray Tracing Gems, chapter 6, and pbrt's `OffsetRayOrigin`: the hit's error
     /// box is left behind, whatever the scale; a fixed epsilon fails in small and in large scenes).
     pub fn ray_origin(&self) -> Vec3 {
-        self.position + self.facing * self.clearance
+        self.position + self.geometric_normal * self.clearance
     }
 }
 
@@ -244,7 +244,7 @@ macro_rules! surfaces {
 
 pub(crate) use surfaces;
 
-/// Makes [`Shape`] and [`Part`] from the table of surfaces.
+/// Makes [`Shape`] and [`Primitive`] from the table of surfaces.
 macro_rules! shapes {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         /// Any of the surfaces, or a mesh.
@@ -259,7 +259,7 @@ macro_rules! shapes {
         impl Shape {
             /// How many parts it has, each of which is a surface: one, but for meshes.
             #[doc(hidden)]
-            pub fn part_count(&self) -> u32 {
+            pub fn primitive_count(&self) -> u32 {
                 match self {
                     Self::Mesh(mesh) => mesh.triangle_count(),
                     _ => 1,
@@ -272,10 +272,10 @@ macro_rules! shapes {
             /// If a mesh has fewer.
             #[doc(hidden)]
             #[inline]
-            pub fn part(&self, part: u32) -> Part<'_> {
+            pub fn primitive(&self, index: u32) -> Primitive<'_> {
                 match self {
-                    $($(#[$on])* Self::$surface(surface) => Part::$surface(surface),)*
-                    Self::Mesh(mesh) => Part::Facet(mesh.facet(part)),
+                    $($(#[$on])* Self::$surface(surface) => Primitive::$surface(surface),)*
+                    Self::Mesh(mesh) => Primitive::Facet(mesh.facet(index)),
                 }
             }
 
@@ -298,13 +298,13 @@ macro_rules! shapes {
 
         /// What a ray is tested against: a surface, or a triangle of a mesh. It hands every question on.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub enum Part<'s> {
+        pub enum Primitive<'s> {
             $(#[doc = $of] $(#[$on])* $surface(&'s $surface),)*
             /// A triangle of a mesh.
             Facet(Facet<'s>),
         }
 
-        impl Surface for Part<'_> {
+        impl Surface for Primitive<'_> {
             fn bounds(&self) -> Option<Bounds> {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.bounds(),)*
@@ -338,7 +338,7 @@ impl From<Mesh> for Shape {
     }
 }
 
-impl Part<'_> {
+impl Primitive<'_> {
     /// The diffuse reflectance that the surface brings itself where it has these [coordinates](SurfacePoint::uv): that of
     /// a mesh whose file has colours.
     pub fn own_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {

@@ -158,7 +158,7 @@ fn behind(scene: &Scene, mut sample: GBufferSample) -> [Option<u32>; MAX_OCCLUDE
     for _ in 0..MAX_LAYERS {
         let Some(surface) = sample.surface(scene) else { break };
         // Starts as far behind the surface as a shadow ray starts in front of it.
-        let origin = surface.position - surface.facing * surface.clearance;
+        let origin = surface.position - surface.geometric_normal * surface.clearance;
         sample.ray = Ray { origin, ..sample.ray };
         sample.hit = closest_hit(scene, &sample.ray);
         let object = sample.hit.map(|hit| hit.object);

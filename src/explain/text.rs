@@ -21,9 +21,9 @@ pub struct SurfaceName {
 }
 
 impl SurfaceName {
-    pub(super) fn of(scene: &Scene, object: u32, part: u32) -> Self {
+    pub(super) fn of(scene: &Scene, object: u32, primitive: u32) -> Self {
         let (kind, face) = match &scene.objects()[object as usize].shape {
-            Shape::Mesh(_) => ("face", Some(part + 1)),
+            Shape::Mesh(_) => ("face", Some(primitive + 1)),
             shape => (shape.kind(), None),
         };
         Self { object: object + 1, kind, face }
@@ -92,7 +92,7 @@ impl Explanation {
         };
         lines.extend([
             vector("p", shaded.point.position),
-            vector("n", shaded.point.normal),
+            vector("n", shaded.point.shading_normal),
             format!("seen from the {side}"),
         ]);
         for (number, contribution) in (1..).zip(&shaded.lights) {

@@ -1,6 +1,6 @@
 //! Who watches a ray on its way: nobody, usually, and that costs nothing.
 
-use crate::accel::PartId;
+use crate::accel::PrimitiveId;
 
 /// Who is told what a ray is tested against, by the same code that traces pictures.
 pub trait Observer {
@@ -19,15 +19,15 @@ pub trait Observer {
 pub struct PrimitiveTest {
     /// Which of the scene's objects, by its place in [`Scene::objects`](crate::scene::Scene::objects).
     pub object: u32,
-    /// Which of its shape's [parts](crate::shape::Shape::part).
-    pub part: u32,
+    /// Which of its shape's [parts](crate::shape::Shape::primitive).
+    pub primitive: u32,
     /// Where the ray first crosses it, from the start of the interval on; `None`: nowhere there.
     pub t: Option<f32>,
 }
 
 impl PrimitiveTest {
-    pub(super) fn of(PartId { object, part }: PartId, t: Option<f32>) -> Self {
-        Self { object, part, t }
+    pub(super) fn of(PrimitiveId { object, index }: PrimitiveId, t: Option<f32>) -> Self {
+        Self { object, primitive: index, t }
     }
 }
 

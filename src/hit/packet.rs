@@ -47,7 +47,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     /// No rays yet. A packet is some kilobytes: it stays where it is, and takes one lot of rays after the other.
     #[inline(always)]
     pub(super) fn new(kernel: Kernel, accel: &'p Accelerator, within: Interval) -> Self {
-        let zeros = EightRays { origin: Vector::ZERO, direction: Vector::ZERO, asked: 0 };
+        let zeros = EightRays { origin: Vector::ZERO, direction: Vector::ZERO, active: 0 };
         Self {
             kernel,
             accel,
@@ -67,7 +67,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     /// to do the same.
     #[inline(always)]
     pub(super) fn was_inefficient(&self) -> bool {
-        let active = self.rays.iter().map(|rays| rays.asked.count_ones()).sum();
+        let active = self.rays.iter().map(|rays| rays.active.count_ones()).sum();
         split::is_inefficient(self.leaves, self.rays_left, active)
     }
 
@@ -76,11 +76,11 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     pub(super) fn trace(&mut self, rays: &'p [EightRays], stacks: &mut Stacks) {
         (self.rays, self.rays_left, self.leaves) = (rays, 0, 0);
         // Who is not asked about does not widen the packet.
-        let Some(one) = rays.iter().find(|rays| rays.asked != 0) else { return self.reset(0..GROUPS) };
+        let Some(one) = rays.iter().find(|rays| rays.active != 0) else { return self.reset(0..GROUPS) };
         let accel = self.accel;
         let (has_trees, needs_shear) = (accel.has_trees(), accel.needs_shear());
         for (group, group_rays) in rays.iter().enumerate() {
-            let active = group_rays.asked;
+            let active = group_rays.active;
             let rays = Rays::load(if active == 0 { one } else { group_rays }, needs_shear);
             let hits = self.test_unculled(&rays, active);
             (self.t[group], self.primitive[group]) = (hits.t, hits.primitive);
@@ -122,7 +122,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     #[inline(always)]
     pub(super) fn write_hit_masks(&self, hit_masks: &mut Vec<u32>) {
         for (group, rays) in self.rays.iter().enumerate() {
-            hit_masks.push(self.t[group].le(N::splat(TERMINATED)).bits() & rays.asked);
+            hit_masks.push(self.t[group].le(N::splat(TERMINATED)).bits() & rays.active);
         }
     }
 
@@ -195,7 +195,7 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
         let Some(leaf) = tree.leaves.first() else { return };
         for lane in 0..tree.few {
             let shape = leaf.splat(lane);
-            self.update(tree.place(0, lane), shape.first_crossing(rays, min), accel);
+            self.update(tree.primitive(0, lane), shape.first_crossing(rays, min), accel);
         }
     }
 
@@ -254,7 +254,7 @@ struct Unculled<'a, N: Lanes, const ANY: bool> {
 impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> {
     #[inline(always)]
     fn list<S: Endless>(&mut self, list: &'p List<S>) {
-        for (primitive, (_, surface)) in list.parts() {
+        for (primitive, (_, surface)) in list.iter() {
             self.hits.update(primitive, surface.splat().first_crossing(self.rays, self.min), self.accel);
         }
     }
@@ -356,7 +356,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, 
             let (lane, group) =
                 (pairs.trailing_zeros() as usize / GROUPS % LANES, pairs.trailing_zeros() as usize % GROUPS);
             pairs &= pairs.wrapping_sub(1);
-            self.rays.test(group, &shapes.splat(lane), self.tree.place(leaf, lane), N::splat(error_bounds.0[lane]));
+            self.rays.test(group, &shapes.splat(lane), self.tree.primitive(leaf, lane), N::splat(error_bounds.0[lane]));
         }
         self.rays.update_farthest();
     }

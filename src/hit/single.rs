@@ -1,7 +1,7 @@
 //! A ray by itself, against eight boxes or parts at a time.
 
 use super::observer::{NoObserver, Observer, PrimitiveTest};
-use crate::accel::{Accelerator, List, PartId, Tree, Visitor};
+use crate::accel::{Accelerator, List, PrimitiveId, Tree, Visitor};
 use crate::bvh::{Child, LeafVisitor, Prefetch, Queue};
 use crate::lanes::{F32x8, LaneMask, Lanes, SimdKernel, set_bits};
 use crate::ray::{Interval, Rays};
@@ -60,7 +60,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
 
     #[inline(always)]
     fn trace_list<S: Endless>(&mut self, list: &List<S>) {
-        for (primitive, (id, surface)) in list.parts() {
+        for (primitive, (id, surface)) in list.iter() {
             let crossing = surface
                 .splat()
                 .first_crossing(self.rays, N::splat(self.within.min))
@@ -98,7 +98,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         let shapes = tree.leaves[leaf].load::<N>();
         let crossing = shapes.first_crossing(rays, N::splat(self.within.min));
         if W::ENABLED {
-            self.report_tests(tree.parts(leaf), crossing);
+            self.report_tests(tree.primitives(leaf), crossing);
         }
         let Some((crosses, t)) = crossing else { return };
         let hit_mask = (crosses & t.le(N::splat(self.within.max))).bits();
@@ -107,14 +107,14 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         }
         let t = t.store();
         for lane in set_bits(hit_mask) {
-            self.record(t.0[lane], tree.place(leaf, lane));
+            self.record(t.0[lane], tree.primitive(leaf, lane));
         }
     }
 
     /// Tells the observer of a leaf's parts.
-    fn report_tests(&mut self, parts: impl Iterator<Item = PartId>, crossing: Option<(N::Mask, N)>) {
+    fn report_tests(&mut self, primitives: impl Iterator<Item = PrimitiveId>, crossing: Option<(N::Mask, N)>) {
         let (crosses, t) = crossing.map_or((0, F32x8::ZERO), |(crosses, t)| (crosses.bits(), t.store()));
-        for (lane, id) in parts.enumerate() {
+        for (lane, id) in primitives.enumerate() {
             self.observer.primitive_tested(PrimitiveTest::of(id, (crosses >> lane & 1 == 1).then_some(t.0[lane])));
         }
     }

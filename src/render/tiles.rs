@@ -220,7 +220,7 @@ impl SimdKernel for MakeEyeRays<'_> {
             }
             let [qu, qv] = tiles.q([left + N::load(&x), top + N::load(&y)], [N::load(&sx), N::load(&sy)]);
             let direction = eye_rays.direction(qu, qv).store();
-            rays.push(EightRays { origin, direction, asked: ALL >> (LANES - pixels.len()) });
+            rays.push(EightRays { origin, direction, active: ALL >> (LANES - pixels.len()) });
         }
     }
 }

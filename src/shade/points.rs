@@ -1,11 +1,11 @@
 //! Hits -> the surfaces there, eight at a time.
 
-use crate::accel::{Accelerator, List, PartId, PartIds, Tree, Visitor};
+use crate::accel::{Accelerator, List, PrimitiveId, PrimitiveIds, Tree, Visitor};
 use crate::hit::EightHits;
 use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
 use crate::scene::Scene;
-use crate::shape::{AtCrossing, Endless, Part, Points, SoaLeaf};
+use crate::shape::{AtCrossing, Endless, Points, Primitive, SoaLeaf};
 use crate::simd::{self, SimdKernel};
 use glam::Vec2;
 
@@ -15,7 +15,7 @@ pub struct EightPoints {
     /// Which of the rays have met one, a bit for each. What stands for the others has no meaning.
     pub hit_mask: u32,
     /// Whose it is.
-    pub(super) ids: PartIds<F32x8>,
+    pub(super) ids: PrimitiveIds<F32x8>,
     /// As [`SurfacePoint`](crate::shape::SurfacePoint) has them.
     pub(super) position: Vector<F32x8>,
     pub(super) shading_normal: Vector<F32x8>,
@@ -28,7 +28,7 @@ impl EightPoints {
     /// Of rays that have met nothing.
     const NONE: Self = Self {
         hit_mask: 0,
-        ids: PartIds::ZERO,
+        ids: PrimitiveIds::ZERO,
         position: Vector::ZERO,
         shading_normal: Vector::ZERO,
         geometric_normal: Vector::ZERO,
@@ -82,7 +82,7 @@ impl SimdKernel for SurfacePoints<'_> {
 #[inline(always)]
 fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &EightHits, at: &mut EightPoints) {
     let mut points = Points::<N>::nowhere();
-    let mut ids = PartIds::<N>::splat(PartId { object: 0, part: 0 });
+    let mut ids = PrimitiveIds::<N>::splat(PrimitiveId { object: 0, index: 0 });
     let mut left = at.hit_mask;
     while left != 0 {
         let primitive = hits.primitive(left.trailing_zeros() as usize % LANES);
@@ -93,13 +93,13 @@ fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &Eight
             (points, ids) = (found, whose);
         } else {
             points = Points::select(N::mask_from_bits(lanes), found, points);
-            ids = PartIds::select(N::mask_from_bits(lanes), whose, ids);
+            ids = PrimitiveIds::select(N::mask_from_bits(lanes), whose, ids);
         }
         left &= !lanes;
     }
     at.ids = ids.store();
     at.position = points.position.store();
-    at.geometric_normal = points.facing.store();
+    at.geometric_normal = points.geometric_normal.store();
     at.shading_normal = at.geometric_normal;
     at.clearance = points.clearance.store();
     at.uv = [points.uv[0].store(), points.uv[1].store()];
@@ -112,16 +112,16 @@ struct SurfacesOfPrimitive<'h, N: Lanes> {
     rays: &'h EightRays,
     hits: &'h EightHits,
     /// Of which rays, a bit for each; whose; and what.
-    found: (u32, PartIds<N>, Points<N>),
+    found: (u32, PrimitiveIds<N>, Points<N>),
 }
 
 impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
     #[inline(always)]
     fn list<S: Endless>(&mut self, list: &'a List<S>) {
         if list.holds(self.primitive) {
-            let (id, surface) = list.part(self.primitive);
+            let (id, surface) = list.get(self.primitive);
             let found = surface.splat().points_at(&Rays::<N>::load(self.rays, false), N::load(&self.hits.t));
-            self.found = (self.hits.mask_of::<N>(self.primitive), PartIds::splat(*id), found);
+            self.found = (self.hits.mask_of::<N>(self.primitive), PrimitiveIds::splat(*id), found);
         }
     }
 
@@ -140,7 +140,7 @@ fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
     rays: &EightRays,
     hits: &EightHits,
     lanes: u32,
-) -> (u32, PartIds<N>, Points<N>) {
+) -> (u32, PrimitiveIds<N>, Points<N>) {
     let (leaves, in_leaf) = (hits.leaf_indices::<N>(), hits.lanes_in_leaf::<N>());
     let first_primitive = |left: u32| hits.primitive(left.trailing_zeros() as usize % LANES);
     // Most often all stand in one leaf. Who has met nothing here is given whatever it has, and that is not looked at.
@@ -152,7 +152,7 @@ fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
         let primitive = first_primitive(left);
         let ((leaf, ids), are_here) = (tree.leaf(primitive), leaves.has_bits(primitive / LANES as u32));
         shapes = S::select(are_here, leaf.gather(in_leaf), shapes);
-        whose = PartIds::select(are_here, ids.gather(in_leaf), whose);
+        whose = PrimitiveIds::select(are_here, ids.gather(in_leaf), whose);
         left &= !are_here.bits();
     }
     (lanes, whose, shapes.points_at(&Rays::load(rays, S::NEED_SHEAR), N::load(&hits.t)))
@@ -161,8 +161,8 @@ fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
 /// Goes over to the smooth surfaces that triangles stand for.
 fn interpolate_normals(scene: &Scene, at: &mut EightPoints) {
     for lane in set_bits(at.hit_mask) {
-        let PartId { object, part } = at.ids.id(lane);
-        if let Part::Facet(facet) = scene.objects()[object as usize].shape.part(part)
+        let PrimitiveId { object, index } = at.ids.id(lane);
+        if let Primitive::Facet(facet) = scene.objects()[object as usize].shape.primitive(index)
             && let Some((position, normal)) =
                 facet.smooth(at.position.of_lane(lane), at.geometric_normal.of_lane(lane), at.uv(lane))
         {

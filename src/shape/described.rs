@@ -1,6 +1,6 @@
 //! How surfaces are spoken of: in descriptions and explanations.
 
-use super::{Equation, Mesh, Part, Shape, Surface, surfaces};
+use super::{Equation, Mesh, Primitive, Shape, Surface, surfaces};
 use crate::bounds::Bounds;
 use crate::ray::Ray;
 use crate::text::number;
@@ -71,7 +71,7 @@ macro_rules! described {
             }
         }
 
-        impl Part<'_> {
+        impl Primitive<'_> {
             /// Returns the lecture's equation for the ray.
             pub fn equation(&self, ray: &Ray) -> Equation {
                 match self {

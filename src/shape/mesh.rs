@@ -128,8 +128,8 @@ impl Surface for Facet<'_> {
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
         let point = self.triangle.at_crossing(ray, t);
-        match self.smooth(point.position, point.facing, point.uv) {
-            Some((position, normal)) => SurfacePoint { position, normal, ..point },
+        match self.smooth(point.position, point.geometric_normal, point.uv) {
+            Some((position, shading_normal)) => SurfacePoint { position, shading_normal, ..point },
             None => point,
         }
     }
@@ -143,10 +143,10 @@ impl Facet<'_> {
 
     /// Position and normal of the smooth surface that the triangle stands for, if it does, at the point that is seen from
     /// that side: the corners may go round either way.
-    pub fn smooth(&self, position: Vec3, facing: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
+    pub fn smooth(&self, position: Vec3, geometric_normal: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
         let normals = self.mesh.file.normals_of(self.index as usize)?;
-        let smooth = between(normals, uv).normalize_or(facing);
-        let sign = if smooth.dot(facing) < 0.0 { -1.0 } else { 1.0 };
+        let smooth = between(normals, uv).normalize_or(geometric_normal);
+        let sign = if smooth.dot(geometric_normal) < 0.0 { -1.0 } else { 1.0 };
         Some((position + self.lift(position, uv, normals.map(|normal| normal * sign)), smooth * sign))
     }
 

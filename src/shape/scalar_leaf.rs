@@ -71,19 +71,19 @@ impl<S: Surface, N: Lanes> AtCrossing<N> for ScalarLeaf<S> {
             let surface = self.0[lane].as_ref()?;
             Some(surface.at_crossing(&ray_of(rays, lane), t.0[lane]))
         });
-        let (mut position, mut facing) = (Vector::ZERO, Vector::ZERO);
+        let (mut position, mut geometric_normal) = (Vector::ZERO, Vector::ZERO);
         let (mut is_front, mut clearance, mut uv) = (0, F32x8::ZERO, [F32x8::ZERO; 2]);
         for (lane, point) in points.iter().enumerate() {
             let Some(point) = point else { continue };
             position.put(lane, point.position);
-            facing.put(lane, point.facing);
+            geometric_normal.put(lane, point.geometric_normal);
             is_front |= u32::from(point.side == Side::Front) << lane;
             clearance.0[lane] = point.clearance;
             (uv[0].0[lane], uv[1].0[lane]) = (point.uv.x, point.uv.y);
         }
         Points {
             position: position.load(),
-            facing: facing.load(),
+            geometric_normal: geometric_normal.load(),
             is_front: N::mask_from_bits(is_front),
             clearance: N::load(&clearance),
             uv: [N::load(&uv[0]), N::load(&uv[1])],

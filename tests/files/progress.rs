@@ -143,7 +143,7 @@ fn building_is_watched_and_can_be_given_up() {
     let draft = Draft::of_mesh(read(100_000)).expect("it has a size");
     let build = |reporter: &Reporter<'_>| draft.clone().build_or_cancel(reporter).ok();
     let (reports, scene) = heard(usize::MAX, build);
-    let total = scene.as_ref().map_or(0, |scene| scene.objects()[0].shape.part_count() as usize);
+    let total = scene.as_ref().map_or(0, |scene| scene.objects()[0].shape.primitive_count() as usize);
     assert!(scene == Some(draft.clone().finish()), "the same scene");
     assert!(reports.iter().all(|report| report.work == Work::Building && report.total == total));
     assert!(reports.iter().all(|report| report.done <= total) && reports.iter().any(|report| report.done == total));
@@ -158,7 +158,7 @@ fn a_sketch_looks_like_the_scene() {
     assert!(Draft::of_mesh(read(50_000)).expect("it has a size").sketch().is_none());
     let draft = Draft::of_mesh(read(150_000)).expect("it has a size");
     let sketch = draft.sketch().expect("it is big");
-    let count = sketch.objects()[0].shape.part_count();
+    let count = sketch.objects()[0].shape.primitive_count();
     assert!((10_000..60_000).contains(&count), "{count} triangles");
     assert_eq!(sketch.camera(), draft.camera());
     let pixels = |scene: &Scene| {

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use std::path::Path;
 use termtrace::internals::material::Checker;
-use termtrace::internals::shape::Part;
+use termtrace::internals::shape::Primitive;
 use termtrace::{
     Background, Camera, Falloff, Light, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Sphere, Srgb8,
     ToneCurve, ViewRectangle,
@@ -136,9 +136,9 @@ fn how_the_light_is_shown() {
 
 fn corners(scene: &Scene) -> Vec<[Vec3; 3]> {
     let shape = &scene.objects()[0].shape;
-    let corners = (0..shape.part_count()).map(|part| match shape.part(part) {
-        Part::Triangle(triangle) => triangle.corners(),
-        Part::Facet(facet) => facet.triangle().corners(),
+    let corners = (0..shape.primitive_count()).map(|primitive| match shape.primitive(primitive) {
+        Primitive::Triangle(triangle) => triangle.corners(),
+        Primitive::Facet(facet) => facet.triangle().corners(),
         other => panic!("{other:?}"),
     });
     corners.collect()

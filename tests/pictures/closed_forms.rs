@@ -250,7 +250,7 @@ fn a_shadow_reaches_the_point_of_contact() {
     let scene = lit(camera([0.0, 2.0, 4.0], [0.0; 3], 40.0), vec![floor(), ball], vec![lamp]);
     for x in [0.01, 0.03, 0.1, 0.5] {
         let down = Ray { origin: Vec3::new(3.0 + x, 1.0, 0.0), direction: -Vec3::Y };
-        let shadow = shadow_ray(&lamp.into(), &floor().shape.part(0).at_crossing(&down, 1.0));
+        let shadow = shadow_ray(&lamp.into(), &floor().shape.primitive(0).at_crossing(&down, 1.0));
         assert!(any_hit(&scene, &shadow, PointLight::IN_THE_WAY), "lit at {x} from the contact");
         assert!(shadow.origin.y < x * x / 2.0, "inside the ball at {x}: {}", shadow.origin);
     }
@@ -462,7 +462,7 @@ fn light_becomes_srgb_by_its_own_curve() {
 #[test]
 fn light_that_no_number_can_hold_is_still_a_number() {
     // A light that nearly lies in the surface: I n.l / d^2 is beyond f32, and 0 times that would be NaN.
-    let point = floor().shape.part(0).at_crossing(&Ray { origin: Vec3::Y, direction: -Vec3::Y }, 1.0);
+    let point = floor().shape.primitive(0).at_crossing(&Ray { origin: Vec3::Y, direction: -Vec3::Y }, 1.0);
     for height in [1e-10, 1e-18, 1e-22] {
         let text = format!(
             "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), lights: [Point(position: (0, {height}, 0), color: (1e12, 0, 1e-12), intensity: 1e12)])"

@@ -116,7 +116,7 @@ fn maps_say_what_is_there() {
             let part = hit.t / pose.eye.distance(pose.target);
             let depth = (255.0 / (1.0 + part * part)).round() as u8;
             assert!(shown(Map::Depth, at).r.abs_diff(depth) <= 1, "{name} {at}");
-            let n = surface.normal.to_array().map(|n| (127.5 * (n + 1.0)).round() as u8);
+            let n = surface.shading_normal.to_array().map(|n| (127.5 * (n + 1.0)).round() as u8);
             let Srgb8 { r, g, b } = shown(Map::Normal, at);
             assert!([r, g, b].iter().zip(n).all(|(band, n)| band.abs_diff(n) <= 1), "{name} {at}");
             let is_front = surface.side == Side::Front;

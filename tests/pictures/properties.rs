@@ -8,7 +8,7 @@ use termtrace::internals::lanes::LANES;
 use termtrace::internals::light::LightSource;
 use termtrace::internals::ray::{EightRays, Interval, Probe, Ray};
 use termtrace::internals::shade::shadow_ray;
-use termtrace::internals::shape::{Part, Side, Surface};
+use termtrace::internals::shape::{Primitive, Side, Surface};
 use termtrace::{
     Background, Camera, CameraError, Falloff, Framebuffer, Hit, Light, LinearRgb, Material, Object, Plane, PointLight,
     Pose, Resolution, Scene, Shape, Sphere, Triangle, ViewRectangle, render,
@@ -101,36 +101,36 @@ fn picture(scene: &Scene, camera: &Camera, width: u32, height: u32) -> Framebuff
 
 /// f(x) of the lecture in f64, over its gradient's length: the distance to the surface near it.
 fn distance_to(shape: &Shape, x: DVec3) -> f64 {
-    match shape.part(0) {
-        Part::Sphere(sphere) => x.distance(sphere.center().as_dvec3()) - f64::from(sphere.radius()),
-        Part::Plane(plane) => (x - plane.point().as_dvec3()).dot(plane.normal().as_dvec3()),
-        Part::Triangle(triangle) => {
+    match shape.primitive(0) {
+        Primitive::Sphere(sphere) => x.distance(sphere.center().as_dvec3()) - f64::from(sphere.radius()),
+        Primitive::Plane(plane) => (x - plane.point().as_dvec3()).dot(plane.normal().as_dvec3()),
+        Primitive::Triangle(triangle) => {
             let [a, b, c] = triangle.corners().map(Vec3::as_dvec3);
             (x - a).dot((b - a).cross(c - a).normalize())
         }
-        Part::Facet(_) => unreachable!("there is no mesh here"),
+        Primitive::Facet(_) => unreachable!("there is no mesh here"),
     }
 }
 
 /// All t > 0 at which the line crosses the shape, in f64, by the formulas of the lecture.
 fn crossings(shape: &Shape, ray: &Ray) -> Vec<f64> {
     let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
-    let found = match shape.part(0) {
-        Part::Sphere(sphere) => {
+    let found = match shape.primitive(0) {
+        Primitive::Sphere(sphere) => {
             let f = o - sphere.center().as_dvec3();
             let r = f64::from(sphere.radius());
             let root = (f.dot(d) * f.dot(d) - d.dot(d) * (f.dot(f) - r * r)).sqrt();
             vec![(-f.dot(d) - root) / d.dot(d), (-f.dot(d) + root) / d.dot(d)]
         }
-        Part::Plane(plane) => {
+        Primitive::Plane(plane) => {
             let n = plane.normal().as_dvec3();
             vec![(plane.point().as_dvec3() - o).dot(n) / d.dot(n)]
         }
-        Part::Triangle(triangle) => {
+        Primitive::Triangle(triangle) => {
             let ([second, third], t) = shares_and_t(triangle, ray);
             if second >= 0.0 && third >= 0.0 && second + third <= 1.0 { vec![t] } else { Vec::new() }
         }
-        Part::Facet(_) => unreachable!("there is no mesh here"),
+        Primitive::Facet(_) => unreachable!("there is no mesh here"),
     };
     found.into_iter().filter(|t| t.is_finite() && *t >= 0.0).collect()
 }
@@ -161,16 +161,16 @@ proptest! {
 
     #[test]
     fn a_hit_lies_on_its_surface_and_its_normal_faces_the_ray(shape in shape(), ray in ray()) {
-        if let Some(t) = shape.part(0).closest_crossing(&Probe::new(ray), Interval::IN_FRONT) {
-            let point = shape.part(0).at_crossing(&ray, t);
+        if let Some(t) = shape.primitive(0).closest_crossing(&Probe::new(ray), Interval::IN_FRONT) {
+            let point = shape.primitive(0).at_crossing(&ray, t);
             prop_assume!(point.position.length() < 1e3);
             let scale = 20.0 + f64::from(point.position.length());
             prop_assert!(distance_to(&shape, ray.at(t).as_dvec3()).abs() < 1e-5 * scale, "at t");
             prop_assert!(distance_to(&shape, point.position.as_dvec3()).abs() < f64::from(point.clearance), "{point:?}");
-            prop_assert!(point.normal.is_normalized());
-            prop_assert!(point.normal.dot(ray.direction) <= 0.0);
-            prop_assert_eq!(point.facing, point.normal, "nothing here is smoothed");
-            let outward = distance_to(&shape, (point.position + point.normal * 0.01).as_dvec3()) > 0.0;
+            prop_assert!(point.shading_normal.is_normalized());
+            prop_assert!(point.shading_normal.dot(ray.direction) <= 0.0);
+            prop_assert_eq!(point.geometric_normal, point.shading_normal, "nothing here is smoothed");
+            let outward = distance_to(&shape, (point.position + point.shading_normal * 0.01).as_dvec3()) > 0.0;
             prop_assert_eq!(point.side, if outward { Side::Front } else { Side::Back });
         }
     }
@@ -183,19 +183,19 @@ proptest! {
         let closest = all.iter().copied().fold(f64::INFINITY, f64::min);
         let found = closest_hit(&scene, &ray);
         // Grazing rays may be seen either way.
-        let grazes = scene.objects().iter().any(|object| match object.shape.part(0) {
-            Part::Sphere(sphere) => {
+        let grazes = scene.objects().iter().any(|object| match object.shape.primitive(0) {
+            Primitive::Sphere(sphere) => {
                 let (f, d) = ((ray.origin - sphere.center()).as_dvec3(), ray.direction.as_dvec3());
                 let to_line = (f - d * (f.dot(d) / d.dot(d))).length();
                 (to_line - f64::from(sphere.radius())).abs() < 1e-4
             }
-            Part::Plane(plane) => plane.normal().dot(ray.direction.normalize()).abs() < 1e-3,
-            Part::Triangle(triangle) => {
+            Primitive::Plane(plane) => plane.normal().dot(ray.direction.normalize()).abs() < 1e-3,
+            Primitive::Triangle(triangle) => {
                 let ([second, third], t) = shares_and_t(triangle, &ray);
                 let from_edge = second.min(third).min(1.0 - second - third).abs();
                 !t.is_finite() || t.abs() > 1e3 || from_edge < 1e-3
             }
-            Part::Facet(_) => unreachable!("there is no mesh here"),
+            Primitive::Facet(_) => unreachable!("there is no mesh here"),
         });
         prop_assume!(!grazes && closest > 1e-4 && !(1e3..f64::INFINITY).contains(&closest));
         match found {
@@ -219,7 +219,7 @@ proptest! {
         let camera = Camera::new(Pose { eye: Vec3::ZERO, target: Vec3::X, up: Vec3::Y }, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
         let again = objects.iter().take(twice).cloned().collect();
         let scene = Scene::new(camera, [again, objects].concat());
-        let bits = |hit: Option<Hit>| hit.map(|hit| (hit.t.to_bits(), hit.object, hit.part));
+        let bits = |hit: Option<Hit>| hit.map(|hit| (hit.t.to_bits(), hit.object, hit.primitive));
         let eights: Vec<_> = rays.chunks(LANES).map(EightRays::of).collect();
         let mut hits = Vec::new();
         closest_hits(Kernel::Auto, &scene, &eights, &mut hits);
@@ -240,8 +240,8 @@ proptest! {
         if let Some(t) = sphere.closest_crossing(&Probe::new(ray), Interval::IN_FRONT) {
             let point = sphere.at_crossing(&ray, t);
             prop_assume!(point.side == Side::Front);
-            let direction = if away.dot(point.normal) < 0.0 { -away } else { away };
-            prop_assume!(direction.dot(point.normal) > 1e-3);
+            let direction = if away.dot(point.shading_normal) < 0.0 { -away } else { away };
+            prop_assume!(direction.dot(point.shading_normal) > 1e-3);
             let leaving = Ray { origin: point.ray_origin(), direction };
             prop_assert_eq!(sphere.closest_crossing(&Probe::new(leaving), Interval::IN_FRONT), None);
         }
@@ -317,11 +317,11 @@ proptest! {
 }
 
 fn scaled(shape: &Shape, s: f32) -> Shape {
-    match shape.part(0) {
-        Part::Sphere(sphere) => Sphere::unchecked(sphere.center() * s, sphere.radius() * s).into(),
-        Part::Plane(plane) => Plane::unchecked(plane.point() * s, plane.normal()).into(),
-        Part::Triangle(triangle) => Triangle::unchecked(triangle.corners().map(|corner| corner * s)).into(),
-        Part::Facet(_) => unreachable!("there is no mesh here"),
+    match shape.primitive(0) {
+        Primitive::Sphere(sphere) => Sphere::unchecked(sphere.center() * s, sphere.radius() * s).into(),
+        Primitive::Plane(plane) => Plane::unchecked(plane.point() * s, plane.normal()).into(),
+        Primitive::Triangle(triangle) => Triangle::unchecked(triangle.corners().map(|corner| corner * s)).into(),
+        Primitive::Facet(_) => unreachable!("there is no mesh here"),
     }
 }
 
@@ -363,7 +363,7 @@ fn surfaces_do_not_shadow_themselves() {
                     .expect("a light")
                     .with_falloff(Falloff::None);
                 // Lights that the surface hardly faces are left out: the sphere really is in the way of those.
-                let faces = (lamp.position() - point.position).normalize().dot(point.normal) > 1e-3;
+                let faces = (lamp.position() - point.position).normalize().dot(point.shading_normal) > 1e-3;
                 faces
                     && sphere
                         .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::IN_THE_WAY)
@@ -389,7 +389,7 @@ fn planes_do_not_shadow_themselves() {
                 let lamp = PointLight::new(numbers.direction() * (8.0 * scale), LinearRgb::grey(1.0))
                     .expect("a light")
                     .with_falloff(Falloff::None);
-                let height = (lamp.position() - point.position).dot(point.normal);
+                let height = (lamp.position() - point.position).dot(point.shading_normal);
                 height > 1e-3 * scale
                     && plane
                         .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::IN_THE_WAY)

@@ -155,7 +155,7 @@ fn meshes_do_not_shadow_themselves() {
                 let lamp =
                     PointLight::new(position, LinearRgb::grey(1.0)).expect("a light").with_falloff(Falloff::None);
                 // Convex: whatever faces the light is lit by it.
-                let faces = (position - point.position).normalize().dot(point.facing) > 1e-3;
+                let faces = (position - point.position).normalize().dot(point.geometric_normal) > 1e-3;
                 faces && any_hit(&scene, &shadow_ray(&lamp.into(), &point), PointLight::IN_THE_WAY)
             })
             .count();
@@ -214,7 +214,7 @@ fn a_triangle_is_between_its_corners() {
         let point = triangle.at_crossing(&ray, t);
         assert!((t - 1.0).abs() < 1e-6 && point.position.abs_diff_eq(Vec3::new(x, y, 0.0), 1e-6));
         assert!(point.uv.abs_diff_eq(glam::Vec2::new(x, y), 1e-6), "{point:?}");
-        Some((point.side, point.normal))
+        Some((point.side, point.shading_normal))
     };
     assert_eq!(hit(0.25, 0.25, 3.0), Some((Side::Front, Vec3::Z)));
     assert_eq!(hit(0.25, 0.25, -3.0), Some((Side::Back, -Vec3::Z)));
@@ -244,16 +244,16 @@ fn normals_between_corners_are_interpolated() {
     };
     let point = |shape: &Shape, z: f32| {
         let ray = Ray { origin: Vec3::new(0.25, 0.5, z), direction: Vec3::new(0.0, 0.0, -z) };
-        shape.part(0).at_crossing(&ray, 1.0)
+        shape.primitive(0).at_crossing(&ray, 1.0)
     };
     let [a, b, c] = normals.map(Vec3::normalize);
     let expected = (a * 0.25 + b * 0.25 + c * 0.5).normalize();
     let front = point(&smooth(normals), 1.0);
-    assert!(front.normal.abs_diff_eq(expected, 1e-6) && front.facing == Vec3::Z, "{front:?}");
+    assert!(front.shading_normal.abs_diff_eq(expected, 1e-6) && front.geometric_normal == Vec3::Z, "{front:?}");
     let back = point(&smooth(normals), -1.0);
-    assert!(back.normal.abs_diff_eq(-expected, 1e-6) && back.facing == -Vec3::Z, "{back:?}");
+    assert!(back.shading_normal.abs_diff_eq(-expected, 1e-6) && back.geometric_normal == -Vec3::Z, "{back:?}");
     let without = point(&smooth([Vec3::ZERO; 3]), 1.0);
-    assert_eq!(without.normal, Vec3::Z, "where there is none, the triangle's own");
+    assert_eq!(without.shading_normal, Vec3::Z, "where there is none, the triangle's own");
 }
 
 // The tree -----------------------------------------------------------------------------------------------------------
@@ -298,11 +298,12 @@ fn ray() -> impl Strategy<Value = Ray> {
 fn brute_force(scene: &Scene, ray: &Ray, within: Interval) -> Option<Hit> {
     let probe = Probe::new(*ray);
     let objects = (0..).zip(scene.objects());
-    let parts = objects.flat_map(|(object, it)| (0..it.shape.part_count()).map(move |part| (object, part, &it.shape)));
-    parts
-        .filter_map(|(object, part, shape)| {
-            let t = shape.part(part).closest_crossing(&probe, within)?;
-            Some(Hit { t, object, part })
+    let primitives = objects
+        .flat_map(|(object, it)| (0..it.shape.primitive_count()).map(move |primitive| (object, primitive, &it.shape)));
+    primitives
+        .filter_map(|(object, primitive, shape)| {
+            let t = shape.primitive(primitive).closest_crossing(&probe, within)?;
+            Some(Hit { t, object, primitive })
         })
         // The first of those at the same t.
         .min_by(|a, b| a.t.partial_cmp(&b.t).expect("no t is NaN"))
@@ -330,11 +331,12 @@ impl TestRecorder {
     fn is_right(&self, scene: &Scene, ray: &Ray, min: f32, met: Option<Hit>) -> bool {
         let from_min = Interval { min, max: f32::MAX };
         let crossing = |test: &PrimitiveTest| {
-            let part = scene.objects()[test.object as usize].shape.part(test.part);
-            part.closest_crossing(&Probe::new(*ray), from_min)
+            let primitive = scene.objects()[test.object as usize].shape.primitive(test.primitive);
+            primitive.closest_crossing(&Probe::new(*ray), from_min)
         };
-        let names: HashSet<_> = self.tests.iter().map(|test| (test.object, test.part)).collect();
-        let tells_of = |Hit { t, object, part }| self.tests.contains(&PrimitiveTest { object, part, t: Some(t) });
+        let names: HashSet<_> = self.tests.iter().map(|test| (test.object, test.primitive)).collect();
+        let tells_of =
+            |Hit { t, object, primitive }| self.tests.contains(&PrimitiveTest { object, primitive, t: Some(t) });
         names.len() == self.tests.len()
             && self.tests.iter().all(|test| test.t == crossing(test))
             && met.is_none_or(tells_of)
@@ -354,7 +356,7 @@ proptest! {
         prop_assert!(observer.is_right(&scene, &ray, 0.0, hit), "{:?} {:?}", observer.tests, hit);
         let closest = observer.tests.iter().filter_map(|test| test.t).fold(f32::INFINITY, f32::min);
         prop_assert_eq!(hit.map_or(f32::INFINITY, |hit| hit.t), closest);
-        let parts: u32 = scene.objects().iter().map(|object| object.shape.part_count()).sum();
+        let parts: u32 = scene.objects().iter().map(|object| object.shape.primitive_count()).sum();
         // More than a leaf of each kind: there is a tree, and its root is looked at.
         prop_assert!(parts <= 16 || observer.boxes > 0 || observer.tests.len() == parts as usize);
         for within in [PointLight::IN_THE_WAY, Interval { min: 0.3, max: 0.7 }, Interval { min: -1.0, max: 0.5 }] {
@@ -429,7 +431,7 @@ proptest! {
         spread in [0.001_f32..2.0, 0.001_f32..2.0],
         strays in prop::collection::vec(ray(), 0..40),
         count in 1..150_usize,
-        asked in prop::collection::vec(prop_oneof![Just(ALL), 0..=ALL], 30),
+        active in prop::collection::vec(prop_oneof![Just(ALL), 0..=ALL], 30),
     ) {
         let scene = scene(shapes.iter().chain(&shapes[..shapes.len() / 2]).cloned());
         let [eye, target, across, down] = corners;
@@ -439,10 +441,10 @@ proptest! {
         });
         let back = bundle.clone().map(|ray| Ray { origin: ray.origin + ray.direction, direction: -ray.direction });
         let rays: Vec<Ray> = bundle.chain(back).chain(strays).filter(|ray| ray.direction != Vec3::ZERO).collect();
-        let eights: Vec<_> = rays.chunks(LANES).map(EightRays::of).zip(asked).map(|(rays, asked)| some_of(&rays, asked)).collect();
-        let is_asked = |rays: &EightRays, lane: usize| rays.asked >> lane & 1 == 1;
+        let eights: Vec<_> = rays.chunks(LANES).map(EightRays::of).zip(active).map(|(rays, active)| some_of(&rays, active)).collect();
+        let is_active = |rays: &EightRays, lane: usize| rays.active >> lane & 1 == 1;
         let by_brute_force = |within: Interval| -> Vec<[Option<Hit>; LANES]> {
-            let hit = |rays: &EightRays, lane| is_asked(rays, lane).then(|| brute_force(&scene, &rays.ray(lane), within)).flatten();
+            let hit = |rays: &EightRays, lane| is_active(rays, lane).then(|| brute_force(&scene, &rays.ray(lane), within)).flatten();
             eights.iter().map(|rays| std::array::from_fn(|lane| hit(rays, lane))).collect()
         };
         // Once for all kernels.
@@ -470,11 +472,11 @@ proptest! {
 }
 
 /// Of these rays those, as [`EightRays`] wants it.
-fn some_of(rays: &EightRays, asked: u32) -> EightRays {
-    let asked = asked & rays.asked;
-    let one = set_bits(asked).next().unwrap_or(0);
-    let each: Vec<_> = (0..LANES).map(|lane| rays.ray(if asked >> lane & 1 == 1 { lane } else { one })).collect();
-    EightRays { asked, ..EightRays::of(&each) }
+fn some_of(rays: &EightRays, active: u32) -> EightRays {
+    let active = active & rays.active;
+    let one = set_bits(active).next().unwrap_or(0);
+    let each: Vec<_> = (0..LANES).map(|lane| rays.ray(if active >> lane & 1 == 1 { lane } else { one })).collect();
+    EightRays { active, ..EightRays::of(&each) }
 }
 
 /// How many boxes were visited.

@@ -97,12 +97,12 @@ fn eye_rays(f: &Frame, [x, y]: [u32; 2], [x1, y1]: [u32; 2]) -> EightRays {
     let (at_x, at_y) = (F32x8([x as f32; 8]) + across, F32x8([y as f32; 8]) + down);
     let [d00, du, dv] = [f.d00, f.du, f.dv].map(|v| Vector::splat(vec3(v)));
     let is_inside = |lane: u32| x + lane % 4 < x1 && y + lane / 4 < y1;
-    let asked = if is_inside(7) {
+    let active = if is_inside(7) {
         0xff
     } else {
-        (0..8).filter(|&lane| is_inside(lane)).fold(0, |asked, lane| asked | 1 << lane)
+        (0..8).filter(|&lane| is_inside(lane)).fold(0, |active, lane| active | 1 << lane)
     };
-    EightRays { origin: Vector::splat(vec3(f.o)), direction: d00 + du * at_x + dv * at_y, asked }
+    EightRays { origin: Vector::splat(vec3(f.o)), direction: d00 + du * at_x + dv * at_y, active }
 }
 
 /// The sum of the depths of what is met, without a branch for each.
