@@ -53,7 +53,7 @@ impl PrimitiveIds<F32x8> {
 
     /// Which are of that object, a bit for each.
     #[inline(always)]
-    pub(crate) fn are_of<N: Lanes>(&self, object: u32) -> u32 {
+    pub(crate) fn mask_of_object<N: Lanes>(&self, object: u32) -> u32 {
         N::load(&self.object).has_bits(object).bits()
     }
 
@@ -89,7 +89,7 @@ macro_rules! only {
     (list of $kept:ty) => { List<$kept> };
     (tree of $kept:ty) => { Tree<$kept> };
     (list from $surface:ident) => { Vec<(PrimitiveId, crate::shape::$surface)> };
-    (tree from $surface:ident) => { Bounded<crate::shape::$surface> };
+    (tree from $surface:ident) => { TreeBuilder<crate::shape::$surface> };
     (list in list $($then:tt)*) => { $($then)* };
     (tree in tree $($then:tt)*) => { $($then)* };
     ($one:ident in $other:ident $($then:tt)*) => {};
@@ -135,11 +135,11 @@ macro_rules! accelerator {
 
         /// The parts of some shapes by their kinds, in the order of the scene.
         #[derive(Default)]
-        struct Listed {
+        struct PrimitiveLists {
             $($(#[$on])* $name: only!($group from $surface),)*
         }
 
-        impl Listed {
+        impl PrimitiveLists {
             fn push(&mut self, id: PrimitiveId, primitive: Primitive<'_>) {
                 match primitive {
                     $($(#[$on])* Primitive::$surface(surface) => {
@@ -208,7 +208,7 @@ impl<S> List<S> {
 
     /// Returns whether that place is in the list.
     #[inline(always)]
-    pub(crate) fn holds(&self, primitive: u32) -> bool {
+    pub(crate) fn contains(&self, primitive: u32) -> bool {
         (self.first..self.end()).contains(&primitive)
     }
 
@@ -237,12 +237,12 @@ pub(crate) struct Tree<S> {
     /// The place of the first of them.
     pub(crate) first: u32,
     /// How many there are, where the tree is but one leaf and leaves nothing out; else 0.
-    pub(crate) few: usize,
+    pub(crate) single_leaf_count: usize,
 }
 
 impl<S> Default for Tree<S> {
     fn default() -> Self {
-        Self { bvh: Bvh::default(), leaves: Vec::new(), ids: Vec::new(), first: 0, few: 0 }
+        Self { bvh: Bvh::default(), leaves: Vec::new(), ids: Vec::new(), first: 0, single_leaf_count: 0 }
     }
 }
 
@@ -267,19 +267,19 @@ impl Accelerator {
     ) -> Result<Self, E> {
         #[cfg(test)]
         builds::count();
-        let (mut listed, mut has_smooth) = (Listed::default(), false);
+        let (mut lists, mut has_smooth) = (PrimitiveLists::default(), false);
         for (object, shape) in (0..).zip(shapes) {
             has_smooth |= matches!(shape, Shape::Mesh(mesh) if mesh.is_smooth());
             for index in 0..shape.primitive_count() {
-                listed.push(PrimitiveId { object, index }, shape.primitive(index));
+                lists.push(PrimitiveId { object, index }, shape.primitive(index));
             }
         }
-        let (done, total) = (AtomicUsize::new(0), listed.boxes().count());
+        let (done, total) = (AtomicUsize::new(0), lists.boxes().count());
         let report_more = |more| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             report(Progress { work: Work::Building, done, total })
         };
-        Ok(Self { has_smooth, ..listed.build(&report_more)? })
+        Ok(Self { has_smooth, ..lists.build(&report_more)? })
     }
 
     /// The smallest box around all that stand in the trees; nothing if there are none.
@@ -311,14 +311,14 @@ impl Accelerator {
         impl<'a> Visitor<'a> for Find {
             #[inline(always)]
             fn list<S: Endless>(&mut self, list: &'a List<S>) {
-                if list.holds(self.0) {
+                if list.contains(self.0) {
                     self.1 = list.get(self.0).0;
                 }
             }
 
             #[inline(always)]
             fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
-                if tree.holds(self.0) {
+                if tree.contains(self.0) {
                     self.1 = tree.id(self.0);
                 }
             }
@@ -366,7 +366,7 @@ impl<S> Tree<S> {
 
     /// Returns whether that place is in one of the leaves.
     #[inline(always)]
-    pub(crate) fn holds(&self, primitive: u32) -> bool {
+    pub(crate) fn contains(&self, primitive: u32) -> bool {
         (self.first..self.end()).contains(&primitive)
     }
 
@@ -405,22 +405,22 @@ impl<S> Tree<S> {
 }
 
 /// Fewer leaves are not worth starting threads for.
-const FEW: usize = 1024;
+const MIN_PARALLEL_LEAVES: usize = 1024;
 
 /// Parts of one kind that have bounds, in the order of the scene.
-struct Bounded<T> {
+struct TreeBuilder<T> {
     ids: Vec<PrimitiveId>,
     shapes: Vec<T>,
     boxes: Vec<Bounds>,
 }
 
-impl<T> Default for Bounded<T> {
+impl<T> Default for TreeBuilder<T> {
     fn default() -> Self {
         Self { ids: Vec::new(), shapes: Vec::new(), boxes: Vec::new() }
     }
 }
 
-impl<T: Surface + Copy + Sync> Bounded<T> {
+impl<T: Surface + Copy + Sync> TreeBuilder<T> {
     fn push(&mut self, id: PrimitiveId, shape: T) {
         if let Some(bounds) = shape.bounds() {
             self.ids.push(id);
@@ -441,9 +441,10 @@ impl<T: Surface + Copy + Sync> Bounded<T> {
             let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)]);
             (S::of(&shapes[..numbers.len()]), PrimitiveIds::of(from_fn(|lane| self.ids[number(lane)])))
         };
-        let few = if bvh.is_leaf() { self.ids.len() } else { 0 };
+        let single_leaf_count = if bvh.is_leaf() { self.ids.len() } else { 0 };
         let count = places.count();
-        let (leaves, ids) = if count < FEW { (0..count).map(leaf).unzip() } else { threads::unzip(count, leaf) };
-        Ok(Tree { bvh, leaves, ids, first, few })
+        let (leaves, ids) =
+            if count < MIN_PARALLEL_LEAVES { (0..count).map(leaf).unzip() } else { threads::unzip(count, leaf) };
+        Ok(Tree { bvh, leaves, ids, first, single_leaf_count })
     }
 }

@@ -15,7 +15,7 @@ pub struct Bounds {
 
 /// How far a ray's way through a box is lengthened at both ends, relatively: 16 units of 2^-24. Each end is off by
 /// three units at most, and a crossing that is computed in another way by a few more.
-const SLACK: f32 = 16.0 / 16_777_216.0;
+const CROSSING_SLACK: f32 = 16.0 / 16_777_216.0;
 
 impl Bounds {
     /// Around nothing: with it, a union is the other box.
@@ -70,17 +70,17 @@ pub fn crossed<N: Number>([min, max]: [Vector<N>; 2], rays: &Rays<N>) -> [N; 2] 
     let x = way(min.x, max.x, rays.origin.x, rays.inverse.x);
     let y = way(min.y, max.y, rays.origin.y, rays.inverse.y);
     let z = way(min.z, max.z, rays.origin.z, rays.inverse.z);
-    common([x, y, z])
+    intersect_slabs([x, y, z])
 }
 
 /// What three ways have in common, lengthened.
 #[inline(always)]
-pub fn common<N: Number>([x, y, z]: [[N; 2]; 3]) -> [N; 2] {
+pub fn intersect_slabs<N: Number>([x, y, z]: [[N; 2]; 3]) -> [N; 2] {
     // NaN is zero times infinity: a ray along a face, in its plane. That face ends nothing, and is left out: where the
     // first is NaN, `max` and `min` are the second, which never is.
     let enters = x[0].max(y[0].max(z[0].max(N::splat(f32::NEG_INFINITY))));
     let leaves = x[1].min(y[1].min(z[1].min(N::splat(f32::INFINITY))));
     // Whatever the sign, of a little less and a little more the one that lies outside.
-    let (less, more) = (N::splat(1.0 - SLACK), N::splat(1.0 + SLACK));
+    let (less, more) = (N::splat(1.0 - CROSSING_SLACK), N::splat(1.0 + CROSSING_SLACK));
     [(enters * less).min(enters * more), (leaves * less).max(leaves * more)]
 }

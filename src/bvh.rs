@@ -29,13 +29,13 @@ pub struct Bvh {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Leaves {
     order: Vec<u32>,
-    places: Vec<Range<u32>>,
+    ranges: Vec<Range<u32>>,
 }
 
 impl Leaves {
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.places.len()
+        self.ranges.len()
     }
 
     /// The numbers of a leaf's boxes: at least one, at most eight.
@@ -43,7 +43,7 @@ impl Leaves {
     /// # Panics
     /// If there are fewer leaves.
     pub fn boxes(&self, leaf: usize) -> &[u32] {
-        let Range { start, end } = self.places[leaf];
+        let Range { start, end } = self.ranges[leaf];
         &self.order[start as usize..end as usize]
     }
 }
@@ -76,7 +76,7 @@ impl Node {
 
     /// One of the boxes, the same in every place.
     #[inline(always)]
-    fn one<N: Number>(&self, lane: usize) -> [Vector<N>; 2] {
+    fn child_box<N: Number>(&self, lane: usize) -> [Vector<N>; 2] {
         let [x, y, z] = &self.bounds;
         let min = Vec3::new(x[0].0[lane], y[0].0[lane], z[0].0[lane]);
         let max = Vec3::new(x[1].0[lane], y[1].0[lane], z[1].0[lane]);
@@ -85,7 +85,7 @@ impl Node {
 
     /// From where on one ray meets the boxes, and whether it does, a bit for each.
     #[inline(always)]
-    fn met<N: Lanes>(&self, slabs: &Slabs<N>, within: Interval) -> (N, u32) {
+    fn intersect<N: Lanes>(&self, slabs: &Slabs<N>, within: Interval) -> (N, u32) {
         let (mut start, mut end) = (N::splat(within.min), N::splat(within.max));
         for axis in [2, 1, 0] {
             let (bounds, near) = (&self.bounds[axis], usize::from(slabs.is_backward[axis]));
@@ -112,13 +112,13 @@ struct Slabs<N> {
 /// How much longer, relatively, at both ends: 128 units of 2^-24. That `crossed` lengthens by 16 units takes 18 with the
 /// rounding there; that it is done to the inverse beforehand, two more; and as many as are left make up for numbers so
 /// small that f32 rounds them by more than a unit.
-const MORE: f32 = 128.0 / 16_777_216.0;
+const SLAB_SLACK: f32 = 128.0 / 16_777_216.0;
 
 impl<N: Lanes> Slabs<N> {
     #[inline(always)]
     fn of(rays: &Rays<N>) -> Self {
         let (origin, inverse) = (rays.origin, rays.inverse);
-        let (less, more, zero) = (N::splat(MORE - 1.0), N::splat(-1.0 - MORE), N::splat(0.0));
+        let (less, more, zero) = (N::splat(SLAB_SLACK - 1.0), N::splat(-1.0 - SLAB_SLACK), N::splat(0.0));
         // Written out: the compiler does not look into closures for the registers that they may use.
         Self {
             origin: [origin.x, origin.y, origin.z],
@@ -152,17 +152,17 @@ impl Child {
 
 /// What is still to be visited.
 #[derive(Clone, Copy, Debug)]
-struct Waiting {
+struct StackEntry {
     child: Child,
     /// Which box it is in: eight times the node, and the place there.
-    place: u32,
+    slot: u32,
     /// From where on it may be met.
     start: f32,
 }
 
 /// Space for what is still to be visited, kept from ray to ray.
 #[derive(Clone, Debug, Default)]
-pub struct Stack(Vec<Waiting>);
+pub struct PacketStack(Vec<StackEntry>);
 
 impl Bvh {
     /// The tree over these boxes, built on all threads of the current rayon pool. Their coordinates are finite.
@@ -213,11 +213,11 @@ impl Bvh {
         from: Child,
         rays: &Rays<N>,
         mut within: Interval,
-        queue: &mut Queue,
+        stack: &mut RayStack,
         visitor: &mut impl LeafVisitor,
     ) {
         let slabs = Slabs::of(rays);
-        queue.waiting = 0;
+        stack.len = 0;
         let mut child = from;
         loop {
             if let Some(leaf) = child.as_leaf() {
@@ -227,22 +227,22 @@ impl Bvh {
                 }
             } else {
                 let node = &self.nodes[child.0 as usize];
-                visitor.boxes();
-                let (starts, is_met) = node.met(&slabs, within);
-                if is_met != 0 {
+                visitor.node_tested();
+                let (starts, hit_mask) = node.intersect(&slabs, within);
+                if hit_mask != 0 {
                     // The only one is visited at once: nothing is won.
-                    if is_met & is_met.wrapping_sub(1) != 0 {
-                        for lane in set_bits(is_met) {
+                    if hit_mask & hit_mask.wrapping_sub(1) != 0 {
+                        for lane in set_bits(hit_mask) {
                             self.prefetch(node.children[lane], visitor);
                         }
                     }
-                    child = queue.nearest(node, is_met, starts);
+                    child = stack.push_all_but_nearest(node, hit_mask, starts);
                     continue;
                 }
             }
             // Something nearer may have been found since; what is as near may come first in the scene.
             child = loop {
-                let Some(waiting) = queue.pop() else { return };
+                let Some(waiting) = stack.pop() else { return };
                 if waiting.start() <= within.max {
                     break waiting.child();
                 }
@@ -264,9 +264,9 @@ impl Bvh {
 /// What is to be visited, and from where on it may be met: the bits of that stand above those of the child, so that the
 /// order of these numbers is that of the starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Turn(u64);
+struct RayStackEntry(u64);
 
-impl Turn {
+impl RayStackEntry {
     #[inline(always)]
     fn new(Child(child): Child, start: f32) -> Self {
         Self(u64::from(start.to_bits()) << 32 | u64::from(child))
@@ -285,64 +285,64 @@ impl Turn {
 
 /// Space for what a ray by itself still has to visit, kept from ray to ray.
 #[derive(Clone, Debug, Default)]
-pub struct Queue {
-    turns: Vec<Turn>,
+pub struct RayStack {
+    entries: Vec<RayStackEntry>,
     /// How many of them wait; the rest is room.
-    waiting: usize,
+    len: usize,
 }
 
-impl Queue {
+impl RayStack {
     /// Of the children that are met, one at least, the nearest; the others wait, the nearer above the farther.
     #[inline(always)]
-    fn nearest<N: Lanes>(&mut self, node: &Node, mut is_met: u32, starts: N) -> Child {
+    fn push_all_but_nearest<N: Lanes>(&mut self, node: &Node, mut hit_mask: u32, starts: N) -> Child {
         let lowest = |bits: u32| bits.trailing_zeros() as usize % LANES;
         // Most often there is one, and its node is not to wait until it is known from where on it is met.
-        if is_met & is_met.wrapping_sub(1) == 0 {
-            return node.children[lowest(is_met)];
+        if hit_mask & hit_mask.wrapping_sub(1) == 0 {
+            return node.children[lowest(hit_mask)];
         }
         let starts = starts.store();
         let mut take = || {
-            let lane = lowest(is_met);
-            is_met &= is_met.wrapping_sub(1);
-            (Turn::new(node.children[lane], starts.0[lane]), is_met != 0)
+            let lane = lowest(hit_mask);
+            hit_mask &= hit_mask.wrapping_sub(1);
+            (RayStackEntry::new(node.children[lane], starts.0[lane]), hit_mask != 0)
         };
         let (first, _) = take();
         let (second, mut is_more) = take();
         self.make_room();
-        let (mut nearest, bottom) = (first.min(second), self.waiting);
-        self.turns[bottom] = first.max(second);
-        self.waiting += 1;
+        let (mut nearest, bottom) = (first.min(second), self.len);
+        self.entries[bottom] = first.max(second);
+        self.len += 1;
         while is_more {
-            let turn;
-            (turn, is_more) = take();
-            let mut at = self.waiting;
-            self.waiting += 1;
-            let other = turn.max(nearest);
-            nearest = turn.min(nearest);
-            while at > bottom && self.turns[at - 1] < other {
-                self.turns[at] = self.turns[at - 1];
+            let entry;
+            (entry, is_more) = take();
+            let mut at = self.len;
+            self.len += 1;
+            let other = entry.max(nearest);
+            nearest = entry.min(nearest);
+            while at > bottom && self.entries[at - 1] < other {
+                self.entries[at] = self.entries[at - 1];
                 at -= 1;
             }
-            self.turns[at] = other;
+            self.entries[at] = other;
         }
         nearest.child()
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<Turn> {
-        self.waiting = self.waiting.checked_sub(1)?;
-        Some(self.turns[self.waiting])
+    fn pop(&mut self) -> Option<RayStackEntry> {
+        self.len = self.len.checked_sub(1)?;
+        Some(self.entries[self.len])
     }
 
     /// For all that a node can add.
     #[inline(always)]
     fn make_room(&mut self) {
         #[cold]
-        fn grow(turns: &mut Vec<Turn>) {
-            turns.resize(2 * turns.len() + 8 * LANES, Turn(0));
+        fn grow(entries: &mut Vec<RayStackEntry>) {
+            entries.resize(2 * entries.len() + 8 * LANES, RayStackEntry(0));
         }
-        if self.turns.len() < self.waiting + LANES {
-            grow(&mut self.turns);
+        if self.entries.len() < self.len + LANES {
+            grow(&mut self.entries);
         }
     }
 }
@@ -357,7 +357,7 @@ pub trait Prefetch {
 pub trait LeafVisitor: Prefetch {
     /// A node's boxes are tested.
     #[inline(always)]
-    fn boxes(&mut self) {}
+    fn node_tested(&mut self) {}
 
     /// Tests what is in a leaf; answers how far the ray is of interest from then on, or `Break`.
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32>;
@@ -368,16 +368,16 @@ pub trait LeafVisitor: Prefetch {
 fn nearest_first(
     node: &Node,
     parent: Child,
-    mut is_met: u32,
+    mut hit_mask: u32,
     starts: &F32x8,
-    waiting: &mut Vec<Waiting>,
-) -> Option<Waiting> {
+    waiting: &mut Vec<StackEntry>,
+) -> Option<StackEntry> {
     let mut take = || {
-        let lane = is_met.trailing_zeros() as usize % LANES;
-        let is_any = is_met != 0;
-        is_met &= is_met.wrapping_sub(1);
-        let place = parent.0 * LANES as u32 + lane as u32;
-        is_any.then(|| Waiting { child: node.children[lane], place, start: starts.0[lane] })
+        let lane = hit_mask.trailing_zeros() as usize % LANES;
+        let is_any = hit_mask != 0;
+        hit_mask &= hit_mask.wrapping_sub(1);
+        let slot = parent.0 * LANES as u32 + lane as u32;
+        is_any.then(|| StackEntry { child: node.children[lane], slot, start: starts.0[lane] })
     };
     let mut nearest = take()?;
     let bottom = waiting.len();
@@ -401,15 +401,15 @@ fn nearest_first(
 fn in_any_order(
     node: &Node,
     parent: Child,
-    is_met: u32,
+    hit_mask: u32,
     starts: &F32x8,
-    waiting: &mut Vec<Waiting>,
-) -> Option<Waiting> {
+    waiting: &mut Vec<StackEntry>,
+) -> Option<StackEntry> {
     let mut last = None;
-    for lane in set_bits(is_met) {
+    for lane in set_bits(hit_mask) {
         waiting.extend(last);
-        let place = parent.0 * LANES as u32 + lane as u32;
-        last = Some(Waiting { child: node.children[lane], place, start: starts.0[lane] });
+        let slot = parent.0 * LANES as u32 + lane as u32;
+        last = Some(StackEntry { child: node.children[lane], slot, start: starts.0[lane] });
     }
     last
 }

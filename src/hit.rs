@@ -4,7 +4,7 @@
 //! of the ways shows in what is found.
 
 use crate::accel::{Accelerator, PrimitiveId};
-use crate::bvh::{GROUPS, Queue, Stack};
+use crate::bvh::{GROUPS, PacketStack, RayStack};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, set_bits};
 use crate::ray::{EightRays, Interval, Probe, Ray, Rays};
 use crate::scene::Scene;
@@ -119,7 +119,7 @@ pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mu
     hits.clear();
     let accel = scene.accelerator();
     match kernel {
-        Kernel::Scalar => closest_single::<F32x8>(accel, rays, &mut Queue::default(), hits),
+        Kernel::Scalar => closest_single::<F32x8>(accel, rays, &mut RayStack::default(), hits),
         _ => simd::dispatch(ClosestHits { kernel, accel, rays, hits }),
     }
 }
@@ -129,7 +129,7 @@ pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Inter
     hit_masks.clear();
     let accel = scene.accelerator();
     match kernel {
-        Kernel::Scalar => any_single::<F32x8>(accel, rays, within, &mut Queue::default(), hit_masks),
+        Kernel::Scalar => any_single::<F32x8>(accel, rays, within, &mut RayStack::default(), hit_masks),
         _ => simd::dispatch(AnyHits { kernel, accel, rays, within, hit_masks }),
     }
 }
@@ -179,7 +179,7 @@ impl<W: Observer, const ANY: bool> SimdKernel for Observed<'_, W, ANY> {
         let Self { scene, ray, within, observer } = self;
         let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), scene.accelerator().needs_shear());
         let mut ray = SingleRay::<N, ANY, _>::observed(scene.accelerator(), &rays, 0, within, observer);
-        ray.trace(&mut Queue::default());
+        ray.trace(&mut RayStack::default());
         ray.found()
     }
 }
@@ -228,7 +228,7 @@ impl SimdKernel for ClosestHits<'_> {
 
 /// The same one by one.
 #[inline(always)]
-fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], queue: &mut Queue, hits: &mut Vec<EightHits>) {
+fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], stack: &mut RayStack, hits: &mut Vec<EightHits>) {
     for rays in rays {
         let nothing = F32x8([f32::from_bits(EightHits::NO_PRIMITIVE); LANES]);
         let mut hit = EightHits { hit_mask: 0, t: F32x8::ZERO, primitives: nothing };
@@ -236,7 +236,7 @@ fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], queue: &mut
         let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.active) {
             let mut ray = SingleRay::<N, CLOSEST>::new(accel, &eight, lane, Interval::IN_FRONT);
-            ray.trace(queue);
+            ray.trace(stack);
             if let (t, Some(primitive)) = ray.found() {
                 hit.hit_mask |= 1 << lane;
                 (hit.t.0[lane], hit.primitives.0[lane]) = (t, f32::from_bits(primitive));
@@ -282,7 +282,7 @@ fn any_single<N: Lanes>(
     accel: &Accelerator,
     rays: &[EightRays],
     within: Interval,
-    queue: &mut Queue,
+    stack: &mut RayStack,
     hit_masks: &mut Vec<u32>,
 ) {
     for rays in rays {
@@ -290,7 +290,7 @@ fn any_single<N: Lanes>(
         let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.active) {
             let mut ray = SingleRay::<N, ANY>::new(accel, &eight, lane, within);
-            ray.trace(queue);
+            ray.trace(stack);
             hit_mask |= u32::from(ray.found().1.is_some()) << lane;
         }
         hit_masks.push(hit_mask);
@@ -300,6 +300,6 @@ fn any_single<N: Lanes>(
 /// Space for what is still to be visited.
 #[derive(Default)]
 struct Stacks {
-    packet: Stack,
-    single: Queue,
+    packet: PacketStack,
+    single: RayStack,
 }

@@ -44,11 +44,11 @@ pub struct Rays<N: Number> {
 impl<N: Number> Rays<N> {
     #[inline(always)]
     fn new(origin: Vector<N>, direction: Vector<N>) -> Self {
-        Self { shear: Shear::of(direction), ..Self::unsheared(origin, direction) }
+        Self { shear: Shear::of(direction), ..Self::without_shear(origin, direction) }
     }
 
     #[inline(always)]
-    fn unsheared(origin: Vector<N>, direction: Vector<N>) -> Self {
+    fn without_shear(origin: Vector<N>, direction: Vector<N>) -> Self {
         let Vector { x, y, z } = direction;
         let one = N::splat(1.0);
         let squared_length = direction.dot(direction);
@@ -69,7 +69,7 @@ impl<N: Lanes> Rays<N> {
     pub fn load(rays: &EightRays, needs_shear: bool) -> Self {
         let direction = rays.direction.load();
         let shear = if needs_shear { Shear::of(direction) } else { Shear::none() };
-        Self { shear, ..Self::unsheared(rays.origin.load(), direction) }
+        Self { shear, ..Self::without_shear(rays.origin.load(), direction) }
     }
 
     /// One of them, in every place.
@@ -82,7 +82,7 @@ impl<N: Lanes> Rays<N> {
             squared_length: self.squared_length.splat_lane(lane),
             inverse_squared_length: self.inverse_squared_length.splat_lane(lane),
             shear: Shear {
-                longest: self.shear.longest.of_lane(lane),
+                axis: self.shear.axis.of_lane(lane),
                 factor: self.shear.factor.splat_lane(lane),
                 length: self.shear.length.splat_lane(lane),
             },
@@ -148,7 +148,7 @@ impl Probe {
 /// Ray/Triangle Intersection, JCGT 2013).
 #[derive(Clone, Copy, Debug)]
 pub struct Shear<N: Number> {
-    longest: Longest<N::Mask>,
+    axis: DominantAxis<N::Mask>,
     /// How far it goes along x and y, and how much t grows, while it goes one unit along its longest axis.
     factor: Vector<N>,
     /// How far the direction goes along its longest axis.
@@ -157,12 +157,12 @@ pub struct Shear<N: Number> {
 
 /// Along which axis a direction is longest.
 #[derive(Clone, Copy, Debug)]
-enum Longest<M> {
+enum DominantAxis<M> {
     X,
     Y,
     Z,
     /// Not the same for all: where it is x, and where y.
-    Each {
+    PerLane {
         x: M,
         y: M,
     },
@@ -173,7 +173,7 @@ impl<N: Number> Shear<N> {
     #[inline(always)]
     fn none() -> Self {
         let zero = N::splat(0.0);
-        Self { longest: Longest::Z, factor: Vector { x: zero, y: zero, z: zero }, length: zero }
+        Self { axis: DominantAxis::Z, factor: Vector { x: zero, y: zero, z: zero }, length: zero }
     }
 
     #[inline(always)]
@@ -181,24 +181,24 @@ impl<N: Number> Shear<N> {
         let length = Vector { x: direction.x.abs(), y: direction.y.abs(), z: direction.z.abs() };
         let is_x = length.y.lt(length.x) & length.z.lt(length.x);
         let is_y = length.z.lt(length.y) & !is_x;
-        let longest = if is_x.all() {
-            Longest::X
+        let axis = if is_x.all() {
+            DominantAxis::X
         } else if is_y.all() {
-            Longest::Y
+            DominantAxis::Y
         } else if (is_x | is_y).any() {
-            Longest::Each { x: is_x, y: is_y }
+            DominantAxis::PerLane { x: is_x, y: is_y }
         } else {
-            Longest::Z
+            DominantAxis::Z
         };
-        let Vector { x, y, z } = longest.last(direction);
-        Self { longest, factor: Vector { x: x / z, y: y / z, z: N::splat(1.0) / z }, length: z.abs() }
+        let Vector { x, y, z } = axis.rotate_to_z(direction);
+        Self { axis, factor: Vector { x: x / z, y: y / z, z: N::splat(1.0) / z }, length: z.abs() }
     }
 
     /// A vector from the ray's origin in those coordinates. Its x and y are off by 2 |x| + 4 |z| [`length`](Self::length)
     /// units of 2^-24, at most and to first order: no factor of theirs is more than 1.
     #[inline(always)]
     pub fn apply(&self, from_origin: Vector<N>) -> Vector<N> {
-        let Vector { x, y, z } = self.longest.last(from_origin);
+        let Vector { x, y, z } = self.axis.rotate_to_z(from_origin);
         Vector { x: x - self.factor.x * z, y: y - self.factor.y * z, z: self.factor.z * z }
     }
 }
@@ -207,30 +207,30 @@ impl<N: Number> Shear<N> {
 /// its longest axis. So they need no division, and as f64 holds the product of two f32 whole, they are exact, or where f64
 /// does not reach so far down, off by 2^-53 of themselves.
 pub fn sheared_in_f64(from_origin: DVec3, direction: Vec3) -> DVec3 {
-    let [x, y, z] = match Shear::of(Vector::<f32>::splat(direction)).longest {
-        Longest::X => [1, 2, 0],
-        Longest::Y => [2, 0, 1],
-        Longest::Z | Longest::Each { .. } => [0, 1, 2],
+    let [x, y, z] = match Shear::of(Vector::<f32>::splat(direction)).axis {
+        DominantAxis::X => [1, 2, 0],
+        DominantAxis::Y => [2, 0, 1],
+        DominantAxis::Z | DominantAxis::PerLane { .. } => [0, 1, 2],
     };
     let (d, v) = (direction.as_dvec3(), from_origin);
     DVec3::new(v[x] * d[z] - d[x] * v[z], v[y] * d[z] - d[y] * v[z], v[z] / d[z])
 }
 
-impl<M: Mask> Longest<M> {
+impl<M: Mask> DominantAxis<M> {
     /// Whether both say of all that it is along the same axis.
     #[inline(always)]
-    fn is_shared<O>(self, other: Longest<O>) -> bool {
-        matches!((self, other), (Self::X, Longest::X) | (Self::Y, Longest::Y) | (Self::Z, Longest::Z))
+    fn is_same_for_all<O>(self, other: DominantAxis<O>) -> bool {
+        matches!((self, other), (Self::X, DominantAxis::X) | (Self::Y, DominantAxis::Y) | (Self::Z, DominantAxis::Z))
     }
 
     /// The coordinates turned about so that the longest is z. A right-handed basis stays one.
     #[inline(always)]
-    fn last<N: Number<Mask = M>>(self, Vector { x, y, z }: Vector<N>) -> Vector<N> {
+    fn rotate_to_z<N: Number<Mask = M>>(self, Vector { x, y, z }: Vector<N>) -> Vector<N> {
         match self {
             Self::X => Vector { x: y, y: z, z: x },
             Self::Y => Vector { x: z, y: x, z: y },
             Self::Z => Vector { x, y, z },
-            Self::Each { x: is_x, y: is_y } => {
+            Self::PerLane { x: is_x, y: is_y } => {
                 let choose = |of_x: N, of_y: N, of_z: N| N::select(is_x, of_x, N::select(is_y, of_y, of_z));
                 Vector { x: choose(y, z, x), y: choose(z, x, y), z: choose(x, y, z) }
             }
@@ -238,12 +238,12 @@ impl<M: Mask> Longest<M> {
     }
 }
 
-impl<M: LaneMask> Longest<M> {
+impl<M: LaneMask> DominantAxis<M> {
     /// Of one of them: never `Each`.
     #[inline(always)]
     fn of_lane(self, lane: usize) -> Self {
         match self {
-            Self::Each { x, y } => {
+            Self::PerLane { x, y } => {
                 // Nobody can guess it: a table does not ask the CPU to.
                 let at = (x.bits() >> lane & 1) + 2 * (y.bits() >> lane & 1);
                 [Self::Z, Self::X, Self::Y, Self::Y][at as usize % 4]

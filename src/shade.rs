@@ -220,7 +220,7 @@ impl SimdKernel for Reflect<'_> {
             let mut left = points.hit_mask;
             while left != 0 {
                 let object = points.ids.id(left.trailing_zeros() as usize % LANES).object;
-                let same = left & points.ids.are_of::<N>(object);
+                let same = left & points.ids.mask_of_object::<N>(object);
                 let reflectance = self.reflectances::<N>(&self.scene.objects()[object as usize], at, same);
                 for (channel, light) in light.iter_mut().enumerate() {
                     let reflected = reflectance[channel] * N::load(&self.arriving[at].light[channel]);

@@ -1,13 +1,13 @@
 //! The build of the tree: binary from the root down, then collapsed into nodes with eight children.
 
 use super::cut::{Around, Halves, Item, cut, item};
-use super::wide::{Pair, Wide};
+use super::wide::{BinaryNode, Wide};
 use super::{Bvh, Leaves};
 use crate::bounds::Bounds;
 use crate::threads;
 
 /// Number of items below which a subtree is not worth a task of its own.
-const FEW: usize = 8192;
+const MIN_TASK_ITEMS: usize = 8192;
 
 type Report<'r, E> = &'r (dyn Fn(usize) -> Result<(), E> + Sync);
 
@@ -22,7 +22,7 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
     let mut wide = Wide::of(&pairs);
     let root = Some(wide.append(0));
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
-    Ok((Bvh { nodes: wide.nodes, root }, Leaves { order, places: wide.leaves }))
+    Ok((Bvh { nodes: wide.nodes, root }, Leaves { order, ranges: wide.leaves }))
 }
 
 /// The position of a node's items: the index of the first in the order, and the number of nodes above them.
@@ -42,8 +42,13 @@ impl Place {
 
 /// Returns the binary tree over these items with these bounds. Large halves are built in parallel; as nodes store the
 /// distance to their children, a subtree is the same wherever it is placed.
-fn subtree<E: Send>(items: &mut [Item], around: &Around, at: Place, report: Report<'_, E>) -> Result<Vec<Pair>, E> {
-    if items.len() < FEW {
+fn subtree<E: Send>(
+    items: &mut [Item],
+    around: &Around,
+    at: Place,
+    report: Report<'_, E>,
+) -> Result<Vec<BinaryNode>, E> {
+    if items.len() < MIN_TASK_ITEMS {
         let mut nodes = Vec::with_capacity(items.len());
         append(items, around, at, &mut nodes);
         return report(items.len()).map(|()| nodes);
@@ -57,21 +62,21 @@ fn subtree<E: Send>(items: &mut [Item], around: &Around, at: Place, report: Repo
         threads::join(|| subtree(left, &around[0], at_left, report), || subtree(right, &around[1], at_right, report));
     let (left, right) = (left?, right?);
     let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
-    nodes.push(Pair { bounds, count: 0, at: 1 + left.len() as u32 });
+    nodes.push(BinaryNode { bounds, count: 0, at: 1 + left.len() as u32 });
     nodes.extend(left);
     nodes.extend(right);
     Ok(nodes)
 }
 
 /// Appends the binary tree over these items to `nodes`, on one thread.
-fn append(items: &mut [Item], around: &Around, at: Place, nodes: &mut Vec<Pair>) {
+fn append(items: &mut [Item], around: &Around, at: Place, nodes: &mut Vec<BinaryNode>) {
     let bounds = around.boxes.bounds();
     let Some(Halves { cut, around }) = cut(items, around, at.depth) else {
-        nodes.push(Pair { bounds, count: items.len() as u32, at: at.first as u32 });
+        nodes.push(BinaryNode { bounds, count: items.len() as u32, at: at.first as u32 });
         return;
     };
     let number = nodes.len();
-    nodes.push(Pair { bounds, count: 0, at: 0 });
+    nodes.push(BinaryNode { bounds, count: 0, at: 0 });
     let (left, right) = items.split_at_mut(cut);
     let [at_left, at_right] = at.halves(cut);
     append(left, &around[0], at_left, nodes);

@@ -49,7 +49,7 @@ pub(super) fn item((number, bounds): (u32, &Bounds)) -> Item {
 }
 
 /// Limit on the boxes of a leaf, which are tested together.
-const LEAF: usize = LANES;
+const MAX_LEAF_BOXES: usize = LANES;
 
 /// Limit on the depth of a tree.
 const MAX_DEPTH: usize = 96;
@@ -99,7 +99,7 @@ impl Halves {
 
 /// Chooses a cut and partitions the items by it; `None` if they fit into a leaf.
 pub(super) fn cut(items: &mut [Item], around: &Around, depth: usize) -> Option<Halves> {
-    if items.len() <= LEAF {
+    if items.len() <= MAX_LEAF_BOXES {
         return None;
     }
     let plane = if depth < FREE_DEPTH { Cut::cheapest(items, &around.middles) } else { None };
@@ -128,10 +128,10 @@ fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
 }
 
 /// Largest number of bins.
-const BINS: usize = 16;
+const MAX_BINS: usize = 16;
 
 /// Number of items below which half as many bins are used.
-const FEW_BINS: usize = 48;
+const MIN_ITEMS_FOR_MAX_BINS: usize = 48;
 
 /// Equal parts along one axis.
 #[derive(Clone, Copy)]
@@ -168,9 +168,9 @@ struct Cut {
 
 impl Cut {
     fn cheapest(items: &[Item], middles: &Rows) -> Option<Self> {
-        let count = if items.len() < FEW_BINS { BINS / 2 } else { BINS };
+        let count = if items.len() < MIN_ITEMS_FOR_MAX_BINS { MAX_BINS / 2 } else { MAX_BINS };
         let axes = [0, 1, 2].map(|axis| Bin::along(axis, middles, count));
-        let mut bins = [[(Rows::EMPTY, 0_u32); BINS]; 3];
+        let mut bins = [[(Rows::EMPTY, 0_u32); MAX_BINS]; 3];
         for item in items {
             for (bin, bins) in axes.iter().zip(&mut bins) {
                 let Some(bin) = bin else { continue };
@@ -184,7 +184,7 @@ impl Cut {
     }
 
     fn between(bin: Bin, bins: &[(Rows, u32)]) -> Option<Self> {
-        let mut behind = [(0.0, 0); BINS];
+        let mut behind = [(0.0, 0); MAX_BINS];
         let mut sum = (Rows::EMPTY, 0);
         for at in (1..bins.len()).rev() {
             sum.0.grow(&bins[at].0);

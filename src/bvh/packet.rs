@@ -5,7 +5,7 @@
 //! arithmetic as on paper, no ray of the packet enters a box before the packet does, or leaves it later, bit for bit. (Boulos,
 //! Wald and Shirley, Geometric and Arithmetic Culling Methods for Entire Ray Packets, 2006.)
 
-use super::{Bvh, Child, Prefetch, Stack, Waiting, in_any_order, nearest_first};
+use super::{Bvh, Child, PacketStack, Prefetch, StackEntry, in_any_order, nearest_first};
 use crate::lanes::{LANES, LaneMask, Lanes, Mask, Vector, set_bits};
 use crate::ray::Rays;
 
@@ -15,16 +15,16 @@ pub const GROUPS: usize = LANES;
 /// What encloses the rays of a packet.
 #[derive(Clone, Copy, Debug)]
 pub struct Packet<N> {
-    senses: [Sense; 3],
+    signs: [DirectionSign; 3],
     /// All of its rays, the same in every place.
-    all: [Hull<N>; 3],
+    all: [AxisRanges<N>; 3],
     /// Group by group.
-    groups: [Hull<N>; 3],
+    groups: [AxisRanges<N>; 3],
 }
 
 /// Which way rays go along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sense {
+enum DirectionSign {
     Forward,
     Backward,
     /// This way and that, or not at all.
@@ -34,7 +34,7 @@ enum Sense {
 /// Between what rays lie along an axis, of those that go one way: what bounds where they enter boxes, and what bounds where
 /// they leave them. Of mixed rays, what bounds where those enter that go forward, and where those that go backward.
 #[derive(Clone, Copy, Debug)]
-struct Hull<N> {
+struct AxisRanges<N> {
     origin: [N; 2],
     inverse: [N; 2],
 }
@@ -42,39 +42,39 @@ struct Hull<N> {
 /// How much wider the interval of inverse directions is made, relatively, at both ends: 128 units of 2^-24.
 /// [`Bounds::crossed`](crate::bounds::Bounds::crossed) lengthens a ray's way by 16 units, after two roundings; widened
 /// beforehand, there is nothing to lengthen in each test.
-const MORE: f32 = 128.0 / 16_777_216.0;
+const PACKET_SLACK: f32 = 128.0 / 16_777_216.0;
 
 /// The least inverse, without its sign, that can be widened: below, f32 has fewer digits.
-const LEAST: f32 = 4.0 * f32::MIN_POSITIVE;
+const MIN_INVERSE: f32 = 4.0 * f32::MIN_POSITIVE;
 
 /// How many times as great as the least the greatest inverse of rays that go one way is, at most: 2^40.
-const RATIO: f32 = 1_099_511_627_776.0;
+const MAX_INVERSE_RATIO: f32 = 1_099_511_627_776.0;
 
 /// How much later a packet leaves boxes than its rays: 2^-100. A product of a ray may be rounded to zero that is less than
-/// zero for its packet. Those of a ray are less than 2^-150, so those of its packet less than 2^-150 times [`RATIO`].
-const BEHIND: f32 = 1.0 / (RATIO * RATIO * 1_048_576.0);
+/// zero for its packet. Those of a ray are less than 2^-150, so those of its packet less than 2^-150 times [`MAX_INVERSE_RATIO`].
+const EXIT_SLACK: f32 = 1.0 / (MAX_INVERSE_RATIO * MAX_INVERSE_RATIO * 1_048_576.0);
 
 /// Between what the numbers of each group lie.
 #[inline(always)]
-fn extremes<N: Lanes>(groups: [N; GROUPS]) -> [N; 2] {
+fn group_ranges<N: Lanes>(groups: [N; GROUPS]) -> [N; 2] {
     [N::min_of_each(&groups), N::max_of_each(&groups)]
 }
 
 /// The least of the first and the greatest of the second.
 #[inline(always)]
-fn extreme<N: Lanes>([low, high]: [N; 2]) -> [N; 2] {
+fn total_range<N: Lanes>([low, high]: [N; 2]) -> [N; 2] {
     [N::splat(low.store().reduce_min()), N::splat(high.store().reduce_max())]
 }
 
-impl<N: Lanes> Hull<N> {
+impl<N: Lanes> AxisRanges<N> {
     /// The hull of each group and that of all.
     #[inline(always)]
-    fn of(origin: [N; GROUPS], inverse: [N; GROUPS]) -> (Sense, [Self; 2]) {
-        let origin = extremes(origin);
-        let [low, high] = extremes(inverse);
-        let (all_origin, all_inverse) = (extreme(origin), extreme([low, high]));
-        let sense = Sense::of(all_inverse);
-        if sense == Sense::Mixed {
+    fn of(origin: [N; GROUPS], inverse: [N; GROUPS]) -> (DirectionSign, [Self; 2]) {
+        let origin = group_ranges(origin);
+        let [low, high] = group_ranges(inverse);
+        let (all_origin, all_inverse) = (total_range(origin), total_range([low, high]));
+        let sign = DirectionSign::of(all_inverse);
+        if sign == DirectionSign::Mixed {
             let (plus, minus) = (N::splat(f32::INFINITY), N::splat(f32::NEG_INFINITY));
             let zero = N::splat(0.0);
             let (mut above, mut below) = (inverse, inverse);
@@ -82,29 +82,32 @@ impl<N: Lanes> Hull<N> {
                 *above = N::select(zero.lt(*above), *above, plus);
                 *below = N::select(below.lt(zero), *below, minus);
             }
-            let (above, below) = (extremes(above)[0], extremes(below)[1]);
-            let [least, _] = extreme([above, above]);
-            let [_, greatest] = extreme([below, below]);
-            return (sense, [Self::mixed(origin, [above, below]), Self::mixed(all_origin, [least, greatest])]);
+            let (above, below) = (group_ranges(above)[0], group_ranges(below)[1]);
+            let [least, _] = total_range([above, above]);
+            let [_, greatest] = total_range([below, below]);
+            return (
+                sign,
+                [Self::of_mixed_signs(origin, [above, below]), Self::of_mixed_signs(all_origin, [least, greatest])],
+            );
         }
-        (sense, [Self::one_way(sense, origin, [low, high]), Self::one_way(sense, all_origin, all_inverse)])
+        (sign, [Self::of_one_sign(sign, origin, [low, high]), Self::of_one_sign(sign, all_origin, all_inverse)])
     }
 
     #[inline(always)]
-    fn one_way(sense: Sense, [first, last]: [N; 2], [low, high]: [N; 2]) -> Self {
-        let (less, more) = (N::splat(1.0 - MORE), N::splat(1.0 + MORE));
-        match sense {
-            Sense::Backward => Self { origin: [first, last], inverse: [high * less, low * more] },
+    fn of_one_sign(sign: DirectionSign, [first, last]: [N; 2], [low, high]: [N; 2]) -> Self {
+        let (less, more) = (N::splat(1.0 - PACKET_SLACK), N::splat(1.0 + PACKET_SLACK));
+        match sign {
+            DirectionSign::Backward => Self { origin: [first, last], inverse: [high * less, low * more] },
             _ => Self { origin: [last, first], inverse: [low * less, high * more] },
         }
     }
 
     #[inline(always)]
-    fn mixed([first, last]: [N; 2], [above, below]: [N; 2]) -> Self {
-        let (less, half) = (N::splat(1.0 - MORE), N::splat(0.5));
+    fn of_mixed_signs([first, last]: [N; 2], [above, below]: [N; 2]) -> Self {
+        let (less, half) = (N::splat(1.0 - PACKET_SLACK), N::splat(0.5));
         // Where there are too few digits for a little, by half. That is not zero: no direction's inverse is less than 2^-128.
-        let above = N::select(above.lt(N::splat(LEAST)), above * half, above * less);
-        let below = N::select(N::splat(-LEAST).lt(below), below * half, below * less);
+        let above = N::select(above.lt(N::splat(MIN_INVERSE)), above * half, above * less);
+        let below = N::select(N::splat(-MIN_INVERSE).lt(below), below * half, below * less);
         Self { origin: [last, first], inverse: [above, below] }
     }
 
@@ -113,14 +116,14 @@ impl<N: Lanes> Hull<N> {
     /// Rays of one way enter ahead at the product of the least distance and the least inverse, and leave at that of the
     /// greatest ones. Of what is behind, a distance is negative, and so is the product, whichever inverse that is.
     #[inline(always)]
-    fn way(&self, sense: Sense, min: N, max: N) -> [N; 2] {
+    fn slab_range(&self, sign: DirectionSign, min: N, max: N) -> [N; 2] {
         let Self { origin, inverse } = *self;
-        let (near, far) = match sense {
-            Sense::Forward => (min, max),
-            Sense::Backward => (max, min),
+        let (near, far) = match sign {
+            DirectionSign::Forward => (min, max),
+            DirectionSign::Backward => (max, min),
             // Who goes forward enters at the least coordinates, who goes backward at the greatest; the other way, the box
             // is behind it.
-            Sense::Mixed => {
+            DirectionSign::Mixed => {
                 let (forward, backward) = ((min - origin[0]) * inverse[0], (max - origin[1]) * inverse[1]);
                 return [forward.max(backward.max(N::splat(f32::NEG_INFINITY))), N::splat(f32::INFINITY)];
             }
@@ -129,11 +132,11 @@ impl<N: Lanes> Hull<N> {
     }
 }
 
-impl Sense {
+impl DirectionSign {
     /// Of inverses between these.
     #[inline(always)]
     fn of<N: Lanes>([low, high]: [N; 2]) -> Self {
-        let (least, ratio, greatest) = (N::splat(LEAST), N::splat(RATIO), N::splat(f32::MAX / 2.0));
+        let (least, ratio, greatest) = (N::splat(MIN_INVERSE), N::splat(MAX_INVERSE_RATIO), N::splat(f32::MAX / 2.0));
         if (least.le(low) & high.le(low * ratio) & high.le(greatest)).all() {
             Self::Forward
         } else if (least.le(-high) & (-low).le(-high * ratio) & (-low).le(greatest)).all() {
@@ -156,42 +159,42 @@ impl<N: Lanes> Packet<N> {
             }
         }
         let [ox, oy, oz, ix, iy, iz] = columns;
-        let (x, [groups_x, all_x]) = Hull::of(ox, ix);
-        let (y, [groups_y, all_y]) = Hull::of(oy, iy);
-        let (z, [groups_z, all_z]) = Hull::of(oz, iz);
-        Self { senses: [x, y, z], groups: [groups_x, groups_y, groups_z], all: [all_x, all_y, all_z] }
+        let (x, [groups_x, all_x]) = AxisRanges::of(ox, ix);
+        let (y, [groups_y, all_y]) = AxisRanges::of(oy, iy);
+        let (z, [groups_z, all_z]) = AxisRanges::of(oz, iz);
+        Self { signs: [x, y, z], groups: [groups_x, groups_y, groups_z], all: [all_x, all_y, all_z] }
     }
 
     /// Whether its rays go this way and that along most axes: then it keeps hardly any box from them.
     #[inline(always)]
-    pub fn is_scattered(&self) -> bool {
-        self.senses.iter().filter(|&&sense| sense == Sense::Mixed).count() > 1
+    pub fn is_incoherent(&self) -> bool {
+        self.signs.iter().filter(|&&sign| sign == DirectionSign::Mixed).count() > 1
     }
 
     /// Between what its rays cross each of eight boxes, within these bounds, the first 0 or more.
     #[inline(always)]
     pub fn crossed(&self, boxes: [Vector<N>; 2], within: [N; 2]) -> [N; 2] {
-        crossed(&self.all, self.senses, boxes, within)
+        crossed(&self.all, self.signs, boxes, within)
     }
 
     /// Between what the rays of each group cross one box, within these bounds.
     #[inline(always)]
     pub fn crossed_by_groups(&self, one: [Vector<N>; 2], within: [N; 2]) -> [N; 2] {
-        crossed(&self.groups, self.senses, one, within)
+        crossed(&self.groups, self.signs, one, within)
     }
 }
 
 #[inline(always)]
 fn crossed<N: Lanes>(
-    [x, y, z]: &[Hull<N>; 3],
-    senses: [Sense; 3],
+    [x, y, z]: &[AxisRanges<N>; 3],
+    signs: [DirectionSign; 3],
     [min, max]: [Vector<N>; 2],
     [from, to]: [N; 2],
 ) -> [N; 2] {
-    let x = x.way(senses[0], min.x, max.x);
-    let y = y.way(senses[1], min.y, max.y);
-    let z = z.way(senses[2], min.z, max.z);
-    let end = x[1].min(y[1].min(z[1])) + N::splat(BEHIND);
+    let x = x.slab_range(signs[0], min.x, max.x);
+    let y = y.slab_range(signs[1], min.y, max.y);
+    let z = z.slab_range(signs[2], min.z, max.z);
+    let end = x[1].min(y[1].min(z[1])) + N::splat(EXIT_SLACK);
     [x[0].max(y[0].max(z[0].max(from))), end.min(to)]
 }
 
@@ -203,19 +206,19 @@ pub trait Visitor<N>: Prefetch {
     const NEAREST_FIRST: bool;
 
     /// The number of boxes in a node from which on, if the packet meets that many, [`split`](Self::split) is asked.
-    const LEAST_SPLIT: u32;
+    const MIN_CHILDREN_TO_SPLIT: u32;
 
     /// From where on rays are of interest: 0 or more.
-    fn min(&self) -> f32;
+    fn t_min(&self) -> f32;
 
     /// Up to where the rays of each group are.
-    fn reach(&self) -> N;
+    fn t_max(&self) -> N;
 
     /// Up to where any of them is.
-    fn farthest(&self) -> f32;
+    fn max_t_max(&self) -> f32;
 
     /// Tests what is in a leaf.
-    fn leaf(&mut self, leaf: usize);
+    fn visit_leaf(&mut self, leaf: usize);
 
     /// Returns the mask of rays of each group that go on as single rays from a node that these groups may meet, a bit for
     /// each, or nothing if the packet goes on. The box is that around the node. Some group may meet it.
@@ -226,10 +229,10 @@ pub trait Visitor<N>: Prefetch {
 }
 
 impl Bvh {
-    /// The box in that place, as [`Waiting`] counts them.
+    /// The box in that place, as [`StackEntry`] counts them.
     #[inline(always)]
-    fn one<N: Lanes>(&self, place: u32) -> [Vector<N>; 2] {
-        self.nodes[place as usize / LANES].one(place as usize % LANES)
+    fn slot_box<N: Lanes>(&self, slot: u32) -> [Vector<N>; 2] {
+        self.nodes[slot as usize / LANES].child_box(slot as usize % LANES)
     }
 
     /// Visits the leaves that a packet meets.
@@ -237,48 +240,48 @@ impl Bvh {
     pub fn visit_packet<N: Lanes, V: Visitor<N>>(
         &self,
         packet: &Packet<N>,
-        Stack(waiting): &mut Stack,
+        PacketStack(waiting): &mut PacketStack,
         visitor: &mut V,
     ) {
         let Some(root) = self.root() else { return };
         waiting.clear();
-        let min = N::splat(visitor.min());
-        let mut next = Some(Waiting { child: root, place: u32::MAX, start: visitor.min() });
-        while let Some(Waiting { child, place, start }) = next.take().or_else(|| waiting.pop()) {
-            if start > visitor.farthest() {
+        let min = N::splat(visitor.t_min());
+        let mut next = Some(StackEntry { child: root, slot: u32::MAX, start: visitor.t_min() });
+        while let Some(StackEntry { child, slot, start }) = next.take().or_else(|| waiting.pop()) {
+            if start > visitor.max_t_max() {
                 continue;
             }
             if let Some(leaf) = child.as_leaf() {
-                visitor.leaf(leaf);
+                visitor.visit_leaf(leaf);
                 continue;
             }
-            let is_root = place == u32::MAX;
+            let is_root = slot == u32::MAX;
             let mut groups = 0;
             if !is_root {
-                let [starts, ends] = packet.crossed_by_groups(self.one(place), [min, visitor.reach()]);
+                let [starts, ends] = packet.crossed_by_groups(self.slot_box(slot), [min, visitor.t_max()]);
                 groups = starts.le(ends).bits();
                 if groups == 0 {
                     continue;
                 }
             }
             let node = &self.nodes[child.0 as usize];
-            let [starts, ends] = packet.crossed(node.boxes(), [min, N::splat(visitor.farthest())]);
-            let is_met = starts.le(ends).bits();
+            let [starts, ends] = packet.crossed(node.boxes(), [min, N::splat(visitor.max_t_max())]);
+            let hit_mask = starts.le(ends).bits();
             // The box is loaded again: kept in registers over the other test, it makes shadow rays 5 % slower.
             if !is_root
-                && is_met.count_ones() >= V::LEAST_SPLIT
-                && let Some(rays) = visitor.split(self.one(place), groups)
+                && hit_mask.count_ones() >= V::MIN_CHILDREN_TO_SPLIT
+                && let Some(rays) = visitor.split(self.slot_box(slot), groups)
             {
                 visitor.trace_singles(child, rays, groups);
                 continue;
             }
-            for lane in set_bits(is_met) {
+            for lane in set_bits(hit_mask) {
                 self.prefetch(node.children[lane], visitor);
             }
             next = if V::NEAREST_FIRST {
-                nearest_first(node, child, is_met, &starts.store(), waiting)
+                nearest_first(node, child, hit_mask, &starts.store(), waiting)
             } else {
-                in_any_order(node, child, is_met, &starts.store(), waiting)
+                in_any_order(node, child, hit_mask, &starts.store(), waiting)
             };
         }
     }
@@ -356,7 +359,7 @@ mod tests {
             let packet = Packet::of(&groups);
             // Rays this way and that, whose products f32 rounds to zero, may be said to meet what is behind them.
             let (length, scale) = sizes(seed);
-            if scale / length < two_to(-60) && packet.senses.contains(&Sense::Mixed) {
+            if scale / length < two_to(-60) && packet.signs.contains(&DirectionSign::Mixed) {
                 continue;
             }
             let within = [F32x8::ZERO, <F32x8 as Number>::splat(f32::MAX)];

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// A node of the binary tree. Its first child follows it in the array.
 #[derive(Clone, Copy)]
-pub(super) struct Pair {
+pub(super) struct BinaryNode {
     pub(super) bounds: Bounds,
     /// Number of boxes of a leaf; 0 for an inner node.
     pub(super) count: u32,
@@ -17,19 +17,19 @@ pub(super) struct Pair {
 
 /// The wide tree in construction.
 pub(super) struct Wide<'p> {
-    pairs: &'p [Pair],
+    pairs: &'p [BinaryNode],
     fillings: Vec<Filling>,
     pub(super) nodes: Vec<Node>,
     pub(super) leaves: Vec<Range<u32>>,
 }
 
 impl<'p> Wide<'p> {
-    pub(super) fn of(pairs: &'p [Pair]) -> Self {
+    pub(super) fn of(pairs: &'p [BinaryNode]) -> Self {
         Self { pairs, fillings: fillings(pairs), nodes: Vec::new(), leaves: Vec::new() }
     }
 
     pub(super) fn append(&mut self, at: usize) -> Child {
-        let Pair { count, at: first, .. } = self.pairs[at];
+        let BinaryNode { count, at: first, .. } = self.pairs[at];
         if count > 0 {
             self.leaves.push(first..first + count);
             return Child::leaf(self.leaves.len() as u32 - 1);
@@ -83,7 +83,7 @@ const WHOLE: usize = 0;
 ///
 /// To open the largest box until there are eight left a third of the nodes with two children. This way the dragon's 871 k
 /// triangles have 28 % fewer nodes.
-fn fillings(pairs: &[Pair]) -> Vec<Filling> {
+fn fillings(pairs: &[BinaryNode]) -> Vec<Filling> {
     let mut fillings = vec![[WHOLE as u8; LANES]; pairs.len()];
     // From the last node to the first, both children come before their parent, the first child on top.
     let mut costs: Vec<[f32; LANES]> = Vec::new();
@@ -128,7 +128,7 @@ mod tests {
     use glam::Vec3;
 
     /// A binary tree whose leaves have one box each, of arbitrary boxes.
-    fn pairs(boxes: usize, seed: u32) -> Vec<Pair> {
+    fn pairs(boxes: usize, seed: u32) -> Vec<BinaryNode> {
         let mut state = seed;
         let mut number = || {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -146,13 +146,13 @@ mod tests {
     }
 
     /// Appends a binary tree down to single boxes, as `build::append` does down to leaves.
-    fn one_by_one(items: &mut [Item], first: usize, nodes: &mut Vec<Pair>) {
+    fn one_by_one(items: &mut [Item], first: usize, nodes: &mut Vec<BinaryNode>) {
         let bounds = Around::of(items).boxes.bounds();
         let at = nodes.len();
         if items.len() == 1 {
-            return nodes.push(Pair { bounds, count: 1, at: first as u32 });
+            return nodes.push(BinaryNode { bounds, count: 1, at: first as u32 });
         }
-        nodes.push(Pair { bounds, count: 0, at: 0 });
+        nodes.push(BinaryNode { bounds, count: 0, at: 0 });
         let cut = 1 + (items.len() * 3 + first) % (items.len() - 1);
         let (left, right) = items.split_at_mut(cut);
         one_by_one(left, first, nodes);
@@ -161,7 +161,7 @@ mod tests {
     }
 
     /// The least sum of half areas of wide nodes, found by trying all distributions.
-    fn least_cost(pairs: &[Pair], at: usize, places: usize) -> f64 {
+    fn least_cost(pairs: &[BinaryNode], at: usize, places: usize) -> f64 {
         let pair = &pairs[at];
         if pair.count > 0 {
             return 0.0;

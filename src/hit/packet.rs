@@ -4,7 +4,7 @@ use super::single::SingleRay;
 use super::{Stacks, split};
 use crate::accel::{self, Accelerator, List, Tree};
 use crate::bounds::crossed;
-use crate::bvh::{Child, GROUPS, Packet, Prefetch, Queue, Visitor};
+use crate::bvh::{Child, GROUPS, Packet, Prefetch, RayStack, Visitor};
 use crate::hit::{EightHits, Kernel};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, Vector, set_bits};
 use crate::ray::{CommonOrigin, EightRays, Interval, Rays};
@@ -134,11 +134,11 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
                 Some(packet) => packet,
                 None => packet.insert(Packet::of(&self.groups)),
             };
-            let Stacks { packet: stack, single: queue } = stacks;
+            let Stacks { packet: stack, single: ray_stack } = stacks;
             let groups = self.rays.len();
-            let mut in_tree = InTree { rays: self, tree, packet, common_origin: CommonOriginCache::Unknown, queue };
+            let mut in_tree = InTree { rays: self, tree, packet, common_origin: CommonOriginCache::Unknown, ray_stack };
             match tree.bvh.root() {
-                Some(root) if in_tree.rays.kernel == Kernel::Auto && packet.is_scattered() => {
+                Some(root) if in_tree.rays.kernel == Kernel::Auto && packet.is_incoherent() => {
                     for group in 0..groups {
                         let waiting = !in_tree.rays.t[group].le(N::splat(TERMINATED));
                         in_tree.trace_singles_of(root, group, waiting.bits());
@@ -193,7 +193,7 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
     #[inline(always)]
     fn test_unculled<S: SoaLeaf>(&mut self, tree: &Tree<S>, rays: &Rays<N>, min: N, accel: &Accelerator) {
         let Some(leaf) = tree.leaves.first() else { return };
-        for lane in 0..tree.few {
+        for lane in 0..tree.single_leaf_count {
             let shape = leaf.splat(lane);
             self.update(tree.primitive(0, lane), shape.first_crossing(rays, min), accel);
         }
@@ -278,7 +278,7 @@ struct InTree<'a, 'p, N: Lanes, S, const ANY: bool> {
     tree: &'p Tree<S>,
     packet: &'a Packet<N>,
     common_origin: CommonOriginCache<N>,
-    queue: &'a mut Queue,
+    ray_stack: &'a mut RayStack,
 }
 
 /// The pencil of a packet, which only a leaf asks for: packets that meet none do without. That makes eye rays 1 to 2 %
@@ -299,29 +299,29 @@ impl<N: Lanes, S, const ANY: bool> Prefetch for InTree<'_, '_, N, S, ANY> {
 impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, ANY> {
     const NEAREST_FIRST: bool = !ANY;
 
-    const LEAST_SPLIT: u32 = split::min_boxes_to_split(ANY);
+    const MIN_CHILDREN_TO_SPLIT: u32 = split::min_boxes_to_split(ANY);
 
     #[inline(always)]
-    fn min(&self) -> f32 {
+    fn t_min(&self) -> f32 {
         self.rays.within.min
     }
 
     #[inline(always)]
-    fn reach(&self) -> N {
+    fn t_max(&self) -> N {
         N::load(&self.rays.reach)
     }
 
     #[inline(always)]
-    fn farthest(&self) -> f32 {
+    fn max_t_max(&self) -> f32 {
         self.rays.farthest
     }
 
     #[inline(always)]
-    fn leaf(&mut self, leaf: usize) {
+    fn visit_leaf(&mut self, leaf: usize) {
         let shapes = &self.tree.leaves[leaf];
         let min = N::splat(self.rays.within.min);
         let boxes = shapes.load::<N>().boxes();
-        let [starts, ends] = self.packet.crossed(boxes, [min, N::splat(self.farthest())]);
+        let [starts, ends] = self.packet.crossed(boxes, [min, N::splat(self.max_t_max())]);
         let boxes_hit = starts.le(ends).bits();
         if boxes_hit == 0 {
             return;
@@ -341,7 +341,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, 
         let mut pairs = 0_u64;
         for lane in set_bits(boxes_hit) {
             let one = [Vector::splat(low.of_lane(lane)), Vector::splat(high.of_lane(lane))];
-            let [starts, ends] = self.packet.crossed_by_groups(one, [min, self.reach()]);
+            let [starts, ends] = self.packet.crossed_by_groups(one, [min, self.t_max()]);
             let mut groups = starts.le(ends).bits();
             // Any blocker will do, and next to it the edges let few groups off: without them shadow rays are 5 % faster.
             if let (false, Some(edges), CommonOriginCache::Found(common_origin)) = (ANY, &edges, &self.common_origin) {
@@ -418,7 +418,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> InTree<'_, '_, N, S, ANY> {
             let known = primitive.0[lane].to_bits();
             let ray = SingleRay::<N, ANY>::new(self.rays.accel, &self.rays.groups[group], lane, within);
             let mut ray = ray.with_known_hit((known != NO_PRIMITIVE).then_some(known));
-            ray.trace_from(from, self.tree, self.queue);
+            ray.trace_from(from, self.tree, self.ray_stack);
             if let (hit_t, Some(found)) = ray.found() {
                 t.0[lane] = if ANY { TERMINATED } else { hit_t };
                 primitive.0[lane] = index_as_lane(found);

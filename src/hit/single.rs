@@ -2,7 +2,7 @@
 
 use super::observer::{NoObserver, Observer, PrimitiveTest};
 use crate::accel::{Accelerator, List, PrimitiveId, Tree, Visitor};
-use crate::bvh::{Child, LeafVisitor, Prefetch, Queue};
+use crate::bvh::{Child, LeafVisitor, Prefetch, RayStack};
 use crate::lanes::{F32x8, LaneMask, Lanes, SimdKernel, set_bits};
 use crate::ray::{Interval, Rays};
 use crate::shape::{Crossable, Endless, SoaLeaf};
@@ -54,8 +54,8 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
 
     /// Searches through everything.
     #[inline(always)]
-    pub(super) fn trace(&mut self, queue: &mut Queue) {
-        self.accel.visit(&mut AllPrimitives { ray: self, queue });
+    pub(super) fn trace(&mut self, stack: &mut RayStack) {
+        self.accel.visit(&mut AllPrimitives { ray: self, stack });
     }
 
     #[inline(always)]
@@ -75,9 +75,9 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
     }
 
     #[inline(always)]
-    fn trace_tree<S: SoaLeaf>(&mut self, tree: &Tree<S>, queue: &mut Queue) {
+    fn trace_tree<S: SoaLeaf>(&mut self, tree: &Tree<S>, stack: &mut RayStack) {
         match tree.bvh.root() {
-            Some(root) if tree.has_tree() => self.trace_from(root, tree, queue),
+            Some(root) if tree.has_tree() => self.trace_from(root, tree, stack),
             // The only leaf: what a tree takes to begin with would be most of the time.
             Some(_) if !(ANY && self.primitive.is_some()) => self.test(&self.rays.splat_lane(self.lane), 0, tree),
             _ => {}
@@ -86,11 +86,11 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
 
     /// Searches through a part of a tree.
     #[inline(always)]
-    pub(super) fn trace_from<S: SoaLeaf>(&mut self, from: Child, tree: &Tree<S>, queue: &mut Queue) {
+    pub(super) fn trace_from<S: SoaLeaf>(&mut self, from: Child, tree: &Tree<S>, stack: &mut RayStack) {
         if ANY && self.primitive.is_some() {
             return;
         }
-        N::call_no_inline(Search { ray: self, from, tree, queue });
+        N::call_no_inline(Search { ray: self, from, tree, stack });
     }
 
     #[inline(always)]
@@ -135,7 +135,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
 /// A ray's way through all parts.
 struct AllPrimitives<'a, 'p, N: Lanes, const ANY: bool, W> {
     ray: &'a mut SingleRay<'p, N, ANY, W>,
-    queue: &'a mut Queue,
+    stack: &'a mut RayStack,
 }
 
 impl<'p, N: Lanes, const ANY: bool, W: Observer> Visitor<'p> for AllPrimitives<'_, 'p, N, ANY, W> {
@@ -146,7 +146,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> Visitor<'p> for AllPrimitives<'
 
     #[inline(always)]
     fn tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
-        self.ray.trace_tree(tree, self.queue);
+        self.ray.trace_tree(tree, self.stack);
     }
 }
 
@@ -155,7 +155,7 @@ struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     ray: &'a mut SingleRay<'p, N, ANY, W>,
     from: Child,
     tree: &'a Tree<S>,
-    queue: &'a mut Queue,
+    stack: &'a mut RayStack,
 }
 
 impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for Search<'_, '_, N, S, ANY, W> {
@@ -164,11 +164,11 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for Search<'
     /// The numbers are those that the ray has.
     #[inline(always)]
     fn run<Same: Lanes>(self) {
-        let Self { ray, from, tree, queue } = self;
+        let Self { ray, from, tree, stack } = self;
         let (rays, within) = (ray.rays.splat_lane(ray.lane), ray.within);
         let mut there = InTree { ray, rays: &rays, tree };
         if within.min >= 0.0 {
-            tree.bvh.visit(from, &rays, within, queue, &mut there);
+            tree.bvh.visit(from, &rays, within, stack, &mut there);
         } else {
             // The tree knows of nothing behind an origin; that is asked for too rarely for one that does.
             let _ = (0..tree.leaves.len()).try_for_each(|leaf| there.visit(leaf).map_continue(|_| ()));
@@ -193,7 +193,7 @@ impl<N: Lanes, S, const ANY: bool, W> Prefetch for InTree<'_, '_, N, S, ANY, W> 
 
 impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> LeafVisitor for InTree<'_, '_, N, S, ANY, W> {
     #[inline(always)]
-    fn boxes(&mut self) {
+    fn node_tested(&mut self) {
         self.ray.observer.node_tested();
     }
 

@@ -1,6 +1,6 @@
 //! Rays through one point.
 
-use super::{Longest, Rays, Shear};
+use super::{DominantAxis, Rays, Shear};
 use crate::lanes::{LANES, Lanes, Mask, Vector};
 
 /// Groups of eight rays whose lines pass through one point, the origin: the eye, or a light. Seen from there, each ray is a
@@ -10,7 +10,7 @@ pub struct CommonOrigin<N: Lanes> {
     origin: Vector<N>,
     /// How far the lines miss the origin, along any axis, at most: a length, times 2^24.
     pub origin_error: N,
-    longest: Longest<N::Mask>,
+    axis: DominantAxis<N::Mask>,
     /// How far the ray in the picture's middle goes along x and y, while it goes one unit along its longest axis.
     slope: [N; 2],
     /// A ray's place in the picture is how far it goes along x and y, while it goes one unit along that axis, less the
@@ -52,22 +52,22 @@ impl<N: Lanes> CommonOrigin<N> {
 
     #[inline(always)]
     fn around(origin: Vector<N>, origin_error: N, groups: &[Rays<N>; LANES]) -> Option<Self> {
-        let Shear { longest, factor, .. } = Shear::of(groups[LANES / 2].direction.splat_lane(0));
+        let Shear { axis, factor, .. } = Shear::of(groups[LANES / 2].direction.splat_lane(0));
         let slope = [factor.x, factor.y];
         let (zero, one) = (N::splat(0.0), N::splat(1.0));
         let (mut xs, mut ys) = ([zero; LANES], [zero; LANES]);
         let (mut are_near, mut are_usual) = (zero.le(one), zero.le(one));
         let (mut depth_range, mut share_axis) = ([N::splat(f32::INFINITY), N::splat(f32::NEG_INFINITY)], true);
         for (at, rays) in groups.iter().enumerate() {
-            let (direction, inverse) = (longest.last(rays.direction), longest.last(rays.inverse));
+            let (direction, inverse) = (axis.rotate_to_z(rays.direction), axis.rotate_to_z(rays.inverse));
             xs[at] = direction.x * inverse.z - slope[0];
             ys[at] = direction.y * inverse.z - slope[1];
             // No for NaN as well.
             are_near = are_near & xs[at].abs().le(one) & ys[at].abs().le(one);
-            let depth = longest.last(rays.origin - origin).z;
+            let depth = axis.rotate_to_z(rays.origin - origin).z;
             // In this order, so that NaN is left out.
             depth_range = [depth.min(depth_range[0]), depth.max(depth_range[1])];
-            share_axis &= rays.shear.longest.is_shared(longest);
+            share_axis &= rays.shear.axis.is_same_for_all(axis);
             let length = rays.shear.length;
             are_usual = are_usual & N::splat(SAFE_LENGTHS[0]).le(length) & length.le(N::splat(SAFE_LENGTHS[1]));
         }
@@ -89,7 +89,7 @@ impl<N: Lanes> CommonOrigin<N> {
         are_near.all().then_some(Self {
             origin,
             origin_error,
-            longest,
+            axis,
             slope,
             centers,
             half_extents,
@@ -103,7 +103,7 @@ impl<N: Lanes> CommonOrigin<N> {
     /// |z| at most and its z by |z|; for a line that misses the origin, by twice the origin_error and by the origin_error more.
     #[inline(always)]
     pub fn apply(&self, point: Vector<N>) -> Vector<N> {
-        let Vector { x, y, z } = self.longest.last(point - self.origin);
+        let Vector { x, y, z } = self.axis.rotate_to_z(point - self.origin);
         Vector { x: x - self.slope[0] * z, y: y - self.slope[1] * z, z }
     }
 }

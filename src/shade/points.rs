@@ -118,7 +118,7 @@ struct SurfacesOfPrimitive<'h, N: Lanes> {
 impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
     #[inline(always)]
     fn list<S: Endless>(&mut self, list: &'a List<S>) {
-        if list.holds(self.primitive) {
+        if list.contains(self.primitive) {
             let (id, surface) = list.get(self.primitive);
             let found = surface.splat().points_at(&Rays::<N>::load(self.rays, false), N::load(&self.hits.t));
             self.found = (self.hits.mask_of::<N>(self.primitive), PrimitiveIds::splat(*id), found);
@@ -127,7 +127,7 @@ impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
 
     #[inline(always)]
     fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
-        if tree.holds(self.primitive) {
+        if tree.contains(self.primitive) {
             self.found = surfaces_in_tree(tree, self.rays, self.hits, self.hits.mask_of_range(tree.first, tree.end()));
         }
     }

@@ -282,8 +282,8 @@ fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3
 
 /// About x first, then about y, then about z; counterclockwise for who looks against the axis.
 fn turn(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
-    const MOST_TURNS: f64 = 36_000.0;
-    if let Some(angle) = written.components.iter().find(|angle| angle.value.abs() > MOST_TURNS) {
+    const MAX_ANGLE: f64 = 36_000.0;
+    if let Some(angle) = written.components.iter().find(|angle| angle.value.abs() > MAX_ANGLE) {
         return validator.fault(angle.span, || "an angle must lie within ±36000 degrees".to_owned());
     }
     let [x, y, z] = written.components.map(|angle| cosine_and_sine(angle.value));

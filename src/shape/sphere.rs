@@ -14,10 +14,10 @@ use glam::Vec3;
 use std::array::from_fn;
 
 /// From so many radii on, a crossing is improved by a second look.
-const FAR: f32 = 8.0;
+const NEWTON_MIN_RADII: f32 = 8.0;
 
 /// The square of the cosine to the normal below which a ray only grazes the sphere.
-const GRAZING: f32 = 1e-3;
+const GRAZING_COSINE_SQUARED: f32 = 1e-3;
 
 /// All points x with ||x - c||^2 - r^2 = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,11 +72,11 @@ impl<N: Number> SphereN<N> {
     /// left to the surface at its end is short, and known better. (Near the edge, where the ray only grazes the sphere,
     /// the step would be one into the blue.)
     #[inline(always)]
-    fn improved(&self, t: N, f: Vector<N>, rays: &Rays<N>) -> N {
+    fn newton_step(&self, t: N, f: Vector<N>, rays: &Rays<N>) -> N {
         let squared_radius = self.radius * self.radius;
         let outward = f + rays.direction * t;
         let along = outward.dot(rays.direction);
-        let is_steep = (N::splat(GRAZING) * squared_radius * rays.squared_length).lt(along * along);
+        let is_steep = (N::splat(GRAZING_COSINE_SQUARED) * squared_radius * rays.squared_length).lt(along * along);
         let step = N::splat(0.5) * (outward.dot(outward) - squared_radius) / along;
         N::select(is_steep, t - step, t)
     }
@@ -117,8 +117,8 @@ impl<N: Number> Crossable<N> for SphereN<N> {
         let is_sorted = t0.le(t1);
         let (first, second) = (N::select(is_sorted, t0, t1), N::select(is_sorted, t1, t0));
         let t = N::select(min.le(first), first, second);
-        let is_far = (N::splat(FAR * FAR) * squared_radius).lt(ff);
-        let t = if is_far.any() { N::select(is_far, self.improved(t, f, rays), t) } else { t };
+        let is_far = (N::splat(NEWTON_MIN_RADII * NEWTON_MIN_RADII) * squared_radius).lt(ff);
+        let t = if is_far.any() { N::select(is_far, self.newton_step(t, f, rays), t) } else { t };
         let [start, end] = crossed(self.boxes(), rays);
         let t = nearest_in(start, end, t);
         Some((crosses & start.le(end) & min.le(t), t))
@@ -146,7 +146,7 @@ impl SoaLeaf for SphereN<F32x8> {
     type Of<N: Lanes> = SphereN<N>;
 
     fn of(shapes: &[Sphere]) -> Self {
-        let sphere = |lane: usize| shapes.get(lane).copied().unwrap_or(NOWHERE);
+        let sphere = |lane: usize| shapes.get(lane).copied().unwrap_or(NEVER_HIT);
         Self {
             center: Vector::of(from_fn(|lane| sphere(lane).center)),
             radius: F32x8(from_fn(|lane| sphere(lane).radius)),
@@ -176,7 +176,7 @@ impl SoaLeaf for SphereN<F32x8> {
 }
 
 /// What no ray meets.
-const NOWHERE: Sphere = Sphere { center: Vec3::INFINITY, radius: 1.0 };
+const NEVER_HIT: Sphere = Sphere { center: Vec3::INFINITY, radius: 1.0 };
 
 impl Surface for Sphere {
     fn bounds(&self) -> Option<Bounds> {

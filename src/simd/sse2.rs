@@ -44,7 +44,7 @@ struct Registers([__m128; 2]);
 struct Masks([__m128; 2]);
 
 /// From this on all numbers are whole.
-const WHOLE: f32 = 8_388_608.0;
+const INTEGERS_FROM: f32 = 8_388_608.0;
 
 /// An instruction of SSE2.
 macro_rules! sse {
@@ -69,7 +69,7 @@ fn select(mask: __m128, yes: __m128, no: __m128) -> __m128 {
 fn floor(number: __m128) -> __m128 {
     sse!({
         let sign = _mm_and_ps(number, _mm_set1_ps(-0.0));
-        let is_less = _mm_cmplt_ps(_mm_andnot_ps(_mm_set1_ps(-0.0), number), _mm_set1_ps(WHOLE));
+        let is_less = _mm_cmplt_ps(_mm_andnot_ps(_mm_set1_ps(-0.0), number), _mm_set1_ps(INTEGERS_FROM));
         let truncated = _mm_cvtepi32_ps(_mm_cvttps_epi32(number));
         let one = _mm_and_ps(_mm_cmplt_ps(number, truncated), _mm_set1_ps(1.0));
         // Of -0 too: its sign stays.

@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use std::num::NonZeroU32;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use termtrace::internals::bvh::{Bvh, LeafVisitor, Leaves, Prefetch, Queue};
+use termtrace::internals::bvh::{Bvh, LeafVisitor, Leaves, Prefetch, RayStack};
 use termtrace::internals::hit::{
     Kernel, Observer, PrimitiveTest, any_hit, any_hit_observed, any_hits, closest_hit, closest_hit_observed,
     closest_hits,
@@ -507,7 +507,7 @@ fn a_tree_is_never_too_deep_for_its_stack() {
     let ray = Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 1.0, 0.0) };
     let mut count = Count(&leaves, 0);
     let rays = Rays::<F32x8>::load(&EightRays::of(&[ray]), false);
-    bvh.visit(bvh.root().unwrap(), &rays, Interval::IN_FRONT, &mut Queue::default(), &mut count);
+    bvh.visit(bvh.root().unwrap(), &rays, Interval::IN_FRONT, &mut RayStack::default(), &mut count);
     assert_eq!(count.1, boxes.len(), "the ray meets them all");
 }
 
