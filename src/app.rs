@@ -7,13 +7,13 @@ use crate::terminal::{self, Signals, Terminal};
 use crate::text::Notice;
 /// For the fuzz target: no build that is not a test has it.
 #[cfg(feature = "test-hooks")]
-pub use crate::viewer::tell as tell_viewer;
+pub use crate::viewer::run_scenario as run_viewer_scenario;
 pub use crate::viewer::{MAX_PIXELS, Options};
 use std::convert::Infallible;
 use std::{fmt, io};
 
-mod exporting;
-mod keeping;
+mod picture_export;
+mod save_view;
 mod live;
 mod loading;
 mod renderer;

@@ -4,17 +4,17 @@
 
 mod command;
 mod key;
-mod bindings;
-mod own;
-mod moves;
+mod keymap;
+mod user_keymap;
+mod camera_moves;
 mod motion;
 mod pointer;
 
 // Drags are said in the words of what they move.
 pub use crate::camera::Grip;
-pub use bindings::{Binding, Bindings, Mode};
+pub use camera_moves::{dragged, on_turntable, speed, wheeled};
 pub use command::{Command, Direction, Side, Toward};
 pub use key::Key;
-pub use motion::{COAST, GLIDE, Motion, Pace};
-pub use moves::{dragged, on_turntable, speed, wheeled};
+pub use keymap::{Binding, KeyMode, Keymap};
+pub use motion::{COAST_TIME, GLIDE_TIME, KeySpeed, Motion};
 pub use pointer::{Gesture, Pointer};

@@ -215,12 +215,12 @@
 //! not known is a fault there, with the word that was meant (`text`) -> `scene::checked` is silent about what is
 //! missing only because of that -> `scene_text::fault` puts all faults in order, each with its line and carets -> the
 //! error goes back to who loaded the scene: the command line prints it, and the live view shows the first fault of it
-//! (`viewer::fault`).
+//! (`viewer::error_panel`).
 //!
 //! # One key press
 //!
 //! `app::live` reads the terminal's bytes -> `viewer::events`: the receiver of `protocol` cuts them into inputs
-//! (`input`), the bindings of `control` into a command, and that moves the eye (`viewer::eye`) -> `viewer::schedule`
+//! (`input`), the keymap of `control` into a command, and that moves the eye (`viewer::eye`) -> `viewer::schedule`
 //! decides that a frame is to be traced -> `app::renderer` traces it (`render`) -> the frame comes to `viewer::screen`,
 //! and the schedule decides that it is to be drawn: cells (`cell`), layers over them, bytes (`encode`) ->
 //! `terminal`.

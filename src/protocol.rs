@@ -3,11 +3,11 @@
 //! ```
 //! use std::time::Duration;
 //! use termtrace::internals::input::Reply;
-//! use termtrace::internals::protocol::{FENCE, Mode, Modes, Outstanding};
+//! use termtrace::internals::protocol::{FENCE, TerminalMode, TerminalModes, Outstanding};
 //!
-//! let (mut modes, mut bytes) = (Modes::default(), Vec::new());
-//! modes.switch_on(Mode::AlternateScreen, &mut bytes);
-//! modes.switch_on(Mode::HiddenCursor, &mut bytes);
+//! let (mut modes, mut bytes) = (TerminalModes::default(), Vec::new());
+//! modes.switch_on(TerminalMode::AlternateScreen, &mut bytes);
+//! modes.switch_on(TerminalMode::HiddenCursor, &mut bytes);
 //! assert_eq!(bytes, b"\x1b[?1049h\x1b[?25l");
 //! bytes.clear();
 //! modes.switch_all_off(&mut bytes);
@@ -23,11 +23,11 @@
 mod modes;
 mod outstanding;
 mod query;
-mod questions;
+mod initial_queries;
 mod receiver;
 
-pub use modes::{Mode, Modes};
+pub use initial_queries::InitialQueries;
+pub use modes::{TerminalMode, TerminalModes};
 pub use outstanding::Outstanding;
 pub use query::{FENCE, Tag};
-pub use questions::Questions;
 pub use receiver::Receiver;

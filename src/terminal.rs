@@ -14,7 +14,7 @@ use crate::capabilities::{self, CellShape};
 use crate::grid::Size;
 pub use crate::grid::Window;
 use crate::input::Input;
-use crate::protocol::{Mode, Receiver};
+use crate::protocol::{Receiver, TerminalMode};
 use base64::Engine;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fd::{AsFd, BorrowedFd};
@@ -108,7 +108,7 @@ impl Terminal {
     ///
     /// # Errors
     /// If the terminal is gone.
-    pub fn switch_on(&mut self, mode: Mode) -> io::Result<()> {
+    pub fn switch_on(&mut self, mode: TerminalMode) -> io::Result<()> {
         self.modes.switch_on(mode, &mut self.output)
     }
 

@@ -5,7 +5,7 @@
 //!
 //! Pure: it reads no clock, file or environment, and starts no thread. A driver (`app` on a terminal, or a test)
 //! reports events, carries out what [`Viewer::step`] returns until nothing is left to do, and then the requests of
-//! [`Viewer::ask`].
+//! [`Viewer::next_request`].
 //!
 //! Each piece of state has one owner: `display` (the terminal), `receiver` (its bytes), `gallery` (the scene and its
 //! lights), `eye` (the camera), `hand` (the mouse), `screen` (frame, layers, cells), `pacing` (frames begun and sent).
@@ -13,71 +13,71 @@
 
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
-use crate::control::Bindings;
+use crate::control::Keymap;
 use crate::framebuffer::Resolution;
 use crate::grid::{Size, Window};
 use crate::memory::OutOfMemory;
 use crate::progress::Progress;
-use crate::protocol::{Mode, Receiver};
+use crate::protocol::{Receiver, TerminalMode};
 use crate::render::Sampling;
 use crate::scene::Scene;
 use crate::text::Notice;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-mod asking;
+mod requests;
 mod dialog;
 mod display;
-mod effort;
+mod quality_control;
 mod events;
 mod explain;
-mod explaining;
+mod explain_commands;
 mod extent;
 mod eye;
-mod fault;
+mod error_panel;
 mod frame;
-mod gallery;
-mod hand;
+mod scene_history;
+mod pointer;
 mod help;
 mod layers;
 mod legend;
-mod lighting;
+mod light_commands;
 mod lights;
-mod look;
-mod mark;
-mod moving;
+mod theme;
+mod light_marker;
+mod camera_commands;
 mod note;
 mod options;
 mod pacing;
-mod pointing;
+mod mouse_actions;
 mod progress;
 mod schedule;
 mod screen;
-mod shown;
+mod view_layout;
 mod status;
 #[cfg(any(test, feature = "test-hooks"))]
-mod story;
+mod scenario;
 mod tracked;
-mod wiping;
+mod wipe_commands;
 
 use display::Display;
+use error_panel::ErrorPanel;
 pub use extent::MAX_PIXELS;
 use eye::Eye;
-pub(crate) use eye::FRAME;
-use fault::Fault;
+pub(crate) use eye::FIRST_FRAME_MOTION;
 pub(crate) use frame::{Frame, Job, Shot};
-use gallery::Gallery;
-use hand::Hand;
 use note::Note;
 pub use options::Options;
 use pacing::Pacing;
+use pointer::PointerState;
 use progress::ProgressPanel;
-use schedule::{Action, Facts, Picture, decide};
-pub(crate) use schedule::{Busy, Tracing};
-use screen::Screen;
-pub(crate) use shown::{MIDDLE, Shown};
 #[cfg(feature = "test-hooks")]
-pub use story::tell;
+pub use scenario::run_scenario;
+use scene_history::SceneHistory;
+use schedule::{Action, Facts, Picture, decide};
+pub(crate) use schedule::{DriverState, Tracing};
+use screen::Screen;
+pub(crate) use view_layout::{INITIAL_WIPE, ViewLayout};
 
 /// Time for which the first picture is held back to be refined. Up to this long it is shown once, complete; a longer
 /// wait is felt. With 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, 9 of which went into refinement.
@@ -85,7 +85,7 @@ const FIRST_REFINEMENT: Duration = Duration::from_millis(4);
 
 /// A request to the driver.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Ask {
+pub(crate) enum Request {
     /// Leave the view.
     Leave,
     /// Stop the job, as Ctrl-Z does.
@@ -96,7 +96,7 @@ pub(crate) enum Ask {
     Copy(String),
     /// Write the picture into a file.
     Export(crate::export::Format),
-    /// Ask the user whether to write this camera into the scene's file, if it has one.
+    /// Request the user whether to write this camera into the scene's file, if it has one.
     ProposeView(Camera),
     /// Write the camera that was proposed last.
     KeepView,
@@ -119,14 +119,14 @@ pub(crate) struct Viewer {
     options: Options,
     display: Display,
     receiver: Receiver,
-    gallery: Gallery,
+    scenes: SceneHistory,
     eye: Eye,
     /// The maps that are wanted.
-    shown: Shown,
-    hand: Hand,
+    layout: ViewLayout,
+    pointer: PointerState,
     screen: Screen,
     pacing: Pacing,
-    asks: VecDeque<Ask>,
+    requests: VecDeque<Request>,
     /// The time of the last call.
     now: Duration,
 }
@@ -140,13 +140,13 @@ impl Viewer {
         let display = Display::new(options.hints.clone(), window);
         let screen = Screen::new(display.capabilities(), options.order, options.quality);
         let mut viewer = Self {
-            pacing: Pacing::new(&options, display.questions().is_open()),
+            pacing: Pacing::new(&options, display.queries().is_open()),
             receiver: Receiver::default(),
-            gallery: Gallery::default(),
-            eye: Eye::new(options.pace, options.reduced_motion),
-            shown: Shown::one(options.map),
-            hand: Hand::default(),
-            asks: VecDeque::new(),
+            scenes: SceneHistory::default(),
+            eye: Eye::new(options.key_speed, options.reduced_motion),
+            layout: ViewLayout::one(options.map),
+            pointer: PointerState::default(),
+            requests: VecDeque::new(),
             now: Duration::ZERO,
             display,
             screen,
@@ -164,9 +164,9 @@ impl Viewer {
     }
 
     /// Returns the queries to send at the start, and whenever another program has had the terminal.
-    pub(crate) fn questions(&mut self, now: Duration) -> Vec<u8> {
-        let questions = self.display.questions();
-        let bytes = if questions.is_open() { questions.bytes().to_vec() } else { Vec::new() };
+    pub(crate) fn queries(&mut self, now: Duration) -> Vec<u8> {
+        let queries = self.display.queries();
+        let bytes = if queries.is_open() { queries.bytes().to_vec() } else { Vec::new() };
         self.receiver.sent(&bytes, now);
         bytes
     }
@@ -211,8 +211,8 @@ impl Viewer {
     /// Shows a coarse scene until the complete one is loaded. It replaces a picture of another scene, but not a good
     /// picture of the same scene before its file changed.
     pub(crate) fn show_sketch(&mut self, sketch: Scene, of: usize, orbits: bool) {
-        if self.gallery.shown() != Some(of) {
-            self.screen.close::<Fault>();
+        if self.scenes.shown() != Some(of) {
+            self.screen.close::<ErrorPanel>();
             self.open(sketch, of, orbits);
         }
     }
@@ -221,25 +221,25 @@ impl Viewer {
     /// then.
     pub(crate) fn show(&mut self, scene: Scene, of: usize, orbits: bool) {
         self.screen.close_later::<ProgressPanel>();
-        self.screen.close::<Fault>();
+        self.screen.close::<ErrorPanel>();
         self.open(scene, of, orbits);
     }
 
     fn open(&mut self, scene: Scene, of: usize, orbits: bool) {
-        let (before, written) = (self.gallery.shown(), scene.views().to_vec());
-        if let Some(view) = self.gallery.show(scene, of, orbits) {
+        let (before, written) = (self.scenes.shown(), scene.views().to_vec());
+        if let Some(view) = self.scenes.show(scene, of, orbits) {
             let left = self.eye.open(view);
             if let Some((before, left)) = before.zip(left).filter(|(before, _)| *before != of) {
-                self.gallery.leave(before, left);
+                self.scenes.leave(before, left);
             }
         }
         self.eye.set_written(written);
     }
 
     /// Shows the error of a load.
-    pub(crate) fn show_fault(&mut self, fault: Notice) {
+    pub(crate) fn show_error(&mut self, fault: Notice) {
         self.screen.close_later::<ProgressPanel>();
-        self.screen.open(Fault(fault));
+        self.screen.open(ErrorPanel(fault));
     }
 
     /// Shows a note in the lowest row until the next key.
@@ -255,9 +255,9 @@ impl Viewer {
     }
 
     /// Returns the driver's next action.
-    pub(crate) fn step(&mut self, busy: Busy, now: Duration) -> Step {
+    pub(crate) fn step(&mut self, busy: DriverState, now: Duration) -> Step {
         self.set_time(now);
-        self.eye.go_on(now);
+        self.eye.advance(now);
         self.screen.set_moving(self.eye.mode());
         self.mark_light();
         match decide(&self.facts(busy), now) {
@@ -269,7 +269,7 @@ impl Viewer {
         }
     }
 
-    fn facts(&self, busy: Busy) -> Facts {
+    fn facts(&self, busy: DriverState) -> Facts {
         let size = self.display.size();
         Facts {
             busy,
@@ -287,7 +287,7 @@ impl Viewer {
     fn picture(&self) -> Picture {
         if self.wanted().is_some_and(|wanted| !self.pacing.has_begun(&wanted)) {
             Picture::Stale
-        } else if self.next_step().is_some() {
+        } else if self.next_refinement().is_some() {
             Picture::Refinable
         } else {
             Picture::Finished
@@ -300,39 +300,39 @@ impl Viewer {
         let probe = self.pacing.probe(self.now);
         self.receiver.sent(&probe, self.now);
         let sampling = self.pacing.begin(shot, self.is_in_motion(), self.now);
-        Step::Trace(probe, Job { scene, shot, sampling: self.shown.sampling(sampling), refines: false })
+        Step::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines: false })
     }
 
     /// Begins the next refinement of the last frame.
     fn refine(&self) -> Step {
-        let wanted = self.scene().zip(self.wanted()).zip(self.next_step());
+        let wanted = self.scene().zip(self.wanted()).zip(self.next_refinement());
         let Some(((scene, shot), sampling)) = wanted else { return Step::Wait(None) };
         Step::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })
     }
 
     /// Returns the shown scene, with its lights as moved by the user.
     fn scene(&self) -> Option<Scene> {
-        self.gallery.lights().map(|lights| lights.scene().clone())
+        self.scenes.lights().map(|lights| lights.scene().clone())
     }
 
     /// Returns the shot that the picture is to show, or `None` without a scene.
     fn wanted(&self) -> Option<Shot> {
-        let (lights, camera) = (self.gallery.lights()?, self.eye.camera()?);
-        let (scene, resolution) = (self.gallery.count(), self.display.resolution());
-        Some(Shot { scene, lights: lights.moves(), camera, resolution, shown: self.shown })
+        let (lights, camera) = (self.scenes.lights()?, self.eye.camera()?);
+        let (scene, resolution) = (self.scenes.count(), self.display.resolution());
+        Some(Shot { scene, lights: lights.moves(), camera, resolution, layout: self.layout })
     }
 
     /// Returns the sampling of the next refinement of the shown frame, or `None` if it cannot be refined.
-    fn next_step(&self) -> Option<Sampling> {
+    fn next_refinement(&self) -> Option<Sampling> {
         // Refining a sketch would take time from building the scene.
         let frame = self.screen.frame().filter(|_| !self.screen.awaits_scene())?;
-        let next = self.shown.sampling(self.pacing.next_step(frame.sampling)?);
+        let next = self.layout.sampling(self.pacing.next_refinement(frame.sampling)?);
         (next != frame.sampling).then_some(next)
     }
 
     /// Returns whether the next frame will probably be of another view, too.
     fn is_in_motion(&self) -> bool {
-        self.eye.is_moving() || self.hand.holds()
+        self.eye.is_moving() || self.pointer.holds()
     }
 
     /// Appends the bytes that bring the screen up to date. Call [`end_frame`](Self::end_frame) with them afterwards.
@@ -340,7 +340,7 @@ impl Viewer {
         self.set_time(now);
         let size = self.display.size();
         let limit = self.pacing.limit(Screen::usual_bytes(size), now);
-        self.screen.draw(size, &self.options.bindings, limit, now, bytes);
+        self.screen.draw(size, &self.options.keymap, limit, now, bytes);
     }
 
     /// Appends the query that ends a frame; does nothing if `bytes` is empty.
@@ -360,12 +360,12 @@ impl Viewer {
     }
 
     /// Returns the next request to the driver, if any.
-    pub(crate) fn ask(&mut self) -> Option<Ask> {
-        self.asks.pop_front()
+    pub(crate) fn next_request(&mut self) -> Option<Request> {
+        self.requests.pop_front()
     }
 
     /// Returns the modes to switch on besides those that every terminal supports.
-    pub(crate) fn modes(&self) -> impl Iterator<Item = Mode> {
+    pub(crate) fn modes(&self) -> impl Iterator<Item = TerminalMode> {
         self.display.modes()
     }
 
@@ -376,7 +376,7 @@ impl Viewer {
 
     /// Returns the number of the shown scene.
     pub(crate) fn shown_scene(&self) -> Option<usize> {
-        self.gallery.shown()
+        self.scenes.shown()
     }
 
     /// Returns the last frame.
@@ -406,7 +406,7 @@ impl Viewer {
         self.display.size()
     }
 
-    fn bindings(&self) -> &Bindings {
-        &self.options.bindings
+    fn keymap(&self) -> &Keymap {
+        &self.options.keymap
     }
 }

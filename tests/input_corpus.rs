@@ -10,5 +10,5 @@ fn the_laws_of_input_hold_for_the_corpus() {
 
 #[test]
 fn the_rules_of_a_viewer_hold_for_the_corpus() {
-    corpus::replay("viewer", termtrace::internals::app::tell_viewer);
+    corpus::replay("viewer", termtrace::internals::app::run_viewer_scenario);
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use termtrace::internals::control::{Bindings, Key};
+use termtrace::internals::control::{Key, Keymap};
 use termtrace::{CameraPath, Scene};
 
 fn readme() -> String {
@@ -75,7 +75,7 @@ fn every_scene_file_is_listed() {
 #[test]
 fn every_key_is_listed() {
     let readme = readme();
-    for key in Bindings::default().rows().iter().flat_map(|row| &row.keys).map(Key::to_string) {
+    for key in Keymap::default().rows().iter().flat_map(|row| &row.keys).map(Key::to_string) {
         let listed = match &*key {
             "Left" | "Right" | "Up" | "Down" => "arrows".to_owned(),
             named if named.len() > 1 => named.to_owned(),
@@ -95,14 +95,14 @@ fn every_key_of_its_table_does_something() {
     let readme = readme();
     let (_, section) = readme.split_once("\n## Keys\n").expect("there is a section on keys");
     let rows = section.split("\n## ").next().unwrap_or_default().lines().filter(|line| line.starts_with("| "));
-    let bindings = Bindings::default();
+    let keymap = Keymap::default();
     let mut count = 0;
     for row in rows {
         let first = row.trim_start_matches("| ").replace(r"\|", "\u{7c}\u{7c}");
         let first = first.split(" | ").next().unwrap_or_default().replace("||", "|");
         for name in first.split('`').skip(1).step_by(2) {
             let key = Key::from_name(name);
-            let is_bound = key.is_some_and(|key| bindings.rows().iter().any(|row| row.keys.contains(&key)));
+            let is_bound = key.is_some_and(|key| keymap.rows().iter().any(|row| row.keys.contains(&key)));
             assert!(is_bound, "{name} does nothing: {row}");
             count += 1;
         }

@@ -335,7 +335,7 @@ fn keep_moving(relay: &mut Relay, time: Duration) {
 }
 
 /// How many frames a second are shown while the eye moves: how often the status line, which comes last in a frame, tells
-/// another eye point. (Questions do not tell: there are none for most frames of a terminal that does not answer.)
+/// another eye point. (InitialQueries do not tell: there are none for most frames of a terminal that does not answer.)
 fn frames_per_second(relay: &mut Relay, time: Duration) -> f64 {
     let mut seen = relay.session.seen().bytes().len();
     let (mut frames, mut eye) = (0, relay.session.seen().screen().text().pop());

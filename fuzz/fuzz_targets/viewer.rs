@@ -1,5 +1,5 @@
-//! Any bytes as a story of keys, replies, sizes, scenes, frames and time: the rules of `viewer::story` hold throughout.
+//! Any bytes as a scenario of keys, replies, sizes, scenes, frames and time: the rules of `viewer::scenario` hold throughout.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|story: &[u8]| termtrace::internals::app::tell_viewer(story));
+libfuzzer_sys::fuzz_target!(|scenario: &[u8]| termtrace::internals::app::run_viewer_scenario(scenario));

@@ -4,18 +4,18 @@
 //! carries out the viewer's decisions. Frames are traced and scenes are read on other threads, so that keys and signals
 //! are handled meanwhile; only frames that take less time than waking a thread are traced here.
 
-use super::exporting;
-use super::keeping::Asked;
-use super::loading::News;
+use super::loading::LoadEvent;
+use super::picture_export;
 use super::renderer::Renderer;
-use super::scenes::{Heard, Scenes};
-use super::source::Named;
+use super::save_view::ProposedView;
+use super::scenes::{SceneEvent, Scenes};
+use super::source::SceneName;
 use super::{Ending, Error, Options};
 use crate::camera::Camera;
 use crate::export::Format;
 use crate::terminal::{self, Signals, StopTarget, Terminal};
 use crate::text::Notice;
-use crate::viewer::{Ask, Busy, FRAME, Step, Viewer};
+use crate::viewer::{DriverState, FIRST_FRAME_MOTION, Request, Step, Viewer};
 use std::io;
 use std::panic::resume_unwind;
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ struct Clock {
 
 impl Clock {
     fn now(&self) -> Duration {
-        FRAME + self.start.elapsed()
+        FIRST_FRAME_MOTION + self.start.elapsed()
     }
 }
 
@@ -41,10 +41,10 @@ pub(super) struct Live {
     /// key to its frame.
     bytes: Vec<u8>,
     /// The names of the scenes.
-    named: Vec<Named>,
+    named: Vec<SceneName>,
     exports: Option<PathBuf>,
     /// The view that the user was last asked to confirm.
-    proposed: Option<Asked>,
+    proposed: Option<ProposedView>,
 }
 
 impl Drop for Live {
@@ -58,7 +58,7 @@ impl Live {
     ///
     /// # Errors
     /// If the terminal is gone, or there is not enough memory for its window.
-    pub(super) fn new(terminal: Terminal, options: Options, named: Vec<Named>) -> io::Result<Self> {
+    pub(super) fn new(terminal: Terminal, options: Options, named: Vec<SceneName>) -> io::Result<Self> {
         let exports = options.exports.clone();
         let viewer = Viewer::new(options, terminal.window()?)?;
         let clock = Clock { start: Instant::now() };
@@ -82,10 +82,10 @@ impl Live {
         scenes: &mut Scenes<E>,
         signals: &mut Signals,
     ) -> Result<Ending, Error<E>> {
-        self.terminal.send(&self.viewer.questions(self.clock.now()))?;
+        self.terminal.send(&self.viewer.queries(self.clock.now()))?;
         loop {
             while let Some(heard) = scenes.next()? {
-                self.take_news(heard).map_err(Error::Scene)?;
+                self.handle_event(heard).map_err(Error::Scene)?;
             }
             let until = self.act(renderer)?;
             // After the first picture, because starting to watch takes milliseconds.
@@ -98,7 +98,7 @@ impl Live {
             }
             renderer.panic_if_asked();
             self.wait(until, renderer, signals)?;
-            let leaves = self.carry_out_asks(scenes, signals)?;
+            let leaves = self.carry_out_requests(scenes, signals)?;
             if let Some(signal) = signals.deadly() {
                 return Ok(Ending::Signal(signal));
             }
@@ -121,10 +121,10 @@ impl Live {
     /// Carries out what the viewer decides to do now. Returns the time of its next wake-up.
     fn act(&mut self, renderer: &mut Renderer) -> io::Result<Option<Duration>> {
         loop {
-            let busy = Busy { sending: self.terminal.is_sending(), tracing: renderer.tracing() };
+            let busy = DriverState { sending: self.terminal.is_sending(), tracing: renderer.tracing() };
             match self.viewer.step(busy, self.clock.now()) {
                 Step::Wait(until) => return Ok(until),
-                Step::GiveUp => renderer.give_up_refining(),
+                Step::GiveUp => renderer.cancel_refinements(),
                 Step::Draw => {
                     self.bytes.clear();
                     self.viewer.draw(self.clock.now(), &mut self.bytes);
@@ -169,27 +169,31 @@ impl Live {
         if woken.keys && bytes.is_empty() {
             return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
         }
-        Ok(self.viewer.hear(bytes, self.clock.now())?)
+        Ok(self.viewer.receive(bytes, self.clock.now())?)
     }
 
     /// Carries out the viewer's requests. Returns whether the user leaves.
-    fn carry_out_asks<E: Send + 'static>(&mut self, scenes: &mut Scenes<E>, signals: &mut Signals) -> io::Result<bool> {
-        while let Some(ask) = self.viewer.ask() {
-            match ask {
-                Ask::Leave => return Ok(true),
-                Ask::Suspend => self.suspend(Some(StopTarget::Group), signals)?,
-                Ask::GoOn(steps) => scenes.go(steps)?,
-                Ask::Copy(text) => self.terminal.copy(&text)?,
-                Ask::Export(format) => {
+    fn carry_out_requests<E: Send + 'static>(
+        &mut self,
+        scenes: &mut Scenes<E>,
+        signals: &mut Signals,
+    ) -> io::Result<bool> {
+        while let Some(request) = self.viewer.next_request() {
+            match request {
+                Request::Leave => return Ok(true),
+                Request::Suspend => self.suspend(Some(StopTarget::Group), signals)?,
+                Request::GoOn(steps) => scenes.go(steps)?,
+                Request::Copy(text) => self.terminal.copy(&text)?,
+                Request::Export(format) => {
                     let said = self.export(format).map_or_else(
                         |error| format!("it could not be written: {error}"),
                         |name| format!("written: {name}"),
                     );
                     self.viewer.say(said);
                 }
-                Ask::ProposeView(camera) => self.propose(camera),
-                Ask::KeepView => {
-                    let said = match self.proposed.take().map_or(Ok(()), |asked| asked.write()) {
+                Request::ProposeView(camera) => self.propose(camera),
+                Request::KeepView => {
+                    let said = match self.proposed.take().map_or(Ok(()), |view| view.write()) {
                         Ok(()) => "written into the scene's views".to_owned(),
                         Err(error) => format!("the scene's file is as it was: {error}"),
                     };
@@ -201,7 +205,7 @@ impl Live {
     }
 
     /// Returns the name of the shown scene.
-    fn shown(&self) -> Option<&Named> {
+    fn shown(&self) -> Option<&SceneName> {
         self.named.get(self.viewer.shown_scene()?)
     }
 
@@ -209,32 +213,32 @@ impl Live {
     fn export(&self, format: Format) -> io::Result<String> {
         let nothing = || io::Error::other("there is nothing to write, or nowhere");
         let (frame, folder) = self.viewer.frame().zip(self.exports.as_deref()).ok_or_else(nothing)?;
-        let stem = exporting::stem(self.shown().map_or("scene", |scene| &scene.name));
-        let contents = exporting::contents(format, &frame.picture, self.viewer.capabilities())?;
-        exporting::write_new(folder, &stem, format, &contents)
+        let stem = picture_export::stem(self.shown().map_or("scene", |scene| &scene.name));
+        let contents = picture_export::contents(format, &frame.picture, self.viewer.capabilities())?;
+        picture_export::write_new(folder, &stem, format, &contents)
     }
 
     /// Asks the user whether to write `camera` into the scene's file, if it has one.
     fn propose(&mut self, camera: Camera) {
         let file = self.shown().and_then(|scene| scene.file.as_deref());
-        self.proposed = file.and_then(|file| Asked::new(file, camera));
+        self.proposed = file.and_then(|file| ProposedView::new(file, camera));
         match &self.proposed {
-            Some(asked) => self.viewer.ask_keep(asked.file_name()),
+            Some(view) => self.viewer.ask_keep(view.file_name()),
             None => self.viewer.say("this scene stands in no scene file"),
         }
     }
 
     /// Shows an event of a load. An error of loading is returned if there is no scene to show it over.
-    fn take_news<E: Into<Notice>>(&mut self, Heard { of, news, is_slow }: Heard<E>) -> Result<(), E> {
+    fn handle_event<E: Into<Notice>>(&mut self, SceneEvent { of, event, is_slow }: SceneEvent<E>) -> Result<(), E> {
         let orbits = self.named.get(of).is_some_and(|scene| scene.orbited);
-        match news {
-            News::Progress(progress) if is_slow => self.viewer.show_progress(progress),
-            News::Progress(_) | News::Needs(_) => {}
-            News::Sketch(sketch) => self.viewer.show_sketch(sketch, of, orbits),
-            News::Scene(scene) => self.viewer.show(scene, of, orbits),
-            News::Fault(fault) if self.viewer.shown_scene().is_none() => return Err(fault),
-            News::Fault(fault) => self.viewer.show_fault(fault.into()),
-            News::Panic(panic) => resume_unwind(panic),
+        match event {
+            LoadEvent::Progress(progress) if is_slow => self.viewer.show_progress(progress),
+            LoadEvent::Progress(_) | LoadEvent::Dependencies(_) => {}
+            LoadEvent::Sketch(sketch) => self.viewer.show_sketch(sketch, of, orbits),
+            LoadEvent::Scene(scene) => self.viewer.show(scene, of, orbits),
+            LoadEvent::Error(fault) if self.viewer.shown_scene().is_none() => return Err(fault),
+            LoadEvent::Error(fault) => self.viewer.show_error(fault.into()),
+            LoadEvent::Panic(panic) => resume_unwind(panic),
         }
         Ok(())
     }
@@ -259,8 +263,8 @@ impl Live {
         }
         self.terminal.take_again(signals)?;
         // Replies to earlier queries are lost.
-        self.terminal.send(&self.viewer.questions(self.clock.now()))?;
+        self.terminal.send(&self.viewer.queries(self.clock.now()))?;
         self.viewer.resize(self.terminal.window()?)?;
-        Ok(self.viewer.hear_typed(typed, self.clock.now())?)
+        Ok(self.viewer.receive_typed(typed, self.clock.now())?)
     }
 }

@@ -5,7 +5,7 @@
 //! then takes over the queue.
 
 use super::source::Source;
-use super::watching::Needed;
+use super::watching::Dependency;
 use crate::progress::{Cancellation, Progress, Reporter};
 use crate::scene::{Draft, Scene};
 use crate::terminal::{self, Waker};
@@ -23,33 +23,33 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// An event of a load. Events arrive in this order; exactly one of the last three ends the load.
-pub(super) enum News<E> {
+pub(super) enum LoadEvent<E> {
     /// Progress of reading or building.
     Progress(Progress),
     /// The files that the scene was read from, including missing ones.
-    Needs(Vec<Needed>),
+    Dependencies(Vec<Dependency>),
     /// A coarse scene to look at while the trees are built.
     Sketch(Scene),
     /// The complete scene.
     Scene(Scene),
     /// The error that ended the load.
-    Fault(E),
+    Error(E),
     /// The payload of a panic that ended the load.
     Panic(Box<dyn Any + Send>),
 }
 
 /// Loads that take less time are shown without a progress panel, which would only flash up: 100 ms is the usual limit
 /// of what is felt as immediate.
-pub(super) const MOMENT: Duration = Duration::from_millis(100);
+pub(super) const PROGRESS_DELAY: Duration = Duration::from_millis(100);
 
 /// Least time between two progress reports: 20 a second look continuous, and each one costs a frame.
-const STEP: Duration = Duration::from_millis(50);
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
 
 /// The receiving side of a load. Dropping it cancels the load without waiting for its end.
 pub(super) struct Loading<E> {
-    news: Receiver<News<E>>,
+    events: Receiver<LoadEvent<E>>,
     /// Events that arrived during [`wait`](Self::wait).
-    heard: VecDeque<News<E>>,
+    received: VecDeque<LoadEvent<E>>,
     begun: Instant,
     cancellation: Cancellation,
 }
@@ -63,9 +63,9 @@ impl<E> Drop for Loading<E> {
 impl<E> Loading<E> {
     /// Returns a finished load of `scene`.
     pub(super) fn done(scene: Scene) -> Self {
-        let (_, news) = channel();
-        let heard = VecDeque::from([News::Scene(scene)]);
-        Self { news, heard, begun: Instant::now(), cancellation: Cancellation::default() }
+        let (_, events) = channel();
+        let received = VecDeque::from([LoadEvent::Scene(scene)]);
+        Self { events, received, begun: Instant::now(), cancellation: Cancellation::default() }
     }
 
     /// Waits for the scene, for at most `patience`.
@@ -74,65 +74,65 @@ impl<E> Loading<E> {
     /// The error that ended the load.
     pub(super) fn wait(&mut self, patience: Duration) -> Result<(), E> {
         let deadline = Instant::now() + patience;
-        while let Ok(news) = self.news.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
-            match news {
-                News::Fault(fault) => return Err(fault),
-                News::Scene(_) => {
-                    self.heard.retain(|news| matches!(news, News::Needs(_)));
-                    self.heard.push_back(news);
+        while let Ok(event) = self.events.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+            match event {
+                LoadEvent::Error(fault) => return Err(fault),
+                LoadEvent::Scene(_) => {
+                    self.received.retain(|event| matches!(event, LoadEvent::Dependencies(_)));
+                    self.received.push_back(event);
                     return Ok(());
                 }
-                _ => self.heard.push_back(news),
+                _ => self.received.push_back(event),
             }
         }
         Ok(())
     }
 
-    /// Returns whether the load has taken longer than [`MOMENT`].
+    /// Returns whether the load has taken longer than [`PROGRESS_DELAY`].
     pub(super) fn is_slow(&self) -> bool {
-        self.begun.elapsed() >= MOMENT
+        self.begun.elapsed() >= PROGRESS_DELAY
     }
 
     /// Returns the next event, if one has arrived.
-    pub(super) fn next(&mut self) -> Option<News<E>> {
-        self.heard.pop_front().or_else(|| self.news.try_recv().ok())
+    pub(super) fn next(&mut self) -> Option<LoadEvent<E>> {
+        self.received.pop_front().or_else(|| self.events.try_recv().ok())
     }
 }
 
 /// The thread that loads scenes, in the order of the requests.
 pub(super) struct Loader<E> {
-    orders: Sender<Order<E>>,
+    requests: Sender<LoadRequest<E>>,
 }
 
 impl<E: Send + 'static> Loader<E> {
     /// Starts the thread. It ends when `self` is dropped and the last load has ended.
     pub(super) fn start(threads: Option<usize>, waker: Waker) -> io::Result<Self> {
-        let (orders, queue) = channel();
+        let (requests, queue) = channel();
         Worker { queue: Arc::new(Mutex::new(queue)), threads, waker: Arc::new(Mutex::new(waker)) }.start()?;
-        Ok(Self { orders })
+        Ok(Self { requests })
     }
 
     /// Requests a load, which starts when the one before it has ended.
     pub(super) fn load(&self, source: Source<E>) -> io::Result<Loading<E>> {
-        let (sender, news) = channel();
+        let (sender, events) = channel();
         let cancellation = Cancellation::default();
-        let order = Order { source, news: sender, cancellation: cancellation.clone() };
-        self.orders.send(order).map_err(|_| io::Error::other("the thread that reads scenes has ended"))?;
-        Ok(Loading { news, heard: VecDeque::new(), begun: Instant::now(), cancellation })
+        let request = LoadRequest { source, events: sender, cancellation: cancellation.clone() };
+        self.requests.send(request).map_err(|_| io::Error::other("the thread that reads scenes has ended"))?;
+        Ok(Loading { events, received: VecDeque::new(), begun: Instant::now(), cancellation })
     }
 }
 
 /// A requested load.
-struct Order<E> {
+struct LoadRequest<E> {
     source: Source<E>,
-    news: Sender<News<E>>,
+    events: Sender<LoadEvent<E>>,
     cancellation: Cancellation,
 }
 
 /// The state of the loading thread.
 struct Worker<E> {
     /// Shared with threads that wait on pipes, which no longer receive from it.
-    queue: Arc<Mutex<Receiver<Order<E>>>>,
+    queue: Arc<Mutex<Receiver<LoadRequest<E>>>>,
     threads: Option<usize>,
     waker: Arc<Mutex<Waker>>,
 }
@@ -147,9 +147,9 @@ impl<E: Send + 'static> Worker<E> {
     fn run(self) {
         let mut pool = None;
         loop {
-            let order = self.queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
-            let Ok(order) = order else { return };
-            if order.cancellation.is_cancelled() {
+            let request = self.queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
+            let Ok(request) = request else { return };
+            if request.cancellation.is_cancelled() {
                 continue;
             }
             let is_relieved = AtomicBool::new(false);
@@ -158,7 +158,7 @@ impl<E: Send + 'static> Worker<E> {
                     is_relieved.store(self.start_another().is_ok(), Ordering::Relaxed);
                 }
             };
-            order.carry_out(&self.waker, &relieve, || pool.get_or_insert_with(|| self.pool()).as_ref());
+            request.carry_out(&self.waker, &relieve, || pool.get_or_insert_with(|| self.pool()).as_ref());
             if is_relieved.into_inner() {
                 return;
             }
@@ -176,7 +176,7 @@ impl<E: Send + 'static> Worker<E> {
     }
 }
 
-impl<E: Send> Order<E> {
+impl<E: Send> LoadRequest<E> {
     /// Loads the scene. Calls `relieve` before opening a file that may block, and builds on the threads of `pool`.
     fn carry_out<'p>(
         self,
@@ -184,60 +184,60 @@ impl<E: Send> Order<E> {
         relieve: &(dyn Fn() + Sync),
         pool: impl FnOnce() -> Option<&'p ThreadPool>,
     ) {
-        let Self { source, news, cancellation } = self;
-        let teller = Teller { news, waker, told: Mutex::new(None) };
-        let work = || load(&source, &cancellation, &teller, relieve, pool);
+        let Self { source, events: sender, cancellation } = self;
+        let events = EventSender { events: sender, waker, last_progress: Mutex::new(None) };
+        let work = || load(&source, &cancellation, &events, relieve, pool);
         if let Err(panic) = catch_unwind(AssertUnwindSafe(work)) {
-            teller.tell(News::Panic(panic));
+            events.send(LoadEvent::Panic(panic));
         }
     }
 }
 
 /// The sending side of a load's events.
-struct Teller<'w, E> {
-    news: Sender<News<E>>,
+struct EventSender<'w, E> {
+    events: Sender<LoadEvent<E>>,
     waker: &'w Mutex<Waker>,
     /// Time of the last progress report.
-    told: Mutex<Option<Instant>>,
+    last_progress: Mutex<Option<Instant>>,
 }
 
-impl<E> Teller<'_, E> {
-    fn tell(&self, news: News<E>) {
+impl<E> EventSender<'_, E> {
+    fn send(&self, event: LoadEvent<E>) {
         // A closed channel means that the load is cancelled.
-        if self.news.send(news).is_ok()
+        if self.events.send(event).is_ok()
             && let Ok(mut waker) = self.waker.lock()
         {
             waker.wake();
         }
     }
 
-    /// Sends a progress report, unless the last one is less than [`STEP`] ago.
-    fn tell_progress(&self, progress: Progress) {
+    /// Sends a progress report, unless the last one is less than [`PROGRESS_INTERVAL`] ago.
+    fn send_progress(&self, progress: Progress) {
         let now = Instant::now();
-        if let Ok(mut told) = self.told.lock() {
-            if told.is_some_and(|last| now < last + STEP) {
+        if let Ok(mut last_progress) = self.last_progress.lock() {
+            if last_progress.is_some_and(|last| now < last + PROGRESS_INTERVAL) {
                 return;
             }
-            *told = Some(now);
+            *last_progress = Some(now);
         }
-        self.tell(News::Progress(progress));
+        self.send(LoadEvent::Progress(progress));
     }
 }
 
 fn load<'p, E: Send>(
     source: &Source<E>,
     cancellation: &Cancellation,
-    teller: &Teller<'_, E>,
+    events: &EventSender<'_, E>,
     relieve: &(dyn Fn() + Sync),
     pool: impl FnOnce() -> Option<&'p ThreadPool>,
 ) {
     let on_progress = |progress| {
-        teller.tell_progress(progress);
+        events.send_progress(progress);
         ControlFlow::Continue(())
     };
     let needed = Mutex::new(Vec::new());
     let on_dependency = |file: &Path| {
-        let file = Needed::now(file);
+        let file = Dependency::now(file);
         if file.is_other() {
             relieve();
         }
@@ -248,25 +248,25 @@ fn load<'p, E: Send>(
     let reporter = Reporter::new(&on_progress).with_dependencies(&on_dependency).cancelled_by(cancellation);
     let read = source.read(&reporter);
     let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
-    teller.tell(News::Needs(needed));
+    events.send(LoadEvent::Dependencies(needed));
     match read {
         // The result of a cancelled load is not wanted, whatever it is.
         _ if cancellation.is_cancelled() => {}
         Ok(draft) => match pool() {
-            Some(pool) => pool.install(|| build(draft, &reporter, teller)),
-            None => build(draft, &reporter, teller),
+            Some(pool) => pool.install(|| build(draft, &reporter, events)),
+            None => build(draft, &reporter, events),
         },
-        Err(fault) => teller.tell(News::Fault(fault)),
+        Err(fault) => events.send(LoadEvent::Error(fault)),
     }
 }
 
-fn build<E>(draft: Draft, reporter: &Reporter<'_>, teller: &Teller<'_, E>) {
+fn build<E>(draft: Draft, reporter: &Reporter<'_>, events: &EventSender<'_, E>) {
     if let Some(sketch) = draft.sketch() {
-        teller.tell(News::Sketch(sketch));
+        events.send(LoadEvent::Sketch(sketch));
     }
     let _ = terminal::reach_in_thread("build");
     if let Ok(scene) = draft.build_or_cancel(reporter) {
-        teller.tell(News::Scene(scene));
+        events.send(LoadEvent::Scene(scene));
     }
 }
 
@@ -290,7 +290,7 @@ mod tests {
 
     /// Waits until the load ends and returns whether it gave a scene.
     fn has_scene(loading: &Loading<Infallible>) -> bool {
-        loading.news.iter().any(|news| matches!(news, News::Scene(_)))
+        loading.events.iter().any(|event| matches!(event, LoadEvent::Scene(_)))
     }
 
     /// Loads that are cancelled while queued are never started.
@@ -352,7 +352,7 @@ mod tests {
     fn a_panic_ends_its_load_alone() {
         let loader = loader();
         let panics = loader.load(Source::new("x", |_| panic!("a test"))).expect("the thread lives");
-        assert!(panics.news.iter().any(|news| matches!(news, News::Panic(_))));
+        assert!(panics.events.iter().any(|event| matches!(event, LoadEvent::Panic(_))));
         assert!(has_scene(&loader.load(Source::new("x", |reporter| Ok(draft(reporter)))).expect("the thread lives")));
     }
 }

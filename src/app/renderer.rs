@@ -10,7 +10,7 @@ use crate::render::{Cost, Executor, ProgressiveRender, Sampling};
 use crate::scene::Scene;
 use crate::terminal::{self, Waker};
 use crate::tone::tone;
-use crate::viewer::{Frame, Job, MIDDLE, Shot, Tracing};
+use crate::viewer::{Frame, INITIAL_WIPE, Job, Shot, Tracing};
 use rayon::ThreadPoolBuilder;
 use std::any::Any;
 use std::collections::VecDeque;
@@ -25,26 +25,26 @@ use std::time::{Duration, Instant};
 type Traced = Result<Result<Frame, Cancelled>, Box<dyn Any + Send>>;
 
 /// Limit on the predicted time of frames that the loop traces itself.
-const SMALL: Duration = Duration::from_micros(1500);
+const MAX_INLINE_TRACE_TIME: Duration = Duration::from_micros(1500);
 
 /// The loop's side of the tracing thread.
 pub(super) struct Renderer {
-    jobs: Option<Sender<Order>>,
+    jobs: Option<Sender<TraceTask>>,
     frames: Receiver<Traced>,
     thread: Option<JoinHandle<()>>,
     /// Jobs sent and not finished, in the order in which they will finish.
-    in_work: VecDeque<InWork>,
+    pending: VecDeque<PendingJob>,
     /// The last frame of one sample per pixel, and its time per pixel in seconds, all threads together.
     seconds_per_pixel: Option<(Shot, f64)>,
 }
 
 /// A job that has been sent to the thread.
-struct InWork {
+struct PendingJob {
     refines: bool,
     token: Cancellation,
 }
 
-impl InWork {
+impl PendingJob {
     fn is_wanted(&self) -> bool {
         !self.token.is_cancelled()
     }
@@ -54,7 +54,7 @@ impl Renderer {
     /// Starts the thread and the pool that it shares the tiles with. The thread is a member of the pool: handing a
     /// frame to another thread and waiting for it takes as long as a small frame.
     pub(super) fn start(threads: Option<usize>, mut waker: Waker) -> io::Result<Self> {
-        let (jobs, wanted) = channel::<Order>();
+        let (jobs, wanted) = channel::<TraceTask>();
         let (begun, started) = channel();
         let (done, frames) = channel();
         let mut tracer = Tracer::default();
@@ -68,8 +68,8 @@ impl Renderer {
                 }
             };
             let _ = begun.send(Ok(()));
-            for order in wanted {
-                let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| order(&mut tracer))));
+            for task in wanted {
+                let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| task(&mut tracer))));
                 // The receiver is gone if the loop has ended.
                 let heard = done.send(traced).is_ok();
                 waker.wake();
@@ -79,13 +79,13 @@ impl Renderer {
             }
         })?;
         started.recv().map_err(io::Error::other)??;
-        let in_work = VecDeque::new();
-        Ok(Self { jobs: Some(jobs), frames, thread: Some(thread), in_work, seconds_per_pixel: None })
+        let pending = VecDeque::new();
+        Ok(Self { jobs: Some(jobs), frames, thread: Some(thread), pending, seconds_per_pixel: None })
     }
 
     /// Returns what is being traced and not cancelled; a new view before a refinement.
     pub(super) fn tracing(&self) -> Option<Tracing> {
-        let wanted = self.in_work.iter().filter(|work| work.is_wanted());
+        let wanted = self.pending.iter().filter(|work| work.is_wanted());
         let tracing = wanted.map(|work| if work.refines { Tracing::Refinement } else { Tracing::NewView });
         tracing.min_by_key(|&tracing| tracing == Tracing::Refinement)
     }
@@ -96,27 +96,31 @@ impl Renderer {
             // The same light as `UpTo(1)`, without the accumulator for refining, which is quickly traced again.
             let one = Sampling::Each(NonZeroU32::MIN);
             let see = |map, part| maps::trace(map, Executor::CurrentThread, &job.scene, &job.shot.camera, part, one);
-            return frame_of(&job, see).ok().map(|frame| self.noted(frame));
+            return frame_of(&job, see).ok().map(|frame| self.record_time(frame));
         }
-        let work = InWork { refines: job.refines, token: Cancellation::default() };
+        let work = PendingJob { refines: job.refines, token: Cancellation::default() };
         let token = work.token.clone();
-        self.order(work, move |tracer| tracer.trace(&job, &token));
+        self.submit(work, move |tracer| tracer.trace(&job, &token));
         None
     }
 
-    fn order(&mut self, work: InWork, order: impl FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send + 'static) {
+    fn submit(
+        &mut self,
+        work: PendingJob,
+        task: impl FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send + 'static,
+    ) {
         if let Some(jobs) = &self.jobs
-            && jobs.send(Box::new(order)).is_ok()
+            && jobs.send(Box::new(task)).is_ok()
         {
-            self.in_work.push_back(work);
+            self.pending.push_back(work);
         }
     }
 
     /// Makes a tracing thread panic, if a test has asked for it.
     pub(super) fn panic_if_asked(&mut self) {
         if terminal::take_worker_panic() {
-            let work = InWork { refines: false, token: Cancellation::default() };
-            self.order(work, |_| {
+            let work = PendingJob { refines: false, token: Cancellation::default() };
+            self.submit(work, |_| {
                 rayon::join(|| {}, || panic!("a test asked for a panic in a worker"));
                 Err(Cancelled)
             });
@@ -124,8 +128,8 @@ impl Renderer {
     }
 
     /// Cancels refinements, because the view has changed.
-    pub(super) fn give_up_refining(&self) {
-        for work in self.in_work.iter().filter(|work| work.refines) {
+    pub(super) fn cancel_refinements(&self) {
+        for work in self.pending.iter().filter(|work| work.refines) {
             work.token.cancel();
         }
     }
@@ -137,28 +141,28 @@ impl Renderer {
     pub(super) fn finished(&mut self) -> Option<Frame> {
         loop {
             let traced = self.frames.try_recv().ok()?;
-            let is_wanted = self.in_work.pop_front().is_some_and(|work| work.is_wanted());
+            let is_wanted = self.pending.pop_front().is_some_and(|work| work.is_wanted());
             // The panic hook has printed or kept the message. The panic continues here, where the terminal is restored.
             let frame = traced.unwrap_or_else(|panic| resume_unwind(panic));
             // A frame may have been finished before it noticed that it was cancelled.
             if let (Ok(frame), true) = (frame, is_wanted) {
-                return Some(self.noted(frame));
+                return Some(self.record_time(frame));
             }
         }
     }
 
-    /// Returns whether a frame is predicted to take less than [`SMALL`], from the time per pixel of the last one like
+    /// Returns whether a frame is predicted to take less than [`MAX_INLINE_TRACE_TIME`], from the time per pixel of the last one like
     /// it.
     fn is_small(&self, job: &Job) -> bool {
         let pixels = job.shot.resolution.pixel_count() as f64;
         let is_short = |(shot, seconds): (Shot, f64)| {
-            let is_alike = (shot.scene, shot.shown) == (job.shot.scene, job.shot.shown);
-            is_alike && seconds * pixels < SMALL.as_secs_f64()
+            let is_alike = (shot.scene, shot.layout) == (job.shot.scene, job.shot.layout);
+            is_alike && seconds * pixels < MAX_INLINE_TRACE_TIME.as_secs_f64()
         };
         has_one_sample(job.sampling) && !job.refines && self.seconds_per_pixel.is_some_and(is_short)
     }
 
-    fn noted(&mut self, frame: Frame) -> Frame {
+    fn record_time(&mut self, frame: Frame) -> Frame {
         if has_one_sample(frame.sampling) && !frame.refines {
             let seconds = frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64;
             self.seconds_per_pixel = Some((frame.shot, seconds));
@@ -170,7 +174,7 @@ impl Renderer {
 impl Drop for Renderer {
     /// Cancels all jobs, which end at their next tile, and joins the thread.
     fn drop(&mut self) {
-        for work in &self.in_work {
+        for work in &self.pending {
             work.token.cancel();
         }
         self.jobs = None;
@@ -181,7 +185,7 @@ impl Drop for Renderer {
 }
 
 /// A job as sent to the thread.
-type Order = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>;
+type TraceTask = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>;
 
 /// Returns the frame of a job, whose pictures `see` traces one by one.
 fn frame_of(
@@ -192,17 +196,17 @@ fn frame_of(
     let Job { scene, shot, sampling, refines } = job.clone();
     let mut cost = Cost::default();
     let mut parts = Vec::new();
-    for (map, resolution) in shot.shown.parts(shot.resolution) {
+    for (map, resolution) in shot.layout.parts(shot.resolution) {
         let seen = see(map, resolution)?;
         cost += seen.cost;
         parts.push(seen.picture);
     }
-    let joined = shot.shown.joined(&parts, MIDDLE).or_else(|| parts.pop());
-    let picture = joined.expect("at least one picture is shown");
-    if !shot.shown.is_wipe() {
+    let combined = shot.layout.combined(&parts, INITIAL_WIPE).or_else(|| parts.pop());
+    let picture = combined.expect("at least one picture is shown");
+    if !shot.layout.is_wipe() {
         parts.clear();
     }
-    let legends = shot.shown.legends(&scene, &shot.camera);
+    let legends = shot.layout.legends(&scene, &shot.camera);
     Ok(Frame { scene, shot, picture, parts, sampling, legends, refines, cost, trace: start.elapsed() })
 }
 
@@ -210,17 +214,17 @@ fn frame_of(
 #[derive(Default)]
 struct Tracer {
     /// The last picture that can be refined.
-    kept: Option<Kept>,
+    kept: Option<RefinablePicture>,
 }
 
 /// A picture with its samples, to be refined if the next job is of the same scene and view.
-struct Kept {
+struct RefinablePicture {
     scene: Scene,
     view: (Camera, Resolution),
     picture: ProgressiveRender,
 }
 
-impl Kept {
+impl RefinablePicture {
     fn new(Job { scene, shot, .. }: &Job, resolution: Resolution) -> Self {
         let picture = ProgressiveRender::new(&shot.camera, resolution);
         Self { scene: scene.clone(), view: (shot.camera, resolution), picture }
@@ -249,7 +253,7 @@ impl Tracer {
         token: &Cancellation,
         map: Map,
         resolution: Resolution,
-        kept: Option<Kept>,
+        kept: Option<RefinablePicture>,
     ) -> Result<TracedMap, Cancelled> {
         let Job { scene, shot, .. } = job;
         let samples = match job.sampling {
@@ -258,7 +262,7 @@ impl Tracer {
                 return maps::trace(map, Executor::Cancellable(token), scene, &shot.camera, resolution, sampling);
             }
         };
-        let mut kept = kept.unwrap_or_else(|| Kept::new(job, resolution));
+        let mut kept = kept.unwrap_or_else(|| RefinablePicture::new(job, resolution));
         let cost = kept.picture.refine_or_cancel(token, scene, samples)?;
         let light = self.kept.insert(kept).picture.framebuffer();
         Ok(TracedMap { picture: tone(&light, scene), cost })
@@ -277,7 +281,7 @@ mod tests {
     use crate::render::{Executor, render_by};
     use crate::terminal::Signals;
     use crate::tone::Picture;
-    use crate::viewer::Shown;
+    use crate::viewer::ViewLayout;
     use glam::Vec3;
 
     fn three_spheres() -> Scene {
@@ -286,7 +290,7 @@ mod tests {
     }
 
     fn shot(camera: Camera, resolution: Resolution) -> Shot {
-        Shot { scene: 1, lights: 0, camera, resolution, shown: Shown::default() }
+        Shot { scene: 1, lights: 0, camera, resolution, layout: ViewLayout::default() }
     }
 
     fn frame(refines: bool) -> Frame {
@@ -309,17 +313,17 @@ mod tests {
     #[test]
     fn a_refinement_given_up_too_late_is_thrown_away() {
         let (done, frames) = channel();
-        let work = |refines| InWork { refines, token: Cancellation::default() };
+        let work = |refines| PendingJob { refines, token: Cancellation::default() };
         let mut renderer = Renderer {
             jobs: None,
             frames,
             thread: None,
-            in_work: [work(true), work(false)].into(),
+            pending: [work(true), work(false)].into(),
             seconds_per_pixel: None,
         };
         assert_eq!(renderer.tracing(), Some(Tracing::NewView));
         let _ = done.send(Ok(Ok(frame(true))));
-        renderer.give_up_refining();
+        renderer.cancel_refinements();
         assert!(renderer.finished().is_none());
         assert!(renderer.tracing().is_some());
         let _ = done.send(Ok(Ok(frame(false))));

@@ -1,8 +1,8 @@
 //! The list of scenes: the current one, its load, and when it is read again.
 
-use super::loading::{Loader, Loading, MOMENT, News};
-use super::source::{Named, Source};
-use super::watching::{Needed, Watching};
+use super::loading::{LoadEvent, Loader, Loading, PROGRESS_DELAY};
+use super::source::{SceneName, Source};
+use super::watching::{Dependency, Watching};
 use crate::scene::Scene;
 use crate::terminal::{Signals, Waker};
 use std::io;
@@ -20,17 +20,17 @@ pub(super) struct Scenes<E> {
     /// `None` before the first watch, and if the system does not support it.
     watching: Option<Watching>,
     /// The files of the current scene that are not watched yet.
-    unwatched: Option<Vec<Needed>>,
+    unwatched: Option<Vec<Dependency>>,
     /// The reason why changes are not noticed, as last reported to the user.
-    told: Option<String>,
+    reported_problem: Option<String>,
 }
 
 /// An event of the current scene's load.
-pub(super) struct Heard<E> {
+pub(super) struct SceneEvent<E> {
     /// Index of the scene.
     pub(super) of: usize,
-    pub(super) news: News<E>,
-    /// Whether the load has taken longer than [`MOMENT`].
+    pub(super) event: LoadEvent<E>,
+    /// Whether the load has taken longer than [`PROGRESS_DELAY`].
     pub(super) is_slow: bool,
 }
 
@@ -55,33 +55,33 @@ impl<E: Send + 'static> Scenes<E> {
         signals: &Signals,
     ) -> io::Result<Self> {
         let waker = signals.waker()?;
-        Ok(Self { sources, wanted: 0, loader, loading, waker, watching: None, unwatched: None, told: None })
+        Ok(Self { sources, wanted: 0, loader, loading, waker, watching: None, unwatched: None, reported_problem: None })
     }
 
-    /// Waits for the first scene, for at most [`MOMENT`].
+    /// Waits for the first scene, for at most [`PROGRESS_DELAY`].
     ///
     /// # Errors
     /// The error of loading it.
     pub(super) fn wait(&mut self) -> Result<(), E> {
-        self.loading.wait(MOMENT)
+        self.loading.wait(PROGRESS_DELAY)
     }
 
     /// Returns the next event of the load, if one has arrived. Starts to read the scene again if a file has changed.
-    pub(super) fn next(&mut self) -> io::Result<Option<Heard<E>>> {
+    pub(super) fn next(&mut self) -> io::Result<Option<SceneEvent<E>>> {
         if self.watching.as_mut().is_some_and(Watching::take_changed) {
             self.read_again()?;
         }
-        while let Some(news) = self.loading.next() {
-            match news {
-                News::Needs(files) => self.unwatched = Some(files),
-                news => return Ok(Some(Heard { of: self.wanted, news, is_slow: self.loading.is_slow() })),
+        while let Some(event) = self.loading.next() {
+            match event {
+                LoadEvent::Dependencies(files) => self.unwatched = Some(files),
+                event => return Ok(Some(SceneEvent { of: self.wanted, event, is_slow: self.loading.is_slow() })),
             }
         }
         Ok(None)
     }
 
     /// Returns the names of the scenes.
-    pub(super) fn named(&self) -> Vec<Named> {
+    pub(super) fn named(&self) -> Vec<SceneName> {
         self.sources.iter().map(|source| source.named().clone()).collect()
     }
 
@@ -119,8 +119,8 @@ impl<E: Send + 'static> Scenes<E> {
             }
             Err(problem) => Some(problem),
         };
-        let is_new = problem != self.told;
-        self.told.clone_from(&problem);
+        let is_new = problem != self.reported_problem;
+        self.reported_problem.clone_from(&problem);
         Ok(problem.filter(|_| is_new))
     }
 

@@ -10,13 +10,13 @@ use std::{fmt, io};
 /// A scene that can be read repeatedly: at the start, when the user returns to it, and when one of its files has
 /// changed. See [`open`](super::open).
 pub struct Source<E = LoadError> {
-    named: Named,
+    named: SceneName,
     read: Arc<Read<E>>,
 }
 
 /// The facts about a scene that are known without reading it.
 #[derive(Clone, Debug)]
-pub(super) struct Named {
+pub(super) struct SceneName {
     /// The name shown to the user.
     pub(super) name: String,
     /// The scene file, into which views can be written.
@@ -56,22 +56,22 @@ impl<E> Source<E> {
         name: impl Into<String>,
         read: impl Fn(&Reporter<'_>) -> Result<Draft, E> + Send + Sync + 'static,
     ) -> Self {
-        Self { named: Named { name: name.into(), file: None, orbited: false }, read: Arc::new(read) }
+        Self { named: SceneName { name: name.into(), file: None, orbited: false }, read: Arc::new(read) }
     }
 
     /// Sets the scene file, into which views can be written.
     #[doc(hidden)]
     pub fn with_file(self, file: PathBuf) -> Self {
-        Self { named: Named { file: Some(file), ..self.named }, ..self }
+        Self { named: SceneName { file: Some(file), ..self.named }, ..self }
     }
 
     /// Starts the live view in orbit mode instead of flight, as suits a single object.
     #[doc(hidden)]
     pub fn orbited(self) -> Self {
-        Self { named: Named { orbited: true, ..self.named }, ..self }
+        Self { named: SceneName { orbited: true, ..self.named }, ..self }
     }
 
-    pub(super) fn named(&self) -> &Named {
+    pub(super) fn named(&self) -> &SceneName {
         &self.named
     }
 

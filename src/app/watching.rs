@@ -4,27 +4,27 @@
 //! through several folders and links: each is watched, and while one is missing, also the folders around it. A thread
 //! sleeps until the system reports an event; at rest neither that thread nor the loop is woken.
 
-mod needed;
-mod way;
+mod dependency;
+mod resolved_path;
 
-pub(super) use needed::Needed;
+pub(super) use dependency::Dependency;
 
 use crate::terminal::{self, Waker};
-use needed::{Identity, identity};
+use dependency::{Identity, identity};
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind, RenameMode};
 use notify::{Config, Event, RecommendedWatcher, RecursiveMode, Watcher};
+use resolved_path::ResolvedPath;
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use way::Way;
 
 /// The loop's side of the watching thread.
 pub(super) struct Watching {
     watcher: RecommendedWatcher,
     /// The files that the scene was read from.
-    needed: Vec<Needed>,
+    dependencies: Vec<Dependency>,
     /// The watched folders, and which folder each name led to.
     folders: HashMap<PathBuf, Identity>,
     /// The reason why a folder could not be watched.
@@ -32,19 +32,19 @@ pub(super) struct Watching {
     shared: Arc<Mutex<Shared>>,
 }
 
-/// The state shared with the thread, which fills `told`.
+/// The state shared with the thread, which fills `change`.
 #[derive(Default)]
 struct Shared {
     /// Folders and links on the way to the files.
     steps: HashSet<PathBuf>,
     /// The files themselves.
     ends: HashSet<PathBuf>,
-    told: Told,
+    change: FileChange,
 }
 
 /// The most significant event since the last look. A later variant includes the earlier ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-enum Told {
+enum FileChange {
     #[default]
     Nothing,
     /// A file was removed, perhaps for a moment; it may come back through another folder or link.
@@ -56,7 +56,7 @@ enum Told {
 }
 
 /// Limit on how often the way to a file is resolved again because it has changed meanwhile.
-const MOST_LOOKS: usize = 8;
+const MAX_RESOLUTIONS: usize = 8;
 
 impl Watching {
     /// Starts the thread without any folder to watch.
@@ -67,14 +67,14 @@ impl Watching {
         let hear = move |event: notify::Result<Event>| {
             let mut shared = lock(&theirs);
             // After an overflow of the event queue any file may have changed.
-            let told = event.map_or(Told::Written, |event| shared.meaning(&event));
-            if told > shared.told {
-                shared.told = told;
+            let change = event.map_or(FileChange::Written, |event| shared.meaning(&event));
+            if change > shared.change {
+                shared.change = change;
                 waker.wake();
             }
         };
         let watcher = terminal::without_signals(|| notify::recommended_watcher(hear)).map_err(|e| reason(&e))?;
-        let mut watching = Self { watcher, needed: Vec::new(), folders: HashMap::new(), problem: None, shared };
+        let mut watching = Self { watcher, dependencies: Vec::new(), folders: HashMap::new(), problem: None, shared };
         // notify does not report a failure to start its thread, and then panics at every call, even when dropped. Only
         // `configure` returns an error.
         if watching.watcher.configure(Config::default()).is_err() {
@@ -85,23 +85,23 @@ impl Watching {
     }
 
     /// Watches these files instead of the previous ones. Returns whether one has changed since it was read.
-    pub(super) fn watch(&mut self, needed: Vec<Needed>) -> bool {
-        self.needed = needed;
-        self.look(true)
+    pub(super) fn watch(&mut self, dependencies: Vec<Dependency>) -> bool {
+        self.dependencies = dependencies;
+        self.update_watches(true)
     }
 
     /// Returns whether a file has changed since the last call.
     pub(super) fn take_changed(&mut self) -> bool {
-        let told = std::mem::take(&mut lock(&self.shared).told);
-        let has_changed = match told {
-            Told::Nothing => false,
-            Told::Gone => self.look(false),
-            Told::Moved => self.look(true),
-            Told::Written => true,
+        let change = std::mem::take(&mut lock(&self.shared).change);
+        let has_changed = match change {
+            FileChange::Nothing => false,
+            FileChange::Gone => self.update_watches(false),
+            FileChange::Moved => self.update_watches(true),
+            FileChange::Written => true,
         };
         if has_changed {
             // One change may cause several events, but is to be reported once.
-            self.needed.iter_mut().for_each(|needed| *needed = Needed::now(needed.path()));
+            self.dependencies.iter_mut().for_each(|dependency| *dependency = Dependency::now(dependency.path()));
         }
         has_changed
     }
@@ -114,9 +114,9 @@ impl Watching {
     /// Watches the current ways to the files. Returns whether a file has changed: any file if `all`, otherwise one
     /// whose folder was not watched before. (For the others the end of writing is reported; read now, they might be
     /// incomplete.)
-    fn look(&mut self, all: bool) -> bool {
+    fn update_watches(&mut self, all: bool) -> bool {
         let mut fresh = HashSet::new();
-        for _ in 0..MOST_LOOKS {
+        for _ in 0..MAX_RESOLUTIONS {
             let ways = self.ways();
             self.share(&ways);
             fresh.extend(self.watch_folders(&ways));
@@ -125,31 +125,33 @@ impl Watching {
                 break;
             }
         }
-        let is_fresh = |needed: &Needed| {
-            Way::to(needed.path()).is_some_and(|way| way.end().parent().is_some_and(|folder| fresh.contains(folder)))
+        let is_fresh = |dependency: &Dependency| {
+            ResolvedPath::to(dependency.path())
+                .is_some_and(|way| way.end().parent().is_some_and(|folder| fresh.contains(folder)))
         };
-        self.needed.iter().any(|needed| (all || is_fresh(needed)) && needed.has_changed())
+        self.dependencies.iter().any(|dependency| (all || is_fresh(dependency)) && dependency.has_changed())
     }
 
-    fn ways(&self) -> Vec<Way> {
-        self.needed.iter().filter_map(|needed| Way::to(needed.path())).collect()
+    fn ways(&self) -> Vec<ResolvedPath> {
+        self.dependencies.iter().filter_map(|dependency| ResolvedPath::to(dependency.path())).collect()
     }
 
-    fn share(&self, ways: &[Way]) {
+    fn share(&self, ways: &[ResolvedPath]) {
         let mut shared = lock(&self.shared);
-        shared.steps = ways.iter().flat_map(Way::steps).map(Path::to_owned).collect();
+        shared.steps = ways.iter().flat_map(ResolvedPath::steps).map(Path::to_owned).collect();
         shared.ends = ways.iter().map(|way| way.end().to_owned()).collect();
     }
 
     /// Watches the folders of these ways and no others. Returns those that were not watched before.
-    fn watch_folders(&mut self, ways: &[Way]) -> Vec<PathBuf> {
-        let mut looked_in: HashSet<_> = ways.iter().flat_map(Way::looked_in).map(Path::to_owned).collect();
+    fn watch_folders(&mut self, ways: &[ResolvedPath]) -> Vec<PathBuf> {
+        let mut searched_folders: HashSet<_> =
+            ways.iter().flat_map(ResolvedPath::searched_folders).map(Path::to_owned).collect();
         if cfg!(not(target_os = "linux")) {
             // kqueue reports only changes of names for a folder; for contents the file itself must be watched.
-            looked_in.extend(ways.iter().map(Way::end).map(Path::to_owned));
+            searched_folders.extend(ways.iter().map(ResolvedPath::end).map(Path::to_owned));
         }
-        let around = ways.iter().flat_map(Way::around).map(Path::to_owned);
-        let folders: HashSet<_> = looked_in.iter().cloned().chain(around).collect();
+        let outer_folders = ways.iter().flat_map(ResolvedPath::outer_folders).map(Path::to_owned);
+        let folders: HashSet<_> = searched_folders.iter().cloned().chain(outer_folders).collect();
         let watcher = &mut self.watcher;
         self.folders.retain(|folder, _| {
             let is_wanted = folders.contains(folder);
@@ -163,7 +165,7 @@ impl Watching {
         for folder in folders {
             match self.watch_folder(&folder) {
                 Ok(true) => fresh.push(folder),
-                Err(error) if looked_in.contains(&folder) => self.problem = Some(reason(&error)),
+                Err(error) if searched_folders.contains(&folder) => self.problem = Some(reason(&error)),
                 // An outer folder without read permission is no problem worth a message: it hardly ever changes.
                 _ => {}
             }
@@ -193,18 +195,18 @@ fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
 }
 
 impl Shared {
-    fn meaning(&self, event: &Event) -> Told {
+    fn meaning(&self, event: &Event) -> FileChange {
         if event.need_rescan() {
-            return Told::Written;
+            return FileChange::Written;
         }
         // kqueue does not say what has changed in a folder.
         if cfg!(not(target_os = "linux")) {
-            return Told::Moved;
+            return FileChange::Moved;
         }
         let meaning = |path: &PathBuf| match (self.ends.contains(path), self.steps.contains(path)) {
             (true, _) => of_file(event.kind, path),
             (false, true) => of_step(event.kind),
-            (false, false) => Told::Nothing,
+            (false, false) => FileChange::Nothing,
         };
         event.paths.iter().map(meaning).max().unwrap_or_default()
     }
@@ -212,19 +214,19 @@ impl Shared {
 
 /// Returns the meaning of an event for a file. New contents count when the writer closes the file, so that no file is
 /// read half written.
-fn of_file(kind: EventKind, path: &Path) -> Told {
+fn of_file(kind: EventKind, path: &Path) -> FileChange {
     match kind {
-        EventKind::Remove(_) | EventKind::Modify(ModifyKind::Name(RenameMode::From)) => Told::Gone,
+        EventKind::Remove(_) | EventKind::Modify(ModifyKind::Name(RenameMode::From)) => FileChange::Gone,
         // Not for pipes: writing to one is not a change of the scene.
         EventKind::Access(AccessKind::Close(AccessMode::Write)) | EventKind::Modify(ModifyKind::Name(_))
             if path.is_file() =>
         {
-            Told::Written
+            FileChange::Written
         }
-        EventKind::Create(_) if is_about_to_be_written(path) => Told::Nothing,
+        EventKind::Create(_) if is_about_to_be_written(path) => FileChange::Nothing,
         // Anything else has taken the name; or the permissions have changed, and the file may have become readable.
-        EventKind::Create(_) | EventKind::Modify(ModifyKind::Name(_) | ModifyKind::Metadata(_)) => Told::Moved,
-        _ => Told::Nothing,
+        EventKind::Create(_) | EventKind::Modify(ModifyKind::Name(_) | ModifyKind::Metadata(_)) => FileChange::Moved,
+        _ => FileChange::Nothing,
     }
 }
 
@@ -234,10 +236,10 @@ fn is_about_to_be_written(path: &Path) -> bool {
 }
 
 /// Returns the meaning of an event for a folder or link on the way to a file.
-fn of_step(kind: EventKind) -> Told {
+fn of_step(kind: EventKind) -> FileChange {
     match kind {
-        EventKind::Access(_) | EventKind::Modify(ModifyKind::Data(_)) => Told::Nothing,
-        _ => Told::Moved,
+        EventKind::Access(_) | EventKind::Modify(ModifyKind::Data(_)) => FileChange::Nothing,
+        _ => FileChange::Moved,
     }
 }
 

@@ -28,9 +28,9 @@ pub(super) struct ConfigArgs {
 
 pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
     let no_config = given.get_flag("no_config");
-    let bindings = keys::bindings(no_config)?;
+    let keymap = keys::keymap(no_config)?;
     if args.keys {
-        return write_stdout(bindings.to_ron().as_bytes());
+        return write_stdout(keymap.to_ron().as_bytes());
     }
     let settings = Settings::gather(given)?;
     let width = settings.effective.iter().map(|held| held.value.width()).max().unwrap_or(0);

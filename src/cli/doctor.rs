@@ -11,7 +11,7 @@ use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 use termtrace::internals::capabilities::{CellShape, Findings, SafeQueries};
 use termtrace::internals::input::Input;
-use termtrace::internals::protocol::{Questions, Receiver};
+use termtrace::internals::protocol::{InitialQueries, Receiver};
 use termtrace::internals::terminal::{Terminal, die_of};
 use termtrace::live::Signals;
 
@@ -28,7 +28,7 @@ const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
 pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let settings = Settings::gather(given)?;
     let hints = settings.args.terminal.hints();
-    let mut questions = Questions::all(&hints);
+    let mut questions = InitialQueries::all(&hints);
     let mut cell = CellShape::default();
     let is_terminal = io::stdout().is_terminal();
     let outcome = match hints.safe_queries() {
@@ -49,7 +49,7 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
 }
 
 /// Takes the terminal, asks, and gives it back.
-fn query_terminal(questions: &mut Questions, cell: &mut CellShape) -> io::Result<QueryOutcome> {
+fn query_terminal(questions: &mut InitialQueries, cell: &mut CellShape) -> io::Result<QueryOutcome> {
     let mut signals = Signals::catch()?;
     let mut terminal = Terminal::take(&signals).inspect_err(|_| {
         // While it waited to be brought to the foreground.
@@ -77,7 +77,7 @@ fn await_replies(
     terminal: &mut Terminal,
     receiver: &mut Receiver,
     signals: &mut Signals,
-    questions: &mut Questions,
+    questions: &mut InitialQueries,
     asked: Instant,
 ) -> io::Result<QueryOutcome> {
     while questions.is_open() {
@@ -100,7 +100,7 @@ fn await_replies(
 fn take_replies(
     terminal: &mut Terminal,
     receiver: &mut Receiver,
-    questions: &mut Questions,
+    questions: &mut InitialQueries,
     now: Duration,
 ) -> io::Result<()> {
     let mut buffer = [0; 4096];

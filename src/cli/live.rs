@@ -14,7 +14,7 @@ use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use termtrace::internals::capabilities::USUAL_CELL_ASPECT;
-use termtrace::internals::control::{Bindings, Command, Mode};
+use termtrace::internals::control::{Command, KeyMode, Keymap};
 use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::terminal::die_of;
 use termtrace::internals::{app, cell, maps};
@@ -22,9 +22,9 @@ use termtrace::live::{Ending, Options, Outcome, Signals, Source};
 use termtrace::{Colors, Sampling, Size, export};
 
 /// For who has not named a scene.
-fn welcome(bindings: &Bindings) -> String {
+fn welcome(keymap: &Keymap) -> String {
     let said = [(Command::Help, "shows the keys"), (Command::Quit, "leaves")].map(|(command, does)| {
-        let key = bindings.key_of(&[Mode::Fly, Mode::Always], command);
+        let key = keymap.key_of(&[KeyMode::Fly, KeyMode::Always], command);
         key.map_or_else(String::new, |key| format!("; {key} {does}"))
     });
     format!("a built-in scene; termtrace FILE opens yours{}", said.concat())
@@ -48,19 +48,19 @@ pub(super) struct LiveArgs {
 
 impl LiveArgs {
     /// With these settings, which its flags are a part of, and these keys.
-    fn options(&self, settings: &SettingArgs, bindings: Bindings) -> Options {
+    fn options(&self, settings: &SettingArgs, keymap: Keymap) -> Options {
         let mut options = Options::new(settings.terminal.hints());
         options.order = self.order.order();
         options.quality = settings.loss.quality();
         options.max_rate = settings.loss.max_rate();
         options.max_frames = settings.fps;
         options.sampling = settings.samples;
-        options.pace = settings.pace();
+        options.key_speed = settings.key_speed();
         options.reduced_motion = settings.reduced_motion();
         options.map = settings.map.map();
         options.exports = Some(PathBuf::from("."));
-        options.welcome = self.scenes.is_empty().then(|| welcome(&bindings));
-        options.bindings = bindings;
+        options.welcome = self.scenes.is_empty().then(|| welcome(&keymap));
+        options.keymap = keymap;
         options.threads = self.camera_args.threads.map(usize::from);
         options
     }
@@ -119,8 +119,8 @@ fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     inject_faults();
     let settings = Settings::gather(given)?.args;
     settings.check_samples()?;
-    let bindings = keys::bindings(given.get_flag("no_config"))?;
-    let (sources, options) = (sources(args)?, args.options(&settings, bindings));
+    let keymap = keys::keymap(given.get_flag("no_config"))?;
+    let (sources, options) = (sources(args)?, args.options(&settings, keymap));
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard, .. } = match ended {

@@ -22,7 +22,7 @@ use files::UserFile;
 use std::path::PathBuf;
 use termtrace::Sampling;
 use termtrace::internals::capabilities::Hints;
-use termtrace::internals::control::Pace;
+use termtrace::internals::control::KeySpeed;
 
 /// Stands below the options in the help.
 pub(super) const SETTINGS_HELP: &str = "\
@@ -74,8 +74,8 @@ impl SettingArgs {
         self.samples.map_or(Ok(()), |samples| self.map.check_samples(samples))
     }
 
-    pub(super) fn pace(&self) -> Pace {
-        Pace { moving: self.move_speed.unwrap_or(1.0), turning: self.turn_speed.unwrap_or(1.0) }
+    pub(super) fn key_speed(&self) -> KeySpeed {
+        KeySpeed { moving: self.move_speed.unwrap_or(1.0), turning: self.turn_speed.unwrap_or(1.0) }
     }
 
     pub(super) fn reduced_motion(&self) -> bool {

@@ -18,7 +18,7 @@ pub enum Command {
     /// From flying to going around the target, or back.
     ChangeMode,
     /// All of the scene is seen.
-    Frame,
+    FrameAll,
     /// The field of view becomes narrower.
     Narrower,
     /// The field of view becomes wider.
@@ -163,7 +163,7 @@ commands! {
     [Command::Nearer] "Nearer", "nearer";
     [Command::Farther] "Farther", "farther away";
     [Command::ChangeMode] "ChangeMode", "orbit, or fly again";
-    [Command::Frame] "Frame", "see everything";
+    [Command::FrameAll] "Frame", "see everything";
     [Command::Narrower] "Narrower", "narrower field of view";
     [Command::Wider] "Wider", "wider field of view";
     [Command::Turntable] "Turntable", "turntable";
@@ -233,7 +233,7 @@ impl Command {
     }
 
     /// What the help says of it, in a few words.
-    pub fn does(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         words(self).1
     }
 
@@ -272,7 +272,7 @@ mod tests {
     fn each_command_has_a_name() {
         for command in Command::all() {
             assert_eq!(Command::from_name(command.name()), Some(command));
-            assert!(command.does().len() <= 24, "too long for a help of 40 columns: {command:?}");
+            assert!(command.description().len() <= 24, "too long for a help of 40 columns: {command:?}");
         }
         assert_eq!(Command::from_name("movE"), None);
     }

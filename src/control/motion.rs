@@ -22,20 +22,20 @@ pub struct Motion {
     until: Duration,
     /// With Shift.
     fast: bool,
-    hears_releases: bool,
-    pace: Pace,
+    reports_releases: bool,
+    key_speed: KeySpeed,
 }
 
 /// How fast keys move and turn the view, in multiples of what is usual.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pace {
+pub struct KeySpeed {
     /// Ways, and distances from the target.
     pub moving: f32,
     /// Turns, of the view and around the target.
     pub turning: f32,
 }
 
-impl Default for Pace {
+impl Default for KeySpeed {
     fn default() -> Self {
         Self { moving: 1.0, turning: 1.0 }
     }
@@ -43,48 +43,48 @@ impl Default for Pace {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Held {
-    key: Place,
+    key: PhysicalKey,
     command: Command,
 }
 
 /// A place on the keyboard, whatever Shift makes of it: the code, and whether it is of the keypad.
-type Place = (KeyCode, bool);
+type PhysicalKey = (KeyCode, bool);
 
-fn place(key: &KeyEvent) -> Place {
+fn physical_key(key: &KeyEvent) -> PhysicalKey {
     (unshifted(key.code), key.state.contains(KeyEventState::KEYPAD))
 }
 
 /// How long a press moves when no repeat follows: just longer than terminals wait before the first one.
-pub const GLIDE: Duration = Duration::from_millis(700);
+pub const GLIDE_TIME: Duration = Duration::from_millis(700);
 /// How long a repeated key moves on after its last repeat: longer than the pause between two.
-pub const COAST: Duration = Duration::from_millis(150);
+pub const COAST_TIME: Duration = Duration::from_millis(150);
 
 impl Motion {
-    /// Nothing is held yet; what will be moves the eye at that pace.
-    pub fn at_pace(pace: Pace) -> Self {
-        Self { pace, ..Self::default() }
+    /// Nothing is held yet; what will be moves the eye at that key_speed.
+    pub fn with_speed(key_speed: KeySpeed) -> Self {
+        Self { key_speed, ..Self::default() }
     }
 
     /// Whether the terminal tells of releases from now on. What is held is let go of when it no longer does.
-    pub fn set_hears_releases(&mut self, hears_releases: bool) {
-        if self.hears_releases && !hears_releases {
+    pub fn set_reports_releases(&mut self, reports_releases: bool) {
+        if self.reports_releases && !reports_releases {
             self.stop();
         }
-        self.hears_releases = hears_releases;
+        self.reports_releases = reports_releases;
     }
 
     /// Whether the terminal tells of releases.
-    pub fn hears_releases(&self) -> bool {
-        self.hears_releases
+    pub fn reports_releases(&self) -> bool {
+        self.reports_releases
     }
 
     /// A key event at a time, what the key means, and whether Shift asks for more of it. Where releases are not told, any
     /// press stops what was going on before.
     pub fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
         match (key.kind, meant.filter(|(command, _)| command.moves())) {
-            (KeyEventKind::Release, _) => self.held.retain(|held| held.key != place(key)),
-            (_, Some((command, fast))) => self.hold(Held { key: place(key), command }, fast, key.kind, now),
-            (_, None) if self.hears_releases => {}
+            (KeyEventKind::Release, _) => self.held.retain(|held| held.key != physical_key(key)),
+            (_, Some((command, fast))) => self.hold(Held { key: physical_key(key), command }, fast, key.kind, now),
+            (_, None) if self.reports_releases => {}
             (_, None) => self.held.clear(),
         }
         if let KeyCode::Modifier(ModifierKeyCode::LeftShift | ModifierKeyCode::RightShift) = key.code {
@@ -101,9 +101,9 @@ impl Motion {
         self.held.push(key);
         self.fast = fast;
         self.until = match again {
-            _ if self.hears_releases => Duration::MAX,
-            true => now + COAST,
-            false => now + GLIDE,
+            _ if self.reports_releases => Duration::MAX,
+            true => now + COAST_TIME,
+            false => now + GLIDE_TIME,
         };
     }
 
@@ -115,26 +115,26 @@ impl Motion {
 
     /// Whether anything moves at that time.
     pub fn is_moving(&self, now: Duration) -> bool {
-        now < self.until && self.sum() != Sum::default()
+        now < self.until && self.net_motion() != NetMotion::default()
     }
 
     /// The camera after the time from `from` to `to`, at `speed` world units per second.
     pub fn step(&self, camera: &Camera, speed: f32, from: Duration, to: Duration) -> Camera {
-        let sum = self.sum();
+        let net = self.net_motion();
         let seconds = to.min(self.until).saturating_sub(from).as_secs_f32();
-        let seconds = if self.fast { FASTER * seconds } else { seconds };
+        let seconds = if self.fast { SHIFT_SPEED_FACTOR * seconds } else { seconds };
         // Half of the turn before the way and half after it: a curve is nearly the same in one step as in many.
-        let half = 0.5 * TURN_SPEED * self.pace.turning * seconds;
-        let (view, around) = (half * sum.turn, half * sum.around);
+        let half = 0.5 * TURN_SPEED * self.key_speed.turning * seconds;
+        let (view, around) = (half * net.turn, half * net.around);
         let turn = |camera: Camera| camera.turned(-view.x, view.y).orbited(-around.x, around.y);
-        let seconds = self.pace.moving * seconds;
-        let way = speed * seconds * sum.way;
+        let seconds = self.key_speed.moving * seconds;
+        let way = speed * seconds * net.way;
         let camera = turn(*camera).moved(way.x, way.y, -way.z);
-        turn(camera.nearer_within(libm::expf(-NEARER_SPEED * seconds * sum.nearer), speed))
+        turn(camera.nearer_within(libm::expf(-NEARER_SPEED * seconds * net.nearer), speed))
     }
 
     /// Opposite keys cancel; two keys for the same are one.
-    fn sum(&self) -> Sum {
+    fn net_motion(&self) -> NetMotion {
         let holds = |command: Command| self.held.iter().any(|held| held.command == command);
         let number = |command: Command| f32::from(u8::from(holds(command)));
         let way = |plus, minus| number(Command::Move(plus)) - number(Command::Move(minus));
@@ -142,7 +142,7 @@ impl Motion {
             let turn = |plus, minus| number(of(plus)) - number(of(minus));
             Vec2::new(turn(Toward::Left, Toward::Right), turn(Toward::Up, Toward::Down))
         };
-        Sum {
+        NetMotion {
             way: Vec3::new(
                 way(Direction::Right, Direction::Left),
                 way(Direction::Up, Direction::Down),
@@ -157,7 +157,7 @@ impl Motion {
 
 /// What all held keys come to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Sum {
+struct NetMotion {
     /// Along u, up and w.
     way: Vec3,
     /// To the left about up, and upwards about u.
@@ -169,7 +169,7 @@ struct Sum {
 }
 
 /// With Shift.
-const FASTER: f32 = 4.0;
+const SHIFT_SPEED_FACTOR: f32 = 4.0;
 /// Radians per second.
 const TURN_SPEED: f32 = std::f32::consts::FRAC_PI_4;
 /// In a second the distance to the target becomes 1/e of it.

@@ -38,9 +38,9 @@ pub enum Gesture {
 }
 
 /// Two clicks are one double click when they are no further apart in time,
-const DOUBLE: Duration = Duration::from_millis(400);
+const DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
 /// and on the screen, in parts of it.
-const SAME_PLACE: f32 = 0.02;
+const DOUBLE_CLICK_DISTANCE: f32 = 0.02;
 
 /// What has been heard of the mouse.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,7 +62,7 @@ impl Pointer {
     }
 
     /// The same place on another screen, where nothing is held.
-    pub fn let_go(&mut self) {
+    pub fn release(&mut self) {
         self.held = None;
     }
 
@@ -85,7 +85,7 @@ impl Pointer {
         let grip = if pans { Grip::Pan } else { Grip::Turn };
         self.held = Some(grip);
         let is_same = |(then, there): (Duration, Vec2)| {
-            now.saturating_sub(then) <= DOUBLE && (at - there).abs().max_element() <= SAME_PLACE
+            now.saturating_sub(then) <= DOUBLE_CLICK_TIME && (at - there).abs().max_element() <= DOUBLE_CLICK_DISTANCE
         };
         let clicked = self.clicked.replace((now, at)).filter(|_| !pans);
         if clicked.is_some_and(is_same) {

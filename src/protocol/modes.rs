@@ -5,7 +5,7 @@ use crossterm::{Command, cursor, style, terminal};
 
 /// A mode of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
+pub enum TerminalMode {
     /// The alternate screen (1049), whose contents are lost when it is switched off.
     AlternateScreen,
     /// The pen's colours. No bytes switch this mode on: frames set colours, and the shell must not inherit them.
@@ -36,7 +36,7 @@ const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUAT
 /// The query for the flags of the kitty keyboard protocol that are set.
 const KEYBOARD_QUERY: &str = "\x1b[?u";
 
-impl Mode {
+impl TerminalMode {
     /// The live view's modes that every terminal supports or ignores, in the order in which they are switched on.
     pub const ALL_TERMINALS: [Self; 7] = [
         Self::AlternateScreen,
@@ -79,15 +79,15 @@ impl Mode {
 
 /// The modes that are switched on, oldest first.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Modes {
-    on: Vec<Mode>,
+pub struct TerminalModes {
+    on: Vec<TerminalMode>,
 }
 
-impl Modes {
+impl TerminalModes {
     /// Records a mode as on and appends the bytes that switch it on; appends nothing if it is on already.
     ///
     /// Call this before sending the bytes, so that a mode whose bytes were sent in part is switched off too.
-    pub fn switch_on(&mut self, mode: Mode, bytes: &mut Vec<u8>) {
+    pub fn switch_on(&mut self, mode: TerminalMode, bytes: &mut Vec<u8>) {
         if !self.are_on(mode) {
             self.on.push(mode);
             bytes.extend_from_slice(mode.on().as_bytes());
@@ -95,7 +95,7 @@ impl Modes {
     }
 
     /// Returns whether a mode is on.
-    pub fn are_on(&self, mode: Mode) -> bool {
+    pub fn are_on(&self, mode: TerminalMode) -> bool {
         self.on.contains(&mode)
     }
 
@@ -118,27 +118,27 @@ fn ansi(command: impl Command) -> String {
 mod tests {
     use super::*;
 
-    const BEYOND: [Mode; 2] = [Mode::MousePixels, Mode::Keyboard];
+    const BEYOND: [TerminalMode; 2] = [TerminalMode::MousePixels, TerminalMode::Keyboard];
 
     #[test]
     fn modes_are_switched_off_in_reverse_order() {
-        let (mut modes, mut on, mut off) = (Modes::default(), Vec::new(), Vec::new());
-        let all: Vec<_> = Mode::ALL_TERMINALS.into_iter().chain(BEYOND).collect();
+        let (mut modes, mut on, mut off) = (TerminalModes::default(), Vec::new(), Vec::new());
+        let all: Vec<_> = TerminalMode::ALL_TERMINALS.into_iter().chain(BEYOND).collect();
         for &mode in &all {
             modes.switch_on(mode, &mut on);
         }
         modes.switch_all_off(&mut off);
         let expected: String = all.iter().rev().map(|mode| mode.off()).collect();
         assert_eq!(String::from_utf8_lossy(&off), expected);
-        assert_eq!(modes, Modes::default());
+        assert_eq!(modes, TerminalModes::default());
     }
 
     #[test]
     fn a_mode_is_switched_on_and_off_once() {
-        let (mut modes, mut bytes) = (Modes::default(), Vec::new());
-        modes.switch_on(Mode::MousePixels, &mut bytes);
-        modes.switch_on(Mode::MousePixels, &mut bytes);
-        assert!(modes.are_on(Mode::MousePixels) && !modes.are_on(Mode::Keyboard));
+        let (mut modes, mut bytes) = (TerminalModes::default(), Vec::new());
+        modes.switch_on(TerminalMode::MousePixels, &mut bytes);
+        modes.switch_on(TerminalMode::MousePixels, &mut bytes);
+        assert!(modes.are_on(TerminalMode::MousePixels) && !modes.are_on(TerminalMode::Keyboard));
         modes.switch_all_off(&mut bytes);
         modes.switch_all_off(&mut bytes);
         assert_eq!(bytes, b"\x1b[?1016h\x1b[?1016l");

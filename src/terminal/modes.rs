@@ -4,7 +4,7 @@ use super::output::Output;
 use super::replies::{await_last, is_in_background};
 use super::{Signals, fault_injection, panics, signals};
 use crate::input::Input;
-use crate::protocol::{self, FENCE, Mode, Receiver};
+use crate::protocol::{self, FENCE, Receiver, TerminalMode};
 use rustix::termios::{self, Action, OptionalActions, QueueSelector, Termios};
 use std::fs::File;
 use std::io;
@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 pub(super) struct Modes {
     /// The settings before raw mode, which is switched on first.
     before: Option<Box<Termios>>,
-    on: protocol::Modes,
+    on: protocol::TerminalModes,
 }
 
 /// Timeout for the last bytes and replies. A terminal that has stopped reading (Ctrl-S, a dead link) delays the exit by
@@ -37,7 +37,7 @@ impl Modes {
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
         fault_injection::reach("raw mode")?;
         let mut bytes = Vec::new();
-        for mode in Mode::ALL_TERMINALS {
+        for mode in TerminalMode::ALL_TERMINALS {
             self.on.switch_on(mode, &mut bytes);
         }
         output.send(&bytes)?;
@@ -45,14 +45,14 @@ impl Modes {
     }
 
     /// Switches on a mode unless it is on already.
-    pub(super) fn switch_on(&mut self, mode: Mode, output: &mut Output) -> io::Result<()> {
+    pub(super) fn switch_on(&mut self, mode: TerminalMode, output: &mut Output) -> io::Result<()> {
         let mut bytes = Vec::new();
         self.on.switch_on(mode, &mut bytes);
         if bytes.is_empty() {
             return Ok(());
         }
         output.send(&bytes)?;
-        if mode == Mode::Keyboard { fault_injection::reach("keyboard") } else { Ok(()) }
+        if mode == TerminalMode::Keyboard { fault_injection::reach("keyboard") } else { Ok(()) }
     }
 
     /// Switches off all modes, newest first, and waits for the replies that `receiver` knows to be outstanding.
@@ -70,7 +70,7 @@ impl Modes {
         output.drop_frame();
         // With the kitty keyboard protocol the terminal reports key releases until it has processed the sequence that
         // switches them off, and the release of `q` comes about then. The reply to a fence follows the last report.
-        let needs_fence = self.on.are_on(Mode::Keyboard) && !is_in_background(keys);
+        let needs_fence = self.on.are_on(TerminalMode::Keyboard) && !is_in_background(keys);
         let mut off = Vec::new();
         self.on.switch_all_off(&mut off);
         output.put(&off);

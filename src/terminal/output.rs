@@ -94,7 +94,7 @@ impl Output {
         }
     }
 
-    /// Drops pending text and the sequences that position and colour it. Mode switches and queries stay.
+    /// Drops pending text and the sequences that position and colour it. TerminalMode switches and queries stay.
     pub(super) fn drop_frame(&mut self) {
         let boundary = boundary(&self.pending, self.written);
         let rest = self.pending.split_off(boundary);

@@ -1,8 +1,8 @@
-//! Questions to the user, and the keys that answer them.
+//! InitialQueries to the user, and the keys that answer them.
 
 use super::layers::{Canvas, Layer, Level};
-use super::look::Look;
-use crate::control::{Binding, Bindings, Command, Mode};
+use super::theme::Theme;
+use crate::control::{Binding, Command, KeyMode, Keymap};
 use crate::export::Format;
 use crate::text::visible;
 use ratatui_core::buffer::Buffer;
@@ -38,7 +38,7 @@ impl Layer for Dialog {
         Level::Question
     }
 
-    fn mode(&self, _screen: Rect) -> Option<Mode> {
+    fn mode(&self, _screen: Rect) -> Option<KeyMode> {
         Some(self.keys_are_for())
     }
 
@@ -47,24 +47,24 @@ impl Layer for Dialog {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        let bindings = canvas.bindings;
+        let keymap = canvas.keymap;
         if canvas.has_room() {
-            let area = self.area(bindings, canvas.screen());
-            canvas.lay(area, |look, area, buffer| self.paint(bindings, look, area, buffer));
+            let area = self.area(keymap, canvas.screen());
+            canvas.lay(area, |theme, area, buffer| self.paint(keymap, theme, area, buffer));
         } else {
-            canvas.write_line(&self.line(bindings), canvas.foot(0));
+            canvas.write_line(&self.line(keymap), canvas.foot(0));
         }
     }
 }
 
 impl Dialog {
     /// Returns the mode that keys have while the question is open.
-    fn keys_are_for(&self) -> Mode {
+    fn keys_are_for(&self) -> KeyMode {
         match self {
-            Self::Export => Mode::Export,
-            Self::Keep(_) => Mode::Keep,
+            Self::Export => KeyMode::Export,
+            Self::Keep(_) => KeyMode::Keep,
             // The key that will return to the view.
-            Self::Save => Mode::Always,
+            Self::Save => KeyMode::Always,
         }
     }
 
@@ -87,49 +87,49 @@ impl Dialog {
     }
 
     /// Returns the keys that answer the question, with their meanings.
-    fn answers<'b>(&self, bindings: &'b Bindings) -> impl Iterator<Item = &'b Binding> {
+    fn answers<'b>(&self, keymap: &'b Keymap) -> impl Iterator<Item = &'b Binding> {
         let saves = matches!(self, Self::Save);
-        bindings.of(self.keys_are_for()).filter(move |row| !saves || matches!(row.command, Command::View(_)))
+        keymap.of(self.keys_are_for()).filter(move |row| !saves || matches!(row.command, Command::View(_)))
     }
 
-    fn lines(&self, bindings: &Bindings) -> Vec<String> {
+    fn lines(&self, keymap: &Keymap) -> Vec<String> {
         let name = match self {
             Self::Export => None,
             Self::Keep(name) => Some(visible(name)),
-            Self::Save => return vec![self.keys(bindings)],
+            Self::Save => return vec![self.keys(keymap)],
         };
-        let answers: Vec<_> = self.answers(bindings).map(|row| (row.label(), row.command.does())).collect();
+        let answers: Vec<_> = self.answers(keymap).map(|row| (row.label(), row.command.description())).collect();
         let width = answers.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
         name.into_iter().chain(answers.iter().map(|(label, does)| format!("{label:width$}  {does}"))).collect()
     }
 
-    fn keys(&self, bindings: &Bindings) -> String {
-        self.answers(bindings).map(Binding::label).collect::<Vec<_>>().join(" ")
+    fn keys(&self, keymap: &Keymap) -> String {
+        self.answers(keymap).map(Binding::label).collect::<Vec<_>>().join(" ")
     }
 
     /// Returns the question in one line, for small screens: its keys and as few words as possible.
-    fn line(&self, bindings: &Bindings) -> String {
+    fn line(&self, keymap: &Keymap) -> String {
         let word = match self {
             Self::Export => "write",
             Self::Keep(_) => "keep?",
             Self::Save => "as",
         };
-        format!("{word} {}", self.keys(bindings))
+        format!("{word} {}", self.keys(keymap))
     }
 
     /// Draws the panel in the lower left corner above the lowest row, where it hides little of the picture.
-    fn area(&self, bindings: &Bindings, screen: Rect) -> Rect {
-        let lines = self.lines(bindings);
+    fn area(&self, keymap: &Keymap, screen: Rect) -> Rect {
+        let lines = self.lines(keymap);
         let text = lines.iter().map(|line| line.width() + 4).max().unwrap_or(0);
         let width = (text.max(self.title().width() + 2) as u16).min(screen.width);
         let height = (lines.len() as u16 + 2).min(screen.height);
         Rect { x: screen.x, y: (screen.bottom() - height).saturating_sub(1), width, height }
     }
 
-    fn paint(&self, bindings: &Bindings, look: Look, area: Rect, buffer: &mut Buffer) {
+    fn paint(&self, keymap: &Keymap, theme: Theme, area: Rect, buffer: &mut Buffer) {
         Clear.render(area, buffer);
-        Block::bordered().border_set(look.border()).title(self.title()).style(look.style()).render(area, buffer);
-        let lines: Vec<_> = self.lines(bindings).into_iter().map(Line::from).collect();
-        Paragraph::new(lines).style(look.style()).render(area.inner(Margin::new(2, 1)), buffer);
+        Block::bordered().border_set(theme.border()).title(self.title()).style(theme.style()).render(area, buffer);
+        let lines: Vec<_> = self.lines(keymap).into_iter().map(Line::from).collect();
+        Paragraph::new(lines).style(theme.style()).render(area.inner(Margin::new(2, 1)), buffer);
     }
 }

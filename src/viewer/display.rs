@@ -7,30 +7,30 @@ use crate::framebuffer::Resolution;
 use crate::grid::{Size, Window};
 use crate::input::Reply;
 use crate::memory::OutOfMemory;
-use crate::protocol::{Mode, Questions};
+use crate::protocol::{InitialQueries, TerminalMode};
 
 /// A terminal's window, and the findings about it.
 pub(super) struct Display {
     hints: Hints,
     window: Window,
-    questions: Questions,
+    queries: InitialQueries,
     capabilities: Capabilities,
 }
 
 impl Display {
     /// Returns a display with the findings from the environment alone.
     pub(super) fn new(hints: Hints, window: Window) -> Self {
-        let questions = Questions::needed(&hints);
-        let capabilities = Findings::new(&hints, window.cell, questions.replies()).capabilities();
-        Self { hints, window, questions, capabilities }
+        let queries = InitialQueries::needed(&hints);
+        let capabilities = Findings::new(&hints, window.cell, queries.replies()).capabilities();
+        Self { hints, window, queries, capabilities }
     }
 
     pub(super) fn capabilities(&self) -> &Capabilities {
         &self.capabilities
     }
 
-    pub(super) fn questions(&self) -> &Questions {
-        &self.questions
+    pub(super) fn queries(&self) -> &InitialQueries {
+        &self.queries
     }
 
     /// Returns the size of the whole window.
@@ -56,7 +56,7 @@ impl Display {
 
     /// Records a reply to the initial queries. They take effect together: returns whether this was the last.
     pub(super) fn take_reply(&mut self, reply: &Reply) -> bool {
-        let was_last = self.questions.take(reply);
+        let was_last = self.queries.take(reply);
         if was_last {
             self.conclude();
         }
@@ -64,8 +64,8 @@ impl Display {
     }
 
     /// Closes the initial queries, as no more replies will come. Returns whether they were open.
-    pub(super) fn close_questions(&mut self) -> bool {
-        let was_open = self.questions.close();
+    pub(super) fn close_queries(&mut self) -> bool {
+        let was_open = self.queries.close();
         if was_open {
             self.conclude();
         }
@@ -73,7 +73,7 @@ impl Display {
     }
 
     fn conclude(&mut self) {
-        let findings = Findings::new(&self.hints, self.window.cell, self.questions.replies());
+        let findings = Findings::new(&self.hints, self.window.cell, self.queries.replies());
         self.capabilities = findings.capabilities();
     }
 
@@ -87,20 +87,20 @@ impl Display {
 
     /// Returns whether the terminal supports the kitty keyboard protocol.
     pub(super) fn knows_keyboard(&self) -> bool {
-        !self.questions.is_open() && self.questions.replies().kitty_keyboard == Some(true)
+        !self.queries.is_open() && self.queries.replies().kitty_keyboard == Some(true)
     }
 
     /// Returns a cell's size in pixels, if the terminal reports mouse positions in pixels.
     pub(super) fn mouse_pixels(&self) -> Option<(u16, u16)> {
-        let replies = self.questions.replies();
-        let knows = !self.questions.is_open() && replies.pixel_mouse == Some(true);
+        let replies = self.queries.replies();
+        let knows = !self.queries.is_open() && replies.pixel_mouse == Some(true);
         let is_cell = |&(width, height): &(u16, u16)| width > 0 && height > 0;
         self.window.cell_pixels.or(replies.cell_pixels).filter(is_cell).filter(|_| knows)
     }
 
     /// Returns the modes to switch on besides those that every terminal supports.
-    pub(super) fn modes(&self) -> impl Iterator<Item = Mode> {
-        let keyboard = self.knows_keyboard().then_some(Mode::Keyboard);
-        keyboard.into_iter().chain(self.mouse_pixels().map(|_| Mode::MousePixels))
+    pub(super) fn modes(&self) -> impl Iterator<Item = TerminalMode> {
+        let keyboard = self.knows_keyboard().then_some(TerminalMode::Keyboard);
+        keyboard.into_iter().chain(self.mouse_pixels().map(|_| TerminalMode::MousePixels))
     }
 }

@@ -1,12 +1,12 @@
 //! Handling of the terminal's bytes: keys, mouse and replies.
 
+use super::camera_commands::ZOOM_FACTOR;
 use super::dialog::Dialog;
-use super::explain::Explaining;
+use super::explain::ExplainPanel;
 use super::help::HelpPanel;
-use super::moving::ZOOM;
 use super::note::Note;
 use super::status::StatusLine;
-use super::{Ask, Viewer, pointing};
+use super::{Request, Viewer, mouse_actions};
 use crate::control::Command;
 use crate::input::{Input, Reply};
 use crate::maps::Map;
@@ -23,7 +23,7 @@ impl Viewer {
     ///
     /// # Errors
     /// If there is not enough memory for pictures of the size that the replies imply.
-    pub(crate) fn hear(&mut self, bytes: &[u8], now: Duration) -> Result<(), OutOfMemory> {
+    pub(crate) fn receive(&mut self, bytes: &[u8], now: Duration) -> Result<(), OutOfMemory> {
         let inputs = self.receiver.receive(bytes, now);
         self.take_inputs(&inputs, now)
     }
@@ -31,9 +31,9 @@ impl Viewer {
     /// Prepares for another program having the terminal: releases all keys and forgets the outstanding queries.
     pub(crate) fn lose_terminal(&mut self, now: Duration) {
         self.set_time(now);
-        self.eye.stand_still(now);
-        self.eye.set_hears_releases(false, now);
-        self.hand.let_go();
+        self.eye.stop(now);
+        self.eye.set_reports_releases(false, now);
+        self.pointer.release();
         self.pacing.forget_replies();
     }
 
@@ -41,8 +41,8 @@ impl Viewer {
     /// queries are sent again.
     ///
     /// # Errors
-    /// As for [`hear`](Self::hear).
-    pub(crate) fn hear_typed(&mut self, mut typed: Vec<Input>, now: Duration) -> Result<(), OutOfMemory> {
+    /// As for [`receive`](Self::receive).
+    pub(crate) fn receive_typed(&mut self, mut typed: Vec<Input>, now: Duration) -> Result<(), OutOfMemory> {
         self.receiver.set_keys_are_sequences(false);
         typed.retain(|input| !matches!(input, Input::Reply(_)));
         self.take_inputs(&typed, now)
@@ -53,18 +53,18 @@ impl Viewer {
         self.set_time(now);
         for (at, input) in inputs.iter().enumerate() {
             match input {
-                input if pointing::is_outdated(input, inputs.get(at + 1)) => {}
+                input if mouse_actions::is_superseded(input, inputs.get(at + 1)) => {}
                 Input::Event(Event::Mouse(event)) => self.take_mouse(*event),
                 Input::Event(Event::Key(key)) => self.take_key(key),
                 // No event will report the release of keys held now.
                 Input::Event(Event::FocusLost) => {
-                    self.hand.let_go();
-                    self.eye.let_go(now);
+                    self.pointer.release();
+                    self.eye.release(now);
                 }
                 Input::Reply(reply) => self.take_reply(reply)?,
                 Input::Event(_) => {}
             }
-            if matches!(self.asks.back(), Some(Ask::Leave | Ask::Suspend)) {
+            if matches!(self.requests.back(), Some(Request::Leave | Request::Suspend)) {
                 break;
             }
         }
@@ -79,8 +79,8 @@ impl Viewer {
         let (size, capabilities) = (self.size(), *self.display.capabilities());
         match reply {
             // Terminals reply in order: first to the initial queries, then to those at the end of frames.
-            Reply::DeviceAttributes(_) if !self.display.questions().is_open() => self.pacing.take_reply(self.now),
-            &Reply::Mode { mode, .. } if self.pacing.take_mode(mode, self.now) => drop(self.display.close_questions()),
+            Reply::DeviceAttributes(_) if !self.display.queries().is_open() => self.pacing.take_reply(self.now),
+            &Reply::Mode { mode, .. } if self.pacing.take_mode(mode, self.now) => drop(self.display.close_queries()),
             reply => drop(self.display.take_reply(reply)),
         }
         self.heed_capabilities(&capabilities)?;
@@ -92,9 +92,9 @@ impl Viewer {
 
     /// Handles a reply with the flags of the kitty keyboard protocol.
     fn take_keyboard(&mut self, flags: u16) {
-        let hears_releases = self.display.knows_keyboard() && flags & KEYBOARD == KEYBOARD;
-        self.eye.set_hears_releases(hears_releases, self.now);
-        self.receiver.set_keys_are_sequences(hears_releases);
+        let reports_releases = self.display.knows_keyboard() && flags & KEYBOARD == KEYBOARD;
+        self.eye.set_reports_releases(reports_releases, self.now);
+        self.receiver.set_keys_are_sequences(reports_releases);
     }
 
     fn take_key(&mut self, key: &KeyEvent) {
@@ -102,7 +102,7 @@ impl Viewer {
         if is_press {
             self.screen.close::<Note>();
         }
-        let meant = self.bindings().command(&self.screen.modes(self.size()), key);
+        let meant = self.keymap().command(&self.screen.modes(self.size()), key);
         // An open question takes all keys, except unrelated ones with Ctrl, which may leave.
         let is_for_all = key.modifiers.contains(KeyModifiers::CONTROL);
         let answer = meant.map(|(command, _)| command).filter(|command| command.answers() || !is_for_all);
@@ -113,40 +113,40 @@ impl Viewer {
         if let Some((command, more)) = meant
             && (is_press || key.kind == KeyEventKind::Repeat && command.repeats())
         {
-            self.obey(command, more);
+            self.execute(command, more);
         }
     }
 
     /// Carries out a command that takes effect at once; `faster` (Shift) makes it larger. Continuous motion is the
     /// eye's.
-    pub(super) fn obey(&mut self, command: Command, more: bool) {
+    pub(super) fn execute(&mut self, command: Command, more: bool) {
         match command {
-            Command::Quit => self.asks.push_back(Ask::Leave),
-            Command::Suspend => self.asks.push_back(Ask::Suspend),
+            Command::Quit => self.requests.push_back(Request::Leave),
+            Command::Suspend => self.requests.push_back(Request::Suspend),
             Command::ChangeMode => self.change_mode(),
-            Command::Frame => self.frame_everything(),
-            Command::Narrower => self.zoom(1.0 / ZOOM),
-            Command::Wider => self.zoom(ZOOM),
+            Command::FrameAll => self.frame_everything(),
+            Command::Narrower => self.zoom(1.0 / ZOOM_FACTOR),
+            Command::Wider => self.zoom(ZOOM_FACTOR),
             Command::Turntable => self.toggle_turntable(),
             Command::View(number) => self.go_to_view(number),
             Command::SaveView => self.screen.open(Dialog::Save),
             Command::Reset => self.eye.reset(self.now),
-            Command::NextScene => self.asks.push_back(Ask::GoOn(1)),
-            Command::LastScene => self.asks.push_back(Ask::GoOn(-1)),
+            Command::NextScene => self.requests.push_back(Request::GoOn(1)),
+            Command::LastScene => self.requests.push_back(Request::GoOn(-1)),
             Command::CopyCamera => self.copy_camera(),
             Command::Export => self.ask_export(),
-            Command::KeepView => self.asks.extend(self.eye.camera().map(Ask::ProposeView)),
+            Command::KeepView => self.requests.extend(self.eye.camera().map(Request::ProposeView)),
             Command::Status => self.toggle_status(),
-            Command::Help => self.screen.turn_help(&self.options.bindings, self.display.size()),
+            Command::Help => self.screen.turn_help(&self.options.keymap, self.display.size()),
             Command::Close => self.close_topmost(),
             Command::Light => self.take_light(),
             Command::MoveLight(toward) => self.step_light(toward, more),
             Command::LightFarther => self.wheel_light(1.0),
             Command::LightNearer => self.wheel_light(-1.0),
             Command::LightBack => self.put_light_back(),
-            Command::NextMap => self.shown.go_on(Map::next),
-            Command::LastMap => self.shown.go_on(Map::back),
-            Command::Compare => self.shown.compare(),
+            Command::NextMap => self.layout.change_map(Map::next),
+            Command::LastMap => self.layout.change_map(Map::back),
+            Command::Compare => self.layout.compare(),
             Command::Wipe(side) => self.move_wipe(side),
             Command::Explain => self.screen.toggle_explaining(),
             Command::Point(toward) => self.point(toward, more),
@@ -174,7 +174,7 @@ impl Viewer {
     /// Closes the help; without it, releases a light; without one, closes the explanation.
     fn close_topmost(&mut self) {
         if self.screen.close::<HelpPanel>().is_none() && !self.leave_light() {
-            self.screen.close::<Explaining>();
+            self.screen.close::<ExplainPanel>();
         }
     }
 }

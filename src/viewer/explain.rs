@@ -3,14 +3,14 @@
 //! The text is computed when a frame arrives or the cursor moves, and drawn whenever the screen is.
 
 mod inset;
-mod place;
+mod placement;
 
 use super::frame::Frame;
 use super::help;
 use super::layers::{Canvas, Layer, Level};
-use super::look::{self, Look};
+use super::theme::{self, Theme};
 use crate::capabilities::CellMode;
-use crate::control::{Command, Mode};
+use crate::control::{Command, KeyMode};
 use crate::explain::{Explanation, cell_of_pixel, explain};
 use crate::framebuffer::Resolution;
 use crate::overlay;
@@ -24,10 +24,10 @@ use ratatui_widgets::block::Block;
 use ratatui_widgets::clear::Clear;
 use ratatui_widgets::paragraph::Paragraph;
 
-use place::{marks, panel_area};
+use placement::{marks, panel_area};
 
 /// The explained pixel and its explanation.
-pub(super) struct Explaining {
+pub(super) struct ExplainPanel {
     /// The pixel's coordinates on the screen.
     pixel: [u32; 2],
     /// The size of the screen in pixels.
@@ -40,13 +40,13 @@ pub(super) struct Explaining {
     scrolled: usize,
 }
 
-impl Layer for Explaining {
+impl Layer for ExplainPanel {
     fn level(&self) -> Level {
         Level::Side
     }
 
-    fn mode(&self, screen: Rect) -> Option<Mode> {
-        look::has_room(screen).then_some(Mode::Explain)
+    fn mode(&self, screen: Rect) -> Option<KeyMode> {
+        theme::has_room(screen).then_some(KeyMode::Explain)
     }
 
     /// Updates the explanation for a frame, which may be of another view or size.
@@ -58,7 +58,7 @@ impl Layer for Explaining {
         }
         let [x, y] = self.pixel;
         let scaled = |at: u32, old: u32, new: u32| (u64::from(at) * u64::from(new) / u64::from(old.max(1))) as u32;
-        self.put(frame, [scaled(x, old.width(), new.width()), scaled(y, old.height(), new.height())]);
+        self.move_to(frame, [scaled(x, old.width(), new.width()), scaled(y, old.height(), new.height())]);
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
@@ -68,18 +68,18 @@ impl Layer for Explaining {
         let (screen, mode) = (canvas.screen(), canvas.cell_mode);
         // The panel leaves the lowest row and the rows of the status line free.
         let above = Rect { height: screen.height - canvas.status_rows.saturating_sub(1), ..screen };
-        let scroll = help::keys(canvas.bindings, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
+        let scroll = help::keys(canvas.keymap, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
         let scroll = scroll.unwrap_or_default();
-        canvas.lay(panel_area(above, self.cell(mode)), |look, panel, buffer| {
-            self.paint(&scroll, look, mode, panel, buffer);
+        canvas.lay(panel_area(above, self.cell(mode)), |theme, panel, buffer| {
+            self.paint(&scroll, theme, mode, panel, buffer);
         });
-        for mark in marks(self, canvas.look(), mode, screen) {
+        for mark in marks(self, canvas.theme(), mode, screen) {
             overlay::lay_over(canvas.grid, &mark);
         }
     }
 }
 
-impl Explaining {
+impl ExplainPanel {
     /// Returns the pixel in the middle of the frame; `None` for an empty frame.
     pub(super) fn new(frame: &Frame) -> Option<Self> {
         let [width, height] = [frame.resolution().width(), frame.resolution().height()];
@@ -103,11 +103,11 @@ impl Explaining {
     /// Moves the cursor by these numbers of pixels to the right and down.
     pub(super) fn step(&mut self, frame: &Frame, [right, down]: [i32; 2]) {
         let [x, y] = self.pixel;
-        self.put(frame, [x.saturating_add_signed(right), y.saturating_add_signed(down)]);
+        self.move_to(frame, [x.saturating_add_signed(right), y.saturating_add_signed(down)]);
     }
 
     /// Moves the cursor to a pixel, clamped to the picture.
-    pub(super) fn put(&mut self, frame: &Frame, [x, y]: [u32; 2]) {
+    pub(super) fn move_to(&mut self, frame: &Frame, [x, y]: [u32; 2]) {
         let [width, height] = [frame.resolution().width(), frame.resolution().height()];
         if width > 0 && height > 0 {
             *self = Self::of(frame, [x.min(width - 1), y.min(height - 1)], self.scrolled);
@@ -139,22 +139,22 @@ impl Explaining {
     }
 
     /// Draws the panel: the text, with the keys that scroll it, and below it the view from the side.
-    fn paint(&mut self, scroll: &str, look: Look, mode: CellMode, area: Rect, buffer: &mut Buffer) {
+    fn paint(&mut self, scroll: &str, theme: Theme, mode: CellMode, area: Rect, buffer: &mut Buffer) {
         let lines = self.lines(mode);
         let inside = area.inner(Margin::new(2, 1));
-        let [text, inset] = place::split(inside, lines.len() as u16);
+        let [text, inset] = placement::split(inside, lines.len() as u16);
         self.scrolled = self.scrolled.min(lines.len().saturating_sub(text.height.into()));
         let last = lines.len().min(self.scrolled + usize::from(text.height));
         Clear.render(area, buffer);
-        let mut block = Block::bordered().border_set(look.border()).style(look.style()).title(" explain ");
+        let mut block = Block::bordered().border_set(theme.border()).style(theme.style()).title(" explain ");
         if usize::from(text.height) < lines.len() {
             let first = self.scrolled + 1;
             block = block.title_bottom(format!(" {first}-{last} of {}: {scroll} ", lines.len()));
         }
         block.render(area, buffer);
         let seen: Vec<_> = lines.into_iter().skip(self.scrolled).map(Line::from).collect();
-        Paragraph::new(seen).style(look.style()).render(text, buffer);
-        self.inset.draw(look, mode, self.resolution, inset, buffer);
+        Paragraph::new(seen).style(theme.style()).render(text, buffer);
+        self.inset.draw(theme, mode, self.resolution, inset, buffer);
     }
 }
 

@@ -1,20 +1,20 @@
 //! The camera of the shown scene, and its motion by keys.
 
 use crate::camera::{Camera, Pose};
-use crate::control::{self, Command, Mode, Motion, Pace};
+use crate::control::{self, Command, KeyMode, KeySpeed, Motion};
 use crate::scene::Scene;
 use crossterm::event::{KeyEvent, KeyEventKind};
 use glam::Vec3;
 use std::time::Duration;
 
 /// The motion in the first frame after a key press: as if the key had been held for the time of a frame.
-pub(crate) const FRAME: Duration = Duration::from_micros(16_667);
+pub(crate) const FIRST_FRAME_MOTION: Duration = Duration::from_micros(16_667);
 
 /// The camera and the motion of it.
 #[derive(Default)]
 pub(super) struct Eye {
     /// `None` without a scene.
-    view: Option<View>,
+    view: Option<ViewState>,
     motion: Motion,
     /// Whether the turntable is on.
     turntable: bool,
@@ -26,7 +26,7 @@ pub(super) struct Eye {
 
 /// The state of looking at a scene.
 #[derive(Clone)]
-pub(super) struct View {
+pub(super) struct ViewState {
     home: Camera,
     camera: Camera,
     speed: f32,
@@ -38,7 +38,7 @@ pub(super) struct View {
     saved: [Option<Camera>; 9],
 }
 
-impl View {
+impl ViewState {
     /// Returns the initial view of a scene.
     pub(super) fn of(scene: &Scene, orbits: bool) -> Self {
         let home = *scene.camera();
@@ -59,17 +59,17 @@ impl View {
 }
 
 /// Time for which a held key moves as far as one step: a tenth of the way to the target, or nine degrees.
-const STEP: Duration = Duration::from_millis(200);
+const REDUCED_MOTION_STEP: Duration = Duration::from_millis(200);
 
 impl Eye {
     /// Returns an eye without a scene. With `reduced_motion` each press is one step at once and nothing glides, for
     /// people prone to motion sickness.
-    pub(super) fn new(pace: Pace, steps: bool) -> Self {
-        Self { motion: Motion::at_pace(pace), steps, ..Self::default() }
+    pub(super) fn new(key_speed: KeySpeed, steps: bool) -> Self {
+        Self { motion: Motion::with_speed(key_speed), steps, ..Self::default() }
     }
 
     /// Looks at another scene. Returns the view of the previous one.
-    pub(super) fn open(&mut self, view: View) -> Option<View> {
+    pub(super) fn open(&mut self, view: ViewState) -> Option<ViewState> {
         self.turntable = false;
         self.view.replace(view)
     }
@@ -102,7 +102,7 @@ impl Eye {
     }
 
     /// Carries out the motion up to `now`.
-    pub(super) fn go_on(&mut self, now: Duration) {
+    pub(super) fn advance(&mut self, now: Duration) {
         let Some(since) = self.moved_until else { return };
         self.moved_until = (self.turntable || self.motion.is_moving(now)).then_some(now);
         let Some(view) = &mut self.view else { return };
@@ -114,7 +114,7 @@ impl Eye {
 
     /// Changes the camera by `change`, which gets the scene's size, and stops the turntable.
     pub(super) fn change(&mut self, now: Duration, change: impl FnOnce(&Camera, f32) -> Camera) {
-        self.go_on(now);
+        self.advance(now);
         self.turntable = false;
         if let Some(view) = &mut self.view {
             view.camera = change(&view.camera, view.speed);
@@ -123,15 +123,15 @@ impl Eye {
 
     /// Starts or stops the turntable.
     pub(super) fn toggle_turntable(&mut self, now: Duration) {
-        self.go_on(now);
+        self.advance(now);
         self.turntable = !self.turntable;
-        self.begin(now);
+        self.start_motion(now);
     }
 
     /// Starts the motion. The first frame already shows the motion of a frame's time.
-    fn begin(&mut self, now: Duration) {
+    fn start_motion(&mut self, now: Duration) {
         let moves = self.turntable || self.motion.is_moving(now);
-        self.moved_until = moves.then(|| self.moved_until.unwrap_or(now.saturating_sub(FRAME)));
+        self.moved_until = moves.then(|| self.moved_until.unwrap_or(now.saturating_sub(FIRST_FRAME_MOTION)));
     }
 
     /// Goes to the view saved as `number`, from 1, or that view of the scene file. `None` if there is none.
@@ -153,8 +153,8 @@ impl Eye {
     }
 
     /// Returns whether the eye flies or orbits.
-    pub(super) fn mode(&self) -> Mode {
-        if self.view.as_ref().is_some_and(|view| view.orbits) { Mode::Orbit } else { Mode::Fly }
+    pub(super) fn mode(&self) -> KeyMode {
+        if self.view.as_ref().is_some_and(|view| view.orbits) { KeyMode::Orbit } else { KeyMode::Fly }
     }
 
     /// Switches between flight and orbit. Orbit starts around the point seen in the middle of the picture, which leaves
@@ -173,10 +173,10 @@ impl Eye {
             self.take_step(key, meant);
             return;
         }
-        self.go_on(now);
+        self.advance(now);
         self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.moves());
         self.motion.take_key(key, meant, now);
-        self.begin(now);
+        self.start_motion(now);
     }
 
     /// Moves by one step, for a press or a repeat.
@@ -185,33 +185,33 @@ impl Eye {
         // With reduced motion no key is held: steps are the only motion.
         let mut motion = self.motion.clone();
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
-        view.camera = motion.step(&view.camera, view.speed, Duration::ZERO, STEP);
+        view.camera = motion.step(&view.camera, view.speed, Duration::ZERO, REDUCED_MOTION_STEP);
     }
 
     /// Releases all keys.
-    pub(super) fn let_go(&mut self, now: Duration) {
-        self.go_on(now);
+    pub(super) fn release(&mut self, now: Duration) {
+        self.advance(now);
         self.motion.stop();
         self.moved_until = self.moved_until.filter(|_| self.turntable);
     }
 
     /// Stops all motion.
-    pub(super) fn stand_still(&mut self, now: Duration) {
-        self.let_go(now);
+    pub(super) fn stop(&mut self, now: Duration) {
+        self.release(now);
         self.turntable = false;
         self.moved_until = None;
     }
 
     /// Sets whether the terminal reports releases. Held keys are released if it no longer does.
-    pub(super) fn set_hears_releases(&mut self, hears_releases: bool, now: Duration) {
-        if self.hears_releases() && !hears_releases {
-            self.let_go(now);
+    pub(super) fn set_reports_releases(&mut self, reports_releases: bool, now: Duration) {
+        if self.reports_releases() && !reports_releases {
+            self.release(now);
         }
-        self.motion.set_hears_releases(hears_releases);
+        self.motion.set_reports_releases(reports_releases);
     }
 
-    fn hears_releases(&self) -> bool {
-        self.motion.hears_releases()
+    fn reports_releases(&self) -> bool {
+        self.motion.reports_releases()
     }
 
     /// Returns to the scene's own camera.

@@ -1,6 +1,6 @@
 //! A requested frame and a finished one.
 
-use super::shown::Shown;
+use super::view_layout::ViewLayout;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::render::{Cost, Sampling};
@@ -17,13 +17,13 @@ pub(crate) struct Shot {
     pub(crate) lights: u32,
     pub(crate) camera: Camera,
     pub(crate) resolution: Resolution,
-    pub(crate) shown: Shown,
+    pub(crate) layout: ViewLayout,
 }
 
 impl Shot {
     /// Returns whether tracing takes about as long as for `other`: only the camera or the lights may differ.
     pub(super) fn takes_as_long_as(&self, other: &Self) -> bool {
-        let about = |shot: &Self| (shot.scene, shot.resolution, shot.shown);
+        let about = |shot: &Self| (shot.scene, shot.resolution, shot.layout);
         about(self) == about(other)
     }
 }
@@ -71,7 +71,7 @@ impl Frame {
     /// side, each is a picture of its own. (A pixel of the line between them counts as the last one of the left map.)
     pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
         let resolution = self.resolution();
-        match *self.shot.shown.parts(resolution) {
+        match *self.shot.layout.parts(resolution) {
             [(_, left), (_, right)] if left.width() < resolution.width() => match x.checked_sub(left.width() + 1) {
                 Some(x) if x < right.width() => (right, [x, y]),
                 _ => (left, [x.min(left.width() - 1), y]),
@@ -82,7 +82,7 @@ impl Frame {
 
     /// Moves the line between two maps, if there is one, to this share of the width.
     pub(super) fn wipe(&mut self, share: f32) {
-        if let Some(picture) = self.shot.shown.joined(&self.parts, share) {
+        if let Some(picture) = self.shot.layout.combined(&self.parts, share) {
             self.picture = picture;
         }
     }

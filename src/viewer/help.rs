@@ -1,8 +1,8 @@
-//! The help and the short list of keys in the status line. Both are made from the bindings in force.
+//! The help and the short list of keys in the status line. Both are made from the keymap in force.
 
 use super::layers::{Canvas, Layer, Level};
-use super::look::{self, Look};
-use crate::control::{Bindings, Command, Direction, Key, Mode, Toward};
+use super::theme::{self, Theme};
+use crate::control::{Command, Direction, Key, KeyMode, Keymap, Toward};
 use crossterm::event::KeyCode;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::{Margin, Rect};
@@ -14,13 +14,13 @@ use std::collections::HashSet;
 use unicode_width::UnicodeWidthStr;
 
 /// Space between two columns.
-const GAP: usize = 2;
+const COLUMN_GAP: usize = 2;
 
 /// Cells beside the text: the border and a blank on each side.
-const FRAME: (u16, u16) = (4, 2);
+const PANEL_BORDER: (u16, u16) = (4, 2);
 
 /// Keys and their meaning.
-type Row = (String, &'static str);
+type KeyRow = (String, &'static str);
 
 /// The open page of the help.
 pub(super) struct HelpPanel {
@@ -32,10 +32,10 @@ impl HelpPanel {
     pub(super) const FIRST: Self = Self { page: 0 };
 
     /// Returns the next page; `None` after the last one, and where the screen has no room for any.
-    pub(super) fn next(&self, bindings: &Bindings, modes: &[Mode], screen: Rect) -> Option<Self> {
-        let pages = Help::new(bindings, modes, screen).pages();
+    pub(super) fn next(&self, keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> Option<Self> {
+        let pages = Help::new(keymap, modes, screen).pages();
         let page = self.page + 1;
-        (page < pages && look::has_room(screen)).then_some(Self { page })
+        (page < pages && theme::has_room(screen)).then_some(Self { page })
     }
 }
 
@@ -46,9 +46,9 @@ impl Layer for HelpPanel {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         if canvas.has_room() {
-            let help = Help::new(canvas.bindings, canvas.modes, canvas.screen());
+            let help = Help::new(canvas.keymap, canvas.modes, canvas.screen());
             let area = help.area(self.page, canvas.screen());
-            canvas.lay(area, |look, area, buffer| help.draw(self.page, look, area, buffer));
+            canvas.lay(area, |theme, area, buffer| help.draw(self.page, theme, area, buffer));
         } else {
             canvas.write_line(&no_room(), canvas.foot(0));
         }
@@ -64,10 +64,12 @@ struct Help {
 
 impl Help {
     /// Lays out the keys of these modes, topmost first.
-    fn new(bindings: &Bindings, modes: &[Mode], screen: Rect) -> Self {
-        let room = [screen.width.saturating_sub(FRAME.0), screen.height.saturating_sub(FRAME.1)].map(usize::from);
-        let modes_said: Vec<_> = modes.iter().filter(|mode| **mode != Mode::Always).map(|mode| mode.name()).collect();
-        Self { title: modes_said.join(", "), pages: pages(&rows(bindings, modes), room) }
+    fn new(keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> Self {
+        let room = [screen.width.saturating_sub(PANEL_BORDER.0), screen.height.saturating_sub(PANEL_BORDER.1)]
+            .map(usize::from);
+        let modes_said: Vec<_> =
+            modes.iter().filter(|mode| **mode != KeyMode::Always).map(|mode| mode.name()).collect();
+        Self { title: modes_said.join(", "), pages: pages(&rows(keymap, modes), room) }
     }
 
     /// Returns the number of pages.
@@ -90,20 +92,21 @@ impl Help {
     /// Returns the panel's area: in the middle, as large as its text, at most the screen.
     fn area(&self, page: usize, screen: Rect) -> Rect {
         let columns = self.page(page);
-        let text = columns.iter().map(|column| width(column)).sum::<usize>() + GAP * columns.len().saturating_sub(1);
+        let text =
+            columns.iter().map(|column| width(column)).sum::<usize>() + COLUMN_GAP * columns.len().saturating_sub(1);
         let lines = columns.iter().map(Vec::len).max().unwrap_or(0) as u16;
-        let width = (text as u16 + FRAME.0).max(self.title(page).width() as u16 + 2).min(screen.width);
-        let height = (lines + FRAME.1).min(screen.height);
+        let width = (text as u16 + PANEL_BORDER.0).max(self.title(page).width() as u16 + 2).min(screen.width);
+        let height = (lines + PANEL_BORDER.1).min(screen.height);
         Rect::new((screen.width - width) / 2, (screen.height - height) / 2, width, height)
     }
 
-    fn draw(&self, page: usize, look: Look, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, page: usize, theme: Theme, area: Rect, buffer: &mut Buffer) {
         Clear.render(area, buffer);
-        Block::bordered().border_set(look.border()).title(self.title(page)).style(look.style()).render(area, buffer);
+        Block::bordered().border_set(theme.border()).title(self.title(page)).style(theme.style()).render(area, buffer);
         let mut rest = area.inner(Margin::new(2, 1));
         for column in self.page(page) {
-            Paragraph::new(column.join("\n")).style(look.style()).render(rest, buffer);
-            let taken = (width(column) + GAP).min(rest.width.into()) as u16;
+            Paragraph::new(column.join("\n")).style(theme.style()).render(rest, buffer);
+            let taken = (width(column) + COLUMN_GAP).min(rest.width.into()) as u16;
             rest = Rect { x: rest.x + taken, width: rest.width - taken, ..rest };
         }
     }
@@ -111,27 +114,27 @@ impl Help {
 
 /// The message where the screen has no room for the help.
 fn no_room() -> String {
-    let (columns, rows) = look::LEAST;
+    let (columns, rows) = theme::MIN_PANEL_SCREEN;
     format!("help needs {columns}x{rows}")
 }
 
 /// Returns the keys in force and their meaning. A key that a higher mode binds is left out below. Of several keys for
 /// one command, such as digits, the first and the last are listed.
-fn rows(bindings: &Bindings, modes: &[Mode]) -> Vec<Row> {
+fn rows(keymap: &Keymap, modes: &[KeyMode]) -> Vec<KeyRow> {
     let mut taken = HashSet::new();
     let mut rows = Vec::new();
-    for row in modes.iter().flat_map(|&mode| bindings.of(mode)) {
+    for row in modes.iter().flat_map(|&mode| keymap.of(mode)) {
         let keys: Vec<_> = row.keys.iter().filter(|key| taken.insert(**key)).map(Key::to_string).collect();
         if !keys.is_empty() {
-            rows.push((keys.join(" "), row.command.does()));
+            rows.push((keys.join(" "), row.command.description()));
         }
     }
     rows.push(("Shift".to_owned(), "with a movement: faster"));
-    let alike = rows.chunk_by(|(_, does), (_, next)| does == next);
+    let alike = rows.chunk_by(|(_, description), (_, next)| description == next);
     alike.map(|rows| (joined(rows), rows[0].1)).collect()
 }
 
-fn joined(rows: &[Row]) -> String {
+fn joined(rows: &[KeyRow]) -> String {
     match rows {
         [(first, _), .., (last, _)] => format!("{first}..{last}"),
         _ => rows.iter().map(|(label, _)| label.as_str()).collect(),
@@ -139,7 +142,7 @@ fn joined(rows: &[Row]) -> String {
 }
 
 /// Breaks the rows into as few columns as fit on one page; if these are too wide together, into fewer, and pages.
-fn pages(rows: &[Row], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
+fn pages(rows: &[KeyRow], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
     let lines = lines.max(1);
     let needed = rows.len().div_ceil(lines).max(1);
     let laid_out = |count: usize| {
@@ -147,14 +150,16 @@ fn pages(rows: &[Row], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
         let pages = rows.chunks(lines * count).map(|page| page.chunks(lines).map(column).collect::<Vec<_>>());
         pages.collect::<Vec<_>>()
     };
-    let fits = |page: &Vec<Vec<String>>| page.iter().map(|column| width(column) + GAP).sum::<usize>() <= columns + GAP;
+    let fits = |page: &Vec<Vec<String>>| {
+        page.iter().map(|column| width(column) + COLUMN_GAP).sum::<usize>() <= columns + COLUMN_GAP
+    };
     (2..=needed).rev().map(laid_out).find(|pages| pages.iter().all(fits)).unwrap_or_else(|| laid_out(1))
 }
 
 /// Returns a line for each row.
-fn column(rows: &[Row]) -> Vec<String> {
+fn column(rows: &[KeyRow]) -> Vec<String> {
     let labels = rows.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
-    rows.iter().map(|(label, does)| format!("{label}{:1$}  {does}", "", labels - label.width())).collect()
+    rows.iter().map(|(label, description)| format!("{label}{:1$}  {description}", "", labels - label.width())).collect()
 }
 
 fn width(lines: &[String]) -> usize {
@@ -162,13 +167,13 @@ fn width(lines: &[String]) -> usize {
 }
 
 /// Returns the mode's name and as many of its important keys as fit.
-pub(super) fn line(bindings: &Bindings, modes: &[Mode], room: usize) -> String {
+pub(super) fn status_line(keymap: &Keymap, modes: &[KeyMode], room: usize) -> String {
     let Some(&mode) = modes.first() else { return String::new() };
     let always = [(&[Command::Help][..], "help"), (&[Command::Quit], "leave")];
     let mut line = format!(" {}", mode.name());
-    for (commands, does) in always.into_iter().chain(matter(mode).iter().copied()) {
-        if let Some(keys) = keys(bindings, modes, commands) {
-            let item = format!("   {keys} {does}");
+    for (commands, description) in always.into_iter().chain(status_line_keys(mode).iter().copied()) {
+        if let Some(keys) = keys(keymap, modes, commands) {
+            let item = format!("   {keys} {description}");
             if line.width() + item.width() < room {
                 line += &item;
             }
@@ -178,7 +183,7 @@ pub(super) fn line(bindings: &Bindings, modes: &[Mode], room: usize) -> String {
 }
 
 /// Returns the important commands of a mode, with a word for each.
-fn matter(mode: Mode) -> &'static [(&'static [Command], &'static str)] {
+fn status_line_keys(mode: KeyMode) -> &'static [(&'static [Command], &'static str)] {
     const MOVE: &[Command] = &[
         Command::Move(Direction::Forward),
         Command::Move(Direction::Left),
@@ -210,33 +215,33 @@ fn matter(mode: Mode) -> &'static [(&'static [Command], &'static str)] {
         Command::MoveLight(Toward::Down),
     ];
     match mode {
-        Mode::Fly => {
+        KeyMode::Fly => {
             &[(&[Command::ChangeMode], "orbit"), (MOVE, "move"), (LOOK, "look"), (&[Command::Explain], "explain")]
         }
-        Mode::Orbit => &[
+        KeyMode::Orbit => &[
             (&[Command::ChangeMode], "fly"),
             (AROUND, "turn"),
             (&[Command::Nearer, Command::Farther], "distance"),
             (&[Command::Explain], "explain"),
         ],
-        Mode::Explain => &[
+        KeyMode::Explain => &[
             (POINT, "another pixel"),
             (&[Command::ScrollUp, Command::ScrollDown], "more"),
             (&[Command::Close], "close"),
         ],
-        Mode::Light => &[
+        KeyMode::Light => &[
             (LIGHT, "move it"),
             (&[Command::Close], "done"),
             (&[Command::LightBack], "back"),
             (&[Command::LightFarther, Command::LightNearer], "distance"),
         ],
-        Mode::Export | Mode::Keep | Mode::Always => &[],
+        KeyMode::Export | KeyMode::Keep | KeyMode::Always => &[],
     }
 }
 
 /// Returns a key for each command, if all have one; for the four arrows, the word "arrows".
-pub(super) fn keys(bindings: &Bindings, modes: &[Mode], commands: &[Command]) -> Option<String> {
-    let keys: Option<Vec<Key>> = commands.iter().map(|&command| bindings.key_of(modes, command)).collect();
+pub(super) fn keys(keymap: &Keymap, modes: &[KeyMode], commands: &[Command]) -> Option<String> {
+    let keys: Option<Vec<Key>> = commands.iter().map(|&command| keymap.key_of(modes, command)).collect();
     let keys = keys?;
     let arrows = [KeyCode::Left, KeyCode::Right, KeyCode::Up, KeyCode::Down].map(Key::named);
     let names: Vec<_> = keys.iter().map(Key::to_string).collect();
@@ -249,22 +254,22 @@ mod tests {
     use super::*;
     use crate::capabilities::CellMode;
 
-    fn all_modes() -> [Vec<Mode>; 4] {
-        let under = |mode| vec![mode, Mode::Always];
-        let above = |mode| vec![mode, Mode::Fly, Mode::Always];
-        [under(Mode::Fly), under(Mode::Orbit), above(Mode::Explain), above(Mode::Light)]
+    fn all_modes() -> [Vec<KeyMode>; 4] {
+        let under = |mode| vec![mode, KeyMode::Always];
+        let above = |mode| vec![mode, KeyMode::Fly, KeyMode::Always];
+        [under(KeyMode::Fly), under(KeyMode::Orbit), above(KeyMode::Explain), above(KeyMode::Light)]
     }
 
     /// Returns the text of all pages on a screen of this size.
-    fn shown(bindings: &Bindings, modes: &[Mode], columns: u16, rows: u16) -> String {
+    fn shown(keymap: &Keymap, modes: &[KeyMode], columns: u16, rows: u16) -> String {
         let screen = Rect::new(0, 0, columns, rows);
-        let help = Help::new(bindings, modes, screen);
+        let help = Help::new(keymap, modes, screen);
         let mut text = String::new();
         for page in 0..help.pages() {
             let area = help.area(page, screen);
             assert!(area.right() <= columns && area.bottom() <= rows);
             let mut buffer = Buffer::empty(area);
-            help.draw(page, Look::of(CellMode::HALF_BLOCK), area, &mut buffer);
+            help.draw(page, Theme::of(CellMode::HALF_BLOCK), area, &mut buffer);
             for y in area.top()..area.bottom() {
                 text.extend((area.left()..area.right()).map(|x| buffer[(x, y)].symbol()));
                 text.push('\n');
@@ -276,50 +281,50 @@ mod tests {
     /// Asserts that the help fits on one page of a common screen.
     #[test]
     fn all_of_it_is_shown_wherever_there_is_room_for_panels() {
-        let bindings = Bindings::default();
+        let keymap = Keymap::default();
         for modes in all_modes() {
             for (columns, rows) in [(80, 24), (200, 60), (40, 12), (41, 24), (300, 12)] {
-                let text = shown(&bindings, &modes, columns, rows);
-                for (keys, does) in super::rows(&bindings, &modes) {
-                    let line = text.lines().any(|line| line.contains(&keys) && line.contains(does));
-                    assert!(line, "{keys} {does} in {columns}x{rows}:\n{text}");
+                let text = shown(&keymap, &modes, columns, rows);
+                for (keys, description) in super::rows(&keymap, &modes) {
+                    let line = text.lines().any(|line| line.contains(&keys) && line.contains(description));
+                    assert!(line, "{keys} {description} in {columns}x{rows}:\n{text}");
                 }
             }
         }
         for (columns, rows) in [(1, 1), (4, 2), (5, 3), (39, 11)] {
-            shown(&bindings, &[Mode::Fly, Mode::Always], columns, rows);
+            shown(&keymap, &[KeyMode::Fly, KeyMode::Always], columns, rows);
         }
     }
 
     #[test]
     fn it_goes_by_what_is_bound() {
-        let mut bindings = Bindings::default();
-        bindings.bind(Mode::Fly, Key::letter('8'), Some(Command::Move(Direction::Forward)));
-        bindings.bind(Mode::Fly, Key::letter('w'), None);
-        bindings.bind(Mode::Always, Key::letter('o'), None);
-        let text = shown(&bindings, &[Mode::Fly, Mode::Always], 80, 24);
+        let mut keymap = Keymap::default();
+        keymap.bind(KeyMode::Fly, Key::letter('8'), Some(Command::Move(Direction::Forward)));
+        keymap.bind(KeyMode::Fly, Key::letter('w'), None);
+        keymap.bind(KeyMode::Always, Key::letter('o'), None);
+        let text = shown(&keymap, &[KeyMode::Fly, KeyMode::Always], 80, 24);
         assert!(text.contains("8        ") && text.contains("move forward"), "{text}");
         assert!(!text.contains("picture to a file"), "{text}");
-        assert_eq!(keys(&bindings, &[Mode::Fly], &[Command::Move(Direction::Forward)]).as_deref(), Some("8"));
-        assert_eq!(keys(&bindings, &[Mode::Fly, Mode::Always], &[Command::Export]), None);
+        assert_eq!(keys(&keymap, &[KeyMode::Fly], &[Command::Move(Direction::Forward)]).as_deref(), Some("8"));
+        assert_eq!(keys(&keymap, &[KeyMode::Fly, KeyMode::Always], &[Command::Export]), None);
     }
 
     /// A key bound in a higher mode is not listed for the lower one.
     #[test]
     fn a_key_is_told_of_once() {
-        let text = shown(&Bindings::default(), &[Mode::Explain, Mode::Fly, Mode::Always], 80, 24);
+        let text = shown(&Keymap::default(), &[KeyMode::Explain, KeyMode::Fly, KeyMode::Always], 80, 24);
         assert_eq!(text.matches("Left").count(), 1, "{text}");
         assert!(text.contains("│ Left      cursor to the left"), "{text}");
     }
 
     #[test]
     fn the_line_has_as_much_as_fits() {
-        let bindings = Bindings::default();
-        let fly = [Mode::Fly, Mode::Always];
+        let keymap = Keymap::default();
+        let fly = [KeyMode::Fly, KeyMode::Always];
         let whole = " fly   ? help   q leave   Tab orbit   wasd move   arrows look   x explain";
-        assert_eq!(line(&bindings, &fly, 80), whole);
-        assert_eq!(line(&bindings, &fly, 40), " fly   ? help   q leave   Tab orbit");
-        let explain = line(&bindings, &[Mode::Explain, Mode::Orbit, Mode::Always], 80);
+        assert_eq!(status_line(&keymap, &fly, 80), whole);
+        assert_eq!(status_line(&keymap, &fly, 40), " fly   ? help   q leave   Tab orbit");
+        let explain = status_line(&keymap, &[KeyMode::Explain, KeyMode::Orbit, KeyMode::Always], 80);
         assert_eq!(explain, " explain   ? help   q leave   arrows another pixel   PageUp PageDown more");
     }
 }

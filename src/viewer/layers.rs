@@ -3,9 +3,9 @@
 //! A new panel is one file with a type that implements [`Layer`], and the line that opens it.
 
 use super::frame::Frame;
-use super::look::{self, Look};
+use super::theme::{self, Theme};
 use crate::capabilities::CellMode;
-use crate::control::{Bindings, Mode};
+use crate::control::{KeyMode, Keymap};
 use crate::grid::Grid;
 use crate::overlay;
 use ratatui_core::buffer::Buffer;
@@ -25,7 +25,7 @@ pub(super) enum Level {
     /// In the lowest rows, upwards.
     Status,
     Legend,
-    Fault,
+    Error,
     /// In the lowest row until the next key.
     Note,
     /// A question that has to be answered.
@@ -40,7 +40,7 @@ pub(super) trait Layer: Any {
     fn draw(&mut self, canvas: &mut Canvas<'_>);
 
     /// Returns the mode that keys have while the layer is open on a screen of this size.
-    fn mode(&self, _screen: Rect) -> Option<Mode> {
+    fn mode(&self, _screen: Rect) -> Option<KeyMode> {
         None
     }
 
@@ -85,13 +85,13 @@ impl Layers {
     }
 
     /// Returns the modes of keys on a screen of this size, topmost first, with `below` under all layers.
-    pub(super) fn modes(&self, screen: Rect, moving: Mode) -> Vec<Mode> {
+    pub(super) fn modes(&self, screen: Rect, moving: KeyMode) -> Vec<KeyMode> {
         if let Some(question) = self.stack.iter().find(|layer| layer.takes_all_keys()) {
-            return question.mode(screen).into_iter().chain([Mode::Always]).collect();
+            return question.mode(screen).into_iter().chain([KeyMode::Always]).collect();
         }
         // Layers on things in the picture take precedence over panels.
         let layers = self.stack.iter().filter_map(|layer| layer.mode(screen));
-        layers.chain([moving, Mode::Always]).collect()
+        layers.chain([moving, KeyMode::Always]).collect()
     }
 
     /// Updates all layers for a new frame.
@@ -116,18 +116,18 @@ fn is<L: Layer>(layer: &dyn Layer) -> bool {
 pub(super) struct Canvas<'a> {
     pub(super) grid: &'a mut Grid,
     pub(super) cell_mode: CellMode,
-    pub(super) bindings: &'a Bindings,
+    pub(super) keymap: &'a Keymap,
     /// The modes of keys, topmost first.
-    pub(super) modes: &'a [Mode],
+    pub(super) modes: &'a [KeyMode],
     pub(super) frame: Option<&'a Frame>,
-    pub(super) figures: Figures,
+    pub(super) figures: FrameStatistics,
     /// Number of rows at the bottom that the status line takes.
     pub(super) status_rows: u16,
 }
 
 /// Statistics of the frames shown.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Figures {
+pub(super) struct FrameStatistics {
     /// Time for cells and bytes of the last frame.
     pub(super) encode: Duration,
     /// Frames shown per second, while something moves.
@@ -139,33 +139,33 @@ pub(super) struct Figures {
 impl Canvas<'_> {
     /// Returns the area of all cells.
     pub(super) fn screen(&self) -> Rect {
-        look::area(self.grid.size())
+        theme::area(self.grid.size())
     }
 
-    pub(super) fn look(&self) -> Look {
-        Look::of(self.cell_mode)
+    pub(super) fn theme(&self) -> Theme {
+        Theme::of(self.cell_mode)
     }
 
     /// Returns whether the screen is large enough for panels.
     pub(super) fn has_room(&self) -> bool {
-        look::has_room(self.screen())
+        theme::has_room(self.screen())
     }
 
     /// Returns the row that has `below` others under it, counted from the bottom.
     pub(super) fn foot(&self, below: u16) -> Rect {
-        look::foot(self.screen(), below)
+        theme::foot(self.screen(), below)
     }
 
     /// Draws on a ratatui buffer over an area of the cells.
-    pub(super) fn lay(&mut self, area: Rect, draw: impl FnOnce(Look, Rect, &mut Buffer)) {
+    pub(super) fn lay(&mut self, area: Rect, draw: impl FnOnce(Theme, Rect, &mut Buffer)) {
         let mut buffer = Buffer::empty(area);
-        draw(self.look(), area, &mut buffer);
+        draw(self.theme(), area, &mut buffer);
         overlay::lay_over(self.grid, &buffer);
     }
 
     /// Writes text on a row of its own.
     pub(super) fn write_line(&mut self, text: &str, row: Rect) {
-        self.lay(row, |look, area, buffer| look::draw_line(text, look, area, buffer));
+        self.lay(row, |theme, area, buffer| theme::draw_line(text, theme, area, buffer));
     }
 }
 
@@ -182,8 +182,8 @@ mod tests {
             self.0
         }
 
-        fn mode(&self, _: Rect) -> Option<Mode> {
-            (LETTER == 'L').then_some(Mode::Light)
+        fn mode(&self, _: Rect) -> Option<KeyMode> {
+            (LETTER == 'L').then_some(KeyMode::Light)
         }
 
         fn takes_all_keys(&self) -> bool {
@@ -197,12 +197,12 @@ mod tests {
 
     fn topmost(layers: &mut Layers) -> String {
         let mut grid = Grid::new(Size::new(1, 1));
-        let (bindings, figures) = (Bindings::default(), Figures::default());
+        let (keymap, figures) = (Keymap::default(), FrameStatistics::default());
         let mode = CellMode::HALF_BLOCK;
         layers.draw(&mut Canvas {
             grid: &mut grid,
             cell_mode: mode,
-            bindings: &bindings,
+            keymap: &keymap,
             modes: &[],
             frame: None,
             figures,
@@ -226,8 +226,8 @@ mod tests {
     fn a_question_takes_all_keys_and_others_lie_over_movement() {
         let (screen, mut layers) = (Rect::new(0, 0, 80, 24), Layers::default());
         layers.open(Letter::<'L'>(Level::Mark));
-        assert_eq!(layers.modes(screen, Mode::Fly), [Mode::Light, Mode::Fly, Mode::Always]);
+        assert_eq!(layers.modes(screen, KeyMode::Fly), [KeyMode::Light, KeyMode::Fly, KeyMode::Always]);
         layers.open(Letter::<'?'>(Level::Question));
-        assert_eq!(layers.modes(screen, Mode::Fly), [Mode::Always]);
+        assert_eq!(layers.modes(screen, KeyMode::Fly), [KeyMode::Always]);
     }
 }

@@ -1,7 +1,7 @@
 //! The legend of a map in the lowest row; with two maps, one under each.
 
 use super::layers::{Canvas, Layer, Level};
-use super::look::Look;
+use super::theme::Theme;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
 use ratatui_core::widgets::Widget;
@@ -17,14 +17,14 @@ impl Layer for Legends {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         let legends = canvas.frame.filter(|_| canvas.has_room()).map_or(&[][..], |frame| &frame.legends);
-        for (text, area) in shared(legends, canvas.foot(canvas.status_rows)) {
-            canvas.lay(area, |look, area, buffer| draw(text, look, area, buffer));
+        for (text, area) in legend_areas(legends, canvas.foot(canvas.status_rows)) {
+            canvas.lay(area, |theme, area, buffer| draw(text, theme, area, buffer));
         }
     }
 }
 
 /// Returns each text with its area, as wide as the text, so that the picture continues beside it.
-fn shared(texts: &[String], line: Rect) -> impl Iterator<Item = (&str, Rect)> {
+fn legend_areas(texts: &[String], line: Rect) -> impl Iterator<Item = (&str, Rect)> {
     let count = texts.len().max(1) as u16;
     (0..).zip(texts).map(move |(at, text)| {
         let room = line.width / count;
@@ -33,22 +33,25 @@ fn shared(texts: &[String], line: Rect) -> impl Iterator<Item = (&str, Rect)> {
     })
 }
 
-pub(super) fn draw(text: &str, look: Look, area: Rect, buffer: &mut Buffer) {
-    Paragraph::new(format!(" {text} ")).style(look.style()).render(area, buffer);
+pub(super) fn draw(text: &str, theme: Theme, area: Rect, buffer: &mut Buffer) {
+    Paragraph::new(format!(" {text} ")).style(theme.style()).render(area, buffer);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::viewer::look::foot;
+    use crate::viewer::theme::foot;
 
     #[test]
     fn each_map_has_its_legend_below_it() {
         let screen = Rect::new(0, 0, 81, 24);
         let texts = ["shaded".to_owned(), "depth: white 0, grey 6.41, black far".to_owned()];
-        let places: Vec<_> = shared(&texts, foot(screen, 0)).map(|(_, area)| area).collect();
+        let places: Vec<_> = legend_areas(&texts, foot(screen, 0)).map(|(_, area)| area).collect();
         assert_eq!(places, [Rect::new(0, 23, 8, 1), Rect::new(41, 23, 38, 1)]);
         assert_eq!(foot(screen, 1).y, 22, "above the status line");
-        assert_eq!(shared(&texts[1..], Rect::new(0, 5, 20, 1)).next(), Some((&*texts[1], Rect::new(0, 5, 20, 1))));
+        assert_eq!(
+            legend_areas(&texts[1..], Rect::new(0, 5, 20, 1)).next(),
+            Some((&*texts[1], Rect::new(0, 5, 20, 1)))
+        );
     }
 }

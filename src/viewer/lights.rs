@@ -47,7 +47,7 @@ impl Lights {
     }
 
     /// Releases the held light. Returns whether there was one.
-    pub(super) fn let_go(&mut self) -> bool {
+    pub(super) fn release(&mut self) -> bool {
         self.held.take().is_some()
     }
 

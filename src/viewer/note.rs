@@ -13,7 +13,7 @@ impl Layer for Note {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         if canvas.has_room() {
-            canvas.lay(canvas.foot(0), |look, area, buffer| legend::draw(&self.0, look, area, buffer));
+            canvas.lay(canvas.foot(0), |theme, area, buffer| legend::draw(&self.0, theme, area, buffer));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The user's options for the view.
 
 use crate::capabilities::Hints;
-use crate::control::{Bindings, Pace};
+use crate::control::{KeySpeed, Keymap};
 use crate::encode::{Order, Quality};
 use crate::maps::Map;
 use crate::render::Sampling;
@@ -29,7 +29,7 @@ pub struct Options {
     pub threads: Option<usize>,
     /// The speed of moving and turning by keys.
     #[doc(hidden)]
-    pub pace: Pace,
+    pub key_speed: KeySpeed,
     /// Whether motion is reduced: each key press moves one step at once, and nothing glides or moves by itself.
     pub reduced_motion: bool,
     /// The folder for exports. `None`: the user may not export.
@@ -38,9 +38,9 @@ pub struct Options {
     pub welcome: Option<String>,
     /// The first map to show.
     pub map: Map,
-    /// The key bindings.
+    /// The key keymap.
     #[doc(hidden)]
-    pub bindings: Bindings,
+    pub keymap: Keymap,
 }
 
 /// Returns the defaults for this terminal and machine.
@@ -62,12 +62,12 @@ impl Options {
             max_frames: None,
             sampling: None,
             threads: None,
-            pace: Pace::default(),
+            key_speed: KeySpeed::default(),
             reduced_motion: false,
             exports: None,
             welcome: None,
             map: Map::Shaded,
-            bindings: Bindings::default(),
+            keymap: Keymap::default(),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Bookkeeping of the frames begun and bytes sent, from which sampling and byte limits follow.
 
-use super::effort::Effort;
 use super::frame::{Frame, Shot};
 use super::options::Options;
+use super::quality_control::QualityControl;
 use crate::pace::{Limit, Link};
 use crate::render::Sampling;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use std::time::Duration;
 /// The link, and the use of a frame's time.
 pub(super) struct Pacing {
     link: Link,
-    effort: Effort,
+    quality: QualityControl,
     /// The last frame of a new view.
     begun: Option<Begun>,
 }
@@ -25,7 +25,7 @@ struct Begun {
 impl Pacing {
     pub(super) fn new(options: &Options, may_ask: bool) -> Self {
         let link = Link::new(options.max_rate, options.max_frames, may_ask);
-        Self { link, effort: Effort::new(options.sampling), begun: None }
+        Self { link, quality: QualityControl::new(options.sampling), begun: None }
     }
 
     /// Returns whether `shot` is that of the last frame begun.
@@ -42,26 +42,26 @@ impl Pacing {
     pub(super) fn begin(&mut self, shot: Shot, in_motion: bool, now: Duration) -> Sampling {
         let before = self.begun.replace(Begun { shot, at: now, in_motion });
         if before.as_ref().is_some_and(|before| !shot.takes_as_long_as(&before.shot)) {
-            self.effort.forget_last();
+            self.quality.forget_last();
         }
         // On a slow link the next frame begins when a reply arrives, so tracing adds to the link's time.
-        self.effort.of_new_view(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
+        self.quality.for_new_view(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
     }
 
     /// Returns the sampling of the next refinement of a picture with this sampling; `None` at the end.
-    pub(super) fn next_step(&self, sampling: Sampling) -> Option<Sampling> {
-        self.effort.of_next_step(sampling)
+    pub(super) fn next_refinement(&self, sampling: Sampling) -> Option<Sampling> {
+        self.quality.next_refinement(sampling)
     }
 
     /// Returns whether all further refinements of the last picture are expected to take at most this long together.
     pub(super) fn ends_within(&self, time: Duration) -> bool {
-        self.effort.ends_within(time)
+        self.quality.ends_within(time)
     }
 
     /// Records a finished frame.
     pub(super) fn took(&mut self, frame: &Frame) {
         if !frame.refines {
-            self.effort.took(frame.sampling, frame.trace, self.link.frame_time());
+            self.quality.took(frame.sampling, frame.trace, self.link.frame_time());
         }
     }
 

@@ -1,7 +1,7 @@
 //! The progress panel of a load.
 
 use super::layers::{Canvas, Layer, Level};
-use super::look::Look;
+use super::theme::Theme;
 use crate::progress::{Progress, Work};
 use crate::text::visible;
 use ratatui_core::buffer::Buffer;
@@ -23,7 +23,7 @@ impl Layer for ProgressPanel {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        canvas.lay(area(canvas.screen()), |look, area, buffer| draw(&self.0, look, area, buffer));
+        canvas.lay(area(canvas.screen()), |theme, area, buffer| draw(&self.0, theme, area, buffer));
     }
 }
 
@@ -38,16 +38,16 @@ fn area(screen: Rect) -> Rect {
     Rect::new((screen.width - width) / 2, y, width, height)
 }
 
-fn draw(progress: &Progress, look: Look, area: Rect, buffer: &mut Buffer) {
+fn draw(progress: &Progress, theme: Theme, area: Rect, buffer: &mut Buffer) {
     Clear.render(area, buffer);
-    Block::bordered().border_set(look.border()).style(look.style()).render(area, buffer);
+    Block::bordered().border_set(theme.border()).style(theme.style()).render(area, buffer);
     let inside = area.inner(Margin::new(2, 1));
-    let lines = [what_is_done(&progress.work, look, inside.width.into()), bar(progress, look, inside.width.into())];
-    Paragraph::new(lines.map(Line::from).to_vec()).style(look.style()).render(inside, buffer);
+    let lines = [what_is_done(&progress.work, theme, inside.width.into()), bar(progress, theme, inside.width.into())];
+    Paragraph::new(lines.map(Line::from).to_vec()).style(theme.style()).render(inside, buffer);
 }
 
 /// Returns the work and, if there is room, the file's name; of a long name its end, which says more than its beginning.
-fn what_is_done(work: &Work, look: Look, width: usize) -> String {
+fn what_is_done(work: &Work, theme: Theme, width: usize) -> String {
     let (verb, name) = match work {
         Work::Reading(name) => ("reading", name),
         Work::Parsing(name) => ("parsing", name),
@@ -55,7 +55,7 @@ fn what_is_done(work: &Work, look: Look, width: usize) -> String {
     };
     let room = width.saturating_sub(verb.len() + 1);
     let name = Path::new(name).file_name().map_or_else(|| name.into(), |name| name.to_string_lossy());
-    let is_shown = |c: char| c.is_ascii() || !look.bar()[0].is_ascii();
+    let is_shown = |c: char| c.is_ascii() || !theme.bar()[0].is_ascii();
     let mut name: String = visible(&name).chars().map(|c| if is_shown(c) { c } else { '?' }).collect();
     while name.width() > room {
         name.remove(0);
@@ -64,7 +64,7 @@ fn what_is_done(work: &Work, look: Look, width: usize) -> String {
 }
 
 /// Returns a bar of this width with the percentage; `None` if the total is unknown.
-fn bar(progress: &Progress, look: Look, width: usize) -> String {
+fn bar(progress: &Progress, theme: Theme, width: usize) -> String {
     if progress.total == 0 {
         return String::new();
     }
@@ -72,7 +72,7 @@ fn bar(progress: &Progress, look: Look, width: usize) -> String {
     let per_cent = format!(" {:3.0} %", (100.0 * share).floor());
     let room = width.saturating_sub(per_cent.len());
     let filled = (share * room as f64) as usize;
-    let [done, open] = look.bar();
+    let [done, open] = theme.bar();
     (0..room).map(|at| if at < filled { done } else { open }).chain(per_cent.chars()).collect()
 }
 
@@ -86,7 +86,7 @@ mod tests {
         let place = area(Rect::new(0, 0, columns, rows));
         assert!(place.right() <= columns && place.bottom() <= rows);
         let mut buffer = Buffer::empty(place);
-        draw(progress, Look::of(cell_mode), place, &mut buffer);
+        draw(progress, Theme::of(cell_mode), place, &mut buffer);
         let row = |y| (place.left()..place.right()).map(|x| buffer[(x, y)].symbol()).collect::<String>();
         (place.top()..place.bottom()).map(row).collect()
     }

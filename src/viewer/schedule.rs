@@ -16,7 +16,7 @@ pub(crate) enum Tracing {
 
 /// The state of the driver's two outputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Busy {
+pub(crate) struct DriverState {
     /// Whether bytes wait for the terminal to accept them.
     pub(crate) sending: bool,
     /// The frame being traced, if any.
@@ -37,7 +37,7 @@ pub(super) enum Picture {
 /// The facts that the decision depends on. Times are those of the viewer's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Facts {
-    pub(super) busy: Busy,
+    pub(super) busy: DriverState,
     pub(super) picture: Picture,
     /// Whether nothing has been shown yet and the first picture is expected to be final soon.
     pub(super) holds_first_back: bool,
@@ -127,7 +127,7 @@ impl Facts {
     /// Returns the time until which there is nothing to do; `None` when nothing moves and the picture is final, or
     /// while the terminal accepts bytes, whose end the driver notices.
     fn wake_at(&self, draw_at: Option<Duration>, frame_at: Duration) -> Option<Duration> {
-        let Busy { sending, tracing } = self.busy;
+        let DriverState { sending, tracing } = self.busy;
         let moves = self.picture == Picture::Stale || self.moved_until.is_some();
         let can_refine = self.picture == Picture::Refinable;
         let lacks_frame = moves && tracing != Some(Tracing::NewView) || tracing.is_none() && can_refine;
@@ -147,7 +147,7 @@ mod tests {
 
     /// Returns the facts at rest: nothing moves, and the screen is up to date.
     const AT_REST: Facts = Facts {
-        busy: Busy { sending: false, tracing: None },
+        busy: DriverState { sending: false, tracing: None },
         picture: Picture::Finished,
         holds_first_back: false,
         begun: Some(Duration::from_secs(1)),
@@ -158,8 +158,8 @@ mod tests {
         improvable_at: None,
     };
 
-    fn tracing(tracing: Tracing) -> Busy {
-        Busy { sending: false, tracing: Some(tracing) }
+    fn tracing(tracing: Tracing) -> DriverState {
+        DriverState { sending: false, tracing: Some(tracing) }
     }
 
     #[test]
@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn nothing_is_drawn_or_begun_that_cannot_be_sent() {
         for picture in [Picture::Stale, Picture::Refinable] {
-            let busy = Busy { sending: true, tracing: None };
+            let busy = DriverState { sending: true, tracing: None };
             let facts = Facts { busy, picture, is_changed: true, improvable_at: Some(Duration::ZERO), ..AT_REST };
             assert_eq!(decide(&facts, NOW), Action::Wait(None), "the driver knows when all is sent");
         }
@@ -224,9 +224,9 @@ mod tests {
         (0_u64..20_000).prop_map(Duration::from_millis)
     }
 
-    fn busy() -> impl Strategy<Value = Busy> {
+    fn busy() -> impl Strategy<Value = DriverState> {
         let tracing = option::of(prop_oneof![Just(Tracing::NewView), Just(Tracing::Refinement)]);
-        (any::<bool>(), tracing).prop_map(|(sending, tracing)| Busy { sending, tracing })
+        (any::<bool>(), tracing).prop_map(|(sending, tracing)| DriverState { sending, tracing })
     }
 
     fn picture() -> impl Strategy<Value = Picture> {
@@ -261,7 +261,7 @@ mod tests {
         fn what_is_begun_can_be_sent(facts in facts()) {
             match decide(&facts, NOW) {
                 Action::Draw => prop_assert!(!facts.busy.sending),
-                Action::Trace | Action::Refine => prop_assert_eq!(facts.busy, Busy::default()),
+                Action::Trace | Action::Refine => prop_assert_eq!(facts.busy, DriverState::default()),
                 Action::GiveUp => prop_assert_eq!(facts.busy.tracing, Some(Tracing::Refinement)),
                 Action::Wait(_) => {}
             }
@@ -270,7 +270,7 @@ mod tests {
         /// The final picture is reached by the ends of frames and sends alone.
         #[test]
         fn no_work_is_forgotten(facts in facts()) {
-            let is_idle = facts.busy == Busy::default();
+            let is_idle = facts.busy == DriverState::default();
             let has_work = facts.is_changed || facts.picture != Picture::Finished || facts.moved_until.is_some();
             if is_idle && has_work {
                 prop_assert_ne!(decide(&facts, NOW), Action::Wait(None));

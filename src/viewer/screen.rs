@@ -1,18 +1,18 @@
 //! The last frame with the layers over it, and the bytes that update the terminal.
 
-use super::explain::Explaining;
+use super::explain::ExplainPanel;
 use super::frame::Frame;
 use super::help::HelpPanel;
-use super::layers::{Canvas, Figures, Layer, Layers};
+use super::layers::{Canvas, FrameStatistics, Layer, Layers};
 use super::legend::Legends;
-use super::look;
 use super::progress::ProgressPanel;
-use super::shown::MIDDLE;
 use super::status::StatusLine;
+use super::theme;
 use super::tracked::Tracked;
+use super::view_layout::INITIAL_WIPE;
 use crate::capabilities::{Capabilities, Colors};
 use crate::cell::{self, Painter};
-use crate::control::{Bindings, Mode};
+use crate::control::{KeyMode, Keymap};
 use crate::encode::{Allowance, Encoder, Order, Quality};
 use crate::grid::{Grid, Size};
 use crate::pace::Limit;
@@ -20,10 +20,10 @@ use std::time::Duration;
 
 /// Least time between frames that only make colours exact. They become exact in a few frames, of which tmux then drops
 /// none.
-const BREATH: Duration = Duration::from_millis(33);
+const EXACT_COLORS_INTERVAL: Duration = Duration::from_millis(33);
 
 /// Approximate bytes per cell of a frame in which everything moves.
-const BYTES_PER_CELL: usize = 8;
+const USUAL_BYTES_PER_CELL: usize = 8;
 
 /// Erases the whole window (ED 2), which many terminals fill with the pen's colour.
 const ERASE: &[u8] = b"\x1b[2J";
@@ -54,14 +54,14 @@ struct Content {
     /// Position of the line between two maps, as a share of the width.
     wipe: f32,
     /// Whether the eye flies or orbits.
-    moving: Mode,
+    moving: KeyMode,
     layers: Layers,
 }
 
 impl Content {
     /// Returns the modes of keys on a screen of this size, topmost first.
-    fn modes(&self, size: Size) -> Vec<Mode> {
-        self.layers.modes(look::area(size), self.moving)
+    fn modes(&self, size: Size) -> Vec<KeyMode> {
+        self.layers.modes(theme::area(size), self.moving)
     }
 }
 
@@ -70,7 +70,7 @@ impl Screen {
         let mut layers = Layers::default();
         layers.open(Legends);
         Self {
-            content: Tracked::new(Content { frame: None, wipe: MIDDLE, moving: Mode::Fly, layers }),
+            content: Tracked::new(Content { frame: None, wipe: INITIAL_WIPE, moving: KeyMode::Fly, layers }),
             painter: painter(capabilities),
             encoder: encoder(Encoder::new(), capabilities),
             grid: Grid::new(Size::new(0, 0)),
@@ -85,7 +85,7 @@ impl Screen {
 
     /// Returns the approximate bytes of a frame in which everything moves.
     pub(super) fn usual_bytes(size: Size) -> usize {
-        BYTES_PER_CELL * size.cell_count()
+        USUAL_BYTES_PER_CELL * size.cell_count()
     }
 
     /// Adopts new findings about the terminal.
@@ -164,10 +164,10 @@ impl Screen {
     }
 
     /// Opens the help, turns to its next page, or closes it after the last one.
-    pub(super) fn turn_help(&mut self, bindings: &Bindings, size: Size) {
+    pub(super) fn turn_help(&mut self, keymap: &Keymap, size: Size) {
         let page = match self.close::<HelpPanel>() {
             None => Some(HelpPanel::FIRST),
-            Some(page) => page.next(bindings, &self.modes(size), look::area(size)),
+            Some(page) => page.next(keymap, &self.modes(size), theme::area(size)),
         };
         if let Some(page) = page {
             self.open(page);
@@ -175,12 +175,12 @@ impl Screen {
     }
 
     /// Returns the modes of keys on a screen of this size, topmost first.
-    pub(super) fn modes(&self, size: Size) -> Vec<Mode> {
+    pub(super) fn modes(&self, size: Size) -> Vec<KeyMode> {
         self.content.modes(size)
     }
 
     /// Sets whether the eye flies or orbits.
-    pub(super) fn set_moving(&mut self, moving: Mode) {
+    pub(super) fn set_moving(&mut self, moving: KeyMode) {
         if self.content.moving != moving {
             self.content.moving = moving;
         }
@@ -188,16 +188,16 @@ impl Screen {
 
     /// Starts or ends the explanation of a pixel.
     pub(super) fn toggle_explaining(&mut self) {
-        if self.close::<Explaining>().is_none()
-            && let Some(explaining) = self.frame().and_then(Explaining::new)
+        if self.close::<ExplainPanel>().is_none()
+            && let Some(explaining) = self.frame().and_then(ExplainPanel::new)
         {
             self.open(explaining);
         }
     }
 
     /// Changes the explanation.
-    pub(super) fn explain(&mut self, change: impl FnOnce(&mut Explaining, &Frame)) {
-        if self.get::<Explaining>().is_none() {
+    pub(super) fn explain(&mut self, change: impl FnOnce(&mut ExplainPanel, &Frame)) {
+        if self.get::<ExplainPanel>().is_none() {
             return;
         }
         let Content { frame, layers, .. } = &mut *self.content;
@@ -223,7 +223,7 @@ impl Screen {
     /// Returns the time at which the shown colours can be made exact, if they are not.
     pub(super) fn improvable_at(&self, size: Size) -> Option<Duration> {
         let due = self.encoder.due().filter(|_| self.can_show(size))?;
-        Some(self.drawn.map_or(due, |drawn| due.max(drawn + BREATH)))
+        Some(self.drawn.map_or(due, |drawn| due.max(drawn + EXACT_COLORS_INTERVAL)))
     }
 
     /// Returns whether the scene is still loading, so that at best a sketch of it is shown.
@@ -243,13 +243,13 @@ impl Screen {
     pub(super) fn draw(
         &mut self,
         size: Size,
-        bindings: &Bindings,
+        keymap: &Keymap,
         limit: Option<Limit>,
         now: Duration,
         bytes: &mut Vec<u8>,
     ) {
         let slow = limit.and_then(|limit| limit.rate);
-        let figures = Figures { encode: self.encode, frames_per_second: self.rate.frames_per_second, slow };
+        let figures = FrameStatistics { encode: self.encode, frames_per_second: self.rate.frames_per_second, slow };
         let cell_mode = self.painter.mode();
         self.content.settle();
         let content = self.content.quietly();
@@ -258,13 +258,13 @@ impl Screen {
             Some(frame) => self.painter.paint(&frame.picture, grid),
             None => grid.clear(size),
         }
-        let area = look::area(grid.size());
+        let area = theme::area(grid.size());
         let status_rows = content.layers.get::<StatusLine>().map_or(0, |_| StatusLine::rows(area));
         let modes = content.modes(grid.size());
         content.layers.draw(&mut Canvas {
             grid: &mut *grid,
             cell_mode,
-            bindings,
+            keymap,
             modes: &modes,
             frame: content.frame.as_ref(),
             figures,
@@ -311,7 +311,7 @@ impl FrameRate {
         let between = self.last.zip(moving).map(|(last, now)| now.saturating_sub(last));
         self.last = moving;
         self.frames_per_second =
-            between.filter(|&between| between < PAUSE && between > Duration::ZERO).map(|between| {
+            between.filter(|&between| between < MAX_MOTION_GAP && between > Duration::ZERO).map(|between| {
                 let now = 1.0 / between.as_secs_f32();
                 // The mean over about eight frames, so that the figure can be read.
                 self.frames_per_second.map_or(now, |mean| mean + (now - mean) / 8.0)
@@ -320,7 +320,7 @@ impl FrameRate {
 }
 
 /// Frames further apart than this do not belong to one motion.
-const PAUSE: Duration = Duration::from_millis(500);
+const MAX_MOTION_GAP: Duration = Duration::from_millis(500);
 
 #[cfg(test)]
 mod tests {
@@ -331,7 +331,7 @@ mod tests {
     use crate::scene::Scene;
     use crate::tone::tone;
     use crate::viewer::frame::Shot;
-    use crate::viewer::shown::Shown;
+    use crate::viewer::view_layout::ViewLayout;
     use std::num::NonZeroU32;
 
     /// Returns the order of cells: by colour while the link is slow, raster otherwise, unless the user has chosen one.
@@ -351,7 +351,7 @@ mod tests {
         let light = crate::render::render(&scene, scene.camera(), resolution, NonZeroU32::MIN);
         let frame = || Frame {
             scene: scene.clone(),
-            shot: Shot { scene: 0, lights: 0, camera: *scene.camera(), resolution, shown: Shown::default() },
+            shot: Shot { scene: 0, lights: 0, camera: *scene.camera(), resolution, layout: ViewLayout::default() },
             picture: tone(&light, &scene),
             parts: Vec::new(),
             legends: Vec::new(),
@@ -374,7 +374,7 @@ mod tests {
             let mut wanted = Vec::new();
             Encoder::new().with_order(order).encode(&grid, &mut wanted);
             let mut bytes = Vec::new();
-            screen.draw(size, &Bindings::default(), link, Duration::ZERO, &mut bytes);
+            screen.draw(size, &Keymap::default(), link, Duration::ZERO, &mut bytes);
             assert!(bytes == wanted, "{asked:?} {link:?}");
         }
     }

@@ -1,8 +1,8 @@
 //! The status line: statistics of the last frame, and below them the important keys.
 
 use super::help;
-use super::layers::{Canvas, Figures, Layer, Level};
-use super::look;
+use super::layers::{Canvas, FrameStatistics, Layer, Level};
+use super::theme;
 use crate::grid::Size;
 use crate::render::Sampling;
 use glam::Vec3;
@@ -15,7 +15,7 @@ pub(super) struct StatusLine;
 impl StatusLine {
     /// Returns the number of rows: the statistics, and the keys below them where there is room for panels.
     pub(super) fn rows(screen: Rect) -> u16 {
-        1 + u16::from(look::has_room(screen))
+        1 + u16::from(theme::has_room(screen))
     }
 }
 
@@ -26,7 +26,7 @@ impl Layer for StatusLine {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         let Some(frame) = canvas.frame else { return };
-        let Figures { encode, frames_per_second: shown, slow } = canvas.figures;
+        let FrameStatistics { encode, frames_per_second: shown, slow } = canvas.figures;
         let status = Status {
             cells: canvas.grid.size(),
             sampling: frame.sampling,
@@ -38,7 +38,7 @@ impl Layer for StatusLine {
             eye: frame.camera().pose().eye,
         };
         if canvas.status_rows > 1 {
-            let keys = help::line(canvas.bindings, canvas.modes, canvas.screen().width.into());
+            let keys = help::status_line(canvas.keymap, canvas.modes, canvas.screen().width.into());
             canvas.write_line(&keys, canvas.foot(1));
         }
         canvas.write_line(&status.text(), canvas.foot(0));

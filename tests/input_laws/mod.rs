@@ -3,7 +3,7 @@
 
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Duration;
-use termtrace::internals::control::{Bindings, COAST, GLIDE, Mode, Motion};
+use termtrace::internals::control::{COAST_TIME, GLIDE_TIME, KeyMode, Keymap, Motion};
 use termtrace::internals::input::{Input, MAX_PASTE_WAITS, Parser};
 
 /// Panics if a law is broken for these bytes, of which the first says how the rest is split.
@@ -100,7 +100,7 @@ fn no_key_is_invented(start: Parser, bytes: &[u8]) {
 /// without releases is silent, all stands still.
 fn no_key_is_stuck(keys_are_sequences: bool, pieces: &[&[u8]]) {
     let mut motion = Motion::default();
-    motion.set_hears_releases(keys_are_sequences);
+    motion.set_reports_releases(keys_are_sequences);
     let (mut parser, mut now) = (parser(keys_are_sequences), Duration::ZERO);
     for piece in pieces {
         let mut out = Vec::new();
@@ -111,7 +111,7 @@ fn no_key_is_stuck(keys_are_sequences: bool, pieces: &[&[u8]]) {
         now += Duration::from_millis(30);
     }
     let mut let_go = motion.clone();
-    for key in Bindings::default().rows().iter().flat_map(|row| &row.keys) {
+    for key in Keymap::default().rows().iter().flat_map(|row| &row.keys) {
         for state in [crossterm::event::KeyEventState::NONE, crossterm::event::KeyEventState::KEYPAD] {
             let kind = KeyEventKind::Release;
             let release = KeyEvent::new_with_kind_and_state(key.code, KeyModifiers::NONE, kind, state);
@@ -120,7 +120,7 @@ fn no_key_is_stuck(keys_are_sequences: bool, pieces: &[&[u8]]) {
     }
     assert!(!let_go.is_moving(now), "all keys are let go: {let_go:?}");
     if !keys_are_sequences {
-        assert!(!motion.is_moving(now + GLIDE), "{motion:?}");
+        assert!(!motion.is_moving(now + GLIDE_TIME), "{motion:?}");
     }
     take(&mut motion, &Input::Event(Event::FocusLost), now);
 }
@@ -129,13 +129,13 @@ fn take(motion: &mut Motion, input: &Input, now: Duration) {
     match input {
         Input::Event(Event::Key(key)) => {
             let before = motion.is_moving(now);
-            motion.take_key(key, Bindings::default().command(&[Mode::Fly, Mode::Always], key), now);
+            motion.take_key(key, Keymap::default().command(&[KeyMode::Fly, KeyMode::Always], key), now);
             if key.kind == KeyEventKind::Release {
                 // Of two opposite keys, the other is then alone.
-                assert!(before || motion.hears_releases() || !motion.is_moving(now), "a release began a movement");
+                assert!(before || motion.reports_releases() || !motion.is_moving(now), "a release began a movement");
             }
-            if key.kind == KeyEventKind::Repeat && !motion.hears_releases() {
-                assert!(!motion.is_moving(now + COAST), "a repeat goes on for too long");
+            if key.kind == KeyEventKind::Repeat && !motion.reports_releases() {
+                assert!(!motion.is_moving(now + COAST_TIME), "a repeat goes on for too long");
             }
         }
         Input::Event(Event::FocusLost) => {

@@ -4,7 +4,7 @@
 use crate::pty::{Deadline, SOON, Seen, Session, Size, Start};
 use rustix::process::Signal;
 use std::time::{Duration, Instant};
-use termtrace::internals::control::GLIDE;
+use termtrace::internals::control::GLIDE_TIME;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 const PUSH: &[u8] = b"\x1b[>15u";
@@ -94,7 +94,7 @@ fn a_key_moves_from_its_press_to_its_release() {
     press(&session, 'w');
     session.wait_for("a movement", SOON, |seen| !seen.screen().text().concat().contains("eye 0.00 1.00 5.00"));
     // Farther than any glide, without a repeat.
-    let (glide, frame) = (SPEED * GLIDE.as_secs_f32(), SPEED / 60.0);
+    let (glide, frame) = (SPEED * GLIDE_TIME.as_secs_f32(), SPEED / 60.0);
     session.wait_for("more than a glide", SOON, |seen| eye_in(seen)[2] < 5.0 - 1.2 * glide);
     release(&session, 'w');
     session.wait_for_rest();

@@ -7,7 +7,7 @@ use rustix::process::{Signal, kill_process};
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
 use std::time::Duration;
-use termtrace::internals::control::GLIDE;
+use termtrace::internals::control::GLIDE_TIME;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
@@ -558,7 +558,7 @@ fn no_key_is_stuck() {
     session.wait_for_text("status <148>");
     let before = session.seen().bytes().len();
     // The glide would be over now.
-    session.sees(GLIDE, |_| false);
+    session.sees(GLIDE_TIME, |_| false);
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
     stands_still(&mut session);

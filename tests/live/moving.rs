@@ -7,7 +7,7 @@ use std::io::Write;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::time::Duration;
-use termtrace::internals::control::{Bindings, Command, Mode};
+use termtrace::internals::control::{Command, KeyMode, Keymap};
 use termtrace::{CellMode, Colors, Encoder, Glyphs, Grid, Order, Scene};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
@@ -156,9 +156,9 @@ fn reset_brings_the_first_view_back_and_quiet_is_quiet() {
 fn help_shows_every_binding_and_goes_away() {
     let mut session = looking(termtrace());
     session.send(b"?");
-    let bindings = Bindings::default();
-    for binding in bindings.of(Mode::Fly).chain(bindings.of(Mode::Always)) {
-        session.wait_for_text(binding.command.does());
+    let keymap = Keymap::default();
+    for binding in keymap.of(KeyMode::Fly).chain(keymap.of(KeyMode::Always)) {
+        session.wait_for_text(binding.command.description());
         // Many for the same are in one row.
         if !matches!(binding.command, Command::View(_)) {
             session.wait_for_text(&binding.label());

@@ -7,7 +7,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::time::Duration;
 use termtrace::internals::capabilities::Hints;
-use termtrace::internals::protocol::Questions;
+use termtrace::internals::protocol::InitialQueries;
 use termtrace::{CellMode, Colors, Glyphs, Grid, Scene, Srgb8};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
@@ -305,7 +305,7 @@ fn a_signal_waits_for_answers_too_but_not_for_ever() {
 fn no_question_leaves_a_trace_on_the_screen() {
     for term in ["xterm-256color", "tmux-256color", "screen-256color", "linux", "dumb", "vt100"] {
         let variable = |name: &str| (name == "TERM").then(|| term.to_owned());
-        let questions = Questions::all(&Hints::gather(&variable, &|_| None));
+        let questions = InitialQueries::all(&Hints::gather(&variable, &|_| None));
         let mut screen = pty::Screen::new(80, 24);
         screen.feed(questions.bytes());
         for text in [screen.text().concat(), screen.second_opinion().contents()] {

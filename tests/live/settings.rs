@@ -3,7 +3,7 @@
 use crate::pty::{SOON, Session, Size, Start};
 use std::fs;
 use tempfile::TempDir;
-use termtrace::internals::control::{Bindings, Mode};
+use termtrace::internals::control::{KeyMode, Keymap};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 
@@ -163,9 +163,9 @@ fn the_help_has_pages_where_the_screen_is_small() {
     }
     session.send(b"?");
     wait_for_no(&mut session, "keys: fly");
-    let bindings = Bindings::default();
-    for row in bindings.of(Mode::Fly).chain(bindings.of(Mode::Always)) {
-        assert!(told.contains(row.command.does()), "{row:?} in {told}");
+    let keymap = Keymap::default();
+    for row in keymap.of(KeyMode::Fly).chain(keymap.of(KeyMode::Always)) {
+        assert!(told.contains(row.command.description()), "{row:?} in {told}");
     }
     leave(&mut session);
 }

@@ -195,7 +195,7 @@ fn scenes() -> Vec<Case> {
             made(CameraPath::orbit(camera(), f64::NAN).camera_at(f64::NAN))
         }),
         ("camera dragged by NaN", With("true"), || {
-            let (mode, grip) = (control::Mode::Orbit, control::Grip::Turn);
+            let (mode, grip) = (control::KeyMode::Orbit, control::Grip::Turn);
             (control::dragged(&camera(), mode, grip, Vec2::NAN, f32::NAN) == camera()).to_string()
         }),
         ("mesh with a bad index", With("true"), || {

@@ -1,6 +1,6 @@
 //! What holds for any bytes that are read as a scene, a camera path or a file of keys: for the tests and for the fuzzer.
 
-use termtrace::internals::control::Bindings;
+use termtrace::internals::control::Keymap;
 use termtrace::internals::scene_text::text_from;
 use termtrace::{CameraPath, Scene, SceneError};
 
@@ -30,10 +30,10 @@ pub(crate) fn camera_path(bytes: &[u8]) {
 
 /// A table that can be written and read again, or faults that can be shown.
 pub(crate) fn keys(bytes: &[u8]) {
-    match text_from("keys.ron", bytes).and_then(|text| Bindings::from_ron("keys.ron", text)) {
-        Ok(bindings) => {
-            let written = bindings.to_ron();
-            let again = Bindings::from_ron("keys.ron", &written).expect("what was written can be read");
+    match text_from("keys.ron", bytes).and_then(|text| Keymap::from_ron("keys.ron", text)) {
+        Ok(keymap) => {
+            let written = keymap.to_ron();
+            let again = Keymap::from_ron("keys.ron", &written).expect("what was written can be read");
             assert_eq!(again.to_ron(), written);
         }
         Err(error) => assert_shown(&error, bytes),

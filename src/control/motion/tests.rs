@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::camera::{Pose, ViewRectangle};
-use crate::control::{Bindings, Mode};
+use crate::control::{KeyMode, Keymap};
 
 /// Keys that mean what they do when one flies.
 trait Flown {
@@ -11,7 +11,7 @@ trait Flown {
 
 impl Flown for Motion {
     fn key(&mut self, key: &KeyEvent, now: Duration) {
-        self.take_key(key, Bindings::default().command(&[Mode::Fly, Mode::Always], key), now);
+        self.take_key(key, Keymap::default().command(&[KeyMode::Fly, KeyMode::Always], key), now);
     }
 }
 
@@ -39,7 +39,7 @@ fn release(c: char) -> KeyEvent {
 /// Keys pressed at time 0 on a terminal that tells of releases, and kept down.
 fn holding(keys: &str) -> Motion {
     let mut motion = Motion::default();
-    motion.set_hears_releases(true);
+    motion.set_reports_releases(true);
     for c in keys.chars() {
         motion.key(&press(c), ms(0));
     }
@@ -64,15 +64,15 @@ const HERE: [f32; 3] = [0.0, 0.0, 4.0];
 
 #[test]
 fn ways_and_turns_have_a_pace_of_their_own() {
-    let after = |keys, pace| {
-        let motion = Motion { pace, ..holding(keys) };
+    let after = |keys, key_speed| {
+        let motion = Motion { key_speed, ..holding(keys) };
         after(&motion, ms(1_000))
     };
-    let usual = Pace::default();
-    let (eye, _) = after("w", Pace { moving: 2.0, ..usual });
+    let usual = KeySpeed::default();
+    let (eye, _) = after("w", KeySpeed { moving: 2.0, ..usual });
     assert!(eye.abs_diff_eq(Vec3::new(0.0, 0.0, 2.0), 1e-5), "{eye}");
-    assert_eq!(after("w", Pace { turning: 2.0, ..usual }), after("w", usual));
-    let (_, view) = after("l", Pace { turning: 2.0, moving: 5.0 });
+    assert_eq!(after("w", KeySpeed { turning: 2.0, ..usual }), after("w", usual));
+    let (_, view) = after("l", KeySpeed { turning: 2.0, moving: 5.0 });
     assert!(view.abs_diff_eq(Vec3::X, 1e-5), "{view}");
 }
 
@@ -275,7 +275,7 @@ fn shift_makes_what_is_held_faster_while_it_is_held() {
 fn a_glide_from_before_releases_were_told_ends_as_a_glide() {
     let mut motion = Motion::default();
     motion.key(&press('w'), ms(0));
-    motion.set_hears_releases(true);
+    motion.set_reports_releases(true);
     assert!(motion.is_moving(ms(699)) && !motion.is_moving(ms(700)));
     let mut repeated = motion.clone();
     repeated.key(&event('w', KeyEventKind::Repeat), ms(660));
@@ -292,7 +292,7 @@ fn nothing_is_held_when_all_is_stopped_or_releases_are_no_longer_told() {
     assert!(!motion.is_moving(ms(0)));
     motion.key(&press('w'), ms(0));
     assert!(motion.is_moving(ms(5_000)), "pressed anew");
-    motion.set_hears_releases(false);
+    motion.set_reports_releases(false);
     assert!(!motion.is_moving(ms(0)));
     motion.key(&press('w'), ms(0));
     assert!(!motion.is_moving(ms(700)), "it glides again");
@@ -346,8 +346,8 @@ fn the_eye_goes_around_the_target() {
         let modifiers = if shift { KeyModifiers::SHIFT } else { KeyModifiers::NONE };
         let key = KeyEvent::new(key, modifiers);
         let mut motion = Motion::default();
-        motion.set_hears_releases(true);
-        motion.take_key(&key, Bindings::default().command(&[Mode::Orbit], &key), ms(0));
+        motion.set_reports_releases(true);
+        motion.take_key(&key, Keymap::default().command(&[KeyMode::Orbit], &key), ms(0));
         motion.step(&camera(), 2.0, ms(0), ms(1_000)).pose()
     };
     let turn = 4.0 * std::f32::consts::FRAC_1_SQRT_2;

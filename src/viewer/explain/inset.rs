@@ -6,7 +6,7 @@ use crate::explain::{Explanation, LightContribution};
 use crate::framebuffer::Resolution;
 use crate::light::Light;
 use crate::scene::Scene;
-use crate::viewer::look::Look;
+use crate::viewer::theme::Theme;
 use glam::{Vec2, Vec3};
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
@@ -25,19 +25,19 @@ pub(super) struct Inset {
     /// The end of the ray: its hit, or a point far away.
     end: Vec2,
     /// Whether the ray hits anything.
-    is_met: bool,
+    has_hit: bool,
     /// The sphere that is hit.
-    ball: Option<(Vec2, f32)>,
+    sphere: Option<(Vec2, f32)>,
     /// The ways from there to the lights, and whether each light is visible.
     lights: Vec<(Vec2, bool)>,
 }
 
 /// Length of a ray without a hit, in distances of the eye from the target.
-const FAR: f32 = 1.5;
+const MISS_LENGTH: f32 = 1.5;
 
 /// Distance at which the view rectangle is drawn, as a share of the ray. Only the ratios of its distance and sides
-/// matter, so it is drawn where it is shaded well.
-const NEAR: f32 = 0.3;
+/// matter, so it is drawn where it is easy to see.
+const VIEW_RECTANGLE_DISTANCE: f32 = 0.3;
 
 impl Inset {
     pub(super) fn of(scene: &Scene, camera: &Camera, explanation: &Explanation) -> Self {
@@ -45,11 +45,11 @@ impl Inset {
         let from_side = |point: Vec3| Vec2::new((eye - point).dot(w), (point - eye).dot(v));
         let shaded = explanation.hit.as_ref();
         let pose = camera.pose();
-        let t = shaded.map_or_else(|| FAR * pose.eye.distance(pose.target), |shaded| shaded.hit.t);
+        let t = shaded.map_or_else(|| MISS_LENGTH * pose.eye.distance(pose.target), |shaded| shaded.hit.t);
         let rays = camera.eye_rays(explanation.resolution.aspect_ratio());
-        let near = NEAR * t;
-        let ball = shaded.and_then(|shaded| shaded.hit.surface(scene).circle());
-        let ball = ball.map(|(center, radius)| (from_side(center), radius));
+        let near = VIEW_RECTANGLE_DISTANCE * t;
+        let sphere = shaded.and_then(|shaded| shaded.hit.surface(scene).circle());
+        let sphere = sphere.map(|(center, radius)| (from_side(center), radius));
         let lights = shaded.map_or(Vec::new(), |shaded| {
             // For a light at infinity its direction is drawn, as long as the ray.
             let far = |lit: &LightContribution| shaded.point.position + lit.incidence.l * t;
@@ -62,14 +62,14 @@ impl Inset {
             rectangle: [0.0, 1.0].map(|qv| from_side(rays.through(explanation.q.x, qv).at(near))),
             q: from_side(explanation.ray.at(near)),
             end: from_side(explanation.ray.at(t)),
-            is_met: shaded.is_some(),
-            ball,
+            has_hit: shaded.is_some(),
+            sphere,
             lights,
         }
     }
 
     /// Draws everything at one scale.
-    pub(super) fn draw(&self, look: Look, mode: CellMode, resolution: Resolution, area: Rect, buffer: &mut Buffer) {
+    pub(super) fn draw(&self, theme: Theme, mode: CellMode, resolution: Resolution, area: Rect, buffer: &mut Buffer) {
         if area.is_empty() {
             return;
         }
@@ -82,9 +82,9 @@ impl Inset {
             let [from, to] = [from, to].map(Vec2::as_dvec2);
             Line::new(from.x, from.y, to.x, to.y, ink(color))
         };
-        let style = look.style();
+        let style = theme.style();
         let canvas = Canvas::default().marker(marker).x_bounds(x).y_bounds(y).paint(|canvas| {
-            if let Some((center, radius)) = self.ball {
+            if let Some((center, radius)) = self.sphere {
                 let center = center.as_dvec2();
                 canvas.draw(&Circle::new(center.x, center.y, radius.into(), ink(Color::LightRed)));
             }
@@ -96,7 +96,7 @@ impl Inset {
             canvas.draw(&line(Vec2::ZERO, self.end, Color::LightGreen));
             canvas.layer();
             let letter = |text: &'static str| Text::styled(text, Style::new().patch(style));
-            for (at, name) in [(Vec2::ZERO, "o"), (self.q, "q"), (self.end, if self.is_met { "p" } else { "" })] {
+            for (at, name) in [(Vec2::ZERO, "o"), (self.q, "q"), (self.end, if self.has_hit { "p" } else { "" })] {
                 canvas.print(at.x.into(), at.y.into(), letter(name));
             }
         });

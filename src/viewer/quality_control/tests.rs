@@ -9,11 +9,11 @@ fn ms(milliseconds: f64) -> Duration {
 
 /// Flies on a machine whose picture at each level takes so many milliseconds; the levels of so many frames, the first
 /// after a rest.
-fn fly(effort: &mut Effort, frames: u32, mut time: impl FnMut(u32, usize) -> f64) -> Vec<usize> {
+fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usize) -> f64) -> Vec<usize> {
     let levels = (0..frames).map(|frame| {
-        let sampling = effort.of_new_view(frame > 0);
+        let sampling = control.for_new_view(frame > 0);
         let level = LEVELS.iter().position(|&level| level == sampling).expect("it is one of them");
-        effort.took(sampling, ms(time(frame, level)), FRAME);
+        control.took(sampling, ms(time(frame, level)), FRAME);
         level
     });
     levels.collect()
@@ -33,8 +33,8 @@ fn changes(levels: &[usize]) -> usize {
 fn as_many_samples_as_fit_the_time() {
     for (one, level) in [(0.1, 3), (1.0, 3), (1.6, 3), (2.5, 2), (4.5, 2), (8.0, 1), (12.0, 1), (14.0, 0), (1e3, 0)] {
         let time = machine(one);
-        let mut effort = Effort::new(None);
-        let levels = fly(&mut effort, 300, |_, level| time(level));
+        let mut control = QualityControl::new(None);
+        let levels = fly(&mut control, 300, |_, level| time(level));
         assert!(levels[60..].iter().all(|&it| it == level), "{one} ms: {levels:?}");
         // One level after the other, and at most one of them tried in vain.
         assert!(changes(&levels) <= 4, "{one} ms: {levels:?}");
@@ -43,25 +43,25 @@ fn as_many_samples_as_fit_the_time() {
 
 #[test]
 fn the_first_frame_after_a_rest_is_no_finer_than_one_sample() {
-    let mut effort = Effort::new(None);
-    assert_eq!(effort.of_new_view(false), LEVELS[1], "nothing is known");
-    fly(&mut effort, 100, |_, level| machine(0.5)(level));
-    assert_eq!((effort.of_new_view(false), effort.of_new_view(true)), (LEVELS[1], LEVELS[3]));
+    let mut control = QualityControl::new(None);
+    assert_eq!(control.for_new_view(false), LEVELS[1], "nothing is known");
+    fly(&mut control, 100, |_, level| machine(0.5)(level));
+    assert_eq!((control.for_new_view(false), control.for_new_view(true)), (LEVELS[1], LEVELS[3]));
     // On a slow machine it is coarser.
-    fly(&mut effort, 100, |_, level| machine(50.0)(level));
-    assert_eq!((effort.of_new_view(false), effort.of_new_view(true)), (LEVELS[0], LEVELS[0]));
+    fly(&mut control, 100, |_, level| machine(50.0)(level));
+    assert_eq!((control.for_new_view(false), control.for_new_view(true)), (LEVELS[0], LEVELS[0]));
 }
 
 #[test]
 fn a_scene_that_becomes_slow_is_soon_kept_up_with() {
-    let mut effort = Effort::new(None);
-    fly(&mut effort, 100, |_, level| machine(0.5)(level));
+    let mut control = QualityControl::new(None);
+    fly(&mut control, 100, |_, level| machine(0.5)(level));
     // Far too late: at once. A little: at the second frame.
-    let levels = fly(&mut effort, 20, |_, level| machine(5.0)(level));
+    let levels = fly(&mut control, 20, |_, level| machine(5.0)(level));
     assert!(levels[1..].iter().all(|&level| level == 2), "{levels:?}");
-    let mut effort = Effort::new(None);
-    fly(&mut effort, 100, |_, level| machine(1.6)(level));
-    let levels = fly(&mut effort, 20, |_, level| machine(2.5)(level));
+    let mut control = QualityControl::new(None);
+    fly(&mut control, 100, |_, level| machine(1.6)(level));
+    let levels = fly(&mut control, 20, |_, level| machine(2.5)(level));
     assert!(levels[..2] == [1, 3] && levels[2..].iter().all(|&level| level == 2), "{levels:?}");
 }
 
@@ -70,11 +70,11 @@ fn a_scene_that_becomes_slow_is_soon_kept_up_with() {
 fn no_level_flickers() {
     for tenth in 1..400 {
         let time = machine(f64::from(tenth) / 10.0);
-        let mut effort = Effort::new(None);
-        fly(&mut effort, 200, |_, level| time(level));
+        let mut control = QualityControl::new(None);
+        fly(&mut control, 200, |_, level| time(level));
         // A tenth more or less.
         let noise = |frame: u32| 0.9 + 0.2 * f64::from(frame.wrapping_mul(2_654_435_769) >> 16) / 65_536.0;
-        let levels = fly(&mut effort, 600, |frame, level| time(level) * noise(frame));
+        let levels = fly(&mut control, 600, |frame, level| time(level) * noise(frame));
         assert!(changes(&levels[1..]) <= 6, "{tenth} tenths of a millisecond: {levels:?}");
     }
 }
@@ -82,17 +82,17 @@ fn no_level_flickers() {
 /// Now and then something else on the machine holds a frame up.
 #[test]
 fn one_late_frame_changes_nothing() {
-    let mut effort = Effort::new(None);
-    fly(&mut effort, 100, |_, level| machine(1.0)(level));
-    let levels = fly(&mut effort, 100, |frame, level| machine(1.0)(level) * if frame % 10 == 9 { 3.0 } else { 1.0 });
+    let mut control = QualityControl::new(None);
+    fly(&mut control, 100, |_, level| machine(1.0)(level));
+    let levels = fly(&mut control, 100, |frame, level| machine(1.0)(level) * if frame % 10 == 9 { 3.0 } else { 1.0 });
     assert_eq!(changes(&levels[1..]), 0, "{levels:?}");
 }
 
 /// A finer level is tried when there has been room for it for a while, not as soon as there is.
 #[test]
 fn room_now_and_then_is_no_room() {
-    let mut effort = Effort::new(None);
-    let levels = fly(&mut effort, 200, |frame, level| machine(if frame % 4 == 3 { 9.0 } else { 2.0 })(level));
+    let mut control = QualityControl::new(None);
+    let levels = fly(&mut control, 200, |frame, level| machine(if frame % 4 == 3 { 9.0 } else { 2.0 })(level));
     assert_eq!(changes(&levels), 0, "{levels:?}");
 }
 
@@ -100,29 +100,29 @@ fn room_now_and_then_is_no_room() {
 /// again and again.
 #[test]
 fn what_a_level_takes_is_learnt() {
-    let mut effort = Effort::new(None);
-    let levels = fly(&mut effort, 600, |_, level| 4.0 * [0.25, 1.0, 4.0, 16.0][level]);
+    let mut control = QualityControl::new(None);
+    let levels = fly(&mut control, 600, |_, level| 4.0 * [0.25, 1.0, 4.0, 16.0][level]);
     assert!(levels.contains(&2) && changes(&levels) <= 6, "{levels:?}");
 }
 
 /// Frames that may take longer, as with few of them in a second, get more samples.
 #[test]
 fn the_time_of_a_frame_is_what_counts() {
-    let mut effort = Effort::new(None);
+    let mut control = QualityControl::new(None);
     for _ in 0..100 {
-        let sampling = effort.of_new_view(true);
+        let sampling = control.for_new_view(true);
         let level = LEVELS.iter().position(|&level| level == sampling).expect("it is one of them");
-        effort.took(sampling, ms(machine(10.0)(level)), 6 * FRAME);
+        control.took(sampling, ms(machine(10.0)(level)), 6 * FRAME);
     }
-    assert_eq!(effort.of_new_view(true), LEVELS[3]);
+    assert_eq!(control.for_new_view(true), LEVELS[3]);
 }
 
 /// From what is shown to the end, with three pictures at most in all.
 #[test]
 fn a_picture_that_stands_still_is_refined_to_the_end() {
-    let effort = Effort::new(None);
+    let control = QualityControl::new(None);
     for (first, steps) in [&[2, 4][..], &[4], &[4], &[4], &[]].into_iter().enumerate() {
-        let levels = |shown: &Sampling| effort.of_next_step(*shown);
+        let levels = |shown: &Sampling| control.next_refinement(*shown);
         let found: Vec<_> = std::iter::successors(Some(LEVELS[first]), levels).skip(1).collect();
         let steps: Vec<_> = steps.iter().map(|&level: &usize| LEVELS[level]).collect();
         assert_eq!(found, steps, "from {first}");
@@ -132,11 +132,11 @@ fn a_picture_that_stands_still_is_refined_to_the_end() {
 #[test]
 fn what_is_forced_is_all_there_is() {
     for sampling in [Sampling::BEST, Sampling::Each(NonZeroU32::MIN), Sampling::Each(NonZeroU32::new(9).expect("9"))] {
-        let mut effort = Effort::new(Some(sampling));
+        let mut control = QualityControl::new(Some(sampling));
         for _ in 0..20 {
-            effort.took(sampling, ms(500.0), FRAME);
+            control.took(sampling, ms(500.0), FRAME);
         }
-        assert_eq!([effort.of_new_view(false), effort.of_new_view(true)], [sampling; 2]);
-        assert_eq!(effort.of_next_step(sampling), None);
+        assert_eq!([control.for_new_view(false), control.for_new_view(true)], [sampling; 2]);
+        assert_eq!(control.next_refinement(sampling), None);
     }
 }

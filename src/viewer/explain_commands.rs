@@ -4,26 +4,26 @@ use super::Viewer;
 use crate::control::Toward;
 
 /// Pixels that the cursor moves per key press with Shift.
-const FASTER: i32 = 8;
+const SHIFT_CURSOR_PIXELS: i32 = 8;
 
 /// Lines that the panel scrolls per page.
-const PAGE: isize = 10;
+const PAGE_LINES: isize = 10;
 
 impl Viewer {
     /// Moves the cursor by one pixel, or by several if `faster`.
-    pub(super) fn point(&mut self, toward: Toward, more: bool) {
-        let pixels = if more { FASTER } else { 1 };
+    pub(super) fn point(&mut self, toward: Toward, faster: bool) {
+        let pixels = if faster { SHIFT_CURSOR_PIXELS } else { 1 };
         let step = match toward {
             Toward::Left => [-pixels, 0],
             Toward::Right => [pixels, 0],
             Toward::Up => [0, -pixels],
             Toward::Down => [0, pixels],
         };
-        self.screen.explain(|explaining, frame| explaining.step(frame, step));
+        self.screen.explain(|panel, frame| panel.step(frame, step));
     }
 
     /// Scrolls the explanation by pages.
     pub(super) fn scroll(&mut self, pages: isize) {
-        self.screen.explain(|explaining, _| explaining.scroll(pages * PAGE));
+        self.screen.explain(|panel, _| panel.scroll(pages * PAGE_LINES));
     }
 }

@@ -10,10 +10,10 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// Pixels of a PNG per pixel of the screen, in both directions. A picture of 80x24 cells becomes 640 pixels wide.
-const SCALE: u32 = 8;
+const PNG_SCALE: u32 = 8;
 
 /// Limit on the numbered names that are tried.
-const MOST_NAMES: u32 = 9999;
+const MAX_NUMBERED_NAMES: u32 = 9999;
 
 /// Returns the contents of an export without panels: the cells as the terminal shows them, in truecolor if the format
 /// has colours.
@@ -22,7 +22,7 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
     match format.contents() {
         Contents::Pixels(write) => {
             let one = cell::resolution(cell_mode, Size::new(1, 1), cell_aspect).map_err(io::Error::other)?;
-            write(picture, one.pixel_aspect(), SCALE)
+            write(picture, one.pixel_aspect(), PNG_SCALE)
         }
         Contents::Cells { has_colors, write } => {
             let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { cell_mode.plain() };
@@ -34,7 +34,7 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
 /// Writes a new file named after `stem` and `format`, with the first unused number if that name exists. Returns its
 /// name.
 pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u8]) -> io::Result<String> {
-    for number in 1..=MOST_NAMES {
+    for number in 1..=MAX_NUMBERED_NAMES {
         let number = if number == 1 { String::new() } else { format!("-{number}") };
         let name = format!("{stem}{number}.{}", format.ending());
         match write_unused(&folder.join(&name), contents) {

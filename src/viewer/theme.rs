@@ -11,7 +11,7 @@ use ratatui_widgets::paragraph::Paragraph;
 
 /// Colours and border of panels. Panels use no colour or block characters if the picture does not.
 #[derive(Clone, Copy)]
-pub(super) struct Look {
+pub(super) struct Theme {
     style: Style,
     /// The style of marks on the picture.
     mark: Style,
@@ -20,7 +20,7 @@ pub(super) struct Look {
     bar: [char; 2],
 }
 
-impl Look {
+impl Theme {
     pub(super) fn of(cell_mode: CellMode) -> Self {
         let style = match cell_mode.colors {
             Colors::Truecolor => Style::new().fg(Color::Rgb(0xe6, 0xe6, 0xe6)).bg(Color::Rgb(0x18, 0x1c, 0x24)),
@@ -69,7 +69,7 @@ const ASCII_BORDER: border::Set<'static> = border::Set {
 };
 
 /// The smallest screen with panels.
-pub(super) const LEAST: (u16, u16) = (40, 12);
+pub(super) const MIN_PANEL_SCREEN: (u16, u16) = (40, 12);
 
 /// Returns the area of the whole screen.
 pub(super) fn area(size: Size) -> Rect {
@@ -78,7 +78,7 @@ pub(super) fn area(size: Size) -> Rect {
 
 /// Returns whether the screen is large enough for panels; on a smaller one they would hide what they describe.
 pub(super) fn has_room(screen: Rect) -> bool {
-    screen.width >= LEAST.0 && screen.height >= LEAST.1
+    screen.width >= MIN_PANEL_SCREEN.0 && screen.height >= MIN_PANEL_SCREEN.1
 }
 
 /// Returns the row that has `below` others under it, counted from the bottom.
@@ -87,8 +87,8 @@ pub(super) fn foot(screen: Rect, below: u16) -> Rect {
 }
 
 /// Writes text on a row of its own.
-pub(super) fn draw_line(text: &str, look: Look, area: Rect, buffer: &mut Buffer) {
-    Paragraph::new(text).style(look.style).render(area, buffer);
+pub(super) fn draw_line(text: &str, theme: Theme, area: Rect, buffer: &mut Buffer) {
+    Paragraph::new(text).style(theme.style).render(area, buffer);
 }
 
 #[cfg(test)]

@@ -10,18 +10,18 @@ use super::query::{FENCE, Tag};
 
 /// A batch of queries and the answers to it.
 #[derive(Clone, Debug, Default)]
-pub struct Questions {
+pub struct InitialQueries {
     bytes: Vec<u8>,
     replies: Replies,
     /// Whether replies may still arrive.
     open: bool,
 }
 
-impl Questions {
+impl InitialQueries {
     /// Returns the queries for the facts that the picture depends on and the environment leaves open.
     pub fn needed(hints: &Hints) -> Self {
-        let wonders = [hints.needs_truecolor_reply(), hints.needs_palette_reply(), hints.needs_block_width_reply()];
-        Self::of(hints.safe_queries(), wonders)
+        let needed = [hints.needs_truecolor_reply(), hints.needs_palette_reply(), hints.needs_block_width_reply()];
+        Self::of(hints.safe_queries(), needed)
     }
 
     /// Returns all queries that the terminal is known to tolerate.
@@ -29,7 +29,7 @@ impl Questions {
         Self::of(hints.safe_queries(), [hints.allows_color(), true, true])
     }
 
-    fn of(safe_queries: SafeQueries, [truecolor, sixteen, blocks]: [bool; 3]) -> Self {
+    fn of(safe_queries: SafeQueries, [truecolor, palette, blocks]: [bool; 3]) -> Self {
         let mut bytes = Vec::new();
         if safe_queries == SafeQueries::None {
             return Self::default();
@@ -46,10 +46,10 @@ impl Questions {
             bytes.extend_from_slice(MOUSE_AND_KEYBOARD);
             bytes.extend_from_slice(CELL_PIXELS);
             if truecolor {
-                bytes.extend(truecolor_question());
+                bytes.extend(truecolor_query());
             }
-            if sixteen {
-                bytes.extend((0..16).flat_map(sixteen_question));
+            if palette {
+                bytes.extend((0..16).flat_map(palette_query));
             }
         }
         bytes.extend_from_slice(FENCE);
@@ -107,12 +107,12 @@ const MOUSE_AND_KEYBOARD: &[u8] = b"\x1b[?1006$p\x1b[?1016$p\x1b[?u";
 const CELL_PIXELS: &[u8] = b"\x1b[16t";
 
 /// Returns the bytes that set a 24-bit background, query the current rendition (DECRQSS of SGR) and reset it.
-fn truecolor_question() -> Vec<u8> {
+fn truecolor_query() -> Vec<u8> {
     let crate::color::Srgb8 { r, g, b } = TEST_COLOR;
     format!("\x1b[48;2;{r};{g};{b}m\x1bP$qm\x1b\\\x1b[0m").into_bytes()
 }
 
-fn sixteen_question(index: u8) -> Vec<u8> {
+fn palette_query(index: u8) -> Vec<u8> {
     format!("\x1b]4;{index};?\x1b\\").into_bytes()
 }
 
@@ -129,16 +129,16 @@ mod tests {
         Hints::gather(&variable, &|_| None)
     }
 
-    fn has(questions: &Questions, part: &[u8]) -> bool {
-        questions.bytes().windows(part.len()).any(|bytes| bytes == part)
+    fn has(queries: &InitialQueries, part: &[u8]) -> bool {
+        queries.bytes().windows(part.len()).any(|bytes| bytes == part)
     }
 
     #[test]
     fn a_batch_ends_with_its_fence_and_holds_one() {
         for term in ["xterm", "tmux-256color", "screen", "linux"] {
-            let questions = Questions::all(&hints(term, ""));
-            assert!(questions.bytes().ends_with(FENCE) && questions.is_open(), "{term}");
-            assert_eq!(questions.bytes().windows(3).filter(|bytes| *bytes == FENCE).count(), 1, "{term}");
+            let queries = InitialQueries::all(&hints(term, ""));
+            assert!(queries.bytes().ends_with(FENCE) && queries.is_open(), "{term}");
+            assert_eq!(queries.bytes().windows(3).filter(|bytes| *bytes == FENCE).count(), 1, "{term}");
         }
     }
 
@@ -153,23 +153,23 @@ mod tests {
             ("linux", [true, false, false, false, false, false, false]),
             ("dumb", [false; 7]),
         ] {
-            let questions = Questions::all(&hints(term, ""));
-            assert_eq!(parts.map(|part| has(&questions, part)), expected, "{term}");
+            let queries = InitialQueries::all(&hints(term, ""));
+            assert_eq!(parts.map(|part| has(&queries, part)), expected, "{term}");
         }
-        assert!(Questions::all(&hints("dumb", "")).bytes().is_empty());
+        assert!(InitialQueries::all(&hints("dumb", "")).bytes().is_empty());
     }
 
     #[test]
     fn known_facts_are_not_queried() {
-        let questions = Questions::needed(&hints("xterm", "truecolor"));
-        assert!(!has(&questions, b"$qm") && !has(&questions, b"\x1b]4;"));
-        assert!(has(&Questions::needed(&hints("xterm", "")), b"$qm"));
-        assert!(has(&Questions::needed(&hints("xterm-16color", "")), b"\x1b]4;0;?"));
+        let queries = InitialQueries::needed(&hints("xterm", "truecolor"));
+        assert!(!has(&queries, b"$qm") && !has(&queries, b"\x1b]4;"));
+        assert!(has(&InitialQueries::needed(&hints("xterm", "")), b"$qm"));
+        assert!(has(&InitialQueries::needed(&hints("xterm-16color", "")), b"\x1b]4;0;?"));
     }
 
     #[test]
     fn replies_count_up_to_the_fence() {
-        let mut questions = Questions::all(&hints("xterm", ""));
+        let mut queries = InitialQueries::all(&hints("xterm", ""));
         let replies = [
             Reply::CursorPosition { row: 1, column: 2 },
             Reply::Mode { mode: 2026, state: 2 },
@@ -180,39 +180,39 @@ mod tests {
             Reply::Status(0),
         ];
         for reply in &replies {
-            assert!(!questions.take(reply), "{reply:?}");
+            assert!(!queries.take(reply), "{reply:?}");
         }
-        assert!(questions.take(&Reply::DeviceAttributes(vec![62])));
-        let replies = questions.replies().clone();
+        assert!(queries.take(&Reply::DeviceAttributes(vec![62])));
+        let replies = queries.replies().clone();
         assert_eq!((replies.block_width, replies.synchronized_output), (Some(1), Some(true)));
         assert_eq!((replies.kitty_keyboard, replies.cell_pixels), (Some(true), Some((10, 20))));
         assert_eq!((replies.truecolor, replies.light_background()), (Some(true), Some(true)));
         // Forged, or a reply to another program.
-        assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));
-        assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
-        assert_eq!(questions.replies(), &replies);
+        assert!(!queries.take(&Reply::CursorPosition { row: 1, column: 3 }));
+        assert!(!queries.take(&Reply::DeviceAttributes(vec![62])));
+        assert_eq!(queries.replies(), &replies);
     }
 
     #[test]
     fn a_batch_with_a_lost_fence_is_closed_once() {
-        let mut questions = Questions::all(&hints("xterm", ""));
-        questions.take(&Reply::Mode { mode: 2026, state: 2 });
-        assert!(questions.close() && !questions.close() && !questions.is_open());
-        assert_eq!(questions.replies().synchronized_output, Some(true));
+        let mut queries = InitialQueries::all(&hints("xterm", ""));
+        queries.take(&Reply::Mode { mode: 2026, state: 2 });
+        assert!(queries.close() && !queries.close() && !queries.is_open());
+        assert_eq!(queries.replies().synchronized_output, Some(true));
     }
 
     #[test]
     fn tags_are_tried_where_modes_are_queried() {
         for (term, expected) in [("xterm", true), ("tmux-256color", true), ("screen", false), ("linux", false)] {
-            assert_eq!(has(&Questions::needed(&hints(term, "")), &Tag::FIRST.query()), expected, "{term}");
+            assert_eq!(has(&InitialQueries::needed(&hints(term, "")), &Tag::FIRST.query()), expected, "{term}");
         }
     }
 
     #[test]
     fn replies_without_queries_are_ignored() {
-        let mut questions = Questions::all(&hints("dumb", ""));
-        assert!(!questions.take(&Reply::DeviceAttributes(vec![62])));
-        assert!(!questions.take(&Reply::CursorPosition { row: 1, column: 3 }));
-        assert_eq!(questions.replies(), &Replies::default());
+        let mut queries = InitialQueries::all(&hints("dumb", ""));
+        assert!(!queries.take(&Reply::DeviceAttributes(vec![62])));
+        assert!(!queries.take(&Reply::CursorPosition { row: 1, column: 3 }));
+        assert_eq!(queries.replies(), &Replies::default());
     }
 }

@@ -1,6 +1,6 @@
 //! Writing a view into its scene's file.
 
-use super::watching::Needed;
+use super::watching::Dependency;
 use crate::camera::Camera;
 use crate::output_file::OutputFile;
 use crate::scene::with_view;
@@ -9,16 +9,16 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// A view that the user is asked to confirm before it is written.
-pub(super) struct Asked {
+pub(super) struct ProposedView {
     /// The file and its state when the question was put.
-    file: Needed,
+    file: Dependency,
     camera: Camera,
 }
 
-impl Asked {
+impl ProposedView {
     /// Proposes to write a view into `file`. `None` if that is not a plain file.
     pub(super) fn new(file: &Path, camera: Camera) -> Option<Self> {
-        Some(Needed::now(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
+        Some(Dependency::now(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
     }
 
     /// Returns the file's name without its folder.
@@ -64,7 +64,7 @@ mod tests {
         fs::write(&file, TEXT).expect("written");
         fs::set_permissions(&file, PermissionsExt::from_mode(0o640)).expect("it is ours");
         symlink("x.ron", &link).expect("a link can be made");
-        Asked::new(&link, camera()).expect("a file").write().expect("written");
+        ProposedView::new(&link, camera()).expect("a file").write().expect("written");
         let written = fs::read_to_string(&file).expect("it is there");
         assert_eq!(Some(written.as_str()), with_view(TEXT, &camera()).as_deref());
         assert_eq!(fs::metadata(&file).expect("it is there").permissions().mode() & 0o777, 0o640);
@@ -80,7 +80,7 @@ mod tests {
         fs::write(&file, TEXT).expect("written");
         fs::set_permissions(&file, PermissionsExt::from_mode(0o444)).expect("it is ours");
         if fs::File::options().append(true).open(&file).is_err() {
-            let error = Asked::new(&file, camera()).expect("a file").write().expect_err("it may not be written");
+            let error = ProposedView::new(&file, camera()).expect("a file").write().expect_err("it may not be written");
             assert_eq!(error.kind(), io::ErrorKind::PermissionDenied);
             assert_eq!(fs::read_to_string(&file).expect("it is there"), TEXT);
         }
@@ -92,7 +92,7 @@ mod tests {
         let (file, other) = (folder.path().join("x.ron"), folder.path().join("y.ron"));
         fs::write(&file, TEXT).expect("written");
         fs::hard_link(&file, &other).expect("a link can be made");
-        Asked::new(&file, camera()).expect("a file").write().expect("written");
+        ProposedView::new(&file, camera()).expect("a file").write().expect("written");
         assert_eq!(fs::read_to_string(&other).ok(), with_view(TEXT, &camera()));
     }
 
@@ -101,15 +101,15 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let file = folder.path().join("x.ron");
         fs::write(&file, TEXT).expect("written");
-        let asked = Asked::new(&file, camera()).expect("a file");
+        let asked = ProposedView::new(&file, camera()).expect("a file");
         let changed = TEXT.replace("mine", "not mine");
         fs::write(&file, &changed).expect("written");
         assert!(asked.write().is_err());
         assert_eq!(fs::read_to_string(&file).expect("it is there"), changed);
         fs::write(&file, "no scene").expect("written");
-        assert!(Asked::new(&file, camera()).is_some_and(|asked| asked.write().is_err()));
+        assert!(ProposedView::new(&file, camera()).is_some_and(|asked| asked.write().is_err()));
         fs::remove_file(&file).expect("it can be removed");
-        assert!(Asked::new(&file, camera()).is_some_and(|asked| asked.write().is_err()));
+        assert!(ProposedView::new(&file, camera()).is_some_and(|asked| asked.write().is_err()));
         assert_eq!(fs::read_dir(folder.path()).expect("it is there").count(), 0, "nothing is left over");
     }
 }

@@ -7,7 +7,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 /// What the keys are for. Several modes hold at a time, the topmost first: what one does not bind is left to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Mode {
+pub enum KeyMode {
     /// The eye flies.
     Fly,
     /// The eye goes around what it looks at.
@@ -24,7 +24,7 @@ pub enum Mode {
     Always,
 }
 
-impl Mode {
+impl KeyMode {
     /// All of them, in the order of the help.
     pub const ALL: [Self; 7] =
         [Self::Fly, Self::Orbit, Self::Explain, Self::Light, Self::Export, Self::Keep, Self::Always];
@@ -61,7 +61,7 @@ impl Mode {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
     /// When.
-    pub mode: Mode,
+    pub mode: KeyMode,
     /// Each of them does it. None: it cannot be asked for.
     pub keys: Vec<Key>,
     /// What they do.
@@ -77,16 +77,16 @@ impl Binding {
 
 /// What all keys do: the one table that is asked when a key is pressed, and that the help shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Bindings {
+pub struct Keymap {
     rows: Vec<Binding>,
 }
 
 /// Those that the program comes with.
-impl Default for Bindings {
+impl Default for Keymap {
     fn default() -> Self {
         let row = |&(mode, keys, command): &Row| Binding { mode, keys: keys.to_vec(), command };
         let write = |&format: &Format| Binding {
-            mode: Mode::Export,
+            mode: KeyMode::Export,
             keys: vec![letter(format.key())],
             command: Command::Write(format),
         };
@@ -94,7 +94,7 @@ impl Default for Bindings {
     }
 }
 
-type Row = (Mode, &'static [Key], Command);
+type Row = (KeyMode, &'static [Key], Command);
 
 const fn letter(c: char) -> Key {
     Key::letter(c)
@@ -109,91 +109,91 @@ const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 
 /// In the order of the help. What writes a picture is bound to the keys of the [`Format`]s, before them.
 const BUILT_IN: &[Row] = &[
-    (Mode::Fly, &[letter('w')], Command::Move(Direction::Forward)),
-    (Mode::Fly, &[letter('s')], Command::Move(Direction::Back)),
-    (Mode::Fly, &[letter('a')], Command::Move(Direction::Left)),
-    (Mode::Fly, &[letter('d')], Command::Move(Direction::Right)),
-    (Mode::Fly, HIGHER, Command::Move(Direction::Up)),
-    (Mode::Fly, LOWER, Command::Move(Direction::Down)),
-    (Mode::Fly, LEFT, Command::Look(Toward::Left)),
-    (Mode::Fly, RIGHT, Command::Look(Toward::Right)),
-    (Mode::Fly, UP, Command::Look(Toward::Up)),
-    (Mode::Fly, DOWN, Command::Look(Toward::Down)),
-    (Mode::Orbit, LEFT, Command::Around(Toward::Left)),
-    (Mode::Orbit, RIGHT, Command::Around(Toward::Right)),
-    (Mode::Orbit, UP, Command::Around(Toward::Up)),
-    (Mode::Orbit, DOWN, Command::Around(Toward::Down)),
-    (Mode::Orbit, &[letter('w')], Command::Nearer),
-    (Mode::Orbit, &[letter('s')], Command::Farther),
-    (Mode::Orbit, &[letter('a')], Command::Move(Direction::Left)),
-    (Mode::Orbit, &[letter('d')], Command::Move(Direction::Right)),
-    (Mode::Orbit, HIGHER, Command::Move(Direction::Up)),
-    (Mode::Orbit, LOWER, Command::Move(Direction::Down)),
-    (Mode::Explain, &[Key::named(KeyCode::Left)], Command::Point(Toward::Left)),
-    (Mode::Explain, &[Key::named(KeyCode::Right)], Command::Point(Toward::Right)),
-    (Mode::Explain, &[Key::named(KeyCode::Up)], Command::Point(Toward::Up)),
-    (Mode::Explain, &[Key::named(KeyCode::Down)], Command::Point(Toward::Down)),
-    (Mode::Explain, &[Key::named(KeyCode::PageUp)], Command::ScrollUp),
-    (Mode::Explain, &[Key::named(KeyCode::PageDown)], Command::ScrollDown),
-    (Mode::Light, &[Key::named(KeyCode::Left)], Command::MoveLight(Toward::Left)),
-    (Mode::Light, &[Key::named(KeyCode::Right)], Command::MoveLight(Toward::Right)),
-    (Mode::Light, &[Key::named(KeyCode::Up)], Command::MoveLight(Toward::Up)),
-    (Mode::Light, &[Key::named(KeyCode::Down)], Command::MoveLight(Toward::Down)),
-    (Mode::Light, &[Key::named(KeyCode::PageUp)], Command::LightFarther),
-    (Mode::Light, &[Key::named(KeyCode::PageDown)], Command::LightNearer),
-    (Mode::Light, &[letter('r')], Command::LightBack),
-    (Mode::Export, &[Key::named(KeyCode::Esc)], Command::No),
-    (Mode::Keep, &[letter('y')], Command::Yes),
-    (Mode::Keep, &[letter('n'), Key::named(KeyCode::Esc)], Command::No),
-    (Mode::Always, &[Key::named(KeyCode::Tab)], Command::ChangeMode),
-    (Mode::Always, &[letter('f')], Command::Frame),
-    (Mode::Always, &[letter('[')], Command::Narrower),
-    (Mode::Always, &[letter(']')], Command::Wider),
-    (Mode::Always, &[letter('t')], Command::Turntable),
-    (Mode::Always, &[letter('1')], Command::View(1)),
-    (Mode::Always, &[letter('2')], Command::View(2)),
-    (Mode::Always, &[letter('3')], Command::View(3)),
-    (Mode::Always, &[letter('4')], Command::View(4)),
-    (Mode::Always, &[letter('5')], Command::View(5)),
-    (Mode::Always, &[letter('6')], Command::View(6)),
-    (Mode::Always, &[letter('7')], Command::View(7)),
-    (Mode::Always, &[letter('8')], Command::View(8)),
-    (Mode::Always, &[letter('9')], Command::View(9)),
-    (Mode::Always, &[letter('m')], Command::SaveView),
-    (Mode::Always, &[letter('r')], Command::Reset),
-    (Mode::Always, &[letter('v')], Command::NextMap),
-    (Mode::Always, &[letter('b')], Command::LastMap),
-    (Mode::Always, &[letter('|')], Command::Compare),
-    (Mode::Always, &[letter('<')], Command::Wipe(Side::Left)),
-    (Mode::Always, &[letter('>')], Command::Wipe(Side::Right)),
-    (Mode::Always, &[letter('n')], Command::NextScene),
-    (Mode::Always, &[letter('p')], Command::LastScene),
-    (Mode::Always, &[letter('o')], Command::Export),
-    (Mode::Always, &[letter('y')], Command::CopyCamera),
-    (Mode::Always, &[letter('Y')], Command::KeepView),
-    (Mode::Always, &[letter('x')], Command::Explain),
-    (Mode::Always, &[letter('g')], Command::Light),
-    (Mode::Always, &[letter('i')], Command::Status),
-    (Mode::Always, &[letter('?')], Command::Help),
-    (Mode::Always, &[Key::named(KeyCode::Esc)], Command::Close),
-    (Mode::Always, &[Key::ctrl('l')], Command::Redraw),
-    (Mode::Always, &[Key::ctrl('z')], Command::Suspend),
-    (Mode::Always, &[letter('q'), Key::ctrl('c')], Command::Quit),
+    (KeyMode::Fly, &[letter('w')], Command::Move(Direction::Forward)),
+    (KeyMode::Fly, &[letter('s')], Command::Move(Direction::Back)),
+    (KeyMode::Fly, &[letter('a')], Command::Move(Direction::Left)),
+    (KeyMode::Fly, &[letter('d')], Command::Move(Direction::Right)),
+    (KeyMode::Fly, HIGHER, Command::Move(Direction::Up)),
+    (KeyMode::Fly, LOWER, Command::Move(Direction::Down)),
+    (KeyMode::Fly, LEFT, Command::Look(Toward::Left)),
+    (KeyMode::Fly, RIGHT, Command::Look(Toward::Right)),
+    (KeyMode::Fly, UP, Command::Look(Toward::Up)),
+    (KeyMode::Fly, DOWN, Command::Look(Toward::Down)),
+    (KeyMode::Orbit, LEFT, Command::Around(Toward::Left)),
+    (KeyMode::Orbit, RIGHT, Command::Around(Toward::Right)),
+    (KeyMode::Orbit, UP, Command::Around(Toward::Up)),
+    (KeyMode::Orbit, DOWN, Command::Around(Toward::Down)),
+    (KeyMode::Orbit, &[letter('w')], Command::Nearer),
+    (KeyMode::Orbit, &[letter('s')], Command::Farther),
+    (KeyMode::Orbit, &[letter('a')], Command::Move(Direction::Left)),
+    (KeyMode::Orbit, &[letter('d')], Command::Move(Direction::Right)),
+    (KeyMode::Orbit, HIGHER, Command::Move(Direction::Up)),
+    (KeyMode::Orbit, LOWER, Command::Move(Direction::Down)),
+    (KeyMode::Explain, &[Key::named(KeyCode::Left)], Command::Point(Toward::Left)),
+    (KeyMode::Explain, &[Key::named(KeyCode::Right)], Command::Point(Toward::Right)),
+    (KeyMode::Explain, &[Key::named(KeyCode::Up)], Command::Point(Toward::Up)),
+    (KeyMode::Explain, &[Key::named(KeyCode::Down)], Command::Point(Toward::Down)),
+    (KeyMode::Explain, &[Key::named(KeyCode::PageUp)], Command::ScrollUp),
+    (KeyMode::Explain, &[Key::named(KeyCode::PageDown)], Command::ScrollDown),
+    (KeyMode::Light, &[Key::named(KeyCode::Left)], Command::MoveLight(Toward::Left)),
+    (KeyMode::Light, &[Key::named(KeyCode::Right)], Command::MoveLight(Toward::Right)),
+    (KeyMode::Light, &[Key::named(KeyCode::Up)], Command::MoveLight(Toward::Up)),
+    (KeyMode::Light, &[Key::named(KeyCode::Down)], Command::MoveLight(Toward::Down)),
+    (KeyMode::Light, &[Key::named(KeyCode::PageUp)], Command::LightFarther),
+    (KeyMode::Light, &[Key::named(KeyCode::PageDown)], Command::LightNearer),
+    (KeyMode::Light, &[letter('r')], Command::LightBack),
+    (KeyMode::Export, &[Key::named(KeyCode::Esc)], Command::No),
+    (KeyMode::Keep, &[letter('y')], Command::Yes),
+    (KeyMode::Keep, &[letter('n'), Key::named(KeyCode::Esc)], Command::No),
+    (KeyMode::Always, &[Key::named(KeyCode::Tab)], Command::ChangeMode),
+    (KeyMode::Always, &[letter('f')], Command::FrameAll),
+    (KeyMode::Always, &[letter('[')], Command::Narrower),
+    (KeyMode::Always, &[letter(']')], Command::Wider),
+    (KeyMode::Always, &[letter('t')], Command::Turntable),
+    (KeyMode::Always, &[letter('1')], Command::View(1)),
+    (KeyMode::Always, &[letter('2')], Command::View(2)),
+    (KeyMode::Always, &[letter('3')], Command::View(3)),
+    (KeyMode::Always, &[letter('4')], Command::View(4)),
+    (KeyMode::Always, &[letter('5')], Command::View(5)),
+    (KeyMode::Always, &[letter('6')], Command::View(6)),
+    (KeyMode::Always, &[letter('7')], Command::View(7)),
+    (KeyMode::Always, &[letter('8')], Command::View(8)),
+    (KeyMode::Always, &[letter('9')], Command::View(9)),
+    (KeyMode::Always, &[letter('m')], Command::SaveView),
+    (KeyMode::Always, &[letter('r')], Command::Reset),
+    (KeyMode::Always, &[letter('v')], Command::NextMap),
+    (KeyMode::Always, &[letter('b')], Command::LastMap),
+    (KeyMode::Always, &[letter('|')], Command::Compare),
+    (KeyMode::Always, &[letter('<')], Command::Wipe(Side::Left)),
+    (KeyMode::Always, &[letter('>')], Command::Wipe(Side::Right)),
+    (KeyMode::Always, &[letter('n')], Command::NextScene),
+    (KeyMode::Always, &[letter('p')], Command::LastScene),
+    (KeyMode::Always, &[letter('o')], Command::Export),
+    (KeyMode::Always, &[letter('y')], Command::CopyCamera),
+    (KeyMode::Always, &[letter('Y')], Command::KeepView),
+    (KeyMode::Always, &[letter('x')], Command::Explain),
+    (KeyMode::Always, &[letter('g')], Command::Light),
+    (KeyMode::Always, &[letter('i')], Command::Status),
+    (KeyMode::Always, &[letter('?')], Command::Help),
+    (KeyMode::Always, &[Key::named(KeyCode::Esc)], Command::Close),
+    (KeyMode::Always, &[Key::ctrl('l')], Command::Redraw),
+    (KeyMode::Always, &[Key::ctrl('z')], Command::Suspend),
+    (KeyMode::Always, &[letter('q'), Key::ctrl('c')], Command::Quit),
 ];
 
-impl Bindings {
+impl Keymap {
     /// What each mode binds, in the order of the help.
     pub fn rows(&self) -> &[Binding] {
         &self.rows
     }
 
     /// What one mode binds.
-    pub fn of(&self, mode: Mode) -> impl Iterator<Item = &Binding> {
+    pub fn of(&self, mode: KeyMode) -> impl Iterator<Item = &Binding> {
         self.rows.iter().filter(move |row| row.mode == mode)
     }
 
     /// From now on the key does that in that mode, or nothing; whatever it did before.
-    pub fn bind(&mut self, mode: Mode, key: Key, command: Option<Command>) {
+    pub fn bind(&mut self, mode: KeyMode, key: Key, command: Option<Command>) {
         for row in self.rows.iter_mut().filter(|row| row.mode == mode) {
             row.keys.retain(|bound| *bound != key);
         }
@@ -205,7 +205,7 @@ impl Bindings {
     }
 
     /// What the key means in these modes, the topmost first, and whether Shift asks for more of it.
-    pub fn command(&self, modes: &[Mode], event: &KeyEvent) -> Option<(Command, bool)> {
+    pub fn command(&self, modes: &[KeyMode], event: &KeyEvent) -> Option<(Command, bool)> {
         // Keys of the window manager: only terminals that tell of everything tell of them.
         if event.modifiers.intersects(KeyModifiers::SUPER | KeyModifiers::HYPER | KeyModifiers::META) {
             return None;
@@ -222,13 +222,13 @@ impl Bindings {
     }
 
     /// A key that does it in these modes, if one does: the first, and one without Ctrl where there is any.
-    pub fn key_of(&self, modes: &[Mode], command: Command) -> Option<Key> {
+    pub fn key_of(&self, modes: &[KeyMode], command: Command) -> Option<Key> {
         let rows = modes.iter().flat_map(|&mode| self.of(mode)).filter(|row| row.command == command);
         let does = |key: &&Key| self.command(modes, &key.pressed()).is_some_and(|(meant, _)| meant == command);
         rows.flat_map(|row| &row.keys).filter(does).min_by_key(|key| key.ctrl).copied()
     }
 
-    fn bound(&self, mode: Mode, key: Key) -> Option<Command> {
+    fn bound(&self, mode: KeyMode, key: Key) -> Option<Command> {
         self.of(mode).find(|row| row.keys.contains(&key)).map(|row| row.command)
     }
 }
@@ -238,34 +238,39 @@ mod tests {
     use super::*;
     use std::collections::HashSet;
 
-    const FLY: &[Mode] = &[Mode::Fly, Mode::Always];
+    const FLY: &[KeyMode] = &[KeyMode::Fly, KeyMode::Always];
 
     fn press(c: char) -> KeyEvent {
         KeyEvent::new(KeyCode::Char(c), KeyModifiers::NONE)
     }
 
     fn meant(event: &KeyEvent) -> Option<(Command, bool)> {
-        Bindings::default().command(FLY, event)
+        Keymap::default().command(FLY, event)
     }
 
     /// The keys of what holds at the same time, and is not meant to hide what is below it.
-    fn keys_of(bindings: &Bindings, modes: &[Mode]) -> Vec<Key> {
-        let rows = modes.iter().flat_map(|&mode| bindings.of(mode));
+    fn keys_of(keymap: &Keymap, modes: &[KeyMode]) -> Vec<Key> {
+        let rows = modes.iter().flat_map(|&mode| keymap.of(mode));
         rows.flat_map(|row| row.keys.iter().copied()).collect()
     }
 
     #[test]
     fn no_two_bindings_collide() {
-        let bindings = Bindings::default();
-        for modes in
-            [FLY, &[Mode::Orbit, Mode::Always], &[Mode::Explain], &[Mode::Light], &[Mode::Export], &[Mode::Keep]]
-        {
+        let keymap = Keymap::default();
+        for modes in [
+            FLY,
+            &[KeyMode::Orbit, KeyMode::Always],
+            &[KeyMode::Explain],
+            &[KeyMode::Light],
+            &[KeyMode::Export],
+            &[KeyMode::Keep],
+        ] {
             let mut seen = HashSet::new();
-            for key in keys_of(&bindings, modes) {
+            for key in keys_of(&keymap, modes) {
                 assert!(seen.insert(key), "{key} is bound twice in {modes:?}");
             }
             // Shift makes movement faster: no other command may be the capital of one of its letters.
-            let rows = modes.iter().flat_map(|&mode| bindings.of(mode)).filter(|row| row.command.has_faster());
+            let rows = modes.iter().flat_map(|&mode| keymap.of(mode)).filter(|row| row.command.has_faster());
             for key in rows.flat_map(|row| &row.keys) {
                 if let KeyCode::Char(c) = key.code {
                     assert!(!seen.contains(&Key::letter(c.to_ascii_uppercase())), "Shift-{key} in {modes:?}");
@@ -276,16 +281,16 @@ mod tests {
 
     #[test]
     fn no_binding_needs_a_key_that_plain_terminals_do_not_send() {
-        for key in keys_of(&Bindings::default(), &Mode::ALL) {
+        for key in keys_of(&Keymap::default(), &KeyMode::ALL) {
             assert!(key.is_plain(), "{key}");
         }
     }
 
     #[test]
     fn each_mode_has_a_name_and_keys() {
-        for mode in Mode::ALL {
-            assert_eq!(Mode::from_name(mode.name()), Some(mode));
-            assert!(Bindings::default().of(mode).count() > 0, "{mode:?}");
+        for mode in KeyMode::ALL {
+            assert_eq!(KeyMode::from_name(mode.name()), Some(mode));
+            assert!(Keymap::default().of(mode).count() > 0, "{mode:?}");
         }
     }
 
@@ -320,29 +325,29 @@ mod tests {
     fn each_format_has_a_key_and_a_command() {
         for &format in Format::ALL {
             let command = Command::Write(format);
-            assert_eq!(Bindings::default().command(&[Mode::Export], &press(format.key())), Some((command, false)));
+            assert_eq!(Keymap::default().command(&[KeyMode::Export], &press(format.key())), Some((command, false)));
             assert_eq!(Command::from_name(format.command()), Some(command));
         }
     }
 
     #[test]
     fn what_a_mode_does_not_bind_is_left_to_the_next() {
-        let bindings = Bindings::default();
-        let explain = [Mode::Explain, Mode::Orbit, Mode::Always];
-        let code = |code: KeyCode| bindings.command(&explain, &code.into()).map(|(command, _)| command);
+        let keymap = Keymap::default();
+        let explain = [KeyMode::Explain, KeyMode::Orbit, KeyMode::Always];
+        let code = |code: KeyCode| keymap.command(&explain, &code.into()).map(|(command, _)| command);
         assert_eq!(code(KeyCode::Left), Some(Command::Point(Toward::Left)));
         assert_eq!(code(KeyCode::Char('h')), Some(Command::Around(Toward::Left)));
         assert_eq!(code(KeyCode::Char('q')), Some(Command::Quit));
-        assert_eq!(bindings.command(&[Mode::Keep], &press('q')), None);
+        assert_eq!(keymap.command(&[KeyMode::Keep], &press('q')), None);
     }
 
     #[test]
     fn keys_are_bound_anew() {
-        let mut bindings = Bindings::default();
-        bindings.bind(Mode::Fly, Key::letter('w'), Some(Command::Move(Direction::Back)));
-        bindings.bind(Mode::Fly, Key::letter('W'), Some(Command::Nearer));
-        bindings.bind(Mode::Always, Key::letter('x'), None);
-        let command = |c| bindings.command(FLY, &press(c)).map(|(command, _)| command);
+        let mut keymap = Keymap::default();
+        keymap.bind(KeyMode::Fly, Key::letter('w'), Some(Command::Move(Direction::Back)));
+        keymap.bind(KeyMode::Fly, Key::letter('W'), Some(Command::Nearer));
+        keymap.bind(KeyMode::Always, Key::letter('x'), None);
+        let command = |c| keymap.command(FLY, &press(c)).map(|(command, _)| command);
         assert_eq!(
             [command('w'), command('s'), command('W')],
             [Some(Command::Move(Direction::Back)), Some(Command::Move(Direction::Back)), Some(Command::Nearer)]

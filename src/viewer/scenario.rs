@@ -1,13 +1,13 @@
 //! A viewer driven by an arbitrary sequence of events, with the rules that hold after each. Used by the tests below and
 //! by the fuzz target.
 
-use super::{Busy, Frame, Job, MIDDLE, Options, Step, Tracing, Viewer};
+use super::{DriverState, Frame, INITIAL_WIPE, Job, Options, Step, Tracing, Viewer};
 use crate::capabilities::{CellShape, Hints};
 use crate::color::Srgb8;
 use crate::encode::Quality;
 use crate::framebuffer::Resolution;
 use crate::grid::{Size, Window};
-use crate::protocol::{FENCE, Modes};
+use crate::protocol::{FENCE, TerminalModes};
 use crate::render::Cost;
 use crate::scene::Scene;
 use crate::text::Notice;
@@ -17,15 +17,15 @@ use std::time::Duration;
 
 /// Limit on the actions at one time: cancel a refinement, draw, begin a frame, handle the timeout of a lone Escape, and
 /// draw the result.
-const MOST_STEPS: usize = 5;
+const MAX_ACTIONS: usize = 5;
 
 /// Limit on the wake-ups between the last event and rest. A lossy picture becomes exact in a few frames, and a glide of
 /// 60 frames a second ends within a second.
-const MOST_WAKES: usize = 400;
+const MAX_WAKE_UPS: usize = 400;
 
 /// Limits on the bytes of a frame, per cell and in addition: a cell takes all attributes, both colours and a cursor
 /// move.
-const MOST_BYTES: [usize; 2] = [120, 4096];
+const MAX_FRAME_BYTES: [usize; 2] = [120, 4096];
 
 /// Drives a viewer by events decoded from `bytes`, the last of which choose its options, and checks the rules:
 ///
@@ -37,8 +37,8 @@ const MOST_BYTES: [usize; 2] = [120, 4096];
 ///
 /// # Panics
 /// If a rule is broken.
-pub fn tell(story: &[u8]) {
-    let (&wishes, events) = story.split_last().unwrap_or((&0, &[]));
+pub fn run_scenario(scenario: &[u8]) {
+    let (&wishes, events) = scenario.split_last().unwrap_or((&0, &[]));
     let mut driver = Driver::new(wishes);
     let mut bytes = events.iter().copied();
     while let Some(event) = bytes.next() {
@@ -57,7 +57,7 @@ static SCENES: LazyLock<[Scene; 2]> = LazyLock::new(|| {
 struct Driver {
     viewer: Viewer,
     now: Duration,
-    modes: Modes,
+    modes: TerminalModes,
     job: Option<Job>,
     is_sending: bool,
     /// The bytes sent since the terminal last replied.
@@ -78,14 +78,14 @@ impl Driver {
         let mut driver = Self {
             viewer,
             now: Duration::from_millis(20),
-            modes: Modes::default(),
+            modes: TerminalModes::default(),
             job: None,
             is_sending: false,
             sent: Vec::new(),
             frames: 0,
         };
-        let questions = driver.viewer.questions(driver.now);
-        driver.send(&questions);
+        let queries = driver.viewer.queries(driver.now);
+        driver.send(&queries);
         driver.is_sending = false;
         driver
     }
@@ -95,7 +95,7 @@ impl Driver {
         match event % 9 {
             0 => {
                 let bytes: Vec<u8> = (0..next() % 24).map(|_| next()).collect();
-                self.hear(&bytes);
+                self.receive(&bytes);
             }
             1 => {
                 let size = Size::new(u16::from(next() % 70) + 1, u16::from(next() % 30) + 1);
@@ -117,12 +117,12 @@ impl Driver {
             7 => {
                 self.viewer.lose_terminal(self.now);
                 self.viewer.receiver().forget();
-                let questions = self.viewer.questions(self.now);
-                self.send(&questions);
-                self.viewer.hear_typed(Vec::new(), self.now).expect("nothing is learnt");
+                let queries = self.viewer.queries(self.now);
+                self.send(&queries);
+                self.viewer.receive_typed(Vec::new(), self.now).expect("nothing is learnt");
             }
             _ => match next() % 3 {
-                0 => self.viewer.show_fault(Notice {
+                0 => self.viewer.show_error(Notice {
                     message: "x.ron:1:1: a fault".to_owned(),
                     excerpt: Some(["  1 | (", "    | ^"].map(str::to_owned)),
                     has_more: true,
@@ -133,9 +133,9 @@ impl Driver {
         }
     }
 
-    fn hear(&mut self, bytes: &[u8]) {
-        self.viewer.hear(bytes, self.now).expect("this takes little memory");
-        while self.viewer.ask().is_some() {}
+    fn receive(&mut self, bytes: &[u8]) {
+        self.viewer.receive(bytes, self.now).expect("this takes little memory");
+        while self.viewer.next_request().is_some() {}
         for mode in self.viewer.modes() {
             self.modes.switch_on(mode, &mut self.sent);
         }
@@ -155,17 +155,17 @@ impl Driver {
             }
         }
         self.sent.clear();
-        self.hear(&replies);
+        self.receive(&replies);
     }
 
     fn finish_job(&mut self, milliseconds: u8) {
         let Some(Job { scene, shot, sampling, refines }) = self.job.take() else { return };
         self.frames = self.frames.wrapping_add(1);
-        let parts: Vec<_> = shot.shown.parts(shot.resolution).into_iter().map(|(_, part)| self.flat(part)).collect();
-        let picture = shot.shown.joined(&parts, MIDDLE).unwrap_or_else(|| self.flat(shot.resolution));
-        let legends = shot.shown.legends(&scene, &shot.camera);
+        let parts: Vec<_> = shot.layout.parts(shot.resolution).into_iter().map(|(_, part)| self.flat(part)).collect();
+        let picture = shot.layout.combined(&parts, INITIAL_WIPE).unwrap_or_else(|| self.flat(shot.resolution));
+        let legends = shot.layout.legends(&scene, &shot.camera);
         let (cost, trace) = (Cost::default(), Duration::from_millis(milliseconds.into()));
-        let parts = if shot.shown.is_wipe() { parts } else { Vec::new() };
+        let parts = if shot.layout.is_wipe() { parts } else { Vec::new() };
         self.viewer.take_frame(Frame { scene, shot, picture, parts, sampling, legends, refines, cost, trace });
     }
 
@@ -178,12 +178,12 @@ impl Driver {
 
     /// Carries out the viewer's actions at this time. Returns the next wake-up.
     fn act(&mut self) -> Option<Duration> {
-        for _ in 0..=MOST_STEPS {
+        for _ in 0..=MAX_ACTIONS {
             let tracing = self.job.as_ref().map(|job| if job.refines { Tracing::Refinement } else { Tracing::NewView });
-            match self.viewer.step(Busy { sending: self.is_sending, tracing }, self.now) {
+            match self.viewer.step(DriverState { sending: self.is_sending, tracing }, self.now) {
                 Step::Wait(until) if until.is_none_or(|until| until > self.now) => return until,
                 // The timeout of an incomplete escape sequence has passed.
-                Step::Wait(_) => self.hear(&[]),
+                Step::Wait(_) => self.receive(&[]),
                 Step::GiveUp => {
                     assert!(self.job.take().is_some_and(|job| job.refines), "only a refinement is given up");
                 }
@@ -210,7 +210,11 @@ impl Driver {
         self.viewer.draw(self.now, &mut bytes);
         self.viewer.end_frame(&mut bytes, self.now);
         let cells = self.viewer.size().cell_count();
-        assert!(bytes.len() <= MOST_BYTES[0] * cells + MOST_BYTES[1], "{} bytes for {cells} cells", bytes.len());
+        assert!(
+            bytes.len() <= MAX_FRAME_BYTES[0] * cells + MAX_FRAME_BYTES[1],
+            "{} bytes for {cells} cells",
+            bytes.len()
+        );
         self.send(&bytes);
     }
 
@@ -222,7 +226,7 @@ impl Driver {
     /// Lets the terminal accept and answer everything without further events, and checks that the viewer comes to rest.
     fn come_to_rest(&mut self) {
         self.viewer.lose_terminal(self.now);
-        for _ in 0..MOST_WAKES {
+        for _ in 0..MAX_WAKE_UPS {
             self.finish_job(1);
             self.is_sending = false;
             self.reply();
@@ -231,7 +235,7 @@ impl Driver {
                 None => {}
                 Some(until) => {
                     self.now = until;
-                    self.hear(&[]);
+                    self.receive(&[]);
                 }
             }
         }
@@ -243,7 +247,7 @@ impl Driver {
         let mut off = Vec::new();
         self.modes.switch_all_off(&mut off);
         for mode in self.viewer.modes() {
-            let (mut modes, mut bytes) = (Modes::default(), Vec::new());
+            let (mut modes, mut bytes) = (TerminalModes::default(), Vec::new());
             modes.switch_on(mode, &mut Vec::new());
             modes.switch_all_off(&mut bytes);
             assert!(off.windows(bytes.len()).any(|part| part == bytes), "{mode:?} stays on");
@@ -271,8 +275,8 @@ mod tests {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
 
         #[test]
-        fn the_rules_hold_in_any_story(story in vec(any::<u8>(), 0..300)) {
-            tell(&story);
+        fn the_rules_hold_in_any_story(scenario in vec(any::<u8>(), 0..300)) {
+            run_scenario(&scenario);
         }
 
         /// Keys with a meaning, in a loaded scene.
@@ -282,7 +286,7 @@ mod tests {
         ) {
             let shown = [6, 0, 0, 3, 1, 5, 4];
             let pressed = keys.into_iter().flat_map(|(key, event, more)| [0, 1, key, event, more, 3, 2, 4]);
-            tell(&shown.into_iter().chain(pressed).collect::<Vec<_>>());
+            run_scenario(&shown.into_iter().chain(pressed).collect::<Vec<_>>());
         }
     }
 
@@ -298,7 +302,7 @@ mod tests {
         assert!(driver.viewer.has_shown());
         driver.come_to_rest();
         let home = driver.viewer.moved();
-        driver.hear(b"w");
+        driver.receive(b"w");
         driver.now += Duration::from_millis(100);
         driver.act();
         assert!(home.is_none() && driver.viewer.moved().is_some(), "{home:?}");

@@ -1,7 +1,7 @@
 //! The error panel at the bottom of the picture.
 
 use super::layers::{Canvas, Layer, Level};
-use super::look::Look;
+use super::theme::Theme;
 use crate::text::Notice;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
@@ -12,26 +12,26 @@ use ratatui_widgets::paragraph::Paragraph;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Limit on the panel's rows, besides a third of the screen.
-const MOST_ROWS: u16 = 8;
+const MAX_ERROR_ROWS: u16 = 8;
 
 /// The first error of a scene, with its source line and a caret.
-pub(super) struct Fault(pub(super) Notice);
+pub(super) struct ErrorPanel(pub(super) Notice);
 
-impl Layer for Fault {
+impl Layer for ErrorPanel {
     fn level(&self) -> Level {
-        Level::Fault
+        Level::Error
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         if canvas.has_room() {
             let has_legends = canvas.frame.is_some_and(|frame| !frame.legends.is_empty());
             let area = self.area(canvas.screen(), canvas.status_rows + u16::from(has_legends));
-            canvas.lay(area, |look, area, buffer| self.paint(look, area, buffer));
+            canvas.lay(area, |theme, area, buffer| self.paint(theme, area, buffer));
         }
     }
 }
 
-impl Fault {
+impl ErrorPanel {
     /// Returns the lines that fit into `columns`.
     fn lines(&self, width: usize) -> Vec<String> {
         let mut lines = wrapped(&self.0.message, width);
@@ -50,15 +50,15 @@ impl Fault {
     /// Returns the panel's area, above the lowest `taken` rows.
     fn area(&self, screen: Rect, below: u16) -> Rect {
         let lines = self.lines(inner(screen.width)).len() as u16;
-        let height = lines.min(MOST_ROWS).min(screen.height / 3);
+        let height = lines.min(MAX_ERROR_ROWS).min(screen.height / 3);
         Rect { y: (screen.bottom() - height).saturating_sub(below), height, ..screen }
     }
 
-    fn paint(&self, look: Look, area: Rect, buffer: &mut Buffer) {
+    fn paint(&self, theme: Theme, area: Rect, buffer: &mut Buffer) {
         Clear.render(area, buffer);
         let lines: Vec<_> =
             self.lines(inner(area.width)).into_iter().map(|line| Line::from(format!(" {line}"))).collect();
-        Paragraph::new(lines).style(look.style()).render(area, buffer);
+        Paragraph::new(lines).style(theme.style()).render(area, buffer);
     }
 }
 
@@ -107,27 +107,27 @@ mod tests {
 
     const TEXT: &str = "(\n  radus: 1)";
 
-    fn fault() -> Fault {
+    fn panel() -> ErrorPanel {
         let faults = ["unknown field \"radus\"; did you mean \"radius\"?", "another"].map(str::to_owned);
         let mut found = Faults::default();
         for (message, span) in faults.into_iter().zip([Span { start: 4, end: 9 }, Span { start: 11, end: 12 }]) {
             found.add(span, || message);
         }
-        Fault(SceneError::new("my.ron", TEXT, found).notice())
+        ErrorPanel(SceneError::new("my.ron", TEXT, found).notice())
     }
 
     #[test]
     fn a_fault_fits_any_width() {
-        let fault = fault();
+        let panel = panel();
         let wide = [
             "my.ron:2:3: unknown field \"radus\"; did you mean \"radius\"?",
             "  2 |   radus: 1)",
             "    |   ^^^^^",
             "more is wrong: termtrace check tells all",
         ];
-        assert_eq!(fault.lines(78), wide);
+        assert_eq!(panel.lines(78), wide);
         for width in 1..100 {
-            let lines = fault.lines(width);
+            let lines = panel.lines(width);
             assert!(lines.iter().all(|line| line.trim_end().width() <= width), "{width}: {lines:?}");
             let caret = lines.iter().position(|line| line.contains('^')).expect("a caret");
             let column = lines[caret].find('^').expect("a caret");
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn errors_of_one_line_have_no_excerpt() {
-        let lines = |message: &str| Fault(message.to_owned().into()).lines(40);
+        let lines = |message: &str| ErrorPanel(message.to_owned().into()).lines(40);
         assert_eq!(lines("x.ron: there is no such file"), ["x.ron: there is no such file"]);
         assert_eq!(lines(""), [""]);
     }

@@ -2,14 +2,14 @@
 //! writes.
 
 use super::dialog::{Answer, Dialog};
-use super::{Ask, Viewer};
+use super::{Request, Viewer};
 use crate::control::Command;
 
 impl Viewer {
     /// Requests to copy the camera as a line of a scene file.
     pub(super) fn copy_camera(&mut self) {
         if let Some(camera) = self.eye.camera() {
-            self.asks.push_back(Ask::Copy(format!("{},", camera.to_ron())));
+            self.requests.push_back(Request::Copy(format!("{},", camera.to_ron())));
             self.say("camera copied, where OSC 52 is allowed; on leaving it is printed, too");
         }
     }
@@ -30,8 +30,8 @@ impl Viewer {
     pub(super) fn take_answer(&mut self, meant: Option<Command>) -> bool {
         let Some(dialog) = self.screen.close::<Dialog>() else { return false };
         match dialog.answer(meant) {
-            Answer::Export(format) => self.asks.push_back(Ask::Export(format)),
-            Answer::Keep => self.asks.push_back(Ask::KeepView),
+            Answer::Export(format) => self.requests.push_back(Request::Export(format)),
+            Answer::Keep => self.requests.push_back(Request::KeepView),
             Answer::Save(number) => self.save_view(number),
             Answer::Nothing => {}
         }

@@ -1,31 +1,31 @@
 //! Areas of the explanation's cursor and panel, which never cover the explained pixel.
 
-use super::Explaining;
+use super::ExplainPanel;
 use crate::capabilities::CellMode;
 use crate::explain::MAX_LINE_WIDTH;
-use crate::viewer::look::Look;
+use crate::viewer::theme::Theme;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
 
 /// Width of the panel, with its border and a blank on each side.
-const PANEL: u16 = MAX_LINE_WIDTH as u16 + 4;
+const PANEL_WIDTH: u16 = MAX_LINE_WIDTH as u16 + 4;
 
 /// Rows at the bottom of the screen that are reserved for others.
-const FOOT: u16 = 2;
+const RESERVED_ROWS: u16 = 2;
 
 /// Least and greatest height of the inset within the panel.
-const INSET: [u16; 2] = [6, 16];
+const INSET_HEIGHT: [u16; 2] = [6, 16];
 
 /// Returns the panel's area, on the side of the screen away from the cell.
 pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
-    let (middle, height) = (screen.width / 2, screen.height.saturating_sub(FOOT));
+    let (middle, height) = (screen.width / 2, screen.height.saturating_sub(RESERVED_ROWS));
     // The cursor's mark beside the cell takes a column as well.
-    if middle > PANEL {
-        let x = if column < middle { screen.width - PANEL } else { 0 };
-        return Rect::new(x, 0, PANEL, height);
+    if middle > PANEL_WIDTH {
+        let x = if column < middle { screen.width - PANEL_WIDTH } else { 0 };
+        return Rect::new(x, 0, PANEL_WIDTH, height);
     }
     // A narrow screen has it above or below.
-    let (half, width) = (screen.height / 2, PANEL.min(screen.width));
+    let (half, width) = (screen.height / 2, PANEL_WIDTH.min(screen.width));
     let x = (screen.width - width) / 2;
     if row < half { Rect::new(x, half + 1, width, height - half - 1) } else { Rect::new(x, 0, width, half - 1) }
 }
@@ -33,14 +33,14 @@ pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
 /// Returns the areas within the panel of the text, which has `lines` lines, and of the inset below it, which is empty
 /// if there is no room for it.
 pub(super) fn split(inside: Rect, lines: u16) -> [Rect; 2] {
-    let [least, most] = INSET;
+    let [least, most] = INSET_HEIGHT;
     let inset = if inside.height < 2 * least { 0 } else { inside.height.saturating_sub(lines + 1).clamp(least, most) };
     let text = Rect { height: inside.height - inset - u16::from(inset > 0), ..inside };
     [text, Rect { y: inside.bottom() - inset, height: inset, ..inside }]
 }
 
 /// Draws the cursor: marks beside, above and below the cell, with nothing on the cell itself.
-pub(super) fn marks(explaining: &Explaining, look: Look, mode: CellMode, screen: Rect) -> Vec<Buffer> {
+pub(super) fn marks(explaining: &ExplainPanel, theme: Theme, mode: CellMode, screen: Rect) -> Vec<Buffer> {
     let [column, row] = explaining.cell(mode);
     let [beside, above] = match explaining.row_in_cell(mode) {
         _ if !mode.glyphs.has_blocks() => [[">", "<"], ["v", "^"]],
@@ -53,7 +53,7 @@ pub(super) fn marks(explaining: &Explaining, look: Look, mode: CellMode, screen:
             && screen.contains((x, y).into())
         {
             let mut buffer = Buffer::empty(Rect::new(x, y, 1, 1));
-            buffer.set_string(x, y, symbol, look.mark());
+            buffer.set_string(x, y, symbol, theme.mark());
             marks.push(buffer);
         }
     };

@@ -1,6 +1,6 @@
 //! Camera motions for keys and the mouse.
 
-use super::Mode;
+use super::KeyMode;
 use crate::camera::{Camera, Grip};
 use glam::{Vec2, Vec3};
 
@@ -11,18 +11,18 @@ pub fn speed(camera: &Camera) -> f32 {
 
 /// Returns the camera after the picture has been dragged to the right and down by that part of its width and height:
 /// the view turns, in `orbit` about the target, or shifts so that the target follows.
-pub fn dragged(camera: &Camera, mode: Mode, grip: Grip, by: Vec2, aspect_ratio: f32) -> Camera {
+pub fn dragged(camera: &Camera, mode: KeyMode, grip: Grip, by: Vec2, aspect_ratio: f32) -> Camera {
     match grip {
         Grip::Pan => camera.panned(by, aspect_ratio),
-        Grip::Turn if mode == Mode::Orbit => camera.dragged_around(by, aspect_ratio),
+        Grip::Turn if mode == KeyMode::Orbit => camera.dragged_around(by, aspect_ratio),
         Grip::Turn => camera.dragged_view(by, aspect_ratio),
     }
 }
 
 /// Returns the camera after the eye has come nearer to a point, which stays where it is in the picture, by notches of
 /// the wheel. In `orbit` the target comes nearer to it, too, in a scene of that size.
-pub fn wheeled(camera: &Camera, mode: Mode, point: Vec3, notches: f32, size: f32) -> Camera {
-    if mode == Mode::Orbit { camera.wheeled_around(point, notches, size) } else { camera.wheeled(point, notches) }
+pub fn wheeled(camera: &Camera, mode: KeyMode, point: Vec3, notches: f32, size: f32) -> Camera {
+    if mode == KeyMode::Orbit { camera.wheeled_around(point, notches, size) } else { camera.wheeled(point, notches) }
 }
 
 /// The turntable turns so many radians a second: once around in twenty seconds.

@@ -10,20 +10,20 @@ use crate::tone::Picture;
 use std::num::NonZeroU32;
 
 /// Initial position of the line between two maps.
-pub(crate) const MIDDLE: f32 = 0.5;
+pub(crate) const INITIAL_WIPE: f32 = 0.5;
 
 /// The maps on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Shown {
+pub(crate) struct ViewLayout {
     /// The map shown, or the left one of two.
     map: Map,
     /// The map compared with it.
-    other: Option<Other>,
+    right: Option<RightMap>,
 }
 
 /// The right map and how it shares the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Other {
+struct RightMap {
     map: Map,
     split: Split,
 }
@@ -37,46 +37,46 @@ enum Split {
     Wipe,
 }
 
-impl Shown {
+impl ViewLayout {
     /// Shows a single map.
     pub(super) fn one(map: Map) -> Self {
-        Self { map, other: None }
+        Self { map, right: None }
     }
 
     /// Switches to the next map; of two, the right one, never to the map on the left.
-    pub(super) fn go_on(&mut self, step: fn(Map) -> Map) {
-        match &mut self.other {
+    pub(super) fn change_map(&mut self, step: fn(Map) -> Map) {
+        match &mut self.right {
             None => self.map = step(self.map),
-            Some(other) => {
-                let next = step(other.map);
-                other.map = if next == self.map { step(next) } else { next };
+            Some(right) => {
+                let next = step(right.map);
+                right.map = if next == self.map { step(next) } else { next };
             }
         }
     }
 
     /// Switches from one map to two side by side, to a wipe, and back.
     pub(super) fn compare(&mut self) {
-        self.other = match self.other {
-            None => Some(Other { map: self.map.next(), split: Split::Beside }),
-            Some(Other { map, split: Split::Beside }) => Some(Other { map, split: Split::Wipe }),
-            Some(Other { split: Split::Wipe, .. }) => None,
+        self.right = match self.right {
+            None => Some(RightMap { map: self.map.next(), split: Split::Beside }),
+            Some(RightMap { map, split: Split::Beside }) => Some(RightMap { map, split: Split::Wipe }),
+            Some(RightMap { split: Split::Wipe, .. }) => None,
         };
     }
 
     /// Returns whether there is a line to move.
     pub(crate) fn is_wipe(self) -> bool {
-        matches!(self.other, Some(Other { split: Split::Wipe, .. }))
+        matches!(self.right, Some(RightMap { split: Split::Wipe, .. }))
     }
 
     /// Returns the maps, from left to right.
     pub(super) fn maps(self) -> impl Iterator<Item = Map> {
-        [Some(self.map), self.other.map(|other| other.map)].into_iter().flatten()
+        [Some(self.map), self.right.map(|right| right.map)].into_iter().flatten()
     }
 
     /// Returns the maps and the sizes of the pictures that make up one of this resolution.
     pub(crate) fn parts(self, whole: Resolution) -> Vec<(Map, Resolution)> {
-        match self.other {
-            Some(Other { split: Split::Beside, .. }) => self.maps().zip(halves(whole)).collect(),
+        match self.right {
+            Some(RightMap { split: Split::Beside, .. }) => self.maps().zip(halves(whole)).collect(),
             _ => self.maps().map(|map| (map, whole)).collect(),
         }
     }
@@ -98,8 +98,8 @@ impl Shown {
     }
 
     /// Combines two pictures into one, with the line of a wipe at this share of the width.
-    pub(crate) fn joined(self, parts: &[Picture], wipe: f32) -> Option<Picture> {
-        match (self.other?.split, parts) {
+    pub(crate) fn combined(self, parts: &[Picture], wipe: f32) -> Option<Picture> {
+        match (self.right?.split, parts) {
             (Split::Beside, [left, right]) => Some(beside(left, right)),
             (Split::Wipe, [left, right]) => Some(wiped(left, right, wipe)),
             _ => None,
@@ -141,33 +141,33 @@ fn wiped(left: &Picture, right: &Picture, wipe: f32) -> Picture {
 mod tests {
     use super::*;
 
-    fn shown(map: Map, other: Map, split: Split) -> Shown {
-        Shown { map, other: Some(Other { map: other, split }) }
+    fn shown(map: Map, other: Map, split: Split) -> ViewLayout {
+        ViewLayout { map, right: Some(RightMap { map: other, split }) }
     }
 
     #[test]
     fn maps_go_round_and_the_right_one_alone_of_two() {
-        let mut seen = Shown::default();
+        let mut seen = ViewLayout::default();
         for map in Map::ALL.into_iter().cycle().skip(1).take(Map::ALL.len()) {
-            seen.go_on(Map::next);
-            assert_eq!(seen, Shown::one(map));
+            seen.change_map(Map::next);
+            assert_eq!(seen, ViewLayout::one(map));
         }
         let mut two = shown(Map::Lambert, Map::Shaded, Split::Beside);
-        two.go_on(Map::next);
+        two.change_map(Map::next);
         assert_eq!(two, shown(Map::Lambert, Map::Depth, Split::Beside), "not what is on the left");
-        two.go_on(Map::back);
+        two.change_map(Map::back);
         assert_eq!(two, shown(Map::Lambert, Map::Shaded, Split::Beside));
     }
 
     #[test]
     fn two_maps_are_beside_each_other_then_wiped_then_one() {
-        let mut seen = Shown::one(Map::Depth);
+        let mut seen = ViewLayout::one(Map::Depth);
         seen.compare();
         assert_eq!(seen, shown(Map::Depth, Map::Normal, Split::Beside));
         seen.compare();
         assert!(seen.is_wipe());
         seen.compare();
-        assert_eq!(seen, Shown::one(Map::Depth));
+        assert_eq!(seen, ViewLayout::one(Map::Depth));
     }
 
     /// Side by side, two maps have no more pixels than one; a wipe traces both in full.
@@ -186,9 +186,9 @@ mod tests {
     #[test]
     fn light_alone_is_refined() {
         let one = Sampling::UpTo(NonZeroU32::MIN);
-        assert_eq!(Shown::default().sampling(Sampling::BEST), Sampling::BEST);
-        assert_eq!(Shown::one(Map::Depth).sampling(Sampling::BEST), one);
-        assert_eq!(Shown::one(Map::Depth).sampling(Sampling::Coarse), Sampling::Coarse);
+        assert_eq!(ViewLayout::default().sampling(Sampling::BEST), Sampling::BEST);
+        assert_eq!(ViewLayout::one(Map::Depth).sampling(Sampling::BEST), one);
+        assert_eq!(ViewLayout::one(Map::Depth).sampling(Sampling::Coarse), Sampling::Coarse);
         assert_eq!(shown(Map::Depth, Map::Shaded, Split::Wipe).sampling(Sampling::BEST), Sampling::BEST);
         assert_eq!(shown(Map::Depth, Map::Object, Split::Beside).sampling(Sampling::BEST), one);
     }
@@ -206,10 +206,10 @@ mod tests {
     #[test]
     fn a_line_parts_two_pictures() {
         let beside = shown(Map::Shaded, Map::Depth, Split::Beside);
-        assert_eq!(rows(&beside.joined(&[flat(3, 1), flat(4, 2)], 0.5).expect("two")), ["111|2222"; 2]);
+        assert_eq!(rows(&beside.combined(&[flat(3, 1), flat(4, 2)], 0.5).expect("two")), ["111|2222"; 2]);
         let wipe = shown(Map::Shaded, Map::Depth, Split::Wipe);
         for (share, row) in [(0.0, "|222"), (0.5, "11|2"), (0.9, "111|"), (1.0, "111|")] {
-            assert_eq!(rows(&wipe.joined(&[flat(4, 1), flat(4, 2)], share).expect("two")), [row; 2]);
+            assert_eq!(rows(&wipe.combined(&[flat(4, 1), flat(4, 2)], share).expect("two")), [row; 2]);
         }
     }
 
@@ -220,8 +220,8 @@ mod tests {
             for split in [Split::Beside, Split::Wipe] {
                 let seen = shown(Map::Shaded, Map::Depth, split);
                 let parts: Vec<_> = seen.parts(whole).iter().map(|(_, part)| flat(part.width(), 1)).collect();
-                let joined = seen.joined(&parts, 0.5).expect("two");
-                assert_eq!((joined.width, joined.pixels.len()), (width, 2 * width as usize));
+                let combined = seen.combined(&parts, 0.5).expect("two");
+                assert_eq!((combined.width, combined.pixels.len()), (width, 2 * width as usize));
             }
         }
     }

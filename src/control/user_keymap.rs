@@ -1,28 +1,28 @@
-//! Bindings of one's own: RON -> the built-in table, changed; and back.
+//! Keymap of one's own: RON -> the built-in table, changed; and back.
 
-use super::{Bindings, Command, Key, Mode};
+use super::{Command, Key, KeyMode, Keymap};
 use crate::scene_text::{self, Faults, Field, SceneError, Span, SyntaxNode, Value, clipped, quoted};
 use crate::text::{closest, listed};
 use std::collections::HashSet;
 use std::fmt::Write;
 
 /// Always leaves, whatever is bound: nobody is to be caught.
-const WAY_OUT: Key = Key::ctrl('c');
+const ALWAYS_QUITS: Key = Key::ctrl('c');
 
-impl Bindings {
-    /// The built-in bindings, changed as the text says: for each mode a map from a key, or a list of keys, to a command,
+impl Keymap {
+    /// The built-in keymap, changed as the text says: for each mode a map from a key, or a list of keys, to a command,
     /// or to `None` for nothing. The name is the file's, for messages only.
     ///
     /// ```
     /// use crossterm::event::KeyCode;
-    /// use termtrace::internals::control::{Bindings, Command, Mode};
+    /// use termtrace::internals::control::{Keymap, Command, KeyMode};
     ///
     /// let text = r#"(
     ///     fly: { "8": MoveForward, ["2", "Home"]: MoveBack, "w": None },
     ///     always: { "Q": Quit },
     /// )"#;
-    /// let bindings = Bindings::from_ron("keys.ron", text)?;
-    /// let meant = bindings.command(&[Mode::Fly, Mode::Always], &KeyCode::Char('Q').into());
+    /// let keymap = Keymap::from_ron("keys.ron", text)?;
+    /// let meant = keymap.command(&[KeyMode::Fly, KeyMode::Always], &KeyCode::Char('Q').into());
     /// assert_eq!(meant, Some((Command::Quit, false)));
     /// # Ok::<(), termtrace::SceneError>(())
     /// ```
@@ -32,24 +32,24 @@ impl Bindings {
     /// terminal sends, what is bound twice or hidden by another mode's binding, and a table in which no key leaves.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
         scene_text::read(name, text, "file of keys is ()", |root, faults| {
-            let lines = lines(root, faults);
-            let mut bindings = Self::default();
-            for line in &lines {
-                bindings.bind(line.mode, line.key, line.command);
+            let entries = entries(root, faults);
+            let mut keymap = Self::default();
+            for entry in &entries {
+                keymap.bind(entry.mode, entry.key, entry.command);
             }
-            bindings.check(&lines, faults);
-            faults.is_empty().then_some(bindings)
+            keymap.check(&entries, faults);
+            faults.is_empty().then_some(keymap)
         })
     }
 
     /// All of it as a file of one's own, with what each command does: [`from_ron`](Self::from_ron) reads the same from it.
     pub fn to_ron(&self) -> String {
         let mut text = "(\n".to_owned();
-        for mode in Mode::ALL {
+        for mode in KeyMode::ALL {
             let _ = writeln!(text, "    {}: {{", mode.name());
             for row in self.of(mode).filter(|row| !row.keys.is_empty()) {
                 let entry = format!("{}: {},", keys_as_ron(&row.keys), row.command.name());
-                let _ = writeln!(text, "        {entry:<36}// {}", row.command.does());
+                let _ = writeln!(text, "        {entry:<36}// {}", row.command.description());
             }
             for key in self.freed(mode) {
                 let _ = writeln!(text, "        {}: None,", keys_as_ron(&[key]));
@@ -60,42 +60,42 @@ impl Bindings {
     }
 
     /// The keys that do something by the built-in table, and nothing by this.
-    fn freed(&self, mode: Mode) -> Vec<Key> {
+    fn freed(&self, mode: KeyMode) -> Vec<Key> {
         let bound: HashSet<_> = self.of(mode).flat_map(|row| &row.keys).copied().collect();
         let built_in = Self::default();
         built_in.of(mode).flat_map(|row| row.keys.clone()).filter(|key| !bound.contains(key)).collect()
     }
 
-    /// Whether each line does what it says, and there is a way out.
-    fn check(&self, lines: &[Line], faults: &mut Faults) {
-        for (i, line) in lines.iter().enumerate() {
-            let Line { mode, key, .. } = *line;
-            if lines[..i].iter().any(|before| (before.mode, before.key) == (mode, key)) {
-                faults.add(line.span, || format!("{} is bound twice in {}", quoted_key(key), mode.name()));
-            } else if key == WAY_OUT && line.command != Some(Command::Quit) {
-                faults.add(line.span, || format!("{} always leaves", quoted_key(key)));
+    /// Whether each entry does what it says, and there is a way out.
+    fn check(&self, entries: &[Entry], faults: &mut Faults) {
+        for (i, entry) in entries.iter().enumerate() {
+            let Entry { mode, key, .. } = *entry;
+            if entries[..i].iter().any(|before| (before.mode, before.key) == (mode, key)) {
+                faults.add(entry.span, || format!("{} is bound twice in {}", quoted_key(key), mode.name()));
+            } else if key == ALWAYS_QUITS && entry.command != Some(Command::Quit) {
+                faults.add(entry.span, || format!("{} always leaves", quoted_key(key)));
             } else {
-                self.check_is_reached(line, lines, faults);
+                self.check_is_reached(entry, entries, faults);
             }
         }
         if !self.can_be_left() {
             let built_in = Self::default();
-            let takes_it = |line: &&Line| {
-                built_in.of(Mode::Always).any(|row| row.command == Command::Quit && row.keys.contains(&line.key))
+            let takes_it = |entry: &&Entry| {
+                built_in.of(KeyMode::Always).any(|row| row.command == Command::Quit && row.keys.contains(&entry.key))
             };
-            let span = lines.iter().rev().find(takes_it).map(|line| line.span).unwrap_or_default();
+            let span = entries.iter().rev().find(takes_it).map(|entry| entry.span).unwrap_or_default();
             let message = "no key but Ctrl-C leaves any more: bind one to Quit in always";
             faults.add(span, || message.to_owned());
         }
     }
 
     /// What is bound always is hidden where a mode above binds the same key. That is meant if the file itself says both.
-    fn check_is_reached(&self, line: &Line, lines: &[Line], faults: &mut Faults) {
-        let Line { mode: Mode::Always, key, command: Some(command), span } = *line else { return };
-        for above in [Mode::Fly, Mode::Orbit] {
-            let hides = |other: &Line| other.mode == above && [key, key.without_shift()].contains(&other.key);
-            let meant = self.command(&[above, Mode::Always], &key.pressed()).map(|(meant, _)| meant);
-            if let Some(meant) = meant.filter(|&meant| meant != command && !lines.iter().any(hides)) {
+    fn check_is_reached(&self, entry: &Entry, entries: &[Entry], faults: &mut Faults) {
+        let Entry { mode: KeyMode::Always, key, command: Some(command), span } = *entry else { return };
+        for above in [KeyMode::Fly, KeyMode::Orbit] {
+            let hides = |other: &Entry| other.mode == above && [key, key.without_shift()].contains(&other.key);
+            let meant = self.command(&[above, KeyMode::Always], &key.pressed()).map(|(meant, _)| meant);
+            if let Some(meant) = meant.filter(|&meant| meant != command && !entries.iter().any(hides)) {
                 let (key, above, meant) = (quoted_key(key), above.name(), meant.name());
                 faults.add(span, || format!("{key} is {meant} in {above}, which goes before always"));
                 return;
@@ -106,16 +106,16 @@ impl Bindings {
     /// Whether some key that can be bound leaves, however the eye moves.
     fn can_be_left(&self) -> bool {
         let leaves =
-            |above, key: Key| self.command(&[above, Mode::Always], &key.pressed()) == Some((Command::Quit, false));
+            |above, key: Key| self.command(&[above, KeyMode::Always], &key.pressed()) == Some((Command::Quit, false));
         let rows = self.rows().iter().filter(|row| row.command == Command::Quit);
-        let keys: Vec<_> = rows.flat_map(|row| row.keys.clone()).filter(|&key| key != WAY_OUT).collect();
-        [Mode::Fly, Mode::Orbit].into_iter().all(|above| keys.iter().any(|&key| leaves(above, key)))
+        let keys: Vec<_> = rows.flat_map(|row| row.keys.clone()).filter(|&key| key != ALWAYS_QUITS).collect();
+        [KeyMode::Fly, KeyMode::Orbit].into_iter().all(|above| keys.iter().any(|&key| leaves(above, key)))
     }
 }
 
 /// What a file says of one key.
-struct Line {
-    mode: Mode,
+struct Entry {
+    mode: KeyMode,
     key: Key,
     /// Where the key stands.
     span: Span,
@@ -133,21 +133,21 @@ fn keys_as_ron(keys: &[Key]) -> String {
 }
 
 /// `(mode: { key: command, ... }, ...)`
-fn lines(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Line> {
+fn entries(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Entry> {
     const FORM: &str = "modes with their keys, as in (fly: { \"8\": MoveForward })";
     let Some(fields) = root.fields() else {
         faults.add(root.head(), || format!("expected {FORM}"));
         return Vec::new();
     };
-    let mut lines = Vec::new();
+    let mut entries = Vec::new();
     for (i, Field { name, value }) in fields.iter().enumerate() {
         if fields[..i].iter().any(|before| before.name.text == name.text) {
             faults.add(name.span, || format!("duplicate mode {}", quoted(name.text)));
         }
-        match (Mode::from_name(name.text), &value.value) {
+        match (KeyMode::from_name(name.text), &value.value) {
             (None, _) => faults.add(name.span, || unknown_mode(name.text)),
-            (Some(mode), Value::Map(entries)) => {
-                for (keys, command) in entries {
+            (Some(mode), Value::Map(pairs)) => {
+                for (keys, command) in pairs {
                     let keys = keys_of(keys, faults);
                     let command = match command.word() {
                         Some("None") => None,
@@ -156,17 +156,17 @@ fn lines(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Line> {
                             command => command,
                         },
                     };
-                    lines.extend(keys.into_iter().map(|(key, span)| Line { mode, key, span, command }));
+                    entries.extend(keys.into_iter().map(|(key, span)| Entry { mode, key, span, command }));
                 }
             }
             (Some(_), _) => faults.add(value.head(), || format!("expected {FORM}")),
         }
     }
-    lines
+    entries
 }
 
 fn unknown_mode(name: &str) -> String {
-    let known = Mode::ALL.map(Mode::name);
+    let known = KeyMode::ALL.map(KeyMode::name);
     match closest(name, known) {
         Some(meant) => format!("there is no mode {}; did you mean \"{meant}\"?", quoted(name)),
         None => format!("there is no mode {}; there are {}", quoted(name), listed(&known)),
@@ -201,7 +201,7 @@ fn key_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Key> {
 }
 
 /// The command, if it is one that means something in the mode.
-fn command_of(mode: Mode, node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Command> {
+fn command_of(mode: KeyMode, node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Command> {
     let Some(word) = node.word() else {
         let expected = "expected a command without quotes, such as MoveForward, or None";
         faults.add(node.head(), || expected.to_owned());
@@ -228,13 +228,13 @@ mod tests {
 
     const FORWARD: Command = Command::Move(Direction::Forward);
 
-    fn meant(bindings: &Bindings, mode: Mode, key: Key) -> Option<Command> {
-        bindings.command(&[mode, Mode::Always], &key.pressed()).map(|(command, _)| command)
+    fn meant(keymap: &Keymap, mode: KeyMode, key: Key) -> Option<Command> {
+        keymap.command(&[mode, KeyMode::Always], &key.pressed()).map(|(command, _)| command)
     }
 
     /// Each fault's place and message.
     fn faults(text: &str) -> Vec<String> {
-        let error = Bindings::from_ron("keys.ron", text).expect_err(text);
+        let error = Keymap::from_ron("keys.ron", text).expect_err(text);
         error.reports().iter().map(|report| format!("{}:{} {}", report.line, report.column, report.message)).collect()
     }
 
@@ -247,8 +247,8 @@ mod tests {
             export: { "g": WritePng, "p": None },
             always: { "Q": Quit, "\\": Compare, "\"": Compare, "x": None },
         )"#;
-        let bindings = Bindings::from_ron("keys.ron", text).unwrap_or_else(|error| panic!("{error}"));
-        let fly = |key| meant(&bindings, Mode::Fly, key);
+        let keymap = Keymap::from_ron("keys.ron", text).unwrap_or_else(|error| panic!("{error}"));
+        let fly = |key| meant(&keymap, KeyMode::Fly, key);
         assert_eq!([fly(Key::letter('8')), fly(Key::letter('w'))], [Some(FORWARD), None]);
         let up = Some(Command::Move(Direction::Up));
         assert_eq!([fly(Key::letter('z')), fly(Key::named(KeyCode::Home)), fly(Key::letter('e'))], [up; 3]);
@@ -256,10 +256,10 @@ mod tests {
         assert_eq!([fly(Key::letter('q')), fly(Key::letter('Q'))], [Some(Command::Quit); 2]);
         assert_eq!([fly(Key::letter('\\')), fly(Key::letter('"'))], [Some(Command::Compare); 2]);
         assert_eq!(fly(Key::letter('x')), None);
-        assert_eq!([fly(Key::ctrl('f')), meant(&bindings, Mode::Orbit, Key::ctrl('f'))], [None, Some(Command::Reset)]);
-        assert_eq!(meant(&bindings, Mode::Explain, Key::letter(' ')), Some(Command::ScrollDown));
-        assert_eq!(meant(&bindings, Mode::Keep, Key::letter('n')), Some(Command::No));
-        assert_eq!(meant(&bindings, Mode::Export, Key::letter('g')).map(Command::name), Some("WritePng"));
+        assert_eq!([fly(Key::ctrl('f')), meant(&keymap, KeyMode::Orbit, Key::ctrl('f'))], [None, Some(Command::Reset)]);
+        assert_eq!(meant(&keymap, KeyMode::Explain, Key::letter(' ')), Some(Command::ScrollDown));
+        assert_eq!(meant(&keymap, KeyMode::Keep, Key::letter('n')), Some(Command::No));
+        assert_eq!(meant(&keymap, KeyMode::Export, Key::letter('g')).map(Command::name), Some("WritePng"));
     }
 
     /// The table can be the start of one's own, changed or not.
@@ -267,17 +267,17 @@ mod tests {
     fn what_is_written_is_read_again() {
         let changes = r#"(fly: { ["8", "\\", "\""]: MoveForward, "w": None }, always: { "x": None, "z": Explain })"#;
         for text in ["()", changes] {
-            let bindings = Bindings::from_ron("keys.ron", text).unwrap_or_else(|error| panic!("{error}"));
-            let written = bindings.to_ron();
-            let again = Bindings::from_ron("keys.ron", &written).unwrap_or_else(|error| panic!("{error}\n{written}"));
+            let keymap = Keymap::from_ron("keys.ron", text).unwrap_or_else(|error| panic!("{error}"));
+            let written = keymap.to_ron();
+            let again = Keymap::from_ron("keys.ron", &written).unwrap_or_else(|error| panic!("{error}\n{written}"));
             assert_eq!(again.to_ron(), written);
-            for mode in Mode::ALL {
+            for mode in KeyMode::ALL {
                 for key in (' '..='~').map(Key::letter).chain(('a'..='z').map(Key::ctrl)) {
-                    assert_eq!(meant(&again, mode, key), meant(&bindings, mode, key), "{key} in {mode:?}\n{written}");
+                    assert_eq!(meant(&again, mode, key), meant(&keymap, mode, key), "{key} in {mode:?}\n{written}");
                 }
             }
         }
-        let written = Bindings::default().to_ron();
+        let written = Keymap::default().to_ron();
         let lines: Vec<_> = written.lines().collect();
         assert_eq!(lines[..3], ["(", "    fly: {", r#"        "w": MoveForward,                   // move forward"#]);
         assert!(lines.contains(&r#"        ["q", "Ctrl-C"]: Quit,              // leave"#), "{written}");
@@ -340,7 +340,7 @@ mod tests {
             r#"(fly: { "w": MoveBack }, orbit: { "w": MoveBack }, always: { "w": Status })"#,
             r#"(fly: { "v": MoveBack })"#,
         ] {
-            assert!(Bindings::from_ron("keys.ron", text).is_ok(), "{text}");
+            assert!(Keymap::from_ron("keys.ron", text).is_ok(), "{text}");
         }
     }
 
@@ -349,8 +349,8 @@ mod tests {
         let caught = "no key but Ctrl-C leaves any more: bind one to Quit in always";
         assert_eq!(faults(r#"(always: { "q": None })"#), [format!("1:12 {caught}")]);
         assert_eq!(faults(r#"(always: { "q": Status })"#), [format!("1:12 {caught}")]);
-        assert!(Bindings::from_ron("keys.ron", r#"(always: { "q": None, "Q": Quit })"#).is_ok());
-        assert!(Bindings::from_ron("keys.ron", r#"(always: { ["q", "Ctrl-C"]: Quit })"#).is_ok());
+        assert!(Keymap::from_ron("keys.ron", r#"(always: { "q": None, "Q": Quit })"#).is_ok());
+        assert!(Keymap::from_ron("keys.ron", r#"(always: { ["q", "Ctrl-C"]: Quit })"#).is_ok());
         // Hidden by another mode, it is no way out there.
         assert_eq!(faults(r#"(fly: { "q": Status })"#), [format!("1:9 {caught}")]);
     }

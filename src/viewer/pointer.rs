@@ -7,14 +7,14 @@ use std::time::Duration;
 
 /// The pointer, and the thing under it while a button is held.
 #[derive(Default)]
-pub(super) struct Hand {
+pub(super) struct PointerState {
     pointer: Pointer,
-    grasped: Grasped,
+    target: DragTarget,
 }
 
 /// The thing that is dragged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Grasped {
+pub(super) enum DragTarget {
     #[default]
     View,
     /// The line between two maps.
@@ -24,18 +24,18 @@ pub(super) enum Grasped {
     Light,
 }
 
-impl Hand {
+impl PointerState {
     /// Returns the meaning of an event at this position of the screen.
     pub(super) fn take(&mut self, event: MouseEvent, at: Vec2, now: Duration) -> Option<Gesture> {
         self.pointer.take(&event, at, now)
     }
 
-    pub(super) fn grasp(&mut self, thing: Grasped) {
-        self.grasped = thing;
+    pub(super) fn start_drag(&mut self, thing: DragTarget) {
+        self.target = thing;
     }
 
-    pub(super) fn grasped(&self) -> Grasped {
-        self.grasped
+    pub(super) fn drag_target(&self) -> DragTarget {
+        self.target
     }
 
     /// Returns whether a button is held.
@@ -43,8 +43,8 @@ impl Hand {
         self.pointer.holds()
     }
 
-    pub(super) fn let_go(&mut self) {
-        self.pointer.let_go();
+    pub(super) fn release(&mut self) {
+        self.pointer.release();
     }
 
     /// Returns the pointer's last position, as shares of the screen's width and height, if known.

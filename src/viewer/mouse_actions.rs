@@ -1,19 +1,19 @@
 //! Mouse actions on the view, the line between two maps, and the cursor of an explanation.
 
 use super::Viewer;
-use super::hand::Grasped;
 use super::note::Note;
-use crate::control::{self, Command, Gesture, Grip, Mode};
+use super::pointer::DragTarget;
+use crate::control::{self, Command, Gesture, Grip, KeyMode};
 use crate::hit::closest_hit;
 use crate::input::Input;
 use crossterm::event::{Event, MouseEvent, MouseEventKind};
 use glam::{Vec2, Vec3};
 
 /// Distance in columns within which a press takes hold of the line between two maps.
-const NEAR: f32 = 2.0;
+const WIPE_GRAB_COLUMNS: f32 = 2.0;
 
 /// Consecutive motions of one drag that arrive together are merged: the last position tells all.
-pub(super) fn is_outdated(input: &Input, next: Option<&Input>) -> bool {
+pub(super) fn is_superseded(input: &Input, next: Option<&Input>) -> bool {
     let way = |input: &Input| match input {
         Input::Event(Event::Mouse(MouseEvent { kind: kind @ MouseEventKind::Drag(_), .. })) => Some(*kind),
         _ => None,
@@ -24,27 +24,29 @@ pub(super) fn is_outdated(input: &Input, next: Option<&Input>) -> bool {
 impl Viewer {
     /// Carries out a mouse event. An open question is answered by keys only.
     pub(super) fn take_mouse(&mut self, event: MouseEvent) {
-        let at = self.place(event);
+        let at = self.screen_position(event);
         let modes = self.screen.modes(self.size());
-        let Some(gesture) = self.hand.take(event, at, self.now).filter(|_| modes.contains(&self.eye.mode())) else {
+        let Some(gesture) = self.pointer.take(event, at, self.now).filter(|_| modes.contains(&self.eye.mode())) else {
             return;
         };
         match gesture {
             Gesture::Press { at, grip } => {
                 self.screen.close::<Note>();
-                self.hand.grasp(self.under(at, grip, &modes));
+                self.pointer.start_drag(self.drag_target_at(at, grip, &modes));
                 self.drag(at, at, grip);
             }
             Gesture::Drag { from, to, grip } => self.drag(from, to, grip),
             Gesture::Release => {}
-            Gesture::DoubleClick if self.hand.grasped() == Grasped::View => self.obey(Command::Frame, false),
+            Gesture::DoubleClick if self.pointer.drag_target() == DragTarget::View => {
+                self.execute(Command::FrameAll, false)
+            }
             Gesture::DoubleClick => self.drag(at, at, Grip::Turn),
             Gesture::Wheel { at, notches } => self.wheel(at, notches),
         }
     }
 
     /// Returns the event's position as shares of the screen's width and height: the middle of its cell or pixel.
-    fn place(&self, event: MouseEvent) -> Vec2 {
+    fn screen_position(&self, event: MouseEvent) -> Vec2 {
         let (width, height) = self.display.mouse_pixels().unwrap_or((1, 1));
         let size = self.size();
         let screen = Vec2::new(f32::from(width) * f32::from(size.columns), f32::from(height) * f32::from(size.rows));
@@ -53,27 +55,27 @@ impl Viewer {
     }
 
     /// Returns the thing under the pointer.
-    fn under(&self, at: Vec2, grip: Grip, modes: &[Mode]) -> Grasped {
+    fn drag_target_at(&self, at: Vec2, grip: Grip, modes: &[KeyMode]) -> DragTarget {
         let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.size().columns);
         match grip {
-            Grip::Turn if self.shown.is_wipe() && beside <= NEAR => Grasped::Line,
-            Grip::Turn if modes.contains(&Mode::Light) => Grasped::Light,
-            Grip::Turn if modes.contains(&Mode::Explain) => Grasped::Cursor,
-            _ => Grasped::View,
+            Grip::Turn if self.layout.is_wipe() && beside <= WIPE_GRAB_COLUMNS => DragTarget::Line,
+            Grip::Turn if modes.contains(&KeyMode::Light) => DragTarget::Light,
+            Grip::Turn if modes.contains(&KeyMode::Explain) => DragTarget::Cursor,
+            _ => DragTarget::View,
         }
     }
 
     fn drag(&mut self, from: Vec2, to: Vec2, grip: Grip) {
-        match self.hand.grasped() {
-            Grasped::Line => self.wipe_to(to.x),
-            Grasped::Cursor => {
+        match self.pointer.drag_target() {
+            DragTarget::Line => self.wipe_to(to.x),
+            DragTarget::Cursor => {
                 let pixel = self.pixel(to);
-                self.screen.explain(|explaining, frame| explaining.put(frame, pixel));
+                self.screen.explain(|panel, frame| panel.move_to(frame, pixel));
             }
-            Grasped::Light => self.drag_light(self.part_of(to - from)),
-            Grasped::View if from == to => {}
-            Grasped::View => {
-                let (by, aspect_ratio) = (self.part_of(to - from), self.part().aspect_ratio());
+            DragTarget::Light => self.drag_light(self.to_part(to - from)),
+            DragTarget::View if from == to => {}
+            DragTarget::View => {
+                let (by, aspect_ratio) = (self.to_part(to - from), self.part().aspect_ratio());
                 let mode = self.eye.mode();
                 let drag = |camera: &_, _| control::dragged(camera, mode, grip, by, aspect_ratio);
                 self.eye.change(self.now, drag);
@@ -86,14 +88,14 @@ impl Viewer {
             self.wheel_light(notches);
             return;
         }
-        let Some(point) = self.point_under(at) else { return };
+        let Some(point) = self.scene_point_at(at) else { return };
         let mode = self.eye.mode();
         let wheel = |camera: &_, size| control::wheeled(camera, mode, point, notches, size);
         self.eye.change(self.now, wheel);
     }
 
     /// Converts a way on the screen to parts of one picture's width and height.
-    fn part_of(&self, way: Vec2) -> Vec2 {
+    fn to_part(&self, way: Vec2) -> Vec2 {
         way * Vec2::new(self.resolution().width() as f32 / self.part().width() as f32, 1.0)
     }
 
@@ -104,7 +106,7 @@ impl Viewer {
     }
 
     /// Returns the point of the scene seen at a position; where nothing is hit, a point as far away as the target.
-    fn point_under(&self, at: Vec2) -> Option<Vec3> {
+    fn scene_point_at(&self, at: Vec2) -> Option<Vec3> {
         let (frame, camera) = (self.screen.frame()?, self.eye.camera()?);
         let (part, [x, y]) = frame.part_at(self.pixel(at));
         let share = |at: u32, of: u32| (at as f32 + 0.5) / of.max(1) as f32;
@@ -129,12 +131,12 @@ mod tests {
         };
         let (left, right) = (MouseEventKind::Drag(MouseButton::Left), MouseEventKind::Drag(MouseButton::Right));
         let way = mouse(left, 1);
-        assert!(is_outdated(&way, Some(&mouse(left, 2))));
+        assert!(is_superseded(&way, Some(&mouse(left, 2))));
         let key = Input::Event(Event::Key(KeyCode::Char('w').into()));
         let (up, wheel) = (mouse(MouseEventKind::Up(MouseButton::Left), 2), mouse(MouseEventKind::ScrollUp, 2));
         for next in [None, Some(&up), Some(&mouse(right, 2)), Some(&wheel), Some(&key)] {
-            assert!(!is_outdated(&way, next), "{next:?}");
+            assert!(!is_superseded(&way, next), "{next:?}");
         }
-        assert!(!is_outdated(&wheel, Some(&wheel)) && !is_outdated(&key, Some(&key)), "each of them counts");
+        assert!(!is_superseded(&wheel, Some(&wheel)) && !is_superseded(&key, Some(&key)), "each of them counts");
     }
 }

@@ -5,11 +5,11 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 /// Limit on the links followed, the same as that of Linux.
-const MOST_LINKS: usize = 40;
+const MAX_LINKS: usize = 40;
 
 /// The folders and links that a path leads through. None of their own paths contains a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Way {
+pub(super) struct ResolvedPath {
     /// The folders and links on the way, each of which may be replaced.
     steps: Vec<Step>,
     /// The file, or the first missing component.
@@ -24,7 +24,7 @@ struct Step {
     is_link: bool,
 }
 
-impl Way {
+impl ResolvedPath {
     /// Resolves `path`. `None` if it is relative and the current folder has been removed.
     pub(super) fn to(path: &Path) -> Option<Self> {
         // The path of the current folder is not part of the way: the process stays in it even if it is moved.
@@ -40,7 +40,7 @@ impl Way {
             let place = folder.join(name);
             let is_link = fs::symlink_metadata(&place).map(|data| data.is_symlink());
             match is_link {
-                Ok(true) if links < MOST_LINKS => {
+                Ok(true) if links < MAX_LINKS => {
                     links += 1;
                     left.extend(fs::read_link(&place).map(|target| names(&target)).unwrap_or_default());
                     steps.push(Step { place, is_link: true });
@@ -65,7 +65,7 @@ impl Way {
     }
 
     /// Returns the folders that contain the file and the links. Watching them is indispensable.
-    pub(super) fn looked_in(&self) -> impl Iterator<Item = &Path> {
+    pub(super) fn searched_folders(&self) -> impl Iterator<Item = &Path> {
         let links = self.steps.iter().filter(|step| step.is_link).map(|step| &*step.place);
         links.chain([&*self.end]).filter_map(Path::parent).filter(|folder| !is_made_up(folder))
     }
@@ -75,7 +75,7 @@ impl Way {
     /// A removed folder is not reported while a process has it as its current folder. So while the file is missing,
     /// their parents are watched too. Folders directly below the root are watched only then: they are permanent, and
     /// busy.
-    pub(super) fn around(&self) -> impl Iterator<Item = &Path> {
+    pub(super) fn outer_folders(&self) -> impl Iterator<Item = &Path> {
         let folders = self.steps.iter().filter(|step| !step.is_link).map(|step| &*step.place);
         let own = folders.clone().filter(|folder| folder.components().count() > 2);
         let outer = folders.filter_map(Path::parent).filter(|_| !self.is_whole);

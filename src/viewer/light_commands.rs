@@ -1,25 +1,25 @@
 //! Commands for the light that is held.
 
 use super::Viewer;
+use super::light_marker::LightMarker;
 use super::lights::Lights;
-use super::mark::LightMark;
 use crate::camera::Camera;
 use crate::control::{Command, Toward};
 use crate::light::Light;
 use glam::{Vec2, Vec3};
 
 /// How far a press moves a light, in parts of the picture's height.
-const STEP: f32 = 1.0 / 32.0;
+const LIGHT_STEP: f32 = 1.0 / 32.0;
 /// How many times as far it does with Shift.
-const FASTER: f32 = 4.0;
+const LIGHT_SHIFT_FACTOR: f32 = 4.0;
 
 impl Viewer {
     /// Takes hold of the light that is nearest to the pointer on the screen; of the next one, if one is held.
     pub(super) fn take_light(&mut self) {
         let (camera, aspect_ratio) = (self.eye.camera(), self.part().aspect_ratio());
-        let pointer = self.hand.at().unwrap_or(Vec2::splat(0.5));
+        let pointer = self.pointer.at().unwrap_or(Vec2::splat(0.5));
         let nearest = |lights: &[Light]| nearest(lights, &camera?, pointer, aspect_ratio);
-        let taken = self.gallery.lights_mut().and_then(|lights| {
+        let taken = self.scenes.lights_mut().and_then(|lights| {
             let light = lights.take_next(nearest)?;
             Some((light, lights.all().len(), lights.held()))
         });
@@ -36,16 +36,16 @@ impl Viewer {
 
     /// Marks the light that is held, where it is.
     pub(super) fn mark_light(&mut self) {
-        self.screen.set(self.held_light().map(LightMark));
+        self.screen.set(self.held_light().map(LightMarker));
     }
 
     fn held_light(&self) -> Option<Vec3> {
-        self.gallery.lights()?.held()
+        self.scenes.lights()?.held()
     }
 
     /// Lets go of it; whether there was one.
     pub(super) fn leave_light(&mut self) -> bool {
-        let was_held = self.gallery.lights_mut().is_some_and(Lights::let_go);
+        let was_held = self.scenes.lights_mut().is_some_and(Lights::release);
         self.mark_light();
         was_held
     }
@@ -55,14 +55,14 @@ impl Viewer {
     }
 
     /// The light goes one step as the screen has it.
-    pub(super) fn step_light(&mut self, toward: Toward, more: bool) {
+    pub(super) fn step_light(&mut self, toward: Toward, faster: bool) {
         let (across, down) = match toward {
             Toward::Left => (-1.0, 0.0),
             Toward::Right => (1.0, 0.0),
             Toward::Up => (0.0, -1.0),
             Toward::Down => (0.0, 1.0),
         };
-        let step = if more { FASTER * STEP } else { STEP };
+        let step = if faster { LIGHT_SHIFT_FACTOR * LIGHT_STEP } else { LIGHT_STEP };
         self.drag_light(step * Vec2::new(across / self.part().aspect_ratio(), down));
     }
 
@@ -79,7 +79,7 @@ impl Viewer {
 
     /// The light goes back to where the scene has it.
     pub(super) fn put_light_back(&mut self) {
-        if let Some(lights) = self.gallery.lights_mut()
+        if let Some(lights) = self.scenes.lights_mut()
             && let Some(home) = lights.home()
         {
             lights.move_held(home);
@@ -88,7 +88,7 @@ impl Viewer {
 
     fn move_light(&mut self, to: impl FnOnce(&Camera, Vec3) -> Vec3) {
         if let Some(camera) = self.eye.camera()
-            && let Some(lights) = self.gallery.lights_mut()
+            && let Some(lights) = self.scenes.lights_mut()
             && let Some(from) = lights.held()
         {
             lights.move_held(to(&camera, from));

@@ -8,7 +8,7 @@ use crate::ray::Ray;
 use glam::Vec3;
 
 /// How many times as large a press makes the view rectangle.
-pub(super) const ZOOM: f32 = 1.1;
+pub(super) const ZOOM_FACTOR: f32 = 1.1;
 
 impl Viewer {
     /// The eye goes around what is in the middle of the picture, or flies again.
@@ -21,7 +21,7 @@ impl Viewer {
 
     /// What a key does about what a note says, for its end; nothing, if no key is bound to that.
     pub(super) fn hint(&self, command: Command, does: &str) -> String {
-        let key = self.bindings().key_of(&self.screen.modes(self.size()), command);
+        let key = self.keymap().key_of(&self.screen.modes(self.size()), command);
         key.map_or_else(String::new, |key| format!("; {key} {does}"))
     }
 
@@ -45,7 +45,7 @@ impl Viewer {
     /// The picture's size; of two maps side by side, each is a picture of its own.
     pub(super) fn part(&self) -> Resolution {
         let whole = self.resolution();
-        self.shown.parts(whole).first().map_or(whole, |(_, part)| *part)
+        self.layout.parts(whole).first().map_or(whole, |(_, part)| *part)
     }
 
     /// The field of view becomes narrower or wider, and is told.

@@ -15,25 +15,25 @@ const fn up_to(samples: u32) -> Sampling {
 }
 
 /// The level of one sample per pixel.
-const ONE: usize = 1;
+const ONE_SAMPLE_LEVEL: usize = 1;
 /// The highest level in motion.
-const MOST: usize = 3;
+const MAX_MOTION_LEVEL: usize = 3;
 /// Initial ratios of each level's time to that of the level before it, until they are measured. Coarse pixels stand for
 /// four; the higher levels trace only edges again.
-const GROWTH: [f64; MOST + 1] = [1.0, 4.0, 2.0, 3.0];
+const INITIAL_COST_RATIOS: [f64; MAX_MOTION_LEVEL + 1] = [1.0, 4.0, 2.0, 3.0];
 /// Share of a frame's time that tracing may take.
-const SHARE: f64 = 0.75;
+const TRACING_SHARE: f64 = 0.75;
 /// Share of that time up to which a finer level is tried. Between this and the whole the level stays, so that it does
 /// not oscillate.
-const ROOM: f64 = 0.8;
+const FINER_LEVEL_SHARE: f64 = 0.8;
 /// Number of frames in a row that must have room for a finer level before it is tried.
-const ROOMY: u32 = 8;
+const FRAMES_BEFORE_FINER: u32 = 8;
 /// Number of late frames in a row before a coarser level is chosen. A single frame may be late by chance, unless it is
 /// very late.
-const LATE: u32 = 2;
+const LATE_FRAMES_BEFORE_COARSER: u32 = 2;
 
 /// The level of sampling of the next picture.
-pub(super) struct Effort {
+pub(super) struct QualityControl {
     /// A fixed level.
     forced: Option<Sampling>,
     /// The level of pictures in motion.
@@ -41,22 +41,29 @@ pub(super) struct Effort {
     /// The level of the last picture, and its time in seconds.
     last: Option<(usize, f64)>,
     /// Measured ratio of each level's time to that of the level before it.
-    growth: [f64; MOST + 1],
+    cost_ratios: [f64; MAX_MOTION_LEVEL + 1],
     /// Number of pictures in a row with room for a finer level.
-    roomy: u32,
+    frames_with_room: u32,
     /// Number of late pictures in a row.
-    late: u32,
+    late_frames: u32,
 }
 
-impl Effort {
+impl QualityControl {
     /// Returns a control by time, or a fixed level if `forced` is given.
     pub(super) fn new(forced: Option<Sampling>) -> Self {
-        Self { forced, level: ONE, last: None, growth: GROWTH, roomy: 0, late: 0 }
+        Self {
+            forced,
+            level: ONE_SAMPLE_LEVEL,
+            last: None,
+            cost_ratios: INITIAL_COST_RATIOS,
+            frames_with_room: 0,
+            late_frames: 0,
+        }
     }
 
     /// Returns the sampling of a new view: within a motion, or after a rest, when the user waits for the picture.
-    pub(super) fn of_new_view(&self, in_motion: bool) -> Sampling {
-        let level = if in_motion { self.level } else { self.level.min(ONE) };
+    pub(super) fn for_new_view(&self, in_motion: bool) -> Sampling {
+        let level = if in_motion { self.level } else { self.level.min(ONE_SAMPLE_LEVEL) };
         self.forced.unwrap_or(LEVELS[level])
     }
 
@@ -64,34 +71,37 @@ impl Effort {
     ///
     /// A picture and its refinements are at most three frames, and two and a half times the bytes of a whole one: a
     /// coarse frame takes less than half.
-    pub(super) fn of_next_step(&self, shown: Sampling) -> Option<Sampling> {
-        let next = if shown == Sampling::Coarse { LEVELS[ONE + 1] } else { Sampling::BEST };
+    pub(super) fn next_refinement(&self, shown: Sampling) -> Option<Sampling> {
+        let next = if shown == Sampling::Coarse { LEVELS[ONE_SAMPLE_LEVEL + 1] } else { Sampling::BEST };
         (self.forced.is_none() && shown != next).then_some(next)
     }
 
     /// Returns whether all further refinements of the last picture are expected to take at most this long together.
     pub(super) fn ends_within(&self, time: Duration) -> bool {
-        self.last.is_some_and(|last| self.expected(last, MOST) <= time.as_secs_f64())
+        self.last.is_some_and(|last| self.predicted(last, MAX_MOTION_LEVEL) <= time.as_secs_f64())
     }
 
     /// Records the time that a picture of a new view took, as a share of a frame's time.
     pub(super) fn took(&mut self, sampling: Sampling, time: Duration, frame: Duration) {
-        let Some(level) = LEVELS.iter().position(|&level| level == sampling).filter(|&level| level <= MOST) else {
+        let Some(level) = LEVELS.iter().position(|&level| level == sampling).filter(|&level| level <= MAX_MOTION_LEVEL)
+        else {
             return;
         };
-        let most = SHARE * frame.as_secs_f64();
+        let most = TRACING_SHARE * frame.as_secs_f64();
         let at_last = (level, time.as_secs_f64());
-        self.learn(at_last);
-        let finest = |limit: f64| (0..=MOST).rev().find(|&level| self.expected(at_last, level) <= limit).unwrap_or(0);
-        let (fits, has_room) = (finest(most), finest(ROOM * most));
-        let is_very_late = self.expected(at_last, self.level) > 2.0 * most;
-        self.late = if fits < self.level { self.late + 1 } else { 0 };
-        self.roomy = if has_room > self.level { self.roomy + 1 } else { 0 };
-        if self.late >= LATE || is_very_late {
+        self.update_cost_ratio(at_last);
+        let finest = |limit: f64| {
+            (0..=MAX_MOTION_LEVEL).rev().find(|&level| self.predicted(at_last, level) <= limit).unwrap_or(0)
+        };
+        let (fits, has_room) = (finest(most), finest(FINER_LEVEL_SHARE * most));
+        let is_very_late = self.predicted(at_last, self.level) > 2.0 * most;
+        self.late_frames = if fits < self.level { self.late_frames + 1 } else { 0 };
+        self.frames_with_room = if has_room > self.level { self.frames_with_room + 1 } else { 0 };
+        if self.late_frames >= LATE_FRAMES_BEFORE_COARSER || is_very_late {
             self.level = fits;
-        } else if self.roomy >= ROOMY {
+        } else if self.frames_with_room >= FRAMES_BEFORE_FINER {
             self.level += 1;
-            self.roomy = 0;
+            self.frames_with_room = 0;
         }
     }
 
@@ -101,19 +111,19 @@ impl Effort {
     }
 
     /// Updates the ratio of two neighbouring levels from two consecutive pictures.
-    fn learn(&mut self, at_last: (usize, f64)) {
+    fn update_cost_ratio(&mut self, at_last: (usize, f64)) {
         let Some(before) = self.last.replace(at_last) else { return };
         let (coarse, fine) = if before.0 < at_last.0 { (before, at_last) } else { (at_last, before) };
         if fine.0 == coarse.0 + 1 && coarse.1 > 0.0 {
-            let growth = &mut self.growth[fine.0];
+            let growth = &mut self.cost_ratios[fine.0];
             // Averaged with the previous ratio, because either picture may have been delayed.
             *growth = (0.5 * (*growth + fine.1 / coarse.1)).clamp(1.0, 8.0);
         }
     }
 
     /// Returns the predicted time of a picture at another level.
-    fn expected(&self, (last, time): (usize, f64), level: usize) -> f64 {
-        let growth = |levels: std::ops::Range<usize>| levels.map(|level| self.growth[level + 1]).product::<f64>();
+    fn predicted(&self, (last, time): (usize, f64), level: usize) -> f64 {
+        let growth = |levels: std::ops::Range<usize>| levels.map(|level| self.cost_ratios[level + 1]).product::<f64>();
         if level >= last { time * growth(last..level) } else { time / growth(level..last) }
     }
 }

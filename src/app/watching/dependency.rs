@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// A file that a scene needs, and its state before it was read.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::app) struct Needed {
+pub(in crate::app) struct Dependency {
     path: PathBuf,
     state: State,
 }
@@ -50,7 +50,7 @@ pub(super) fn identity(data: &Metadata) -> Identity {
     (data.dev(), data.ino())
 }
 
-impl Needed {
+impl Dependency {
     /// Returns the file at `path` with its current state.
     pub(in crate::app) fn now(path: &Path) -> Self {
         Self { path: path.to_owned(), state: State::of(path) }
