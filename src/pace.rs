@@ -23,6 +23,9 @@
 //! | Resyncing  | at the rate                                 | none              | no reply for a second                 |
 //! | Silent     | at the rate, 30 a second                    | one at a time     | a reply                               |
 //!
+//! After a resync on a slow link, `Steady` has at most one query in flight until enough replies have arrived in order: the
+//! frames in between end without one, and the next reply shows that they have arrived.
+//!
 //! Pure: the time is passed in, and there is no I/O.
 //!
 //! ```
@@ -214,6 +217,8 @@ impl Link {
         self.replies.check_timeouts(now);
         if self.replies.queries_frames() {
             self.replies.append_query(frame, true, now);
+        } else if self.replies.state == State::Steady {
+            self.replies.ledger.record_unqueried(frame.len(), now);
         }
         self.replies.spend(frame.len(), now);
         self.utilisation = self.replies.rates.best().map_or(0.0, |rate| frame.len() as f64 / self.frame_bytes(rate));
@@ -244,7 +249,7 @@ impl Link {
 
     /// Returns the bytes on their way that do not wait in a queue.
     fn bandwidth_delay_product(&self, rate: Rate) -> f64 {
-        rate.bytes_per_second * self.replies.round_trip.shortest().as_secs_f64()
+        rate.bytes_per_second * self.replies.round_trip.expected().as_secs_f64()
     }
 
     fn record_sent(&mut self, bytes: usize, now: Duration) {

@@ -43,8 +43,10 @@ impl Query {
 pub(super) struct InFlight {
     pub(super) query: Query,
     pub(super) sent: Duration,
-    /// Number of bytes that it ends; 0 for a query alone.
+    /// Number of bytes since the previous query; 0 for a query alone.
     pub(super) bytes: usize,
+    /// Sending time of the first of these bytes.
+    pub(super) first_sent: Duration,
     /// Whether its timeout has passed, and no later reply has shown that to be spurious.
     timed_out: bool,
     /// Whether its timeout has ever passed.
@@ -82,12 +84,14 @@ pub(super) enum Validity {
 #[derive(Debug)]
 pub(super) struct Ledger {
     queries: VecDeque<InFlight>,
+    /// Sending time and number of the bytes that no query follows yet.
+    unqueried: Option<(Duration, usize)>,
     last: Tag,
 }
 
 impl Default for Ledger {
     fn default() -> Self {
-        Self { queries: VecDeque::new(), last: Tag::FIRST }
+        Self { queries: VecDeque::new(), unqueried: None, last: Tag::FIRST }
     }
 }
 
@@ -100,7 +104,15 @@ impl Ledger {
 
     /// Records a query that is sent now behind this many bytes.
     pub(super) fn record(&mut self, query: Query, bytes: usize, now: Duration) {
-        self.queries.push_back(InFlight { query, sent: now, bytes, timed_out: false, late: false });
+        let (first_sent, before) = self.unqueried.take().unwrap_or((now, 0));
+        let bytes = before + bytes;
+        self.queries.push_back(InFlight { query, sent: now, bytes, first_sent, timed_out: false, late: false });
+    }
+
+    /// Records bytes that are sent now without a query. The reply to the next query shows that they have arrived.
+    pub(super) fn record_unqueried(&mut self, bytes: usize, now: Duration) {
+        let (_, unqueried) = self.unqueried.get_or_insert((now, 0));
+        *unqueried += bytes;
     }
 
     /// Returns the queries that have not timed out, oldest first.
@@ -125,7 +137,8 @@ impl Ledger {
 
     /// Returns the bytes that are neither confirmed by a reply nor timed out.
     pub(super) fn bytes_in_flight(&self) -> f64 {
-        self.in_flight().map(|query| query.bytes as f64).sum()
+        let unqueried = self.unqueried.map_or(0, |(_, bytes)| bytes);
+        self.in_flight().map(|query| query.bytes as f64).sum::<f64>() + unqueried as f64
     }
 
     /// Records a timeout: all queries in flight time out.
@@ -147,6 +160,7 @@ impl Ledger {
     /// Forgets all queries.
     pub(super) fn clear(&mut self) {
         self.queries.clear();
+        self.unqueried = None;
     }
 
     /// Matches a reply with a number. `None` if it belongs to no query.
@@ -175,14 +189,14 @@ impl Ledger {
 
     /// Removes the query at this index and all older ones.
     fn take(&mut self, at: usize) -> Matched {
-        let InFlight { query, sent, bytes, late, .. } = self.queries[at];
-        let mut acked = (sent, bytes);
+        let InFlight { query, sent, bytes, first_sent, late, .. } = self.queries[at];
+        let mut acked = (first_sent, bytes);
         let mut validity = if late { Validity::Spurious } else { Validity::Exact };
         let mut lost_probe = false;
         for older in self.queries.drain(..=at).take(at) {
             lost_probe |= older.bytes == 0;
             if !older.timed_out {
-                acked = (acked.0.min(older.sent), acked.1 + older.bytes);
+                acked = (acked.0.min(older.first_sent), acked.1 + older.bytes);
             } else if !late {
                 validity = Validity::AfterLoss;
             }
