@@ -1,28 +1,32 @@
-//! The samples of a pixel, and whether it needs more.
+//! The samples of a pixel, and the criteria by which it gets more.
 
 use crate::color::LinearRgb;
 use glam::Vec3;
 
-/// The first sample of a pixel.
+/// The first sample of a pixel, with the G-buffer data that reveal edges between pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FirstSample {
     pub(super) light: LinearRgb,
-    /// The object's number, from 1; 0 for none.
+    /// The object's index plus 1; 0 without a hit.
     object: u32,
+    /// The shading normal. Unit length, or zero without a hit.
     normal: Vec3,
+    /// The mask of lights that reach the hit.
     lit_by: u32,
 }
 
 impl FirstSample {
-    /// Returns the sample with this light, from an object with its normal or from none, and the lights that reach it.
+    /// Returns a sample of an object with its normal, or of the background, reached by the lights in `lit_by`.
     pub(super) fn new(light: LinearRgb, surface: Option<(u32, Vec3)>, lit_by: u32) -> Self {
         let (object, normal) = surface.map_or((0, Vec3::ZERO), |(object, normal)| (object + 1, normal));
         Self { light, object, normal, lit_by }
     }
 
-    /// Returns whether an edge may run between two pixels: of an object, a shadow, a pattern, or a surface that bends
-    /// by more than 22.5 degrees. `white` is the light that is displayed as white.
+    /// Returns whether an edge may run between two pixels: of an object, a shadow, a pattern or a curved surface.
+    ///
+    /// `white` is the light that is displayed as white.
     pub(super) fn is_edge_to(&self, other: &Self, white: f32) -> bool {
+        // 23 degrees. Normals reveal creases and strong curves whose light happens to be equal in both pixels.
         const MIN_NORMAL_COSINE: f32 = 0.92;
         self.object != other.object
             || self.lit_by != other.lit_by
@@ -31,13 +35,14 @@ impl FirstSample {
     }
 }
 
-/// The accumulator of a pixel's samples, with the data that tell whether it needs more.
+/// The accumulator of a pixel's samples, with their range as a measure of noise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Accumulator {
     /// The sum of the samples.
     light: LinearRgb,
     count: u32,
-    /// The least and the greatest light of the first samples, at most [`RANGE_SAMPLES`], per channel.
+    /// The minimum and maximum light of the first [`RANGE_SAMPLES`] samples, per channel.
+    // A range instead of a variance: comparisons are exact, and the same in whichever order samples arrive.
     range: [LinearRgb; 2],
 }
 
@@ -53,7 +58,7 @@ impl Accumulator {
     pub(super) fn add(&mut self, [r, g, b]: [&[f32]; 3]) {
         let lights = || r.iter().zip(g).zip(b).map(|((&r, &g), &b)| LinearRgb::new(r, g, b));
         lights().for_each(|light| self.light += light);
-        // After that many samples the range is no longer needed.
+        // Only the last pass reads the range, before its own samples.
         if self.count < RANGE_SAMPLES {
             lights().for_each(|light| widen(&mut self.range, light));
         }
@@ -65,7 +70,7 @@ impl Accumulator {
         self.light * (1.0 / self.count as f32)
     }
 
-    /// Returns whether there is more than one sample.
+    /// Returns whether the pixel has more than one sample.
     pub(super) fn is_refined(&self) -> bool {
         self.count > 1
     }
@@ -76,7 +81,8 @@ impl Accumulator {
     }
 }
 
-/// Extends a range by a light.
+/// Extends a range by a light, per channel.
+// Not `f32::min` and `max`: these also treat NaN, which light never is, and take twice the comparisons.
 fn widen([least, most]: &mut [LinearRgb; 2], light: LinearRgb) {
     let join = |a: LinearRgb, b: LinearRgb, is_wanted: fn(f32, f32) -> bool| {
         let one = |a: f32, b: f32| if is_wanted(a, b) { a } else { b };
@@ -86,18 +92,20 @@ fn widen([least, most]: &mut [LinearRgb; 2], light: LinearRgb) {
     *most = join(light, *most, |a, b| a > b);
 }
 
-/// Relative difference of neighbours that is visible as an edge.
+/// The relative difference of two neighbours that is visible as an edge.
+// 5 % of linear light are three steps of 8-bit sRGB for a middle grey, and six near white.
 const EDGE_CONTRAST: f32 = 0.05;
 
-/// Number of samples that decide whether more are needed.
+/// The number of samples that decide whether the last pass adds more.
 const RANGE_SAMPLES: u32 = 16;
 
-/// Relative difference among that many samples at which the mean may be off by a visible amount.
+/// The relative difference among [`RANGE_SAMPLES`] samples at which their mean may be visibly off.
+// Four times the contrast of an edge: the mean of 16 samples varies by a quarter of what one sample does.
 const NOISE_CONTRAST: f32 = 0.2;
 
-/// Returns whether two lights differ by this share of the greater one in a channel, and by more than is visible in the
-/// dark.
+/// Returns whether two lights differ in a channel by more than `share` of the greater one.
 fn differ(a: LinearRgb, b: LinearRgb, share: f32, white: f32) -> bool {
+    // Half a percent of white is allowed in addition: relative differences between dark lights are invisible.
     const MIN_CONTRAST: f32 = 0.005;
     [(a.r, b.r), (a.g, b.g), (a.b, b.b)]
         .into_iter()

@@ -15,16 +15,19 @@ use crate::shade;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-/// A picture in progress, which gets more samples where it has edges. Its light does not depend on the steps in which
-/// it is refined, to the bit.
+/// A picture in progress, which gets more samples at edges. Its light has the same bits whatever the steps of refining.
+// Against 64 samples of every pixel of the scenes in `scenes/` at 80x48, the finished picture has a PSNR of 49 to 62 dB
+// for 0.11 to 0.78 of the rays; one sample per pixel has 23 to 34 dB.
 #[derive(Clone, Debug)]
 pub struct ProgressiveRender {
     tiles: Tiles,
-    /// The G-buffer: the first sample of each pixel, tile by tile.
+    /// The first sample of each pixel, tile by tile.
+    // Kept apart from the accumulators, so that a tile can read its neighbours' first samples while these are refined:
+    // no barrier between the passes. three_spheres at 80x48 on two threads: 1.27 instead of 1.34 ms.
     first: Vec<Vec<FirstSample>>,
-    /// All samples of each pixel, once there are more than one.
+    /// The accumulators of each pixel; empty for tiles with one sample per pixel.
     accumulators: Vec<Vec<Accumulator>>,
-    /// Number of passes done.
+    /// The number of finished passes.
     passes: usize,
 }
 
@@ -35,11 +38,12 @@ impl ProgressiveRender {
         Self { tiles, first: vec![Vec::new(); tiles.count()], accumulators: vec![Vec::new(); tiles.count()], passes: 0 }
     }
 
-    /// Traces what is missing up to [`Sampling::UpTo`](super::Sampling::UpTo) that number of samples, and returns the
-    /// cost. The scene must be the same each time.
+    /// Traces the missing samples of [`Sampling::UpTo`](super::Sampling::UpTo) `samples`, and returns the cost.
+    ///
+    /// All calls must get the same scene.
     ///
     /// # Errors
-    /// [`Cancelled`], if the token is cancelled; the picture cannot be refined any further then.
+    /// [`Cancelled`], if the token is cancelled. The picture is then incomplete and must be dropped.
     pub fn refine_or_cancel(
         &mut self,
         token: &Cancellation,
@@ -53,8 +57,9 @@ impl ProgressiveRender {
     pub(super) fn refine(&mut self, executor: Executor<'_>, scene: &Scene, samples: NonZeroU32) -> Cost {
         let passes = PASSES.iter().filter(|pass| pass.end <= samples.get()).count();
         let mut cost = Cost::default();
-        // Finding edges takes the whole first pass. After it each pixel decides by itself whether it needs more
-        // samples, and no tile waits for another.
+        // Finding edges needs the first sample of all neighbours, hence the whole first pass. After it each pixel
+        // decides alone, so all other passes are one visit of each tile. One visit per pass, with a barrier between,
+        // took 2.10 instead of 1.43 ms (three_spheres at 80x48, two threads).
         if self.passes == 0 && passes > 0 {
             cost += self.trace_first(executor, scene);
             self.passes = 1;
@@ -75,8 +80,9 @@ impl ProgressiveRender {
         })
     }
 
-    /// Traces the remaining passes.
+    /// Traces all passes after the first.
     fn trace_refinement(&mut self, executor: Executor<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
+        // Contrasts are judged as displayed: relative to the light that the exposure maps to white.
         let white = 1.0 / scene.exposure();
         let batches: Vec<_> = passes.map(|pass| (pass, SampleBatches::of(PASSES[pass].clone()))).collect();
         let Self { tiles, first, accumulators, .. } = self;
@@ -117,17 +123,18 @@ impl ProgressiveRender {
     }
 }
 
-/// The progress [units](ProgressUnit) of a tile in all passes but the first, whose number of samples is not known beforehand.
-/// For the pictures of `scenes/` these passes take 8 to 25 times the instructions of the first.
+/// The progress [units](ProgressUnit) of a tile in all passes after the first.
+// An estimate, as the number of samples is not known beforehand: for the scenes in `scenes/` these passes take 8 to 25
+// times the instructions of the first.
 const REFINEMENT_UNITS: u64 = 16 * PIXELS as u64;
 
-/// Returns the units of all passes but the first.
+/// Returns the progress units of all passes after the first.
 pub(super) fn refinement_units(resolution: Resolution, samples: NonZeroU32) -> u64 {
     let is_refined = PASSES[1].end <= samples.get();
     if is_refined { REFINEMENT_UNITS * Tiles::count_of(resolution) as u64 } else { 0 }
 }
 
-/// Returns whether an edge may run beside a pixel of a tile; `white` is the light that is displayed as white.
+/// Returns whether an edge may separate a pixel of a tile from any neighbour; `white` is the light displayed as white.
 fn is_at_edge(tiles: &Tiles, first: &[Vec<FirstSample>], tile: usize, pixel: usize, white: f32) -> bool {
     let own = &first[tile][pixel];
     let [columns, rows] = tiles.neighbourhood(tile, pixel);
@@ -143,7 +150,7 @@ fn is_at_edge(tiles: &Tiles, first: &[Vec<FirstSample>], tile: usize, pixel: usi
 fn record_first_samples(first: &mut [FirstSample], buffers: &Buffers) {
     for (ray, &pixel) in buffers.pixels.iter().enumerate() {
         let (group, lane) = (ray / LANES, ray % LANES);
-        // Stored as a sum of one sample, which is never -0.
+        // Added to zero, as in `Accumulator`: a sum is never -0, so both ways to one sample have the same bits.
         let light = LinearRgb::BLACK + shade::lane_light(&buffers.lights[group], lane);
         let lit_by = buffers.arriving[group].lit_by[lane];
         first[usize::from(pixel)] = FirstSample::new(light, buffers.points[group].object_and_normal(lane), lit_by);

@@ -10,23 +10,27 @@ use crate::threads;
 use std::fmt;
 use std::ops::ControlFlow;
 
-/// A receiver of progress reports: the part of the work done, from 0 to 1.
+/// A receiver of progress reports: the share of the work done, from 0 to 1.
 type ProgressCallback<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Send + Sync + 'a>;
 
-/// A render of a scene: from its own camera, with 1280 x 720 pixels and [`Sampling::BEST`], on the threads of the
-/// current rayon pool, unless set otherwise.
+/// A builder of a picture of a scene.
+///
+/// By default: the scene's own camera, 1280x720 pixels, [`Sampling::BEST`], and the threads of the current rayon pool.
 ///
 /// ```
 /// use std::ops::ControlFlow;
 /// use termtrace::{Render, Resolution, Sampling, Scene};
 ///
-/// let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, objects: [Sphere(center: (0, 0, 0), radius: 1)])"#;
-/// let scene = Scene::from_ron("ball.ron", text)?;
+/// let scene = Scene::from_ron("ball.ron", "(
+///     camera: (eye: (0, 0, 5), target: (0, 0, 0)),
+///     ambient: 1,
+///     objects: [Sphere(center: (0, 0, 0), radius: 1)],
+/// )")?;
 /// let picture = Render::new(&scene)
 ///     .resolution(Resolution::square(40, 30))
 ///     .sampling(Sampling::BEST)
-///     .on_progress(|part| {
-///         eprint!("\r{:3.0} %", 100.0 * part);
+///     .on_progress(|share| {
+///         eprint!("\r{:3.0} %", 100.0 * share);
 ///         ControlFlow::Continue(())
 ///     })
 ///     .run()?;
@@ -57,11 +61,11 @@ impl fmt::Debug for Render<'_> {
 }
 
 impl<'a> Render<'a> {
-    /// Limit on the number of [threads](Self::threads).
+    /// The largest number of [threads](Self::threads).
     #[doc(hidden)]
     pub const MAX_THREADS: usize = 1024;
 
-    /// Returns a render of `scene`.
+    /// Returns a builder with the defaults.
     pub fn new(scene: &'a Scene) -> Self {
         Self {
             scene,
@@ -89,30 +93,31 @@ impl<'a> Render<'a> {
         Self { sampling: sampling.into(), ..self }
     }
 
-    /// Traces on a pool of this many threads, clamped to 1 and [`MAX_THREADS`](Self::MAX_THREADS), which does not
-    /// change the picture. Without the feature `parallel` the calling thread alone traces.
+    /// Sets the number of threads, clamped to between 1 and [`MAX_THREADS`](Self::MAX_THREADS).
+    ///
+    /// The picture is the same for any number. Without the feature `parallel` only the calling thread traces.
     pub fn threads(self, count: usize) -> Self {
         Self { threads: Some(count.clamp(1, Self::MAX_THREADS)), ..self }
     }
 
-    /// Sets a token that cancels the render, within the time of 256 rays on each thread.
+    /// Sets a token that cancels the render, within the time of tracing 256 rays.
     #[doc(hidden)]
     pub fn cancelled_by(self, token: &Cancellation) -> Self {
         Self { token: token.clone(), ..self }
     }
 
-    /// Reports the part of the work done to `callback`: positive and increasing, at the end 1. Reports come one at a time,
-    /// from any of the threads, at least every 10 ms; the threads wait for `callback`. The render is cancelled when it
-    /// returns `Break`.
+    /// Sets a callback for progress reports, which cancels the render by returning `Break`.
+    ///
+    /// The callback gets the share of the work done: positive, increasing, and 1 at the end. Calls come one at a time,
+    /// from any of the threads, about every 10 ms; the threads wait for them.
     pub fn on_progress(self, callback: impl Fn(f32) -> ControlFlow<()> + Send + Sync + 'a) -> Self {
         Self { callback: Some(Box::new(callback)), ..self }
     }
 
-    /// Renders the picture: the light of [`render`](super::render), to the bit.
+    /// Renders the picture, with the same bits as [`render`](super::render).
     ///
     /// # Errors
-    /// [`Cancelled`], if the token was cancelled or a report answered by `Break`. The answer to the last report, of 1,
-    /// has no effect.
+    /// [`Cancelled`], if the token is cancelled or the callback returns `Break` before the last report.
     pub fn run(self) -> Result<Framebuffer, Cancelled> {
         match self.threads {
             Some(count) => threads::in_pool_of(count, || self.trace()),
@@ -157,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn its_light_is_that_of_render_and_its_reports_rise_to_one() {
+    fn its_light_is_that_of_render_and_its_reports_increase_to_one() {
         let (scene, resolution) = (scene(), Resolution::square(601, 401));
         for sampling in samplings() {
             let reports = Mutex::new(Vec::new());
@@ -176,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_break_gives_it_up_and_nothing_more_is_reported() {
+    fn a_break_cancels_the_render_and_ends_the_reports() {
         let (scene, resolution) = (scene(), Resolution::square(400, 300));
         for sampling in samplings() {
             let reports = Mutex::new(0);
@@ -209,11 +214,11 @@ mod tests {
     }
 
     #[test]
-    fn a_token_gives_it_up() {
+    fn a_token_cancels_the_render() {
         let (scene, token) = (scene(), Cancellation::default());
         token.cancel();
         assert_eq!(Render::new(&scene).cancelled_by(&token).run(), Err(Cancelled));
-        let never = Render::new(&scene).cancelled_by(&token).on_progress(|_| unreachable!("it is given up before"));
+        let never = Render::new(&scene).cancelled_by(&token).on_progress(|_| unreachable!("it is cancelled before"));
         assert_eq!(never.run(), Err(Cancelled));
     }
 }

@@ -13,18 +13,17 @@ use crate::shade::{self, ShadowRays};
 use std::num::NonZeroU32;
 use std::ops::Add;
 
-/// Counts of a picture's rays.
+/// The counts of a picture's rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
-    /// Number of rays traced: eye rays and shadow rays.
+    /// The number of rays traced: eye rays and shadow rays.
     pub rays: u64,
-    /// Number of eye rays with a hit.
+    /// The number of eye rays with a hit.
     pub hits: u64,
-    /// Number of pairs of a hit and a light without an occluder between them. Light from behind the surface counts as
-    /// well: only tracing is measured here.
+    /// The number of pairs of a hit and a light without an occluder between them, on either side of the surface.
+    // Light from behind counts as well: only tracing is measured, and compared with tracers that know no normals.
     pub lit: u64,
-    /// The sum of the depths of all hits: t, because the component of an eye ray's direction along the view has length
-    /// 1.
+    /// The sum of the depths of all hits, in world units along the view direction: their t.
     pub depths: f64,
 }
 
@@ -40,9 +39,10 @@ impl Add for Counts {
     }
 }
 
-/// Traces the eye rays of [`render`](super::render) with this kernel and number of samples per pixel
-/// ([`Sampling::MAX_SAMPLES`] at most). If the scene has shadows, traces a ray from each hit to each light as well,
-/// even if the surface faces away from it. Runs on the threads of the current rayon pool.
+/// Traces the eye rays of [`render`](super::render) with `kernel`, and returns their counts.
+///
+/// Takes at most [`Sampling::MAX_SAMPLES`] samples per pixel. If the scene has shadows, also traces a ray from each hit
+/// to each light, even if the surface faces away from it. Runs on the threads of the current rayon pool.
 pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
     let tiles = Tiles::new(camera, resolution, 1);
     let last_stage = if scene.shadows() { Stage::Points } else { Stage::Hits };
@@ -52,7 +52,7 @@ pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolut
     Executor::Pool.trace(&job, counts.iter_mut().collect(), |tile, counts| {
         tile.trace(&batches, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));
     });
-    // Summed tile by tile, because a sum of floats depends on the order.
+    // Summed in the order of tiles, not as they finish: a sum of floats depends on the order.
     counts.into_iter().fold(Counts::default(), Add::add)
 }
 
@@ -62,7 +62,7 @@ fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
     let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
     for hits in hits.iter() {
         counts.hits += u64::from(hits.hit_mask.count_ones());
-        // Zero for rays without a hit: a sum without branches.
+        // Zero for rays without a hit, so that the sum has no branches.
         let depths = F32x8::select(F32x8::mask_from_bits(hits.hit_mask), hits.t, F32x8::ZERO);
         counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
     }

@@ -1,4 +1,4 @@
-//! G-buffers: the hits of the rays through a picture's pixels, for pictures of something other than light.
+//! G-buffers: the hits of the eye rays through a picture's pixels, for maps and descriptions.
 
 use super::sampling::SampleBatches;
 use super::steps::{Buffers, RenderJob, Stage};
@@ -16,9 +16,9 @@ use crate::shape::{Surface, SurfacePoint};
 /// The depth of tracing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceDepth {
-    /// To the closest hits.
+    /// Closest hits only.
     Surfaces,
-    /// To the lights as well.
+    /// Closest hits, and shadow rays from them to all lights.
     Lights,
 }
 
@@ -29,8 +29,9 @@ pub struct GBufferSample {
     pub ray: Ray,
     /// The closest hit.
     pub hit: Option<Hit>,
-    /// Mask of the lights that reach the hit; light 32 shares its bit with light 0, and so on. Empty if shadow rays
-    /// were not traced.
+    /// The mask of lights that reach the hit, or 0 if shadow rays were not traced.
+    ///
+    /// Light 32 shares its bit with light 0, and so on.
     pub lit_by: u32,
 }
 
@@ -41,17 +42,19 @@ impl GBufferSample {
     }
 }
 
-/// The results for all pixels, and their cost.
+/// The values of all pixels, and their cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelValues<T> {
-    /// One result per pixel, row by row from the top.
+    /// One value per pixel, row by row from the top.
     pub pixels: Vec<T>,
     /// The cost.
     pub cost: Cost,
 }
 
-/// Returns the results of `see` for the G-buffer sample of each pixel: with the eye rays of [`render`](super::render),
-/// one per pixel, or one for two by two pixels if the sampling is [`Coarse`](Sampling::Coarse).
+/// Returns the values of `see` for the G-buffer sample of each pixel.
+///
+/// Samples are those of the eye rays of [`render`](super::render): one per pixel, or one for two by two pixels if the
+/// sampling is [`Coarse`](Sampling::Coarse).
 ///
 /// # Errors
 /// [`Cancelled`], if the executor's token is cancelled.
@@ -67,7 +70,8 @@ pub fn trace_g_buffer<T: Copy + Default + Send>(
     executor.finish(trace_g_buffer_partial(executor, scene, camera, resolution, sampling, depth, see))
 }
 
-/// Traces as [`trace_g_buffer`] does; after a cancel the rest is skipped.
+/// Traces as [`trace_g_buffer`] does; after a cancel, returns incomplete values.
+// `see` is called in the tile, while its hits are in the cache: no G-buffer of the whole picture is ever stored.
 pub(crate) fn trace_g_buffer_partial<T: Copy + Default + Send>(
     executor: Executor<'_>,
     scene: &Scene,

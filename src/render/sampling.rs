@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-/// The number of rays through the pixels of a picture.
+/// The number of samples of a picture's pixels: rays per pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Sampling {
@@ -13,8 +13,9 @@ pub enum Sampling {
     Coarse,
     /// This many rays through each pixel, at most [`MAX_SAMPLES`](Self::MAX_SAMPLES).
     Each(NonZeroU32),
-    /// One ray through each pixel; in total 4, 16 or 64 where there are edges: of objects, shadows and patterns, or
-    /// where normals differ; at most this many.
+    /// One ray through each pixel, and 4, 16 or 64 at edges, limited to this many.
+    ///
+    /// Edges are those of objects, shadows and patterns, and places where normals differ.
     UpTo(NonZeroU32),
 }
 
@@ -22,11 +23,13 @@ impl Sampling {
     /// The largest number of samples at edges: 64.
     pub const BEST: Self = Self::UpTo(NonZeroU32::new(64).expect("64 is not 0"));
 
-    /// Limit on the rays through a pixel: 65,536. More would not change any 8-bit colour, and take very long.
+    /// The largest number of rays through a pixel: 65,536.
+    ///
+    /// More would not change any 8-bit colour; 2^32 - 1 would take minutes for a single pixel.
     #[doc(hidden)]
     pub const MAX_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 16).expect("65,536 is not 0");
 
-    /// Returns the sampling with at most [`MAX_SAMPLES`](Self::MAX_SAMPLES).
+    /// Returns the sampling with at most [`MAX_SAMPLES`](Self::MAX_SAMPLES) samples per pixel.
     pub(super) fn bounded(self) -> Self {
         match self {
             Self::Each(samples) => Self::Each(samples.min(Self::MAX_SAMPLES)),
@@ -41,28 +44,34 @@ impl From<NonZeroU32> for Sampling {
     }
 }
 
-/// The total number of samples after each pass over a picture: four times that of the pass before.
+/// The samples of each pass of adaptive sampling. Each pass has four times the samples of all passes before.
+// Four times the samples about halve the error of a mean; less would hardly be worth another pass.
 pub(super) const PASSES: [Range<u32>; 4] = [0..1, 1..4, 4..16, 16..64];
 
-/// A batch of samples that are traced together, pixel by pixel: rays through one pixel hit the same things more often
-/// than rays through neighbours. All have the same [`footprint_share`].
+/// A batch of samples that are traced together, with equal [`footprint_share`].
+// Rays are ordered pixel by pixel: rays through one pixel hit the same primitives more often than rays through
+// neighbours. Sample by sample, the bunny at 200x120 took 53.1 instead of 27.0 ms with best samples, and 42.0 instead
+// of 28.5 ms with 16; only scenes of a few spheres were faster (10.9 instead of 11.3 ms).
 #[derive(Clone, Debug)]
 pub(super) struct SampleBatch {
     pub(super) samples: Range<u32>,
-    /// Positions of the batch's samples in their pixels, in groups of eight.
+    /// The positions of the samples in their pixels, in groups of eight.
     pub(super) positions: [[F32x8; 2]; MAX_BATCH_RAYS / LANES],
 }
 
-/// Limit on the rays in a batch: their arrays fit the first-level cache.
+/// The largest number of rays in a batch.
+// The arrays between the steps then take 43 kB, about a first-level cache.
 pub(super) const MAX_BATCH_RAYS: usize = 256;
 
-/// Limit on the samples of one pixel in a batch.
+/// The largest number of samples per pixel in a batch: those of one packet.
 const MAX_BATCH_SAMPLES: u32 = 64;
 
 /// A range of samples, divided into batches.
 pub(super) struct SampleBatches {
     samples: Range<u32>,
-    /// The first batch. The others are computed again for each tile, which is cheap compared with tracing them.
+    /// The first batches, one per pass at most.
+    // The others are computed again for each tile. That is cheap compared with tracing them, and all batches of
+    // MAX_SAMPLES would take 2 MB.
     kept: Vec<SampleBatch>,
 }
 
@@ -72,7 +81,7 @@ impl SampleBatches {
         Self { samples, kept }
     }
 
-    /// Returns the batches in order.
+    /// Returns the batches in the order of their samples.
     pub(super) fn iter(&self) -> impl Iterator<Item = Cow<'_, SampleBatch>> {
         split(self.samples.clone()).enumerate().map(|(at, samples)| match self.kept.get(at) {
             Some(batch) => Cow::Borrowed(batch),
@@ -81,7 +90,7 @@ impl SampleBatches {
     }
 }
 
-/// Divides a range of samples at the ends of passes and by the limit on a batch.
+/// Divides a range of samples at the ends of passes, and into parts of at most [`MAX_BATCH_SAMPLES`].
 fn split(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
     std::iter::from_fn(move || {
         let Range { start, end } = samples;
@@ -107,13 +116,13 @@ impl SampleBatch {
         self.samples.len()
     }
 
-    /// Divides this many pixels into chunks, each of which makes one batch of rays.
+    /// Divides `pixels` into ranges whose samples are at most [`MAX_BATCH_RAYS`] rays.
     pub(super) fn pixel_ranges(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> {
         let pixels_at_once = MAX_BATCH_RAYS / self.per_pixel();
         (0..pixels).step_by(pixels_at_once).map(move |first| first..pixels.min(first + pixels_at_once))
     }
 
-    /// Writes the pixel of each ray of a batch.
+    /// Writes the pixel of each ray to `of_rays`.
     pub(super) fn assign_pixels(&self, pixels: &[u8], of_rays: &mut Vec<u8>) {
         of_rays.clear();
         if self.per_pixel() == 1 {
@@ -124,9 +133,12 @@ impl SampleBatch {
     }
 }
 
-/// Returns the position of a sample in its pixel, as parts of the width and height from the top left corner: first the
-/// centre, then Roberts' R2 sequence (multiples of the inverses of the plastic number and its square, modulo 1), every
-/// prefix of which covers the pixel evenly. Computed in integers, so that it is exact.
+/// Returns the position of a sample in its pixel, from (0, 0) at the top left corner to (1, 1).
+///
+/// The first is the centre; the others follow Roberts' R2 sequence (multiples of the inverses of the plastic number and
+/// its square, modulo 1), every prefix of which covers the pixel evenly.
+// A low-discrepancy sequence instead of random or jittered positions: law 4 wants the same picture every time, and any
+// pass may be the last. Computed in integers modulo 2^32, so that it is exact on every CPU.
 pub(super) fn sample_position(sample: u32) -> (f32, f32) {
     let part = |step: u32| {
         let position = 0x8000_0000_u32.wrapping_add(sample.wrapping_mul(step));
@@ -135,8 +147,8 @@ pub(super) fn sample_position(sample: u32) -> (f32, f32) {
     (part(3_242_174_889), part(2_447_445_414))
 }
 
-/// Returns the side of the area that a sample stands for, as a share of the pixel's: the whole for a single sample,
-/// half for one of four.
+/// Returns the side of a sample's footprint as a share of the pixel's: 1 for a single sample, half for one of four.
+// The share follows the pass, not the final number of samples: a sample must not change when more are added.
 pub(super) fn footprint_share(sample: u32) -> f32 {
     match sample {
         0 => 1.0,
@@ -150,10 +162,9 @@ pub(super) fn footprint_share(sample: u32) -> f32 {
 mod tests {
     use super::*;
 
-    /// For any range each sample of each pixel is traced exactly once, in order, at its position, and the samples of a
-    /// batch stand for the same share of a pixel.
+    /// Each sample of each pixel is traced exactly once, in order and at its position, in batches of equal footprints.
     #[test]
-    fn batches_leave_nothing_out() {
+    fn batches_cover_each_sample_once() {
         for samples in [0..1, 0..3, 0..16, 1..4, 4..16, 16..64, 0..64, 0..65, 0..300, 5..7] {
             for pixels in [0, 1, 5, 21, 22, 255, 256] {
                 let mut traced = vec![Vec::new(); pixels];

@@ -12,18 +12,19 @@ use std::time::{Duration, Instant};
 /// The threads that trace.
 #[derive(Clone, Copy, Debug)]
 pub enum Executor<'a> {
-    /// The calling thread alone, for frames of less than about a millisecond: waking other threads takes longer than
-    /// they save.
+    /// The calling thread alone.
     CurrentThread,
     /// The threads of the current rayon pool.
     Pool,
     /// The threads of the current rayon pool, until the token is cancelled.
     Cancellable(&'a Cancellation),
-    /// The threads of the current rayon pool, until the report's token is cancelled.
+    /// The threads of the current rayon pool, with progress reports, until the report's token is cancelled.
     Reporting(&'a Report<'a>),
 }
 
-/// Predicted time up to which the calling thread traces alone: waking another one takes 16 us, and 80 us after a pause.
+/// The predicted time of a picture up to which the calling thread traces alone.
+// Waking another thread takes 16 us, and 80 us after a pause. Two threads took 19 to 25 us for the 40x24 pixels of
+// three_spheres, which one traces in 15, and 44 to 46 us for the 41 of 80x48.
 const SINGLE_THREAD_TIME: Duration = Duration::from_micros(300);
 
 impl Executor<'_> {
@@ -35,14 +36,15 @@ impl Executor<'_> {
         }
     }
 
-    /// Returns the result if the executor's token is not cancelled. A cancelled executor skips the rest, so this is called at
-    /// the end: a token that is not cancelled by then never was.
+    /// Returns the result, unless the executor's token is cancelled.
+    // Asked once, at the end: tokens stay cancelled, so one that is not cancelled now has never skipped a tile.
     pub(crate) fn finish<T>(self, traced: T) -> Result<T, Cancelled> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(traced) }
     }
 
-    /// Traces each tile of a job on one of the threads, each of which reuses its buffers: `trace` gets the tile and
-    /// its part of the result. Returns the cost.
+    /// Calls `trace` for each tile of a job, with the tile's part of the result, and returns the cost.
+    ///
+    /// Each thread reuses one set of buffers for all of its tiles.
     pub(super) fn trace<T: Send>(
         self,
         job: &RenderJob<'_>,
@@ -61,6 +63,8 @@ impl Executor<'_> {
             }
             tile.cost
         };
+        // The calling thread begins alone, and after each tile predicts the time of the whole picture from the tiles
+        // done. The clock decides only which thread traces a tile; the light is the same.
         let (start, count) = (Instant::now(), parts.len() as u32);
         let is_short = |done: u32| start.elapsed() * count < SINGLE_THREAD_TIME * done;
         let mut is_single_threaded = matches!(self, Self::CurrentThread);
@@ -69,7 +73,7 @@ impl Executor<'_> {
         for (done, tile) in (1..).zip(tiles.by_ref()) {
             costs.push(work(&mut buffers, tile));
             if !is_single_threaded && !is_short(done) {
-                // Queried late, because it may start rayon's global pool.
+                // Asked only now, because the question starts rayon's global pool.
                 is_single_threaded = threads::count() == 1;
                 if !is_single_threaded {
                     break;
@@ -98,8 +102,9 @@ pub(super) struct Tile<'t> {
 }
 
 impl Tile<'_> {
-    /// Traces samples of the active pixels, and calls `sink` after each batch with the buffers, the batch, and the
-    /// range of its pixels among the active ones, until the executor is cancelled.
+    /// Traces samples of the active pixels, until the executor is cancelled.
+    ///
+    /// Calls `sink` after each batch of rays with the buffers, the sample batch, and the range of its active pixels.
     pub(super) fn trace(
         &mut self,
         batches: &SampleBatches,
@@ -109,6 +114,8 @@ impl Tile<'_> {
         let start = Instant::now();
         'batches: for batch in batches.iter() {
             for range in batch.pixel_ranges(buffers.active.len()) {
+                // Once per 256 rays, which take 50 us at 5 Mrays/s: a cancel is answered at once, and the load of the
+                // flag does not show in the time.
                 if executor.is_cancelled() {
                     break 'batches;
                 }

@@ -1,4 +1,4 @@
-//! The steps for a single pixel, with the values between them.
+//! The steps of rendering for a single pixel, with the values between them.
 
 use super::sampling::{SampleBatch, sample_position};
 use super::steps::{Buffers, RenderJob, Stage};
@@ -13,17 +13,16 @@ use crate::scene::Scene;
 use crate::shade;
 use glam::Vec2;
 
-/// The values of the steps of [`render`](super::render) for the first sample of a pixel.
+/// The values between the steps of [`render`](super::render) for the first sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelTrace {
-    /// The lecture's (qu, qv): the sample's position in the picture, from (0, 0) at the lower left corner to (1, 1) at
-    /// the upper right one.
+    /// The lecture's (qu, qv): the sample's position in the picture, from (0, 0) at the lower left corner to (1, 1).
     pub q: Vec2,
     /// The eye ray.
     pub ray: Ray,
-    /// The hit.
+    /// The closest hit.
     pub hit: Option<Hit>,
-    /// The arriving light: the ambient light and that of all lights.
+    /// The light that arrives at the hit: the ambient light and that of all lights.
     pub arriving: LinearRgb,
     /// The reflectance, each channel in 0..=1.
     pub reflectance: LinearRgb,
@@ -32,8 +31,9 @@ pub struct PixelTrace {
 }
 
 impl Scene {
-    /// Returns the hit of the eye ray through the centre of a pixel, counted from the top left; `None` if the ray hits
-    /// nothing, and outside the picture.
+    /// Returns the hit of the eye ray through the centre of a pixel, given as column and row from the top left.
+    ///
+    /// Returns `None` if the ray hits nothing, or the pixel is outside the picture.
     ///
     /// ```
     /// use termtrace::{Resolution, Scene};
@@ -52,8 +52,9 @@ impl Scene {
     }
 }
 
-/// Carries out the steps of [`render`](super::render) for one pixel, counted from the top left, with the same
-/// functions.
+/// Runs the steps of [`render`](super::render) for one pixel, given as column and row from the top left.
+///
+/// The functions are those that render pictures, so the values are the picture's to the bit.
 ///
 /// # Panics
 /// Outside the picture.
@@ -65,7 +66,7 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     let mut buffers = Buffers { active: vec![pixel as u8], ..Buffers::default() };
     buffers.trace(&job, tile, &batch, 0..1);
     let [arriving, light] = [&buffers.arriving[0].light, &buffers.lights[0]].map(|lights| shade::lane_light(lights, 0));
-    // The reflectance is the reflected light where the arriving light is 1.
+    // Reflects a light of 1 to get the reflectance: the last step does not return it by itself.
     buffers.arriving[0].light = [F32x8([1.0; LANES]); 3];
     buffers.reflect(&job, &batch);
     PixelTrace {

@@ -9,29 +9,29 @@ use crate::scene::Scene;
 use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
 use std::ops::Range;
 
-/// The last step of a batch.
+/// The results of the steps, in their order; each includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Stage {
     /// The closest hits.
     Hits,
-    /// The surface points there.
+    /// The surface points of the hits.
     Points,
-    /// The light that arrives at these.
+    /// The light that arrives at the surface points.
     Arriving,
-    /// The light towards the eye.
+    /// The light reflected towards the eye.
     Reflected,
 }
 
-/// The unit in which progress of a picture is counted.
+/// The unit in which the progress of a picture is counted.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ProgressUnit {
-    /// Each eye ray.
+    /// One unit per eye ray.
     Ray,
-    /// Each tile, as this many units.
+    /// A fixed number of units per tile, where the number of rays is not known beforehand.
     Tile(u64),
 }
 
-/// A scene, the tiles of a picture of it, and the way of tracing.
+/// The scene and tiles of a picture, and how far and in which way they are traced.
 #[derive(Clone, Copy)]
 pub(super) struct RenderJob<'a> {
     pub(super) scene: &'a Scene,
@@ -48,13 +48,16 @@ impl<'a> RenderJob<'a> {
     }
 }
 
-/// The arrays between the steps, reused from tile to tile. Those after the job's last step stay empty.
+/// The arrays between the steps, reused from tile to tile.
+// Arrays of groups of eight (structure of arrays): with an array of single rays, hits and points, each step took half
+// of its time to gather and scatter registers (three_spheres: 2.0 instead of 4.5 times Embree's rays per second).
 #[derive(Default)]
 pub(super) struct Buffers {
-    /// The active pixels of the tile.
+    /// The indices in the tile of the pixels to be traced.
     pub(super) active: Vec<u8>,
     /// The pixel of each ray.
     pub(super) pixels: Vec<u8>,
+    // From here on groups of eight rays. Arrays after the job's last stage stay empty.
     pub(super) rays: Vec<EightRays>,
     pub(super) hits: Vec<EightHits>,
     pub(super) points: Vec<EightPoints>,
@@ -64,8 +67,9 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Takes the samples of a batch for some of the active pixels through the steps, up to the job's last one. Returns
-    /// the number of rays traced.
+    /// Traces a batch's samples of a range of the active pixels, and returns the number of rays.
+    ///
+    /// Runs the steps up to the job's last stage.
     pub(super) fn trace(&mut self, job: &RenderJob<'_>, tile: usize, batch: &SampleBatch, range: Range<usize>) -> u64 {
         let &RenderJob { scene, tiles, kernel, last_stage, .. } = job;
         let Self { active, pixels, rays, hits, points, shadows, arriving, .. } = self;
@@ -85,13 +89,13 @@ impl Buffers {
         traced
     }
 
-    /// The last step, for any arriving light.
+    /// Computes the reflected light from the arriving light.
     pub(super) fn reflect(&mut self, &RenderJob { scene, tiles, .. }: &RenderJob<'_>, batch: &SampleBatch) {
         let Self { rays, hits, points, arriving, lights, .. } = self;
         shade::reflect(scene, rays, tiles.steps(batch.samples.start), hits, points, arriving, lights);
     }
 
-    /// Returns the reflected light of all rays, per channel.
+    /// Returns the reflected light of all rays as one array per channel.
     pub(super) fn channels(&self) -> [[f32; MAX_BATCH_RAYS]; 3] {
         let mut channels = [[0.0; MAX_BATCH_RAYS]; 3];
         for (number, channel) in channels.iter_mut().enumerate() {

@@ -1,8 +1,8 @@
 //! The tiles of a picture: the order of pixels, and the eye rays through them.
 //!
 //! Pixels are stored tile by tile, within a tile in squares of 8 by 8, and within a square in groups of 4 by 2. A
-//! group's eye rays are the eight lanes of a vector, and a square's are a packet. Multiple samples of a pixel are
-//! consecutive.
+//! group's eye rays are the eight lanes of a vector, and a square's are a packet: of all shapes with 64 pixels, the
+//! rays of a square meet the fewest nodes. Multiple samples of a pixel are consecutive.
 
 use super::sampling::{SampleBatch, footprint_share};
 use crate::camera::{Camera, EyeRays};
@@ -14,9 +14,11 @@ use glam::Vec3;
 use std::ops::Range;
 
 /// The side of a tile in pixels.
+// Four packets of 8x8: the arrays between the steps stay in the first-level cache, an index of a pixel fits a byte, and
+// a picture of 80x48 has 15 tiles for the threads to share.
 const SIDE: u32 = 16;
 
-/// The number of pixels in a tile; those of tiles at the border may be outside the picture.
+/// The number of pixels in a tile, including those outside the picture in tiles at the border.
 pub(super) const PIXELS: usize = (SIDE * SIDE) as usize;
 
 /// The tiles of a picture, at full or reduced resolution.
@@ -24,9 +26,11 @@ pub(super) const PIXELS: usize = (SIDE * SIDE) as usize;
 pub(super) struct Tiles {
     /// The resolution of the picture.
     pub(super) resolution: Resolution,
-    /// Number of the picture's pixels per traced pixel, along each axis.
+    /// The side of a traced pixel in pixels of the picture.
     pub(super) scale: u32,
+    /// The number of traced pixels in a row.
     pub(super) columns: u32,
+    /// The number of rows of traced pixels.
     pub(super) rows: u32,
     eye_rays: EyeRays,
 }
@@ -42,6 +46,7 @@ impl Tiles {
         resolution.width().div_ceil(SIDE) as usize * resolution.height().div_ceil(SIDE) as usize
     }
 
+    /// Returns the number of tiles in a row of tiles.
     fn tiles_per_row(&self) -> u32 {
         self.columns.div_ceil(SIDE)
     }
@@ -51,13 +56,14 @@ impl Tiles {
         self.tiles_per_row() as usize * self.rows.div_ceil(SIDE) as usize
     }
 
-    /// Returns the upper left pixel of a tile.
+    /// Returns the column and row of a tile's upper left pixel.
     fn corner(&self, tile: usize) -> [u32; 2] {
         let tile = tile as u32;
         [tile % self.tiles_per_row() * SIDE, tile / self.tiles_per_row() * SIDE]
     }
 
-    /// Splits a picture's pixels by tiles: each gets its part of every row that it covers.
+    /// Splits a picture's pixels by tiles: each tile gets its part of the rows that it covers.
+    // So that threads write to the picture at once, without a copy and without unsafe code.
     pub(super) fn split<'p, T>(&self, pixels: &'p mut [T]) -> Vec<Vec<&'p mut [T]>> {
         let side = (SIDE * self.scale) as usize;
         let mut tiles: Vec<_> = (0..self.count()).map(|_| Vec::with_capacity(side)).collect();
@@ -70,37 +76,39 @@ impl Tiles {
         tiles
     }
 
-    /// Writes the values of a tile's pixels, given by their index in the tile, to the tile's part of a picture; pixels
-    /// outside are skipped.
-    pub(super) fn write_all<T: Copy>(&self, pixels: &[u8], shown: impl Fn(usize) -> T, part: &mut [&mut [T]]) {
+    /// Writes the values of a tile's pixels to the tile's part of a picture, and skips pixels outside.
+    ///
+    /// `value` gets the position in `pixels`.
+    pub(super) fn write_all<T: Copy>(&self, pixels: &[u8], value: impl Fn(usize) -> T, part: &mut [&mut [T]]) {
         if pixels.len() == PIXELS && self.scale == 1 {
-            // The same as below row by row, but four neighbours at a time.
+            // A whole tile is written row by row, four neighbours at a time, as they are consecutive in the tile: pixel
+            // by pixel took 4.9 instead of 3.1 % of a profile.
             for (row, pixels) in part.iter_mut().zip(&PIXELS_BY_ROW) {
                 let (fours, rest) = row.as_chunks_mut::<4>();
                 let left = &pixels[4 * fours.len()..];
                 for (four, &[first, ..]) in fours.iter_mut().zip(pixels.as_chunks::<4>().0) {
-                    // A multiple of 4, which this tells the compiler.
-                    *four = std::array::from_fn(|at| shown(usize::from(first) & !3 | at));
+                    // `first` is a multiple of 4; the mask makes that known to the compiler.
+                    *four = std::array::from_fn(|at| value(usize::from(first) & !3 | at));
                 }
-                rest.iter_mut().zip(left).for_each(|(place, &pixel)| *place = shown(pixel.into()));
+                rest.iter_mut().zip(left).for_each(|(pixel, &index)| *pixel = value(index.into()));
             }
             return;
         }
         for (at, &pixel) in pixels.iter().enumerate() {
-            self.write(pixel, shown(at), part);
+            self.write(pixel, value(at), part);
         }
     }
 
-    /// Writes the value of one pixel.
-    pub(super) fn write<T: Copy>(&self, pixel: u8, shown: T, part: &mut [&mut [T]]) {
+    /// Writes the value of one traced pixel, to all pixels of the picture that it covers.
+    pub(super) fn write<T: Copy>(&self, pixel: u8, value: T, part: &mut [&mut [T]]) {
         let scale = self.scale as usize;
         let [x, y] = coordinates(pixel.into()).map(|at| at as usize * scale);
         for row in part.iter_mut().skip(y).take(scale) {
-            row.iter_mut().skip(x).take(scale).for_each(|place| *place = shown);
+            row.iter_mut().skip(x).take(scale).for_each(|pixel| *pixel = value);
         }
     }
 
-    /// Returns a pixel's column and its neighbours, and the same for its row; `None` outside the picture.
+    /// Returns the columns and rows of a pixel and its neighbours within the picture.
     pub(super) fn neighbourhood(&self, tile: usize, pixel: usize) -> [Range<u32>; 2] {
         let ([left, top], [x, y]) = (self.corner(tile), coordinates(pixel));
         let beside = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
@@ -113,7 +121,7 @@ impl Tiles {
         (tile as usize, PIXELS_BY_ROW[(y % SIDE) as usize][(x % SIDE) as usize].into())
     }
 
-    /// Returns the indices of a tile's pixels that are in the picture.
+    /// Writes the indices of a tile's pixels that are in the picture to `pixels`.
     pub(super) fn pixels_in_picture(&self, tile: usize, pixels: &mut Vec<u8>) {
         pixels.clear();
         pixels.extend_from_slice(&ALL_PIXELS);
@@ -127,30 +135,32 @@ impl Tiles {
         }
     }
 
-    /// Computes the eye rays of a batch, one for each of these pixels of the tile.
+    /// Computes the eye rays of a batch, one for each element of `pixels`.
     pub(super) fn make_eye_rays(&self, tile: usize, pixels: &[u8], batch: &SampleBatch, rays: &mut Vec<EightRays>) {
         rays.clear();
         simd::dispatch(MakeEyeRays { tiles: self, tile, pixels, batch, rays });
     }
 
-    /// Returns the position of a sample in the picture: the lecture's (qu, qv), with (0, 0) at the lower left corner.
-    /// The sample's position in its pixel is given.
+    /// Returns the lecture's (qu, qv) of samples: their positions in the picture, from (0, 0) at the lower left corner.
+    ///
+    /// `x` and `y` are the pixels' columns and rows, `sx` and `sy` the samples' positions in their pixels.
     #[inline(always)]
     pub(super) fn q<N: Number>(&self, [x, y]: [N; 2], [sx, sy]: [N; 2]) -> [N; 2] {
         let (width, height) = (N::splat(self.resolution.width() as f32), N::splat(self.resolution.height() as f32));
         let scale = N::splat(self.scale as f32);
-        // Rows are counted from the top, the lecture's q_v from the bottom.
+        // Rows are counted from the top, the lecture's qv from the bottom.
         [(x + sx) * scale / width, (height - (y + sy) * scale) / height]
     }
 
-    /// Returns the change of direction from an eye ray to its neighbours.
+    /// Returns the change of direction over the footprint of a sample, to the right and upwards.
     pub(super) fn steps(&self, sample: u32) -> [Vec3; 2] {
         let share = self.scale as f32 * footprint_share(sample);
         self.eye_rays.steps(self.resolution.width(), self.resolution.height()).map(|step| step * share)
     }
 }
 
-/// Returns the indices of all pixels in a tile.
+/// The indices of all pixels in a tile.
+// This and the next two are tables, so that no loop over pixels computes positions bit by bit.
 pub(super) static ALL_PIXELS: [u8; PIXELS] = {
     let mut all = [0; PIXELS];
     let mut pixel = 0;
@@ -162,6 +172,7 @@ pub(super) static ALL_PIXELS: [u8; PIXELS] = {
 };
 
 /// Returns the column and row of a pixel in its tile.
+// The bits of the index, from the lowest: x x y (a group of 4x2), x y y (a square of 8x8), x, y (the tile of 16x16).
 pub(super) const fn coordinates(pixel: usize) -> [u32; 2] {
     let at = pixel as u32;
     [at & 3 | (at >> 3 & 1) << 2 | (at >> 6 & 1) << 3, at >> 2 & 1 | (at >> 4 & 3) << 1 | (at >> 7 & 1) << 3]
@@ -179,7 +190,7 @@ static PIXEL_COORDINATES: [[f32; PIXELS]; 2] = {
     all
 };
 
-/// Returns the pixels of a tile row by row.
+/// The indices of a tile's pixels, row by row.
 static PIXELS_BY_ROW: [[u8; SIDE as usize]; SIDE as usize] = {
     let mut rows = [[0; SIDE as usize]; SIDE as usize];
     let mut pixel = 0;
@@ -215,6 +226,7 @@ impl SimdKernel for MakeEyeRays<'_> {
                 let pixel = usize::from(pixels[lane.min(last)]);
                 (x.0[lane], y.0[lane]) = (PIXEL_COORDINATES[0][pixel], PIXEL_COORDINATES[1][pixel]);
             }
+            // Inactive lanes repeat the last ray, so that they widen no bounds of the group: position and sample.
             for lane in pixels.len()..LANES {
                 (sx.0[lane], sy.0[lane]) = (sx.0[last], sy.0[last]);
             }
