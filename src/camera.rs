@@ -1,6 +1,6 @@
 //! The camera: pose, intrinsic parameters, and the eye rays (lecture, "Generating eye rays").
 //!
-//! World space is right-handed. Angles are radians here, degrees where a person writes them.
+//! World space is right-handed. Angles are in radians here, and in degrees in scene files and in `with_fov_degrees`.
 
 use crate::checks::{self, TOO_FAR};
 use crate::lanes::{Number, Vector};
@@ -18,7 +18,9 @@ pub(crate) use motion::{FRAMED_SHARE, framing_distance};
 #[cfg(feature = "ratatui")]
 pub use on_screen::Grip;
 
-/// A pose and intrinsic parameters that give a picture: the eye is not at the target, up is not along the view.
+/// A camera: a checked pose and intrinsic parameters.
+///
+/// Every camera gives a picture: its eye is not at its target, and its up vector is not along the view.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Camera {
     pose: Pose,
@@ -26,11 +28,11 @@ pub struct Camera {
     rectangle: ViewRectangle,
 }
 
-/// What it was made of: the basis follows from that.
+/// Formats the parameters without the basis, which follows from them.
 impl fmt::Debug for Camera {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pose: Pose { eye, target, up }, rectangle: ViewRectangle { width, height, shift }, .. } = self;
-        // Each vector in one line.
+        // One line for each vector, where glam's own output takes one for each coordinate.
         let mut camera = f.debug_struct("Camera");
         camera.field("eye", &format_args!("{eye:?}"));
         camera.field("target", &format_args!("{target:?}"));
@@ -40,14 +42,14 @@ impl fmt::Debug for Camera {
     }
 }
 
-/// How the camera stands in space, as the lecture's user says it.
+/// The position and orientation of a camera, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// The eye point: the viewpoint, the centre of projection.
+    /// The eye point: the centre of projection.
     pub eye: Vec3,
     /// The target point, which appears in the middle of the picture.
     pub target: Vec3,
-    /// A direction that appears vertical in the picture; of any length but 0.
+    /// The direction that appears vertical in the picture, of any length from 1e-9 to 1e9.
     pub up: Vec3,
 }
 
@@ -58,24 +60,24 @@ pub struct Basis {
     pub u: Vec3,
     /// The vertical axis of the view plane. Unit length.
     pub v: Vec3,
-    /// Away from the target. Unit length.
+    /// The direction from the target to the eye. Unit length.
     pub w: Vec3,
 }
 
-/// The view rectangle on the plane at distance 1 in front of the eye. What is seen depends only on the ratios of the
-/// lecture's f, w and h (scaling all three changes nothing), so the focal length is always made 1.
+/// The view rectangle: the intrinsic parameters, on the plane at distance 1 in front of the eye.
+// The picture depends only on the ratios of the lecture's f, w and h, so the focal length is always made 1: equal views
+// have equal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRectangle {
-    /// Width over focal length; `None`: as wide as the picture is.
+    /// The width divided by the focal length; `None` if the picture's shape decides.
     width: Option<f32>,
-    /// Height over focal length.
+    /// The height divided by the focal length.
     height: f32,
-    /// Where the middle of the rectangle lies, to the right of and above the point that the w axis pierces, in
-    /// heights of the rectangle.
+    /// The offset of the rectangle's middle from the w axis, to the right and upwards, in heights of the rectangle.
     shift: Vec2,
 }
 
-/// Why there is no picture from these numbers.
+/// The error of camera parameters that give no picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CameraError {
@@ -83,23 +85,23 @@ pub enum CameraError {
     NotFinite,
     /// A coordinate is beyond ±1e9.
     TooFar,
-    /// The eye and the target are one point: there is no direction to look in.
+    /// The eye and the target are the same point, so the direction of view is undefined.
     EyeIsTarget,
-    /// The up vector has no length.
+    /// The up vector is zero.
     UpIsZero,
     /// The up vector is shorter than 1e-9.
     UpTooShort,
-    /// The up vector lies along the view: no direction of the picture would be vertical.
+    /// The up vector is parallel to the view, so no direction of the picture would be vertical.
     UpAlongView,
-    /// A vertical field of view that is not between 0 and 180 degrees.
+    /// The vertical field of view is not between 0 and 180 degrees.
     FieldOfView,
-    /// A view rectangle with a side or a focal length that is not greater than 0.
+    /// A side or the focal length of the view rectangle is not greater than 0 and finite.
     ViewRectangle,
-    /// A side of the view rectangle that is not between 1e-6 and 1e6 focal lengths.
+    /// A side of the view rectangle is not between 1e-6 and 1e6 focal lengths.
     Sides,
-    /// An aspect ratio that is not between 1e-6 and 1e6.
+    /// The aspect ratio is not between 1e-6 and 1e6.
     AspectRatio,
-    /// A shift of more than 1000 heights of the view rectangle.
+    /// The shift is more than 1000 heights of the view rectangle.
     Shift,
 }
 
@@ -125,7 +127,7 @@ impl fmt::Display for CameraError {
 
 impl std::error::Error for CameraError {}
 
-/// The vertical field of view where none is given, in degrees.
+/// The default vertical field of view, in degrees.
 const DEFAULT_FOV_DEGREES: f64 = 45.0;
 
 impl Camera {
@@ -139,13 +141,13 @@ impl Camera {
     /// assert!((camera.rectangle().vertical_fov().to_degrees() - 40.0).abs() < 1e-4);
     ///
     /// let error = Camera::look_at(Vec3::ONE, Vec3::ONE).unwrap_err();
-    /// assert_eq!(error.to_string(), "the eye and the target are the same point; the camera has no direction to look in");
+    /// assert!(error.to_string().starts_with("the eye and the target are the same point"));
     /// # Ok::<(), termtrace::CameraError>(())
     /// ```
     ///
     /// # Errors
-    /// If both are one point, or a coordinate is not within ±1e9; and if the camera would look straight up or down, which
-    /// takes another up vector: see [`Camera::new`].
+    /// If both are the same point, a coordinate is not within ±1e9, or the camera would look straight up or down, for
+    /// which [`Camera::new`] takes another up vector.
     pub fn look_at(eye: Vec3, target: Vec3) -> Result<Self, CameraError> {
         Self::new(Pose { eye, target, up: Vec3::Y }, ViewRectangle::from_vertical_fov(radians(DEFAULT_FOV_DEGREES))?)
     }
@@ -153,28 +155,39 @@ impl Camera {
     /// Returns the camera with another up vector, of any length from 1e-9 to 1e9.
     ///
     /// # Errors
-    /// If the up vector has no such length, or lies along the view.
+    /// If the up vector has no such length, or is parallel to the view.
     pub fn with_up(self, up: Vec3) -> Result<Self, CameraError> {
         self.with_pose(Pose { up, ..self.pose })
     }
 
-    /// Returns the camera with another vertical field of view, in degrees; its view rectangle keeps its shape.
+    /// Returns the camera with another vertical field of view, in degrees. Its view rectangle keeps its aspect ratio.
     ///
     /// # Errors
-    /// Unless the angle is between 0 and 180 degrees, both excluded.
+    /// If the angle is not between 0 and 180 degrees, both excluded.
     pub fn with_fov_degrees(self, degrees: f32) -> Result<Self, CameraError> {
         Ok(Self { rectangle: self.rectangle.with_vertical_fov(radians(degrees.into()))?, ..self })
     }
 
-    /// The camera with that pose and view rectangle.
+    /// Returns the camera with this pose and view rectangle.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use termtrace::{Camera, Pose, ViewRectangle};
+    ///
+    /// let above = Pose { eye: Vec3::new(0.0, 9.0, 0.0), target: Vec3::ZERO, up: Vec3::NEG_Z };
+    /// let camera = Camera::new(above, ViewRectangle::from_vertical_fov(0.7)?)?;
+    /// assert_eq!(camera.pose(), above);
+    /// # Ok::<(), termtrace::CameraError>(())
+    /// ```
     ///
     /// # Errors
-    /// Where the pose gives no basis: see [`CameraError`].
+    /// If the eye is at the target, the up vector is zero or parallel to the view, or a number is out of range: see
+    /// [`CameraError`].
     pub fn new(pose: Pose, rectangle: ViewRectangle) -> Result<Self, CameraError> {
         Ok(Self { pose, basis: Basis::from_pose(&pose)?, rectangle })
     }
 
-    /// The same intrinsic parameters from another pose.
+    /// Returns the camera with another pose.
     ///
     /// # Errors
     /// As [`Camera::new`].
@@ -183,31 +196,31 @@ impl Camera {
         Self::new(pose, self.rectangle)
     }
 
-    /// The same pose with another view rectangle.
+    /// Returns the camera with another view rectangle.
     #[must_use]
     #[doc(hidden)]
     pub fn with_rectangle(&self, rectangle: ViewRectangle) -> Self {
         Self { rectangle, ..*self }
     }
 
-    /// Eye, target and up as they were given.
+    /// Returns the eye, the target and the up vector, as given.
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// u, v and w.
+    /// Returns the basis vectors u, v and w.
     #[doc(hidden)]
     pub fn basis(&self) -> Basis {
         self.basis
     }
 
-    /// The intrinsic parameters.
+    /// Returns the view rectangle.
     #[doc(hidden)]
     pub fn rectangle(&self) -> ViewRectangle {
         self.rectangle
     }
 
-    /// The eye rays of a picture of that aspect ratio (width / height).
+    /// Returns the eye rays of a picture with this aspect ratio (width / height).
     #[doc(hidden)]
     pub fn eye_rays(&self, aspect_ratio: f32) -> EyeRays {
         let Basis { u, v, w } = self.basis;
@@ -218,10 +231,9 @@ impl Camera {
 }
 
 impl Basis {
-    /// The lecture's construction from two vectors, a = -(target - eye) and b = up:
+    /// Returns the basis of a pose by the lecture's construction from a = -(target - eye) and b = up:
     /// w = a / |a|, u = b x w / |b x w|, v = w x u.
-    ///
-    /// It is done in f64 and rounded once, so that a target far away, or an up nearly along the view, costs no digits.
+    // In f64, rounded once at the end: a target far away, or an up vector nearly along the view, costs no digits.
     fn from_pose(pose: &Pose) -> Result<Self, CameraError> {
         let [eye, target, up] = [pose.eye, pose.target, pose.up].map(Vec3::as_dvec3);
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
@@ -236,7 +248,8 @@ impl Basis {
         }
         let up = unit_vector(up).ok_or(CameraError::UpIsZero)?;
         let across = up.cross(w);
-        // The sine of the angle between up and the view. What a person wrote as parallel is off by f32's rounding.
+        // The sine of the angle between up and the view. Vectors that are parallel as written are off by the rounding
+        // of f32, which this limit exceeds by a factor of ten.
         if across.length() < 1e-6 {
             return Err(CameraError::UpAlongView);
         }
@@ -245,26 +258,29 @@ impl Basis {
     }
 }
 
-/// Unit length, or nothing for the zero vector. Scaled first: a square must neither overflow nor vanish.
+/// Returns the unit vector in the direction of `v`, or `None` for the zero vector.
+// Scaled by the largest coordinate first, so that squares of very large or small ones neither overflow nor vanish.
 fn unit_vector(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     (largest > 0.0).then(|| v / largest).map(|v| v / v.dot(v).sqrt())
 }
 
-/// Returns the angle in radians, rounded once.
+/// Converts degrees to radians, rounded once.
 pub(crate) fn radians(degrees: f64) -> f32 {
     degrees.to_radians() as f32
 }
 
 impl ViewRectangle {
-    /// The most that the rectangle can be [shifted](Self::with_shift), in its heights.
+    /// The largest [shift](Self::with_shift) along each axis, in heights of the rectangle.
+    // Far beyond any lens; f32 still resolves 6e-5 of a height there.
     pub(crate) const MAX_SHIFT: f32 = 1e3;
 
-    /// As wide as the picture; as high as the angle, in radians, that it takes up vertically:
-    /// h = 2 f tan(alpha / 2).
+    /// Returns the rectangle with a vertical field of view in radians: h = 2 f tan(alpha / 2).
+    ///
+    /// The picture's shape decides its width.
     ///
     /// # Errors
-    /// Unless the angle is between 0 and pi, both excluded.
+    /// If the angle is not between 0 and pi, both excluded.
     pub fn from_vertical_fov(radians: f32) -> Result<Self, CameraError> {
         let height = (2.0 * libm::tan(0.5 * f64::from(radians))) as f32;
         if radians > 0.0 && radians < std::f32::consts::PI && height > 0.0 && height.is_finite() {
@@ -274,10 +290,10 @@ impl ViewRectangle {
         }
     }
 
-    /// The lecture's f, w and h, in one unit.
+    /// Returns the rectangle with the lecture's f, w and h, all in the same unit.
     ///
     /// # Errors
-    /// Unless each of them is greater than 0 and finite, and each side between 1e-6 and 1e6 focal lengths.
+    /// If one of them is not greater than 0 and finite, or a side is not between 1e-6 and 1e6 focal lengths.
     #[doc(hidden)]
     pub fn from_focal_length(focal_length: f32, width: f32, height: f32) -> Result<Self, CameraError> {
         let (width, height) = (width / focal_length, height / focal_length);
@@ -290,7 +306,7 @@ impl ViewRectangle {
         Ok(Self { width: Some(width), height, shift: Vec2::ZERO })
     }
 
-    /// The rectangle with these sides at focal length 1, in the middle.
+    /// Returns the rectangle with these sides at focal length 1, without shift.
     #[cfg(feature = "serde")]
     pub(crate) fn from_sides(width: Option<f32>, height: f32) -> Result<Self, CameraError> {
         if is_positive(height) && width.is_none_or(is_positive) {
@@ -300,7 +316,7 @@ impl ViewRectangle {
         }
     }
 
-    /// The rectangle of the same shape and shift that takes up that angle, in radians, vertically.
+    /// Returns the rectangle of the same aspect ratio and shift with this vertical field of view in radians.
     ///
     /// # Errors
     /// As [`ViewRectangle::from_vertical_fov`].
@@ -310,10 +326,10 @@ impl ViewRectangle {
         Ok(Self { height, width: self.width.map(|width| width * (height / self.height)), ..self })
     }
 
-    /// The rectangle of the same shape and shift with sides that many times as long.
+    /// Returns the rectangle with both sides multiplied by `factor`.
     ///
     /// # Errors
-    /// Unless both sides stay greater than 0 and finite, and the vertical field of view below 180 degrees.
+    /// If a side is no longer greater than 0 and finite, or the vertical field of view reaches 180 degrees.
     #[doc(hidden)]
     pub fn scaled(self, factor: f32) -> Result<Self, CameraError> {
         let (width, height) = (self.width.map(|width| width * factor), self.height * factor);
@@ -324,10 +340,10 @@ impl ViewRectangle {
         if scaled.vertical_fov() < std::f32::consts::PI { Ok(scaled) } else { Err(CameraError::FieldOfView) }
     }
 
-    /// The rectangle of the same height with that aspect ratio (width / height) of its own.
+    /// Returns the rectangle of the same height with an aspect ratio (width / height) of its own.
     ///
     /// # Errors
-    /// Unless the aspect ratio is between 1e-6 and 1e6.
+    /// If the aspect ratio is not between 1e-6 and 1e6.
     #[doc(hidden)]
     pub fn with_aspect_ratio(self, aspect_ratio: f32) -> Result<Self, CameraError> {
         if !checks::is_ratio(aspect_ratio.into()) {
@@ -337,10 +353,10 @@ impl ViewRectangle {
         if is_positive(width) { Ok(Self { width: Some(width), ..self }) } else { Err(CameraError::ViewRectangle) }
     }
 
-    /// The rectangle off centre: its middle to the right of and above the w axis, in heights of the rectangle.
+    /// Returns the rectangle with its middle shifted from the w axis, to the right and upwards, in its heights.
     ///
     /// # Errors
-    /// Unless the shift is finite, and at most 1000 heights either way.
+    /// If the shift is not finite, or more than 1000 heights along an axis.
     #[doc(hidden)]
     pub fn with_shift(self, shift: Vec2) -> Result<Self, CameraError> {
         if !shift.is_finite() {
@@ -350,38 +366,39 @@ impl ViewRectangle {
         if is_far { Err(CameraError::Shift) } else { Ok(Self { shift, ..self }) }
     }
 
-    /// The angle that the rectangle takes up vertically when it is not shifted, in radians.
+    /// Returns the vertical field of view of the unshifted rectangle, in radians.
     #[doc(hidden)]
     pub fn vertical_fov(&self) -> f32 {
         2.0 * libm::atanf(0.5 * self.height)
     }
 
-    /// Width over focal length, where the rectangle has a width of its own.
+    /// Returns the width divided by the focal length; `None` if the picture's shape decides.
     #[doc(hidden)]
     pub fn width(&self) -> Option<f32> {
         self.width
     }
 
-    /// Height over focal length.
+    /// Returns the height divided by the focal length.
     #[doc(hidden)]
     pub fn height(&self) -> f32 {
         self.height
     }
 
-    /// The rectangle's own aspect ratio, where it has one.
+    /// Returns the aspect ratio (width / height); `None` if the picture's shape decides.
     #[doc(hidden)]
     pub fn aspect_ratio(&self) -> Option<f32> {
         self.width.map(|width| width / self.height)
     }
 
-    /// The middle of the rectangle off the w axis, in heights of the rectangle.
+    /// Returns the offset of the middle from the w axis, to the right and upwards, in heights of the rectangle.
     #[doc(hidden)]
     pub fn shift(&self) -> Vec2 {
         self.shift
     }
 
-    /// Width, height and middle for a picture of another shape. The whole rectangle stays in view and nothing is
-    /// stretched: it grows about its middle, to the sides in a wider picture, up and down in a narrower one.
+    /// Returns width, height and middle of the rectangle grown to a picture's aspect ratio.
+    // Grown instead of cropped or stretched: the whole rectangle stays in view in a terminal of any shape. It grows
+    // about its middle, to the sides in a wider picture, up and down in a narrower one.
     pub(crate) fn fitted_to(&self, aspect_ratio: f32) -> (f32, f32, Vec2) {
         let (width, height) = match self.width {
             Some(width) if width > self.height * aspect_ratio => (width, width / aspect_ratio),
@@ -391,43 +408,46 @@ impl ViewRectangle {
     }
 }
 
+/// Returns whether a number is greater than 0 and finite.
 fn is_positive(x: f32) -> bool {
     x > 0.0 && x.is_finite()
 }
 
-/// The rays from the eye through a picture's points.
+/// The eye rays of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EyeRays {
     eye: Vec3,
-    /// From the eye to the lower left corner of the view rectangle, on the plane at distance 1. (The lecture's q0 is
-    /// eye + this; the difference is what is kept, so that an eye far from the origin costs no digits.)
+    /// The vector from the eye to the lower left corner of the view rectangle.
+    // The lecture's q0 is eye + this. Without the eye, a camera far from the origin costs no digits.
     q0: Vec3,
-    /// The bottom edge: w * u of the lecture.
+    /// The bottom edge of the view rectangle: w * u of the lecture.
     across: Vec3,
-    /// The left edge: h * v of the lecture.
+    /// The left edge of the view rectangle: h * v of the lecture.
     upward: Vec3,
 }
 
 impl EyeRays {
-    /// The ray through the point (qu, qv) of the unit square, (0, 0) being the picture's lower left corner:
-    /// q = q0 + w qu u + h qv v. Its direction is q - eye, whose part along -w is 1: t is the depth.
+    /// Returns the ray through a position in the picture, from (0, 0) at the lower left corner to (1, 1).
+    ///
+    /// The lecture's q = q0 + w qu u + h qv v. The direction is q - eye, whose component along -w is 1, so that t is
+    /// the depth.
+    // Not normalized: that would cost a square root and a division per ray, and make t something else than the depth.
     pub fn through(&self, qu: f32, qv: f32) -> Ray {
         Ray { origin: self.eye, direction: self.direction(qu, qv).into() }
     }
 
-    /// The direction of the ray [`through`](Self::through) a point, or of several.
+    /// Returns the direction of the ray [`through`](Self::through) a position, or of one ray per lane.
     #[inline(always)]
     pub fn direction<N: Number>(&self, qu: N, qv: N) -> Vector<N> {
         Vector::splat(self.q0) + Vector::splat(self.across) * qu + Vector::splat(self.upward) * qv
     }
 
-    /// Where all of them begin.
+    /// Returns the origin of all eye rays.
     pub fn eye(&self) -> Vec3 {
         self.eye
     }
 
-    /// By how much the direction changes from a pixel to the next one across and the next one upward, in a picture of so
-    /// many.
+    /// Returns the change of direction to the next pixel on the right and to the next above.
     pub fn steps(&self, width: u32, height: u32) -> [Vec3; 2] {
         [self.across / width as f32, self.upward / height as f32]
     }

@@ -1,7 +1,7 @@
-//! The camera over time: once around its target, or through keyframes.
+//! Camera paths: an orbit around the target, or an interpolation of keyframes.
 //!
-//! A path is a pure function of time, in seconds, in f64 until the pose is rounded once. Files of keyframes are read
-//! where scenes are: see [`CameraPath::load`].
+//! A path is a pure function of time in seconds, computed in f64 and rounded once. [`CameraPath::load`] reads files of
+//! keyframes.
 
 use crate::camera::{Camera, CameraError, Pose};
 use glam::{DVec3, Vec3};
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use std::fmt;
 use std::ops::{Add, Mul, Sub};
 
-/// Where the camera is at each time.
+/// A camera as a function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraPath(PathKind);
 
@@ -19,25 +19,25 @@ enum PathKind {
         camera: Camera,
         seconds: f64,
     },
-    /// At least one; their times rise.
+    /// At least one keyframe, with increasing times.
     Keyframes(Vec<Keyframe>),
 }
 
-/// A camera that the path is to pass at a time.
+/// The camera of a path at a given time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keyframe {
-    /// In seconds from the film's beginning.
+    /// The time in seconds from the film's start.
     pub time: f64,
     /// The camera at that time.
     pub camera: Camera,
 }
 
-/// A time at which the path gives no picture.
+/// The error of a path with an invalid camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathError {
-    /// In seconds.
+    /// The time of the first invalid camera, in seconds.
     pub time: f64,
-    /// What is wrong with the camera there.
+    /// The error of that camera.
     pub error: CameraError,
 }
 
@@ -51,38 +51,41 @@ impl fmt::Display for PathError {
 impl std::error::Error for PathError {}
 
 impl CameraPath {
-    /// Once around the target in that many seconds, which are greater than 0: to the right at first, about the axis
-    /// through the target along up, at the same height over the target all the time. It begins with `camera` itself.
+    /// Returns a path from `camera` once around its target in `seconds`, which must be greater than 0.
+    ///
+    /// The eye starts to the right and turns about the axis through the target along the up vector, at constant height.
     ///
     /// ```
     /// use termtrace::{CameraPath, Scene};
     ///
     /// let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 1, 5), target: (0, 0, 0)))")?;
     /// let path = CameraPath::orbit(*scene.camera(), 8.0);
-    /// let quarter = path.camera_at(2.0).unwrap().pose().eye;
+    /// let quarter = path.camera_at(2.0)?.pose().eye;
     /// assert!(quarter.abs_diff_eq(glam::Vec3::new(5.0, 1.0, 0.0), 1e-6));
-    /// # Ok::<(), termtrace::SceneError>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn orbit(camera: Camera, seconds: f64) -> Self {
         Self(PathKind::Orbit { camera, seconds })
     }
 
-    /// Through all of these, smoothly, each at its time; before the first and after the last the camera stands still.
-    /// `None` unless there are any and their times rise.
+    /// Returns a smooth path through keyframes; `None` if there are none, or their times do not increase.
     ///
-    /// Between two keyframes eye, target and up run along cubic Hermite curves whose velocity at a keyframe is that from
-    /// the keyframe before to the one after (Catmull and Rom, "A class of local interpolating splines", 1974, with the
-    /// keyframes' own times). So a film never jerks, and how far a curve swings out is bounded by the ways between the
-    /// keyframes, whatever their times. A value that is the same at two neighbours stays exactly the same between them.
-    /// Of the view rectangle the height runs in the same way, by its logarithm: zooming is even, and no angle is ever
-    /// out of range. Its shape and its shift are those of the keyframe before.
+    /// Before the first and after the last keyframe the camera rests.
+    ///
+    /// Between two keyframes eye, target and up follow cubic Hermite curves. The velocity at a keyframe is the
+    /// difference of its neighbours divided by that of their times (Catmull and Rom, "A class of local interpolating
+    /// splines", 1974). A value that is equal in two consecutive keyframes stays exactly equal between them. The
+    /// logarithm of the view rectangle's height follows the same kind of curve. Its aspect ratio and shift are those of
+    /// the keyframe before.
+    // With the keyframes' own times, velocities are continuous, and overshoot is bounded by the distances between
+    // keyframes whatever their times. The logarithm makes zooming even, and keeps every angle in range.
     #[doc(hidden)]
     pub fn through(keyframes: Vec<Keyframe>) -> Option<Self> {
         let rise = keyframes.windows(2).all(|pair| pair[0].time < pair[1].time);
         (rise && !keyframes.is_empty()).then_some(Self(PathKind::Keyframes(keyframes)))
     }
 
-    /// When the path ends: back at the first view, or at the last keyframe.
+    /// Returns the duration in seconds: of one turn, or up to the last keyframe.
     #[doc(hidden)]
     pub fn seconds(&self) -> f64 {
         match &self.0 {
@@ -91,10 +94,10 @@ impl CameraPath {
         }
     }
 
-    /// The camera at that time.
+    /// Returns the camera at a time in seconds.
     ///
     /// # Errors
-    /// Where the path gives no picture, as when the eye runs through the target.
+    /// If the camera is invalid at that time, for example because the eye passes through the target.
     pub fn camera_at(&self, time: f64) -> Result<Camera, CameraError> {
         match &self.0 {
             PathKind::Orbit { camera, seconds } => turned(camera, TAU * (time / seconds)),
@@ -102,10 +105,10 @@ impl CameraPath {
         }
     }
 
-    /// The cameras of a film of this path: frame k is seen at `k / frames_per_second` seconds.
+    /// Returns the cameras of a film: that of frame k is at `k / frames_per_second` seconds.
     ///
     /// # Errors
-    /// The first time at which there is no picture.
+    /// With the first time at which the camera is invalid.
     #[doc(hidden)]
     pub fn cameras(&self, frames: usize, frames_per_second: u32) -> Result<Vec<Camera>, PathError> {
         let camera = |frame: usize| {
@@ -116,7 +119,8 @@ impl CameraPath {
     }
 }
 
-/// The camera turned about the axis through its target along up. At angle 0 it is the same to the last bit.
+/// Returns the camera turned about the axis through its target along the up vector, by an angle in radians.
+// Written as a difference from the eye, so that angle 0 gives the same bits.
 fn turned(camera: &Camera, angle: f64) -> Result<Camera, CameraError> {
     let pose = camera.pose();
     let [eye, target, up] = [pose.eye, pose.target, pose.up].map(Vec3::as_dvec3);
@@ -128,6 +132,7 @@ fn turned(camera: &Camera, angle: f64) -> Result<Camera, CameraError> {
     camera.with_pose(Pose { eye: eye.as_vec3(), ..pose })
 }
 
+/// Returns the camera of the keyframes' curves at a time.
 fn interpolate(keyframes: &[Keyframe], time: f64) -> Result<Camera, CameraError> {
     let passed = keyframes.partition_point(|keyframe| keyframe.time <= time);
     let before = &keyframes[passed.saturating_sub(1)];
@@ -138,7 +143,7 @@ fn interpolate(keyframes: &[Keyframe], time: f64) -> Result<Camera, CameraError>
     let pose = Pose {
         eye: interval.value(|camera| camera.pose().eye.as_dvec3()).as_vec3(),
         target: interval.value(|camera| camera.pose().target.as_dvec3()).as_vec3(),
-        // Only its direction says something.
+        // Normalized first, because only the direction of an up vector matters: a long one must not outweigh the other.
         up: interval.value(|camera| camera.pose().up.as_dvec3().normalize()).as_vec3(),
     };
     let log_height = |camera: &Camera| libm::log(f64::from(camera.rectangle().height()));
@@ -149,13 +154,13 @@ fn interpolate(keyframes: &[Keyframe], time: f64) -> Result<Camera, CameraError>
 /// A time between two keyframes.
 struct KeyframeInterval<'a> {
     keyframes: &'a [Keyframe],
-    /// The index of the earlier one.
+    /// The index of the keyframe before the time.
     before: usize,
     time: f64,
 }
 
 impl KeyframeInterval<'_> {
-    /// Something of the camera at that time: the cubic Hermite curve from its values and velocities at both keyframes.
+    /// Returns a quantity of the camera, by the cubic Hermite curve of its values and velocities at both keyframes.
     fn value<T: Interpolated>(&self, of: impl Fn(&Camera) -> T) -> T {
         let (start, end) = (self.before, self.before + 1);
         let seconds = self.keyframes[end].time - self.keyframes[start].time;
@@ -163,12 +168,14 @@ impl KeyframeInterval<'_> {
         let [from, to] = [start, end].map(|at| of(&self.keyframes[at].camera));
         let [leaving, arriving] = [start, end].map(|at| self.velocity(at, &of) * seconds);
         let back = 1.0 - t;
-        // Each term but the first is 0 when nothing changes: then rounding does not change anything either.
+        // In this form each term but the first is exactly 0 if nothing changes, so a resting camera keeps its bits.
         from + (to - from) * (t * t * (1.0 + 2.0 * back)) + leaving * (t * back * back) - arriving * (t * t * back)
     }
 
-    /// From the keyframe before to the one after; at the ends, from or to the end itself. Nothing where one of them has
-    /// the same value: what stands still between two keyframes does not swing out.
+    /// Returns the velocity of a quantity at a keyframe: from the keyframe before to the one after.
+    ///
+    /// Zero if one of them has the same value as this one. At either end the keyframe itself takes the missing place.
+    // The zero keeps a value that rests between two keyframes from overshooting.
     fn velocity<T: Interpolated>(&self, at: usize, of: impl Fn(&Camera) -> T) -> T {
         let value = |at: usize| of(&self.keyframes[at].camera);
         let (before, after) = (at.saturating_sub(1), (at + 1).min(self.keyframes.len() - 1));
@@ -179,7 +186,7 @@ impl KeyframeInterval<'_> {
     }
 }
 
-/// What can lie on a curve.
+/// A quantity that a curve interpolates.
 trait Interpolated: Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> {}
 
 impl Interpolated for f64 {}

@@ -1,4 +1,6 @@
-//! A picture in words, for people who cannot see it: what is where, what hides what, and where the light comes from.
+//! Descriptions of a picture in words, for people who cannot see it: positions, occlusion and lights.
+//!
+//! Every statement comes from a [`Survey`] of traced pixels or from the scene's checked values; none is guessed.
 
 use crate::camera::{Camera, Pose};
 use crate::color::LinearRgb;
@@ -18,10 +20,26 @@ use words::{color, distance, percent, points, position};
 mod survey;
 mod words;
 
-/// Limit on the objects, and on the lights, that are described one by one.
+/// The largest number of objects, and of lights, that are described one by one.
+// A description is read aloud by a screen reader: ten lines take about a minute.
 const MAX_LISTED: usize = 10;
 
-/// Returns a description in English of a picture of this resolution, as lines of sentences. `name` is the scene's.
+/// Returns an English description of a picture, as lines of text.
+///
+/// `name` is the name of the scene. The resolution decides which objects are too small to be seen.
+///
+/// ```
+/// use termtrace::{Resolution, Scene, describe};
+///
+/// let text = r##"(
+///     camera: (eye: (0, 0, 5), target: (0, 0, 0)),
+///     objects: [Sphere(center: (0, 0, 0), radius: 1, material: Diffuse("#dc2828"))],
+/// )"##;
+/// let scene = Scene::from_ron("ball.ron", text)?;
+/// let description = describe("ball.ron", &scene, scene.camera(), Resolution::new(80, 48)?);
+/// assert!(description.contains("red sphere"), "{description}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resolution) -> String {
     let description = Description { scene, camera, survey: Survey::of(scene, camera, resolution) };
     let mut text = description.introduction(name);
@@ -39,7 +57,7 @@ pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resoluti
     text
 }
 
-/// The subject of the description.
+/// The parts of a description.
 struct Description<'s> {
     scene: &'s Scene,
     camera: &'s Camera,
@@ -47,6 +65,7 @@ struct Description<'s> {
 }
 
 impl Description<'_> {
+    /// Returns the sentence with the counts and the camera.
     fn introduction(&self, name: &str) -> String {
         let Pose { eye, target, .. } = self.camera.pose();
         let degrees = self.camera.rectangle().vertical_fov().to_degrees();
@@ -94,7 +113,7 @@ impl Description<'_> {
         text
     }
 
-    /// Returns an object's colour, kind and size.
+    /// Returns the name of an object: its colour, kind and size.
     fn name_of(&self, object: u32, part: &Coverage) -> String {
         let object = &self.scene.objects()[object as usize];
         let own = || color(part.mean_reflectance()).to_owned();
@@ -102,7 +121,8 @@ impl Description<'_> {
         object.shape.described(&color)
     }
 
-    /// Describes the objects in front of and behind an object; unbounded objects are behind everything.
+    /// Describes the objects in front of and behind an object.
+    // Not of unbounded objects, nor with them: that everything is in front of the floor says nothing.
     fn occlusions(&self, object: u32) -> String {
         let is_unbounded = |object: &u32| self.scene.objects()[*object as usize].shape.bounds().is_none();
         if is_unbounded(&object) {
@@ -118,7 +138,7 @@ impl Description<'_> {
         relations + self.enclosing(object)
     }
 
-    /// Returns whether the eye is inside the object.
+    /// Returns a remark if the eye is inside the object, or an empty string.
     fn enclosing(&self, object: u32) -> &'static str {
         let shape = &self.scene.objects()[object as usize].shape;
         if shape.encloses(self.camera.pose().eye) { "; the eye is inside it" } else { "" }
@@ -142,6 +162,7 @@ impl Description<'_> {
         text
     }
 
+    /// Returns the reason why an object is not in the picture.
     fn reason_hidden(&self, object: u32, resolution: Resolution) -> String {
         let before = self.survey.before(object);
         if !before.is_empty() {
@@ -157,7 +178,8 @@ impl Description<'_> {
         if along <= 0.0 {
             return "behind the eye".to_owned();
         }
-        // Its position in the picture, from 0 to 1 if inside.
+        // The position of its middle in the picture, from 0 to 1 inside: components along the sides of the view
+        // rectangle, which may be shifted.
         let corner = eye_rays.through(0.0, 0.0).direction;
         let part = |qu, qv| {
             let side = eye_rays.through(qu, qv).direction - corner;
@@ -224,11 +246,11 @@ impl Description<'_> {
         text
     }
 
-    /// Describes a position relative to the target, as seen by the viewer.
+    /// Describes a direction from the target, as seen by the viewer.
     fn direction_of(&self, away: Vec3) -> String {
         let basis = self.camera.basis();
         let away = away.normalize_or_zero();
-        // Directions more than 30 degrees off an axis are mentioned.
+        // A direction is mentioned from about 17 degrees on (a component of 0.3): most lights then have one or two.
         let side = |along: Vec3, words: [&'static str; 2]| match away.dot(along) {
             part if part > 0.3 => Some(words[0]),
             part if part < -0.3 => Some(words[1]),
@@ -261,12 +283,13 @@ fn middle(shape: &Shape) -> Option<Vec3> {
     Some(0.5 * (bounds.min + bounds.max))
 }
 
+/// Returns a number and a noun, in the plural unless the number is 1.
 fn counted(count: usize, what: &str) -> String {
     let many = if what == "mesh" { "es" } else { "s" };
     format!("{count} {what}{}", if count == 1 { "" } else { many })
 }
 
-/// Lists the objects' numbers in the file, from 1; of many, the first few.
+/// Lists objects by their numbers in the file, from 1, up to a limit.
 fn numbers(objects: &[u32]) -> String {
     const MAX_NUMBERS: usize = 4;
     let names: Vec<_> = objects.iter().take(MAX_NUMBERS).map(|object| format!("object {}", object + 1)).collect();

@@ -1,7 +1,7 @@
-//! The explanation of one pixel in the lecture's symbols.
+//! Explanations of one pixel in the lecture's symbols.
 //!
-//! Its numbers come from the functions that make the picture: the ray, the surfaces that it was tested against, the
-//! hit, the lights, the sum. Beside them are the lecture's formulas, as [`Equation`]s.
+//! All numbers come from the functions that render pictures: the ray, the tested surfaces, the hit, the lights, the
+//! sum. The lecture's formulas stand beside them, as [`Equation`]s.
 
 mod text;
 
@@ -21,7 +21,7 @@ use crate::shape::{Surface, SurfacePoint};
 use crate::tone::{tone, tone_mapped};
 use glam::{Vec2, Vec3};
 
-/// The explanation of a pixel: of its first sample, through its centre.
+/// An explanation of a pixel's first sample, the one through its centre.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Explanation {
@@ -29,52 +29,51 @@ pub struct Explanation {
     pub resolution: Resolution,
     /// The lecture's (i, j): the column and the row, from the top left.
     pub pixel: [u32; 2],
-    /// The lecture's (qu, qv): the position in the picture, from (0, 0) at the lower left corner to (1, 1) at the upper
-    /// right.
+    /// The lecture's (qu, qv): the position in the picture, from (0, 0) at the lower left corner to (1, 1).
     pub q: Vec2,
-    /// The eye ray: **o** and **d**. As d reaches from the eye to the view rectangle, **q** is o + d.
+    /// The eye ray, with the lecture's **o** and **d**; **q** is o + d.
     #[doc(hidden)]
     pub ray: Ray,
-    /// Number of tree nodes, with up to eight boxes each, that the ray was tested against.
+    /// The number of tested nodes of the tree. A node has up to eight boxes.
     #[doc(hidden)]
     pub nodes: u32,
-    /// The surfaces that the ray was tested against: those that it crosses by increasing t, then the others.
+    /// The tested surfaces: first those with a crossing, in increasing t, then the others.
     #[doc(hidden)]
     pub tested: Vec<TestedSurface>,
-    /// The hit; `None` if the light is the background's.
+    /// The shaded hit; `None` if the light is the background's.
     #[doc(hidden)]
     pub hit: Option<ShadedHit>,
-    /// The light towards the eye.
+    /// The linear light towards the eye.
     pub light: LinearRgb,
-    /// The scene's factor for that light,
+    /// The scene's exposure, a factor of the light.
     pub exposure: f32,
-    /// and its tone curve.
+    /// The scene's tone curve.
     pub tone_curve: ToneCurve,
-    /// The light after both.
+    /// The linear light after exposure and tone curve.
     pub shown: LinearRgb,
-    /// The colour as files and terminals get it.
+    /// The 8-bit colour of the pixel.
     pub bytes: Srgb8,
 }
 
 /// A surface that the ray was tested against.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestedSurface {
-    /// Its name.
+    /// The name of the surface.
     pub name: SurfaceName,
     /// The t of the first crossing in front of the eye.
     pub t: Option<f32>,
-    /// The lecture's equation.
+    /// The lecture's equation for crossings, with its values.
     pub equation: Equation,
 }
 
-/// The hit and its light.
+/// A hit and its shading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadedHit {
-    /// The t of the closest crossing in front of the eye.
+    /// The closest hit.
     pub hit: Hit,
     /// The name of the surface.
     pub name: SurfaceName,
-    /// The lecture's **p** and **n**, and the visible side.
+    /// The surface point, with the lecture's **p** and **n**, and the visible side.
     pub point: SurfacePoint,
     /// The ambient light.
     pub ambient: LinearRgb,
@@ -89,9 +88,10 @@ pub struct ShadedHit {
 /// The contribution of one light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightContribution {
-    /// **l**, the distance, n.l, and the arriving light if nothing is in the way.
+    /// The lecture's **l** and n.l, the distance, and the light that arrives without a blocker.
     pub incidence: Incidence,
-    /// A surface in the way, if any, and its position on the way: 0 is the hit, 1 the light. There may be more.
+    /// A surface that blocks the light, and the crossing's t from 0 at the hit to 1 at the light.
+    // Any blocker, not the closest, as for the picture.
     pub blocker: Option<(SurfaceName, f32)>,
 }
 
@@ -101,17 +101,28 @@ impl LightContribution {
         0.0 < self.incidence.cosine
     }
 
-    /// Returns the light that it contributes.
+    /// Returns the contribution: the arriving light, or black if it is blocked or comes from behind.
     pub fn light(&self) -> LinearRgb {
         if self.faces() && self.blocker.is_none() { self.incidence.light } else { LinearRgb::BLACK }
     }
 }
 
-/// Explains a pixel of the picture of `scene` seen by `camera`, counted from the top left. Its light and its colour are
-/// those of a picture with one sample per pixel; with more samples, this is the first.
+/// Explains a pixel of a picture of `scene`, given as column and row from the top left.
+///
+/// Its light and its colour are those of a picture with one sample per pixel.
+///
+/// ```
+/// use termtrace::{Resolution, Scene, explain};
+///
+/// let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
+/// let scene = Scene::from_ron("ball.ron", text)?;
+/// let explanation = explain(&scene, scene.camera(), Resolution::new(81, 81)?, [40, 40]);
+/// assert!(explanation.lines().iter().any(|line| line == "in front: #1 sphere, t = 4.0000"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Panics
-/// Outside the picture.
+/// If the pixel is outside the picture.
 pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u32; 2]) -> Explanation {
     let trace = trace_pixel(scene, camera, resolution, pixel);
     let mut recorder = TestRecorder::default();
@@ -134,6 +145,7 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
     }
 }
 
+/// Returns the hit of a traced pixel with its lights.
 fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
     let point = hit.surface(scene).at_crossing(&trace.ray, hit.t);
     ShadedHit {
@@ -147,6 +159,8 @@ fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
     }
 }
 
+/// Returns the contribution of a light at a surface point.
+// The shadow ray is traced singly, with an observer: packets do not tell which surface blocks a ray.
 fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> LightContribution {
     let incidence = shade::incidence_on_either_side(light, point);
     let ray = shade::shadow_ray(light, point);
@@ -159,7 +173,7 @@ fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lig
     }
 }
 
-/// The observer that records what a ray is tested against.
+/// An observer that records the tests of a ray.
 #[derive(Default)]
 struct TestRecorder {
     nodes: u32,
@@ -177,6 +191,7 @@ impl Observer for TestRecorder {
 }
 
 impl TestRecorder {
+    /// Returns the tested surfaces, in the order of [`Explanation::tested`].
     fn tested(self, scene: &Scene, ray: &Ray) -> Vec<TestedSurface> {
         let mut tests = self.tests;
         let order = |test: &PrimitiveTest| (test.object, test.primitive);

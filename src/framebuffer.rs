@@ -3,8 +3,9 @@
 use crate::color::LinearRgb;
 use std::fmt;
 
-/// The size of a picture in pixels and the shape of a pixel. At most [`MAX_PIXELS`](Self::MAX_PIXELS) pixels, possibly
-/// none.
+/// The size of a picture in pixels, and the aspect ratio of a pixel.
+///
+/// A picture has between 0 and [`MAX_PIXELS`](Self::MAX_PIXELS) pixels.
 ///
 /// ```
 /// use termtrace::Resolution;
@@ -25,8 +26,11 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Limit on the pixels of a picture: 33,554,432, more than 8K. Rendering that many takes some 900 MB at one sample
-    /// per pixel.
+    /// The largest number of pixels of a picture: 33,554,432, more than 8K has.
+    ///
+    /// Rendering such a picture takes some 900 MB at one sample per pixel.
+    // Checked by the constructors, before anything is allocated: unchecked, a large resolution ended in an abort for
+    // want of memory deep in a render.
     #[doc(hidden)]
     pub const MAX_PIXELS: u32 = 1 << 25;
 
@@ -41,7 +45,7 @@ impl Resolution {
         Ok(Self { width, height, pixel_aspect: 1.0 })
     }
 
-    /// Returns the size of a picture of square pixels, for constant sizes.
+    /// Returns the size of a picture of square pixels; for sizes known to be valid.
     ///
     /// # Panics
     /// If there are more than [`MAX_PIXELS`](Self::MAX_PIXELS).
@@ -52,11 +56,12 @@ impl Resolution {
         }
     }
 
-    /// Returns the same size with another pixel shape: a pixel's height divided by its width. With the usual cell
-    /// aspect of 2 a half cell is square: 1.
+    /// Returns the same size with another pixel aspect: a pixel's height divided by its width.
+    ///
+    /// It is 1 for half cells of a terminal whose cells are twice as high as wide.
     ///
     /// # Errors
-    /// [`ResolutionError::PixelAspect`], unless it is greater than 0 and finite.
+    /// [`ResolutionError::PixelAspect`], if it is not greater than 0 and finite.
     #[doc(hidden)]
     pub const fn with_pixel_aspect(self, pixel_aspect: f32) -> Result<Self, ResolutionError> {
         if pixel_aspect > 0.0 && pixel_aspect.is_finite() {
@@ -82,7 +87,7 @@ impl Resolution {
         self.pixel_aspect
     }
 
-    /// Returns the picture's aspect ratio as seen: width divided by height.
+    /// Returns the picture's aspect ratio on the screen: width divided by height, with the pixel aspect.
     #[doc(hidden)]
     pub fn aspect_ratio(&self) -> f32 {
         self.width as f32 / (self.height as f32 * self.pixel_aspect)
@@ -93,25 +98,25 @@ impl Resolution {
         self.width as usize * self.height as usize
     }
 
-    /// Returns the size of a part of the picture with `width` columns.
+    /// Returns the size of the picture's part with at most `width` columns.
     #[cfg(feature = "live")]
     pub(crate) fn with_width(self, width: u32) -> Self {
         Self { width: width.min(self.width), ..self }
     }
 }
 
-/// The error of a size that no picture has.
+/// The error of an invalid resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ResolutionError {
-    /// There are more than [`Resolution::MAX_PIXELS`].
+    /// The picture has more than [`Resolution::MAX_PIXELS`] pixels.
     TooLarge {
-        /// Pixels in a row.
+        /// The number of pixels in a row.
         width: u32,
-        /// Rows of pixels.
+        /// The number of rows.
         height: u32,
     },
-    /// A pixel's height divided by its width is not positive and finite.
+    /// The pixel aspect, given here, is not greater than 0 and finite.
     PixelAspect(f32),
 }
 
@@ -131,7 +136,21 @@ impl fmt::Display for ResolutionError {
 
 impl std::error::Error for ResolutionError {}
 
-/// Linear light for each pixel, row by row from the top; pixel (0, 0) is the top left one.
+/// A picture as linear light: one [`LinearRgb`] per pixel, row by row from the top left.
+///
+/// Light is unbounded and not yet exposed; [`tone`](crate::tone()) makes 8-bit colours of it.
+///
+/// ```
+/// use glam::Vec3;
+/// use termtrace::{Background, Camera, LinearRgb, Render, Resolution, Scene};
+///
+/// let camera = Camera::look_at(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO)?;
+/// let grey = LinearRgb::grey(0.5);
+/// let scene = Scene::builder(camera).background(Background::Color(grey)).build()?;
+/// let light = Render::new(&scene).resolution(Resolution::new(3, 2)?).run()?;
+/// assert_eq!(light.pixels(), [grey; 6]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Framebuffer {
     resolution: Resolution,
@@ -145,7 +164,7 @@ impl Framebuffer {
         Self { resolution, pixels: vec![LinearRgb::BLACK; resolution.pixel_count()] }
     }
 
-    /// Returns the size.
+    /// Returns the size of the picture.
     #[doc(hidden)]
     pub fn resolution(&self) -> Resolution {
         self.resolution
@@ -156,24 +175,25 @@ impl Framebuffer {
         &self.pixels
     }
 
-    /// Returns all pixels for writing.
+    /// Returns all pixels for writing, row by row from the top.
     #[doc(hidden)]
     pub fn pixels_mut(&mut self) -> &mut [LinearRgb] {
         &mut self.pixels
     }
 
-    /// Returns the light at a pixel.
+    /// Returns the light of a pixel.
     ///
     /// # Panics
-    /// Outside the picture.
+    /// If the pixel is outside the picture.
     #[doc(hidden)]
     pub fn pixel(&self, x: u32, y: u32) -> LinearRgb {
         assert!(x < self.resolution.width && y < self.resolution.height, "pixel ({x}, {y}) is outside the picture");
         self.pixels[y as usize * self.resolution.width as usize + x as usize]
     }
 
-    /// Returns a 64-bit hash of the exact bits of all pixels and of the size (FNV-1a over 32-bit little-endian words):
-    /// the same on every machine for equal pictures, and practically unique.
+    /// Returns a 64-bit FNV-1a hash of the size and of the bits of all pixels, the same on every machine.
+    // For tests, and for the bench, which prints it beside each figure. FNV-1a is written here, because the result of
+    // std's default hasher may differ between versions of Rust.
     #[doc(hidden)]
     pub fn hash(&self) -> u64 {
         let size = [self.resolution.width, self.resolution.height];

@@ -18,42 +18,46 @@ pub use point::{Falloff, PointLight, WrittenPointLight};
 #[cfg(test)]
 pub use sun::Sun;
 
-/// A light source.
+/// A kind of light source.
 pub trait LightSource: InSceneFile + Copy {
-    /// The interval on a ray from a point along [`to_light`](Self::to_light) in which an object is in the light's way.
-    /// Not from t = 0: at the coordinates' origin an offset in proportion to them vanishes, and the point is exactly in
-    /// its surface.
+    /// The interval of t in which an object on a ray along [`to_light`](Self::to_light) blocks the light.
+    // Excludes t = 0: the ray's origin is offset in proportion to its coordinates, which vanishes at the origin of the
+    // world, where the ray starts exactly in its own surface.
     const IN_THE_WAY: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 };
 
     /// Returns the vectors from points to the light; for a light at infinity, the unit vector towards it.
     fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N>;
 
-    /// Returns the light that arrives at surfaces, times 1/pi: `l` is the unit vector to the light, `distance_squared`
-    /// the squared length of [`to_light`](Self::to_light), `cosine` is n.l.
+    /// Returns the irradiance at surfaces times 1/pi, per channel.
+    ///
+    /// `l` is the unit vector to the light, `distance_squared` the squared length of [`to_light`](Self::to_light),
+    /// `cosine` is n.l.
+    // The factor 1/pi of diffuse reflection is folded in, so that no step after this one needs pi.
     fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3];
 
-    /// Returns its colour with its brightness.
+    /// Returns the colour with the intensity.
     fn color(&self) -> LinearRgb;
 
-    /// Returns its position in world space; `None` at infinity.
+    /// Returns the position in world space; `None` at infinity.
     fn position(&self) -> Option<Vec3> {
         None
     }
 
-    /// Returns the light at another position, if it has one; unchanged if no light can be there.
+    /// Returns the light at another position; unchanged at infinity, or if the position is invalid.
     #[must_use]
     fn moved_to(self, _position: Vec3) -> Self {
         self
     }
 
-    /// Returns the checked light; if `None`, a fault has been reported.
+    /// Returns the checked light; `None` after a reported fault.
     fn check(written: &Self::Written, validator: &mut Validator<'_>) -> Option<Self>;
 }
 
-/// Defines [`Light`] and [`WrittenLight`] by the table of lights.
+/// Defines [`Light`] and [`WrittenLight`] from the table of lights.
 macro_rules! lights {
     ($($(#[$on:meta])* $name:ident: $light:ident, $of:literal;)*) => {
-        /// Any kind of light. Its methods call those of [`LightSource`].
+        /// A light source of any kind.
+        // An enum in the place of trait objects: its methods are generic over the lanes, and inlined into the kernels.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Light {
@@ -119,7 +123,7 @@ macro_rules! lights {
             }
         })*
 
-        /// A light as written.
+        /// A light as written in a scene file.
         #[derive(Clone, Debug, PartialEq)]
         pub enum WrittenLight {
             $(#[doc = $of] $(#[$on])* $name(<$light as InSceneFile>::Written),)*
@@ -138,7 +142,7 @@ macro_rules! lights {
                 None
             }
 
-            /// Returns the checked light; if `None`, a fault has been reported.
+            /// Returns the checked light; `None` after a reported fault.
             pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Light> {
                 match self {
                     $($(#[$on])* Self::$name(written) => $light::check(written, validator).map(Light::from),)*

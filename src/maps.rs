@@ -1,8 +1,8 @@
-//! The shaded picture of a scene, and maps: pictures of other things than light, from the same camera.
+//! Maps: pictures of depths, normals, objects and other quantities in the place of light.
 //!
-//! A map is made of one ray through the centre of each pixel and has a fixed colour scale, which its legend gives:
-//! equal values have equal colours in every picture. Only the scale of depths depends on the camera, by the distance of
-//! its target. A *view* is something else: a camera position, as in a scene's [`views`](Scene::views).
+//! A map traces one ray through the centre of each pixel and has a fixed colour scale, which its legend gives: equal
+//! values have equal colours in every picture. Only the scale of depths depends on the camera, by the distance of its
+//! target. A *view*, in contrast, is a camera position, as in a scene's [`views`](Scene::views).
 
 use crate::camera::{Camera, Pose};
 use crate::color::{LinearRgb, Srgb8};
@@ -22,53 +22,70 @@ mod contrast;
 mod cost;
 mod shaded;
 
-/// The content of a picture: the scene's light, or one of the maps.
+/// The content of a picture: the scene's light, or a map of another quantity.
+///
+/// ```
+/// use std::num::NonZeroU32;
+/// use termtrace::{Map, Resolution, Scene};
+///
+/// let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
+/// let scene = Scene::from_ron("ball.ron", text)?;
+/// let depths = Map::Depth.picture(&scene, scene.camera(), Resolution::new(9, 9)?, NonZeroU32::MIN);
+/// // The sphere's nearest point is at depth 4, nearer than the target at 5: lighter than middle grey.
+/// assert!(depths.pixels()[40].r > 128);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Map {
-    /// The light.
+    /// The scene's light.
     #[default]
     Shaded,
-    /// The sum of n.l over all lights that the surface faces, at most 1, as light off white surfaces: without colours,
-    /// distances and shadows.
+    /// The sum of n.l over all lights that the surface faces, clamped to 1, without colours, distances and shadows.
     Lambert,
-    /// The depth t along the direction of view, as the lightness 1 / (1 + (t / d)^2), where d is the distance from the
-    /// eye to the target.
+    /// The depth t along the direction of view, as a grey of 1 / (1 + (t / d)^2).
+    ///
+    /// d is the distance from the eye to the target.
     Depth,
     /// The normal on the visible side, as (n + 1) / 2 in red, green and blue.
     Normal,
-    /// The object, by a colour for each number.
+    /// The object, as a colour for each index.
     Object,
     /// The number of lights that reach the surface, from dark grey for none to white for all.
     Shadow,
-    /// The number of tests of the pixel's eye ray and shadow rays, each traced singly: surfaces, and nodes of the tree;
-    /// from blue over green to red and white, with a colour for each power of four.
+    /// The number of intersection tests of the pixel's eye ray and shadow rays, each traced as a single ray.
+    ///
+    /// Counts surfaces and nodes of the tree. Colours go from blue over green to red and white, one for each power of
+    /// four.
     Cost,
-    /// The visible side of the surface.
+    /// The visible side of the surface: front or back.
     Facing,
-    /// The light in black and white, thresholded in the middle, with a line where two objects of the same colour meet:
-    /// for people who see outlines better than colours.
+    /// The light in black and white, with lines between objects of the same colour.
+    ///
+    /// For people who see outlines better than colours.
     Contrast,
 }
 
 /// The colour of rays without a hit, in all maps except costs and high contrast.
+// A dark blue: no value of the grey scales has it, and it is not mistaken for an object in the dark.
 const NO_HIT: Srgb8 = Srgb8::new(16, 20, 56);
-/// The colour of the side of a surface to which its normal points,
+/// The colour of front sides, to which the normal points.
+// Blue against orange-red, which red-green blindness leaves apart.
 const FRONT: Srgb8 = Srgb8::new(70, 150, 230);
-/// and of the other side.
+/// The colour of back sides.
 const BACK: Srgb8 = Srgb8::new(235, 80, 50);
 
-/// A picture and its cost.
+/// The picture of a map, and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TracedMap {
     /// The picture.
     pub picture: Picture,
-    /// The cost, which has no influence on the picture.
+    /// The cost of tracing, which has no influence on the picture.
     pub cost: Cost,
 }
 
 impl Map {
-    /// The shaded picture and all maps, in the order in which the keys go through them.
+    /// All values, in the order in which the live view's keys go through them.
     pub const ALL: [Self; 9] = [
         Self::Shaded,
         Self::Lambert,
@@ -81,8 +98,10 @@ impl Map {
         Self::Contrast,
     ];
 
-    /// Returns the picture of `scene` from `camera`, a function of these arguments alone. Samples refine the shaded
-    /// picture; of maps only [`Sampling::Coarse`] changes anything.
+    /// Returns the picture of `scene` from `camera`, as a pure function of the arguments.
+    ///
+    /// The sampling applies to the shaded picture; maps have one sample per pixel, or per two by two pixels with
+    /// [`Sampling::Coarse`].
     pub fn picture(
         self,
         scene: &Scene,
@@ -93,7 +112,7 @@ impl Map {
         picture(self, scene, camera, resolution, sampling)
     }
 
-    /// Returns the name, one word.
+    /// Returns the name, a single word in lower case.
     #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
@@ -127,18 +146,21 @@ impl Map {
         self.after(Self::ALL.len() - 1)
     }
 
+    /// Returns the map `steps` positions later in [`ALL`](Self::ALL), cyclically.
     fn after(self, steps: usize) -> Self {
         let at = Self::ALL.iter().position(|&map| map == self).unwrap_or(0);
         Self::ALL[(at + steps) % Self::ALL.len()]
     }
 
-    /// Returns whether more samples improve the picture: maps have one ray per pixel.
+    /// Returns whether more samples improve the picture.
+    // A mean of depths, normals or counts at an edge would be a value that no surface there has.
     #[doc(hidden)]
     pub const fn refines(self) -> bool {
         matches!(self, Self::Shaded)
     }
 
-    /// Returns the name and the meaning of the colours in this picture, in at most 38 ASCII characters.
+    /// Returns the name and the meaning of the colours, in at most 38 ASCII characters.
+    // With its border, such a legend fits a terminal of 40 columns.
     #[doc(hidden)]
     pub fn legend(self, scene: &Scene, camera: &Camera) -> String {
         let meaning = match self {
@@ -179,7 +201,7 @@ impl FromStr for Map {
     }
 }
 
-/// Returns the [picture](Map::picture) of a map.
+/// Returns the [picture](Map::picture) of a map, traced on the current rayon pool.
 pub fn picture(
     map: Map,
     scene: &Scene,
@@ -205,6 +227,7 @@ pub fn trace(
     executor.finish(trace_partial(map, executor, scene, camera, resolution, sampling))
 }
 
+/// Traces as [`trace`] does; after a cancel, returns an incomplete picture.
 fn trace_partial(
     map: Map,
     executor: Executor<'_>,
@@ -244,7 +267,7 @@ fn trace_partial(
     }
 }
 
-/// Returns the sum of the lecture's n.l over all lights, as light.
+/// Returns the colour of the sum of the lecture's n.l over all lights.
 fn lambert(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
     let Some(surface) = sample.surface(scene) else { return NO_HIT };
     let cosine = |light| shade::incidence(light, &surface).map_or(0.0, |incidence| incidence.cosine);

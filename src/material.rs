@@ -1,7 +1,7 @@
-//! Materials: the reflected share of the arriving light.
+//! Materials: the reflectance of surfaces.
 //!
-//! All materials are diffuse (lecture, "Shading", assumption 3): they reflect equally in all directions, so that a
-//! point has the same colour from every viewpoint.
+//! All materials are diffuse (lecture, "Shading", assumption 3): they reflect equally in all directions, so a point has
+//! the same colour from every viewpoint.
 //!
 //! Each material is a file under `material/`. To add one, write that file with implementations of [`Reflecting`] and
 //! [`InSceneFile`], and add a line to the table here.
@@ -22,36 +22,50 @@ pub use diffuse::Diffuse;
 #[cfg(test)]
 pub use stripes::Stripes;
 
-/// A diffuse surface, plain or patterned. Reflectances are linear, each channel in 0..=1.
+/// A diffuse material, plain or patterned. Reflectances are linear, each channel in 0..=1.
+// A trait with an enum in the place of trait objects: `reflectance` is generic over the lanes, and inlined into the
+// kernels.
 pub trait Reflecting: InSceneFile + Copy {
-    /// Its pattern after a pronoun, for messages: "its squares". Only surfaces with coordinates can have it.
+    /// The name of the pattern for messages, as in "its squares"; `None` for a plain material.
+    ///
+    /// Patterns need a surface with coordinates.
     const PATTERN: Option<&'static str> = None;
 
-    /// Returns the diffuse reflectances of red, green and blue at the surface coordinates `uv`, filtered over
-    /// `footprint`, the extent of a pixel there; zero for a point sample.
+    /// Returns the reflectances of red, green and blue at the surface coordinates `uv`.
+    ///
+    /// They are means over `footprint`, the extent of a sample in these coordinates; 0 gives a point sample.
     fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3];
 
-    /// Returns an adjective for the name of a shape, such as "red"; the function names colours.
+    /// Returns an adjective for descriptions, such as "red"; `name` names colours.
     fn described(&self, name: fn(LinearRgb) -> &'static str) -> String;
 
-    /// Returns the checked material; if `None`, a fault has been reported.
+    /// Returns the checked material; `None` after a reported fault.
     fn check(written: &Self::Written, validator: &mut Validator<'_>) -> Option<Self>;
 }
 
-/// Defines [`Material`] and [`WrittenMaterial`] by the table of materials.
+/// Defines [`Material`] and [`WrittenMaterial`] from the table of materials.
 macro_rules! materials {
     ($($(#[$on:meta])* $material:ident, $of:literal;)*) => {
-        /// Any material, or the surface's own.
+        /// A material of an object.
+        ///
+        /// ```
+        /// use termtrace::{LinearRgb, Material};
+        ///
+        /// let floor = Material::checker(LinearRgb::grey(0.7), LinearRgb::grey(0.1), 0.5)?;
+        /// let error = Material::diffuse(LinearRgb::grey(1.5)).unwrap_err();
+        /// assert!(error.to_string().contains("1.5"));
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Material {
             $(#[doc = $of] #[doc(hidden)] $(#[$on])* $material($material),)*
-            /// The surface's own: the colours and textures of a mesh's file; without any, [`DEFAULT`](Self::DEFAULT).
+            /// The colours and textures of a mesh's file; without any, [`DEFAULT`](Self::DEFAULT).
             Own,
         }
 
         impl Material {
-            /// See [`Reflecting::reflectance`]; for [`Own`](Self::Own), that of a surface without colours.
+            /// See [`Reflecting::reflectance`]; for [`Own`](Self::Own), the default reflectance.
             #[doc(hidden)]
             #[inline(always)]
             pub fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
@@ -61,7 +75,7 @@ macro_rules! materials {
                 }
             }
 
-            /// Returns its name with an article, and its [pattern](Reflecting::PATTERN), if it has one.
+            /// Returns the name with an article and the [pattern](Reflecting::PATTERN) of a patterned material.
             pub(crate) fn pattern(&self) -> Option<(&'static str, &'static str)> {
                 match self {
                     $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
@@ -69,7 +83,7 @@ macro_rules! materials {
                 }
             }
 
-            /// See [`Reflecting::described`]; empty for [`Own`](Self::Own).
+            /// See [`Reflecting::described`]; `None` for [`Own`](Self::Own).
             pub(crate) fn described(&self, name: fn(LinearRgb) -> &'static str) -> Option<String> {
                 match self {
                     $($(#[$on])* Self::$material(material) => Some(material.described(name)),)*
@@ -84,7 +98,7 @@ macro_rules! materials {
             }
         })*
 
-        /// A material as written.
+        /// A material as written in a scene file.
         #[derive(Clone, Debug, PartialEq)]
         pub enum WrittenMaterial {
             $(#[doc = $of] $(#[$on])* $material(<$material as InSceneFile>::Written),)*
@@ -103,14 +117,14 @@ macro_rules! materials {
                 None
             }
 
-            /// Returns the checked material; if `None`, a fault has been reported.
+            /// Returns the checked material; `None` after a reported fault.
             pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Material> {
                 match self {
                     $($(#[$on])* Self::$material(written) => $material::check(written, validator).map(Material::from),)*
                 }
             }
 
-            /// Returns its name with an article, and its [pattern](Reflecting::PATTERN), if it has one.
+            /// Returns the name with an article and the [pattern](Reflecting::PATTERN) of a patterned material.
             pub(crate) fn pattern(&self) -> Option<(&'static str, &'static str)> {
                 match self {
                     $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
@@ -127,7 +141,7 @@ materials! {
     Stripes, "Stripes of two reflectances in turn.";
 }
 
-/// Returns the material of an object without one: a light grey.
+/// Returns [`DEFAULT`](Material::DEFAULT).
 impl Default for Material {
     fn default() -> Self {
         Self::DEFAULT
@@ -140,27 +154,29 @@ impl Material {
     pub const DEFAULT: Self = Self::Diffuse(Diffuse::DEFAULT);
 
     /// The reflectance of [`DEFAULT`](Self::DEFAULT).
+    // Below 1, so that a shape stays visible in front of a white one; that of matt white paint.
     pub(crate) const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
 
-    /// Returns a material with the same reflectance everywhere, linear.
+    /// Returns a material with the same linear reflectance everywhere.
     ///
     /// # Errors
-    /// Unless each channel is within 0 and 1.
+    /// If a channel is not within 0 and 1.
     pub fn diffuse(reflectance: LinearRgb) -> Result<Self, SceneFault> {
         Diffuse::new(reflectance).map(Self::Diffuse)
     }
 
-    /// Returns a material of squares with alternating reflectances, linear, and sides of this length. Only a plane can
-    /// have it.
+    /// Returns a material of squares with alternating linear reflectances and sides of length `size`.
+    ///
+    /// Only a plane can have it.
     ///
     /// # Errors
-    /// Unless each channel is within 0 and 1, and the size between 1e-9 and 1e9.
+    /// If a channel is not within 0 and 1, or the size not between 1e-9 and 1e9.
     pub fn checker(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
         Checker::new(a, b, size).map(Self::Checker)
     }
 }
 
-/// Returns the channels of a colour as constants.
+/// Returns the channels of a colour, each in all lanes.
 #[inline(always)]
 fn channels<N: Number>(LinearRgb { r, g, b }: LinearRgb) -> [N; 3] {
     [N::splat(r), N::splat(g), N::splat(b)]

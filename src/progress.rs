@@ -1,4 +1,4 @@
-//! Progress reports of long work, and the token that cancels it.
+//! Progress reports of long operations, and the token that cancels them.
 
 #[cfg(feature = "ron")]
 mod meter;
@@ -13,31 +13,46 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A progress report.
+/// A progress report of loading a scene.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use termtrace::{Scene, Work};
+///
+/// let path = std::env::temp_dir().join("termtrace-progress.ron");
+/// std::fs::write(&path, "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")?;
+/// let scene = Scene::load_watched(&path, |progress| {
+///     if let Work::Reading(name) = progress.work {
+///         eprintln!("{name}: {} of {} bytes", progress.done, progress.total);
+///     }
+///     ControlFlow::Continue(())
+/// })?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct Progress {
-    /// The kind of work.
+    /// The operation.
     pub work: Work,
-    /// The amount done: bytes of a file, or boxes of a tree.
+    /// The amount done: bytes of a file, or bounding boxes of a tree.
     pub done: usize,
     /// The total amount; 0 if unknown.
     pub total: usize,
 }
 
-/// A kind of work between a file and a scene.
+/// An operation of loading a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Work {
-    /// Reading a file with this name from disk.
+    /// Reading the file with this name from disk.
     Reading(String),
-    /// Parsing the bytes of a file with this name.
+    /// Parsing the bytes of the file with this name.
     Parsing(String),
-    /// Building the trees of the scene.
+    /// Building the bounding volume hierarchies of the scene.
     Building,
 }
 
-/// A receiver of progress reports, which may come from any thread, and through which the work can be cancelled.
+/// A reporter of progress to a callback, from any thread, by which the callback can cancel the work.
 pub struct Reporter<'w> {
     on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
     on_dependency: Option<&'w (dyn Fn(&Path) + Sync)>,
@@ -45,22 +60,23 @@ pub struct Reporter<'w> {
 }
 
 impl<'w> Reporter<'w> {
-    /// Reports progress to `on_progress`, and cancels the work when it returns `Break`.
+    /// Returns a reporter to `on_progress`, which cancels the work by returning `Break`.
     pub fn new(on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
         Self { on_progress, on_dependency: None, cancellation: Cancellation::default() }
     }
 
-    /// Reports each file to `on_dependency` as well, before it is opened.
+    /// Returns the reporter with a callback that gets each file before it is opened.
+    // Before, so that a live view also watches a file that is missing and may be made.
     pub fn with_dependencies(self, on_dependency: &'w (dyn Fn(&Path) + Sync)) -> Self {
         Self { on_dependency: Some(on_dependency), ..self }
     }
 
-    /// Cancels the work also when this token is cancelled.
+    /// Returns the reporter with a token that cancels the work.
     pub fn cancelled_by(self, cancellation: &Cancellation) -> Self {
         Self { cancellation: cancellation.clone(), ..self }
     }
 
-    /// Returns a reporter that ignores reports and never cancels.
+    /// Returns a reporter without a receiver, which never cancels.
     pub fn silent() -> Reporter<'static> {
         Reporter::new(&|_| ControlFlow::Continue(()))
     }
@@ -76,7 +92,7 @@ impl<'w> Reporter<'w> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Reports a file that the work needs, which may be missing.
+    /// Reports a file on which the result depends, and which may be missing.
     pub fn report_dependency(&self, file: &Path) {
         if let Some(on_dependency) = self.on_dependency {
             on_dependency(file);
@@ -90,11 +106,12 @@ impl<'w> Reporter<'w> {
 }
 
 /// A cancellation token, shared by all its clones. Once cancelled, it stays cancelled.
+// Relaxed ordering is enough: the flag guards no other data, and a thread that sees it late only does more work.
 #[derive(Clone, Debug, Default)]
 pub struct Cancellation(Arc<AtomicBool>);
 
 impl Cancellation {
-    /// Cancels the work at its next check.
+    /// Cancels the work, which ends at its next check.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
@@ -105,7 +122,7 @@ impl Cancellation {
     }
 }
 
-/// The error of cancelled work.
+/// The error of a cancelled operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cancelled;
 
@@ -117,7 +134,7 @@ impl fmt::Display for Cancelled {
 
 impl std::error::Error for Cancelled {}
 
-/// The reason why fallible, cancellable work has no result.
+/// The error of an operation that can fail or be cancelled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unfinished<E> {
     /// The work was cancelled.
@@ -136,7 +153,7 @@ impl<E> Unfinished<E> {
         }
     }
 
-    /// Returns the error of work that has no token.
+    /// Returns the error of an operation without a token.
     ///
     /// # Panics
     /// If it was cancelled.

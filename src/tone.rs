@@ -1,11 +1,13 @@
-//! Tone mapping: exposure, tone curve, transfer function, rounding to 8 bits. Light is linear up to here.
+//! Tone mapping: exposure, tone curve, transfer function, rounding to 8 bits.
+//!
+//! All stages before this one compute with linear light, all after it with 8-bit sRGB.
 
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Framebuffer;
 use crate::scene::{Scene, ToneCurve};
 use crate::threads;
 
-/// A picture as files and terminals take it.
+/// A picture of 8-bit sRGB colours, for files and terminals.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Picture {
     pub(crate) width: u32,
@@ -21,7 +23,7 @@ impl Picture {
     /// use termtrace::{Picture, Srgb8};
     ///
     /// let grey = Srgb8::new(128, 128, 128);
-    /// let picture = Picture::from_pixels(3, 2, vec![grey; 6]).ok_or("six are wanted")?;
+    /// let picture = Picture::from_pixels(3, 2, vec![grey; 6]).ok_or("there are six pixels")?;
     /// assert_eq!((picture.width(), picture.height()), (3, 2));
     /// assert_eq!(picture.to_bytes(), [128; 18]);
     /// assert_eq!(Picture::from_pixels(3, 2, vec![grey; 5]), None);
@@ -47,13 +49,26 @@ impl Picture {
         &self.pixels
     }
 
-    /// Returns the red, green and blue bytes of each pixel, row by row from the top, as image crates take them.
+    /// Returns the red, green and blue bytes of all pixels, row by row from the top.
+    ///
+    /// This is the layout that the crates `image` and `png` take.
     pub fn to_bytes(&self) -> Vec<u8> {
         self.pixels.iter().flat_map(|pixel| [pixel.r, pixel.g, pixel.b]).collect()
     }
 }
 
-/// Returns the framebuffer as a picture, with the exposure and tone curve of `scene`.
+/// Converts light to 8-bit colours, with the exposure and tone curve of `scene`.
+///
+/// ```
+/// use glam::Vec3;
+/// use termtrace::{Background, Camera, LinearRgb, Render, Resolution, Scene, Srgb8, tone};
+///
+/// let camera = Camera::look_at(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO)?;
+/// let scene = Scene::builder(camera).background(Background::Color(LinearRgb::grey(2.0))).build()?;
+/// let light = Render::new(&scene).resolution(Resolution::new(1, 1)?).run()?;
+/// assert_eq!(tone(&light, &scene).pixels(), [Srgb8::new(255, 255, 255)]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     let [width, height] = [framebuffer.resolution().width(), framebuffer.resolution().height()];
     let (curve, exposure) = (scene.tone_curve(), scene.exposure());
@@ -70,27 +85,30 @@ pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     Picture { width, height, pixels }
 }
 
-/// Least number of pixels for which other threads are woken: for fewer, waking takes longer than it saves.
+/// The number of pixels up to which the calling thread works alone, and the size of a chunk beyond.
+// Waking another thread takes 16 to 80 us, which it does not save on fewer pixels.
 const MIN_PARALLEL_PIXELS: usize = 1 << 16;
 
-/// Returns light with the exposure and tone curve of `scene` applied. 1 and more is white.
+/// Returns light with the exposure and tone curve of `scene` applied. 1 and above is white.
 pub fn tone_mapped(light: LinearRgb, scene: &Scene) -> LinearRgb {
     apply_curve(scene.tone_curve(), light * scene.exposure())
 }
 
-/// Returns light after the tone curve.
+/// Returns light after the tone curve, still linear.
 fn apply_curve(curve: ToneCurve, light: LinearRgb) -> LinearRgb {
     match curve {
         ToneCurve::None => light,
-        // Reinhard, Stark, Shirley and Ferwerda 2002, equation 3, applied to the luminance, which keeps hues.
+        // Reinhard, Stark, Shirley and Ferwerda 2002, equation 3, applied to the luminance, which keeps hues. Per
+        // channel it would bleach bright colours.
         ToneCurve::Reinhard => light * (1.0 / (1.0 + light.luminance())),
         ToneCurve::Filmic => LinearRgb::new(filmic(light.r), filmic(light.g), filmic(light.b)),
     }
 }
 
-/// Returns Krzysztof Narkowicz's fit (2015) to the ACES reference rendering and output transforms.
+/// Returns a channel after Krzysztof Narkowicz's fit (2015) to the ACES reference rendering and output transforms.
 fn filmic(x: f32) -> f32 {
-    // Clamped far beyond white: the square of more could exceed f32.
+    // Clamped far beyond white: the square of a brighter light is infinite in f32, and the quotient NaN, which would
+    // be black.
     let x = x.min(1e6);
     (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)
 }

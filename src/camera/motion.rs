@@ -1,29 +1,36 @@
-//! Motions of the camera, of any size. None of them turns the picture upside down, and a motion that would lead to no
-//! picture, such as an eye beyond ±1e9, leaves the camera where it is.
+//! Motions of the camera by angles, distances and factors of any size.
+//!
+//! No motion turns the picture upside down. A motion to an invalid pose, such as an eye beyond ±1e9, changes nothing.
 
 use super::{Camera, Pose};
 use crate::bounds::Bounds;
 use glam::{BVec3, Vec2, Vec3};
 
-/// The least angle, in radians, between the view and straight up or straight down, where no direction would be vertical.
+/// The smallest angle between the view and straight up or down, in radians.
+// At the pole no direction of the picture would be vertical. About one degree away, a turn about the up vector still
+// moves the picture sideways instead of rotating it on the spot.
 const POLE_MARGIN: f32 = 0.02;
 
-/// The least and the greatest distance from the eye to the target, as multiples of a scene's size: there is always something
-/// between them, and never too much for f32.
+/// The smallest distance from the eye to the target, as a multiple of the scene's size.
 pub(super) const MIN_TARGET_DISTANCE: f32 = 1e-3;
+/// The largest distance from the eye to the target, as a multiple of the scene's size.
+// From there a scene is smaller than a pixel. Both limits keep squares and differences of coordinates well within the
+// range and the precision of f32.
 pub(super) const MAX_TARGET_DISTANCE: f32 = 1e4;
 
 /// The share of the picture's width or height that a framed box fills.
+// A margin of 2.5 % on each side: about a cell in a terminal of 80x24.
 pub(crate) const FRAMED_SHARE: f32 = 0.95;
 
 /// The range of the vertical field of view, in radians: 1 to 150 degrees.
+// Beyond 150 degrees, shapes at the border are stretched more than fourteenfold against those in the middle.
 const FOV_RANGE: [f32; 2] = [0.017_453_3, 2.617_994];
 
 impl Camera {
-    /// Returns the camera after the eye has gone around the target, to the right and upwards, by angles in radians.
+    /// Returns the camera with the eye moved around the target, to the right and upwards, by angles in radians.
     ///
-    /// The eye keeps its distance from the target, which stays in the middle of the picture. It stops 0.02 radians before
-    /// it would be straight above or below the target. An angle that is not finite changes nothing.
+    /// The eye keeps its distance from the target, and stops 0.02 radians before the poles straight above and below the
+    /// target. An angle that is not finite changes nothing.
     ///
     /// ```
     /// use glam::Vec3;
@@ -41,14 +48,13 @@ impl Camera {
             return *self;
         }
         let pose = self.pose;
-        // An eye that goes to the right has to look to the left.
+        // An eye that moves to the right turns its view to the left.
         self.with_valid_pose(Pose { eye: pose.target - self.turned_view(right, -up), ..pose })
     }
 
-    /// Returns the camera after the view has turned to the right and upwards, by angles in radians. The eye stays where it
-    /// is, and the target goes around it.
+    /// Returns the camera with the target moved around the eye, to the right and upwards, by angles in radians.
     ///
-    /// The view stops 0.02 radians before it would be straight up or down. An angle that is not finite changes nothing.
+    /// The view stops 0.02 radians before straight up and straight down. An angle that is not finite changes nothing.
     #[must_use]
     pub fn turned(&self, right: f32, up: f32) -> Self {
         if is_no_turn(right, up) {
@@ -57,8 +63,7 @@ impl Camera {
         self.with_valid_pose(Pose { target: self.pose.eye + self.turned_view(-right, up), ..self.pose })
     }
 
-    /// Returns the camera after eye and target have moved to the right, along the camera's up vector, and forward, by
-    /// distances in world units.
+    /// Returns the camera with eye and target moved to the right, along the up vector, and forward, in world units.
     #[must_use]
     pub fn moved(&self, right: f32, up: f32, forward: f32) -> Self {
         if (right, up, forward) == (0.0, 0.0, 0.0) {
@@ -68,18 +73,19 @@ impl Camera {
         self.shifted(by)
     }
 
-    /// Returns the camera with the distance from the eye to the target multiplied by `factor`: nearer for less than 1, farther
-    /// away for more. The target and the direction of view stay.
+    /// Returns the camera with the distance from the eye to the target multiplied by `factor`.
     ///
-    /// A single call changes the distance by a factor from 0.001 to 10,000, and the distance stays above 1e-15.
+    /// The target and the direction of view stay. A single call changes the distance by a factor from 0.001 to 10,000,
+    /// and the distance stays above 1e-15.
     #[must_use]
     pub fn nearer(&self, factor: f32) -> Self {
-        // The square of a smaller or larger distance would be beyond f32.
+        // Clamped, as the square of a smaller or larger distance would be beyond f32.
         self.nearer_within(factor, self.target_distance().clamp(1e-12, 1e12))
     }
 
-    /// Returns the camera with a view rectangle whose sides are multiplied by `factor`: a narrower field of view for less than
-    /// 1, a wider one for more. The vertical field of view stays between 1 and 150 degrees.
+    /// Returns the camera with the sides of its view rectangle multiplied by `factor`.
+    ///
+    /// A factor below 1 zooms in. The vertical field of view stays between 1 and 150 degrees.
     #[must_use]
     pub fn zoomed(&self, factor: f32) -> Self {
         let rectangle = self.rectangle;
@@ -89,8 +95,10 @@ impl Camera {
         rectangle.scaled(wanted / height).map_or(*self, |rectangle| self.with_rectangle(rectangle))
     }
 
-    /// Returns the camera that looks in the same direction from where the box fills 95 % of a picture of that aspect ratio
-    /// (width / height). The target becomes the box's centre. A box without a size changes nothing.
+    /// Returns the camera at the distance from which a box fills 95 % of a picture, with the same direction of view.
+    ///
+    /// `aspect_ratio` is the picture's width divided by its height. The target becomes the box's centre. A box of size
+    /// 0 changes nothing.
     #[must_use]
     pub fn framing(&self, bounds: &Bounds, aspect_ratio: f32) -> Self {
         let (width, height, centre) = self.rectangle.fitted_to(aspect_ratio);
@@ -100,17 +108,19 @@ impl Camera {
         if distance <= 0.0 {
             return *self;
         }
-        // Where the picture's centre is not straight ahead, the box is where that is.
+        // With a shifted view rectangle the picture's centre is not straight ahead; the box is put where it is.
         let target = centre_of(bounds) - distance * (centre.x * u + centre.y * v);
         self.with_valid_pose(Pose { eye: target + distance * w, target, ..self.pose })
     }
 
-    /// [`nearer`](Self::nearer), with a distance that stays within [`MIN_TARGET_DISTANCE`] and [`MAX_TARGET_DISTANCE`] times the size of a scene.
-    /// Beyond these limits it can only go back.
+    /// Returns the camera as [`nearer`](Self::nearer) does, within the limits of a scene of `size`.
+    ///
+    /// The distance stays between [`MIN_TARGET_DISTANCE`] and [`MAX_TARGET_DISTANCE`] times the size. From beyond these
+    /// limits it only changes towards them.
     pub(crate) fn nearer_within(&self, factor: f32, size: f32) -> Self {
         let target = self.pose.target;
         let distance = self.target_distance();
-        // The spacing of f32 grows with the numbers.
+        // Far from the origin the spacing of f32 limits the distance: 1e-5 is 84 times the spacing near 1.
         let nearest = (MIN_TARGET_DISTANCE * size).max(1e-5 * target.abs().max_element()).min(distance);
         let wanted = (factor * distance).clamp(nearest, (MAX_TARGET_DISTANCE * size).max(distance));
         if factor == 1.0 || wanted == distance {
@@ -124,18 +134,18 @@ impl Camera {
         self.pose.eye.distance(self.pose.target)
     }
 
-    /// Moves eye and target by the same vector.
+    /// Returns the camera with eye and target moved by the same vector.
     pub(super) fn shifted(&self, by: Vec3) -> Self {
         let Pose { eye, target, up } = self.pose;
         self.with_valid_pose(Pose { eye: eye + by, target: target + by, up })
     }
 
-    /// The camera at that pose, or where it is if that gives no picture.
+    /// Returns the camera at another pose, or unchanged if the pose is invalid.
     pub(super) fn with_valid_pose(&self, pose: Pose) -> Self {
         self.with_pose(pose).unwrap_or(*self)
     }
 
-    /// The vector from the eye to the target after a turn to the left about up, and upwards about u.
+    /// Returns the vector from the eye to the target after a turn to the left about up, and upwards about u.
     fn turned_view(&self, left: f32, upwards: f32) -> Vec3 {
         let Pose { eye, target, up } = self.pose;
         let upwards = self.up_to_the_pole(upwards);
@@ -144,7 +154,7 @@ impl Camera {
         rotated(rotated(target - eye, axis_up, left), u, upwards)
     }
 
-    /// As much of an upward turn as the pole leaves. A view that begins beyond the limit may turn away from the pole only.
+    /// Returns an upward turn limited by the poles. A view beyond the limit may only turn away from its pole.
     fn up_to_the_pole(&self, angle: f32) -> f32 {
         let limit = std::f32::consts::FRAC_PI_2 - POLE_MARGIN;
         let sine = -self.basis.w.dot(self.pose.up.normalize_or_zero());
@@ -153,13 +163,14 @@ impl Camera {
     }
 }
 
-/// Whether a turn by these angles changes nothing.
+/// Returns whether a turn by these angles changes nothing.
 fn is_no_turn(right: f32, up: f32) -> bool {
     (right, up) == (0.0, 0.0) || !(right.is_finite() && up.is_finite())
 }
 
-/// Returns how far from a box's centre, along w of a basis, the eye has to be for all corners to lie within `half` a width
-/// and height of `middle`, on the plane at distance 1.
+/// Returns the distance from a box's centre, along the basis vector w, at which the eye sees all of its corners.
+///
+/// Corners must be within `half` a width and height of `middle`, on the plane at distance 1.
 pub(crate) fn framing_distance(bounds: &Bounds, [u, v, w]: [Vec3; 3], half: Vec2, middle: Vec2) -> f32 {
     let centre = centre_of(bounds);
     let distance = (0..8).map(|corner| {
@@ -176,7 +187,8 @@ fn centre_of(bounds: &Bounds) -> Vec3 {
     bounds.min + 0.5 * bounds.extent()
 }
 
-/// Rodrigues' rotation of `v` about a unit axis, to the left when seen against it; the length is kept.
+/// Returns `v` rotated about a unit axis by an angle in radians, counterclockwise seen against the axis (Rodrigues).
+// The length is restored, because rounding errors of many small turns would add up.
 fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
     let (sin, cos) = libm::sincosf(angle);
     let turned = v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));

@@ -1,26 +1,30 @@
-//! The camera and what is seen through it, moved by places in its picture: parts of the picture's width and height, counted
-//! from its upper left corner.
+//! Camera motions by positions in the picture, for the mouse.
+//!
+//! Positions and distances are in parts of the picture's width and height, from the upper left corner to the right and
+//! down.
 
 use super::{Camera, Pose};
 use glam::{Vec2, Vec3};
 
-/// What a drag does to the camera.
+/// The action of a mouse drag on the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Grip {
-    /// It turns the view: usually with the left button.
+    /// Turns the view; usually with the left button.
     Turn,
-    /// It shifts the picture: usually with the right or the middle button, or with the left one and Shift.
+    /// Shifts the picture; usually with the right or the middle button, or with the left one and Shift.
     Pan,
 }
 
-/// The angle around the target for the whole height of the picture, in radians.
+/// The angle of an orbit for a drag over the whole height of the picture, in radians.
+// Half a turn, so that one drag brings the back of an object to the front.
 const ORBIT_PER_HEIGHT: f32 = std::f32::consts::PI;
 
-/// The share of a distance that a notch of the wheel leaves.
+/// The factor of the distance for one notch of the wheel.
+// Five or six notches halve the distance; a factor makes every notch the same change of size on the screen.
 pub(super) const WHEEL_NOTCH_FACTOR: f32 = 0.88;
 
 impl Camera {
-    /// Returns where a point is in a picture of that aspect ratio; `None` for a point that is not in front of the eye.
+    /// Returns the position of a point in a picture with this aspect ratio; `None` if it is not in front of the eye.
     #[doc(hidden)]
     pub fn project(&self, point: Vec3, aspect_ratio: f32) -> Option<Vec2> {
         let (basis, way) = (self.basis, point - self.pose.eye);
@@ -31,35 +35,38 @@ impl Camera {
         (depth > 0.0 && place.is_finite()).then_some(place)
     }
 
-    /// Returns the camera after the picture has been dragged to the right and down: the target goes along.
+    /// Returns the camera shifted with its target by a drag of the picture to the right and down.
+    // By the distance at the target's depth, so that the target stays under the pointer.
     pub(crate) fn panned(&self, by: Vec2, aspect_ratio: f32) -> Self {
         let across = self.across(by, aspect_ratio);
         self.shifted(self.target_distance() * (across.y * self.basis.v - across.x * self.basis.u))
     }
 
-    /// Returns the camera after the scene has been dragged to the right and down, about the target.
+    /// Returns the camera turned about its target by a drag of the scene to the right and down.
     pub(crate) fn dragged_around(&self, by: Vec2, aspect_ratio: f32) -> Self {
         let turn = ORBIT_PER_HEIGHT * Vec2::new(by.x * aspect_ratio, by.y);
         self.orbited(-turn.x, turn.y)
     }
 
-    /// Returns the camera after the scene has been dragged to the right and down, about the eye.
+    /// Returns the camera turned about its eye by a drag of the scene to the right and down.
     #[cfg(feature = "live")]
     pub(crate) fn dragged_view(&self, by: Vec2, aspect_ratio: f32) -> Self {
         let turn = self.across(by, aspect_ratio);
         self.turned(-turn.x, turn.y)
     }
 
-    /// Returns the camera after the eye has come nearer to a point, which stays where it is in the picture, by notches of the
-    /// wheel. The target moves as the eye does.
+    /// Returns the camera moved towards a point by notches of the wheel; the target moves by the same vector.
+    ///
+    /// The point keeps its position in the picture.
     #[cfg(feature = "live")]
     pub(crate) fn wheeled(&self, point: Vec3, notches: f32) -> Self {
         let factor = libm::powf(WHEEL_NOTCH_FACTOR, notches);
         self.shifted((1.0 - factor) * (point - self.pose.eye))
     }
 
-    /// Returns the camera after eye and target have come nearer to a point, which stays where it is in the picture, by notches
-    /// of the wheel, in a scene of that size.
+    /// Returns the camera with eye and target scaled towards a point by notches of the wheel, in a scene of `size`.
+    ///
+    /// The point keeps its position in the picture.
     pub(crate) fn wheeled_around(&self, point: Vec3, notches: f32, size: f32) -> Self {
         let Pose { eye, target, up } = self.pose;
         let after = self.nearer_within(libm::powf(WHEEL_NOTCH_FACTOR, notches), size);
@@ -68,23 +75,23 @@ impl Camera {
         self.with_valid_pose(Pose { eye: moved + factor * (eye - target), target: moved, up })
     }
 
-    /// Returns a point after it has been dragged to the right and down in the picture, in which it stays as deep as it is.
+    /// Returns a point after a drag to the right and down in the picture, at constant depth.
     #[doc(hidden)]
     pub fn point_dragged(&self, point: Vec3, by: Vec2, aspect_ratio: f32) -> Vec3 {
         let across = self.across(by, aspect_ratio);
-        // A point behind the eye, or beside it, goes as far as the target would.
+        // A point behind or beside the eye has no position in the picture: it moves as far as the target would.
         let depth = Some((self.pose.eye - point).dot(self.basis.w)).filter(|depth| *depth > 0.0);
         point + depth.unwrap_or(self.target_distance()) * (across.x * self.basis.u - across.y * self.basis.v)
     }
 
-    /// Returns a point after it has gone away from the eye by notches of the wheel; it stays where it is in the picture.
+    /// Returns a point moved away from the eye by notches of the wheel; it keeps its position in the picture.
     #[doc(hidden)]
     pub fn point_wheeled(&self, point: Vec3, notches: f32) -> Vec3 {
         let eye = self.pose.eye;
         eye + libm::powf(WHEEL_NOTCH_FACTOR, -notches) * (point - eye)
     }
 
-    /// A distance in the picture as one on the plane at distance 1.
+    /// Converts a distance in the picture to one on the plane at distance 1.
     fn across(&self, by: Vec2, aspect_ratio: f32) -> Vec2 {
         let (width, height, _) = self.rectangle.fitted_to(aspect_ratio);
         by * Vec2::new(width, height)

@@ -1,4 +1,4 @@
-//! A survey of a picture: which object covers which part of it, and what is behind what.
+//! A survey of a picture: the part that each object covers, and the objects behind it.
 
 use crate::camera::Camera;
 use crate::color::LinearRgb;
@@ -11,40 +11,43 @@ use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
 
-/// The content of a pixel.
+/// The content of a pixel with a hit.
 #[derive(Clone, Copy)]
 struct PixelContent {
     object: u32,
-    /// The distance from the eye.
+    /// The distance from the eye, in world units.
     distance: f32,
     reflectance: LinearRgb,
-    /// The next objects behind it.
+    /// The next objects behind the visible one, nearest first.
     behind: [Option<u32>; MAX_OCCLUDED],
 }
 
 /// The part of the picture that an object covers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Coverage {
-    /// Number of pixels.
+    /// The number of pixels.
     pub(super) pixels: usize,
-    /// Distances of its nearest and farthest visible point from the eye.
+    /// The distance from the eye to the nearest visible point, in world units.
     pub(super) nearest: f32,
+    /// The distance from the eye to the farthest visible point, in world units.
     pub(super) farthest: f32,
-    /// Sums of its pixels' columns and rows,
+    /// The sums of the pixels' columns and rows.
     sum: [u64; 2],
-    /// the first of them and those after the last,
+    /// The first column, and the one after the last.
     columns: [u32; 2],
+    /// The first row, and the one after the last.
     rows: [u32; 2],
-    /// and the sum of their reflectances.
+    /// The sum of the pixels' reflectances.
     reflectance: LinearRgb,
 }
 
 /// A rectangle in the picture, in parts of its width and height, from the upper left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PictureRect {
-    /// Its middle.
+    /// The mean position of the covered pixels.
+    // Not the rectangle's own middle, which a thin part that sticks out moves far from most of the pixels.
     pub(super) middle: [f32; 2],
-    /// Its width and height.
+    /// The width and height.
     pub(super) extent: [f32; 2],
 }
 
@@ -63,6 +66,7 @@ impl Coverage {
         self.reflectance += content.reflectance;
     }
 
+    /// Returns the mean reflectance of the pixels; the default one without pixels.
     pub(super) fn mean_reflectance(&self) -> LinearRgb {
         match self.pixels {
             0 => Material::DEFAULT_REFLECTANCE,
@@ -70,6 +74,7 @@ impl Coverage {
         }
     }
 
+    /// Returns the rectangle around the pixels, in a picture of this resolution.
     pub(super) fn rect(&self, resolution: Resolution) -> PictureRect {
         let sides = [resolution.width(), resolution.height()].map(|side| side as f32);
         let middle = [0, 1].map(|axis| (self.sum[axis] as f32 / self.pixels as f32 + 0.5) / sides[axis]);
@@ -82,10 +87,11 @@ impl Coverage {
 pub(super) struct Survey {
     /// The part covered by each visible object.
     pub(super) covered: BTreeMap<u32, Coverage>,
-    /// Number of pixels in which the first object is in front of the second.
+    /// The number of pixels in which the first object is in front of the second.
     hides: BTreeMap<(u32, u32), usize>,
-    /// Number of pixels without an object, and of all pixels.
+    /// The number of pixels without a hit.
     pub(super) background_pixels: usize,
+    /// The number of all pixels.
     pub(super) pixels: usize,
 }
 
@@ -129,7 +135,8 @@ impl Survey {
         of_object.map(|(&(before, _), _)| before).collect()
     }
 
-    /// Returns whether this many pixels are worth mentioning: a twentieth of the object's visible part.
+    /// Returns whether a number of hidden pixels is worth a mention.
+    // From a twentieth of the object's visible part on: less are single pixels at edges.
     fn is_significant(&self, object: u32, pixels: usize) -> bool {
         20 * pixels >= self.covered.get(&object).map_or(0, |covered| covered.pixels)
     }
@@ -146,18 +153,20 @@ fn content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> {
     })
 }
 
-/// Limits on the number of objects that are found behind the visible one,
+/// The largest number of objects that are found behind the visible one.
 const MAX_OCCLUDED: usize = 3;
-/// and on the surfaces that are passed on the way.
+/// The largest number of surfaces that a ray passes on the way to them.
+// Each is a traced ray per pixel. A sphere has two; the limit bounds the time of meshes with many layers.
 const MAX_LAYERS: usize = 12;
 
-/// Returns the next objects that the ray would hit without the visible one.
+/// Returns the next objects behind the visible one on a sample's ray, nearest first.
 fn behind(scene: &Scene, mut sample: GBufferSample) -> [Option<u32>; MAX_OCCLUDED] {
     let seen = sample.hit.map(|hit| hit.object);
     let (mut found, mut count) = ([None; MAX_OCCLUDED], 0);
     for _ in 0..MAX_LAYERS {
         let Some(surface) = sample.surface(scene) else { break };
-        // Starts as far behind the surface as a shadow ray starts in front of it.
+        // The next ray starts behind the surface by the clearance of shadow rays in front of it: neither meets the
+        // surface again.
         let origin = surface.position - surface.geometric_normal * surface.clearance;
         sample.ray = Ray { origin, ..sample.ray };
         sample.hit = closest_hit(scene, &sample.ray);

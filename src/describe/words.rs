@@ -1,11 +1,11 @@
-//! Numbers, colours and positions in words.
+//! Words for numbers, colours and positions.
 
 use super::survey::PictureRect;
 use crate::color::{LinearRgb, Oklab, Srgb8};
 use crate::text::number;
 use glam::Vec3;
 
-/// Colours with a common name, light and dark.
+/// The colours with a common English name.
 const COLORS: [(&str, Srgb8); 32] = [
     ("black", Srgb8::new(0, 0, 0)),
     ("dark grey", Srgb8::new(72, 72, 72)),
@@ -41,10 +41,11 @@ const COLORS: [(&str, Srgb8); 32] = [
     ("light purple", Srgb8::new(190, 150, 235)),
 ];
 
-/// Returns the common name of the nearest colour.
+/// Returns the name of the nearest colour with a name.
 pub(super) fn color(light: LinearRgb) -> &'static str {
     let seen = Oklab::from_srgb8(Srgb8::from_linear(light));
-    // A small change of colour affects the name more than a small change of lightness.
+    // In Oklab, with hue and chroma weighted twice: a small change of them affects the name more than an equal change
+    // of lightness.
     let away = |color: Srgb8| {
         let Oklab { l, a, b } = Oklab::from_srgb8(color);
         let (l, a, b) = (seen.l - l, 2.0 * (seen.a - a), 2.0 * (seen.b - b));
@@ -54,11 +55,12 @@ pub(super) fn color(light: LinearRgb) -> &'static str {
     nearest.map_or("", |(name, _)| name)
 }
 
+/// Formats a point as a scene file writes it.
 pub(super) fn points(point: Vec3) -> String {
     format!("({}, {}, {})", number(point.x), number(point.y), number(point.z))
 }
 
-/// Formats a range; a single number if both ends look the same.
+/// Formats a range of distances: as a single number unless the far end is half as far again.
 pub(super) fn distance(nearest: f32, farthest: f32) -> String {
     if farthest > 1.5 * nearest {
         format!("from {} away on", number(nearest))
@@ -67,6 +69,7 @@ pub(super) fn distance(nearest: f32, farthest: f32) -> String {
     }
 }
 
+/// Formats a share as a percentage.
 pub(super) fn percent(part: usize, of: usize) -> String {
     match 100 * part / of.max(1) {
         0 => "less than 1%".to_owned(),
@@ -74,10 +77,11 @@ pub(super) fn percent(part: usize, of: usize) -> String {
     }
 }
 
-/// Returns where in the picture a rectangle is.
+/// Describes the position of a rectangle in the picture.
 pub(super) fn position(rect: PictureRect) -> &'static str {
     const FULL_EXTENT: f32 = 0.8;
-    /// Returns left or top, middle, right or bottom, or across all.
+    /// Returns 0 for left or top, 1 for the middle, 2 for right or bottom, 3 for the full extent.
+    // The middle is a sixth of the picture: a wider one would hide which side an object is on.
     fn third(middle: f32, extent: f32) -> usize {
         match middle {
             _ if extent > FULL_EXTENT => 3,

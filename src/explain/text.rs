@@ -1,4 +1,4 @@
-//! An explanation as text: short lines in the lecture's symbols, for a panel or a page.
+//! Explanations as text: short lines in the lecture's symbols, for a panel or a file.
 
 use super::{Equation, Explanation, LightContribution, ShadedHit, Step, TestedSurface};
 use crate::capabilities::CellMode;
@@ -8,15 +8,17 @@ use crate::shape::{Shape, Side};
 use glam::Vec3;
 use std::fmt;
 
-/// Limit on the width of a line in columns, unless a number has unusually many digits.
+/// The largest width of a line in columns, unless a number has unusually many digits.
+// The panel, with its border, then covers less than half of a terminal of 80 columns.
 pub const MAX_LINE_WIDTH: usize = 35;
 
-/// The name of a surface: the number of its object in the scene file, from 1, and its kind.
+/// The name of a surface: the number and the kind of its object, and the face of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SurfaceName {
+    /// The number of the object in the scene file, from 1.
     object: u32,
     kind: &'static str,
-    /// The number of a mesh's triangle, from 1.
+    /// The number of a mesh's face, from 1.
     face: Option<u32>,
 }
 
@@ -48,7 +50,7 @@ impl fmt::Display for Explanation {
 }
 
 impl Explanation {
-    /// Returns the whole explanation as lines of ASCII without control characters.
+    /// Returns the explanation as lines of printable ASCII.
     #[doc(hidden)]
     pub fn lines(&self) -> Vec<String> {
         let [i, j] = self.pixel;
@@ -69,6 +71,7 @@ impl Explanation {
         lines
     }
 
+    /// Adds the tested surfaces with their roots; the closest hit has a mark.
     fn add_tests(&self, lines: &mut Vec<String>) {
         let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
         let nodes = count(self.nodes as usize, "node");
@@ -116,7 +119,7 @@ impl Explanation {
     }
 }
 
-/// Returns the screen cell that shows a pixel, and the pixel's position in it.
+/// Describes the terminal cell that shows a pixel, and the pixel's position in the cell.
 pub fn cell_of_pixel([x, y]: [u32; 2], mode: CellMode) -> String {
     let (across, down) = mode.pixels_per_cell();
     let place = match (across, down) {
@@ -126,7 +129,8 @@ pub fn cell_of_pixel([x, y]: [u32; 2], mode: CellMode) -> String {
     format!("cell ({}, {}), {place}", x / across, y / down)
 }
 
-/// Returns the t of a tested surface, first as in the picture, then the other roots of the equation.
+/// Formats the roots of a tested surface's equation, with the picture's t in the place of its own root.
+// The equation is solved in f64 here; the picture's t has the bits of the kernel.
 fn crossings(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
     let Equation { roots, without_root, is_outside, .. } = equation;
     if roots.is_empty() {
@@ -134,7 +138,7 @@ fn crossings(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
     }
     let mut shown: Vec<_> = roots.iter().map(|&root| root as f32).collect();
     if let Some(t) = *t {
-        // From inside, the first root is behind the eye.
+        // Seen from inside, the first root is behind the eye, and t is the second.
         let own = roots.iter().position(|&root| root >= 0.0).unwrap_or(roots.len() - 1);
         shown[own] = t;
     }
@@ -178,7 +182,7 @@ fn light(name: &str, LinearRgb { r, g, b }: LinearRgb) -> String {
     format!("{name:<9}{r} {g} {b}")
 }
 
-/// Formats a number in nine columns, or more if that loses too much.
+/// Formats a number in nine columns.
 fn number(x: f32) -> String {
     let size = x.abs();
     match size {

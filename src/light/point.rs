@@ -8,7 +8,16 @@ use crate::scene_text::SyntaxNode;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, WrittenNumber, WrittenVector};
 use glam::Vec3;
 
-/// A point source: very small, and the same in all directions (lecture, "Shading", assumptions 1 and 2).
+/// A point source with the same intensity in all directions (lecture, "Shading", assumptions 1 and 2).
+///
+/// ```
+/// use glam::Vec3;
+/// use termtrace::{Falloff, LinearRgb, PointLight};
+///
+/// let lamp = PointLight::new(Vec3::new(0.0, 3.0, 0.0), LinearRgb::grey(20.0))?;
+/// let even = lamp.with_falloff(Falloff::None);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
     position: Vec3,
@@ -18,12 +27,13 @@ pub struct PointLight {
 }
 
 impl PointLight {
-    /// Returns a light at a point in world space, with inverse square falloff. The intensity is the radiant intensity
-    /// times 1/pi (the constant of diffuse reflection is folded in): a white surface that faces the light at distance 1
-    /// has this radiance.
+    /// Returns a light at a point in world space, with inverse square falloff.
+    ///
+    /// `intensity` is the radiant intensity times 1/pi: the radiance of a white surface that faces the light at
+    /// distance 1.
     ///
     /// # Errors
-    /// Unless the coordinates are within ±1e9, and each channel of the intensity within 0 and 1e12.
+    /// If a coordinate is not within ±1e9, or a channel of the intensity not within 0 and 1e12.
     pub fn new(position: Vec3, intensity: LinearRgb) -> Result<Self, SceneFault> {
         let position = checks::checked_point("position", position)?;
         let intensity = checks::checked_color("intensity", intensity, checks::light)?;
@@ -35,33 +45,33 @@ impl PointLight {
         Self { falloff, ..self }
     }
 
-    /// Returns its position in world space.
+    /// Returns the position in world space.
     #[doc(hidden)]
     pub fn position(&self) -> Vec3 {
         self.position
     }
 
-    /// Returns its [intensity](Self::new).
+    /// Returns the [intensity](Self::new).
     #[doc(hidden)]
     pub fn intensity(&self) -> LinearRgb {
         self.intensity
     }
 
-    /// Returns its falloff.
+    /// Returns the falloff.
     #[doc(hidden)]
     pub fn falloff(&self) -> Falloff {
         self.falloff
     }
 }
 
-/// The falloff of a light with the distance d.
+/// The falloff of a light's irradiance with its distance d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Falloff {
-    /// 1 / d^2, as of real light.
+    /// 1 / d^2, the falloff of physical light.
     #[default]
     InverseSquare,
-    /// None: the same at every distance, the lecture's first version.
+    /// The same irradiance at every distance, as in the lecture's first version.
     None,
 }
 
@@ -73,6 +83,7 @@ impl LightSource for PointLight {
 
     #[inline(always)]
     fn irradiance<N: Number>(&self, _: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
+        // One factor for all channels: a division per channel would be three in the place of one.
         let weakening = match self.falloff {
             Falloff::InverseSquare => cosine / distance_squared,
             Falloff::None => cosine,

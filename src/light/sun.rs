@@ -1,4 +1,4 @@
-//! Light from infinity: a light for tests, which shows that a file and a line in the table are all that one takes.
+//! Directional light, for tests: it shows that a new light takes one file and one line in the table.
 
 use super::LightSource;
 use crate::color::LinearRgb;
@@ -7,15 +7,15 @@ use crate::ray::Interval;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::Vec3;
 
-/// White light from one direction, of the same strength everywhere: a white surface that faces it has the radiance 1.
+/// White directional light with the same irradiance everywhere: a white surface that faces it has the radiance 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
-    /// The direction that it comes from. Unit length.
+    /// The direction to the light. Unit length.
     pub direction: Vec3,
 }
 
 impl LightSource for Sun {
-    /// However far along the ray an object is.
+    /// An object blocks the light at any distance.
     const IN_THE_WAY: Interval = Interval { min: f32::MIN_POSITIVE, max: f32::INFINITY };
 
     #[inline(always)]
@@ -38,7 +38,7 @@ impl LightSource for Sun {
 }
 
 impl InSceneFile for Sun {
-    /// Its direction.
+    /// The written direction.
     type Written = Option<WrittenVector>;
 
     const NAME: &'static str = "Sun";
@@ -59,7 +59,7 @@ mod tests {
     use crate::render::{Sampling, render};
     use crate::scene::Scene;
 
-    /// Returns a floor seen from above, with other objects.
+    /// Returns the text of a scene: a floor seen from above, a sun, and other objects.
     fn scene(sun: &str, objects: &str) -> String {
         let camera = "camera: (eye: (0, 5, 0.01), target: (0, 0, 0))";
         let floor = "Plane(point: (0, 0, 0), normal: (0, 1, 0), material: Diffuse(0.5))";
@@ -70,7 +70,7 @@ mod tests {
         Scene::from_ron("sun.ron", &scene(sun, objects)).expect("a scene")
     }
 
-    /// The floor's light is 0.5 times the cosine, 0.8, everywhere, and none where something is in the way, however far.
+    /// The floor's light is 0.5 times the cosine, 0.8; and 0 if an object is in the way at any distance.
     #[test]
     fn its_light_is_that_of_the_closed_form() {
         let resolution = Resolution::square(9, 9);
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_it_is_said_as_of_any_light() {
+    fn its_faults_have_the_messages_of_other_lights() {
         let message = |sun: &str| Scene::from_ron("x.ron", &scene(sun, "")).expect_err("a fault").to_string();
         assert!(message("Sun()").contains("missing field \"direction\"; a Sun needs one"));
         assert!(message("Sun(direction: (0, 0, 0))").contains("the direction must have a length"));

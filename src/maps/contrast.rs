@@ -1,7 +1,7 @@
-//! Black and white with lines between objects.
+//! The high-contrast map: black and white, with lines between objects.
 //!
-//! A threshold alone loses an object in front of one of the same kind: two white ones merge. So a line of the other
-//! colour separates two neighbours with the same colour.
+//! A threshold alone merges an object with one of the same colour behind it, so a line of the other colour separates
+//! them.
 
 use super::{TracedMap, shaded};
 use crate::camera::Camera;
@@ -15,9 +15,11 @@ use std::num::NonZeroU32;
 const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
 const WHITE: Srgb8 = Srgb8::new(255, 255, 255);
 
-/// Threshold for white: half of white as perceived, CIE 1976 L* 50.
+/// The threshold of white, as a luminance.
+// CIE 1976 L* 50: half the lightness of white as perceived. Half the luminance would turn most pictures black.
 const WHITE_THRESHOLD: f32 = 0.184;
 
+/// Traces the light and the objects, and returns the picture.
 pub(super) fn trace(
     executor: Executor<'_>,
     scene: &Scene,
@@ -25,9 +27,10 @@ pub(super) fn trace(
     resolution: Resolution,
     sampling: Sampling,
 ) -> TracedMap {
+    // One sample per pixel, as the objects have: the threshold of a mean would move the edges of the light only.
     let sampling = if sampling == Sampling::Coarse { sampling } else { Sampling::Each(NonZeroU32::MIN) };
     let light = shaded::trace(executor, scene, camera, resolution, sampling);
-    // Counted from 1; 0 for none.
+    // The object's index plus 1; 0 without a hit.
     let objects =
         trace_g_buffer_partial(executor, scene, camera, resolution, sampling, TraceDepth::Surfaces, |sample| {
             sample.hit.map_or(0, |hit| hit.object + 1)
@@ -37,7 +40,7 @@ pub(super) fn trace(
     TracedMap { picture: outlined(&light.picture, &objects.pixels), cost }
 }
 
-/// Returns the picture in two colours, where each pixel shows the object with this number.
+/// Returns the picture in black and white, with lines where the element of `objects` changes.
 fn outlined(picture: &Picture, objects: &[u32]) -> Picture {
     let width = picture.width as usize;
     let is_white: Vec<_> =
@@ -46,6 +49,7 @@ fn outlined(picture: &Picture, objects: &[u32]) -> Picture {
         let blends = |other: usize| {
             objects.get(other).is_some_and(|&object| object != objects[at]) && is_white[other] == is_white[at]
         };
+        // Only the neighbours on the right and below are compared, so that lines are one pixel wide.
         let is_line = !(at + 1).is_multiple_of(width) && blends(at + 1) || blends(at + width);
         if is_white[at] == is_line { BLACK } else { WHITE }
     };
@@ -56,7 +60,6 @@ fn outlined(picture: &Picture, objects: &[u32]) -> Picture {
 mod tests {
     use super::*;
 
-    /// There is a line between two objects of the same colour, none between two that differ, and none at the border.
     #[test]
     fn lines_separate_objects_of_the_same_colour() {
         let [light, dark] = [Srgb8::new(200, 200, 200), Srgb8::new(90, 90, 90)];

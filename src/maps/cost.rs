@@ -1,11 +1,14 @@
-//! The tests of a pixel's rays, each traced singly: the eye ray, and the shadow rays from its hit.
+//! The cost map: the intersection tests of a pixel's eye ray and shadow rays, each traced as a single ray.
+//!
+//! Packets share tests between pixels, so the rays that make the shaded picture have no number of tests of their own.
 
 use crate::hit::{Observer, PrimitiveTest, any_hit_observed, closest_hit_observed};
 use crate::render::GBufferSample;
 use crate::scene::Scene;
 use crate::shade;
 
-/// The number of tests: of surfaces, and of nodes of the tree, whose boxes are tested together.
+/// An observer that counts the tests of surfaces and of nodes of the tree.
+// A node counts once: its up to eight boxes are tested at once.
 #[derive(Default)]
 struct Count(u32);
 
@@ -19,6 +22,7 @@ impl Observer for Count {
     }
 }
 
+/// Returns the number of tests of a pixel's rays.
 pub(super) fn tests(scene: &Scene, sample: &GBufferSample) -> u32 {
     let mut count = Count::default();
     closest_hit_observed(scene, &sample.ray, &mut count);

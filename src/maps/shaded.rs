@@ -7,6 +7,7 @@ use crate::render::{Executor, Sampling, render_partial};
 use crate::scene::Scene;
 use crate::tone::tone;
 
+/// Renders the light, and returns its tone-mapped picture.
 pub(super) fn trace(
     executor: Executor<'_>,
     scene: &Scene,

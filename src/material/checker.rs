@@ -6,26 +6,27 @@ use crate::color::{LinearRgb, Srgb8};
 use crate::lanes::Number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, WrittenNumber};
 
-/// Squares of two alternating reflectances, on the surface's own coordinates (of a plane).
+/// A pattern of squares with two alternating reflectances, in the coordinates of a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checker {
-    /// Reflectance of the square that starts at the pattern's origin, and of every second one from there.
+    /// The reflectance of the square that starts at the pattern's origin.
     a: LinearRgb,
-    /// Reflectance of the others.
+    /// The reflectance of its neighbours.
     b: LinearRgb,
-    /// Side of a square in world units, greater than 0.
+    /// The side of a square in world units, greater than 0.
     size: f32,
 }
 
-/// Name of the side's length in messages.
+/// The name of the side's length in messages.
 const SIZE: &str = "size of a square";
 
 impl Checker {
-    /// Returns a material of squares with sides of this length in world units: the one that starts at the pattern's
-    /// origin, and every second one from there, reflect `a`, the others `b`.
+    /// Returns a material of squares with sides of length `size` in world units.
+    ///
+    /// The square that starts at the pattern's origin reflects `a`, its neighbours `b`.
     ///
     /// # Errors
-    /// Unless each channel is within 0 and 1, and the size between 1e-9 and 1e9.
+    /// If a channel is not within 0 and 1, or the size not between 1e-9 and 1e9.
     #[doc(hidden)]
     pub fn new(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
         let a = checks::checked_color("a", a, checks::reflectance)?;
@@ -91,21 +92,23 @@ impl InSceneFile for Checker {
     }
 }
 
-/// Returns the mean over an interval of a square wave, which is 1 from each even integer to the next integer and -1
-/// otherwise. A pattern too fine for its pixels then turns grey instead of into a moiré (a box filter; in a plane it is
-/// the product of the two axes' means).
+/// Returns the mean over an interval of a square wave.
+///
+/// The wave is 1 from each even integer to the next integer, and -1 otherwise.
+// A box filter. The checker's mean over a footprint is the product of both axes' means, so squares too small for their
+// pixels turn grey. Point samples turn into a moiré there, and supersampling would cost 64 rays.
 #[inline(always)]
 fn mean_sign<N: Number>(middle: N, width: N) -> N {
     let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5) * width);
     let (start, end) = (middle - half, middle + half);
     let (first, last) = (start.floor(), end.floor());
     let sign = N::select(is_even(first), one, -one);
-    // Across a single edge: the part before it less the part after it.
+    // Across a single edge: the part before the edge less the part after.
     let over_one = sign * ((last - start) - (end - last)) / (end - start);
     let over_more = (integrated_sign(end) - integrated_sign(start)) / (end - start);
     let over_edges = N::select((last - first).eq(one), over_one, over_more);
     let mean = N::select(first.eq(last), sign, over_edges);
-    // Beyond this width the mean is practically zero, and intervals may be infinite or NaN.
+    // From this width on the mean is below 1e-6; intervals there may be infinite or NaN.
     N::select(width.lt(N::splat(1e6)), mean, zero)
 }
 
@@ -117,7 +120,7 @@ fn integrated_sign<N: Number>(x: N) -> N {
     one - (in_period - one).abs()
 }
 
-/// Returns whether an integer of any size is odd; those above 2^24 are all even in f32.
+/// Returns whether an integer is even; all above 2^24 are in f32.
 #[inline(always)]
 fn is_even<N: Number>(whole: N) -> N::Mask {
     let half = whole * N::splat(0.5);

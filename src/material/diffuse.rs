@@ -1,4 +1,4 @@
-//! One reflectance.
+//! The plain material.
 
 use super::{Reflecting, channels};
 use crate::checks::{self, SceneFault};
@@ -7,20 +7,20 @@ use crate::lanes::Number;
 use crate::scene_text::{Body, SyntaxNode, Value};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, group_of_values};
 
-/// The same reflectance everywhere.
+/// A material with the same reflectance everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse {
     reflectance: LinearRgb,
 }
 
 impl Diffuse {
-    /// [`Material::DEFAULT`](super::Material::DEFAULT).
+    /// The material of [`Material::DEFAULT`](super::Material::DEFAULT).
     pub(super) const DEFAULT: Self = Self { reflectance: super::Material::DEFAULT_REFLECTANCE };
 
     /// Returns a material with this reflectance.
     ///
     /// # Errors
-    /// Unless each channel is within 0 and 1.
+    /// If a channel is not within 0 and 1.
     #[doc(hidden)]
     pub fn new(reflectance: LinearRgb) -> Result<Self, SceneFault> {
         Ok(Self { reflectance: checks::checked_color("reflectance", reflectance, checks::reflectance)? })

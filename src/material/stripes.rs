@@ -1,17 +1,16 @@
-//! Stripes of two reflectances: a material for tests, which shows that a file and a line in the table are all that one
-//! takes.
+//! Stripes, a material for tests: it shows that a new material takes one file and one line in the table.
 
 use super::{Reflecting, channels};
 use crate::color::LinearRgb;
 use crate::lanes::Number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor};
 
-/// Stripes of width 1 across the first of the surface's coordinates.
+/// Stripes of width 1 across the first surface coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripes {
-    /// Reflectance of the stripe that starts at the pattern's origin, and of every second one from there.
+    /// The reflectance of the stripe that starts at the pattern's origin.
     pub a: LinearRgb,
-    /// Reflectance of the others.
+    /// The reflectance of its neighbours.
     pub b: LinearRgb,
 }
 
