@@ -6,6 +6,7 @@ use std::hint::black_box;
 use std::num::NonZeroU32;
 use std::path::Path;
 use termtrace::internals::cell;
+use termtrace::internals::grid::HalfBlocks;
 use termtrace::{
     Camera, CellMode, Colors, Encoder, Glyphs, Grid, Order, Painter, Picture, Pose, Scene, Size, render, tone,
 };
@@ -84,7 +85,7 @@ fn encode(criterion: &mut Criterion) {
         criterion.bench_function(&format!("encode 20 frames of a turn at {size:?}"), |bencher| {
             let mut bytes = Vec::new();
             bencher.iter(|| {
-                let mut encoder = Encoder::new().with_order(Order::Color).with_upper_half(true);
+                let mut encoder = Encoder::new().with_order(Order::Color).with_half_blocks(HalfBlocks::Either);
                 for frame in &frames {
                     bytes.clear();
                     encoder.encode(black_box(frame), &mut bytes);

@@ -9,7 +9,7 @@ mod terminfo;
 
 // Capabilities are expressed in the types of the stages that use them.
 pub use crate::cell::{CellMode, Colors, Glyphs};
-pub use crate::grid::CellShape;
+pub use crate::grid::{CellShape, HalfBlocks};
 pub use detection::{Clues, Detected, GlyphChoice, Source, colors, glyphs};
 pub use findings::{Findings, Hints, SafeQueries, VARIABLES};
 pub use replies::{Replies, TEST_COLOR};
@@ -25,8 +25,8 @@ pub struct Capabilities {
     pub cell_mode: CellMode,
     /// The cell aspect: a cell's height divided by its width, greater than 0.
     pub cell_aspect: f32,
-    /// Whether the upper and the lower half block meet in the same line of pixels, so that a picture may mix them.
-    pub halves_meet: bool,
+    /// The half blocks that cells may use.
+    pub half_blocks: HalfBlocks,
     /// Whether the terminal's default colours are dark text on a light background.
     pub light_background: bool,
     /// Whether the terminal supports synchronized output (DEC mode 2026), which shows each frame at once.
@@ -77,15 +77,11 @@ pub(crate) fn is_plausible_cell_aspect(aspect: f32) -> bool {
     (0.25..=8.0).contains(&aspect)
 }
 
-/// Returns whether the two half blocks meet in the same line, from a window's height in cells and pixels.
-///
-/// They do if a cell has an even number of pixel rows.
-// Compared pixel by pixel: xterm, st, kitty, alacritty and foot all split even cells in the same line. With an odd
-// number, some give the middle row to either half, others to the glyph, and a mix is visible.
-pub fn halves_meet(rows: u16, height: u16) -> bool {
+/// Returns the half blocks that cells may use, from a window's height in cells and in pixels.
+pub fn half_blocks(rows: u16, height: u16) -> HalfBlocks {
     // With a remainder (a border, or a size that is no multiple of cells) the cell's height is uncertain.
     let cell_height = height.checked_div(rows).filter(|cell_height| cell_height * rows == height);
-    cell_height.is_some_and(|cell_height| cell_height > 0 && cell_height % 2 == 0)
+    cell_height.map_or(HalfBlocks::Lower, HalfBlocks::of_cell_height)
 }
 
 #[cfg(test)]
@@ -93,11 +89,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn halves_meet_in_cells_of_even_height() {
+    fn cells_of_even_height_may_use_either_half_block() {
         for (rows, height, expected) in
             [(24, 480, true), (24, 456, false), (24, 24 * 17, false), (24, 497, false), (24, 0, false), (0, 480, false)]
         {
-            assert_eq!(halves_meet(rows, height), expected, "{rows} rows in {height} pixels");
+            assert_eq!(half_blocks(rows, height) == HalfBlocks::Either, expected, "{rows} rows in {height} pixels");
         }
     }
 

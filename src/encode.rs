@@ -19,30 +19,30 @@
 //! not know it pass over. Nothing that repeats, erases or scrolls, but what ratatui asks a backend to scroll. A
 //! terminal in raw mode is taken for granted: a line feed keeps the column.
 
-use crate::grid::{Cell, Glyph, Grid, Size};
+use crate::grid::{Cell, Glyph, Grid, HalfBlocks, Size};
 
 #[cfg(feature = "backend")]
 mod backend;
 mod by_color;
+mod change_times;
 #[cfg(feature = "backend")]
-mod elsewhere;
-mod columns;
+mod foreign_output;
 mod halves;
 mod lossy;
 mod moves;
 mod numbers;
 mod palette;
 mod pen;
-mod stillness;
 mod strokes;
+mod widths;
 
 #[cfg(feature = "backend")]
 pub use backend::EncoderBackend;
-use moves::Place;
+use change_times::ChangeTimes;
+use moves::CellPosition;
 pub(crate) use pen::Pen;
 use std::io::{self, Write};
 use std::time::Duration;
-use stillness::Stillness;
 
 /// The order in which cells are sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -81,25 +81,25 @@ pub struct Allowance {
     /// exceeds the quality's caps. `None`: nothing that exceeds them waits. Exact colours also wait beyond 8 bytes for
     /// each cell of the screen, of which tmux throws away what it cannot take. (Text never waits, nor what has to
     /// replace text or an unknown screen, nor the largest error, and with [`Quality::Exact`] nothing does.)
-    pub most_bytes: Option<usize>,
+    pub max_bytes: Option<usize>,
 }
 
 /// Turns wanted grids into bytes, and remembers what the terminal shows.
 #[derive(Clone, Debug, Default)]
 pub struct Encoder {
     order: Order,
-    upper_half: bool,
+    half_blocks: HalfBlocks,
     synchronized: bool,
     colorless: bool,
     /// Nothing at first and after a resize.
-    known: Option<Known>,
-    stillness: Stillness,
+    known: Option<TerminalState>,
+    change_times: ChangeTimes,
     due: Option<Duration>,
 }
 
 /// What is known of the terminal.
 #[derive(Clone, Debug)]
-struct Known {
+struct TerminalState {
     /// What it shows.
     shown: Grid,
     /// What it would write with now.
@@ -108,7 +108,7 @@ struct Known {
 
 /// tmux holds back what it cannot pass on, and throws it away when it is more than this for each cell of the screen
 /// (its `TTY_BLOCK_START`).
-const BYTES_PER_CELL: usize = 8;
+const TMUX_BYTES_PER_CELL: usize = 8;
 
 /// What makes a terminal hold the screen back (DEC private mode 2026).
 const BEGIN_SYNCHRONIZED: &[u8] = b"\x1b[?2026h";
@@ -137,14 +137,14 @@ impl Encoder {
     /// cell has an even number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and
     /// their mix would show.
     #[doc(hidden)]
-    pub fn with_upper_half(self, upper_half: bool) -> Self {
-        Self { upper_half, ..self }
+    pub fn with_half_blocks(self, half_blocks: HalfBlocks) -> Self {
+        Self { half_blocks, ..self }
     }
 
     /// The same for an encoder in use: a window may have come to other cells.
     #[cfg(feature = "live")]
-    pub(crate) fn set_upper_half(&mut self, upper_half: bool) {
-        self.upper_half = upper_half;
+    pub(crate) fn set_half_blocks(&mut self, half_blocks: HalfBlocks) {
+        self.half_blocks = half_blocks;
     }
 
     /// Whether frames stand in the brackets of synchronized output: a terminal that knows them shows each frame at
@@ -198,22 +198,22 @@ impl Encoder {
     }
 
     /// Appends such a frame without its brackets; returns where the cursor is after it, if that is certain.
-    fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<Place> {
-        let Some(caps) = lossy::Caps::of(allowance.quality) else { return self.draw(wanted, bytes) };
-        self.stillness.note(wanted, allowance.now);
-        let known = self.take_known(wanted.size(), bytes);
-        let has_waited = |at| self.stillness.due(at) <= allowance.now;
-        let plan = lossy::Plan::new(lossy::Frame {
+    fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
+        let Some(caps) = lossy::QualityCaps::of(allowance.quality) else { return self.draw(wanted, bytes) };
+        self.change_times.record(wanted, allowance.now);
+        let known = self.take_state(wanted.size(), bytes);
+        let has_waited = |at| self.change_times.exact_at(at) <= allowance.now;
+        let plan = lossy::Plan::new(lossy::LossyFrame {
             shown: &known.shown,
             wanted,
             caps,
-            either_half: self.upper_half,
+            half_blocks: self.half_blocks,
             pen: [known.pen.fg, known.pen.bg],
             has_waited: &has_waited,
         });
-        let most = allowance.most_bytes.unwrap_or(usize::MAX);
-        let usual = most.min(BYTES_PER_CELL * wanted.size().cell_count());
-        let refines_from = plan.fewest_writes(true);
+        let max_bytes = allowance.max_bytes.unwrap_or(usize::MAX);
+        let usual = max_bytes.min(TMUX_BYTES_PER_CELL * wanted.size().cell_count());
+        let refines_from = plan.min_writes(true);
         let mut writes = plan.writes();
         let start = bytes.len();
         let (next, cursor) = loop {
@@ -221,7 +221,7 @@ impl Encoder {
             let cursor = self.write(&plan.grid(writes), &mut next, bytes);
             let taken = bytes.len() - start + self.bracket_len();
             let refines = writes > refines_from;
-            let (limit, fewest) = if refines { (usual, refines_from) } else { (most, plan.fewest_writes(false)) };
+            let (limit, fewest) = if refines { (usual, refines_from) } else { (max_bytes, plan.min_writes(false)) };
             // One at least, or all might wait for ever.
             let fewest = fewest.max(1);
             if taken <= limit || writes <= fewest {
@@ -233,7 +233,7 @@ impl Encoder {
         };
         let is_cut = writes < plan.writes();
         // All at once, when the last of them is due: one after another they take more bytes.
-        let refines = plan.inexact(&next.shown).map(|at| self.stillness.due(at)).max();
+        let refines = plan.inexact(&next.shown).map(|at| self.change_times.exact_at(at)).max();
         self.due = if is_cut { Some(allowance.now) } else { refines };
         self.known = Some(next);
         cursor
@@ -247,20 +247,20 @@ impl Encoder {
     }
 
     /// What is known of a terminal of that size.
-    fn take_known(&mut self, size: Size, bytes: &mut Vec<u8>) -> Known {
+    fn take_state(&mut self, size: Size, bytes: &mut Vec<u8>) -> TerminalState {
         self.known.take().filter(|known| known.shown.size() == size).unwrap_or_else(|| {
             let mut pen = Pen::default();
             if !self.colorless {
                 // Whatever the pen was, it is known from here on.
                 pen.reset(bytes);
             }
-            Known { shown: Grid::foreign(size), pen }
+            TerminalState { shown: Grid::foreign(size), pen }
         })
     }
 
     /// A frame without its brackets; where the cursor is after it, if that is sure.
-    fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<Place> {
-        let mut known = self.take_known(wanted.size(), bytes);
+    fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<CellPosition> {
+        let mut known = self.take_state(wanted.size(), bytes);
         let cursor = self.write(wanted, &mut known, bytes);
         self.known = Some(known);
         self.due = None;
@@ -288,28 +288,28 @@ impl Encoder {
     }
 
     /// Appends the bytes that make the terminal show the grid; where the cursor is after them, if that is sure.
-    fn write(&self, wanted: &Grid, known: &mut Known, bytes: &mut Vec<u8>) -> Option<Place> {
+    fn write(&self, wanted: &Grid, known: &mut TerminalState, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let changed = update(&mut known.shown, wanted);
         let strokes = match self.order {
-            Order::Raster => strokes::choose(wanted, &changed, self.upper_half, known.pen),
+            Order::Raster => strokes::choose(wanted, &changed, self.half_blocks, known.pen),
             Order::Color => {
-                let order = by_color::order(wanted, &changed, self.upper_half, known.pen);
-                let mut strokes = strokes::choose(wanted, &order, self.upper_half, known.pen);
+                let order = by_color::order(wanted, &changed, self.half_blocks, known.pen);
+                let mut strokes = strokes::choose(wanted, &order, self.half_blocks, known.pen);
                 // Not row by row: a compressor finds fewer repetitions then, which costs more than this saves.
-                strokes::look_ahead(wanted, &mut strokes);
+                strokes::share_next_fg(wanted, &mut strokes);
                 strokes
             }
         };
-        strokes::write(wanted, &strokes, self.upper_half, &mut known.pen, bytes)
+        strokes::write(wanted, &strokes, self.half_blocks, &mut known.pen, bytes)
     }
 }
 
-/// Makes the grid show what is wanted; the places that are to be written for it, row by row. A covered cell is never
+/// Makes the grid show what is wanted; the positions that are to be written for it, row by row. A covered cell is never
 /// one, nor a foreign one.
-fn update(shown: &mut Grid, wanted: &Grid) -> Vec<Place> {
+fn update(shown: &mut Grid, wanted: &Grid) -> Vec<CellPosition> {
     let mut changed = Vec::new();
     for ((shown, wanted), row) in shown.rows_mut().zip(wanted.rows()).zip(0..) {
-        update_row(shown, wanted, |column| changed.push(Place { column, row }));
+        update_row(shown, wanted, |column| changed.push(CellPosition { column, row }));
     }
     changed
 }
@@ -319,7 +319,7 @@ fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
     let mut safe_from = 0;
     let mut column = 0;
     while column < wanted.len() {
-        let end = column + columns::first(&wanted[column..]);
+        let end = column + widths::leading_width(&wanted[column..]);
         let (shown, wanted) = (&mut shown[column..end], &wanted[column..end]);
         let is_ours = !matches!(wanted[0].glyph, Glyph::Covered | Glyph::Foreign);
         if is_ours && (column < safe_from || shown != wanted) {
@@ -329,7 +329,7 @@ fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
             if !looks_alike || column < safe_from {
                 write(column as u16);
                 if let Glyph::Cluster(text) = &wanted[0].glyph {
-                    safe_from = safe_from.max(column + columns::apart(text));
+                    safe_from = safe_from.max(column + widths::max_cluster_width(text));
                 }
             }
         }

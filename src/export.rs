@@ -5,7 +5,7 @@
 mod ansi;
 mod difference;
 mod html;
-mod kind;
+mod format_row;
 mod paint;
 #[cfg(feature = "png")]
 mod png;
@@ -18,11 +18,11 @@ mod text;
 
 pub use ansi::ansi;
 #[doc(hidden)]
-pub use ansi::printed;
+pub use ansi::ansi_or_text;
 pub use difference::{Difference, compare};
-pub use html::html;
 #[doc(hidden)]
-pub use kind::Contents;
+pub use format_row::Contents;
+pub use html::html;
 #[cfg(feature = "png")]
 pub use png::{ExportError, png};
 pub use snapshot::{framed, styled};
@@ -36,7 +36,7 @@ use crate::render::render;
 use crate::scene::Scene;
 use crate::text::{ParseError, named};
 use crate::tone::tone;
-use kind::Kind;
+use format_row::FormatRow;
 use std::fmt;
 use std::num::NonZeroU32;
 use std::str::FromStr;
@@ -44,7 +44,7 @@ use std::str::FromStr;
 crate::table::table! {
     /// The formats of files with a picture, in the order of the keys that ask for them.
     #[doc(hidden)]
-    pub enum Format: Kind {
+    pub enum Format: FormatRow {
         /// Its pixels: [`png()`].
         #[cfg(feature = "png")]
         Png = png::KIND;
@@ -83,14 +83,14 @@ impl Format {
 
     /// How the names of such files end, without the dot.
     #[doc(hidden)]
-    pub const fn ending(self) -> &'static str {
-        self.row().endings[0]
+    pub const fn extension(self) -> &'static str {
+        self.row().extensions[0]
     }
 
     /// The format of files whose names end so, without the dot, in lower case.
     #[doc(hidden)]
-    pub fn from_ending(ending: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|format| format.row().endings.contains(&ending))
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|format| format.row().extensions.contains(&extension))
     }
 
     /// The letter that asks for it in the live view.
@@ -203,9 +203,9 @@ mod tests {
 
     /// That file, its `mod` line and its row are all that it took.
     #[test]
-    fn a_format_that_only_tests_have_is_found_and_written() {
+    fn a_format_for_tests_is_found_and_written() {
         let format = Format::from_name("tally").expect("by its name");
-        assert_eq!(Format::from_ending("tal"), Some(format));
+        assert_eq!(Format::from_extension("tal"), Some(format));
         let grid = Grid::new(Size::new(3, 2));
         let Contents::Cells { has_colors: false, write } = format.contents() else { panic!("{format:?}") };
         let file = write(&grid, Colors::None, USUAL_CELL_ASPECT);
@@ -214,15 +214,15 @@ mod tests {
     }
 
     #[test]
-    fn no_two_formats_share_a_name_an_ending_or_a_key() {
+    fn formats_share_no_name_extension_or_key() {
         let mut seen = HashSet::new();
         for format in Format::ALL {
             assert!(seen.insert(format.name().to_owned() + " by name"), "{format:?}");
             assert!(seen.insert(format.command().to_owned() + " by command"), "{format:?}");
             assert!(seen.insert(format.key().to_string() + " by key"), "{format:?}");
-            for ending in format.row().endings {
-                assert!(seen.insert((*ending).to_owned() + " by ending"), "{format:?}");
-                assert_eq!(Format::from_ending(ending), Some(*format));
+            for extension in format.row().extensions {
+                assert!(seen.insert((*extension).to_owned() + " by extension"), "{format:?}");
+                assert_eq!(Format::from_extension(extension), Some(*format));
             }
         }
     }

@@ -54,8 +54,27 @@ impl Size {
 pub struct CellShape {
     /// A cell's height over its width, if the terminal reports the window's size in pixels.
     pub aspect: Option<f32>,
-    /// Whether the upper and the lower half block are known to meet in the same line of pixels.
-    pub halves_meet: bool,
+    /// The half blocks that cells may use.
+    pub half_blocks: HalfBlocks,
+}
+
+/// The half blocks with which cells show two pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum HalfBlocks {
+    /// Lower half blocks only, which is right at every cell height.
+    #[default]
+    Lower,
+    /// Either half block, whichever saves a change of colour. Both have to meet in the same line of pixels.
+    Either,
+}
+
+impl HalfBlocks {
+    /// Returns the half blocks for cells of this height in pixels: either, if it is even.
+    // Compared pixel by pixel: xterm, st, kitty, alacritty and foot all split even cells in the same line. At odd heights
+    // some give the middle row to either half, others to the glyph, and a mix of both blocks is visible.
+    pub(crate) fn of_cell_height(height: u16) -> Self {
+        if height > 0 && height.is_multiple_of(2) { Self::Either } else { Self::Lower }
+    }
 }
 
 /// The window of a terminal.

@@ -16,14 +16,14 @@ pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
     for row in area.rows() {
         let mut column = row.left();
         while column < row.right() {
-            column += put(grid, Position::new(column, row.y), &buffer[(column, row.y)], row.right() - column);
+            column += put_cell(grid, Position::new(column, row.y), &buffer[(column, row.y)], row.right() - column);
         }
     }
 }
 
 /// Puts one cell into the grid, where there is room for so many columns; how many it takes. A skipped one leaves what is
 /// there: ratatui's programs skip where a picture is.
-pub(crate) fn put(grid: &mut Grid, place: Position, cell: &ratatui_core::buffer::Cell, room: u16) -> u16 {
+pub(crate) fn put_cell(grid: &mut Grid, place: Position, cell: &ratatui_core::buffer::Cell, room: u16) -> u16 {
     if is_skipped(cell) {
         return 1;
     }
@@ -60,14 +60,14 @@ fn glyph_from_ratatui(cell: &ratatui_core::buffer::Cell) -> (Glyph, u16) {
     let columns = cell.cell_width();
     let mut characters = symbol.chars();
     let glyph = match (characters.next(), characters.next()) {
-        (Some(c), None) if c.width() == Some(columns.into()) && !is_half_a_flag(c) => Glyph::Char(c),
+        (Some(c), None) if c.width() == Some(columns.into()) && !is_regional_indicator(c) => Glyph::Char(c),
         _ => Glyph::Cluster(symbol.into()),
     };
     (glyph, columns)
 }
 
 /// A regional indicator: two of them are a flag, and of one alone terminals disagree.
-fn is_half_a_flag(character: char) -> bool {
+fn is_regional_indicator(character: char) -> bool {
     matches!(character, '\u{1f1e6}'..='\u{1f1ff}')
 }
 

@@ -88,7 +88,7 @@ impl Terminal {
         // A terminal without a known size reports 0 by 0, a serial line for example.
         let size = if columns == 0 || rows == 0 { Size::new(80, 24) } else { Size::new(columns, rows) };
         let aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
-        let cell = CellShape { aspect, halves_meet: capabilities::halves_meet(rows, window.ws_ypixel) };
+        let cell = CellShape { aspect, half_blocks: capabilities::half_blocks(rows, window.ws_ypixel) };
         let cell_pixels =
             cell.aspect.and(window.ws_xpixel.checked_div(columns).zip(window.ws_ypixel.checked_div(rows)));
         Ok(Window { size, cell, cell_pixels })

@@ -196,7 +196,7 @@ impl Viewer {
     /// Forgets what the terminal shows: everything is drawn anew, and the part outside the picture is cleared.
     fn redraw(&mut self) {
         let (size, window) = (self.display.size(), self.display.window_size());
-        self.screen.redraw(self.display.capabilities().halves_meet, size != window);
+        self.screen.redraw(self.display.capabilities().half_blocks, size != window);
         if size != window {
             let [size, window] = [size, window].map(|Size { columns, rows }| format!("{columns}x{rows}"));
             self.say(format!("the picture covers {size} of the window's {window} cells"));

@@ -22,6 +22,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
+use termtrace::internals::grid::HalfBlocks;
 use termtrace::{Encoder, EncoderBackend, Order, Picture, Quality, Size};
 
 /// The columns beside the list.
@@ -104,7 +105,7 @@ fn ours(size: Size, order: Order, quality: Quality, draw: Draw<'_>) -> Run {
     let (line, step) = (Wire::new(size), Arc::new(AtomicU32::new(0)));
     let clock = Arc::clone(&step);
     let backend = EncoderBackend::new(line.clone(), (size.columns, size.rows))
-        .with_encoder(Encoder::new().with_order(order).with_upper_half(true))
+        .with_encoder(Encoder::new().with_order(order).with_half_blocks(HalfBlocks::Either))
         .with_quality(quality, move || Duration::from_secs(1) / 30 * clock.load(Ordering::Relaxed));
     run(Terminal::new(backend).expect("an emulator takes everything"), &line, size, &step, draw)
 }

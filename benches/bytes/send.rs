@@ -12,6 +12,7 @@ use std::rc::Rc;
 use std::time::Duration;
 use termtrace::internals::cell::grid_from_picture;
 use termtrace::internals::encode::Allowance;
+use termtrace::internals::grid::HalfBlocks;
 use termtrace::{CellMode, Encoder, Order, Picture, Quality, Srgb8};
 
 /// A way to send pictures.
@@ -52,7 +53,7 @@ pub(crate) fn time_of(frame: usize) -> Duration {
 }
 
 pub(crate) fn encoder(order: Order) -> Encoder {
-    Encoder::new().with_order(order).with_upper_half(true)
+    Encoder::new().with_order(order).with_half_blocks(HalfBlocks::Either)
 }
 
 /// Sends pictures near the wanted ones, by colour.
@@ -70,7 +71,7 @@ impl Lossy {
     /// The bytes for that picture at that time.
     pub(crate) fn send(&mut self, picture: &Picture, now: Duration) -> &[u8] {
         self.bytes.clear();
-        let allowance = Allowance { quality: self.quality, now, most_bytes: None };
+        let allowance = Allowance { quality: self.quality, now, max_bytes: None };
         self.encoder.encode_within(&grid_from_picture(CellMode::HALF_BLOCK, picture), allowance, &mut self.bytes);
         &self.bytes
     }

@@ -36,7 +36,7 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
 pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u8]) -> io::Result<String> {
     for number in 1..=MAX_NUMBERED_NAMES {
         let number = if number == 1 { String::new() } else { format!("-{number}") };
-        let name = format!("{stem}{number}.{}", format.ending());
+        let name = format!("{stem}{number}.{}", format.extension());
         match write_unused(&folder.join(&name), contents) {
             Ok(()) => return Ok(name),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
@@ -65,7 +65,7 @@ pub(super) fn stem(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::capabilities::Glyphs;
+    use crate::capabilities::{Glyphs, HalfBlocks};
 
     #[test]
     fn names_are_plain_words() {
@@ -88,7 +88,7 @@ mod tests {
         let capabilities = Capabilities {
             cell_mode: CellMode::HALF_BLOCK,
             cell_aspect: 2.0,
-            halves_meet: false,
+            half_blocks: HalfBlocks::Lower,
             light_background: false,
             synchronized_output: false,
         };

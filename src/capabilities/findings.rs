@@ -3,7 +3,7 @@
 use super::detection::{colorterm, locale, requested_by_variable};
 use super::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT, colors, glyphs};
 use super::{Capabilities, CellMode, Clues, ColorChoice, Colors, Detected, GlyphChoice, Glyphs, Replies, Source};
-use crate::grid::CellShape;
+use crate::grid::{CellShape, HalfBlocks};
 
 /// The user's choices and the environment, read once and evaluated again when replies arrive.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -137,8 +137,8 @@ pub struct Findings {
     pub glyphs: Detected<Glyphs>,
     /// The cell aspect.
     pub cell_aspect: Detected<f32>,
-    /// Whether both half blocks meet in the same line of pixels.
-    pub halves_meet: Detected<bool>,
+    /// The half blocks that cells may use.
+    pub half_blocks: Detected<HalfBlocks>,
     /// Whether the default background is light.
     pub light_background: Detected<bool>,
     /// Whether the terminal supports synchronized output.
@@ -169,9 +169,12 @@ impl Findings {
                 .or(by_pixels)
                 .unwrap_or_else(|| found(replied_aspect(replies), Source::Reply, USUAL_CELL_ASPECT)),
             // The window's size, if reported, is current; the reply is from the start.
-            halves_meet: match window.aspect {
-                Some(_) => Detected { value: window.halves_meet, source: Source::Window },
-                None => answered(replies.cell_pixels.map(|(_, height)| height > 0 && height % 2 == 0)),
+            half_blocks: match window.aspect {
+                Some(_) => Detected { value: window.half_blocks, source: Source::Window },
+                None => {
+                    let replied = replies.cell_pixels.map(|(_, height)| HalfBlocks::of_cell_height(height));
+                    found(replied, Source::Reply, HalfBlocks::Lower)
+                }
             },
             light_background: answered(replies.light_background()),
             synchronized_output: answered(replies.synchronized_output),
@@ -186,7 +189,7 @@ impl Findings {
         Capabilities {
             cell_mode: CellMode { glyphs: self.glyphs.value, colors: self.colors.value },
             cell_aspect: self.cell_aspect.value,
-            halves_meet: self.halves_meet.value,
+            half_blocks: self.half_blocks.value,
             light_background: self.light_background.value,
             synchronized_output: self.synchronized_output.value,
         }
@@ -325,7 +328,7 @@ mod tests {
 
     #[test]
     fn the_cell_shape_is_the_users_then_the_windows_then_the_replied() {
-        let window = CellShape { aspect: Some(1.9), halves_meet: true };
+        let window = CellShape { aspect: Some(1.9), half_blocks: HalfBlocks::Either };
         let nothing = CellShape::default();
         let (flag, by_window, reply) = (Source::User, Source::Window, Source::Reply);
         for (flagged, window, pixels, aspect, meet) in [
@@ -338,8 +341,9 @@ mod tests {
         ] {
             let hints = Hints { cell_aspect: flagged, ..hints(XTERM) };
             let replies = Replies { cell_pixels: pixels, ..Replies::default() };
-            let Findings { cell_aspect, halves_meet, .. } = Findings::new(&hints, window, &replies);
-            let found = ((cell_aspect.value, cell_aspect.source), (halves_meet.value, halves_meet.source));
+            let Findings { cell_aspect, half_blocks, .. } = Findings::new(&hints, window, &replies);
+            let may_mix = half_blocks.value == HalfBlocks::Either;
+            let found = ((cell_aspect.value, cell_aspect.source), (may_mix, half_blocks.source));
             assert_eq!(found, (aspect, meet), "{flagged:?} {window:?} {pixels:?}");
         }
     }

@@ -159,8 +159,8 @@ pub(super) fn run(args: &FrameArgs) -> CommandResult {
 
 fn format_by_ending(path: &Path) -> Result<Format, Failure> {
     let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
-    ending.and_then(|ending| Format::from_ending(&ending)).ok_or_else(|| {
-        let endings: Vec<_> = formats().into_iter().map(|format| format!(".{}", format.ending())).collect();
+    ending.and_then(|ending| Format::from_extension(&ending)).ok_or_else(|| {
+        let endings: Vec<_> = formats().into_iter().map(|format| format!(".{}", format.extension())).collect();
         let names: Vec<_> = formats().into_iter().map(Format::name).collect();
         let (endings, names) = (any_of(&endings), any_of(&names));
         Failure::Usage(format!("{}: the name does not end in {endings}; say --format {names}", path.display()))

@@ -110,7 +110,7 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
     let picture =
         on_threads(args.camera_args.threads, || maps::picture(map, &scene, scene.camera(), resolution, sampling))?;
     let grid = cell::grid_from_picture(cell_mode, &picture);
-    write_stdout(&export::printed(&grid, cell_mode.colors))
+    write_stdout(&export::ansi_or_text(&grid, cell_mode.colors))
 }
 
 /// The live view. Whatever happens in it, the terminal is given back before a word is said.

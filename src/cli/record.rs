@@ -14,6 +14,7 @@ use numbered::NumberedFiles;
 use std::io::{self, BufWriter, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::internals::cell;
+use termtrace::internals::grid::HalfBlocks;
 use termtrace::internals::record::gif_size;
 use termtrace::{Camera, CameraPath, Cast, CellMode, Encoder, Gif, Order, Picture, Resolution, Scene, Size, export};
 
@@ -172,8 +173,9 @@ impl RecordArgs {
                 // A resolution is checked to have no more cells.
                 let size = Size::new((resolution.width() / across) as u16, resolution.height().div_ceil(down) as u16);
                 // Players draw the two halves of a cell alike.
-                let encoder =
-                    Encoder::new().with_order(self.encoding.order().unwrap_or(Order::Color)).with_upper_half(true);
+                let encoder = Encoder::new()
+                    .with_order(self.encoding.order().unwrap_or(Order::Color))
+                    .with_half_blocks(HalfBlocks::Either);
                 let cast = Cast::begin(BufWriter::new(out), size, encoder, self.fps)?;
                 Sink::Cast(
                     cast.with_quality(self.encoding.loss.quality().unwrap_or_default())

@@ -9,7 +9,7 @@ mod limits;
 #[cfg(feature = "scrolling-regions")]
 mod regions;
 
-use super::moves::Place;
+use super::moves::CellPosition;
 use super::{Encoder, Quality};
 use crate::grid::{self, Cell, Grid};
 use crate::overlay;
@@ -98,9 +98,9 @@ pub struct EncoderBackend<W> {
     /// The cursor as the terminal has it, as far as that is known.
     shown_cursor: Cursor,
     /// Between `draw` and `flush`: what is said of the cursor goes out with the frame.
-    drawing: bool,
+    is_frame_open: bool,
     /// The last bytes that went out were not ours.
-    gave_way: bool,
+    wrote_foreign_bytes: bool,
 }
 
 /// A question to the terminal.
@@ -120,8 +120,8 @@ impl<W> EncoderBackend<W> {
             position: Position::ORIGIN,
             cursor: Cursor::default(),
             shown_cursor: Cursor::default(),
-            drawing: false,
-            gave_way: false,
+            is_frame_open: false,
+            wrote_foreign_bytes: false,
         };
         backend.resize(size);
         backend
@@ -185,8 +185,8 @@ impl<W> EncoderBackend<W> {
     pub fn resize(&mut self, size: impl Into<Size>) {
         let Size { width, height } = size.into();
         self.window = WindowSize { columns_rows: Size { width, height }, pixels: Size::ZERO };
-        self.position = self.inside(self.position);
-        self.abandon_screen();
+        self.position = self.clamped_to_screen(self.position);
+        self.forget_screen();
     }
 
     /// Sets the size of the window in pixels, for [`window_size`](ratatui_core::backend::Backend::window_size); 0 by 0
@@ -224,23 +224,23 @@ impl<W> EncoderBackend<W> {
     }
 
     /// Nothing is known of the screen, and nothing is wanted on it but what is drawn from here on.
-    fn abandon_screen(&mut self) {
+    fn forget_screen(&mut self) {
         let Size { width, height } = self.window.columns_rows;
         self.wanted = Grid::foreign(grid::Size::new(width, height));
         self.cursor.position = None;
-        self.drawing = false;
+        self.is_frame_open = false;
         self.forget();
     }
 
     /// The place on the screen that is nearest.
-    fn inside(&self, Position { x, y }: Position) -> Position {
+    fn clamped_to_screen(&self, Position { x, y }: Position) -> Position {
         let Size { width, height } = self.window.columns_rows;
         Position::new(x.min(width.saturating_sub(1)), y.min(height.saturating_sub(1)))
     }
 
     /// Wants the cursor there, or as near as the screen has a place.
     fn put_cursor(&mut self, to: Position) {
-        self.position = self.inside(to);
+        self.position = self.clamped_to_screen(to);
         self.cursor.position = Some(self.position);
     }
 
@@ -248,16 +248,16 @@ impl<W> EncoderBackend<W> {
     /// something else that was drawn there, and the cell is sent again.
     fn draw_cell(&mut self, place: Position, cell: &ratatui_core::buffer::Cell) -> u16 {
         let before = self.wanted.cell(place.x, place.y).clone();
-        let columns = overlay::put(&mut self.wanted, place, cell, self.window.columns_rows.width - place.x);
+        let columns = overlay::put_cell(&mut self.wanted, place, cell, self.window.columns_rows.width - place.x);
         if *self.wanted.cell(place.x, place.y) == before {
-            self.encoder.forget_cell(Place { column: place.x, row: place.y });
+            self.encoder.forget_cell(CellPosition { column: place.x, row: place.y });
         }
         columns
     }
 
     /// What is said of the cursor goes out with the next frame.
     fn begin_frame(&mut self) {
-        self.drawing = true;
+        self.is_frame_open = true;
     }
 
     /// Wants blanks in these cells, counted row by row from the top, whatever they show.
@@ -266,7 +266,7 @@ impl<W> EncoderBackend<W> {
         for at in cells.start..cells.end.min(self.wanted.cells().len()) {
             let (column, row) = ((at % columns) as u16, (at / columns) as u16);
             self.wanted.put(column, row, &Cell::BLANK, 1);
-            self.encoder.forget_cell(Place { column, row });
+            self.encoder.forget_cell(CellPosition { column, row });
         }
     }
 }
@@ -288,7 +288,7 @@ impl<W: Write> EncoderBackend<W> {
         if self.cursor.position.or(self.shown_cursor.position).is_none()
             && let Some(ask) = &self.ask_position
         {
-            self.position = self.inside(ask()?);
+            self.position = self.clamped_to_screen(ask()?);
             self.shown_cursor.position = Some(self.position);
         }
         Ok(self.position)
@@ -296,34 +296,34 @@ impl<W: Write> EncoderBackend<W> {
 
     /// Returns what the terminal does not show yet, the cursor included; `limits` may hold some of it back.
     fn frame(&mut self, limits: Option<&mut Limits>) -> Vec<u8> {
-        self.drawing = false;
+        self.is_frame_open = false;
         let mut bytes = Vec::new();
         let end = match limits {
             Some(limits) => self.encoder.draw_within(&self.wanted, limits.allowance(), &mut bytes),
             None => self.encoder.draw(&self.wanted, &mut bytes),
         };
         if bytes.is_empty() {
-            self.shown_cursor.become_cursor(self.cursor, &mut bytes);
+            self.shown_cursor.switch_to(self.cursor, &mut bytes);
             return bytes;
         }
         // What the program writes itself has no colours then, nor has the shell's prompt after it.
         self.encoder.reset_pen(&mut bytes);
-        self.shown_cursor.position = end.map(|Place { column, row }| Position::new(column, row));
-        self.shown_cursor.become_cursor(self.cursor, &mut bytes);
+        self.shown_cursor.position = end.map(|CellPosition { column, row }| Position::new(column, row));
+        self.shown_cursor.switch_to(self.cursor, &mut bytes);
         self.encoder.bracket(0, &mut bytes);
         bytes
     }
 
     /// Returns what is not sent yet, with the pen down: what stands before bytes that act on the screen as it is.
-    fn outstanding(&mut self) -> Vec<u8> {
-        if self.drawing || !self.encoder.knows_screen() { self.frame(None) } else { Vec::new() }
+    fn unsent_bytes(&mut self) -> Vec<u8> {
+        if self.is_frame_open || !self.encoder.knows_screen() { self.frame(None) } else { Vec::new() }
     }
 
     fn send_frame(&mut self) -> io::Result<()> {
         let mut limits = self.limits.take();
         let bytes = self.frame(limits.as_mut());
         if let Some(limits) = &mut limits {
-            limits.note_sent(bytes.len());
+            limits.record_sent(bytes.len());
         }
         self.limits = limits;
         self.send(&bytes)
@@ -337,29 +337,29 @@ impl<W: Write> EncoderBackend<W> {
 
     /// Sends what is new of the cursor, unless it goes out with a frame.
     fn send_cursor(&mut self) -> io::Result<()> {
-        if self.drawing {
+        if self.is_frame_open {
             return Ok(());
         }
         let mut bytes = Vec::new();
-        self.shown_cursor.become_cursor(self.cursor, &mut bytes);
+        self.shown_cursor.switch_to(self.cursor, &mut bytes);
         self.send(&bytes)
     }
 
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.gave_way &= bytes.is_empty();
+        self.wrote_foreign_bytes &= bytes.is_empty();
         self.encoder.send(bytes, &mut self.writer).inspect_err(|_| self.shown_cursor = Cursor::default())
     }
 
     fn set_visible(&mut self, visible: bool) -> io::Result<()> {
         self.cursor.visible = Some(visible);
-        if !self.drawing {
+        if !self.is_frame_open {
             self.shown_cursor.visible = None;
         }
         self.send_cursor()
     }
 
     fn set_position(&mut self, position: Position) -> io::Result<()> {
-        if !self.drawing {
+        if !self.is_frame_open {
             // Something else may have moved it.
             self.shown_cursor.position = None;
         }
@@ -371,8 +371,8 @@ impl<W: Write> EncoderBackend<W> {
     fn feed_lines(&mut self, lines: u16) -> io::Result<()> {
         let Position { x, y } = self.locate()?;
         self.put_cursor(Position::new(x, y));
-        let mut bytes = self.outstanding();
-        self.shown_cursor.become_cursor(self.cursor, &mut bytes);
+        let mut bytes = self.unsent_bytes();
+        self.shown_cursor.switch_to(self.cursor, &mut bytes);
         let height = self.window.columns_rows.height;
         let scrolled = lines.saturating_sub(height.saturating_sub(1).saturating_sub(y));
         bytes.extend(std::iter::repeat_n(b'\n', lines.into()));
@@ -385,13 +385,13 @@ impl<W: Write> EncoderBackend<W> {
 
     /// The rows have been scrolled, and the cursor is at the top left.
     #[cfg(feature = "scrolling-regions")]
-    fn note_scrolled(&mut self, region: Range<u16>, by: u16, way: regions::Way) {
-        match way {
-            regions::Way::Up => {
+    fn record_scrolled(&mut self, region: Range<u16>, by: u16, direction: regions::ScrollDirection) {
+        match direction {
+            regions::ScrollDirection::Up => {
                 self.encoder.scroll_up(region.clone(), by);
                 self.wanted.scroll_up(region, by);
             }
-            regions::Way::Down => {
+            regions::ScrollDirection::Down => {
                 self.encoder.scroll_down(region.clone(), by);
                 self.wanted.scroll_down(region, by);
             }
@@ -402,14 +402,14 @@ impl<W: Write> EncoderBackend<W> {
     }
 
     /// Before bytes of the program's own: what was drawn is on the screen, and nothing is known of it afterwards.
-    fn give_way(&mut self) -> io::Result<()> {
+    fn prepare_foreign_bytes(&mut self) -> io::Result<()> {
         // Not between the pieces of one escape sequence.
-        if !self.gave_way {
-            if self.drawing || self.encoder.is_inexact() {
+        if !self.wrote_foreign_bytes {
+            if self.is_frame_open || self.encoder.is_inexact() {
                 self.send_exactly()?;
             }
-            self.abandon_screen();
-            self.gave_way = true;
+            self.forget_screen();
+            self.wrote_foreign_bytes = true;
         }
         Ok(())
     }
@@ -418,7 +418,7 @@ impl<W: Write> EncoderBackend<W> {
 /// For the program's own escape sequences (see [above](Self#other-bytes)).
 impl<W: Write> Write for EncoderBackend<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.give_way()?;
+        self.prepare_foreign_bytes()?;
         self.writer.write(bytes)
     }
 

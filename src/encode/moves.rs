@@ -4,11 +4,11 @@
 //! raw mode a line feed keeps the column, and nothing scrolls, because it is only used above the last row.) Nothing
 //! else is used: REP, ECH and tabs gain little and break in some multiplexer or other.
 
-use super::numbers::{digits, write_number};
+use super::numbers::{digit_count, write_number};
 
-/// A place on the screen, counted from the top left.
+/// A position on the screen, counted from the top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct CellPosition {
     pub(super) column: u16,
     pub(super) row: u16,
 }
@@ -17,7 +17,7 @@ pub(super) struct Place {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Move {
     /// CUP.
-    To(Place),
+    To(CellPosition),
     /// LF so many times, then along the row.
     Down(u16, Along),
 }
@@ -37,7 +37,7 @@ pub(super) enum Along {
 }
 
 /// The cheapest move. Where the cursor is unknown, or beyond the last column, only CUP is sure.
-pub(super) fn cheapest(from: Option<Place>, to: Place) -> Move {
+pub(super) fn cheapest_move(from: Option<CellPosition>, to: CellPosition) -> Move {
     if from == Some(to) {
         return Move::Down(0, Along::Stay);
     }
@@ -65,9 +65,9 @@ impl Move {
     /// How many bytes it takes.
     pub(super) fn len(self) -> usize {
         match self {
-            Self::To(Place { column: 0, row: 0 }) => 3,
-            Self::To(Place { column: 0, row }) => 3 + digits(row + 1),
-            Self::To(Place { column, row }) => 4 + digits(row + 1) + digits(column + 1),
+            Self::To(CellPosition { column: 0, row: 0 }) => 3,
+            Self::To(CellPosition { column: 0, row }) => 3 + digit_count(row + 1),
+            Self::To(CellPosition { column, row }) => 4 + digit_count(row + 1) + digit_count(column + 1),
             Self::Down(rows, along) => usize::from(rows) + along.len(),
         }
     }
@@ -75,9 +75,9 @@ impl Move {
     /// Makes it.
     pub(super) fn write(self, bytes: &mut Vec<u8>) {
         match self {
-            Self::To(Place { column: 0, row: 0 }) => bytes.extend_from_slice(b"\x1b[H"),
-            Self::To(Place { column: 0, row }) => sequence(bytes, row + 1, b'H'),
-            Self::To(Place { column, row }) => {
+            Self::To(CellPosition { column: 0, row: 0 }) => bytes.extend_from_slice(b"\x1b[H"),
+            Self::To(CellPosition { column: 0, row }) => sequence(bytes, row + 1, b'H'),
+            Self::To(CellPosition { column, row }) => {
                 bytes.extend_from_slice(b"\x1b[");
                 write_number(row + 1, bytes);
                 bytes.push(b';');
@@ -99,8 +99,8 @@ impl Along {
             Self::Start | Self::Left(1) => 1,
             Self::Right(1) => 3,
             Self::Left(columns) => columns.into(),
-            Self::Right(columns) => 3 + digits(columns),
-            Self::Column(column) => 3 + digits(column + 1),
+            Self::Right(columns) => 3 + digit_count(columns),
+            Self::Column(column) => 3 + digit_count(column + 1),
         }
     }
 
@@ -128,8 +128,8 @@ mod tests {
     use super::*;
 
     fn bytes(from: Option<(u16, u16)>, to: (u16, u16)) -> String {
-        let place = |(column, row)| Place { column, row };
-        let cheapest = cheapest(from.map(place), place(to));
+        let position = |(column, row)| CellPosition { column, row };
+        let cheapest = cheapest_move(from.map(position), position(to));
         let mut bytes = Vec::new();
         cheapest.write(&mut bytes);
         assert_eq!(bytes.len(), cheapest.len(), "{cheapest:?}");

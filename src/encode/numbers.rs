@@ -2,7 +2,7 @@
 //! encoder writes.)
 
 /// How many digits a number has.
-pub(super) fn digits(number: u16) -> usize {
+pub(super) fn digit_count(number: u16) -> usize {
     match number {
         0..10 => 1,
         10..100 => 2,
@@ -14,46 +14,46 @@ pub(super) fn digits(number: u16) -> usize {
 
 /// In decimal.
 pub(super) fn write_number(number: u16, bytes: &mut Vec<u8>) {
-    let mut unit = [1, 10, 100, 1_000, 10_000][digits(number) - 1];
+    let mut unit = [1, 10, 100, 1_000, 10_000][digit_count(number) - 1];
     while unit > 0 {
         bytes.push(b'0' + (number / unit % 10) as u8);
         unit /= 10;
     }
 }
 
-/// For each of a colour's bands a semicolon and its number in decimal.
-pub(super) fn write_bands(bands: [u8; 3], bytes: &mut Vec<u8>) {
+/// For each of a colour's channels a semicolon and its number in decimal.
+pub(super) fn write_channels(channels: [u8; 3], bytes: &mut Vec<u8>) {
     // As many bytes as it can be, then back over those that are too many: one by one takes longer.
     let mut text = [0; 12];
     let mut len = 0;
-    for band in bands {
-        text[len..len + 4].copy_from_slice(&BANDS[usize::from(band)]);
-        len += 1 + band_digits(band);
+    for channel in channels {
+        text[len..len + 4].copy_from_slice(&CHANNEL_DIGITS[usize::from(channel)]);
+        len += 1 + channel_digit_count(channel);
     }
     bytes.extend_from_slice(&text);
     bytes.truncate(bytes.len() + len - text.len());
 }
 
-/// How many digits a colour's band has. (Without a branch: nothing foretells which of the three it is.)
-pub(super) fn band_digits(band: u8) -> usize {
-    1 + usize::from(band >= 10) + usize::from(band >= 100)
+/// How many digits a colour's channel has. (Without a branch: nothing foretells which of the three it is.)
+pub(super) fn channel_digit_count(channel: u8) -> usize {
+    1 + usize::from(channel >= 10) + usize::from(channel >= 100)
 }
 
-/// For each band a semicolon and its digits; what follows them is nothing.
-const BANDS: [[u8; 4]; 256] = {
-    let mut bands = [[b';', 0, 0, 0]; 256];
-    let mut band = 0;
-    while band < bands.len() {
-        let digit = [band / 100, band / 10 % 10, band % 10];
+/// For each channel a semicolon and its digits; what follows them is nothing.
+const CHANNEL_DIGITS: [[u8; 4]; 256] = {
+    let mut channels = [[b';', 0, 0, 0]; 256];
+    let mut channel = 0;
+    while channel < channels.len() {
+        let digit = [channel / 100, channel / 10 % 10, channel % 10];
         let [hundreds, tens, ones] = [b'0' + digit[0] as u8, b'0' + digit[1] as u8, b'0' + digit[2] as u8];
-        bands[band] = match band {
+        channels[channel] = match channel {
             0..10 => [b';', ones, 0, 0],
             10..100 => [b';', tens, ones, 0],
             _ => [b';', hundreds, tens, ones],
         };
-        band += 1;
+        channel += 1;
     }
-    bands
+    channels
 };
 
 #[cfg(test)]
@@ -67,10 +67,10 @@ mod tests {
             write_number(number, &mut bytes);
             assert_eq!(bytes, number.to_string().into_bytes());
         }
-        for band in 0..=u8::MAX {
+        for channel in 0..=u8::MAX {
             let mut bytes = Vec::new();
-            write_bands([band, 7, band], &mut bytes);
-            assert_eq!(bytes, format!(";{band};7;{band}").into_bytes());
+            write_channels([channel, 7, channel], &mut bytes);
+            assert_eq!(bytes, format!(";{channel};7;{channel}").into_bytes());
         }
     }
 }

@@ -4,31 +4,33 @@
 //! (the greedy set cover of Johnson 1974). Then pairs of its colours, in the same way: the pair that the most cells can
 //! show, and so on, because the cells of one pair are written without a change of the pen.
 
-use super::halves::{Halves, Tolerance, square};
+use super::halves::{Halves, Tolerance, squared_difference};
 use crate::color::{Oklab, Srgb8};
-use crate::grid::Ink;
+use crate::grid::{HalfBlocks, Ink};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::mem;
 
 /// Exchanges the cells' colours for those of a palette, each within the tolerance of the one that it stands for. With
-/// `either_half`, two colours serve both ways round. The pen's colours are taken into the palette where they serve.
-pub(super) fn snap(cells: &mut [&mut Halves], pen: [Ink; 2], tolerance: Tolerance, either_half: bool) {
-    let shades = Shades::of(cells, pen);
-    let choices = shades.choices(tolerance);
-    let wanted: Vec<[usize; 2]> = cells.iter().map(|cell| cell.map(|color| shades.index(color))).collect();
-    let pairs = pairs(&wanted, &choices, either_half);
+/// `half_blocks`, two colours serve both ways round. The pen's colours are taken into the palette where they serve.
+pub(super) fn snap_to_palette(cells: &mut [&mut Halves], pen: [Ink; 2], tolerance: Tolerance, half_blocks: HalfBlocks) {
+    let table = ColorTable::of(cells, pen);
+    let choices = table.choices(tolerance);
+    let wanted: Vec<[usize; 2]> = cells.iter().map(|cell| cell.map(|color| table.index(color))).collect();
+    let pairs = pairs(&wanted, &choices, half_blocks);
     for ((cell, wanted), pair) in cells.iter_mut().zip(wanted).zip(pairs) {
-        let [a, b] = pair.map(|shade| shades.colors[shade]);
+        let [a, b] = pair.map(|index| table.colors[index]);
         let fits = |pair: [usize; 2]| (0..2).all(|half| choices[wanted[half]].contains(&pair[half]));
-        let error = |halves: Halves| square(halves[0], cell[0]) + square(halves[1], cell[1]);
-        let turned = either_half && fits([pair[1], pair[0]]) && (!fits(pair) || error([b, a]) < error([a, b]));
+        let error = |halves: Halves| squared_difference(halves[0], cell[0]) + squared_difference(halves[1], cell[1]);
+        let turned = half_blocks == HalfBlocks::Either
+            && fits([pair[1], pair[0]])
+            && (!fits(pair) || error([b, a]) < error([a, b]));
         **cell = if turned { [b, a] } else { [a, b] };
     }
 }
 
 /// The colours of some cells and of the pen, each once.
-struct Shades {
+struct ColorTable {
     /// Sorted.
     colors: Vec<Srgb8>,
     /// How many halves are to have each.
@@ -38,13 +40,13 @@ struct Shades {
 
 /// How many colours of the palette a half chooses from, those first that the most halves can take: more than a few would
 /// gain nothing, and each makes more pairs.
-const CHOICES: usize = 4;
+const MAX_CHOICES: usize = 4;
 
 /// How many colours, next in lightness, a colour is compared with on either side: in pictures the ones that can be
 /// exchanged are among them, and noise, where they are not, is not to take long.
-const NEIGHBOURS: usize = 24;
+const LIGHTNESS_NEIGHBOURS: usize = 24;
 
-impl Shades {
+impl ColorTable {
     fn of(cells: &[&mut Halves], pen: [Ink; 2]) -> Self {
         let of_pen = pen.into_iter().filter_map(|ink| if let Ink::Rgb(color) = ink { Some((color, 0)) } else { None });
         let of_cells = cells.iter().flat_map(|cell| cell.map(|color| (color, 1)));
@@ -63,11 +65,11 @@ impl Shades {
 
     /// For each colour, those of the palette that it can be exchanged for.
     fn choices(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
-        let near = self.near(tolerance);
+        let exchangeable = self.exchangeable(tolerance);
         let mut choices: Vec<Vec<usize>> = vec![Vec::new(); self.colors.len()];
-        for color in cover(&near, &self.halves) {
-            for &half in &near[color] {
-                if choices[half].len() < CHOICES {
+        for color in greedy_cover(&exchangeable, &self.halves) {
+            for &half in &exchangeable[color] {
+                if choices[half].len() < MAX_CHOICES {
                     choices[half].push(color);
                 }
             }
@@ -77,32 +79,32 @@ impl Shades {
 
     /// For each colour, those within the tolerance, itself among them. Sorted by lightness they are in a window, of which
     /// the middle is looked at.
-    fn near(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
+    fn exchangeable(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.colors.len()).collect();
         order.sort_unstable_by(|&a, &b| self.oklab[a].l.total_cmp(&self.oklab[b].l));
-        let mut near: Vec<Vec<usize>> = (0..order.len()).map(|color| vec![color]).collect();
+        let mut exchangeable: Vec<Vec<usize>> = (0..order.len()).map(|color| vec![color]).collect();
         for (at, &a) in order.iter().enumerate() {
             let lightest = self.oklab[a].l + tolerance.distance;
-            for &b in order[at + 1..].iter().take(NEIGHBOURS).take_while(|&&b| self.oklab[b].l <= lightest) {
-                if square(self.colors[a], self.colors[b]) <= tolerance.square
+            for &b in order[at + 1..].iter().take(LIGHTNESS_NEIGHBOURS).take_while(|&&b| self.oklab[b].l <= lightest) {
+                if squared_difference(self.colors[a], self.colors[b]) <= tolerance.square
                     && self.oklab[a].distance(self.oklab[b]) <= tolerance.distance
                 {
-                    near[a].push(b);
-                    near[b].push(a);
+                    exchangeable[a].push(b);
+                    exchangeable[b].push(a);
                 }
             }
         }
-        near
+        exchangeable
     }
 }
 
 /// For each cell, by its halves' colours, a pair of colours that it can show, so that there are few pairs.
-fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], either_half: bool) -> Vec<[usize; 2]> {
+fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks) -> Vec<[usize; 2]> {
     let mut possible: Vec<([usize; 2], usize)> = Vec::new();
     for (cell, &[upper, lower]) in wanted.iter().enumerate() {
         for &a in &choices[upper] {
             for &b in &choices[lower] {
-                possible.push((if either_half { [a.min(b), a.max(b)] } else { [a, b] }, cell));
+                possible.push((if half_blocks == HalfBlocks::Either { [a.min(b), a.max(b)] } else { [a, b] }, cell));
             }
         }
     }
@@ -122,7 +124,7 @@ fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], either_half: bool) -> Ve
     // Of a pair of its own, each colour is the one that the most halves can take.
     let mut chosen: Vec<[usize; 2]> = wanted.iter().map(|cell| cell.map(|color| choices[color][0])).collect();
     let mut is_chosen = vec![false; wanted.len()];
-    for group in cover(&sets, &vec![1; wanted.len()]) {
+    for group in greedy_cover(&sets, &vec![1; wanted.len()]) {
         let (pair, cells) = groups[group];
         for &cell in cells {
             if !mem::replace(&mut is_chosen[cell], true) {
@@ -134,14 +136,14 @@ fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], either_half: bool) -> Ve
 }
 
 /// Sets that together have all members of any weight: always the one that adds the most, until nothing is left to add.
-fn cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
+fn greedy_cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
     let mut left = weights.to_vec();
     // What a set adds only shrinks: one that still adds what it was sorted by is the best of all (Minoux 1978).
     let mut heap: BinaryHeap<(usize, Reverse<usize>)> =
-        sets.iter().enumerate().map(|(at, set)| (adds(set.as_ref(), &left), Reverse(at))).collect();
+        sets.iter().enumerate().map(|(at, set)| (gain(set.as_ref(), &left), Reverse(at))).collect();
     let mut chosen = Vec::new();
     while let Some((promised, Reverse(at))) = heap.pop() {
-        let added = adds(sets[at].as_ref(), &left);
+        let added = gain(sets[at].as_ref(), &left);
         if added == 0 {
             continue;
         }
@@ -157,6 +159,6 @@ fn cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
     chosen
 }
 
-fn adds(set: &[usize], left: &[usize]) -> usize {
+fn gain(set: &[usize], left: &[usize]) -> usize {
     set.iter().map(|&member| left[member]).sum()
 }

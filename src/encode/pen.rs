@@ -1,6 +1,6 @@
 //! The pen: the colours and attributes that the terminal would write with now, and what it costs to change them.
 
-use super::numbers::{band_digits, digits, write_bands, write_number};
+use super::numbers::{channel_digit_count, digit_count, write_channels, write_number};
 use crate::grid::{Attributes, Cell, Glyph, Ink};
 use std::mem;
 
@@ -23,9 +23,9 @@ impl Pen {
     /// The cell's character in its colours, for a file; only what differs from the pen is said, one colour at a time:
     /// what saves bytes on a screen does not change files.
     pub(crate) fn write_cell(&mut self, cell: &Cell, bytes: &mut Vec<u8>) {
-        let wanted = self.as_it_stands(cell);
-        self.say(Self { fg: self.before_colors(wanted.attributes).fg, ..wanted }, Wording::Long, bytes);
-        self.say(wanted, Wording::Long, bytes);
+        let wanted = self.plain_pen_for(cell);
+        self.write_sgr(Self { fg: self.after_attributes(wanted.attributes).fg, ..wanted }, InkForm::Long, bytes);
+        self.write_sgr(wanted, InkForm::Long, bytes);
         write_glyph(&cell.glyph, bytes);
     }
 
@@ -33,29 +33,29 @@ impl Pen {
     /// cheapest with the pen's two colours exchanged: to say so takes four bytes, to say the colour again, as the one
     /// behind, about nineteen.
     #[inline]
-    pub(super) fn wanted_by(&self, cell: &Cell) -> Self {
+    pub(super) fn pen_for(&self, cell: &Cell) -> Self {
         // Nearly every cell of a picture.
         if cell.glyph != ' ' && cell.attributes.is_empty() && self.attributes.is_empty() {
             return Self { fg: cell.fg, bg: cell.bg, ..*self };
         }
-        self.wanted_by_any(cell)
+        self.pen_for_any(cell)
     }
 
     /// The same for any cell.
-    fn wanted_by_any(&self, cell: &Cell) -> Self {
-        if self.can_be_exchanged_for(cell) { self.wanted_by_space(cell) } else { self.as_it_stands(cell) }
+    fn pen_for_any(&self, cell: &Cell) -> Self {
+        if self.can_show_reversed(cell) { self.pen_for_space(cell) } else { self.plain_pen_for(cell) }
     }
 
     /// The same for such a space.
-    fn wanted_by_space(&self, cell: &Cell) -> Self {
-        let plain = self.as_it_stands(cell);
+    fn pen_for_space(&self, cell: &Cell) -> Self {
+        let plain = self.plain_pen_for(cell);
         let exchanged = Self { attributes: Attributes::REVERSED, ..*self };
-        if self.cost_of(&exchanged) < self.cost_of(&plain) { exchanged } else { plain }
+        if self.switch_cost(&exchanged) < self.switch_cost(&plain) { exchanged } else { plain }
     }
 
     /// Whether a space looks like the cell when the pen's two colours are exchanged. The terminal's own colour for
     /// glyphs cannot be said behind them.
-    fn can_be_exchanged_for(&self, cell: &Cell) -> bool {
+    fn can_show_reversed(&self, cell: &Cell) -> bool {
         is_plain_space(cell)
             && self.fg == cell.bg
             && cell.bg != Ink::Default
@@ -64,8 +64,8 @@ impl Pen {
 
     /// The pen of the cell as the grid has it. The colour of a plain space's character is not seen, nor that of a line
     /// that is not drawn: nothing is said for their sake.
-    fn as_it_stands(&self, cell: &Cell) -> Self {
-        let mut pen = self.before_colors(cell.attributes);
+    fn plain_pen_for(&self, cell: &Cell) -> Self {
+        let mut pen = self.after_attributes(cell.attributes);
         pen.bg = cell.bg;
         if !is_plain_space(cell) {
             pen.fg = cell.fg;
@@ -79,8 +79,8 @@ impl Pen {
     /// The pen once the attributes are these. Adding some keeps the colours. Terminals disagree on how to switch single
     /// ones off, so all is switched off first, colours too, which is understood everywhere; only for the exchange of
     /// the two colours they all know an off of its own.
-    pub(super) fn before_colors(self, attributes: Attributes) -> Self {
-        let from = if self.starts_anew(attributes) { Self::default() } else { self };
+    pub(super) fn after_attributes(self, attributes: Attributes) -> Self {
+        let from = if self.needs_reset(attributes) { Self::default() } else { self };
         Self { attributes, ..from }
     }
 
@@ -88,7 +88,7 @@ impl Pen {
     /// not have the effect that it has from nothing. One of the first eight colours that becomes bold, said in its
     /// short form, as it may have been, would be a bright one in many terminals (see [`ink_len`]); and some take bold
     /// and dim, or the speeds of blinking, for one thing, of which the last said counts.
-    fn starts_anew(&self, attributes: Attributes) -> bool {
+    fn needs_reset(&self, attributes: Attributes) -> bool {
         let (lost, gained) = (self.attributes.difference(attributes), attributes.difference(self.attributes));
         let comes_before = |first, second| gained.contains(first) && self.attributes.contains(second);
         !Attributes::REVERSED.contains(lost)
@@ -99,9 +99,9 @@ impl Pen {
 
     /// The codes on the way to these attributes.
     fn attribute_codes(&self, attributes: Attributes) -> impl Iterator<Item = &'static [u8]> {
-        let starts_anew = self.starts_anew(attributes);
-        let from = if starts_anew { Attributes::empty() } else { self.attributes };
-        let off: Option<&[u8]> = match starts_anew {
+        let needs_reset = self.needs_reset(attributes);
+        let from = if needs_reset { Attributes::empty() } else { self.attributes };
+        let off: Option<&[u8]> = match needs_reset {
             true => Some(b"0"),
             false if from.difference(attributes).is_empty() => None,
             false => Some(b"27"),
@@ -109,36 +109,36 @@ impl Pen {
         off.into_iter().chain(codes_of(attributes.difference(from)))
     }
 
-    /// How many bytes [`become_pen`](Self::become_pen) takes.
-    pub(super) fn cost_of(&self, wanted: &Self) -> usize {
-        self.cost_of_inks(wanted, wanted.ink_lens())
+    /// How many bytes [`switch_to`](Self::switch_to) takes.
+    pub(super) fn switch_cost(&self, wanted: &Self) -> usize {
+        self.switch_cost_with_lens(wanted, wanted.ink_lens())
     }
 
     /// The same where [`ink_lens`](Self::ink_lens) of the wanted pen are known.
     #[inline]
-    pub(super) fn cost_of_inks(&self, wanted: &Self, lens: [usize; 2]) -> usize {
+    pub(super) fn switch_cost_with_lens(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         // A picture's cells have a colour behind them.
         if wanted.bg == Ink::Default && *wanted == Self::default() {
-            return if self == wanted { 0 } else { RESET.len() };
+            return if self == wanted { 0 } else { SGR_RESET.len() };
         }
         if self.attributes == wanted.attributes {
             self.cost_of_colors(0, wanted, lens)
         } else {
-            self.cost_of_all(wanted, lens)
+            self.cost_with_attributes(wanted, lens)
         }
     }
 
     /// How many bytes it takes to say each of its two colours.
     pub(super) fn ink_lens(&self) -> [usize; 2] {
-        let [fg, bg] = self.wordings(Wording::Short);
+        let [fg, bg] = self.ink_forms(InkForm::Short);
         [1 + ink_len(self.fg, fg), 1 + ink_len(self.bg, bg)]
     }
 
     /// The same where attributes change.
-    fn cost_of_all(&self, wanted: &Self, lens: [usize; 2]) -> usize {
+    fn cost_with_attributes(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         let codes = self.attribute_codes(wanted.attributes).map(|code| 1 + code.len()).sum();
-        let split = if self.is_split(wanted, Wording::Short) { 2 } else { 0 };
-        self.before_colors(wanted.attributes).cost_of_colors(codes, wanted, lens) + split
+        let split = if self.is_split(wanted, InkForm::Short) { 2 } else { 0 };
+        self.after_attributes(wanted.attributes).cost_of_colors(codes, wanted, lens) + split
     }
 
     /// The same for the colours, and for codes that took so many bytes in their sequence.
@@ -152,32 +152,32 @@ impl Pen {
     }
 
     /// Says what differs: the attributes and the colours in one sequence, the line's in another.
-    pub(super) fn become_pen(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
+    pub(super) fn switch_to(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if *self != wanted && wanted == Self::default() {
-            bytes.extend_from_slice(RESET);
+            bytes.extend_from_slice(SGR_RESET);
             *self = wanted;
         } else {
-            self.say(wanted, Wording::Short, bytes);
+            self.write_sgr(wanted, InkForm::Short, bytes);
         }
     }
 
     /// The same in that wording.
-    fn say(&mut self, wanted: Self, wording: Wording, bytes: &mut Vec<u8>) {
+    fn write_sgr(&mut self, wanted: Self, form: InkForm, bytes: &mut Vec<u8>) {
         let mut lead: &[u8] = b"\x1b[";
         for code in self.attribute_codes(wanted.attributes) {
             bytes.extend_from_slice(mem::replace(&mut lead, b";"));
             bytes.extend_from_slice(code);
         }
-        if self.is_split(&wanted, wording) {
+        if self.is_split(&wanted, form) {
             bytes.push(b'm');
             lead = b"\x1b[";
         }
-        let from = self.before_colors(wanted.attributes);
-        let [fg, bg] = wanted.wordings(wording);
-        for (from, to, tens, wording) in [(from.fg, wanted.fg, b'3', fg), (from.bg, wanted.bg, b'4', bg)] {
+        let from = self.after_attributes(wanted.attributes);
+        let [fg, bg] = wanted.ink_forms(form);
+        for (from, to, tens, form) in [(from.fg, wanted.fg, b'3', fg), (from.bg, wanted.bg, b'4', bg)] {
             if from != to {
                 bytes.extend_from_slice(mem::replace(&mut lead, b";"));
-                write_ink(to, tens, wording, bytes);
+                write_ink(to, tens, form, bytes);
             }
         }
         if lead == b";" {
@@ -190,31 +190,31 @@ impl Pen {
     }
 
     /// Whether the attributes and the colours are more numbers than one sequence may have.
-    fn is_split(&self, wanted: &Self, wording: Wording) -> bool {
-        let from = self.before_colors(wanted.attributes);
-        let [fg, bg] = wanted.wordings(wording);
-        let numbers = |from: Ink, to: Ink, wording| if from == to { 0 } else { ink_numbers(to, wording) };
+    fn is_split(&self, wanted: &Self, form: InkForm) -> bool {
+        let from = self.after_attributes(wanted.attributes);
+        let [fg, bg] = wanted.ink_forms(form);
+        let numbers = |from: Ink, to: Ink, form| if from == to { 0 } else { ink_parameter_count(to, form) };
         let colors = numbers(from.fg, wanted.fg, fg) + numbers(from.bg, wanted.bg, bg);
         let attributes = self.attribute_codes(wanted.attributes).count();
-        attributes > 0 && colors > 0 && attributes + colors > MOST_NUMBERS
+        attributes > 0 && colors > 0 && attributes + colors > MAX_SGR_PARAMETERS
     }
 
     /// How its two colours may be said: a bold one of the first eight only in full.
-    fn wordings(&self, wording: Wording) -> [Wording; 2] {
-        let fg = if self.attributes.contains(Attributes::BOLD) { Wording::Long } else { wording };
-        [fg, wording]
+    fn ink_forms(&self, form: InkForm) -> [InkForm; 2] {
+        let fg = if self.attributes.contains(Attributes::BOLD) { InkForm::Long } else { form };
+        [fg, form]
     }
 }
 
 /// All back to the terminal's own.
-const RESET: &[u8] = b"\x1b[m";
+const SGR_RESET: &[u8] = b"\x1b[m";
 
 /// How many numbers a sequence has at most: some terminals pass over those behind the sixteenth.
-const MOST_NUMBERS: usize = 16;
+const MAX_SGR_PARAMETERS: usize = 16;
 
 /// How one of the first eight colours is said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Wording {
+enum InkForm {
     /// In two digits.
     Short,
     /// As any of the 256.
@@ -261,10 +261,10 @@ pub(super) fn write_char(character: char, bytes: &mut Vec<u8>) {
 }
 
 /// The numbers of one colour; the first begins with a 3 for the character's, a 4 for the one behind it.
-fn write_ink(ink: Ink, tens: u8, wording: Wording, bytes: &mut Vec<u8>) {
+fn write_ink(ink: Ink, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
     match ink {
         Ink::Default => bytes.extend_from_slice(&[tens, b'9']),
-        Ink::Indexed(index) if is_basic(ink) && wording == Wording::Short => {
+        Ink::Indexed(index) if is_basic(ink) && form == InkForm::Short => {
             bytes.extend_from_slice(&[tens, b'0' + index]);
         }
         Ink::Indexed(index) => {
@@ -273,27 +273,27 @@ fn write_ink(ink: Ink, tens: u8, wording: Wording, bytes: &mut Vec<u8>) {
         }
         Ink::Rgb(color) => {
             bytes.extend_from_slice(&[tens, b'8', b';', b'2']);
-            write_bands([color.r, color.g, color.b], bytes);
+            write_channels([color.r, color.g, color.b], bytes);
         }
     }
 }
 
 /// How many bytes [`write_ink`] takes. (The bright ones of the named colours have no short form: not everything that
 /// knows `38;5` knows 90 to 97.)
-fn ink_len(ink: Ink, wording: Wording) -> usize {
+fn ink_len(ink: Ink, form: InkForm) -> usize {
     match ink {
         Ink::Default => 2,
-        Ink::Indexed(_) if is_basic(ink) && wording == Wording::Short => 2,
-        Ink::Indexed(index) => 5 + digits(index.into()),
-        Ink::Rgb(color) => 7 + [color.r, color.g, color.b].into_iter().map(band_digits).sum::<usize>(),
+        Ink::Indexed(_) if is_basic(ink) && form == InkForm::Short => 2,
+        Ink::Indexed(index) => 5 + digit_count(index.into()),
+        Ink::Rgb(color) => 7 + [color.r, color.g, color.b].into_iter().map(channel_digit_count).sum::<usize>(),
     }
 }
 
 /// How many numbers it writes.
-fn ink_numbers(ink: Ink, wording: Wording) -> usize {
+fn ink_parameter_count(ink: Ink, form: InkForm) -> usize {
     match ink {
         Ink::Default => 1,
-        Ink::Indexed(_) if is_basic(ink) && wording == Wording::Short => 1,
+        Ink::Indexed(_) if is_basic(ink) && form == InkForm::Short => 1,
         Ink::Indexed(_) => 3,
         Ink::Rgb(_) => 5,
     }
@@ -311,9 +311,9 @@ fn write_underline(ink: Ink, bytes: &mut Vec<u8>) {
         Ink::Rgb(color) => {
             // The number left out is that of a colour space.
             bytes.extend_from_slice(b"\x1b[58:2:");
-            for band in [color.r, color.g, color.b] {
+            for channel in [color.r, color.g, color.b] {
                 bytes.push(b':');
-                write_number(band.into(), bytes);
+                write_number(channel.into(), bytes);
             }
         }
     }
@@ -324,8 +324,8 @@ fn write_underline(ink: Ink, bytes: &mut Vec<u8>) {
 fn underline_len(ink: Ink) -> usize {
     match ink {
         Ink::Default => 5,
-        Ink::Indexed(_) => 3 + ink_len(ink, Wording::Long),
-        Ink::Rgb(_) => 4 + ink_len(ink, Wording::Long),
+        Ink::Indexed(_) => 3 + ink_len(ink, InkForm::Long),
+        Ink::Rgb(_) => 4 + ink_len(ink, InkForm::Long),
     }
 }
 
@@ -366,8 +366,8 @@ mod tests {
             for to in &pens {
                 let mut bytes = Vec::new();
                 let mut pen = *from;
-                pen.become_pen(*to, &mut bytes);
-                assert_eq!((pen, bytes.len()), (*to, from.cost_of(to)), "{from:?} to {to:?}");
+                pen.switch_to(*to, &mut bytes);
+                assert_eq!((pen, bytes.len()), (*to, from.switch_cost(to)), "{from:?} to {to:?}");
             }
         }
     }

@@ -1,25 +1,25 @@
 //! Grid -> ANSI: text with the escape sequences of its colours.
 
 use super::difference;
-use super::kind::{Contents, Kind};
+use super::format_row::{Contents, FormatRow};
 use super::text::text;
 use crate::capabilities::Colors;
 use crate::encode::Pen;
 use crate::grid::{Glyph, Grid};
 
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: FormatRow = FormatRow {
     name: "ansi",
     help: "Cells in colour",
-    endings: &["ansi", "ans"],
+    extensions: &["ansi", "ans"],
     key: 'a',
     command: "WriteAnsi",
     title: "ANSI text in colour",
-    contents: Contents::Cells { has_colors: true, write: |grid, colors, _| printed(grid, colors) },
+    contents: Contents::Cells { has_colors: true, write: |grid, colors, _| ansi_or_text(grid, colors) },
     difference: difference::by_rows,
 };
 
 /// The grid as a terminal with those colours is to be sent it: without any, no escape sequence says anything of them.
-pub fn printed(grid: &Grid, colors: Colors) -> Vec<u8> {
+pub fn ansi_or_text(grid: &Grid, colors: Colors) -> Vec<u8> {
     match colors {
         Colors::None => text(grid).into_bytes(),
         _ => ansi(grid),

@@ -1,12 +1,12 @@
 //! Where two texts of a screen's rows differ.
 
-use super::sgr::{self, Look};
+use super::sgr::{self, TextStyle};
 use crate::text::visible_char;
 use std::fmt;
 use unicode_width::UnicodeWidthChar;
 
 /// How many differing rows are shown at most: more than most screens have.
-const MOST_SHOWN: usize = 60;
+const MAX_SHOWN_ROWS: usize = 60;
 
 /// Compares two frames as text, plain or with colours as [`ansi`](super::ansi()) writes them, row by row; `None` if
 /// they are equal.
@@ -64,7 +64,7 @@ pub struct Difference {
 }
 
 /// What is seen in each place of a row, and how.
-type Row = Vec<(char, Look)>;
+type Row = Vec<(char, TextStyle)>;
 
 fn rows(text: &str) -> Vec<Row> {
     let text = text.strip_suffix('\n').unwrap_or(text);
@@ -76,7 +76,7 @@ fn columns(character: char) -> usize {
     visible_char(character).width().unwrap_or(1)
 }
 
-fn width(row: &[(char, Look)]) -> usize {
+fn width(row: &[(char, TextStyle)]) -> usize {
     row.iter().map(|&(character, _)| columns(character)).sum()
 }
 
@@ -142,7 +142,7 @@ impl Difference {
 
     /// Rows that correspond, one by one.
     fn write_pairs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let differing: Vec<usize> = self.differing().take(MOST_SHOWN).collect();
+        let differing: Vec<usize> = self.differing().take(MAX_SHOWN_ROWS).collect();
         let is_near = |row: usize| differing.iter().any(|&other| row.abs_diff(other) <= 1);
         let mut last = None;
         for (row, (a, b)) in self.expected.iter().zip(&self.found).enumerate().filter(|&(row, _)| is_near(row)) {
@@ -173,11 +173,11 @@ impl Difference {
             self.write_row(f, ' ', before, &self.expected[before])?;
         }
         for (sign, rows, end) in [('-', &self.expected, expected_end), ('+', &self.found, found_end)] {
-            for (row, text) in rows.iter().enumerate().take(end).skip(self.same).take(MOST_SHOWN) {
+            for (row, text) in rows.iter().enumerate().take(end).skip(self.same).take(MAX_SHOWN_ROWS) {
                 self.write_row(f, sign, row, text)?;
             }
-            if end - self.same > MOST_SHOWN {
-                writeln!(f, "{sign} ... and {} more", end - self.same - MOST_SHOWN)?;
+            if end - self.same > MAX_SHOWN_ROWS {
+                writeln!(f, "{sign} ... and {} more", end - self.same - MAX_SHOWN_ROWS)?;
             }
         }
         if let Some(after) = self.found.get(found_end) {

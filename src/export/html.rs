@@ -1,15 +1,15 @@
 //! Grid -> HTML.
 
 use super::difference;
-use super::kind::{Contents, Kind};
-use super::paint::{paths, runs};
+use super::format_row::{Contents, FormatRow};
+use super::paint::{paths, text_runs};
 use crate::grid::{Grid, Size};
 use std::fmt::Write;
 
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: FormatRow = FormatRow {
     name: "html",
     help: "Cells as a web page",
-    endings: &["html", "htm"],
+    extensions: &["html", "htm"],
     key: 'h',
     command: "WriteHtml",
     title: "HTML page",
@@ -60,7 +60,7 @@ fn text(grid: &Grid) -> String {
     let mut text = String::new();
     for row in grid.rows() {
         let mut end = 0;
-        for run in runs(row) {
+        for run in text_runs(row) {
             text.extend(std::iter::repeat_n(' ', run.column - end));
             let (css, escaped) = (run.css("color"), run.escaped());
             if css.is_empty() {

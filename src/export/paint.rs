@@ -11,7 +11,7 @@ pub(super) const DEFAULT_TEXT: Srgb8 = Srgb8::new(255, 255, 255);
 const DEFAULT_BACKGROUND: Srgb8 = Srgb8::new(0, 0, 0);
 
 /// A rectangle of one colour: columns from the left, half cells from the top.
-struct Area {
+struct ColorArea {
     x: usize,
     y: usize,
     width: usize,
@@ -20,7 +20,7 @@ struct Area {
 }
 
 /// Text of one style, without a break in a row.
-pub(super) struct Run {
+pub(super) struct TextRun {
     pub(super) column: usize,
     /// How many it takes.
     pub(super) columns: usize,
@@ -29,7 +29,7 @@ pub(super) struct Run {
     attributes: Attributes,
 }
 
-impl Run {
+impl TextRun {
     /// How it differs from plain text in the default colour, as CSS; `fill` is the name of the text's colour.
     pub(super) fn css(&self, fill: &str) -> String {
         let mut css = Vec::new();
@@ -54,14 +54,14 @@ impl Run {
 /// The colours behind the text and those of half blocks: SVG paths, one for each colour, a column wide and half a cell
 /// high to a unit.
 pub(super) fn paths(grid: &Grid) -> String {
-    let mut places = HashMap::new();
+    let mut indices = HashMap::new();
     let mut outlines: Vec<(Srgb8, String)> = Vec::new();
-    for Area { x, y, width, height, color } in areas(grid) {
-        let place = *places.entry(color).or_insert_with(|| {
+    for ColorArea { x, y, width, height, color } in areas(grid) {
+        let index = *indices.entry(color).or_insert_with(|| {
             outlines.push((color, String::new()));
             outlines.len() - 1
         });
-        let _ = write!(outlines[place].1, "M{x} {y}h{width}v{height}h-{width}");
+        let _ = write!(outlines[index].1, "M{x} {y}h{width}v{height}h-{width}");
     }
     let mut paths = String::new();
     for (color, outline) in outlines {
@@ -71,8 +71,8 @@ pub(super) fn paths(grid: &Grid) -> String {
 }
 
 /// Runs of equal colour, joined with those above them that are as long.
-fn areas(grid: &Grid) -> Vec<Area> {
-    let mut areas: Vec<Area> = Vec::new();
+fn areas(grid: &Grid) -> Vec<ColorArea> {
+    let mut areas: Vec<ColorArea> = Vec::new();
     let mut above: HashMap<(usize, usize, Srgb8), usize> = HashMap::new();
     let half_rows = grid.rows().flat_map(|row| [0, 1].map(|half| row.iter().map(move |cell| halves(cell)[half])));
     for (y, colors) in half_rows.enumerate() {
@@ -82,7 +82,7 @@ fn areas(grid: &Grid) -> Vec<Area> {
         for run in colors.chunk_by(|a, b| a == b) {
             let key = (x, run.len(), run[0]);
             let area = above.get(&key).copied().unwrap_or_else(|| {
-                areas.push(Area { x, y, width: run.len(), height: 0, color: run[0] });
+                areas.push(ColorArea { x, y, width: run.len(), height: 0, color: run[0] });
                 areas.len() - 1
             });
             areas[area].height += 1;
@@ -120,11 +120,11 @@ fn color(ink: Ink, default: Srgb8) -> Srgb8 {
 }
 
 /// What is written in a row. Blanks join what stands on both sides of them, but are no text by themselves.
-pub(super) fn runs(row: &[Cell]) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
+pub(super) fn text_runs(row: &[Cell]) -> Vec<TextRun> {
+    let mut runs: Vec<TextRun> = Vec::new();
     for (column, cell) in row.iter().enumerate() {
         let (color, attributes) = (colors(cell)[0], cell.attributes);
-        let Some(text) = written(cell) else {
+        let Some(text) = text_of(cell) else {
             if let Some(run) = runs.last_mut().filter(|run| cell.glyph == Glyph::Covered && run.end() == column) {
                 run.columns += 1;
             }
@@ -136,20 +136,20 @@ pub(super) fn runs(row: &[Cell]) -> Vec<Run> {
                 run.text.push_str(&text);
                 run.columns = column + 1 - run.column;
             }
-            None => runs.push(Run { column, columns: 1, text, color, attributes }),
+            None => runs.push(TextRun { column, columns: 1, text, color, attributes }),
         }
     }
     runs
 }
 
-impl Run {
+impl TextRun {
     fn end(&self) -> usize {
         self.column + self.columns
     }
 }
 
 /// The cell's text, if it is not a part of the areas.
-fn written(cell: &Cell) -> Option<String> {
+fn text_of(cell: &Cell) -> Option<String> {
     let underlined = cell.attributes.contains(Attributes::UNDERLINED);
     match cell.glyph {
         Glyph::Covered | Glyph::Foreign | Glyph::Char('▀' | '▄' | '█') => None,

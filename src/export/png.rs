@@ -1,14 +1,14 @@
 //! Picture -> PNG.
 
-use super::kind::{Contents, Kind};
+use super::format_row::{Contents, FormatRow};
 use crate::framebuffer::{Resolution, ResolutionError};
 use crate::tone::Picture;
 use std::{fmt, io};
 
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: FormatRow = FormatRow {
     name: "png",
     help: "A picture file, one pixel per half cell",
-    endings: &["png"],
+    extensions: &["png"],
     key: 'p',
     command: "WritePng",
     title: "PNG picture",

@@ -6,22 +6,22 @@ use std::str::{Chars, Split};
 
 /// The colours and attributes of a character, as the parameters of the escape sequences that set them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Look {
+pub(super) struct TextStyle {
     fg: String,
     bg: String,
     others: Vec<String>,
 }
 
 /// Returns the characters of a row with their looks; only sequences of colours and attributes (SGR) are read.
-pub(super) fn row(text: &str) -> Vec<(char, Look)> {
+pub(super) fn row(text: &str) -> Vec<(char, TextStyle)> {
     let mut row = Vec::new();
-    let mut look = Look::default();
+    let mut style = TextStyle::default();
     let mut characters = text.chars();
     loop {
         if let Some(numbers) = take_sgr(&mut characters) {
-            look.apply(numbers);
+            style.apply(numbers);
         } else if let Some(character) = characters.next() {
-            row.push((character, look.clone()));
+            row.push((character, style.clone()));
         } else {
             return row;
         }
@@ -36,7 +36,7 @@ fn take_sgr<'a>(characters: &mut Chars<'a>) -> Option<&'a str> {
     Some(numbers)
 }
 
-impl Look {
+impl TextStyle {
     fn apply(&mut self, numbers: &str) {
         let mut numbers = numbers.split(';').peekable();
         while let Some(number) = numbers.next() {
@@ -68,7 +68,7 @@ fn color(first: &str, numbers: &mut Peekable<Split<'_, char>>) -> String {
 }
 
 /// The parameters, or `default`.
-impl fmt::Display for Look {
+impl fmt::Display for TextStyle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts = [&self.fg, &self.bg].into_iter().chain(&self.others).filter(|part| !part.is_empty());
         let parts: Vec<&str> = parts.map(String::as_str).collect();

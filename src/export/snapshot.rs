@@ -43,17 +43,17 @@ pub fn framed(grid: &Grid) -> String {
     out
 }
 
-/// Returns the grid's characters in a frame, a second frame with a letter for how each cell looks, and the meaning of
+/// Returns the grid's characters in a frame, a second frame with a letter for how each cell styles, and the meaning of
 /// the letters: colours and attributes in a form that a person can review, and of which nothing is lost.
 ///
-/// A dot is the terminal's own colours. The letters are given in the order in which the looks first appear; beyond 62
+/// A dot is the terminal's own colours. The letters are given in the order in which the styles first appear; beyond 62
 /// of them each cell has two, or three.
 ///
 /// ```
-/// use ratatui::{buffer::Buffer, style::Stylize, text::Line, widgets::Widget};
+/// use ratatui::{buffer::Buffer, layout::Rect, style::Stylize, text::Line, widgets::Widget};
 /// use termtrace::{Grid, Size, export::styled, lay_over};
 ///
-/// let mut buffer = Buffer::empty((0, 0, 10, 2).into());
+/// let mut buffer = Buffer::empty(Rect::new(0, 0, 10, 2));
 /// Line::from(vec!["ok".green().bold(), " or ".into(), "not".white().on_red()]).render(buffer.area, &mut buffer);
 /// let mut grid = Grid::new(Size::new(10, 2));
 /// lay_over(&mut grid, &buffer);
@@ -77,9 +77,9 @@ pub fn styled(grid: &Grid) -> String {
         let codes: String = row.iter().map(|cell| legend.code(cell)).collect();
         let _ = writeln!(out, "|{codes}|");
     }
-    out.push_str(&border(usize::from(grid.size().columns) * legend.letters));
-    for (number, look) in legend.looks.iter().enumerate() {
-        let _ = writeln!(out, "{}: {}", legend.letters_of(number), look.words());
+    out.push_str(&border(usize::from(grid.size().columns) * legend.code_len));
+    for (number, style) in legend.styles.iter().enumerate() {
+        let _ = writeln!(out, "{}: {}", legend.code_of(number), style.description());
     }
     out
 }
@@ -94,7 +94,7 @@ fn border(columns: usize) -> String {
 
 /// All but the glyph of a cell.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-struct Look {
+struct CellStyle {
     fg: Ink,
     bg: Ink,
     underline: Ink,
@@ -102,7 +102,7 @@ struct Look {
     is_foreign: bool,
 }
 
-impl Look {
+impl CellStyle {
     fn of(cell: &Cell) -> Self {
         let &Cell { fg, bg, underline, attributes, .. } = cell;
         Self { fg, bg, underline, attributes, is_foreign: cell.glyph == Glyph::Foreign }
@@ -112,7 +112,7 @@ impl Look {
         self == Self::of(&Cell::BLANK)
     }
 
-    fn words(self) -> String {
+    fn description(self) -> String {
         let mut words = match (self.fg, self.bg) {
             (fg, Ink::Default) => ink(fg),
             (fg, bg) => format!("{} on {}", ink(fg), ink(bg)),
@@ -149,37 +149,38 @@ fn ink(ink: Ink) -> String {
     }
 }
 
-const LETTERS: &[u8; 62] = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+const CODE_LETTERS: &[u8; 62] = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 
-/// The letters of the looks that a grid has.
+/// The letters of the styles that a grid has.
 struct Legend {
-    looks: Vec<Look>,
-    numbers: HashMap<Look, usize>,
+    styles: Vec<CellStyle>,
+    numbers: HashMap<CellStyle, usize>,
     /// How many letters each has.
-    letters: usize,
+    code_len: usize,
 }
 
 impl Legend {
     fn of(grid: &Grid) -> Self {
-        let (mut looks, mut numbers) = (Vec::new(), HashMap::new());
-        for look in grid.cells().iter().map(Look::of).filter(|look| !look.is_plain()) {
-            numbers.entry(look).or_insert_with(|| {
-                looks.push(look);
-                looks.len() - 1
+        let (mut styles, mut numbers) = (Vec::new(), HashMap::new());
+        for style in grid.cells().iter().map(CellStyle::of).filter(|style| !style.is_plain()) {
+            numbers.entry(style).or_insert_with(|| {
+                styles.push(style);
+                styles.len() - 1
             });
         }
         // A grid has less than 2^32 cells.
-        let letters = (1..=6).find(|&letters| LETTERS.len().pow(letters) >= looks.len()).unwrap_or(6);
-        Self { looks, numbers, letters: letters as usize }
+        let code_len = (1..=6).find(|&code_len| CODE_LETTERS.len().pow(code_len) >= styles.len()).unwrap_or(6);
+        Self { styles, numbers, code_len: code_len as usize }
     }
 
     fn code(&self, cell: &Cell) -> String {
-        self.numbers.get(&Look::of(cell)).map_or_else(|| ".".repeat(self.letters), |&number| self.letters_of(number))
+        self.numbers.get(&CellStyle::of(cell)).map_or_else(|| ".".repeat(self.code_len), |&number| self.code_of(number))
     }
 
-    fn letters_of(&self, number: usize) -> String {
-        let digit = |place: usize| LETTERS[number / LETTERS.len().pow(place as u32) % LETTERS.len()];
-        (0..self.letters).rev().map(|place| char::from(digit(place))).collect()
+    fn code_of(&self, number: usize) -> String {
+        let digit =
+            |digit_index: usize| CODE_LETTERS[number / CODE_LETTERS.len().pow(digit_index as u32) % CODE_LETTERS.len()];
+        (0..self.code_len).rev().map(|digit_index| char::from(digit(digit_index))).collect()
     }
 }
 
@@ -203,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Each look has letters of its own, however many there are.
+    /// Each style has letters of its own, however many there are.
     #[test]
     fn looks_in_any_number_are_told_apart() {
         for columns in [1, 62, 63, 300, 4000] {

@@ -1,15 +1,15 @@
 //! Grid -> SVG.
 
 use super::difference;
-use super::kind::{Contents, Kind};
-use super::paint::{DEFAULT_TEXT, hex, paths, runs};
+use super::format_row::{Contents, FormatRow};
+use super::paint::{DEFAULT_TEXT, hex, paths, text_runs};
 use crate::grid::{Grid, Size};
 use std::fmt::Write;
 
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: FormatRow = FormatRow {
     name: "svg",
     help: "Cells as a drawing, one rectangle per half cell",
-    endings: &["svg"],
+    extensions: &["svg"],
     key: 's',
     command: "WriteSvg",
     title: "SVG drawing",
@@ -18,10 +18,10 @@ pub(super) const KIND: Kind = Kind {
 };
 
 /// The width of a cell.
-const WIDTH: f64 = 10.0;
+const CELL_WIDTH: f64 = 10.0;
 
 /// The width of a character over the size of its font, in most monospace fonts.
-const ADVANCE: f64 = 0.6;
+const FONT_ADVANCE: f64 = 0.6;
 
 /// The grid as an SVG picture of its right shape: cells 10 units wide and `cell_aspect` times as high. Half blocks are
 /// rectangles, of which equal neighbours are one; characters are text, light on dark where the grid does not say
@@ -37,12 +37,12 @@ const ADVANCE: f64 = 0.6;
 /// ```
 pub fn svg(grid: &Grid, cell_aspect: f32) -> String {
     let Size { columns, rows } = grid.size();
-    let cell_height = WIDTH * f64::from(cell_aspect);
-    let (width, height) = (rounded(WIDTH * f64::from(columns)), rounded(cell_height * f64::from(rows)));
+    let cell_height = CELL_WIDTH * f64::from(cell_aspect);
+    let (width, height) = (rounded(CELL_WIDTH * f64::from(columns)), rounded(cell_height * f64::from(rows)));
     let half = rounded(0.5 * cell_height);
     let mut svg = format!(
         r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">
-<g transform="scale({WIDTH} {half})" shape-rendering="crispEdges">
+<g transform="scale({CELL_WIDTH} {half})" shape-rendering="crispEdges">
 {}</g>
 "#,
         paths(grid)
@@ -54,13 +54,13 @@ pub fn svg(grid: &Grid, cell_aspect: f32) -> String {
 
 /// What is written over it; nothing if nothing is.
 fn text(grid: &Grid, cell_height: f64) -> String {
-    let font_size = (WIDTH / ADVANCE).min(0.85 * cell_height);
+    let font_size = (CELL_WIDTH / FONT_ADVANCE).min(0.85 * cell_height);
     let mut lines = String::new();
     for (row, cells) in grid.rows().enumerate() {
         // A third of its size above the line, and none below: so characters stand in the middle of their cells.
         let y = rounded((row as f64 + 0.5) * cell_height + font_size / 3.0);
-        for run in runs(cells) {
-            let (x, length) = (WIDTH * run.column as f64, WIDTH * run.columns as f64);
+        for run in text_runs(cells) {
+            let (x, length) = (CELL_WIDTH * run.column as f64, CELL_WIDTH * run.columns as f64);
             let style = Some(run.css("fill")).filter(|css| !css.is_empty());
             let style = style.map(|css| format!(r#" style="{css}""#)).unwrap_or_default();
             let _ = writeln!(lines, r#"<text x="{x}" y="{y}" textLength="{length}"{style}>{}</text>"#, run.escaped());

@@ -2,15 +2,15 @@
 //! the table are all that one takes.
 
 use super::difference;
-use super::kind::{Contents, Kind};
+use super::format_row::{Contents, FormatRow};
 use crate::grid::Grid;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: FormatRow = FormatRow {
     name: "tally",
     help: "How often each character is there",
-    endings: &["tally", "tal"],
+    extensions: &["tally", "tal"],
     key: 'x',
     command: "WriteTally",
     title: "tally",

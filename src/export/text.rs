@@ -1,13 +1,13 @@
 //! Grid -> plain text.
 
 use super::difference;
-use super::kind::{Contents, Kind};
+use super::format_row::{Contents, FormatRow};
 use crate::grid::Grid;
 
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: FormatRow = FormatRow {
     name: "text",
     help: "Characters without colour",
-    endings: &["txt", "text"],
+    extensions: &["txt", "text"],
     key: 't',
     command: "WriteText",
     title: "plain text",

@@ -89,8 +89,8 @@ impl<W: Write> Cast<W> {
         let now = Duration::from_secs_f64(self.time());
         // As in the live view, a late frame is dropped, not queued: queued frames would fall behind more and more.
         if self.free_at <= now {
-            let most_bytes = self.max_rate.map(|rate| (rate / self.frames_per_second) as usize);
-            let allowance = Allowance { quality: self.quality, now, most_bytes };
+            let max_bytes = self.max_rate.map(|rate| (rate / self.frames_per_second) as usize);
+            let allowance = Allowance { quality: self.quality, now, max_bytes };
             self.encoder.encode_within(&grid, allowance, &mut bytes);
         }
         if let Some(rate) = self.max_rate.filter(|_| !bytes.is_empty()) {

@@ -14,7 +14,7 @@ use crate::capabilities::{Capabilities, Colors};
 use crate::cell::{self, Painter};
 use crate::control::{KeyMode, Keymap};
 use crate::encode::{Allowance, Encoder, Order, Quality};
-use crate::grid::{Grid, Size};
+use crate::grid::{Grid, HalfBlocks, Size};
 use crate::pace::Limit;
 use std::time::Duration;
 
@@ -97,7 +97,7 @@ impl Screen {
         if mode != self.painter.mode() {
             self.encoder.forget();
         }
-        self.encoder.set_upper_half(capabilities.halves_meet);
+        self.encoder.set_half_blocks(capabilities.half_blocks);
     }
 
     /// Takes a frame, with the time if something moves.
@@ -208,10 +208,10 @@ impl Screen {
 
     /// Forgets what the terminal shows: the next bytes draw everything, with either half block if both join seamlessly.
     /// They erase the window first if the picture covers only a part of it.
-    pub(super) fn redraw(&mut self, halves_meet: bool, covers_a_part: bool) {
+    pub(super) fn redraw(&mut self, half_blocks: HalfBlocks, covers_a_part: bool) {
         self.encoder.forget();
         self.erases = covers_a_part;
-        self.encoder.set_upper_half(halves_meet);
+        self.encoder.set_half_blocks(half_blocks);
         self.content.touch();
     }
 
@@ -276,8 +276,8 @@ impl Screen {
         if std::mem::take(&mut self.erases) {
             bytes.extend_from_slice(if cell_mode.colors == Colors::None { ERASE } else { RESET_ERASE });
         }
-        let most_bytes = limit.map(|limit| limit.max_bytes);
-        let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, most_bytes };
+        let max_bytes = limit.map(|limit| limit.max_bytes);
+        let allowance = Allowance { quality: self.quality.unwrap_or(usual), now, max_bytes };
         self.encoder.encode_within(grid, allowance, bytes);
         self.drawn = Some(now);
     }
@@ -342,7 +342,7 @@ mod tests {
         let capabilities = Capabilities {
             cell_mode: CellMode::HALF_BLOCK,
             cell_aspect: 2.0,
-            halves_meet: false,
+            half_blocks: HalfBlocks::Lower,
             light_background: false,
             synchronized_output: false,
         };

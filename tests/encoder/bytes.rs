@@ -8,7 +8,7 @@ use alacritty_terminal::vte::ansi;
 use std::io::{self, Write};
 use std::time::Duration;
 use termtrace::internals::encode::Allowance;
-use termtrace::internals::grid::Attributes;
+use termtrace::internals::grid::{Attributes, HalfBlocks};
 use termtrace::{Cell, Encoder, Glyph, Grid, Ink, Order, Quality, Size};
 
 const A: Ink = rgb(10, 20, 30);
@@ -184,7 +184,7 @@ fn either_half_saves_a_colour() {
     let mut grid = Grid::new(Size::new(2, 1));
     *grid.cell_mut(0, 0) = Cell::new('▄', A, B);
     *grid.cell_mut(1, 0) = Cell::new('▄', B, C);
-    let mut encoder = Encoder::new().with_upper_half(true);
+    let mut encoder = Encoder::new().with_half_blocks(HalfBlocks::Either);
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[0m\x1b[H\x1b[38;2;200;100;0;48;2;10;20;30m▀\x1b[48;2;1;2;3m▄");
     *grid.cell_mut(0, 0) = Cell::new('▄', C, Ink::Default);
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[38;2;1;2;3;49m▄");
@@ -236,7 +236,7 @@ fn an_exchanged_space_keeps_its_colour() {
 #[test]
 fn a_half_block_on_the_way_is_written_again() {
     for (turned, expected) in [(false, "\x1b[1;2Hx▄x"), (true, "\x1b[1;2Hx▀x")] {
-        let mut encoder = Encoder::new().with_upper_half(true);
+        let mut encoder = Encoder::new().with_half_blocks(HalfBlocks::Either);
         let mut grid = flat(&Cell::new('y', A, B));
         *grid.cell_mut(2, 0) = if turned { Cell::new('▄', B, A) } else { Cell::new('▄', A, B) };
         encoded(&mut encoder, &grid);
@@ -393,13 +393,9 @@ fn synchronized_frames_are_bracketed() {
 /// With any quality; what the brackets take is of what a frame may take.
 #[test]
 fn lossy_frames_are_bracketed_too() {
-    let sent = |encoder: &mut Encoder, cell, quality, most_bytes, now| {
+    let sent = |encoder: &mut Encoder, cell, quality, max_bytes, now| {
         let mut bytes = Vec::new();
-        encoder.encode_within(
-            &flat(cell),
-            Allowance { quality, now: Duration::from_secs(now), most_bytes },
-            &mut bytes,
-        );
+        encoder.encode_within(&flat(cell), Allowance { quality, now: Duration::from_secs(now), max_bytes }, &mut bytes);
         String::from_utf8(bytes).expect("UTF-8")
     };
     let [light, dark] = [Cell::new('▄', A, B), Cell::new('▄', C, A)];

@@ -7,7 +7,7 @@ use super::watched::Watched;
 use arbitrary::{Result, Unstructured};
 use std::time::Duration;
 use termtrace::internals::encode::Allowance;
-use termtrace::internals::grid::Attributes;
+use termtrace::internals::grid::{Attributes, HalfBlocks};
 use termtrace::{Cell, Grid, Ink, Order, Quality, Size, Srgb8};
 
 const GLYPHS: [&str; 9] = ["▄", "▀", " ", "a", "@", "é", "│", "世", "🙂"];
@@ -21,7 +21,8 @@ pub(crate) fn hold_for(data: &[u8]) {
 fn tell(bytes: &mut Unstructured<'_>) -> Result<()> {
     let order = if bytes.arbitrary()? { Order::Color } else { Order::Raster };
     let mut grid = Grid::new(size(bytes)?);
-    let mut watched = Watched::new(order, bytes.arbitrary()?, grid.size(), Clusters::None)
+    let half_blocks = if bytes.arbitrary()? { HalfBlocks::Either } else { HalfBlocks::Lower };
+    let mut watched = Watched::new(order, half_blocks, grid.size(), Clusters::None)
         .in_pieces(vec![bytes.int_in_range(1..=64)?, bytes.int_in_range(1..=8)?]);
     let mut now = Duration::ZERO;
     while !bytes.is_empty() {
@@ -37,7 +38,7 @@ fn tell(bytes: &mut Unstructured<'_>) -> Result<()> {
             }
             4..=6 => {
                 now += Duration::from_millis(bytes.int_in_range(0..=700)?);
-                let last = Allowance { quality: quality(bytes)?, now, most_bytes: most_bytes(bytes)? };
+                let last = Allowance { quality: quality(bytes)?, now, max_bytes: max_bytes(bytes)? };
                 watched.send_within(&grid, last);
                 if bytes.ratio(1, 4)? {
                     now += watched.rest(&grid, last).after;
@@ -61,7 +62,7 @@ fn quality(bytes: &mut Unstructured<'_>) -> Result<Quality> {
     bytes.choose(&[Quality::Equal, Quality::Fast, Quality::Exact]).copied()
 }
 
-fn most_bytes(bytes: &mut Unstructured<'_>) -> Result<Option<usize>> {
+fn max_bytes(bytes: &mut Unstructured<'_>) -> Result<Option<usize>> {
     Ok(if bytes.arbitrary()? { Some(bytes.int_in_range(0..=1_000)?) } else { None })
 }
 

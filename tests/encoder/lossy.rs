@@ -9,6 +9,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use std::time::Duration;
 use termtrace::internals::encode::Allowance;
+use termtrace::internals::grid::HalfBlocks;
 use termtrace::{Cell, Encoder, Grid, Ink, Order, Quality, Size};
 
 /// Colours that are near each other, further than a quality allows, and in between.
@@ -49,14 +50,14 @@ fn lossy_step() -> impl Strategy<Value = Step> {
 struct Pace {
     wait: Duration,
     quality: Quality,
-    most_bytes: Option<usize>,
+    max_bytes: Option<usize>,
 }
 
 fn pace() -> impl Strategy<Value = Pace> {
     let wait = prop_oneof![Just(33), Just(250), Just(500), Just(1_000), 0_u64..1_200].prop_map(Duration::from_millis);
     let quality = prop_oneof![1 => Just(Quality::Exact), 4 => Just(Quality::Equal), 4 => Just(Quality::Fast)];
-    let most_bytes = prop_oneof![3 => Just(None), 2 => (0_usize..2_000).prop_map(Some)];
-    (wait, quality, most_bytes).prop_map(|(wait, quality, most_bytes)| Pace { wait, quality, most_bytes })
+    let max_bytes = prop_oneof![3 => Just(None), 2 => (0_usize..2_000).prop_map(Some)];
+    (wait, quality, max_bytes).prop_map(|(wait, quality, max_bytes)| Pace { wait, quality, max_bytes })
 }
 
 proptest! {
@@ -73,15 +74,15 @@ proptest! {
         for way in WAYS {
             let mut stage = Stage::new(way, filled(size, &cells), Clusters::None);
             stage.watched = stage.watched.in_pieces(pieces.clone());
-            let mut last = Allowance { quality: first.quality, now: first.wait, most_bytes: first.most_bytes };
+            let mut last = Allowance { quality: first.quality, now: first.wait, max_bytes: first.max_bytes };
             stage.watched.send_within(&stage.grid, last);
-            for (step, Pace { wait, quality, most_bytes }) in &steps {
+            for (step, Pace { wait, quality, max_bytes }) in &steps {
                 stage.take(step);
-                last = Allowance { quality: *quality, now: last.now + *wait, most_bytes: *most_bytes };
+                last = Allowance { quality: *quality, now: last.now + *wait, max_bytes: *max_bytes };
                 stage.watched.send_within(&stage.grid, last);
             }
             let rest = stage.watched.rest(&stage.grid, last);
-            let in_time = last.most_bytes.is_some() || rest.after <= Duration::from_secs(1);
+            let in_time = last.max_bytes.is_some() || rest.after <= Duration::from_secs(1);
             prop_assert!(in_time, "all is exact only after {:?}", rest.after);
         }
     }
@@ -105,8 +106,8 @@ proptest! {
     }
 }
 
-fn allowance(millis: u64, quality: Quality, most_bytes: Option<usize>) -> Allowance {
-    Allowance { quality, now: Duration::from_millis(millis), most_bytes }
+fn allowance(millis: u64, quality: Quality, max_bytes: Option<usize>) -> Allowance {
+    Allowance { quality, now: Duration::from_millis(millis), max_bytes }
 }
 
 /// Flat cells of one grey.
@@ -164,7 +165,7 @@ fn either_half_may_be_what_differs() {
     for change in [Cell { fg: rgb(130, 100, 100), ..base.clone() }, Cell { bg: rgb(60, 30, 30), ..base.clone() }] {
         let mut grid = Grid::new(Size::new(20, 20));
         grid.cells_mut().fill(base.clone());
-        let mut watched = Watched::new(Order::Color, true, grid.size(), Clusters::None);
+        let mut watched = Watched::new(Order::Color, HalfBlocks::Either, grid.size(), Clusters::None);
         watched.send_within(&grid, allowance(0, Quality::Fast, None));
         *grid.cell_mut(3, 3) = change;
         assert_ne!(watched.send_within(&grid, allowance(1, Quality::Fast, None)), 0);
@@ -176,7 +177,7 @@ fn either_half_may_be_what_differs() {
 fn the_largest_errors_come_first() {
     let size = Size::new(30, 8);
     for quality in [Quality::Equal, Quality::Fast] {
-        let mut watched = Watched::new(Order::Raster, true, size, Clusters::None);
+        let mut watched = Watched::new(Order::Raster, HalfBlocks::Either, size, Clusters::None);
         watched.send(&grey(size, 20));
         let mut wanted = grey(size, 20);
         for (at, cell) in wanted.cells_mut().iter_mut().enumerate() {
@@ -196,7 +197,7 @@ fn the_largest_errors_come_first() {
 #[test]
 fn a_limit_does_not_keep_text_back() {
     let size = Size::new(30, 8);
-    let mut watched = Watched::new(Order::Color, true, size, Clusters::None);
+    let mut watched = Watched::new(Order::Color, HalfBlocks::Either, size, Clusters::None);
     watched.send(&grey(size, 20));
     let mut wanted = grey(size, 200);
     for column in 0..30 {
@@ -226,7 +227,7 @@ fn exact_colours_are_spread_over_frames() {
     let size = Size::new(40, 10);
     let mut number = super::pictures::noise(5);
     let (first, near) = (nearly_grey(size, &mut number), nearly_grey(size, &mut number));
-    let mut watched = Watched::new(Order::Color, true, size, Clusters::None);
+    let mut watched = Watched::new(Order::Color, HalfBlocks::Either, size, Clusters::None);
     watched.send(&first);
     let allowed = allowance(0, Quality::Fast, None);
     assert_eq!(watched.send_within(&near, allowed), 0, "nobody sees the difference");
@@ -249,7 +250,7 @@ fn exact_colours_are_spread_over_frames() {
 fn small_screens_come_to_rest() {
     for size in [(1, 1), (2, 1), (1, 2), (3, 1), (10, 1), (5, 3)] {
         let size = Size::new(size.0, size.1);
-        let mut watched = Watched::new(Order::Raster, true, size, Clusters::None);
+        let mut watched = Watched::new(Order::Raster, HalfBlocks::Either, size, Clusters::None);
         watched.send(&grey(size, 100));
         let mut wanted = grey(size, 101);
         for (at, cell) in wanted.cells_mut().iter_mut().enumerate() {
@@ -265,13 +266,13 @@ fn small_screens_come_to_rest() {
 #[test]
 fn exact_is_exact() {
     let size = Size::new(9, 3);
-    for (level, most_bytes) in [(1, None), (2, Some(0)), (3, Some(50))] {
+    for (level, max_bytes) in [(1, None), (2, Some(0)), (3, Some(50))] {
         let (mut one, mut other) = (Encoder::new(), Encoder::new());
         let mut bytes = Vec::new();
         for level in [0, level] {
             bytes.clear();
             one.encode(&grey(size, level), &mut bytes);
-            let within = encoded(&mut other, &grey(size, level), allowance(0, Quality::Exact, most_bytes));
+            let within = encoded(&mut other, &grey(size, level), allowance(0, Quality::Exact, max_bytes));
             assert_eq!(within.as_bytes(), bytes);
             assert_eq!(other.due(), None);
         }
@@ -282,7 +283,7 @@ fn exact_is_exact() {
 #[test]
 fn blanks_of_text_do_not_wait() {
     let size = Size::new(30, 8);
-    let mut watched = Watched::new(Order::Color, true, size, Clusters::None);
+    let mut watched = Watched::new(Order::Color, HalfBlocks::Either, size, Clusters::None);
     watched.send(&grey(size, 20));
     let mut panel = grey(size, 20);
     for column in 3..20 {
@@ -306,7 +307,7 @@ fn a_generous_limit_does_not_loosen_the_usual_one() {
     let size = Size::new(40, 10);
     let mut number = super::pictures::noise(7);
     let (first, near) = (nearly_grey(size, &mut number), nearly_grey(size, &mut number));
-    let mut watched = Watched::new(Order::Raster, true, size, Clusters::None);
+    let mut watched = Watched::new(Order::Raster, HalfBlocks::Either, size, Clusters::None);
     watched.send(&first);
     let generous = |millis| allowance(millis, Quality::Fast, Some(usize::MAX));
     watched.send_within(&near, generous(0));

@@ -26,7 +26,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use screens::{Clusters, glyph_of};
-use termtrace::internals::grid::Attributes;
+use termtrace::internals::grid::{Attributes, HalfBlocks};
 use termtrace::{Cell, Grid, Ink, Order, Size, Srgb8};
 use watched::Watched;
 
@@ -154,12 +154,16 @@ pub(crate) struct Stage {
 }
 
 /// Each way of encoding.
-pub(crate) const WAYS: [(Order, bool); 4] =
-    [(Order::Raster, false), (Order::Raster, true), (Order::Color, false), (Order::Color, true)];
+pub(crate) const WAYS: [(Order, HalfBlocks); 4] = [
+    (Order::Raster, HalfBlocks::Lower),
+    (Order::Raster, HalfBlocks::Either),
+    (Order::Color, HalfBlocks::Lower),
+    (Order::Color, HalfBlocks::Either),
+];
 
 impl Stage {
-    fn new((order, upper_half): (Order, bool), grid: Grid, clusters: Clusters) -> Self {
-        Self { watched: Watched::new(order, upper_half, grid.size(), clusters), clusters, grid }
+    fn new((order, half_blocks): (Order, HalfBlocks), grid: Grid, clusters: Clusters) -> Self {
+        Self { watched: Watched::new(order, half_blocks, grid.size(), clusters), clusters, grid }
     }
 
     /// One for each way of encoding.

@@ -11,6 +11,7 @@ use super::watched::Watched;
 use std::time::Duration;
 use termtrace::internals::cell::grid_from_picture;
 use termtrace::internals::encode::Allowance;
+use termtrace::internals::grid::HalfBlocks;
 use termtrace::{CellMode, Encoder, Grid, Order, Quality, Size};
 
 const SMALL: Size = Size::new(80, 24);
@@ -25,20 +26,20 @@ fn frames(sequence: &Sequence, size: Size, step: usize) -> Vec<(Duration, Grid)>
 
 /// Sends the frames and what is due after them, and judges each.
 #[track_caller]
-fn assert_played((order, upper_half): (Order, bool), quality: Quality, frames: &[(Duration, Grid)]) {
+fn assert_played((order, half_blocks): (Order, HalfBlocks), quality: Quality, frames: &[(Duration, Grid)]) {
     let (end, last) = frames.last().expect("there are frames");
-    let mut watched = Watched::new(order, upper_half, last.size(), Clusters::None);
-    let allowed = |now| Allowance { quality, now, most_bytes: None };
+    let mut watched = Watched::new(order, half_blocks, last.size(), Clusters::None);
+    let allowed = |now| Allowance { quality, now, max_bytes: None };
     for (now, grid) in frames {
         watched.send_within(grid, allowed(*now));
     }
     let rest = watched.rest(last, allowed(*end));
     assert!(rest.after <= Duration::from_secs(1), "at rest only after {:?}", rest.after);
     let mut whole = Vec::new();
-    Encoder::new().with_order(order).with_upper_half(upper_half).encode(last, &mut whole);
+    Encoder::new().with_order(order).with_half_blocks(half_blocks).encode(last, &mut whole);
     let parts = rest.bytes as f64 / whole.len() as f64;
     assert!(parts <= 1.5, "{parts} full frames until all was at rest");
-    if !upper_half {
+    if half_blocks == HalfBlocks::Lower {
         watched.assert_no_upper_half();
     }
 }
@@ -89,7 +90,7 @@ fn drawn_ones() {
 fn what_is_still_is_exact() {
     let frames = frames(&Sequence::of(Kind::Sphere), SMALL, 1);
     for quality in [Quality::Equal, Quality::Fast] {
-        let mut watched = Watched::new(Order::Color, true, SMALL, Clusters::None);
+        let mut watched = Watched::new(Order::Color, HalfBlocks::Either, SMALL, Clusters::None);
         let mut since = vec![Duration::ZERO; SMALL.cell_count()];
         let mut last = &frames[0].1;
         for (now, grid) in &frames {
@@ -97,7 +98,7 @@ fn what_is_still_is_exact() {
                 *since = if halves(a) == halves(b) { *since } else { *now };
             }
             last = grid;
-            watched.send_within(grid, Allowance { quality, now: *now, most_bytes: None });
+            watched.send_within(grid, Allowance { quality, now: *now, max_bytes: None });
             let still = (0..since.len()).filter(|&at| since[at] + Duration::from_secs(1) <= *now);
             watched.assert_exact_at(still, grid);
         }

@@ -4,12 +4,13 @@ use super::near::{Caps, assert_text_is_exact, assert_within, distance, halves, s
 use super::screens::{Clusters, Screens};
 use std::time::Duration;
 use termtrace::internals::encode::Allowance;
+use termtrace::internals::grid::HalfBlocks;
 use termtrace::{Cell, Encoder, Grid, Order, Quality, Size};
 
 /// The encoder, and the terminals.
 pub(crate) struct Watched {
     encoder: Encoder,
-    upper_half: bool,
+    half_blocks: HalfBlocks,
     clusters: Clusters,
     screens: Screens,
     /// The last wanted grid. (A blank of text looks like one of the picture.)
@@ -28,11 +29,11 @@ pub(crate) struct Rest {
 }
 
 impl Watched {
-    pub(crate) fn new(order: Order, upper_half: bool, size: Size, clusters: Clusters) -> Self {
-        let encoder = Encoder::new().with_order(order).with_upper_half(upper_half);
+    pub(crate) fn new(order: Order, half_blocks: HalfBlocks, size: Size, clusters: Clusters) -> Self {
+        let encoder = Encoder::new().with_order(order).with_half_blocks(half_blocks);
         Self {
             encoder,
-            upper_half,
+            half_blocks,
             clusters,
             screens: Screens::disturbed(size, clusters),
             last: None,
@@ -80,7 +81,7 @@ impl Watched {
 
     #[track_caller]
     fn assert_exact(&self, wanted: &Grid) {
-        if self.upper_half {
+        if self.half_blocks == HalfBlocks::Either {
             self.screens.assert_show_halves(wanted);
         } else {
             self.screens.assert_show(wanted);
@@ -97,7 +98,7 @@ impl Watched {
         self.screens.feed_in(&self.pieces, &bytes);
         let seen = assert_text_is_exact(&self.screens, wanted);
         let caps = Caps::of(allowance.quality);
-        match allowance.most_bytes {
+        match allowance.max_bytes {
             Some(most) if allowance.quality != Quality::Exact => {
                 assert_limited(&before, &seen, wanted, (bytes.len(), most));
                 assert_largest_first(&before, &seen, wanted, caps);

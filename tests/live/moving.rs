@@ -8,6 +8,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::time::Duration;
 use termtrace::internals::control::{Command, KeyMode, Keymap};
+use termtrace::internals::grid::HalfBlocks;
 use termtrace::{CellMode, Colors, Encoder, Glyphs, Grid, Order, Scene};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
@@ -78,7 +79,7 @@ fn the_first_frame_is_sent_in_the_order_that_is_asked_for() {
         // So that the first frame is the last one, too.
         let mut session = looking(flags.iter().fold(termtrace().arg("--samples=best"), Start::arg));
         let mut wanted = Vec::new();
-        let mut encoder = Encoder::new().with_order(order).with_upper_half(true);
+        let mut encoder = Encoder::new().with_order(order).with_half_blocks(HalfBlocks::Either);
         encoder.encode(&picture(CellMode::HALF_BLOCK, Size::cells(80, 24)), &mut wanted);
         let sent = session.seen().bytes();
         assert!(sent.windows(wanted.len()).any(|bytes| bytes == wanted), "{flags:?}");

@@ -7,6 +7,7 @@ use crate::gravel::gravel;
 use crate::pty::{self, Phases, SOON, Session, Size, Start, shows};
 use std::num::NonZeroU32;
 use std::path::Path;
+use termtrace::internals::grid::HalfBlocks;
 use termtrace::{CellMode, Encoder, Grid, Order, Sampling, Scene};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
@@ -23,7 +24,7 @@ fn picture(sampling: Sampling, scene: &Path, size: Size) -> Grid {
 /// The bytes of a whole frame that shows just this.
 fn whole_frame(grid: &Grid) -> usize {
     let mut bytes = Vec::new();
-    Encoder::new().with_order(Order::Raster).with_upper_half(true).encode(grid, &mut bytes);
+    Encoder::new().with_order(Order::Raster).with_half_blocks(HalfBlocks::Either).encode(grid, &mut bytes);
     bytes.len()
 }
 

@@ -1,6 +1,6 @@
 //! The test card: a circle, a gradient, and stripes of half cells; and what to set where one is wrong.
 
-use termtrace::internals::capabilities::Capabilities;
+use termtrace::internals::capabilities::{Capabilities, HalfBlocks};
 use termtrace::internals::cell;
 use termtrace::{Cell, Colors, Grid, LinearRgb, Painter, Picture, Size, Srgb8, export};
 
@@ -15,7 +15,7 @@ const GAP: u16 = 2;
 
 pub(super) fn bytes(capabilities: &Capabilities) -> Vec<u8> {
     let grid = grid(capabilities);
-    let mut bytes = export::printed(&grid, capabilities.cell_mode.colors);
+    let mut bytes = export::ansi_or_text(&grid, capabilities.cell_mode.colors);
     bytes.extend_from_slice(advice(capabilities).as_bytes());
     bytes
 }
@@ -42,7 +42,7 @@ fn grid(capabilities: &Capabilities) -> Grid {
     let mut painter = Painter::new(capabilities.cell_mode).with_light_background(capabilities.light_background);
     let mut grid = painter.grid(&picture(capabilities));
     // As in the live view, where the halves are said to meet.
-    if capabilities.halves_meet {
+    if capabilities.half_blocks == HalfBlocks::Either {
         let is_upper = |column: usize| column >= usize::from(STRIPES) && column % 2 == 1;
         for row in grid.rows_mut() {
             row.iter_mut()

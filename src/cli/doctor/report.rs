@@ -4,7 +4,7 @@ use crate::cli::settings::Settings;
 use std::fmt::Write;
 use std::time::Duration;
 use termtrace::Colors;
-use termtrace::internals::capabilities::{Detected, Findings, Hints, Replies, SafeQueries, Source};
+use termtrace::internals::capabilities::{Detected, Findings, HalfBlocks, Hints, Replies, SafeQueries, Source};
 use termtrace::internals::text::visible_lines;
 
 /// How the talk with the terminal went.
@@ -51,7 +51,7 @@ impl Report<'_> {
             self.set("cell, height/width", "cell_aspect", findings.cell_aspect, |aspect| {
                 format!("{aspect:.3}{}", self.pixels())
             }),
-            self.yes("half blocks meet", findings.halves_meet),
+            self.half_blocks(),
             self.background(),
             self.sixteen(),
             self.yes("synchronized output", findings.synchronized_output),
@@ -134,6 +134,11 @@ impl Report<'_> {
             return (what, "not known: no".to_owned(), self.no_answer().to_owned());
         }
         row(what, found, yes_or_no)
+    }
+
+    fn half_blocks(&self) -> ReportRow {
+        let Detected { value, source } = self.findings.half_blocks;
+        self.yes("half blocks meet", Detected { value: value == HalfBlocks::Either, source })
     }
 
     fn background(&self) -> ReportRow {

@@ -98,12 +98,12 @@ impl<W: Write> Backend for EncoderBackend<W> {
     #[cfg(feature = "scrolling-regions")]
     fn scroll_region_up(&mut self, region: std::ops::Range<u16>, line_count: u16) -> io::Result<()> {
         self.follow_window()?;
-        self.scroll(region, line_count, super::regions::Way::Up)
+        self.scroll(region, line_count, super::regions::ScrollDirection::Up)
     }
 
     #[cfg(feature = "scrolling-regions")]
     fn scroll_region_down(&mut self, region: std::ops::Range<u16>, line_count: u16) -> io::Result<()> {
         self.follow_window()?;
-        self.scroll(region, line_count, super::regions::Way::Down)
+        self.scroll(region, line_count, super::regions::ScrollDirection::Down)
     }
 }

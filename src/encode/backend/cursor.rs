@@ -1,6 +1,6 @@
 //! What is said of the cursor.
 
-use crate::encode::moves::{Move, Place};
+use crate::encode::moves::{CellPosition, Move};
 use ratatui_core::layout::Position;
 
 /// Where the cursor is and whether it is seen; `None`: that is unknown, or nothing is wanted of it.
@@ -12,11 +12,11 @@ pub(super) struct Cursor {
 
 impl Cursor {
     /// Appends what differs from the wanted one.
-    pub(super) fn become_cursor(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
+    pub(super) fn switch_to(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if let Some(Position { x, y }) = wanted.position
             && self.position != wanted.position
         {
-            Move::To(Place { column: x, row: y }).write(bytes);
+            Move::To(CellPosition { column: x, row: y }).write(bytes);
             self.position = wanted.position;
         }
         if let Some(visible) = wanted.visible

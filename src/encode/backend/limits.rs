@@ -5,7 +5,7 @@ use std::time::Duration;
 
 /// So much of the rate may be ahead of its time: a frame of a program that draws seldom is not held back for longer,
 /// and one that draws 30 times a second has a third of it for each frame.
-const AHEAD: Duration = Duration::from_millis(100);
+const MAX_AHEAD: Duration = Duration::from_millis(100);
 
 /// A quality, the time, and what is left of a rate.
 pub(super) struct Limits {
@@ -29,13 +29,13 @@ impl Limits {
     /// What a frame that is sent now may differ in and take.
     pub(super) fn allowance(&mut self) -> Allowance {
         self.now = (self.clock)();
-        let left = (self.now + AHEAD).saturating_sub(self.free_at).min(AHEAD);
-        let most_bytes = self.bytes_per_second.map(|rate| (rate * left.as_secs_f64()) as usize);
-        Allowance { quality: self.quality, now: self.now, most_bytes }
+        let left = (self.now + MAX_AHEAD).saturating_sub(self.free_at).min(MAX_AHEAD);
+        let max_bytes = self.bytes_per_second.map(|rate| (rate * left.as_secs_f64()) as usize);
+        Allowance { quality: self.quality, now: self.now, max_bytes }
     }
 
     /// That frame has taken so many bytes.
-    pub(super) fn note_sent(&mut self, bytes: usize) {
+    pub(super) fn record_sent(&mut self, bytes: usize) {
         if let Some(rate) = self.bytes_per_second {
             self.free_at = self.free_at.max(self.now) + Duration::from_secs_f64(bytes as f64 / rate);
         }
@@ -43,6 +43,6 @@ impl Limits {
 
     /// When what the encoder has due then may be sent: once half of what may be ahead is free again.
     pub(super) fn due(&self, due: Duration) -> Duration {
-        due.max(self.free_at.saturating_sub(AHEAD / 2))
+        due.max(self.free_at.saturating_sub(MAX_AHEAD / 2))
     }
 }

@@ -5,7 +5,7 @@
 //! into the scrollback.
 
 use super::EncoderBackend;
-use crate::encode::moves::{Move, Place};
+use crate::encode::moves::{CellPosition, Move};
 use crate::encode::numbers::write_number;
 use std::io::{self, Write};
 use std::iter;
@@ -13,7 +13,7 @@ use std::ops::Range;
 
 /// Which way the content goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum ScrollDirection {
     Up,
     Down,
 }
@@ -21,7 +21,7 @@ pub(super) enum Way {
 impl<W: Write> EncoderBackend<W> {
     /// Scrolls these rows by so many; blank ones come in. What goes out at the screen's top goes into the scrollback.
     /// The cursor is at the top left afterwards.
-    pub(super) fn scroll(&mut self, region: Range<u16>, by: u16, way: Way) -> io::Result<()> {
+    pub(super) fn scroll(&mut self, region: Range<u16>, by: u16, direction: ScrollDirection) -> io::Result<()> {
         let height = self.window.columns_rows.height;
         let end = region.end.min(height);
         let region = region.start.min(end)..end;
@@ -29,44 +29,44 @@ impl<W: Write> EncoderBackend<W> {
         if by == 0 {
             return Ok(());
         }
-        let is_first_row_going_out = region == (0..1) && way == Way::Up;
+        let is_first_row_going_out = region == (0..1) && direction == ScrollDirection::Up;
         if region.len() == 1 && height > 1 && !is_first_row_going_out {
             let columns = usize::from(self.window.columns_rows.width);
             self.blank(usize::from(region.start) * columns..usize::from(region.end) * columns);
             return self.send_exactly();
         }
-        let mut bytes = self.outstanding();
+        let mut bytes = self.unsent_bytes();
         if region == (0..height) {
-            scroll_screen(height, by, way, &mut bytes);
+            scroll_screen(height, by, direction, &mut bytes);
         } else if is_first_row_going_out {
             // Down again, without the row that went out.
-            scroll_screen(height, 1, Way::Up, &mut bytes);
-            scroll_screen(height, 1, Way::Down, &mut bytes);
+            scroll_screen(height, 1, ScrollDirection::Up, &mut bytes);
+            scroll_screen(height, 1, ScrollDirection::Down, &mut bytes);
         } else {
-            scroll_rows(&region, by, way, &mut bytes);
+            scroll_rows(&region, by, direction, &mut bytes);
         }
-        self.note_scrolled(region, by, way);
+        self.record_scrolled(region, by, direction);
         self.send(&bytes)
     }
 }
 
 /// The whole screen; the cursor ends at the top left. Upwards by line feeds, of which every terminal keeps what goes
 /// out.
-fn scroll_screen(height: u16, by: u16, way: Way, bytes: &mut Vec<u8>) {
-    match way {
-        Way::Up => {
-            Move::To(Place { column: 0, row: height - 1 }).write(bytes);
+fn scroll_screen(height: u16, by: u16, direction: ScrollDirection, bytes: &mut Vec<u8>) {
+    match direction {
+        ScrollDirection::Up => {
+            Move::To(CellPosition { column: 0, row: height - 1 }).write(bytes);
             bytes.extend(iter::repeat_n(b'\n', by.into()));
         }
-        Way::Down => sequence(&[by], b'T', bytes),
+        ScrollDirection::Down => sequence(&[by], b'T', bytes),
     }
-    Move::To(Place { column: 0, row: 0 }).write(bytes);
+    Move::To(CellPosition { column: 0, row: 0 }).write(bytes);
 }
 
 /// A part of it; setting and resetting a region both take the cursor to the top left.
-fn scroll_rows(region: &Range<u16>, by: u16, way: Way, bytes: &mut Vec<u8>) {
+fn scroll_rows(region: &Range<u16>, by: u16, direction: ScrollDirection, bytes: &mut Vec<u8>) {
     sequence(&[region.start + 1, region.end], b'r', bytes);
-    sequence(&[by], if way == Way::Up { b'S' } else { b'T' }, bytes);
+    sequence(&[by], if direction == ScrollDirection::Up { b'S' } else { b'T' }, bytes);
     bytes.extend_from_slice(b"\x1b[r");
 }
 

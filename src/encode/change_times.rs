@@ -5,24 +5,24 @@ use std::time::Duration;
 
 /// How long a cell may show nearly its colours after they last changed. Long enough that what only pauses is not sent
 /// twice, and short enough that all is exact within a second.
-const WAIT: Duration = Duration::from_millis(500);
+const EXACT_AFTER: Duration = Duration::from_millis(500);
 
 /// The last wanted grid, and when each of its cells last changed.
 #[derive(Clone, Debug)]
-pub(super) struct Stillness {
+pub(super) struct ChangeTimes {
     wanted: Grid,
     since: Vec<Duration>,
 }
 
-impl Default for Stillness {
+impl Default for ChangeTimes {
     fn default() -> Self {
         Self { wanted: Grid::new(Size::new(0, 0)), since: Vec::new() }
     }
 }
 
-impl Stillness {
+impl ChangeTimes {
     /// A grid is wanted.
-    pub(super) fn note(&mut self, wanted: &Grid, now: Duration) {
+    pub(super) fn record(&mut self, wanted: &Grid, now: Duration) {
         if self.wanted.size() != wanted.size() {
             self.wanted = wanted.clone();
             self.since = vec![now; wanted.cells().len()];
@@ -37,7 +37,7 @@ impl Stillness {
     }
 
     /// When a cell is to have its exact colours.
-    pub(super) fn due(&self, at: usize) -> Duration {
-        self.since[at].saturating_add(WAIT)
+    pub(super) fn exact_at(&self, at: usize) -> Duration {
+        self.since[at].saturating_add(EXACT_AFTER)
     }
 }

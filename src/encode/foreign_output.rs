@@ -1,14 +1,14 @@
 //! Changes of the screen that do not come from the encoder.
 
 use super::Encoder;
-use super::moves::Place;
+use super::moves::CellPosition;
 use super::pen::Pen;
 use crate::grid::Cell;
 use std::ops::Range;
 
 impl Encoder {
     /// Marks a cell as unknown.
-    pub(super) fn forget_cell(&mut self, Place { column, row }: Place) {
+    pub(super) fn forget_cell(&mut self, CellPosition { column, row }: CellPosition) {
         if let Some(known) = &mut self.known {
             *known.shown.cell_mut(column, row) = Cell::FOREIGN;
         }
@@ -27,7 +27,7 @@ impl Encoder {
     /// Resets the pen, so that foreign output does not get its colours.
     pub(super) fn reset_pen(&mut self, bytes: &mut Vec<u8>) {
         if let Some(known) = &mut self.known {
-            known.pen.become_pen(Pen::default(), bytes);
+            known.pen.switch_to(Pen::default(), bytes);
         }
     }
 

@@ -6,11 +6,11 @@ use crate::tone::Picture;
 use std::io;
 
 /// All that is particular to a format.
-pub(super) struct Kind {
+pub(super) struct FormatRow {
     pub(super) name: &'static str,
     pub(super) help: &'static str,
     /// What is written first.
-    pub(super) endings: &'static [&'static str],
+    pub(super) extensions: &'static [&'static str],
     pub(super) key: char,
     pub(super) command: &'static str,
     pub(super) title: &'static str,
