@@ -240,6 +240,7 @@ impl Painter {
     }
 }
 
+/// Returns the size of a picture in cells, rounded up.
 fn size_in_cells(picture: &Picture, (across, down): (u32, u32)) -> Size {
     let cells = |pixels: u32, per_cell| {
         u16::try_from(pixels.div_ceil(per_cell)).expect("a grid has at most 65,535 columns and rows")

@@ -1,6 +1,6 @@
-//! Grid or picture -> a file's contents: plain text, ANSI, SVG, HTML, PNG.
+//! Export of grids and pictures to files: plain text, ANSI, SVG, HTML, PNG.
 //!
-//! A format is one file here, with its `mod` line, and one row of the table of [`Format`]s.
+//! A format is one file of this folder, with its `mod` line, and one row of the table of [`Format`]s.
 
 mod ansi;
 mod difference;
@@ -45,7 +45,7 @@ crate::table::table! {
     /// The formats of files with a picture, in the order of the keys that ask for them.
     #[doc(hidden)]
     pub enum Format: FormatRow {
-        /// Its pixels: [`png()`].
+        /// The picture's pixels: [`png()`].
         #[cfg(feature = "png")]
         Png = png::KIND;
         /// Cells in colour, for terminals: [`ansi()`].
@@ -56,74 +56,75 @@ crate::table::table! {
         Svg = svg::KIND;
         /// Cells as a web page: [`html()`].
         Html = html::KIND;
-        /// Numbers of characters: a format that only tests have.
+        /// The number of times each character occurs; exists in tests only.
         #[cfg(test)]
         Tally = tally::KIND;
     }
 }
 
 impl Format {
-    /// The word by which the command line asks for it.
+    /// Returns the name of the format on the command line.
     #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// The format of that name.
+    /// Returns the format with this name, if there is one.
     #[doc(hidden)]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|format| format.name() == name)
     }
 
-    /// What it is, for the help of the command line.
+    /// Returns the description in the command line's help.
     #[doc(hidden)]
     pub const fn help(self) -> &'static str {
         self.row().help
     }
 
-    /// How the names of such files end, without the dot.
+    /// Returns the extension of new files, without the dot.
     #[doc(hidden)]
     pub const fn extension(self) -> &'static str {
         self.row().extensions[0]
     }
 
-    /// The format of files whose names end so, without the dot, in lower case.
+    /// Returns the format of an extension, given in lower case without the dot.
     #[doc(hidden)]
     pub fn from_extension(extension: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|format| format.row().extensions.contains(&extension))
     }
 
-    /// The letter that asks for it in the live view.
+    /// Returns the key of the format in the live view.
     #[doc(hidden)]
     pub const fn key(self) -> char {
         self.row().key
     }
 
-    /// The name of the command that asks for it. Names stay: people's files have them.
+    /// Returns the name of the command that writes this format.
+    // Users' keymaps contain the names, so they must not change.
     #[doc(hidden)]
     pub const fn command(self) -> &'static str {
         self.row().command
     }
 
-    /// What the live view calls it, in a few words.
+    /// Returns the description in the live view.
     #[doc(hidden)]
     pub const fn title(self) -> &'static str {
         self.row().title
     }
 
-    /// What it is made of, and by what.
+    /// Returns the input of the format, and the function that makes the file.
     #[doc(hidden)]
     pub const fn contents(self) -> Contents {
         self.row().contents
     }
 
-    /// Whether it has pixels, not cells.
+    /// Returns whether the format contains pixels instead of cells.
     #[doc(hidden)]
     pub const fn has_pixels(self) -> bool {
         matches!(self.contents(), Contents::Pixels(_))
     }
 
-    /// Returns how a file of it differs from the golden one, in lines for a person.
+    /// Returns the difference of a file from the golden one, in lines for a person.
     #[doc(hidden)]
     pub fn difference(self, golden: &[u8], file: &[u8]) -> String {
         (self.row().difference)(golden, file)
@@ -136,7 +137,7 @@ impl fmt::Display for Format {
     }
 }
 
-/// The value of that name.
+/// Parses the name of a format.
 ///
 /// ```
 /// use termtrace::export::Format;
@@ -153,8 +154,10 @@ impl FromStr for Format {
     }
 }
 
-/// The scene at that size as plain text, for snapshot tests: one ray through each pixel's centre, cells of the usual
-/// aspect of 2, one line for each row, each with all its characters and a line feed.
+/// Returns a scene's own view as plain text, for snapshot tests.
+///
+/// One ray is traced through each pixel's centre, and cells have the usual aspect of 2. Each row is a line with all its
+/// characters and a line feed.
 ///
 /// ```
 /// use termtrace::{Scene, Size, text_frame};
@@ -163,7 +166,7 @@ impl FromStr for Format {
 ///     camera: (eye: (0, 0, 4), target: (0, 0, 0)),
 ///     lights: [Point(position: (0, 0, 4), intensity: 10)],
 ///     objects: [Sphere(center: (0, 0, 0), radius: 1)],
-/// )"##).unwrap();
+/// )"##)?;
 /// let rows = [
 ///     "            ",
 ///     "   -+**+-   ",
@@ -173,6 +176,7 @@ impl FromStr for Format {
 ///     "            ",
 /// ];
 /// assert_eq!(text_frame(&scene, Size::new(12, 6)), rows.map(|row| format!("{row}\n")).concat());
+/// # Ok::<(), termtrace::SceneError>(())
 /// ```
 ///
 /// # Panics
@@ -182,13 +186,24 @@ pub fn text_frame(scene: &Scene, size: Size) -> String {
     text(&frame_grid(scene, CellMode::RAMP, size, USUAL_CELL_ASPECT))
 }
 
-/// Returns the scene's own view as the cells of a screen of that size and cell aspect, one ray through each pixel's
-/// centre.
+/// Returns a scene's own view as the cells of a screen of this size and cell aspect.
+///
+/// One ray is traced through each pixel's centre.
+///
+/// ```
+/// use termtrace::{CellMode, Scene, Size, frame_grid};
+///
+/// let scene = Scene::load("scenes/three_spheres.ron".as_ref())?;
+/// let grid = frame_grid(&scene, CellMode::HALF_BLOCK, Size::new(80, 24), 2.0);
+/// assert_eq!(grid.size(), Size::new(80, 24));
+/// # Ok::<(), termtrace::LoadError>(())
+/// ```
 ///
 /// # Panics
 /// If [`cell::resolution`] is an error: for a screen with more pixels than a picture may have, or an aspect that is not
 /// greater than 0 and finite.
 pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f32) -> Grid {
+    // The same steps as the live view and `termtrace frame`, so that a snapshot shows what users see.
     let resolution =
         cell::resolution(cell_mode, size, cell_aspect).expect("a size and an aspect that pictures can have");
     let picture = tone(&render(scene, scene.camera(), resolution, NonZeroU32::MIN), scene);
@@ -201,7 +216,7 @@ mod tests {
     use crate::capabilities::Colors;
     use std::collections::HashSet;
 
-    /// That file, its `mod` line and its row are all that it took.
+    /// The format consists of one file, its `mod` line and its row of the table.
     #[test]
     fn a_format_for_tests_is_found_and_written() {
         let format = Format::from_name("tally").expect("by its name");

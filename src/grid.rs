@@ -44,7 +44,7 @@ impl Size {
     /// Returns the number of cells.
     #[doc(hidden)]
     pub const fn cell_count(self) -> usize {
-        // At most 65,535 squared, which fits into 32 bits.
+        // At most 65,535 squared, which fits into 32 bits: no overflow on any target.
         self.columns as usize * self.rows as usize
     }
 }
@@ -70,8 +70,8 @@ pub enum HalfBlocks {
 
 impl HalfBlocks {
     /// Returns the half blocks for cells of this height in pixels: either, if it is even.
-    // Compared pixel by pixel: xterm, st, kitty, alacritty and foot all split even cells in the same line. At odd heights
-    // some give the middle row to either half, others to the glyph, and a mix of both blocks is visible.
+    // Compared pixel by pixel: xterm, st, kitty, alacritty and foot all split even cells in the same line. At odd
+    // heights some give the middle row to either half, others to the glyph, and a mix of both blocks is visible.
     pub(crate) fn of_cell_height(height: u16) -> Self {
         if height > 0 && height.is_multiple_of(2) { Self::Either } else { Self::Lower }
     }
@@ -184,6 +184,7 @@ impl Cell {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Grid {
     size: Size,
+    // One allocation for all rows: frames are compared, cloned and cleared as a whole.
     cells: Vec<Cell>,
 }
 
@@ -231,6 +232,8 @@ impl Grid {
         Self { size, cells: vec![Cell::FOREIGN; Self::checked_cell_count(size)] }
     }
 
+    /// Returns the number of cells, if it is within the limit.
+    // A panic, not an error: sizes come from terminals, which are checked where they are read.
     fn checked_cell_count(size: Size) -> usize {
         let count = size.cell_count();
         assert!(count <= Self::MAX_CELLS, "a grid of {count} cells is too large; it may have {}", Self::MAX_CELLS);
@@ -352,6 +355,7 @@ impl Grid {
         if column >= self.size.columns || self.cell(column, row).glyph != Glyph::Covered {
             return;
         }
+        // A glyph may cover any number of columns, so both of its ends are searched.
         let is_covered = |grid: &Self, column| grid.cell(column, row).glyph == Glyph::Covered;
         let start = (0..column).rev().find(|&column| !is_covered(self, column)).unwrap_or(0);
         let end = (column..self.size.columns).find(|&column| !is_covered(self, column)).unwrap_or(self.size.columns);

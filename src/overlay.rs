@@ -1,4 +1,4 @@
-//! Text and panels over the picture: any ratatui buffer laid over the grid; and the grid as such a buffer.
+//! Conversion between grids and ratatui's buffers: panels laid over a picture, and a grid as a buffer.
 
 use crate::color::Srgb8;
 use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
@@ -7,7 +7,18 @@ use ratatui_core::layout::{Position, Rect};
 use ratatui_core::style::{Color, Modifier};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// Puts the buffer's cells over the grid's, where both have them.
+/// Lays a buffer's cells over those of a grid, where both have cells.
+///
+/// ```
+/// use ratatui::{buffer::Buffer, layout::Rect, widgets::Widget};
+/// use termtrace::{Grid, Size, lay_over};
+///
+/// let mut buffer = Buffer::empty(Rect::new(2, 0, 4, 1));
+/// "text".render(buffer.area, &mut buffer);
+/// let mut grid = Grid::new(Size::new(80, 24));
+/// lay_over(&mut grid, &buffer);
+/// assert!(grid.get(2, 0).is_some_and(|cell| cell.glyph == 't'));
+/// ```
 pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
     let area = buffer.area.intersection(Rect::new(0, 0, grid.size().columns, grid.size().rows));
     if area.is_empty() {
@@ -21,14 +32,14 @@ pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
     }
 }
 
-/// Puts one cell into the grid, where there is room for so many columns; how many it takes. A skipped one leaves what is
-/// there: ratatui's programs skip where a picture is.
+/// Puts a ratatui cell into the grid, in at most `room` columns, and returns its width in columns.
+// A skipped cell leaves the grid's: ratatui programs skip the cells under a picture of the terminal's.
 pub(crate) fn put_cell(grid: &mut Grid, place: Position, cell: &ratatui_core::buffer::Cell, room: u16) -> u16 {
     if is_skipped(cell) {
         return 1;
     }
     let (glyph, columns) = glyph_from_ratatui(cell);
-    // Half a wide character is none.
+    // A wide glyph that does not fit becomes a blank.
     let (glyph, columns) = if columns <= room { (glyph, columns) } else { (Glyph::Char(' '), 1) };
     let cell = Cell {
         glyph,
@@ -41,6 +52,7 @@ pub(crate) fn put_cell(grid: &mut Grid, place: Position, cell: &ratatui_core::bu
     columns
 }
 
+/// Returns whether ratatui skips a cell.
 #[expect(deprecated, reason = "programs still set the older one of the two ways to say it")]
 fn is_skipped(cell: &ratatui_core::buffer::Cell) -> bool {
     match cell.diff_option {
@@ -50,8 +62,9 @@ fn is_skipped(cell: &ratatui_core::buffer::Cell) -> bool {
     }
 }
 
-/// What stands in the cell, and how many columns ratatui takes it for. Control characters would do something else to the
-/// terminal than the encoder knows, and what has no width would go to another cell: each is a blank.
+/// Returns the glyph of a ratatui cell, and its width in columns by ratatui's measure.
+// Control characters would have effects that the encoder does not track, and a glyph without width would be shown in
+// another cell: both become blanks.
 fn glyph_from_ratatui(cell: &ratatui_core::buffer::Cell) -> (Glyph, u16) {
     let symbol = cell.symbol();
     if symbol.contains(char::is_control) || symbol.width() == 0 {
@@ -60,18 +73,20 @@ fn glyph_from_ratatui(cell: &ratatui_core::buffer::Cell) -> (Glyph, u16) {
     let columns = cell.cell_width();
     let mut characters = symbol.chars();
     let glyph = match (characters.next(), characters.next()) {
+        // A character whose width both agree on needs no allocation: nearly every cell.
         (Some(c), None) if c.width() == Some(columns.into()) && !is_regional_indicator(c) => Glyph::Char(c),
         _ => Glyph::Cluster(symbol.into()),
     };
     (glyph, columns)
 }
 
-/// A regional indicator: two of them are a flag, and of one alone terminals disagree.
+/// Returns whether a character is a regional indicator, half of a flag.
+// Terminals disagree on the width of a single one, so it is treated as a cluster.
 fn is_regional_indicator(character: char) -> bool {
     matches!(character, '\u{1f1e6}'..='\u{1f1ff}')
 }
 
-/// The colour of the line below, where ratatui's cells have one.
+/// Returns the colour of the underline, if ratatui's cells have one.
 #[cfg(feature = "underline-color")]
 fn underline(cell: &ratatui_core::buffer::Cell) -> Ink {
     ink_from_ratatui(cell.underline_color)
@@ -82,7 +97,7 @@ fn underline(_: &ratatui_core::buffer::Cell) -> Ink {
     Ink::Default
 }
 
-/// Each attribute of ratatui's, and that of the grid.
+/// Each of ratatui's modifiers, with the attribute of a grid.
 const ATTRIBUTES: [(Modifier, Attributes); 9] = [
     (Modifier::BOLD, Attributes::BOLD),
     (Modifier::DIM, Attributes::DIM),
@@ -96,7 +111,7 @@ const ATTRIBUTES: [(Modifier, Attributes); 9] = [
 ];
 
 fn attributes_from_ratatui(modifier: Modifier) -> Attributes {
-    // Most cells have none.
+    // Most cells have no modifiers, so the nine tests are skipped.
     if modifier.is_empty() {
         return Attributes::empty();
     }
@@ -104,7 +119,8 @@ fn attributes_from_ratatui(modifier: Modifier) -> Attributes {
     those.map(|(_, one)| one).collect()
 }
 
-/// The 16 named colours are the first of the indexed ones, in the order of SGR's codes.
+/// Returns the ink of a ratatui colour.
+// ratatui's 16 named colours are the first palette colours, in the order of their SGR codes.
 fn ink_from_ratatui(color: Color) -> Ink {
     match color {
         Color::Reset => Ink::Default,
@@ -129,8 +145,7 @@ fn ink_from_ratatui(color: Color) -> Ink {
     }
 }
 
-/// The cells of the grid, in a buffer that begins at (0, 0). What stands there in a program that only draws some of its
-/// cells stays: [`Glyph::Foreign`] is skipped.
+/// Returns a buffer with the cells of the grid, from (0, 0) on; [`Glyph::Foreign`] becomes a skipped cell.
 ///
 /// ```
 /// use ratatui::buffer::Buffer;
@@ -158,7 +173,7 @@ fn ratatui_from_cell(cell: &Cell) -> ratatui_core::buffer::Cell {
         Glyph::Cluster(text) => {
             to.set_symbol(text);
         }
-        // As ratatui leaves what a wide character covers.
+        // ratatui has a blank cell behind a wide character.
         Glyph::Covered => return to,
         Glyph::Foreign => {
             to.set_diff_option(CellDiffOption::Skip);
@@ -170,7 +185,7 @@ fn ratatui_from_cell(cell: &Cell) -> ratatui_core::buffer::Cell {
     to
 }
 
-/// Gives the line below its colour, where ratatui's cells have one.
+/// Sets the colour of the underline, if ratatui's cells have one.
 #[cfg(feature = "underline-color")]
 fn set_underline(to: &mut ratatui_core::buffer::Cell, underline: Ink) {
     to.underline_color = underline.into();
@@ -187,7 +202,7 @@ fn modifier_from_attributes(attributes: Attributes) -> Modifier {
     those.map(|(one, _)| one).collect()
 }
 
-/// The same colour in ratatui's words.
+/// Converts to ratatui's type; the default ink becomes [`Color::Reset`].
 impl From<Ink> for Color {
     fn from(ink: Ink) -> Self {
         match ink {
@@ -203,9 +218,9 @@ mod tests {
     use super::*;
     use crate::grid::Size;
 
-    /// Wide characters, clusters, modifiers and what is not ours: laid over another grid, the buffer gives the same again.
+    /// A grid converted to a buffer and laid over another grid gives the same grid again.
     #[test]
-    fn a_grid_is_the_same_after_a_way_through_a_buffer() {
+    fn a_grid_survives_conversion_to_a_buffer_and_back() {
         let mut grid = Grid::new(Size::new(6, 2));
         let cell = Cell::new('a', Ink::Rgb(Srgb8::new(1, 2, 3)), Ink::Indexed(200));
         let underline = if cfg!(feature = "underline-color") { Ink::Indexed(3) } else { Ink::Default };
@@ -222,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn an_ink_is_the_same_after_a_way_through_a_colour() {
+    fn an_ink_survives_conversion_to_a_colour_and_back() {
         let all = [Ink::Default, Ink::Rgb(Srgb8::new(9, 8, 7))].into_iter().chain((0..=255).map(Ink::Indexed));
         for ink in all {
             assert_eq!(ink_from_ratatui(ink.into()), ink);

@@ -37,6 +37,7 @@ serialize_as! {
     Srgb8 as [u8; 3]: |color| [color.r, color.g, color.b], |channels| Ok::<_, Infallible>(Self::from(channels));
     Size as SizeForm: |&Size { columns, rows }| SizeForm { columns, rows },
         |SizeForm { columns, rows }| Ok::<_, Infallible>(Self { columns, rows });
+    // By name, not by number, so that new maps do not change the meaning of old files.
     Map as String: |map| map.name().to_owned(), |name: String| name.parse::<Self>();
     Sampling as SamplingForm: |&sampling| sampling.into(), |form: SamplingForm| Ok::<_, Infallible>(form.into());
     Pose as PoseForm: |&Pose { eye, target, up }| PoseForm { eye: eye.into(), target: target.into(), up: up.into() },
@@ -45,6 +46,7 @@ serialize_as! {
     Camera as CameraForm: |camera| CameraForm { pose: camera.pose(), rectangle: camera.rectangle() },
         |CameraForm { pose, rectangle }| Self::new(pose, rectangle);
     Resolution as ResolutionForm: ResolutionForm::of, ResolutionForm::checked;
+    // The constants' bits are promised; unknown bits are an error instead of being dropped.
     Attributes as u16: |attributes| attributes.bits(), attributes_of;
 }
 
@@ -91,6 +93,7 @@ struct PoseForm {
 
 #[derive(Serialize, Deserialize)]
 struct RectangleForm {
+    // `None` for a rectangle as wide as the picture.
     width: Option<f32>,
     height: f32,
     shift: [f32; 2],

@@ -1,7 +1,7 @@
-//! The encoder as a backend of ratatui: any ratatui program sends its bytes.
+//! The encoder as a backend of ratatui.
 //!
-//! ratatui names the cells that change; here they change a wanted grid, and `flush` sends what the terminal does not
-//! show yet, in one write.
+//! `draw` records changed cells in a wanted grid, and `flush` sends, in one write, the bytes that make the terminal
+//! show it.
 
 mod calls;
 mod cursor;
@@ -36,18 +36,16 @@ use std::time::Duration;
 /// # Ok::<(), std::io::Error>(())
 /// ```
 ///
-/// The terminal has to be in raw mode. What the program has not drawn is left as it is until the program clears it.
-/// Clearing writes blanks, even where there should be some already, which mends a screen on which something else has
-/// written.
+/// The terminal has to be in raw mode. Cells that the program has not drawn are left alone until it clears them.
+/// Clearing writes blanks even over known blanks, which repairs a screen on which another program has written.
 ///
-/// # The size of the window and the place of the cursor
+/// # The size of the window and the position of the cursor
 ///
-/// By itself the backend asks the terminal nothing. Its size is the one given to [`new`](Self::new), and the cursor is
-/// where it was last put: by `set_cursor_position`, behind the last cell that was drawn, or down by the lines appended.
-/// With [`sized_by`](Self::sized_by) it asks for the size, so that
+/// By itself the backend sends no queries. The size is the one given to [`new`](Self::new), and the cursor is where the
+/// backend last left it. With [`sized_by`](Self::sized_by) it calls a function for the size, so that
 /// [`Terminal::autoresize`](ratatui_core::terminal::Terminal::autoresize), which each `draw` calls, follows the window.
-/// With [`located_by`](Self::located_by) it asks where the cursor is when that is unknown, which an inline viewport
-/// needs at its beginning and after a resize; without it, the program calls `set_cursor_position` there.
+/// With [`located_by`](Self::located_by) it calls a function for the cursor's position when that is unknown, which an
+/// inline viewport needs at its start and after a resize; without it, the program calls `set_cursor_position` then.
 ///
 /// ```no_run
 /// use termtrace::EncoderBackend;
@@ -60,11 +58,10 @@ use std::time::Duration;
 ///
 /// # Other bytes
 ///
-/// The backend is itself a [`Write`], so `execute!(terminal.backend_mut(), EnterAlternateScreen)` works: the bytes go
-/// out as they are, after everything that was drawn before them. As they may have done anything, nothing is assumed
-/// about the screen, the colours or the cursor afterwards, and nothing is drawn again by itself: neither what stood on
-/// the screen before, nor the cursor in its place. That is right behind `LeaveAlternateScreen`, where the screen is the
-/// shell's again. Bytes that change what the screen shows have to be followed by
+/// The backend is itself a [`Write`], so `execute!(terminal.backend_mut(), EnterAlternateScreen)` works: the bytes are
+/// sent unchanged, after everything drawn before them. As they may do anything, the screen, the colours and the cursor
+/// are unknown afterwards, and nothing is drawn again by itself. That is right after `LeaveAlternateScreen`, where the
+/// screen is the shell's again. Bytes that change the contents of the screen have to be followed by
 /// [`Terminal::clear`](ratatui_core::terminal::Terminal::clear), as with any other backend. Bytes that leave a mode
 /// changed in which the terminal writes differently (origin mode, insert mode, no wrapping, a character set, a
 /// scrolling region) have to be followed by those that reset it before anything is drawn.
@@ -82,7 +79,7 @@ use std::time::Duration;
 /// termtrace = { version = "0.1", features = ["scrolling-regions"] }
 /// ```
 ///
-/// With it `insert_before` scrolls what stands above an inline viewport, and the viewport is not drawn again.
+/// With it `insert_before` scrolls the rows above an inline viewport, and the viewport is not drawn again.
 pub struct EncoderBackend<W> {
     writer: W,
     encoder: Encoder,
@@ -91,23 +88,24 @@ pub struct EncoderBackend<W> {
     window: WindowSize,
     ask_size: Option<Query<Size>>,
     ask_position: Option<Query<Position>>,
-    /// Where the cursor was last put.
+    /// The last position of the cursor, wanted or shown.
     position: Position,
-    /// The cursor as it is to be.
+    /// The wanted state of the cursor.
     cursor: Cursor,
-    /// The cursor as the terminal has it, as far as that is known.
+    /// The state of the terminal's cursor, as far as it is known.
     shown_cursor: Cursor,
-    /// Between `draw` and `flush`: what is said of the cursor goes out with the frame.
+    /// Whether a frame is open: between `draw` and `flush`.
+    // Changes of the cursor are then sent with the frame, in the same write.
     is_frame_open: bool,
-    /// The last bytes that went out were not ours.
+    /// Whether the last bytes sent were the program's own.
     wrote_foreign_bytes: bool,
 }
 
-/// A question to the terminal.
+/// A function that finds something out about the terminal.
 type Query<T> = Box<dyn Fn() -> io::Result<T> + Send + Sync>;
 
 impl<W> EncoderBackend<W> {
-    /// Creates a backend for a terminal of that size of which nothing else is known.
+    /// Creates a backend for a terminal of this size, about which nothing else is known.
     pub fn new(writer: W, size: impl Into<Size>) -> Self {
         let mut backend = Self {
             writer,
@@ -128,18 +126,24 @@ impl<W> EncoderBackend<W> {
     }
 
     /// Sets the encoder, for instance one with another order.
+    ///
+    /// ```
+    /// use termtrace::{Encoder, EncoderBackend, Order};
+    ///
+    /// let encoder = Encoder::new().with_order(Order::Color);
+    /// let backend = EncoderBackend::new(std::io::stdout(), (80, 24)).with_encoder(encoder);
+    /// # drop(backend);
+    /// ```
     pub fn with_encoder(mut self, encoder: Encoder) -> Self {
         self.encoder = encoder;
         self.forget();
         self
     }
 
-    /// Lets frames differ from what was drawn, as [`Encoder::encode_within`] does: text is always exact, pictures of
-    /// half blocks are within `quality` while they change and exact half a second later. `clock` gives the time from
-    /// any fixed start.
+    /// Sets the quality of pictures of half blocks while they change; `clock` returns the time from any fixed start.
     ///
-    /// A program that only draws when something happens has to draw once more, half a second or later after a picture
-    /// has changed; one that draws many times a second need not care.
+    /// Text is always exact, and pictures are exact half a second after their last change, if a frame is drawn then. A
+    /// program that only draws on events has to draw once more for that.
     ///
     /// ```
     /// use ratatui::{Terminal, widgets::Paragraph};
@@ -158,15 +162,26 @@ impl<W> EncoderBackend<W> {
         self
     }
 
-    /// Limits the bytes a second that frames take, where [`with_quality`](Self::with_quality) was given
-    /// [`Quality::Equal`] or [`Quality::Fast`]: what does not fit, the least errors of pictures, waits for a later
-    /// frame. Text never waits, nor what replaces text or an unknown screen. Without a quality it does nothing.
+    /// Limits the bytes per second of frames with [`Quality::Equal`] or [`Quality::Fast`].
+    ///
+    /// Bytes that do not fit, for the least errors of pictures, wait for a later frame. Text never waits, nor cells
+    /// that replace text or an unknown screen. Without [`with_quality`](Self::with_quality) the limit has no effect.
+    ///
+    /// ```
+    /// use std::time::Instant;
+    /// use termtrace::{EncoderBackend, Quality};
+    ///
+    /// let start = Instant::now();
+    /// let backend = EncoderBackend::new(std::io::stdout(), (80, 24));
+    /// let backend = backend.with_quality(Quality::Fast, move || start.elapsed()).with_max_rate(50_000);
+    /// # drop(backend);
+    /// ```
     pub fn with_max_rate(mut self, bytes_per_second: u32) -> Self {
         self.limits = self.limits.map(|limits| limits.with_max_rate(bytes_per_second));
         self
     }
 
-    /// Asks that function for the size of the window, in columns and rows, each time that it matters.
+    /// Sets the function that returns the window's size in columns and rows, called whenever it matters.
     ///
     /// A window that becomes smaller and large again between two frames goes unnoticed, as with any backend.
     pub fn sized_by(mut self, ask: impl Fn() -> io::Result<Size> + Send + Sync + 'static) -> Self {
@@ -174,13 +189,13 @@ impl<W> EncoderBackend<W> {
         self
     }
 
-    /// Asks that function for the cursor's column and row, counted from 0, where they are not known otherwise.
+    /// Sets the function that returns the cursor's column and row, from 0, called when they are unknown.
     pub fn located_by(mut self, ask: impl Fn() -> io::Result<Position> + Send + Sync + 'static) -> Self {
         self.ask_position = Some(Box::new(ask));
         self
     }
 
-    /// Sets the size of the window, of which nothing else is known from here on, not even its size in pixels.
+    /// Sets the size of the window; its contents and its size in pixels are then unknown.
     #[doc(hidden)]
     pub fn resize(&mut self, size: impl Into<Size>) {
         let Size { width, height } = size.into();
@@ -189,15 +204,18 @@ impl<W> EncoderBackend<W> {
         self.forget_screen();
     }
 
-    /// Sets the size of the window in pixels, for [`window_size`](ratatui_core::backend::Backend::window_size); 0 by 0
-    /// until then.
+    /// Sets the size of the window in pixels, which is 0 by 0 before.
+    ///
+    /// See [`window_size`](ratatui_core::backend::Backend::window_size).
     #[doc(hidden)]
     pub fn set_pixels(&mut self, pixels: impl Into<Size>) {
         self.window.pixels = pixels.into();
     }
 
-    /// Returns when, by the clock of [`with_quality`](Self::with_quality), the next frame is due if nothing else is
-    /// drawn until then; `None` if the screen shows exactly what was drawn.
+    /// Returns the time at which the next frame is due, if nothing else is drawn until then.
+    ///
+    /// The time is that of the clock of [`with_quality`](Self::with_quality). `None` means that the screen shows
+    /// exactly the drawn cells.
     #[doc(hidden)]
     pub fn due(&self) -> Option<Duration> {
         let limits = self.limits.as_ref()?;
@@ -210,20 +228,21 @@ impl<W> EncoderBackend<W> {
         &self.writer
     }
 
-    /// Returns the writer, for bytes that leave the screen, the colours and the cursor as they are (a title, the
-    /// clipboard). Others are written to the backend itself.
+    /// Returns the writer, for bytes that change neither the screen nor colours nor cursor.
+    ///
+    /// Such bytes are those of a title or of the clipboard. All others have to be written to the backend itself.
     #[doc(hidden)]
     pub fn writer_mut(&mut self) -> &mut W {
         &mut self.writer
     }
 
-    /// Nothing is known of the screen.
+    /// Forgets the state of the screen and of the cursor.
     fn forget(&mut self) {
         self.encoder.forget();
         self.shown_cursor = Cursor::default();
     }
 
-    /// Nothing is known of the screen, and nothing is wanted on it but what is drawn from here on.
+    /// Forgets the screen, so that only cells drawn from here on are wanted on it.
     fn forget_screen(&mut self) {
         let Size { width, height } = self.window.columns_rows;
         self.wanted = Grid::foreign(grid::Size::new(width, height));
@@ -232,20 +251,21 @@ impl<W> EncoderBackend<W> {
         self.forget();
     }
 
-    /// The place on the screen that is nearest.
+    /// Returns the nearest position on the screen.
     fn clamped_to_screen(&self, Position { x, y }: Position) -> Position {
         let Size { width, height } = self.window.columns_rows;
         Position::new(x.min(width.saturating_sub(1)), y.min(height.saturating_sub(1)))
     }
 
-    /// Wants the cursor there, or as near as the screen has a place.
+    /// Sets the wanted position of the cursor, clamped to the screen.
     fn put_cursor(&mut self, to: Position) {
         self.position = self.clamped_to_screen(to);
         self.cursor.position = Some(self.position);
     }
 
-    /// Wants a cell; how many columns it takes. ratatui draws what has changed: where nothing has, it must know of
-    /// something else that was drawn there, and the cell is sent again.
+    /// Sets a wanted cell, and returns its width in columns.
+    // ratatui draws changed cells. If it draws one that is wanted already, something else was written there, so it is
+    // sent again.
     fn draw_cell(&mut self, place: Position, cell: &ratatui_core::buffer::Cell) -> u16 {
         let before = self.wanted.cell(place.x, place.y).clone();
         let columns = overlay::put_cell(&mut self.wanted, place, cell, self.window.columns_rows.width - place.x);
@@ -255,12 +275,12 @@ impl<W> EncoderBackend<W> {
         columns
     }
 
-    /// What is said of the cursor goes out with the next frame.
+    /// Opens a frame: changes of the cursor are sent with it.
     fn begin_frame(&mut self) {
         self.is_frame_open = true;
     }
 
-    /// Wants blanks in these cells, counted row by row from the top, whatever they show.
+    /// Sets cells to blanks that are sent whatever they show; counted row by row from the top.
     fn blank(&mut self, cells: Range<usize>) {
         let columns = usize::from(self.window.columns_rows.width);
         for at in cells.start..cells.end.min(self.wanted.cells().len()) {
@@ -272,7 +292,7 @@ impl<W> EncoderBackend<W> {
 }
 
 impl<W: Write> EncoderBackend<W> {
-    /// Takes over the size of the window, if it has another one now.
+    /// Adopts the size of the window, if it has changed.
     fn follow_window(&mut self) -> io::Result<()> {
         if let Some(ask) = &self.ask_size {
             let size = ask()?;
@@ -283,7 +303,7 @@ impl<W: Write> EncoderBackend<W> {
         Ok(())
     }
 
-    /// Where the cursor is, or is to be.
+    /// Returns the position of the cursor, wanted or shown; queries it if both are unknown.
     fn locate(&mut self) -> io::Result<Position> {
         if self.cursor.position.or(self.shown_cursor.position).is_none()
             && let Some(ask) = &self.ask_position
@@ -294,7 +314,7 @@ impl<W: Write> EncoderBackend<W> {
         Ok(self.position)
     }
 
-    /// Returns what the terminal does not show yet, the cursor included; `limits` may hold some of it back.
+    /// Returns the bytes that make the terminal show the wanted grid and cursor, within the limits.
     fn frame(&mut self, limits: Option<&mut Limits>) -> Vec<u8> {
         self.is_frame_open = false;
         let mut bytes = Vec::new();
@@ -306,7 +326,7 @@ impl<W: Write> EncoderBackend<W> {
             self.shown_cursor.switch_to(self.cursor, &mut bytes);
             return bytes;
         }
-        // What the program writes itself has no colours then, nor has the shell's prompt after it.
+        // Bytes that the program writes itself, and the shell's prompt after it, must not get the pen's colours.
         self.encoder.reset_pen(&mut bytes);
         self.shown_cursor.position = end.map(|CellPosition { column, row }| Position::new(column, row));
         self.shown_cursor.switch_to(self.cursor, &mut bytes);
@@ -314,7 +334,8 @@ impl<W: Write> EncoderBackend<W> {
         bytes
     }
 
-    /// Returns what is not sent yet, with the pen down: what stands before bytes that act on the screen as it is.
+    /// Returns the bytes of an open frame, with the pen reset.
+    // They precede bytes that act on the whole screen, such as scrolling, whose blanks would get the pen's colour.
     fn unsent_bytes(&mut self) -> Vec<u8> {
         if self.is_frame_open || !self.encoder.knows_screen() { self.frame(None) } else { Vec::new() }
     }
@@ -335,7 +356,7 @@ impl<W: Write> EncoderBackend<W> {
         self.send(&bytes)
     }
 
-    /// Sends what is new of the cursor, unless it goes out with a frame.
+    /// Sends changes of the cursor, unless a frame is open.
     fn send_cursor(&mut self) -> io::Result<()> {
         if self.is_frame_open {
             return Ok(());
@@ -360,14 +381,14 @@ impl<W: Write> EncoderBackend<W> {
 
     fn set_position(&mut self, position: Position) -> io::Result<()> {
         if !self.is_frame_open {
-            // Something else may have moved it.
+            // Other output may have moved the cursor.
             self.shown_cursor.position = None;
         }
         self.put_cursor(position);
         self.send_cursor()
     }
 
-    /// Line feeds from where the cursor is; the rows that go out at the top go into the scrollback.
+    /// Sends line feeds from the cursor's position; rows that leave at the top enter the scrollback.
     fn feed_lines(&mut self, lines: u16) -> io::Result<()> {
         let Position { x, y } = self.locate()?;
         self.put_cursor(Position::new(x, y));
@@ -383,7 +404,7 @@ impl<W: Write> EncoderBackend<W> {
         self.send(&bytes)
     }
 
-    /// The rows have been scrolled, and the cursor is at the top left.
+    /// Records that a region has been scrolled, and that the cursor is at the top left.
     #[cfg(feature = "scrolling-regions")]
     fn record_scrolled(&mut self, region: Range<u16>, by: u16, direction: regions::ScrollDirection) {
         match direction {
@@ -401,9 +422,9 @@ impl<W: Write> EncoderBackend<W> {
         self.shown_cursor.position = Some(Position::ORIGIN);
     }
 
-    /// Before bytes of the program's own: what was drawn is on the screen, and nothing is known of it afterwards.
+    /// Prepares for bytes of the program's own: sends everything drawn, and forgets the screen.
     fn prepare_foreign_bytes(&mut self) -> io::Result<()> {
-        // Not between the pieces of one escape sequence.
+        // Only before the first piece: a program may write an escape sequence in several.
         if !self.wrote_foreign_bytes {
             if self.is_frame_open || self.encoder.is_inexact() {
                 self.send_exactly()?;
@@ -415,7 +436,7 @@ impl<W: Write> EncoderBackend<W> {
     }
 }
 
-/// For the program's own escape sequences (see [above](Self#other-bytes)).
+/// Sends the program's own escape sequences (see [above](Self#other-bytes)).
 impl<W: Write> Write for EncoderBackend<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.prepare_foreign_bytes()?;

@@ -1,13 +1,13 @@
-//! Since when each cell has been wanted as it is: what has been still for long is to be shown exactly.
+//! The time of each cell's last change, after which a cell is soon shown exactly.
 
 use crate::grid::{Grid, Size};
 use std::time::Duration;
 
-/// How long a cell may show nearly its colours after they last changed. Long enough that what only pauses is not sent
-/// twice, and short enough that all is exact within a second.
+/// Time after a cell's last change until it is shown exactly.
+// Long enough that a movement that only pauses is not sent twice, short enough that all is exact within a second.
 const EXACT_AFTER: Duration = Duration::from_millis(500);
 
-/// The last wanted grid, and when each of its cells last changed.
+/// The last wanted grid and the time of each cell's last change.
 #[derive(Clone, Debug)]
 pub(super) struct ChangeTimes {
     wanted: Grid,
@@ -21,7 +21,7 @@ impl Default for ChangeTimes {
 }
 
 impl ChangeTimes {
-    /// A grid is wanted.
+    /// Records a wanted grid.
     pub(super) fn record(&mut self, wanted: &Grid, now: Duration) {
         if self.wanted.size() != wanted.size() {
             self.wanted = wanted.clone();
@@ -29,6 +29,7 @@ impl ChangeTimes {
             return;
         }
         for ((last, cell), since) in self.wanted.cells_mut().iter_mut().zip(wanted.cells()).zip(&mut self.since) {
+            // In place: cloning the whole grid for each frame would allocate.
             if last != cell {
                 last.clone_from(cell);
                 *since = now;
@@ -36,7 +37,7 @@ impl ChangeTimes {
         }
     }
 
-    /// When a cell is to have its exact colours.
+    /// Returns the time at which a cell is to be shown exactly.
     pub(super) fn exact_at(&self, at: usize) -> Duration {
         self.since[at].saturating_add(EXACT_AFTER)
     }

@@ -1,4 +1,4 @@
-//! Changes of the screen that do not come from the encoder.
+//! Changes of the screen that do not come from the encoder, as recorded by the backend.
 
 use super::Encoder;
 use super::moves::CellPosition;
@@ -14,12 +14,12 @@ impl Encoder {
         }
     }
 
-    /// Returns whether anything is known of the terminal; its pen is then reset between the frames of a backend.
+    /// Returns whether the terminal's state is known.
     pub(super) fn knows_screen(&self) -> bool {
         self.known.is_some()
     }
 
-    /// Returns whether the terminal is known to show something that is only near what is wanted.
+    /// Returns whether the terminal shows an approximation of the last wanted grid.
     pub(super) fn is_inexact(&self) -> bool {
         self.known.is_some() && self.due.is_some()
     }
@@ -31,8 +31,8 @@ impl Encoder {
         }
     }
 
-    /// Records that the contents of `region` have moved up by `by` rows. (Many terminals fill the new rows with the
-    /// pen's colour, so the pen must have been reset.)
+    /// Records that the contents of `region` have moved up by `by` rows.
+    // The pen must have been reset: many terminals fill the new rows with its background.
     pub(super) fn scroll_up(&mut self, region: Range<u16>, by: u16) {
         if let Some(known) = &mut self.known {
             known.shown.scroll_up(region, by);

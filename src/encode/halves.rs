@@ -1,34 +1,38 @@
-//! The two halves of a picture's cell, and how far they may be from the wanted ones.
+//! The two halves of a picture's cell, and their tolerance.
 
 use crate::color::{Oklab, Srgb8};
 use crate::grid::{Cell, Glyph, Ink};
 
-/// How far a half cell may be from the wanted one in this frame.
+/// The largest difference of a half cell from the wanted one in a frame.
 #[derive(Clone, Copy)]
 pub(super) struct Tolerance {
-    /// In OKLab.
+    /// The largest distance in OKLab.
     pub(super) distance: f32,
-    /// The square of the difference in 8-bit sRGB, over all three channels.
+    /// The largest squared difference in 8-bit sRGB, summed over the channels.
+    // Two measures: OKLab bounds what is seen in one cell, sRGB the signal-to-noise ratio of the picture.
     pub(super) square: u32,
 }
 
 impl Tolerance {
+    /// Returns whether `shown` may stand for `wanted`.
     pub(super) fn allows(self, shown: Srgb8, wanted: Srgb8) -> bool {
+        // The cheap measure first: OKLab takes six cube roots.
         shown == wanted
             || squared_difference(shown, wanted) <= self.square
                 && Oklab::from_srgb8(shown).distance(Oklab::from_srgb8(wanted)) <= self.distance
     }
 }
 
-/// The square of the difference of two colours, over all three channels.
+/// Returns the squared difference of two colours, summed over the channels.
 pub(super) fn squared_difference(a: Srgb8, b: Srgb8) -> u32 {
     [a.r.abs_diff(b.r), a.g.abs_diff(b.g), a.b.abs_diff(b.b)].map(|channel| u32::from(channel).pow(2)).iter().sum()
 }
 
-/// The upper and the lower colour of a picture's cell.
+/// The colours of the upper and the lower half of a picture's cell.
 pub(super) type Halves = [Srgb8; 2];
 
-/// Those of a half block or a space in truecolor; anything else is text, also a space that has a colour for characters.
+/// Returns the halves of a half block or a space in truecolor; `None` for text.
+// A panel's blank has a colour for characters, a picture's has none: so blanks of text are neither delayed nor changed.
 pub(super) fn picture_halves(cell: &Cell) -> Option<Halves> {
     let (Ink::Rgb(bg), true) = (cell.bg, cell.attributes.is_empty()) else { return None };
     match (&cell.glyph, cell.fg) {
@@ -39,7 +43,7 @@ pub(super) fn picture_halves(cell: &Cell) -> Option<Halves> {
     }
 }
 
-/// A cell with these halves, its block the same way up as the wanted one's.
+/// Returns a cell with these halves, with the half block of the wanted cell.
 pub(super) fn half_block_cell([upper, lower]: Halves, wanted: &Cell) -> Cell {
     if upper == lower {
         Cell::new(' ', Ink::Default, Ink::Rgb(upper))

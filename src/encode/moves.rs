@@ -1,46 +1,48 @@
-//! The cheapest way for the cursor from one cell to another.
+//! The cheapest move of the cursor from one cell to another.
 //!
-//! CUP says row and column; CUF goes right, CHA to a column, CR to the first one, BS one to the left, LF one down. (In
-//! raw mode a line feed keeps the column, and nothing scrolls, because it is only used above the last row.) Nothing
-//! else is used: REP, ECH and tabs gain little and break in some multiplexer or other.
+//! CUP sets row and column; CUF goes right, CHA to a column, CR to the first column, BS one column left, LF one row
+//! down. In raw mode a line feed keeps the column, and it is only used above the last row, so that nothing scrolls.
+//! REP, ECH and tabs are not used: they save little, and each of them fails in some multiplexer.
 
 use super::numbers::{digit_count, write_number};
 
-/// A position on the screen, counted from the top left.
+/// The column and row of a cell or of the cursor, counted from 0 at the top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CellPosition {
     pub(super) column: u16,
     pub(super) row: u16,
 }
 
-/// One of the ways, each of which may begin with line feeds.
+/// A move of the cursor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Move {
-    /// CUP.
+    /// To a cell (CUP).
     To(CellPosition),
-    /// LF so many times, then along the row.
+    /// Down by this number of rows (LF), then along the row.
     Down(u16, Along),
 }
 
-/// Along a row.
+/// A move along a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Along {
+    /// No move.
     Stay,
-    /// CUF.
+    /// Right by this number of columns (CUF).
     Right(u16),
-    /// BS so many times.
+    /// Left by this number of columns (BS each).
     Left(u16),
-    /// CR.
+    /// To the first column (CR).
     Start,
-    /// CHA.
+    /// To this column (CHA).
     Column(u16),
 }
 
-/// The cheapest move. Where the cursor is unknown, or beyond the last column, only CUP is sure.
+/// Returns the cheapest move; `from` is `None` if the cursor is unknown or beyond the last column.
 pub(super) fn cheapest_move(from: Option<CellPosition>, to: CellPosition) -> Move {
     if from == Some(to) {
         return Move::Down(0, Along::Stay);
     }
+    // From an unknown position, or upwards, only CUP is certain. Upwards, CUU would save at most a byte.
     let absolute = Move::To(to);
     let Some(from) = from.filter(|from| from.row <= to.row) else { return absolute };
     let relative = Move::Down(to.row - from.row, cheapest_along(from.column, to.column));
@@ -62,7 +64,7 @@ fn cheapest_along(from: u16, to: u16) -> Along {
 }
 
 impl Move {
-    /// How many bytes it takes.
+    /// Returns the length of the sequence in bytes.
     pub(super) fn len(self) -> usize {
         match self {
             Self::To(CellPosition { column: 0, row: 0 }) => 3,
@@ -72,7 +74,7 @@ impl Move {
         }
     }
 
-    /// Makes it.
+    /// Appends the sequence.
     pub(super) fn write(self, bytes: &mut Vec<u8>) {
         match self {
             Self::To(CellPosition { column: 0, row: 0 }) => bytes.extend_from_slice(b"\x1b[H"),
@@ -116,7 +118,7 @@ impl Along {
     }
 }
 
-/// CSI with one number.
+/// Appends CSI with one parameter.
 fn sequence(bytes: &mut Vec<u8>, number: u16, last: u8) {
     bytes.extend_from_slice(b"\x1b[");
     write_number(number, bytes);

@@ -1,8 +1,8 @@
-//! Few colours for many cells: each half takes a colour within its tolerance that many others can take too.
+//! Reduction of a frame's colours: each half takes a colour within its tolerance that many other halves take too.
 //!
-//! First a palette: the colour that the most halves can take, then the one that the most of the rest can take, and so on
-//! (the greedy set cover of Johnson 1974). Then pairs of its colours, in the same way: the pair that the most cells can
-//! show, and so on, because the cells of one pair are written without a change of the pen.
+//! A palette is chosen by greedy set cover (Johnson 1974): the colour that covers the most halves, then the one that
+//! covers the most of the rest, and so on. Then pairs of its colours are chosen in the same way, because the cells of
+//! one pair are written without a change of the pen.
 
 use super::halves::{Halves, Tolerance, squared_difference};
 use crate::color::{Oklab, Srgb8};
@@ -11,8 +11,10 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::mem;
 
-/// Exchanges the cells' colours for those of a palette, each within the tolerance of the one that it stands for. With
-/// `half_blocks`, two colours serve both ways round. The pen's colours are taken into the palette where they serve.
+/// Replaces the cells' colours by colours of a palette, each within the tolerance of the colour it stands for.
+///
+/// With [`HalfBlocks::Either`] a pair of colours serves both ways round. The pen's colours are candidates for the
+/// palette.
 pub(super) fn snap_to_palette(cells: &mut [&mut Halves], pen: [Ink; 2], tolerance: Tolerance, half_blocks: HalfBlocks) {
     let table = ColorTable::of(cells, pen);
     let choices = table.choices(tolerance);
@@ -22,28 +24,29 @@ pub(super) fn snap_to_palette(cells: &mut [&mut Halves], pen: [Ink; 2], toleranc
         let [a, b] = pair.map(|index| table.colors[index]);
         let fits = |pair: [usize; 2]| (0..2).all(|half| choices[wanted[half]].contains(&pair[half]));
         let error = |halves: Halves| squared_difference(halves[0], cell[0]) + squared_difference(halves[1], cell[1]);
-        let turned = half_blocks == HalfBlocks::Either
+        let flipped = half_blocks == HalfBlocks::Either
             && fits([pair[1], pair[0]])
             && (!fits(pair) || error([b, a]) < error([a, b]));
-        **cell = if turned { [b, a] } else { [a, b] };
+        **cell = if flipped { [b, a] } else { [a, b] };
     }
 }
 
-/// The colours of some cells and of the pen, each once.
+/// The distinct colours of some cells and of the pen.
 struct ColorTable {
-    /// Sorted.
+    /// The colours, sorted.
     colors: Vec<Srgb8>,
-    /// How many halves are to have each.
+    /// The number of halves that want each colour.
     halves: Vec<usize>,
     oklab: Vec<Oklab>,
 }
 
-/// How many colours of the palette a half chooses from, those first that the most halves can take: more than a few would
-/// gain nothing, and each makes more pairs.
+/// Largest number of palette colours from which a half chooses; the most useful come first.
+// More would hardly save bytes, and each choice multiplies the possible pairs.
 const MAX_CHOICES: usize = 4;
 
-/// How many colours, next in lightness, a colour is compared with on either side: in pictures the ones that can be
-/// exchanged are among them, and noise, where they are not, is not to take long.
+/// Number of colours, next in lightness on either side, with which a colour is compared.
+// In pictures the exchangeable colours are among them. Noise, where they are not, took 192 times ratatui's time before
+// this limit and two others, and takes 21 times.
 const LIGHTNESS_NEIGHBOURS: usize = 24;
 
 impl ColorTable {
@@ -63,7 +66,7 @@ impl ColorTable {
         self.colors.binary_search(&color).expect("the cells' colours are all here")
     }
 
-    /// For each colour, those of the palette that it can be exchanged for.
+    /// Returns for each colour the palette colours that may stand for it, the most useful first.
     fn choices(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
         let exchangeable = self.exchangeable(tolerance);
         let mut choices: Vec<Vec<usize>> = vec![Vec::new(); self.colors.len()];
@@ -77,8 +80,9 @@ impl ColorTable {
         choices
     }
 
-    /// For each colour, those within the tolerance, itself among them. Sorted by lightness they are in a window, of which
-    /// the middle is looked at.
+    /// Returns for each colour the colours within the tolerance, including itself.
+    // Sorted by lightness they lie in a window, of which the middle is compared: OKLab distance is at least the
+    // difference in lightness.
     fn exchangeable(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.colors.len()).collect();
         order.sort_unstable_by(|&a, &b| self.oklab[a].l.total_cmp(&self.oklab[b].l));
@@ -98,7 +102,7 @@ impl ColorTable {
     }
 }
 
-/// For each cell, by its halves' colours, a pair of colours that it can show, so that there are few pairs.
+/// Returns for each cell a pair of colours that it can show, such that there are few pairs.
 fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks) -> Vec<[usize; 2]> {
     let mut possible: Vec<([usize; 2], usize)> = Vec::new();
     for (cell, &[upper, lower]) in wanted.iter().enumerate() {
@@ -114,14 +118,14 @@ fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks)
     let mut groups = Vec::new();
     let mut start = 0;
     for same in pairs.chunk_by(|a, b| a == b) {
-        // What one cell alone can show saves nothing.
+        // A pair that only one cell can show saves nothing.
         if same.len() > 1 {
             groups.push((same[0], &cells[start..start + same.len()]));
         }
         start += same.len();
     }
     let sets: Vec<&[usize]> = groups.iter().map(|group| group.1).collect();
-    // Of a pair of its own, each colour is the one that the most halves can take.
+    // A cell without a shared pair takes, for each half, the colour that the most halves can take.
     let mut chosen: Vec<[usize; 2]> = wanted.iter().map(|cell| cell.map(|color| choices[color][0])).collect();
     let mut is_chosen = vec![false; wanted.len()];
     for group in greedy_cover(&sets, &vec![1; wanted.len()]) {
@@ -135,10 +139,10 @@ fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks)
     chosen
 }
 
-/// Sets that together have all members of any weight: always the one that adds the most, until nothing is left to add.
+/// Returns sets that cover all members with a weight: each next set adds the largest weight, until none is left.
 fn greedy_cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
     let mut left = weights.to_vec();
-    // What a set adds only shrinks: one that still adds what it was sorted by is the best of all (Minoux 1978).
+    // A set's gain only shrinks, so one whose gain is still that of its heap entry is the best of all (Minoux 1978).
     let mut heap: BinaryHeap<(usize, Reverse<usize>)> =
         sets.iter().enumerate().map(|(at, set)| (gain(set.as_ref(), &left), Reverse(at))).collect();
     let mut chosen = Vec::new();

@@ -1,8 +1,8 @@
-//! Cells in an order -> bytes: which glyph shows each with the fewest changes of colour, and how the cursor gets there.
+//! Encoding of cells in a given order: the choice of half blocks, and the moves of the cursor.
 //!
-//! A half-block cell can be written in two ways, the lower half on the upper one's colour or the other way round, and
-//! which one is cheaper depends on the pen, which depends on how the cell before was written. So the whole sequence is
-//! decided at once: for each cell the cheapest way to have written everything up to it in either form (Viterbi 1967).
+//! A half-block cell can be written in two forms, the lower half on the upper half's colour or the other way round.
+//! Which one is cheaper depends on the pen, and so on the form of the cell before. The whole sequence is decided at
+//! once, by the cheapest path to each form of each cell (Viterbi 1967).
 
 use super::moves::{CellPosition, Move, cheapest_move};
 use super::pen::{Pen, is_plain_space, write_char, write_glyph};
@@ -10,14 +10,14 @@ use super::widths;
 use crate::grid::{Cell, Glyph, Grid, HalfBlocks, Ink};
 use std::ops::Range;
 
-/// A cell, the form in which it is written, and the pen.
+/// A cell, the form in which it is written, and the pen that writes it.
 pub(super) struct Stroke {
     position: CellPosition,
     form: BlockForm,
     pen: Pen,
 }
 
-/// How the cells are written in that order.
+/// Returns the strokes that write the cells in this order with the fewest bytes for the pen.
 pub(super) fn choose(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, mut pen: Pen) -> Vec<Stroke> {
     let forms = choose_forms(wanted, order, half_blocks, pen);
     let stroke = |(&position, form): (&CellPosition, BlockForm)| {
@@ -27,9 +27,9 @@ pub(super) fn choose(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlo
     order.iter().zip(forms).map(stroke).collect()
 }
 
-/// The colour of a plain space's character is free: let it be the one that the next cell wants, if that wants nothing
-/// else changed. Where the space changes the colour behind it, one sequence then says both. (Not with the two colours
-/// exchanged: the character's is the one that is seen then.)
+/// Gives plain spaces the glyph colour of the next stroke, if that stroke changes nothing else.
+// A space's glyph colour is not seen, so one sequence can set both colours. Not with exchanged colours, where the glyph
+// colour is the one that is seen.
 pub(super) fn share_next_fg(wanted: &Grid, strokes: &mut [Stroke]) {
     for at in (1..strokes.len()).rev() {
         let next = strokes[at].pen;
@@ -41,8 +41,8 @@ pub(super) fn share_next_fg(wanted: &Grid, strokes: &mut [Stroke]) {
     }
 }
 
-/// Writes them. Where the cursor is at first is not asked: whatever else has been written to the terminal since the last
-/// frame may have moved it. Where it is at last is the answer, if that is sure.
+/// Appends the strokes, and returns the cursor's position after them, if that is certain.
+// The cursor's first position is not relied on: other output since the last frame may have moved it.
 pub(super) fn write(
     wanted: &Grid,
     strokes: &[Stroke],
@@ -60,7 +60,8 @@ pub(super) fn write(
     cursor
 }
 
-/// A wide cluster takes one cell in some terminals: what stood in the others is wiped out before it.
+/// Appends the glyph of a stroke.
+// A wide cluster takes one cell in some terminals, so blanks first clear the others.
 fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
     let CellPosition { column, row } = stroke.position;
     let glyph = &wanted.cell(column, row).glyph;
@@ -74,17 +75,17 @@ fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
     }
 }
 
-/// How a cell is written.
+/// The form in which a cell is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum BlockForm {
-    /// As it stands in the grid.
+    /// The glyph of the wanted grid.
     AsWanted,
-    /// A half block with the other half.
+    /// The other half block, with the two colours exchanged.
     Flipped,
 }
 
 impl BlockForm {
-    /// The pen that writes the cell in this form, after that one.
+    /// Returns the pen that writes a cell in this form after another pen.
     fn pen(self, cell: &Cell, before: &Pen) -> Pen {
         let plain = before.pen_for(cell);
         match self {
@@ -94,7 +95,7 @@ impl BlockForm {
     }
 }
 
-/// The pen for the other half.
+/// Returns the pen for the other half block.
 fn swapped_colors(pen: Pen) -> Pen {
     Pen { fg: pen.bg, bg: pen.fg, ..pen }
 }
@@ -107,8 +108,8 @@ fn other_half_block(glyph: &Glyph) -> Option<char> {
     }
 }
 
-/// Whether the cell looks the same when its halves and colours are exchanged. The terminal's own colours cannot be: each
-/// is known only in its own position.
+/// Returns whether a cell looks the same with the other half block and exchanged colours.
+// Default colours cannot be exchanged: each can only be set in its own role.
 fn can_be_flipped(cell: &Cell) -> bool {
     other_half_block(&cell.glyph).is_some()
         && cell.attributes.is_empty()
@@ -116,36 +117,37 @@ fn can_be_flipped(cell: &Cell) -> bool {
         && cell.bg != Ink::Default
 }
 
-/// A cheapest way to have written everything up to a cell.
+/// The cheapest path to one form of a cell: its pen, and its cost so far.
 #[derive(Clone, Copy)]
 struct SurvivorPath {
     pen: Pen,
     cost: PathCost,
 }
 
-/// Bytes ([`COST_PER_BYTE`] each); of as many, how often the lower half is written. Which half it is hardly matters, but it has to
-/// be the same wherever both cost the same, or a compressor does not know the frame before again. With the upper one, the
-/// colours are said in the order in which the pixels lie.
+/// The cost of a path: [`COST_PER_BYTE`] for each byte, plus one for each lower half block.
+// Which half block wins a tie hardly matters, but it has to be always the same one, or a compressor does not recognise
+// the frame before. With the upper one the colours are sent in the order of the pixels.
 type PathCost = u64;
 
-/// More than there are cells.
+/// The cost of a byte: more than a grid has cells, so that lower half blocks only break ties.
 const COST_PER_BYTE: PathCost = 1 << 32;
 
-/// The form of each cell, such that the changes of the pen between them take the fewest bytes.
+/// Returns the form of each cell for which the switches of the pen take the fewest bytes.
 fn choose_forms(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) -> Vec<BlockForm> {
     if half_blocks == HalfBlocks::Lower {
         return vec![BlockForm::AsWanted; order.len()];
     }
     let mut paths = [SurvivorPath { pen, cost: 0 }; 2];
-    // For each cell and each form of it, the form of the cell before.
+    // For each form of each cell, the form of the cell before it on the cheapest path.
     let mut predecessors = Vec::with_capacity(order.len());
     for position in order {
         let cell = wanted.cell(position.column, position.row);
-        // (One by one: `map` over arrays of pens copies them about, which took a third of an encoder's time.)
+        // Element by element: `map` over arrays of pens moves them through memory in pieces, which took a third of an
+        // encoder's time.
         let pens = [paths[0].pen.pen_for(cell), paths[1].pen.pen_for(cell)];
         let is_lower = cell.glyph == '▄';
         if is_plain_space(cell) {
-            // The character's colour is carried on: both paths stay open.
+            // A space keeps the pen's glyph colour, so the two paths stay distinct.
             predecessors.push([0, 1]);
             paths =
                 [paths[0].step(pens[0], pens[0].ink_lens(), false), paths[1].step(pens[1], pens[1].ink_lens(), false)];
@@ -173,13 +175,15 @@ fn choose_forms(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, 
     forms
 }
 
-/// The cheaper of two paths, with a cell written by these pens of the same colours, and which of them it was.
+/// Returns the cheaper of two paths extended by a cell, and its index.
 fn cheaper(paths: &[SurvivorPath; 2], pens: [Pen; 2], lens: [usize; 2], is_lower: bool) -> (SurvivorPath, u8) {
     let [first, second] = [paths[0].step(pens[0], lens, is_lower), paths[1].step(pens[1], lens, is_lower)];
     if second.cost < first.cost { (second, 1) } else { (first, 0) }
 }
 
 impl SurvivorPath {
+    /// Returns the path extended by a cell that is written with this pen.
+    // Inlined always, with `cost_of_colors`: calls here move pens through memory.
     #[inline(always)]
     fn step(&self, pen: Pen, lens: [usize; 2], is_lower: bool) -> Self {
         Self {
@@ -191,8 +195,9 @@ impl SurvivorPath {
     }
 }
 
-/// Brings the cursor there: by the cheapest move, or by writing again what lies on the way, where the pen happens to be
-/// right for all of it and that takes no more bytes. (As many are fewer to a compressor: a run of one glyph goes on.)
+/// Moves the cursor to a cell: by the cheapest move, or by writing the cells on the way again.
+// Writing again is possible if the pen is right for all of them, and chosen if it takes no more bytes. At equal length
+// it is better for a compressor, which finds a longer run of one glyph.
 fn move_to(
     wanted: &Grid,
     cursor: Option<CellPosition>,
@@ -221,14 +226,14 @@ fn move_to(
     }
 }
 
-/// The columns from the cursor to a position further right in its row.
+/// Returns the columns from the cursor to a cell further right in its row.
 fn columns_between(cursor: Option<CellPosition>, position: CellPosition) -> Option<Range<u16>> {
     let cursor = cursor.filter(|cursor| cursor.row == position.row && cursor.column < position.column)?;
     Some(cursor.column..position.column)
 }
 
-/// The character that shows the cell with this very pen. (Only ASCII and half blocks: anything else takes more bytes than
-/// a move, or more cells than one.)
+/// Returns the character that shows a cell with exactly this pen, if there is one.
+// Only ASCII and half blocks: other glyphs take more bytes than a move, or more than one column.
 fn char_shown_by_pen(cell: &Cell, half_blocks: HalfBlocks, pen: &Pen) -> Option<char> {
     let shows = |form: BlockForm| form.pen(cell, pen) == *pen;
     match (&cell.glyph, other_half_block(&cell.glyph)) {
@@ -240,9 +245,9 @@ fn char_shown_by_pen(cell: &Cell, half_blocks: HalfBlocks, pen: &Pen) -> Option<
     }
 }
 
-/// Where the cursor is after a cell, if that is sure. In the last column it depends on the terminal. After a cluster too:
-/// terminals disagree on how many cells a flag, a family or a letter with marks takes, so the next move has to say its
-/// position.
+/// Returns the cursor's position after a cell, if that is certain.
+// In the last column it depends on the terminal. After a cluster too: terminals disagree on the width of flags,
+// families and letters with marks, so the next move has to be absolute.
 pub(super) fn cursor_after(wanted: &Grid, position: CellPosition) -> Option<CellPosition> {
     if matches!(wanted.cell(position.column, position.row).glyph, Glyph::Cluster(_)) {
         return None;

@@ -1,4 +1,4 @@
-//! Grid -> ANSI: text with the escape sequences of its colours.
+//! Export of a grid as ANSI text: its characters with escape sequences for their colours.
 
 use super::difference;
 use super::format_row::{Contents, FormatRow};
@@ -18,16 +18,24 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference: difference::by_rows,
 };
 
-/// The grid as a terminal with those colours is to be sent it: without any, no escape sequence says anything of them.
+/// Returns the bytes that print the grid on a terminal with these colours; without colours, plain text.
 pub fn ansi_or_text(grid: &Grid, colors: Colors) -> Vec<u8> {
     match colors {
+        // Not even a reset: without colours no sequence is sent, for terminals that would print it.
         Colors::None => text(grid).into_bytes(),
         _ => ansi(grid),
     }
 }
 
-/// The grid in colour, as lines that any program may print: no movement, and the terminal's own colours restored
-/// at the end of each line.
+/// Returns the grid in colour, as lines that any program may print.
+///
+/// The cursor is not moved, and the default colours are restored at the end of each line.
+///
+/// ```
+/// use termtrace::{Grid, Size, export::ansi};
+///
+/// assert_eq!(ansi(&Grid::new(Size::new(3, 1))), b"   \x1b[0m\n");
+/// ```
 pub fn ansi(grid: &Grid) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut pen = Pen::default();
@@ -35,6 +43,7 @@ pub fn ansi(grid: &Grid) -> Vec<u8> {
         for cell in row.iter().filter(|cell| cell.glyph != Glyph::Covered) {
             pen.write_cell(cell, &mut bytes);
         }
+        // Before the line feed: some terminals fill the rest of a line, and new lines, with the background.
         pen.reset(&mut bytes);
         bytes.push(b'\n');
     }

@@ -1,20 +1,21 @@
-//! Where two texts of a screen's rows differ.
+//! Comparison of two frames as text, row by row.
 
 use super::sgr::{self, TextStyle};
 use crate::text::visible_char;
 use std::fmt;
 use unicode_width::UnicodeWidthChar;
 
-/// How many differing rows are shown at most: more than most screens have.
+/// Largest number of differing rows in a report: more than most screens have.
 const MAX_SHOWN_ROWS: usize = 60;
 
-/// Compares two frames as text, plain or with colours as [`ansi`](super::ansi()) writes them, row by row; `None` if
-/// they are equal.
+/// Compares two frames as text, row by row; returns `None` if they are equal.
+///
+/// The text is plain, or has colours as [`ansi`](super::ansi()) writes them.
 ///
 /// ```
 /// use termtrace::compare;
 ///
-/// let difference = compare("  -+-  \n  +*+  \n", "  -+-  \n  +#+  \n").expect("they differ");
+/// let difference = compare("  -+-  \n  +*+  \n", "  -+-  \n  +#+  \n").ok_or("they differ")?;
 /// assert_eq!(difference.to_string(), "\
 /// 1 of 2 rows differs: line 2, column 4
 ///   1 |  -+-  |
@@ -23,14 +24,19 @@ const MAX_SHOWN_ROWS: usize = 60;
 ///         ^
 /// ");
 /// assert_eq!(compare("equal\n", "equal\n"), None);
+/// # Ok::<(), &str>(())
 /// ```
+// By rows, not by a line diff: rows of screens correspond, so each differing cell can be marked, also where only
+// colours differ.
 pub fn compare(expected: &str, found: &str) -> Option<Difference> {
     if expected == found {
         return None;
     }
     let [expected_rows, found_rows] = [expected, found].map(rows);
     let same = expected_rows.iter().zip(&found_rows).take_while(|(a, b)| a == b).count();
+    // The equal rows at the end must not overlap those at the start, as in a screen of equal rows that became shorter.
     let left = expected_rows.len().min(found_rows.len()) - same;
+    // With equally many rows, each is compared with the one in its place, as on a screen. Otherwise one block differs.
     let mut same_after = 0;
     if expected_rows.len() != found_rows.len() {
         let from_end = expected_rows.iter().rev().zip(found_rows.iter().rev());
@@ -45,33 +51,34 @@ pub fn compare(expected: &str, found: &str) -> Option<Difference> {
     })
 }
 
-/// Where and how two texts differ.
+/// The difference of two frames.
 ///
-/// Its [`Display`](fmt::Display) form is a few lines for a person: how many rows differ and where the first one does,
-/// the rows that were expected (`-`) and found (`+`) between bars that show where they end, a mark below each differing
-/// cell, and a row of context on either side. Lines and columns are counted from 1 there, as editors do. It contains no
-/// escape sequences; the alternate form (`{:#}`) colours the rows red and green for a terminal.
+/// Its [`Display`](fmt::Display) form is a few lines for a person: the number of differing rows and the first
+/// difference, the rows that were expected (`-`) and found (`+`) between bars that show their ends, a mark below each
+/// differing cell, and a row of context on either side. Lines and columns are counted from 1, as in editors. The text
+/// contains no escape sequences; the alternate form (`{:#}`) colours the rows red and green for a terminal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     expected: Vec<Row>,
     found: Vec<Row>,
-    /// How many rows are equal at the top.
+    /// The number of equal rows at the top.
     same: usize,
-    /// How many are equal at the bottom, where the texts have unequally many.
+    /// The number of equal rows at the bottom; 0 if both texts have equally many rows.
     same_after: usize,
     /// Whether each text ends with a line feed.
     ends: [bool; 2],
 }
 
-/// What is seen in each place of a row, and how.
+/// The characters of a row and their styles.
 type Row = Vec<(char, TextStyle)>;
 
 fn rows(text: &str) -> Vec<Row> {
+    // One line feed only: an empty last row counts as a row.
     let text = text.strip_suffix('\n').unwrap_or(text);
     text.split('\n').map(sgr::row).collect()
 }
 
-/// How many cells a character takes.
+/// Returns the width of a character in columns.
 fn columns(character: char) -> usize {
     visible_char(character).width().unwrap_or(1)
 }
@@ -80,7 +87,7 @@ fn width(row: &[(char, TextStyle)]) -> usize {
     row.iter().map(|&(character, _)| columns(character)).sum()
 }
 
-/// The marks below what differs, up to the end of the shorter row, and one behind it.
+/// Returns the marks below differing cells, and one behind the shorter row.
 fn marks(a: &Row, b: &Row) -> String {
     let mut marks = String::new();
     for (a, b) in a.iter().zip(b) {
@@ -94,7 +101,7 @@ fn marks(a: &Row, b: &Row) -> String {
 }
 
 impl Difference {
-    /// Returns the first differing row, counted from 0; where one text has more rows, the first that only it has.
+    /// Returns the first differing row from 0; if one text has more rows, the first that only it has.
     #[doc(hidden)]
     pub fn row(&self) -> usize {
         self.same
@@ -108,20 +115,22 @@ impl Difference {
         width(&a[..same])
     }
 
-    /// The rows of each text that are not equal at its top or bottom, by number.
+    /// Returns the end of each text's rows that are not equal at the top or the bottom.
     fn middle(&self) -> [usize; 2] {
         [&self.expected, &self.found].map(|rows| rows.len() - self.same_after)
     }
 
-    /// The numbers of the rows that differ, where both texts have equally many.
+    /// Returns the indices of the differing rows of texts with equally many rows.
     fn differing(&self) -> impl Iterator<Item = usize> {
         let pairs = self.expected.iter().zip(&self.found).enumerate();
         pairs.filter(|(_, (a, b))| a != b).map(|(row, _)| row)
     }
 
+    /// Writes the sizes, if they differ, the number of differing rows, and the first difference.
     fn write_summary(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = |rows: &[Row]| (rows.iter().map(|row| width(row)).max().unwrap_or(0), rows.len());
         let (expected, found) = (size(&self.expected), size(&self.found));
+        // A wrong size is the likeliest cause of all other differences, so the report starts with it.
         if expected != found {
             writeln!(f, "{}x{} characters were expected, {}x{} found", expected.0, expected.1, found.0, found.1)?;
         }
@@ -140,9 +149,10 @@ impl Difference {
         }
     }
 
-    /// Rows that correspond, one by one.
+    /// Writes pairs of differing rows, with their neighbours.
     fn write_pairs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let differing: Vec<usize> = self.differing().take(MAX_SHOWN_ROWS).collect();
+        // One row of context on either side shows where in the picture a difference is.
         let is_near = |row: usize| differing.iter().any(|&other| row.abs_diff(other) <= 1);
         let mut last = None;
         for (row, (a, b)) in self.expected.iter().zip(&self.found).enumerate().filter(|&(row, _)| is_near(row)) {
@@ -166,7 +176,7 @@ impl Difference {
         }
     }
 
-    /// Rows that were replaced by more or fewer.
+    /// Writes a block of expected rows, and the block of more or fewer rows that replaces it.
     fn write_block(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [expected_end, found_end] = self.middle();
         if let Some(before) = self.same.checked_sub(1) {
@@ -186,7 +196,7 @@ impl Difference {
         Ok(())
     }
 
-    /// How many digits the largest line number has.
+    /// Returns the number of digits of the largest line number.
     fn digits(&self) -> usize {
         self.expected.len().max(self.found.len()).to_string().len()
     }
@@ -194,6 +204,7 @@ impl Difference {
     fn write_row(&self, f: &mut fmt::Formatter<'_>, sign: char, row: usize, text: &Row) -> fmt::Result {
         let text: String = text.iter().map(|&(character, _)| visible_char(character)).collect();
         let (on, off) = match sign {
+            // The whole line is coloured, so that no sequence is inside the row's text.
             '-' if f.alternate() => ("\x1b[31m", "\x1b[m"),
             '+' if f.alternate() => ("\x1b[32m", "\x1b[m"),
             _ => ("", ""),
@@ -201,10 +212,11 @@ impl Difference {
         writeln!(f, "{on}{sign} {:digits$} |{text}|{off}", row + 1, digits = self.digits())
     }
 
-    /// The marks; where only colours differ, those of the first cell.
+    /// Writes the marks below a pair; if only styles differ, with those of the first differing cell.
     fn write_marks(&self, f: &mut fmt::Formatter<'_>, a: &Row, b: &Row) -> fmt::Result {
         write!(f, "  {:digits$}  {}", "", marks(a, b), digits = self.digits())?;
         let glyphs = |row: &Row| row.iter().map(|&(character, _)| character).collect::<Vec<_>>();
+        // Equal glyphs leave a reader without a visible difference, so the styles are named.
         if glyphs(a) == glyphs(b)
             && let Some(((_, was), (_, is))) = a.iter().zip(b).find(|(a, b)| a != b)
         {
@@ -221,10 +233,10 @@ impl fmt::Display for Difference {
     }
 }
 
-/// How a file of text differs from the golden one, for a person.
+/// Returns the difference of a text file from the golden one, for a person.
 pub(super) fn by_rows(golden: &[u8], file: &[u8]) -> String {
     let [expected, found] = [golden, file].map(String::from_utf8_lossy);
-    // A golden file may be anything.
+    // A golden file may contain any bytes.
     compare(&expected, &found)
         .map_or_else(|| "only bytes that are not text differ\n".to_owned(), |difference| difference.to_string())
 }
@@ -247,9 +259,9 @@ mod tests {
         assert_eq!(shown(&text("2", "6"), &text("x", "66")), with_size);
     }
 
-    /// What stands before and after is not said to have changed.
+    /// Rows before and after an insertion are not reported as changed.
     #[test]
-    fn rows_that_were_put_in_are_found() {
+    fn inserted_rows_are_found() {
         let expected = "1x3 characters were expected, 1x4 found\nthe first difference: line 3, column 1\n  2 |b|\n+ 3 |x|\n  \
                         4 |c|\n";
         assert_eq!(shown("a\nb\nc\n", "a\nb\nx\nc\n"), expected);
@@ -263,7 +275,7 @@ mod tests {
         assert_eq!(shown("a", "a\n"), "only the text that was found ends with a line feed\n");
     }
 
-    /// Marks stand below the cells, also behind wide characters.
+    /// Marks are below their cells, also after wide characters.
     #[test]
     fn wide_characters_take_two_columns() {
         let difference = compare("世界x\n", "世界y\n").expect("they differ");
@@ -273,7 +285,7 @@ mod tests {
 
     #[test]
     fn colours_are_compared_and_named() {
-        let line = |bands: &str| format!("\x1b[38;2;1;2;3mab\x1b[38;2;{bands}mc\x1b[39;1md\x1b[0m\n");
+        let line = |channels: &str| format!("\x1b[38;2;1;2;3mab\x1b[38;2;{channels}mc\x1b[39;1md\x1b[0m\n");
         let difference = compare(&line("4;5;6"), &line("4;5;7")).expect("they differ");
         assert_eq!((difference.row(), difference.column()), (0, 2));
         let text = difference.to_string();
@@ -282,7 +294,7 @@ mod tests {
         assert!(format!("{difference:#}").contains("\x1b[32m+ 1 |abcd|\x1b[m\n"));
     }
 
-    /// Whatever stands in a golden file, it does nothing to the terminal.
+    /// Escape sequences of a golden file are not written to the terminal.
     #[test]
     fn no_escape_sequence_is_passed_on() {
         for strange in ["\x1b[2J", "\x07\r", "\x1b", "\x1b[", "\x1b[38;5m\x1b[1;;m\x1b[99999999999m"] {

@@ -1,4 +1,4 @@
-//! Grid -> HTML.
+//! Export of a grid as an HTML page.
 
 use super::difference;
 use super::format_row::{Contents, FormatRow};
@@ -17,22 +17,25 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference: difference::by_rows,
 };
 
-/// The grid as a page by itself, of its right shape in any font: cells are as wide as the font's characters, and
-/// `cell_aspect` times as high. Characters are text that can be selected, over an SVG of all colours behind it and of
-/// half blocks; as [`svg`](super::svg) has them. It has no script, and loads nothing.
+/// Returns the grid as a page without scripts that loads nothing.
+///
+/// The page has the right shape in any font: cells are as wide as the font's characters, and `cell_aspect` times as
+/// high. Characters are selectable text over an SVG of the backgrounds and half blocks, as in [`svg`](super::svg()).
 ///
 /// ```
 /// use termtrace::export::html;
 /// use termtrace::{Cell, Grid, Ink, Size};
 ///
 /// let mut grid = Grid::new(Size::new(2, 1));
-/// *grid.cell_mut(1, 0) = Cell::new('<', Ink::Default, Ink::Default);
+/// *grid.get_mut(1, 0).ok_or("inside the grid")? = Cell::new('<', Ink::Default, Ink::Default);
 /// assert!(html(&grid, 2.0).contains("<pre> &lt;\n</pre>"));
+/// # Ok::<(), &str>(())
 /// ```
 pub fn html(grid: &Grid, cell_aspect: f32) -> String {
     let Size { columns, rows } = grid.size();
+    // Widths in `ch` and heights as multiples of it: the shape is right with any font, before and after zooming.
     let half_rows = 2 * u32::from(rows);
-    // `pre` would swallow a line feed at its beginning; a row of cells is never one.
+    // `pre` ignores a line feed at its start, but a grid's first row is never empty.
     let text = text(grid);
     let text = if text.trim().is_empty() { String::new() } else { format!("<pre>{text}</pre>\n") };
     format!(
@@ -55,7 +58,7 @@ svg,pre{{position:absolute;width:100%;height:100%;margin:0;font:inherit;line-hei
     )
 }
 
-/// What is written, row by row, without blanks at the ends of rows.
+/// Returns the text, row by row, without blanks at the ends of rows.
 fn text(grid: &Grid) -> String {
     let mut text = String::new();
     for row in grid.rows() {

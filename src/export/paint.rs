@@ -1,4 +1,4 @@
-//! What a grid looks like without a terminal: areas of one colour, and the text over them. SVG and HTML are made of it.
+//! The appearance of a grid without a terminal: areas of one colour, and the text over them.
 
 use crate::cell::xterm_color;
 use crate::color::Srgb8;
@@ -6,11 +6,11 @@ use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// What a terminal's own colours are taken to be: light on dark.
+/// The default glyph colour in exports, which assume light text on a dark background.
 pub(super) const DEFAULT_TEXT: Srgb8 = Srgb8::new(255, 255, 255);
 const DEFAULT_BACKGROUND: Srgb8 = Srgb8::new(0, 0, 0);
 
-/// A rectangle of one colour: columns from the left, half cells from the top.
+/// A rectangle of one colour, in columns from the left and half cells from the top.
 struct ColorArea {
     x: usize,
     y: usize,
@@ -19,10 +19,10 @@ struct ColorArea {
     color: Srgb8,
 }
 
-/// Text of one style, without a break in a row.
+/// A run of text of one style in a row.
 pub(super) struct TextRun {
     pub(super) column: usize,
-    /// How many it takes.
+    /// The width in columns.
     pub(super) columns: usize,
     pub(super) text: String,
     color: Srgb8,
@@ -30,7 +30,7 @@ pub(super) struct TextRun {
 }
 
 impl TextRun {
-    /// How it differs from plain text in the default colour, as CSS; `fill` is the name of the text's colour.
+    /// Returns the CSS of the run's style; `fill` is the property of the text's colour.
     pub(super) fn css(&self, fill: &str) -> String {
         let mut css = Vec::new();
         if self.color != DEFAULT_TEXT {
@@ -45,14 +45,16 @@ impl TextRun {
         css.join(";")
     }
 
-    /// The text with those characters replaced that mean something to SVG and HTML.
+    /// Returns the text with the characters escaped that are special in SVG and HTML.
     pub(super) fn escaped(&self) -> String {
         self.text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
     }
 }
 
-/// The colours behind the text and those of half blocks: SVG paths, one for each colour, a column wide and half a cell
-/// high to a unit.
+/// Returns the backgrounds and half blocks as SVG paths, one per colour.
+///
+/// A unit is a column in width and half a cell in height.
+// One path per colour, because an element per area would repeat the colour in each.
 pub(super) fn paths(grid: &Grid) -> String {
     let mut indices = HashMap::new();
     let mut outlines: Vec<(Srgb8, String)> = Vec::new();
@@ -70,9 +72,10 @@ pub(super) fn paths(grid: &Grid) -> String {
     paths
 }
 
-/// Runs of equal colour, joined with those above them that are as long.
+/// Returns runs of equal colour, merged with equal runs in the half rows above them.
 fn areas(grid: &Grid) -> Vec<ColorArea> {
     let mut areas: Vec<ColorArea> = Vec::new();
+    // By exact match only, in one pass: larger rectangles could be found, but pictures have few of them.
     let mut above: HashMap<(usize, usize, Srgb8), usize> = HashMap::new();
     let half_rows = grid.rows().flat_map(|row| [0, 1].map(|half| row.iter().map(move |cell| halves(cell)[half])));
     for (y, colors) in half_rows.enumerate() {
@@ -94,18 +97,19 @@ fn areas(grid: &Grid) -> Vec<ColorArea> {
     areas
 }
 
-/// The colours of the cell's upper and lower half, without its text.
+/// Returns the colours of a cell's upper and lower half, without its text.
 fn halves(cell: &Cell) -> [Srgb8; 2] {
     let [fg, bg] = colors(cell);
     match cell.glyph {
         Glyph::Char('▀') => [fg, bg],
         Glyph::Char('▄') => [bg, fg],
+        // Half blocks are areas, not text: fonts leave hairlines between block characters.
         Glyph::Char('█') => [fg, fg],
         _ => [bg, bg],
     }
 }
 
-/// The glyph's colour and the one behind it.
+/// Returns the glyph's and the background's colour of a cell.
 fn colors(cell: &Cell) -> [Srgb8; 2] {
     let (fg, bg) = (color(cell.fg, DEFAULT_TEXT), color(cell.bg, DEFAULT_BACKGROUND));
     if cell.attributes.contains(Attributes::REVERSED) { [bg, fg] } else { [fg, bg] }
@@ -119,7 +123,7 @@ fn color(ink: Ink, default: Srgb8) -> Srgb8 {
     }
 }
 
-/// What is written in a row. Blanks join what stands on both sides of them, but are no text by themselves.
+/// Returns the text runs of a row. Blanks join runs of equal style, but are no runs by themselves.
 pub(super) fn text_runs(row: &[Cell]) -> Vec<TextRun> {
     let mut runs: Vec<TextRun> = Vec::new();
     for (column, cell) in row.iter().enumerate() {
@@ -148,11 +152,12 @@ impl TextRun {
     }
 }
 
-/// The cell's text, if it is not a part of the areas.
+/// Returns a cell's text, unless it belongs to the colour areas.
 fn text_of(cell: &Cell) -> Option<String> {
     let underlined = cell.attributes.contains(Attributes::UNDERLINED);
     match cell.glyph {
         Glyph::Covered | Glyph::Foreign | Glyph::Char('▀' | '▄' | '█') => None,
+        // An underlined blank is visible.
         Glyph::Char(' ') if !underlined => None,
         _ => Some(cell.glyph.to_string()),
     }

@@ -1,4 +1,4 @@
-//! Picture -> PNG.
+//! Export of a picture as PNG.
 
 use super::format_row::{Contents, FormatRow};
 use crate::framebuffer::{Resolution, ResolutionError};
@@ -16,19 +16,30 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference,
 };
 
-/// Returns the file of a picture with each pixel a square of `scale` by `scale`, marked as sRGB; pixels of another
-/// shape than square are marked too.
+/// Returns the PNG file of a picture, with each pixel enlarged to a square of `scale` by `scale`.
+///
+/// The file is marked as sRGB, and has the pixels' aspect if they are not square.
+///
+/// ```
+/// use termtrace::{Picture, Srgb8, export::png};
+///
+/// let picture = Picture::from_pixels(4, 2, vec![Srgb8::new(90, 160, 40); 8]).ok_or("4 by 2 pixels")?;
+/// assert!(png(&picture, 1.0, 8)?.starts_with(b"\x89PNG"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// If the picture has no pixels, or more than a [`Resolution`] may have when it is scaled; and unless `pixel_aspect` is
 /// greater than 0 and finite.
 pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, ExportError> {
+    // Checked before anything is allocated: the largest scale was a panic.
     let [width, height] = [picture.width, picture.height].map(|side| side.saturating_mul(scale));
     Resolution::new(width, height).and_then(|file| file.with_pixel_aspect(pixel_aspect))?;
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    // With the sRGB chunk viewers need not guess the transfer function.
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_pixel_dims(pixel_dimensions(pixel_aspect));
     let written = encoder.write_header().and_then(|mut file| file.write_image_data(&scaled(picture, scale as usize)));
@@ -57,8 +68,9 @@ impl std::error::Error for ExportError {
     }
 }
 
-/// The shape of a pixel as the format says it: how many of them make up one unit each way.
+/// Returns the pixel's shape as the numbers of pixels per unit each way; `None` for squares.
 fn pixel_dimensions(pixel_aspect: f32) -> Option<png::PixelDimensions> {
+    // The format has whole numbers, so the aspect is kept to a thousandth.
     let per_unit = 1000.0;
     (pixel_aspect != 1.0).then(|| png::PixelDimensions {
         xppu: (per_unit * pixel_aspect).round() as u32,
@@ -78,7 +90,7 @@ fn scaled(picture: &Picture, scale: usize) -> Vec<u8> {
     bytes
 }
 
-/// How many pixels differ, by how much, and the first of them.
+/// Returns the number of differing pixels, the largest difference, and the first of them.
 fn difference(golden: &[u8], frame: &[u8]) -> String {
     let (golden, frame) = match (decoded(golden), decoded(frame)) {
         (Ok(golden), Ok(frame)) => (golden, frame),

@@ -1,18 +1,20 @@
-//! A row of ANSI text -> its characters and how each looks.
+//! Parsing of ANSI text: the characters of a row and their styles.
 
 use std::fmt;
 use std::iter::Peekable;
 use std::str::{Chars, Split};
 
-/// The colours and attributes of a character, as the parameters of the escape sequences that set them.
+/// The colours and attributes of a character, as SGR parameters.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+// Strings, not typed colours: a parameter that this parser does not know is still compared and shown.
 pub(super) struct TextStyle {
     fg: String,
     bg: String,
     others: Vec<String>,
 }
 
-/// Returns the characters of a row with their looks; only sequences of colours and attributes (SGR) are read.
+/// Returns the characters of a row and their styles.
+// Only SGR sequences are parsed; others stay characters, which a comparison makes visible.
 pub(super) fn row(text: &str) -> Vec<(char, TextStyle)> {
     let mut row = Vec::new();
     let mut style = TextStyle::default();
@@ -21,6 +23,7 @@ pub(super) fn row(text: &str) -> Vec<(char, TextStyle)> {
         if let Some(numbers) = take_sgr(&mut characters) {
             style.apply(numbers);
         } else if let Some(character) = characters.next() {
+            // An incomplete or another sequence is text here; `visible_char` keeps it from the terminal.
             row.push((character, style.clone()));
         } else {
             return row;
@@ -28,7 +31,7 @@ pub(super) fn row(text: &str) -> Vec<(char, TextStyle)> {
     }
 }
 
-/// The numbers of the sequence that comes next, if one does.
+/// Takes the parameters of an SGR sequence off the front, if there is one.
 fn take_sgr<'a>(characters: &mut Chars<'a>) -> Option<&'a str> {
     let rest = characters.as_str().strip_prefix("\x1b[")?;
     let (numbers, after) = rest.split_at(rest.find(|c: char| !matches!(c, '0'..='9' | ';' | ':'))?);
@@ -46,6 +49,7 @@ impl TextStyle {
                 "48" => self.bg = color("48", &mut numbers),
                 "39" => self.fg.clear(),
                 "49" => self.bg.clear(),
+                // The only single attribute that the encoder switches off without a reset.
                 "27" => self.others.retain(|other| other != "7"),
                 _ if matches!(number.as_bytes(), [b'3' | b'9', b'0'..=b'7']) => number.clone_into(&mut self.fg),
                 _ if matches!(number.as_bytes(), [b'4', b'0'..=b'7'] | [b'1', b'0', b'0'..=b'7']) => {
@@ -57,7 +61,7 @@ impl TextStyle {
     }
 }
 
-/// One of the 256 or a truecolor, with the numbers that belong to it.
+/// Returns the parameters of a palette colour or a 24-bit colour.
 fn color(first: &str, numbers: &mut Peekable<Split<'_, char>>) -> String {
     let count = match numbers.peek() {
         Some(&"5") => 2,
@@ -67,7 +71,7 @@ fn color(first: &str, numbers: &mut Peekable<Split<'_, char>>) -> String {
     numbers.take(count).fold(first.to_owned(), |color, number| color + ";" + number)
 }
 
-/// The parameters, or `default`.
+/// Writes the parameters, or `default`.
 impl fmt::Display for TextStyle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts = [&self.fg, &self.bg].into_iter().chain(&self.others).filter(|part| !part.is_empty());

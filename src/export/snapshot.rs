@@ -1,14 +1,14 @@
-//! Grid -> text for snapshot tests.
+//! Export of a grid as text for snapshot tests.
 
 use super::text::text;
 use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// Returns the grid's characters in a frame, below its size: for snapshot tools that cut blanks off the ends of a text.
+/// Returns the grid's characters in a frame, below its size, for snapshot tools that trim their input.
 ///
-/// [insta](https://docs.rs/insta), for one, trims what it compares, so that of [`text`](super::text()) the blank rows
-/// at the end, and with them the height, are not tested. Here they are.
+/// [insta](https://docs.rs/insta) trims its input, so that a snapshot of [`text`](super::text()) does not contain the
+/// blank rows at the end, and so not the height.
 ///
 /// ```
 /// use termtrace::{CellMode, Scene, Size, export::framed, frame_grid};
@@ -43,11 +43,11 @@ pub fn framed(grid: &Grid) -> String {
     out
 }
 
-/// Returns the grid's characters in a frame, a second frame with a letter for how each cell styles, and the meaning of
-/// the letters: colours and attributes in a form that a person can review, and of which nothing is lost.
+/// Returns the grid's characters in a frame, the code of each cell's style in a second one, and a legend.
 ///
-/// A dot is the terminal's own colours. The letters are given in the order in which the styles first appear; beyond 62
-/// of them each cell has two, or three.
+/// All colours and attributes are contained, in a form that a person can review. A dot stands for the default colours.
+/// The codes are letters in the order in which the styles first occur; beyond 62 styles a code has two letters, or
+/// more.
 ///
 /// ```
 /// use ratatui::{buffer::Buffer, layout::Rect, style::Stylize, text::Line, widgets::Widget};
@@ -92,7 +92,7 @@ fn border(columns: usize) -> String {
     format!("+{}+\n", "-".repeat(columns))
 }
 
-/// All but the glyph of a cell.
+/// The style of a cell: everything but its glyph.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct CellStyle {
     fg: Ink,
@@ -129,6 +129,7 @@ impl CellStyle {
     }
 }
 
+/// The attributes and their names in a legend.
 const ATTRIBUTES: [(Attributes, &str); 9] = [
     (Attributes::BOLD, "bold"),
     (Attributes::DIM, "dim"),
@@ -149,13 +150,14 @@ fn ink(ink: Ink) -> String {
     }
 }
 
+/// The letters of codes: alphanumeric, so that no snapshot tool escapes them.
 const CODE_LETTERS: &[u8; 62] = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 
-/// The letters of the styles that a grid has.
+/// The styles of a grid and their codes.
 struct Legend {
     styles: Vec<CellStyle>,
     numbers: HashMap<CellStyle, usize>,
-    /// How many letters each has.
+    /// The number of letters of each code.
     code_len: usize,
 }
 
@@ -168,7 +170,8 @@ impl Legend {
                 styles.len() - 1
             });
         }
-        // A grid has less than 2^32 cells.
+        // All codes have the same length, so that columns stay aligned. Six letters suffice: a grid has fewer than 62^6
+        // cells.
         let code_len = (1..=6).find(|&code_len| CODE_LETTERS.len().pow(code_len) >= styles.len()).unwrap_or(6);
         Self { styles, numbers, code_len: code_len as usize }
     }
@@ -190,7 +193,7 @@ mod tests {
     use crate::color::Srgb8;
     use crate::grid::Size;
 
-    /// Nothing is lost to a tool that trims: not the size, not a blank row.
+    /// A tool that trims its input loses neither the size nor a blank row.
     #[test]
     fn blanks_are_within_the_frame() {
         for (size, expected) in [
@@ -204,9 +207,9 @@ mod tests {
         }
     }
 
-    /// Each style has letters of its own, however many there are.
+    /// Each style has its own code, however many styles there are.
     #[test]
-    fn looks_in_any_number_are_told_apart() {
+    fn any_number_of_styles_has_distinct_codes() {
         for columns in [1, 62, 63, 300, 4000] {
             let mut grid = Grid::new(Size::new(columns, 1));
             for (at, cell) in (0_u32..).zip(grid.cells_mut()) {
@@ -223,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn all_that_a_cell_can_be_is_said() {
+    fn all_properties_of_a_cell_are_described() {
         let mut grid = Grid::new(Size::new(2, 1));
         let cell = Cell { underline: Ink::Indexed(3), attributes: Attributes::all(), ..Cell::BLANK };
         *grid.cell_mut(0, 0) = Cell { bg: Ink::Rgb(Srgb8::new(1, 2, 255)), ..cell };

@@ -1,4 +1,4 @@
-//! Grid -> SVG.
+//! Export of a grid as SVG.
 
 use super::difference;
 use super::format_row::{Contents, FormatRow};
@@ -17,23 +17,25 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference: difference::by_rows,
 };
 
-/// The width of a cell.
+/// The width of a cell in units of the drawing.
 const CELL_WIDTH: f64 = 10.0;
 
-/// The width of a character over the size of its font, in most monospace fonts.
+/// The width of a character divided by the font size, in most monospace fonts.
 const FONT_ADVANCE: f64 = 0.6;
 
-/// The grid as an SVG picture of its right shape: cells 10 units wide and `cell_aspect` times as high. Half blocks are
-/// rectangles, of which equal neighbours are one; characters are text, light on dark where the grid does not say
-/// otherwise. The 256 colours are taken to be xterm's. It needs nothing but itself, and moves nothing.
+/// Returns the grid as an SVG drawing without scripts, fonts or references.
+///
+/// Cells are 10 units wide and `cell_aspect` times as high. Half blocks are rectangles, merged where they are equal;
+/// characters are text. Default colours are light on dark, palette colours those of xterm.
 ///
 /// ```
 /// use termtrace::export::svg;
 /// use termtrace::{Cell, Grid, Ink, Size};
 ///
 /// let mut grid = Grid::new(Size::new(2, 1));
-/// *grid.cell_mut(0, 0) = Cell::new('▀', Ink::Indexed(196), Ink::Indexed(21));
+/// *grid.get_mut(0, 0).ok_or("inside the grid")? = Cell::new('▀', Ink::Indexed(196), Ink::Indexed(21));
 /// assert!(svg(&grid, 2.0).contains(r##"<path fill="#ff0000" d="M0 0h1v1h-1"/>"##));
+/// # Ok::<(), &str>(())
 /// ```
 pub fn svg(grid: &Grid, cell_aspect: f32) -> String {
     let Size { columns, rows } = grid.size();
@@ -52,13 +54,15 @@ pub fn svg(grid: &Grid, cell_aspect: f32) -> String {
     svg
 }
 
-/// What is written over it; nothing if nothing is.
+/// Returns the text elements; empty if there is no text.
 fn text(grid: &Grid, cell_height: f64) -> String {
+    // Limited by the cell's height, where cells are low, so that lines do not overlap.
     let font_size = (CELL_WIDTH / FONT_ADVANCE).min(0.85 * cell_height);
     let mut lines = String::new();
     for (row, cells) in grid.rows().enumerate() {
-        // A third of its size above the line, and none below: so characters stand in the middle of their cells.
+        // The baseline a third of the font size below the middle: capital letters are about two thirds of it high.
         let y = rounded((row as f64 + 0.5) * cell_height + font_size / 3.0);
+        // `textLength` sets the width of each run, whatever monospace font the viewer has.
         for run in text_runs(cells) {
             let (x, length) = (CELL_WIDTH * run.column as f64, CELL_WIDTH * run.columns as f64);
             let style = Some(run.css("fill")).filter(|css| !css.is_empty());
@@ -75,7 +79,8 @@ fn text(grid: &Grid, cell_height: f64) -> String {
     )
 }
 
-/// To a thousandth, which no screen shows: few characters, and the same everywhere.
+/// Rounds to a thousandth of a unit.
+// Smaller differences are invisible; the numbers stay short and are the same on every machine.
 fn rounded(value: f64) -> f64 {
     (1000.0 * value).round() / 1000.0
 }

@@ -1,5 +1,6 @@
-//! Grid -> how often each character stands in it: a format that only tests have, to show that this file and its row in
-//! the table are all that one takes.
+//! Export of the number of times each character occurs: a format that exists in tests only.
+//!
+//! The format shows that a file and a row of the table suffice to add one.
 
 use super::difference;
 use super::format_row::{Contents, FormatRow};

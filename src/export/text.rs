@@ -1,4 +1,4 @@
-//! Grid -> plain text.
+//! Export of a grid as plain text.
 
 use super::difference;
 use super::format_row::{Contents, FormatRow};
@@ -15,7 +15,13 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference: difference::by_rows,
 };
 
-/// The grid's characters without colours: one line for each row, with all its trailing spaces.
+/// Returns the grid's characters: one line per row, with trailing spaces.
+///
+/// ```
+/// use termtrace::{Grid, Size, export::text};
+///
+/// assert_eq!(text(&Grid::new(Size::new(3, 2))), "   \n   \n");
+/// ```
 pub fn text(grid: &Grid) -> String {
     let mut text = String::with_capacity(grid.cells().len() + usize::from(grid.size().rows));
     for row in grid.rows() {

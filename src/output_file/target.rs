@@ -18,7 +18,6 @@ const MAX_FOLLOWED_LINKS: usize = 40;
 ///
 /// # Errors
 /// If the target cannot be opened, or the path cannot be resolved.
-/// If it cannot be opened, or the path cannot be followed.
 pub fn open_stream(path: &Path) -> io::Result<Option<File>> {
     let is_stream = match fs::metadata(path) {
         Ok(data) if data.is_dir() => false,

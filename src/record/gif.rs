@@ -69,6 +69,7 @@ impl<W: Write> Gif<W> {
         // bits.
         let mut frame =
             gif::Frame::from_rgb_speed(width as u16, height as u16, &rgb, sampling_step(picture.pixels.len()));
+        // Enlarged here, because the format has no useful pixel aspect: viewers ignore it.
         frame.buffer = self.enlarged(&frame.buffer).into();
         (frame.width, frame.height) = self.size;
         frame.delay = self.delay();
@@ -101,6 +102,7 @@ impl<W: Write> Gif<W> {
     /// Returns the delay of a frame in hundredths of a second, up to the start of the next one.
     fn delay(&self) -> u16 {
         let second = u64::from(self.frames_per_second.max(1));
+        // From the times of both frames, not from the frame rate, so that rounding errors do not add up.
         let hundredths = |frame: u64| (100 * frame + second / 2) / second;
         // At most 100, at one frame per second.
         (hundredths(self.frame + 1) - hundredths(self.frame)) as u16

@@ -52,6 +52,7 @@ impl Shot {
     /// Returns the samples per pixel of the refinement, if a picture with one sample comes first.
     fn refinement_samples(&self) -> Option<NonZeroU32> {
         match self.options.sampling {
+            // Only adaptive sampling has a useful first picture: its pixels are those of one sample each.
             Sampling::UpTo(samples) if samples > NonZeroU32::MIN && self.options.map.refines() => Some(samples),
             _ => None,
         }
@@ -111,6 +112,7 @@ impl Tracer {
 
     fn shown(&mut self, shot: Shot, picture: &Picture, is_final: bool) -> RenderedShot {
         let mode = shot.options.cells;
+        // A painter's cache is valid for its mode only.
         let painter = self.painter.take().filter(|painter| painter.mode() == mode);
         let grid = self.painter.insert(painter.unwrap_or_else(|| Painter::new(mode))).grid(picture);
         RenderedShot { shot, cells: Buffer::from(&grid), is_final }

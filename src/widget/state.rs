@@ -15,6 +15,30 @@ use std::fmt;
 ///
 /// Positions are cells of the whole buffer, as in a terminal's mouse events. Queries by position refer to the picture
 /// drawn last, which may be older than the camera.
+///
+/// ```
+/// use ratatui::{Terminal, backend::TestBackend, layout::Position};
+/// use termtrace::{Grip, Scene, SceneState, SceneView};
+///
+/// let scene = Scene::load("scenes/three_spheres.ron".as_ref())?;
+/// let mut pane = SceneState::new(scene.camera());
+/// let mut terminal = Terminal::new(TestBackend::new(40, 12))?;
+/// pane.frame(&scene);
+/// terminal.draw(|frame| frame.render_stateful_widget(SceneView::new(&scene), frame.area(), &mut pane))?;
+///
+/// let cell = Position::new(20, 6);
+/// assert!(pane.hit(&scene, cell).is_some());
+/// assert!(pane.cell_of(pane.camera().pose().target).is_some());
+/// assert!(pane.scroll(&scene, cell, 1.0), "the wheel, over the picture");
+/// assert!(pane.press(cell, Grip::Turn));
+/// pane.drag(Position::new(24, 6));
+/// pane.release();
+/// pane.pan(0.1, 0.0);
+/// pane.nearer(0.9);
+/// assert!(!pane.is_current(), "the camera has moved since the draw call");
+/// pane.set_camera(scene.camera());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct SceneState {
     camera: Camera,
     /// The length relative to which the distance of the eye from its target is limited.
@@ -60,6 +84,17 @@ impl SceneState {
     /// [`Sampling::UpTo`](crate::render::Sampling::UpTo) a picture with one sample per pixel comes first, and its
     /// refinement is cancelled by a request for a newer view. Dropping the state cancels the picture in progress and
     /// joins the thread.
+    ///
+    /// ```
+    /// use std::sync::mpsc;
+    /// use termtrace::{Scene, SceneState};
+    ///
+    /// let scene = Scene::load("scenes/three_spheres.ron".as_ref())?;
+    /// let (events, loop_of_application) = mpsc::channel();
+    /// let pane = SceneState::new(scene.camera()).in_background(move || _ = events.send("draw"));
+    /// # drop((pane, loop_of_application));
+    /// # Ok::<(), termtrace::LoadError>(())
+    /// ```
     ///
     /// `wake` must not wait for the drawing thread. A panic of the thread is continued in the next draw call, for which
     /// `wake` is called. If no thread can be started, pictures are traced in the draw call.
@@ -143,6 +178,7 @@ impl SceneState {
         if !part.contains(at) {
             return None;
         }
+        // The middle of the cell, so that a cell's ray hits the point that `cell_of` assigns to the cell.
         let share = |at: u16, of: u16| (f32::from(at) + 0.5) / f32::from(of);
         let (qu, qv) = (share(at.x - part.x, shot.size.columns), 1.0 - share(at.y - part.y, shot.size.rows));
         Some(shot.camera.eye_rays(shot.resolution.aspect_ratio()).through(qu, qv))
@@ -177,6 +213,7 @@ impl SceneState {
                 if is_new {
                     worker.request(shot);
                 }
+                // The old picture stays until a new one arrives, even of another size.
                 self.shown = worker.take().or(self.shown.take());
             }
             None if is_new => self.shown = Some(self.tracer.trace(shot)),

@@ -40,8 +40,18 @@ pub struct SceneView<'a> {
 }
 
 impl<'a> SceneView<'a> {
-    /// Returns a view with the defaults: the shaded picture, one ray per pixel, truecolor half blocks, and cells twice
-    /// as high as wide.
+    /// Returns a view with the defaults.
+    ///
+    /// They are the shaded picture, one ray per pixel, truecolor half blocks, and cells twice as high as wide.
+    ///
+    /// ```
+    /// use termtrace::{CellMode, Map, Sampling, Scene, SceneView};
+    ///
+    /// let scene = Scene::load("scenes/three_spheres.ron".as_ref())?;
+    /// let view = SceneView::new(&scene).map(Map::Depth).cells(CellMode::RAMP).sampling(Sampling::BEST);
+    /// # drop(view);
+    /// # Ok::<(), termtrace::LoadError>(())
+    /// ```
     pub fn new(scene: &'a Scene) -> Self {
         let options = Options {
             map: Map::Shaded,

@@ -48,6 +48,7 @@ impl Worker {
         let shared = Arc::new(Shared::default());
         let own = Arc::clone(&shared);
         let thread = thread::Builder::new().name("termtrace pane".to_owned()).spawn(move || {
+            // A panic of `wake` itself must not call it again.
             let is_waking = Cell::new(false);
             let wake = || {
                 is_waking.set(true);
@@ -103,6 +104,7 @@ impl Drop for Worker {
         state.is_closed = true;
         state.token.cancel();
         drop(state);
+        // Joined, so that no thread uses the scene's memory or calls `wake` afterwards.
         self.shared.request_added.notify_one();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
@@ -133,6 +135,7 @@ impl Shared {
     }
 
     fn trace_all(&self, wake: &impl Fn()) {
+        // One tracer for all shots keeps the cache of mixes.
         let mut tracer = Tracer::default();
         while let Some((shot, token)) = self.next() {
             // The pictures delivered before a cancel stay valid.
@@ -146,6 +149,7 @@ impl Shared {
     fn deliver(&self, shown: RenderedShot) {
         let mut state = self.lock();
         state.is_refining = !shown.is_final;
+        // A request that arrived before the first picture waits for it, and then cancels the refinement.
         if state.is_refining && state.requested.is_some() {
             state.token.cancel();
         }

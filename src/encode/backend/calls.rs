@@ -1,4 +1,4 @@
-//! The calls of ratatui's `Backend`.
+//! The implementation of ratatui's `Backend`.
 
 use super::EncoderBackend;
 use ratatui_core::backend::{Backend, ClearType, WindowSize};
@@ -9,7 +9,7 @@ use std::io::{self, Write};
 impl<W: Write> Backend for EncoderBackend<W> {
     type Error = io::Error;
 
-    /// Sends nothing yet. What a wide character covers is not drawn, even if it is in `content`.
+    /// Records the cells; nothing is sent before `flush`. Cells covered by a wide glyph are ignored.
     fn draw<'a, I>(&mut self, content: I) -> io::Result<()>
     where
         I: Iterator<Item = (u16, u16, &'a Cell)>,
@@ -34,23 +34,23 @@ impl<W: Write> Backend for EncoderBackend<W> {
         self.feed_lines(lines)
     }
 
-    /// Hides it with the next frame, if one was begun.
+    /// Hides the cursor, with the next frame if one is open.
     fn hide_cursor(&mut self) -> io::Result<()> {
         self.set_visible(false)
     }
 
-    /// Shows it with the next frame, if one was begun.
+    /// Shows the cursor, with the next frame if one is open.
     fn show_cursor(&mut self) -> io::Result<()> {
         self.set_visible(true)
     }
 
-    /// Returns where it was last put, or what the terminal says, if it was asked.
+    /// Returns the cursor's last position, or the one that the terminal reports.
     fn get_cursor_position(&mut self) -> io::Result<Position> {
         self.follow_window()?;
         self.locate()
     }
 
-    /// Moves it with the next frame, if one was begun.
+    /// Moves the cursor, with the next frame if one is open.
     fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
         self.set_position(position.into())
     }
@@ -65,7 +65,7 @@ impl<W: Write> Backend for EncoderBackend<W> {
         if clear_type == ClearType::All {
             self.forget();
         }
-        // It is there again afterwards.
+        // Blanks are written over the region, so the cursor has to return to its position.
         self.put_cursor(Position::new(x, y));
         let columns = usize::from(self.window.columns_rows.width);
         let (line, next_line) = (usize::from(y) * columns, (usize::from(y) + 1) * columns);
@@ -91,7 +91,7 @@ impl<W: Write> Backend for EncoderBackend<W> {
 
     fn flush(&mut self) -> io::Result<()> {
         self.send_frame()?;
-        // There may be more than ours in it.
+        // The program may have written to the writer itself.
         self.writer.flush()
     }
 

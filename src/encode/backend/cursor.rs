@@ -1,9 +1,9 @@
-//! What is said of the cursor.
+//! The state of the cursor, and the sequences that change it.
 
 use crate::encode::moves::{CellPosition, Move};
 use ratatui_core::layout::Position;
 
-/// Where the cursor is and whether it is seen; `None`: that is unknown, or nothing is wanted of it.
+/// The position and visibility of the cursor; `None` if unknown, or not wanted in any way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Cursor {
     pub(super) position: Option<Position>,
@@ -11,7 +11,7 @@ pub(super) struct Cursor {
 }
 
 impl Cursor {
-    /// Appends what differs from the wanted one.
+    /// Appends the sequences that change the cursor to the wanted state.
     pub(super) fn switch_to(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if let Some(Position { x, y }) = wanted.position
             && self.position != wanted.position

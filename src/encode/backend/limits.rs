@@ -1,19 +1,20 @@
-//! How near to what was drawn a frame is, and what it may take.
+//! The quality and the size of frames, by the clock and a rate.
 
 use crate::encode::{Allowance, Quality};
 use std::time::Duration;
 
-/// So much of the rate may be ahead of its time: a frame of a program that draws seldom is not held back for longer,
-/// and one that draws 30 times a second has a third of it for each frame.
+/// Time by which the bytes sent may be ahead of the rate.
+// A frame of a program that draws seldom waits for no longer, and one that draws 30 times a second has a third of it
+// per frame.
 const MAX_AHEAD: Duration = Duration::from_millis(100);
 
-/// A quality, the time, and what is left of a rate.
+/// A quality, a clock, and the use of a rate.
 pub(super) struct Limits {
     quality: Quality,
     clock: Box<dyn FnMut() -> Duration + Send + Sync>,
     bytes_per_second: Option<f64>,
     now: Duration,
-    /// When everything that was sent is through at that rate.
+    /// The time at which everything sent has passed a link of this rate.
     free_at: Duration,
 }
 
@@ -26,7 +27,7 @@ impl Limits {
         Self { bytes_per_second: Some(f64::from(bytes_per_second.max(1))), ..self }
     }
 
-    /// What a frame that is sent now may differ in and take.
+    /// Returns the allowance of a frame that is sent now.
     pub(super) fn allowance(&mut self) -> Allowance {
         self.now = (self.clock)();
         let left = (self.now + MAX_AHEAD).saturating_sub(self.free_at).min(MAX_AHEAD);
@@ -34,14 +35,15 @@ impl Limits {
         Allowance { quality: self.quality, now: self.now, max_bytes }
     }
 
-    /// That frame has taken so many bytes.
+    /// Records the number of bytes of this frame.
     pub(super) fn record_sent(&mut self, bytes: usize) {
         if let Some(rate) = self.bytes_per_second {
             self.free_at = self.free_at.max(self.now) + Duration::from_secs_f64(bytes as f64 / rate);
         }
     }
 
-    /// When what the encoder has due then may be sent: once half of what may be ahead is free again.
+    /// Returns the time at which cells that are due may be sent.
+    // Not before half of the time ahead is free again, so that a frame has room for more than a few cells.
     pub(super) fn due(&self, due: Duration) -> Duration {
         due.max(self.free_at.saturating_sub(MAX_AHEAD / 2))
     }

@@ -1,8 +1,8 @@
-//! Scrolling some rows of the screen: DECSTBM, SU, SD, and what is within their reach.
+//! Scrolling of a region of rows: DECSTBM, SU and SD.
 //!
-//! A region has two rows at least: many terminals pass over the sequence for a region of one, and what comes behind it
-//! would scroll the whole screen. ratatui asks for it all the same: to bring the first row of a screen that it fills
-//! into the scrollback.
+//! A region has at least two rows: many terminals ignore DECSTBM for one row, and the sequence after it would scroll
+//! the whole screen. ratatui requests such a region nevertheless, to move the first row of a full screen into the
+//! scrollback.
 
 use super::EncoderBackend;
 use crate::encode::moves::{CellPosition, Move};
@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::iter;
 use std::ops::Range;
 
-/// Which way the content goes.
+/// The direction in which the content moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ScrollDirection {
     Up,
@@ -19,8 +19,9 @@ pub(super) enum ScrollDirection {
 }
 
 impl<W: Write> EncoderBackend<W> {
-    /// Scrolls these rows by so many; blank ones come in. What goes out at the screen's top goes into the scrollback.
-    /// The cursor is at the top left afterwards.
+    /// Scrolls the rows of a region; blank rows come in.
+    ///
+    /// Rows that leave the screen at its top enter the scrollback. Afterwards the cursor is at the top left.
     pub(super) fn scroll(&mut self, region: Range<u16>, by: u16, direction: ScrollDirection) -> io::Result<()> {
         let height = self.window.columns_rows.height;
         let end = region.end.min(height);
@@ -39,7 +40,7 @@ impl<W: Write> EncoderBackend<W> {
         if region == (0..height) {
             scroll_screen(height, by, direction, &mut bytes);
         } else if is_first_row_going_out {
-            // Down again, without the row that went out.
+            // The first row enters the scrollback; the others move down again.
             scroll_screen(height, 1, ScrollDirection::Up, &mut bytes);
             scroll_screen(height, 1, ScrollDirection::Down, &mut bytes);
         } else {
@@ -50,8 +51,8 @@ impl<W: Write> EncoderBackend<W> {
     }
 }
 
-/// The whole screen; the cursor ends at the top left. Upwards by line feeds, of which every terminal keeps what goes
-/// out.
+/// Appends the scrolling of the whole screen; the cursor ends at the top left.
+// Upwards by line feeds, because every terminal keeps the rows that leave the screen so, but not by SU.
 fn scroll_screen(height: u16, by: u16, direction: ScrollDirection, bytes: &mut Vec<u8>) {
     match direction {
         ScrollDirection::Up => {
@@ -63,14 +64,15 @@ fn scroll_screen(height: u16, by: u16, direction: ScrollDirection, bytes: &mut V
     Move::To(CellPosition { column: 0, row: 0 }).write(bytes);
 }
 
-/// A part of it; setting and resetting a region both take the cursor to the top left.
+/// Appends the scrolling of a region.
+// Setting and resetting a region both move the cursor to the top left.
 fn scroll_rows(region: &Range<u16>, by: u16, direction: ScrollDirection, bytes: &mut Vec<u8>) {
     sequence(&[region.start + 1, region.end], b'r', bytes);
     sequence(&[by], if direction == ScrollDirection::Up { b'S' } else { b'T' }, bytes);
     bytes.extend_from_slice(b"\x1b[r");
 }
 
-/// CSI with these numbers.
+/// Appends CSI with these parameters.
 fn sequence(numbers: &[u16], last: u8, bytes: &mut Vec<u8>) {
     let mut lead: &[u8] = b"\x1b[";
     for &number in numbers {
