@@ -30,7 +30,7 @@ fn leave(session: &mut Session) {
     session.assert_clean();
 }
 
-/// The lines of the panel are the library's for that pixel, from the first on, as many as there is room for.
+/// Returns whether the lines of the panel are the library's for that pixel, as many as have room.
 fn explains(screen: &Screen, size: Size, pixel: [u32; 2]) -> bool {
     let resolution = termtrace::internals::cell::resolution(
         CellMode::HALF_BLOCK,
@@ -69,7 +69,7 @@ fn x_explains_the_middle_and_arrows_go_on_by_a_pixel() {
     }
 }
 
-/// Wherever the cursor goes, the cell that it is on is the picture's, and the panel is on the other side of the screen.
+/// The cell under the cursor shows the picture; the panel moves to the other side of the screen.
 #[test]
 fn nothing_is_on_the_pixel_that_is_explained() {
     let size = Size::cells(80, 24);
@@ -110,7 +110,7 @@ fn the_text_is_scrolled_to_its_end() {
     leave(&mut session);
 }
 
-/// It says what is true of the picture that is seen: the eye that has moved, the size that has changed.
+/// The explanation follows the eye that moves and the size that changes.
 #[test]
 fn the_explanation_goes_with_the_view_and_the_window() {
     let size = Size::cells(80, 24);

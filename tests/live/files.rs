@@ -1,4 +1,4 @@
-//! What the live view writes: the picture, the camera, a view into the scene's file.
+//! Files that the live view writes: pictures, cameras, and views in the scene's file.
 
 use crate::pty::{self, SOON, Session, Start, shows};
 use std::fs;
@@ -91,7 +91,7 @@ fn the_picture_is_written_in_five_formats_and_never_over_a_file() {
     leave(&mut session);
 }
 
-/// As on a full disk, an error comes in the middle of the file.
+/// A full disk gives an error in the middle of the file.
 #[test]
 fn a_full_disk_leaves_nothing_of_a_picture_and_the_scene_as_it_was() {
     let folder = folder();
@@ -170,7 +170,7 @@ fn base64(bytes: &[u8]) -> String {
     base64::engine::general_purpose::STANDARD.encode(bytes)
 }
 
-/// What stands in no scene file has nowhere to keep a view.
+/// A built-in scene has no file to keep a view in.
 #[test]
 fn a_built_in_scene_keeps_nothing() {
     let program = Path::new(env!("CARGO_BIN_EXE_termtrace"));

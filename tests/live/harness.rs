@@ -1,4 +1,4 @@
-//! The harness of the live tests, proved on ordinary programs: it sees what is left behind, and only that.
+//! Tests of the harness on ordinary programs: it sees what they leave behind, and only that.
 
 use std::{
     fs::File,
@@ -325,14 +325,14 @@ fn a_dropped_session_leaves_nothing_of_a_child_that_exited() {
     let left = Pid::from_raw(number).expect("no process has the number zero");
     assert_eq!(test_kill_process(left), Ok(()));
     drop(session);
-    // Whoever adopts the dead takes a moment, and in a container may never bury them.
+    // The process that adopts orphans takes a moment to reap them, and in a container may never do so.
     let mut deadline = Deadline::after(SOON);
     while !is_gone(left) {
         assert!(!deadline.has_passed(), "{number} is still there");
     }
 }
 
-/// Whether a process is gone, or dead and not yet buried.
+/// Returns whether a process has exited, reaped or not.
 fn is_gone(pid: Pid) -> bool {
     let number = pid.as_raw_nonzero().to_string();
     let ps = Command::new("ps").args(["-o", "stat=", "-p", &number]).output();

@@ -1,5 +1,4 @@
-//! Keys on a terminal that knows the kitty keyboard protocol, and what becomes of them when it does not answer in time,
-//! is left, or never knew it.
+//! Keys on a terminal with the kitty keyboard protocol: in use, with late replies, and without it.
 
 use crate::pty::{Deadline, SOON, Seen, Session, Size, Start};
 use rustix::process::Signal;
@@ -12,15 +11,16 @@ const POP: &[u8] = b"\x1b[<1u";
 /// The last of the questions at the start, and the last answer.
 const FENCE: &[u8] = b"\x1b[16t\x1b[c";
 const FENCE_ANSWER: &[u8] = b"\x1b[?62;22c";
-/// What the scene's eye moves in a second.
+/// The distance that the eye of the scene moves in a second.
 const SPEED: f32 = 2.5;
 
 fn termtrace() -> Start {
     Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).says_when_it_rests()
 }
 
-/// On a terminal that has the keyboard pushed, with the status line shown and all at rest. It is small, so that the test
-/// keeps up with it.
+/// Starts the view on a terminal that has the keyboard pushed, with the status line shown.
+///
+/// The screen is small, so that the test keeps up with it.
 #[track_caller]
 fn flying() -> Session {
     flying_of(Size::cells(80, 4))
@@ -53,7 +53,9 @@ fn tap(session: &Session, key: char) {
     release(session, key);
 }
 
-/// Waits until nothing has been sent for a while. (A stop throws input away, which `wait_for_rest` would wait for.)
+/// Waits until nothing has been sent for a while.
+///
+/// A stop throws input away, which `wait_for_rest` would wait for.
 #[track_caller]
 fn rest_after_stop(session: &mut Session) {
     let mut deadline = Deadline::after(SOON);
@@ -259,7 +261,7 @@ fn a_terminal_that_does_not_know_the_protocol_is_not_sent_it() {
     session.assert_clean();
 }
 
-/// What was pushed counts when the terminal says that it is on, not before: until then a press glides.
+/// Pushed flags count once the terminal reports that they are on; until then a press glides.
 #[test]
 fn flags_that_do_not_come_back_are_not_believed() {
     std::thread::scope(|scope| {
@@ -269,7 +271,7 @@ fn flags_that_do_not_come_back_are_not_believed() {
     });
 }
 
-/// After that answer to what is on a press glides.
+/// Asserts that a press glides after the reply `flags` to the query for the flags.
 fn assert_glides(flags: &str) {
     let mut session = termtrace().mute().spawn();
     session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
@@ -307,7 +309,7 @@ fn a_late_answer_pushes_the_keyboard_once() {
     assert_eq!(count(session.seen(), POP), 1);
 }
 
-/// The terminal is asked for a last answer, behind which nothing comes; what comes before is not left for the shell.
+/// Leaves, and replies to the last query; what comes before the reply is not left for the shell.
 #[track_caller]
 fn leave_answering(session: &mut Session) {
     press(session, 'q');
@@ -331,7 +333,8 @@ fn the_release_of_q_is_not_left_for_the_shell() {
     leave_answering(&mut session);
 }
 
-/// The answers come while it is stopped: whoever read them, it asks again, and pushes once.
+/// Replies that come while the program is stopped may have had another reader: it asks again, and
+/// pushes once.
 #[test]
 fn answers_that_come_during_a_stop_are_asked_for_again() {
     let mut session = termtrace().mute().spawn();
@@ -350,7 +353,8 @@ fn answers_that_come_during_a_stop_are_asked_for_again() {
     leave_answering(&mut session);
 }
 
-/// What is held is let go of by a stop; the keyboard is popped for it, pushed after it, and believed only then.
+/// A stop releases held keys. It pops the keyboard protocol; after it the protocol is pushed, and
+/// used once it is reported.
 #[test]
 fn a_stop_pops_the_keyboard_and_lets_go_of_all_keys() {
     let mut session = flying();

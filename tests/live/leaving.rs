@@ -1,4 +1,5 @@
-//! Every way out of the live view, at every time: the terminal is as it was, and whoever waits knows why it ended.
+//! Every way out of the live view, in every phase: the terminal is as before, and the reason is
+//! told.
 
 #![cfg(feature = "test-hooks")]
 
@@ -29,7 +30,7 @@ impl Way {
     }
 }
 
-/// Where the child is when it happens.
+/// The phase of the child at which it has to leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     /// In raw mode, with nothing sent yet.
@@ -55,7 +56,8 @@ impl Phase {
         }
     }
 
-    /// No pseudo-terminal takes a frame of the larger size in one go.
+    /// Returns the size of the terminal. No pseudo-terminal takes a frame of the larger size in one
+    /// go.
     fn size(self) -> Size {
         if self == Self::MidFrame { Size::cells(300, 120) } else { Size::cells(80, 24) }
     }
@@ -131,7 +133,7 @@ fn leave(way: Way, phase: Phase) {
     go(way, phase, &mut session, phases, storm);
 }
 
-/// The same on a terminal that knows the kitty keyboard protocol, when it is pushed.
+/// Leaves on a terminal that has the kitty keyboard protocol pushed.
 fn leave_with_keyboard(way: Way, phase: Phase) {
     let mut phases = Phases::new();
     let mut session = start(way, phase, &phases).kitty().spawn();
@@ -184,7 +186,7 @@ fn act(way: Way, session: &mut Session) {
     }
 }
 
-/// As the terminal writes it now.
+/// Presses a key as the terminal encodes it now.
 fn press(key: &'static [u8], session: &mut Session) {
     let keyboard = session.seen().modes().keyboard_flags() > 0;
     session.send(match key {
@@ -221,7 +223,9 @@ fn check_message(message: &str, session: &mut Session) {
     assert!(shown.contains(message), "{shown}");
 }
 
-/// A shell with job control, which says how its job ended or stopped, and takes it back when Return is pressed.
+/// Starts a shell with job control.
+///
+/// It prints how its job ended or stopped, and continues it when Return is pressed.
 fn job() -> Start {
     job_of(&format!("'{PROGRAM}' '{SCENE}'"))
 }
@@ -232,7 +236,8 @@ fn job_of(command: &str) -> Start {
     ))
 }
 
-/// The job is stopped with the terminal given back; it comes back with the whole picture at the size of then, and goes.
+/// Continues a stopped job, which has given the terminal back: it shows the whole picture at the
+/// new size, and leaves.
 fn come_back(session: &mut Session, storm: Option<pty::Storm>) {
     session.wait_for_text("status <148>");
     drop(storm);
@@ -250,7 +255,9 @@ fn come_back(session: &mut Session, storm: Option<pty::Storm>) {
     session.assert_clean();
 }
 
-/// Whether a fresh terminal that gets only these bytes shows a picture in every cell: the scene has no black in it.
+/// Returns whether a terminal that gets only these bytes shows a picture in every cell.
+///
+/// The scene has no black in it.
 fn shows_all(bytes: &[u8], size: Size) -> bool {
     let mut screen = pty::Screen::new(size.columns, size.rows);
     screen.feed(bytes);
@@ -300,7 +307,7 @@ fn kill_after(time: Duration, signal: Signal) {
     session.signal(signal);
     let status = session.wait_exit(SOON);
     assert_eq!(status.signal(), Some(signal.as_raw()), "after {time:?}");
-    // What was typed before raw mode was on is echoed: that is nobody's fault.
+    // The terminal itself echoes what was typed before raw mode was on.
     session.assert_clean();
     assert!(!session.seen().screen().is_alternate());
     assert!(session.seen().screen().cursor().is_some());
@@ -341,12 +348,13 @@ fn a_storm_of_resizes_leaves_a_whole_picture() {
     session.assert_clean();
 }
 
-/// The same for a terminal that has seen the alternate screen before.
+/// Returns whether a terminal that was on the alternate screen before shows a picture in every
+/// cell.
 fn shows_all_at_the_end(bytes: &[u8], size: Size) -> bool {
     shows_all(&[b"\x1b[?1049h", bytes].concat(), size)
 }
 
-/// A stop that nobody can hear of, and a CONT for nothing: what is on the screen then is drawn anew.
+/// SIGSTOP gives no notice, and a SIGCONT may come without a stop: both redraw the whole screen.
 #[test]
 fn a_continue_draws_everything_anew() {
     for stop in [true, false] {
@@ -364,7 +372,8 @@ fn a_continue_draws_everything_anew() {
     }
 }
 
-/// Where nobody could continue it (a terminal that runs it without a shell), it goes on by itself.
+/// Without a process that could continue it (a terminal that runs it without a shell) it goes on by
+/// itself.
 #[test]
 fn without_a_shell_ctrl_z_does_not_hang() {
     for start in [Start::new(PROGRAM).arg(SCENE), Start::shell(&format!("trap '' TSTP; exec '{PROGRAM}' '{SCENE}'"))] {
@@ -378,7 +387,8 @@ fn without_a_shell_ctrl_z_does_not_hang() {
     }
 }
 
-/// The key stops the process's whole group, as the terminal itself would: the shell must not wait for somebody else.
+/// The key stops the whole process group, as the terminal itself would: the shell waits for all of
+/// it.
 #[test]
 fn ctrl_z_stops_the_whole_group() {
     let mut session = job_of(&format!("sh -c \"'{PROGRAM}' '{SCENE}'; echo inner\"")).spawn();
@@ -388,7 +398,8 @@ fn ctrl_z_stops_the_whole_group() {
     session.wait_for_text("inner");
 }
 
-/// The keyboard's answer is there when it stops, and giving the terminal back reads it: nobody waits for another.
+/// The keyboard's reply has come before the stop; giving the terminal back reads it and waits for
+/// no other.
 #[test]
 fn what_could_be_read_before_a_stop_is_not_waited_for() {
     let mut phases = Phases::new();
@@ -439,8 +450,8 @@ fn a_stopped_job_can_be_killed() {
     session.assert_clean();
 }
 
-/// Stopped by something that it cannot hear of, with the terminal as it was, it still gives it back when it is killed,
-/// although the shell has it by then.
+/// After SIGSTOP the terminal is as it was. A kill still restores it, although the shell has it by
+/// then.
 #[test]
 fn a_job_stopped_in_flight_can_be_killed() {
     let stopped = 128 + Signal::STOP.as_raw();
@@ -457,10 +468,10 @@ fn a_job_stopped_in_flight_can_be_killed() {
     session.assert_clean();
 }
 
-/// What a shell does to wait until its job in the background is stopped, and to say so.
+/// Shell commands that wait until the job in the background is stopped, and then print so.
 const PARKED: &str = "until ps -o stat= -p $! | grep -q '^T'; do sleep 0.01; done; echo parked";
 
-/// In the background it waits to be brought to the foreground before it touches the terminal; after `bg` too.
+/// In the background it does not touch the terminal before it is in the foreground; after `bg` too.
 #[test]
 fn in_the_background_it_leaves_the_terminal_alone() {
     let script = format!(
@@ -528,8 +539,9 @@ fn in_the_background_the_whole_job_stops() {
     session.assert_clean();
 }
 
-/// Started in the background while the shell reads a line with settings of its own, it gives back those that it found in
-/// the foreground.
+/// Restores the settings that it found when it came to the foreground.
+///
+/// It was started in the background while the shell read a line with settings of its own.
 #[test]
 fn the_settings_given_back_are_those_of_the_foreground() {
     let script = format!(
@@ -546,7 +558,7 @@ fn the_settings_given_back_are_those_of_the_foreground() {
     session.assert_clean();
 }
 
-/// What was held when the program was stopped is not held when it comes back; nor after the focus is lost.
+/// Keys that were held before a stop or a loss of the focus are not held afterwards.
 #[test]
 fn no_key_is_stuck() {
     let mut session = job().spawn();
@@ -608,9 +620,11 @@ fn writes(session: &Session) -> u64 {
     count.parse().expect("a number")
 }
 
-/// Ctrl-L draws a picture that is there already: nothing else is written to anybody. (A pseudo-terminal takes some ten
-/// thousand bytes at once: of a larger frame it takes a part, and the rest in as few writes as it wants.) On a busy machine
-/// replies are late, and small frames take the place of one: then the key is pressed again.
+/// Ctrl-L draws a picture that is there already, in one write.
+///
+/// A pseudo-terminal takes some ten thousand bytes at once: of a larger frame it takes a part, and the rest in as few
+/// writes as it wants. On a busy machine replies are late, and small frames take the place of one: then the key is
+/// pressed again.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_frame_is_one_write() {
@@ -639,7 +653,9 @@ fn a_frame_is_one_write() {
     session.wait_exit(SOON);
 }
 
-/// What a shell's redirections leave: the status, and all that was written to the standard streams and the terminal.
+/// Runs the program with redirections of a shell.
+///
+/// Returns the exit status, and all that was written to the standard streams and the terminal.
 fn run_with(redirections: &str) -> (Option<i32>, String) {
     let mut session = Start::shell(&format!("exec '{PROGRAM}' '{SCENE}' {redirections}")).spawn();
     let status = session.wait_exit(SOON);

@@ -1,4 +1,6 @@
-//! Lights that are moved: keys and reports of the mouse in, the picture out. The screen has 40x12 cells of 10x20 pixels.
+//! Lights that are moved: keys and reports of the mouse in, the picture out.
+//!
+//! The screen has 40x12 cells of 10x20 pixels.
 
 use crate::mouse::{drag, report};
 use crate::orbit::{BALL, camera, load, looking};
@@ -19,7 +21,7 @@ fn wait_for_light(session: &mut Session, light: Vec3) {
     session.wait_for("the picture in another light", SOON, |seen| shows(seen.screen(), &wanted));
 }
 
-/// In the ball's scene.
+/// Returns how far a drag moves the light in the scene of the ball.
 fn dragged(by: Vec2) -> Vec3 {
     let scene = load(BALL);
     scene.camera().point_dragged(scene.lights()[0].position().expect("a point light"), by, ASPECT_RATIO)

@@ -1,4 +1,4 @@
-//! A big mesh on its way: what is told of it, what can be seen and done meanwhile, and every way out.
+//! A large mesh that loads: what is reported and can be done meanwhile, and every way out.
 
 #![cfg(feature = "test-hooks")]
 
@@ -23,8 +23,9 @@ fn big_ball() -> Vec<u8> {
     written(&ball(150_000), "binary.stl")
 }
 
-/// A mesh that comes through a pipe when the test wants. Until then a byte of it comes now and then, because a pipe that
-/// delivers nothing for a second is given up.
+/// A mesh that comes through a pipe when the test wants.
+///
+/// Until then a byte comes now and then, because a pipe that delivers nothing for a second is given up.
 struct Source {
     folder: TempDir,
     rest: Sender<Vec<u8>>,
@@ -88,7 +89,7 @@ fn sketched(start: Start, source: &mut Source, phases: &mut Phases) -> Session {
     session
 }
 
-/// Whether there is a picture from the first row to the last, with or without a panel on it.
+/// Returns whether a picture covers all rows, with or without a panel on it.
 fn has_picture(screen: &pty::Screen) -> bool {
     [0, 23].into_iter().all(|row| (0..80).all(|column| screen.cell(column, row).background != pty::Colour::Default))
 }
@@ -128,7 +129,8 @@ fn it_can_be_left_while_it_reads() {
     }
 }
 
-/// Where next to nothing comes, nothing is said or computed; a key that moves has nothing to move.
+/// While the pipe delivers next to nothing, nothing is written or computed; a key has nothing to
+/// move.
 #[test]
 fn while_next_to_nothing_comes_nothing_happens() {
     let source = Source::new();
@@ -138,7 +140,7 @@ fn while_next_to_nothing_comes_nothing_happens() {
     leave(&mut session, WAYS[0]);
 }
 
-/// A pipe that nothing is written to keeps nobody waiting: the view hears keys, says what is wrong, and ends.
+/// A pipe without a writer does not block: keys work, the error is reported, and the view ends.
 #[test]
 fn a_pipe_without_a_writer_is_told_when_the_terminal_is_back() {
     let folder = tempfile::tempdir().expect("a folder can be made");
@@ -159,12 +161,12 @@ fn it_can_be_left_while_it_builds() {
     }
 }
 
-/// What the status line says of the eye.
+/// Returns the eye that the status line shows.
 fn eye(seen: &pty::Seen) -> Option<String> {
     seen.screen().text().concat().rsplit("eye").next().map(str::to_owned)
 }
 
-/// What a scene looks like when it is whole.
+/// Returns the picture of a scene that is whole.
 fn picture(scene: &Scene, size: Size) -> termtrace::Grid {
     pty::picture(scene, CellMode::HALF_BLOCK, termtrace::Size::new(size.columns, size.rows), 2.0)
 }
@@ -277,7 +279,7 @@ fn it_can_be_stopped_while_it_reads() {
     session.assert_clean();
 }
 
-/// The terminal is given back; then there is the one line that is told without a terminal, and exit code 2.
+/// The terminal is given back; then one line of error follows, and exit code 2.
 #[test]
 fn what_is_wrong_with_a_mesh_is_told_when_the_terminal_is_back() {
     let mut wrong = big_ball();
@@ -327,7 +329,8 @@ fn a_panic_while_it_builds_is_told_when_the_terminal_is_back() {
     assert!(told.rfind("\x1b[?") < told.find("a test asked for a panic"), "{told}");
 }
 
-/// What is there in a moment is shown without a word about it. (On a busy machine a moment may be too short.)
+/// A mesh that loads in a moment is shown without a panel. On a busy machine a moment may be too
+/// short.
 #[test]
 fn a_small_mesh_comes_without_a_panel() {
     let folder = tempfile::tempdir().expect("a folder can be made");

@@ -37,7 +37,7 @@ fn grid_size() -> termtrace::Size {
     termtrace::Size::new(SIZE.columns, SIZE.rows)
 }
 
-/// Whether the screen shows this picture in all rows but the last.
+/// Returns whether the screen shows this picture in all rows but the last.
 fn shows_above(screen: &Screen, picture: &Picture) -> bool {
     let wanted = cell::grid_from_picture(CellMode::HALF_BLOCK, picture);
     let columns = usize::from(SIZE.columns);
@@ -88,7 +88,7 @@ fn the_map_asked_for_is_there_at_first() {
     });
 }
 
-/// Two pictures of half the width, each of the right shape; then one with a line that keys move; then one.
+/// Comparing shows two maps side by side, then one with a divider that keys move, then one.
 #[test]
 fn two_maps_are_compared() {
     let mut session = start();

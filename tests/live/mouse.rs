@@ -1,5 +1,6 @@
-//! The mouse: reports in, the camera that is printed on leaving and the screen out. The screen has 40x12 cells of 10x20
-//! pixels.
+//! The mouse: reports in; the printed camera and the screen out.
+//!
+//! The screen has 40x12 cells of 10x20 pixels.
 
 use crate::orbit::{BALL, TEAPOT, camera, load, looking, turned};
 use crate::pty::{SOON, Session, Size, Start};
@@ -30,7 +31,7 @@ pub(crate) fn drag(button: u16, from: [u16; 2], to: [u16; 2]) -> String {
     report(button, from, 'M') + &report(button + WAY, to, 'M') + &report(button, to, 'm')
 }
 
-/// Where these reports lead.
+/// Returns the camera after these reports.
 fn after(scene: &str, reports: &str) -> Camera {
     let mut session = looking(scene, &[]);
     session.send(reports.as_bytes());
@@ -118,7 +119,7 @@ fn a_double_click_shows_everything() {
     assert!(once.eye.distance(wanted.eye) > 0.1, "one click does nothing");
 }
 
-/// Of many ways that are heard together only the last counts; all of them lead to the same place.
+/// Of several reports that are read together only the last counts; all lead to the same camera.
 #[test]
 fn a_pointer_that_runs_ahead_is_caught_up_with_at_once() {
     let there_and_back =

@@ -21,7 +21,7 @@ fn termtrace() -> Start {
     program().arg(SCENE)
 }
 
-/// What the scene looks like on such a screen, made by the library.
+/// Returns the library's picture of the scene on such a screen.
 fn picture(cell_mode: CellMode, size: Size) -> Grid {
     let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
     let aspect = f32::from(size.cell.1) / f32::from(size.cell.0);
@@ -202,9 +202,10 @@ fn any_quality_is_exact_at_rest() {
     }
 }
 
-/// What the eye does not see is not sent. Steps are of one size whatever the machine does meanwhile, and frames are counted
-/// by the queries that end them: where the machine is so busy that replies are late, some end with none, and the steps are
-/// taken again.
+/// Differences that are not visible are not sent.
+///
+/// Steps are of one size whatever the machine does meanwhile, and frames are counted by the queries that end them:
+/// where the machine is so busy that replies are late, some end with none, and the steps are taken again.
 #[test]
 fn an_equal_picture_takes_fewer_bytes_while_it_moves() {
     let [exact, equal] = ["exact", "equal"].map(|quality| {
@@ -216,7 +217,7 @@ fn an_equal_picture_takes_fewer_bytes_while_it_moves() {
     assert!(equal * 3 < exact * 2, "{equal} bytes a frame against {exact}");
 }
 
-/// The bytes of each frame while the eye takes six steps; `None` if one shows no query, and will show none.
+/// Returns the bytes of each frame while the eye takes six steps; `None` if a frame has no query.
 fn bytes_per_frame(session: &mut Session) -> Option<usize> {
     session.wait_for_rest();
     let before = session.seen().bytes().len();
@@ -232,7 +233,7 @@ fn bytes_per_frame(session: &mut Session) -> Option<usize> {
     Some(moving.len() / queries(moving))
 }
 
-/// That the rate is kept is tested with the other limits in time (`tests/slow.rs`).
+/// `tests/slow.rs` tests that the rate is kept, with the other limits in time.
 #[test]
 fn at_a_low_rate_all_arrives_in_the_end() {
     for quality in ["exact", "equal"] {
@@ -275,7 +276,7 @@ fn at_rest_nothing_is_sent() {
     leave(&mut session);
 }
 
-/// Another program shows its picture and is left: so much time passes.
+/// Starts another live view, waits for its picture and leaves it, so that time passes.
 fn live_elsewhere() {
     leave(&mut looking(termtrace()));
 }
@@ -312,7 +313,7 @@ fn at_rest_nothing_is_computed() {
     leave(&mut session);
 }
 
-/// How often the system has switched away from a process's threads: each time that one slept or had to wait.
+/// Returns the number of context switches of a process: each time that a thread slept or waited.
 #[cfg(target_os = "linux")]
 fn switches(session: &Session) -> u64 {
     let threads = std::fs::read_dir(format!("/proc/{}/task", session.pid().as_raw_nonzero())).expect("it runs");
@@ -325,7 +326,7 @@ fn switches(session: &Session) -> u64 {
     status.map(of_thread).sum()
 }
 
-/// A key that changes nothing (Up at the pole) is held: the loop looks at it once a frame, and renders nothing.
+/// A held key that changes nothing (Up at the pole) is looked at once a frame, and renders nothing.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_held_key_that_changes_nothing_costs_nothing() {
@@ -382,7 +383,7 @@ fn a_terminal_that_does_not_read_is_left() {
     });
 }
 
-/// By that signal, or a key.
+/// Leaves by that signal, or by a key.
 fn leave_a_terminal_that_does_not_read(signal: Option<Signal>) {
     let mut session = looking(termtrace());
     fill_a_terminal_that_does_not_read(&mut session);
@@ -414,7 +415,7 @@ fn a_slow_frame_does_not_keep_anybody_from_leaving() {
     session.assert_clean();
 }
 
-/// In the reverse order of turning on: the cursor first, then the colours, then the screen.
+/// Modes are undone in the reverse order: the cursor first, then the colours, then the screen.
 #[test]
 fn what_was_turned_on_is_undone_in_reverse() {
     let mut session = looking(termtrace());
@@ -423,7 +424,7 @@ fn what_was_turned_on_is_undone_in_reverse() {
     assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?}: {said:?}");
 }
 
-/// Keys that nobody has read when we leave are not left for the shell.
+/// Keys that are unread when the program leaves are not left for the shell.
 #[test]
 fn keys_that_were_meant_for_us_are_not_left_for_the_shell() {
     let mut session = looking(termtrace());
@@ -495,7 +496,7 @@ fn the_flag_says_the_cell_aspect_where_the_terminal_does_not() {
     leave(&mut session);
 }
 
-/// A terminal with that environment and these flags shows cells of that kind; the help and the status line lie over it.
+/// Asserts the cell kind that an environment and flags select, with help and status line over it.
 #[track_caller]
 fn assert_cells(environment: &[(&str, &str)], flags: &[&str], glyphs: Glyphs, colors: Colors) -> Session {
     let start = environment.iter().fold(termtrace(), |start, (name, value)| start.env(name, value));
@@ -509,7 +510,7 @@ fn assert_cells(environment: &[(&str, &str)], flags: &[&str], glyphs: Glyphs, co
     session
 }
 
-/// Whether there is an SGR among the bytes.
+/// Returns whether the bytes have an SGR sequence.
 fn has_sgr(bytes: &[u8]) -> bool {
     let sequences = bytes.split(|&byte| byte == 0x1b).skip(1);
     sequences.into_iter().any(|sequence: &[u8]| {
@@ -567,7 +568,7 @@ fn the_scene_may_come_from_standard_input() {
     leave(&mut session);
 }
 
-/// It is all read before keys are.
+/// The scene is read to its end before keys are.
 #[test]
 fn the_scene_may_be_typed() {
     let mut session = program().arg("-").spawn();

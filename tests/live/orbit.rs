@@ -1,4 +1,5 @@
-//! Two ways to move, and what else changes the view: keys in, the camera that is printed on leaving out.
+//! Flying, orbiting and other changes of the view: keys in, the camera that is printed on leaving
+//! out.
 
 use crate::pty::{SOON, Session, Size, Start};
 use glam::Vec3;
@@ -11,7 +12,7 @@ pub(crate) fn load(scene: &str) -> Scene {
     Scene::load(scene.as_ref()).expect("the scene is fine")
 }
 
-/// At rest: what moves by itself would show.
+/// Starts the view and waits for rest, at which a movement without a key would be seen.
 pub(crate) fn looking(scene: &str, flags: &[&str]) -> Session {
     let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(scene).size(Size::cells(40, 12));
     let mut session = flags.iter().fold(start, Start::arg).says_when_it_rests().spawn();
@@ -31,7 +32,7 @@ pub(crate) fn camera(session: &mut Session) -> Option<Camera> {
     Some(*Scene::from_ron("printed", &format!("({line})")).expect("a line for a scene file").camera())
 }
 
-/// Where these keys lead, each of which is one step.
+/// Returns the camera after these keys, each of which is one step.
 fn after(scene: &str, keys: &[u8]) -> Camera {
     let mut session = looking(scene, &["--reduced-motion"]);
     session.send(keys);
@@ -61,7 +62,7 @@ fn a_mesh_given_by_name_is_gone_around() {
     assert_eq!(after(TEAPOT, b"wsr"), *load(TEAPOT).camera());
 }
 
-/// With Tab the eye goes around what is in the middle, and flies again.
+/// Tab makes the eye orbit the middle of the picture, and makes it fly again.
 #[test]
 fn a_scene_is_flown_through_until_tab() {
     let start = load(BALL).camera().pose();
@@ -98,7 +99,7 @@ fn brackets_change_the_field_of_view_and_tell_it() {
     assert_eq!(camera.pose(), load(BALL).camera().pose());
 }
 
-/// It turns until something else moves the eye, and then all is still.
+/// The turntable turns until a command moves the eye; then nothing moves.
 #[test]
 fn t_turns_until_the_next_move() {
     let mut session = looking(TEAPOT, &[]);
@@ -108,7 +109,7 @@ fn t_turns_until_the_next_move() {
         session.wait_for("the next frame", SOON, |seen| seen.bytes().len() > frames);
         frames = session.seen().bytes().len();
     }
-    // Whoever looks elsewhere lets go of keys, not of the turntable; and the help does not move it.
+    // A loss of the focus releases keys and leaves the turntable on; the help does not move it.
     session.send(b"\x1b[O");
     session.send(b"?");
     session.wait_for_text("keys: orbit");

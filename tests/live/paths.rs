@@ -1,5 +1,7 @@
-//! Paths that lead elsewhere while their scene is looked at: whatever stands in the file's place for a while, and however
-//! many links and folders lead to it, the next scene there is seen.
+//! Paths that lead elsewhere while their scene is shown.
+//!
+//! A file may be replaced for a while by something else, and any number of links and folders may lead to it: the next
+//! scene at the path is shown.
 
 use crate::pty::{SOON, Session};
 use crate::scenes::{EYE, ball, leave, program, sees};
@@ -52,7 +54,7 @@ fn looking(folder: &TempDir, path: &str) -> Session {
     session
 }
 
-/// What comes into the file's place, what is said of it if anything, and how it goes again.
+/// A replacement of the file: its name, how it is made, and the message about it, if any.
 type Guest = (&'static str, fn(&Path), &'static str);
 
 const GUESTS: [Guest; 8] = [
@@ -112,7 +114,7 @@ fn a_file_is_seen_after_whatever_stood_in_its_place() {
     }
 }
 
-/// What it is called, which path is looked at, what is there first, and what is done.
+/// A case: its name, the path that is shown, the files at first, and the change.
 type Case = (&'static str, &'static str, fn(&Path), fn(&Path));
 
 /// The scene in a folder of its own.
@@ -268,7 +270,8 @@ fn a_file_is_seen_whichever_way_leads_to_it() {
     }
 }
 
-/// The system does not say that a folder is removed while a process stands in it; here it is the program itself.
+/// The system does not report that a folder is removed while a process has it as current folder,
+/// here the program itself.
 #[test]
 fn a_folder_that_a_process_stands_in_is_seen_coming_back() {
     let folder = folder(inside);

@@ -1,4 +1,4 @@
-//! What the program asks its terminal, and what it makes of answers: none, all at once, late, in pieces, forged.
+//! Queries to the terminal, and replies to them: none, all at once, late, in pieces, forged.
 
 use crate::pty::{self, Colour, SOON, Session, Size, Start, shows};
 use rustix::process::Signal;
@@ -12,8 +12,9 @@ use termtrace::{CellMode, Colors, Glyphs, Grid, Scene, Srgb8};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 const FENCE: &[u8] = b"\x1b[c";
-/// Longer than an Escape byte is held back that may begin a sequence: how long is a matter of time, whose end no event
-/// tells.
+/// A time longer than the parser holds back an Escape byte that may begin a sequence.
+///
+/// No event reports the end of that time.
 const ESCAPE: Duration = Duration::from_millis(150);
 const FENCE_ANSWER: &[u8] = b"\x1b[?62;22c";
 
@@ -22,7 +23,7 @@ fn live() -> Start {
     Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).env("COLORTERM", "").mute()
 }
 
-/// What the scene looks like in these cells, whose height is `aspect` times their width.
+/// Returns the picture of the scene in these cells, which are `aspect` times as high as wide.
 fn picture(glyphs: Glyphs, colors: Colors, aspect: f32) -> Grid {
     let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
     pty::picture(&scene, CellMode { glyphs, colors }, termtrace::Size::new(80, 24), aspect)
@@ -42,7 +43,8 @@ fn looking(start: Start) -> Session {
     session
 }
 
-/// Where the kitty keyboard protocol was pushed, one question more is asked: behind its answer nothing comes.
+/// Leaves. Where the kitty keyboard protocol was pushed, one more query is sent, and its reply is
+/// the last.
 #[track_caller]
 fn leave(session: &mut Session) {
     let keyboard = session.seen().has(b"\x1b[>15u");
@@ -55,7 +57,8 @@ fn leave(session: &mut Session) {
     session.assert_clean();
 }
 
-/// The answers of a terminal that knows everything, in the order of the questions, without the fence's.
+/// Returns the replies of a terminal that supports everything, in the order of the queries, without
+/// the fence's.
 fn everything() -> Vec<u8> {
     [
         &b"\x1b[1;2R"[..],
@@ -82,13 +85,14 @@ fn end_answers(session: &mut Session) {
     answer_frames(session);
 }
 
-/// From now on the terminal answers what the frames ask. It answers in order: so the questions before are answered.
+/// Answers the queries of frames from now on. A terminal answers in order: so the earlier ones are
+/// answered.
 fn answer_frames(session: &mut Session) {
     let from = end_of_questions(session.seen());
     session.answer_from(from);
 }
 
-/// Nothing was pressed: the help is not open, and the eye is where it was.
+/// Asserts that no key was pressed: the help is not open, and the eye is where it was.
 #[track_caller]
 fn nothing_was_pressed(session: &mut Session) {
     session.send(b"i");
@@ -146,8 +150,9 @@ fn late_answers_count_too() {
     leave(&mut session);
 }
 
-/// Every beginning of the answers comes alone, and the rest longer after than a person's Escape key would wait; with the
-/// help open, which Escape closes.
+/// Each prefix of the replies comes alone, and the rest later than a lone Escape is held back for.
+///
+/// The help is open, which Escape would close.
 #[test]
 fn answers_split_at_any_byte_press_no_key() {
     let answers = [&b"\x1b[1;2R"[..], b"\x1b]11;rgb:0/0/0\x1b\\", b"\x1bP1$r48;2;1;2;3m\x1b\\", FENCE_ANSWER].concat();
@@ -195,7 +200,8 @@ fn every_byte_alone_is_the_same_as_all_at_once() {
     leave(&mut session);
 }
 
-/// What nobody asked for, or says nonsense, or comes after the last answer, changes nothing and presses nothing.
+/// Replies without a query, nonsense and replies after the last one change nothing and press
+/// nothing.
 #[test]
 fn forged_answers_change_nothing() {
     let mut session = looking(live());
@@ -276,7 +282,7 @@ fn answers_on_their_way_are_waited_for_and_none_is_left() {
     assert!(!session.seen().has(b"rgb:"), "nothing is echoed");
 }
 
-/// Stopped before the answers came, and continued, it asks again: nobody knows who has read them.
+/// A program that is stopped before the replies came asks again: they may have had another reader.
 #[test]
 fn who_was_stopped_asks_again() {
     let mut session = looking(live());
@@ -300,7 +306,7 @@ fn a_signal_waits_for_answers_too_but_not_for_ever() {
     session.assert_clean();
 }
 
-/// Not a letter of a question is seen, nor half a sequence, nor a mode or a colour left.
+/// No letter of a query is seen, no half a sequence, and no mode or colour is left on.
 #[test]
 fn no_question_leaves_a_trace_on_the_screen() {
     for term in ["xterm-256color", "tmux-256color", "screen-256color", "linux", "dumb", "vt100"] {

@@ -29,7 +29,8 @@ fn is_near(eye: &[f32], wanted: [f32; 3]) -> bool {
     eye.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-3)
 }
 
-/// A tenth of the way from (0, 2.1, 6.3) to (0, 0.9, 0), and no more: a glide would go on for a third of it.
+/// A press moves a tenth of the way from (0, 2.1, 6.3) to (0, 0.9, 0). A glide would move a third
+/// of it.
 #[test]
 fn a_press_is_one_step() {
     let at = eye_after(b"w", &[]);
@@ -44,7 +45,7 @@ fn a_step_is_as_long_as_the_speed_that_was_set() {
     assert!(is_near(&at, [0.0, 2.04, 5.985]), "{at:?}");
 }
 
-/// Whatever the terminal takes repeats for, and other keys stop nothing.
+/// A repeat is one more step, whatever the terminal reports as one, and other keys stop nothing.
 #[test]
 fn a_press_with_shift_is_four_steps_and_each_repeat_one_more() {
     let at = eye_after(b"Ww w", &[]);

@@ -1,5 +1,6 @@
-//! Samples by the clock: while the view stands still the picture gets better, in few steps, and comes to an end; whoever
-//! moves on does not wait for it.
+//! Refinement: the picture of a resting view gets better in few steps, and ends.
+//!
+//! Moving does not wait for it.
 
 #![cfg(feature = "test-hooks")]
 
@@ -13,7 +14,7 @@ use termtrace::{CellMode, Encoder, Grid, Order, Sampling, Scene};
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 
-/// What ends each frame.
+/// The query that ends each frame.
 const FENCE: &[u8] = b"\x1b[c";
 
 fn picture(sampling: Sampling, scene: &Path, size: Size) -> Grid {
@@ -28,7 +29,8 @@ fn whole_frame(grid: &Grid) -> usize {
     bytes.len()
 }
 
-/// Shows a scene, and then again after a jump of the camera: each time it comes to its end in few steps.
+/// Asserts that the refinement of a scene ends in few steps, at the start and after a jump of the
+/// camera.
 fn assert_comes_to_its_end(scene: &Path, size: Size) {
     let wanted = picture(Sampling::BEST, scene, size);
     let mut phases = Phases::new();
@@ -70,7 +72,7 @@ fn a_picture_that_stands_still_comes_to_its_end_in_few_steps() {
     }
 }
 
-/// Where every cell has edges.
+/// A scene whose every cell has edges is refined to its end.
 #[test]
 fn also_a_picture_of_edges_comes_to_its_end_in_few_steps() {
     assert_comes_to_its_end(gravel().path(), LARGE);

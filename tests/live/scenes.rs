@@ -1,4 +1,4 @@
-//! The live view and the files of its scenes: several of them, none, and files that change while they are looked at.
+//! Scene files of the live view: several, none, and files that change while they are shown.
 
 use crate::pty::{self, SOON, Session, Size, Start, shows};
 use std::fs;
@@ -28,13 +28,13 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// As most programs write.
+    /// Writes a file in place, as most programs do.
     fn write(&self, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
         fs::write(self.path(name), text).expect("a file can be written");
         self.path(name)
     }
 
-    /// As editors do that never leave half a file behind.
+    /// Replaces a file by a rename, as editors do that never leave half a file behind.
     fn replace(&self, name: &str, text: impl AsRef<[u8]>) {
         let new = self.write("new~", text);
         fs::rename(new, self.path(name)).expect("a file can be renamed");
@@ -60,7 +60,7 @@ pub(crate) fn sees(session: &mut Session, text: &str) {
     session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
 }
 
-/// Whether the upper half of the screen shows that scene, whatever lies over the lower one.
+/// Returns whether the upper half of the screen shows that scene, whatever covers the lower one.
 fn upper_half_shows(session: &mut Session, text: &str) -> bool {
     let scene = Scene::from_ron("wanted", text).expect("the scene is fine");
     let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::Size::new(80, 24), 2.0);
@@ -208,7 +208,7 @@ fn the_view_stays_where_it_is() {
     assert!(!leave(&mut session).contains("camera:"), "this is where the file looks from");
 }
 
-/// What happens to other files in the folder, or to this one without a change, is nothing.
+/// Changes of other files in the folder, and writes without a change, have no effect.
 #[test]
 fn what_is_not_the_scenes_is_nothing() {
     let folder = Folder::new();

@@ -18,13 +18,13 @@ fn user(files: &[(&str, &str)]) -> TempDir {
     home
 }
 
-/// What this user starts.
+/// Starts the program with this user's files.
 fn start(home: &TempDir, flags: &[&str]) -> Session {
     let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).env("HOME", home.path()).size(Size::cells(80, 24));
     flags.iter().fold(start.arg(SCENE), Start::arg).spawn()
 }
 
-/// Somebody without files looks at the scene on a screen of that size.
+/// Starts the program without a user's files on a screen of that size.
 fn looking(columns: u16, rows: u16) -> Session {
     let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).size(Size::cells(columns, rows));
     let mut session = start.says_when_it_rests().spawn();
@@ -84,7 +84,7 @@ fn what_the_file_sets_holds_unless_a_flag_or_a_variable_says_otherwise() {
     leave(&mut session);
 }
 
-/// Before the terminal is touched.
+/// Errors of settings and keys are reported before the terminal is touched.
 #[test]
 fn a_file_that_is_wrong_is_told_of_before_anything_else() {
     let home = user(&[("config.ron", "(\n    mpa: depth,\n    fps: 0,\n)")]);
@@ -123,7 +123,7 @@ fn keys_of_ones_own_do_what_the_file_says_and_are_told_of() {
     leave(&mut session);
 }
 
-/// Whatever speaks of a key speaks of the one that is bound.
+/// Every text that names a key names the bound one.
 #[test]
 fn all_that_is_said_of_keys_goes_by_the_file() {
     let keys = r#"(explain: { "Space": ScrollDown, "PageDown": None }, always: { "Q": Quit, "q": None, "F1": Help, "?": None })"#;
@@ -149,7 +149,7 @@ fn keys_that_are_wrong_are_told_of_before_anything_else() {
     assert!(!said.contains('\x1b'), "{said}");
 }
 
-/// Where it does not fit on the screen, page by page.
+/// Help that does not fit on the screen has pages.
 #[test]
 fn the_help_has_pages_where_the_screen_is_small() {
     let mut session = looking(40, 12);
@@ -224,7 +224,7 @@ fn escape_closes_what_lies_on_top() {
     leave(&mut session);
 }
 
-/// Also while something is asked, of which it is no answer.
+/// Ctrl-C leaves while a question is open, too: it is no answer.
 #[test]
 fn ctrl_c_always_leaves() {
     for key in [&b"o"[..], b"Y", b"?", b"x"] {

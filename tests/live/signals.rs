@@ -1,4 +1,5 @@
-//! Signals: every one whose default is to end the process ends the live view first, and gives the terminal back.
+//! Every signal whose default ends the process ends the live view and gives the terminal back
+//! first.
 
 use crate::pty::{SOON, Session, Start, picture, shows};
 use rustix::process::Signal;
@@ -24,7 +25,7 @@ fn send(session: &Session, signal: i32) {
     assert!(kill.expect("there is a shell").success(), "signal {signal}");
 }
 
-/// What ends a process by default, and is not in the matrix of `leaving`.
+/// Returns the signals that end a process by default and are not in the matrix of `leaving`.
 fn endings() -> Vec<i32> {
     let named = [
         Signal::USR1,
@@ -61,7 +62,7 @@ fn every_signal_that_ends_a_program_gives_the_terminal_back() {
     }
 }
 
-/// The first signal decides, whatever else is pending when the program dies of it.
+/// The first signal decides, whatever other signals are pending when the program ends.
 #[test]
 fn of_several_signals_one_is_died_of() {
     let mut session = looking(Start::new(PROGRAM).arg(SCENE));
@@ -93,8 +94,9 @@ fn signals_that_the_parent_ignores_stay_ignored() {
     session.assert_clean();
 }
 
-/// A key that was typed while the program was stopped without a word, or just after, is not thrown away, whether replies are
-/// outstanding or not.
+/// A key that was typed while the program was stopped by SIGSTOP, or just after, is not lost.
+///
+/// It does not matter whether replies are outstanding.
 #[test]
 fn keys_typed_around_a_stop_without_a_word_are_heard() {
     let plain: [&[u8]; 2] = [b"q", b"\x03"];

@@ -59,7 +59,7 @@ fn a_window_of_any_size_shows_a_picture_of_bounded_size() {
     session.assert_clean();
 }
 
-/// What is left of a picture that no one reads is not waited for.
+/// Leaving does not wait for the unread rest of a large picture.
 #[test]
 fn leaving_a_large_picture_that_is_on_its_way_is_quick() {
     let folder = folder();
@@ -74,7 +74,7 @@ fn leaving_a_large_picture_that_is_on_its_way_is_quick() {
     assert!(session.seen().bytes().len() - before < 200_000, "a picture of a million cells was dropped");
 }
 
-/// Where the memory for the window's picture cannot be had, that is an error like any other.
+/// A window for whose picture there is not enough memory is an error message.
 #[cfg(target_os = "linux")]
 #[test]
 fn too_little_memory_for_a_window_is_an_error_message() {

@@ -1,4 +1,4 @@
-//! A program on a pseudo-terminal of its own, watched from outside: what it shows, what it leaves behind, how it dies.
+//! A program on a pseudo-terminal of its own: what it shows, what it leaves behind, how it exits.
 //!
 //! ```ignore
 //! let mut session = Start::new("termtrace").arg("scene.ron").size(Size::cells(80, 24)).spawn();
@@ -58,17 +58,18 @@ pub(crate) use screen::{Colour, Screen};
 pub(crate) use signals::reset_for_children;
 pub(crate) use storm::Storm;
 
-/// The longest wait for what has to happen. It tells a hang from a busy machine, and measures nothing: with 10 s, a picture
-/// that is refined in .3 s was given up beside builds that took 24 threads on 2 cores. Limits in time are in `tests/slow.rs`.
+/// The longest wait for an event that must come. It tells a hang from a busy machine, and measures
+/// nothing: with 10 s, a picture that is refined in .3 s was given up beside builds that ran 24 threads on 2 cores.
+/// Limits in time are in `tests/slow.rs`.
 pub(crate) const SOON: Duration = Duration::from_secs(60);
 
-/// Between two looks at whether the child has exited: it announces that to nobody else.
+/// The time between two looks at whether the child has exited, which only its parent is told.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// How long the terminal of a dead child may take to hand on its output. Only one that was stopped takes so long.
+/// The longest wait for the last output of a dead child. Only a stopped terminal takes that long.
 const LAST_OUTPUT: Duration = Duration::from_secs(1);
 
-/// What the harness itself writes after the child's last byte, so as to know that nothing is still on its way.
+/// The marker that the harness writes after the child's last byte: all output before it has come.
 const END_OF_OUTPUT: &[u8] = b"\x1b_the end of the output\x1b\\";
 
 /// The size of a terminal.
@@ -83,12 +84,12 @@ pub(crate) struct Size {
 }
 
 impl Size {
-    /// So many cells, of 10x20 pixels.
+    /// Returns a size of `columns` by `rows` cells of 10x20 pixels.
     pub(crate) fn cells(columns: u16, rows: u16) -> Self {
         Self { columns, rows, cell: (10, 20) }
     }
 
-    /// The same with cells of so many pixels.
+    /// Returns the same number of cells with `width` by `height` pixels in all.
     pub(crate) fn of_pixels(self, width: u16, height: u16) -> Self {
         Self { cell: (width, height), ..self }
     }
@@ -144,7 +145,7 @@ impl Start {
         Self::new("sh").arg("-c").arg(script)
     }
 
-    /// One more argument.
+    /// Adds an argument.
     pub(crate) fn arg(mut self, argument: impl AsRef<OsStr>) -> Self {
         self.arguments.push(argument.as_ref().to_owned());
         self
@@ -162,29 +163,30 @@ impl Start {
         Self { size, ..self }
     }
 
-    /// Something else than the terminal for standard input.
+    /// Uses `stdin` instead of the terminal for standard input.
     pub(crate) fn stdin(self, stdin: impl Into<Stdio>) -> Self {
         Self { stdin: Some(stdin.into()), ..self }
     }
 
-    /// Something else than the terminal for standard output.
+    /// Uses `stdout` instead of the terminal for standard output.
     pub(crate) fn stdout(self, stdout: impl Into<Stdio>) -> Self {
         Self { stdout: Some(stdout.into()), ..self }
     }
 
-    /// Something else than the terminal for standard error.
+    /// Uses `stderr` instead of the terminal for standard error.
     pub(crate) fn stderr(self, stderr: impl Into<Stdio>) -> Self {
         Self { stderr: Some(stderr.into()), ..self }
     }
 
-    /// A terminal that answers no question. Otherwise it answers DA1, as every terminal does, and nothing else.
+    /// Makes the terminal answer no query. Otherwise it answers DA1, as every terminal does, and
+    /// nothing else.
     pub(crate) fn mute(mut self) -> Self {
         self.replies.unanswered = None;
         self
     }
 
-    /// A terminal that knows the kitty keyboard protocol, and says when it is asked which of its flags are on. (Keys are
-    /// the test's to send.)
+    /// Makes the terminal report the flags of the kitty keyboard protocol that are on. The test
+    /// sends the keys itself.
     pub(crate) fn kitty(mut self) -> Self {
         self.replies.kitty = true;
         self
@@ -254,9 +256,10 @@ impl Start {
     }
 }
 
-/// The slave side by its name, which makes it a description of its own: it is never blocked by a terminal that was
-/// stopped, and the child does not see its flags. While it is open the output of a dead child is not lost, and reading
-/// the master gives no EIO.
+/// Opens the slave side by its name, which makes an open file description of its own.
+///
+/// A stopped terminal never blocks it, and the child does not see its flags. While it is open the output of a dead
+/// child is not lost, and reading the master gives no EIO.
 fn open_slave_again(slave: &impl AsFd) -> io::Result<std::fs::File> {
     let name = rustix::termios::ttyname(slave, Vec::new())?;
     let flags = OFlags::NOCTTY | OFlags::NONBLOCK;
@@ -293,7 +296,7 @@ fn write_before(file: &mut (impl Write + AsFd), mut bytes: &[u8], deadline: Inst
     Ok(true)
 }
 
-/// All that came out of the terminal up to now.
+/// The output of the terminal up to now.
 pub(crate) struct Seen {
     bytes: Vec<u8>,
     screen: Screen,
@@ -305,17 +308,17 @@ impl Seen {
         &self.bytes
     }
 
-    /// Whether these bytes came, in a row.
+    /// Returns whether `wanted` came in one piece.
     pub(crate) fn has(&self, wanted: &[u8]) -> bool {
         self.bytes.windows(wanted.len().max(1)).any(|window| window == wanted)
     }
 
-    /// What a terminal shows after the bytes.
+    /// Returns the screen of a terminal that has received the bytes.
     pub(crate) fn screen(&self) -> &Screen {
         &self.screen
     }
 
-    /// The modes that the bytes turned on and did not turn off, and whether they end inside an escape sequence.
+    /// Returns the modes that the bytes left on, and whether they end inside an escape sequence.
     pub(crate) fn modes(&self) -> Modes {
         Modes::after(&self.bytes)
     }
@@ -348,7 +351,7 @@ pub(crate) struct Session {
     output: Output,
     replies: Replies,
     rest: Option<Rest>,
-    /// How many bytes were typed or answered.
+    /// The number of bytes that were typed or sent as replies.
     typed: Cell<u64>,
     seen: Seen,
 }
@@ -359,8 +362,9 @@ impl Session {
         Pid::from_child(&self.child)
     }
 
-    /// The process group in the foreground of the terminal: another than the child's own if the child is a shell with
-    /// job control.
+    /// Returns the process group in the foreground of the terminal.
+    ///
+    /// It is not the child's own if the child is a shell with job control.
     pub(crate) fn foreground_group(&self) -> Pid {
         rustix::termios::tcgetpgrp(&*self.master).expect("the terminal has a foreground")
     }
@@ -386,18 +390,18 @@ impl Session {
         rustix::termios::tcsetwinsize(&*self.master, size.winsize()).expect("a terminal can be resized");
     }
 
-    /// From now on nobody reads what the child writes, as when a terminal was stopped or a link is dead.
+    /// Stops reading the child's output, as when a terminal was stopped or a link is dead.
     pub(crate) fn stop_reading(&mut self) {
         self.output.stop();
         self.pump();
     }
 
-    /// What the child writes is read again.
+    /// Reads the child's output again.
     pub(crate) fn start_reading(&mut self) {
         self.output.start(Arc::clone(&self.master)).expect("a pipe and a thread can be had");
     }
 
-    /// From now on the terminal gets one size after the other, until the storm is dropped.
+    /// Resizes the terminal again and again until the returned storm is dropped.
     pub(crate) fn storm(&self) -> Storm {
         Storm::over(Arc::clone(&self.master))
     }
@@ -420,7 +424,8 @@ impl Session {
         options.open(OsStr::from_bytes(name.as_bytes())).expect("the slave side can be opened again")
     }
 
-    /// Waits until the child has read all that was typed, and then some, so that what is typed next it may never read.
+    /// Waits until the child has read all input and will read no more: what is typed next stays
+    /// unread.
     #[track_caller]
     pub(crate) fn wait_for_no_reader(&mut self) {
         self.wait_until_read();
@@ -437,7 +442,7 @@ impl Session {
         }
     }
 
-    /// What was typed and read by nobody: the next reader, such as a shell, would get it.
+    /// Returns the typed bytes that are unread, which the next reader, such as a shell, would get.
     pub(crate) fn typed_ahead(&mut self) -> Vec<u8> {
         let mut bytes = vec![0; 4096];
         // Nothing there is WouldBlock.
@@ -451,7 +456,7 @@ impl Session {
         rustix::termios::tcgetwinsize(&*self.master).expect("a terminal has a size")
     }
 
-    /// All that has come out up to now.
+    /// Returns the output up to now.
     pub(crate) fn seen(&mut self) -> &Seen {
         self.pump();
         &self.seen
@@ -462,7 +467,8 @@ impl Session {
         self.answer();
     }
 
-    /// A mute terminal answers DA1 after all: from this byte of its output on, those from before and those to come.
+    /// Answers DA1 on a mute terminal from now on, for all queries at or behind byte `from` of the
+    /// output.
     pub(crate) fn answer_from(&mut self, from: usize) {
         self.replies.unanswered = Some(from);
         self.pump();
@@ -471,30 +477,31 @@ impl Session {
     /// Answers each query, whole or in pieces in the output, once.
     fn answer(&mut self) {
         let replies = self.replies.to(&self.seen.bytes);
-        // Nobody may be there any more to hear it.
+        // The child may have exited, and then reads no reply.
         if let Ok(true) = write_before(&mut &*self.master, &replies, Instant::now() + LOOK) {
             self.typed.update(|typed| typed + replies.len() as u64);
         }
     }
 
-    /// How many replies to DA1 and about modes were due up to now.
+    /// Returns the number of replies to DA1 and about modes that were due up to now.
     pub(crate) fn replies(&mut self) -> usize {
         self.pump();
         self.replies.count
     }
 
-    /// Whether the child, which rests after it has read so many bytes, has nothing more to read when all that it wrote is
-    /// taken in.
+    /// Returns whether a child that rests after reading `read` bytes has no more input and no
+    /// unread output.
     fn has_nothing_under_way(&mut self, read: u64) -> bool {
         self.take_last_output();
         self.answer();
         self.typed.get() == read
     }
 
-    /// Waits until the child has read all that was typed, was sent all answers, and sleeps until something new happens,
-    /// with all that it wrote taken in: nothing is sent or computed from then on unless the test does something. (After
-    /// a signal, a resize or a change of a file its effect is to be waited for first, and between a stop and the end
-    /// bytes are thrown away that this would wait for.)
+    /// Waits until the child has read all input and sleeps, with all its output taken in.
+    ///
+    /// Nothing is sent or computed from then on unless the test does something. After a signal, a resize or a change of
+    /// a file, wait for its effect first. Between a stop and an exit the child throws input away, so this wait would
+    /// not end.
     #[track_caller]
     pub(crate) fn wait_for_rest(&mut self) {
         let mut deadline = Deadline::after(SOON);
@@ -529,7 +536,8 @@ impl Session {
         }
     }
 
-    /// The same, with a panic that shows the screen if it is not fulfilled in time.
+    /// Waits until the output fulfils a condition, and panics with the screen if it does not in
+    /// time.
     #[track_caller]
     pub(crate) fn wait_for(&mut self, what: &str, limit: Duration, wanted: impl FnMut(&Seen) -> bool) {
         let seen = self.sees(limit, wanted);
@@ -542,11 +550,12 @@ impl Session {
         self.wait_for(&format!("{text:?}"), SOON, |seen| seen.screen.text().iter().any(|line| line.contains(text)));
     }
 
-    /// Waits until the child is stopped, as by SIGTSTP, and says by which signal. A stop is told once.
+    /// Waits until the child is stopped, and returns the number of the signal. A stop is reported
+    /// once.
     ///
-    /// A session leader whose parent is elsewhere ignores SIGTSTP, SIGTTIN and SIGTTOU, as POSIX wants of an orphaned
-    /// process group: to see a program stopped by these, let it be started by a shell with job control (`sh -m`), and
-    /// wait for what the shell says.
+    /// A session leader whose parent is elsewhere ignores SIGTSTP, SIGTTIN and SIGTTOU, as POSIX requires of an
+    /// orphaned process group. To see a program stopped by these, start it from a shell with job control (`sh -m`) and
+    /// wait for the shell's message.
     #[track_caller]
     pub(crate) fn wait_stopped(&mut self, limit: Duration) -> i32 {
         let mut deadline = Deadline::after(limit);
@@ -598,8 +607,10 @@ impl Session {
         }
     }
 
-    /// How the child exited, if it did. It is left a zombie until the drop, so that its number, which is its group's
-    /// too, stays its own: what it left behind can then be killed without hitting a stranger.
+    /// Returns the exit status of the child, if it has exited.
+    ///
+    /// The child stays a zombie until the drop, so that its number, which is its group's too, is not used again:
+    /// processes that it left behind can then be killed without hitting others.
     fn look_for_exit(&self) -> Option<ExitStatus> {
         let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
         let exited =
@@ -611,8 +622,10 @@ impl Session {
         Some(ExitStatus::from_raw(raw))
     }
 
-    /// The kernel hands a terminal's output on some time after it was written. What is written later comes later: so a
-    /// marker of the harness's own tells that all before it has come.
+    /// Reads the rest of the output of an exited child.
+    ///
+    /// The kernel passes a terminal's output on some time after it was written, but in order: a marker that the harness
+    /// writes comes after all of it.
     #[track_caller]
     fn take_last_output(&mut self) {
         let deadline = Instant::now() + LAST_OUTPUT;
@@ -620,19 +633,20 @@ impl Session {
             Ok(true) => self.output.take_up_to(Some(END_OF_OUTPUT)),
             // The terminal was stopped (Ctrl-S): what it holds back is never shown.
             Ok(false) => self.output.take(),
-            // A system that takes the terminal of a dead leader away from everybody ends its output by that.
+            // Some systems revoke the terminal of a dead session leader, which ends its output.
             Err(_) => self.output.take_up_to(None),
         };
         self.seen.take(&bytes);
     }
 
-    /// What differs between the terminal's settings before the start and now.
+    /// Returns the settings of the terminal that differ from those before the start.
     pub(crate) fn termios_changes(&self) -> Vec<String> {
         let now = rustix::termios::tcgetattr(&*self.master).expect("a terminal has settings");
         termios::changes(&self.before, &now)
     }
 
-    /// All that is not as it was before the start: modes left on, a torn sequence, the terminal's settings.
+    /// Returns what is not as before the start: modes left on, a torn sequence, the terminal's
+    /// settings.
     pub(crate) fn left_behind(&mut self) -> Vec<String> {
         let mut left = self.seen().modes().left_on();
         left.extend(self.termios_changes());

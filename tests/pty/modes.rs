@@ -1,4 +1,4 @@
-//! What bytes to a terminal turned on and did not turn off again.
+//! The modes of a terminal that bytes turn on and do not turn off again.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -51,12 +51,13 @@ pub(crate) struct Modes {
     private: BTreeMap<u16, bool>,
     /// Attributes of the pen that are not reset, by the number that set them.
     pen: BTreeMap<&'static str, u16>,
-    /// The flags of the kitty keyboard protocol that were pushed and not popped, on the main screen and on the
-    /// alternate one, each of which keeps its own.
+    /// The flags of the kitty keyboard protocol that were pushed and not popped.
+    ///
+    /// The main screen and the alternate one keep their own.
     keyboard: [Vec<u16>; 2],
     /// Its flags below all that was pushed, which `CSI = flags u` may set.
     keyboard_flags: [u16; 2],
-    /// What else is not as it was, in words.
+    /// Other changes that were not undone, in words.
     others: BTreeSet<&'static str>,
     torn: bool,
 }
@@ -75,12 +76,12 @@ impl Modes {
         modes
     }
 
-    /// Whether the bytes end inside an escape sequence, a string or a character.
+    /// Returns whether the bytes end inside an escape sequence, a string or a character.
     pub(crate) fn is_torn(&self) -> bool {
         self.torn
     }
 
-    /// Whether this private mode is on.
+    /// Returns whether a private mode is on.
     pub(crate) fn is_on(&self, mode: u16) -> bool {
         self.private.get(&mode).copied().unwrap_or(ON_AT_START.contains(&mode))
     }
@@ -91,7 +92,7 @@ impl Modes {
         self.keyboard[screen].last().copied().unwrap_or(self.keyboard_flags[screen])
     }
 
-    /// What is not as it was, in words; nothing if all is.
+    /// Returns the changes that were not undone, in words.
     pub(crate) fn left_on(&self) -> Vec<String> {
         let mut left: Vec<String> = self
             .private
@@ -283,7 +284,9 @@ impl Perform for Modes {
     }
 }
 
-/// Whether a sequence or a character was broken off by what came next. A terminal forgives it, but it was torn.
+/// Returns whether a sequence or a character was broken off by the next byte.
+///
+/// A terminal forgives it, but it was torn.
 fn is_cut(bytes: &[u8]) -> bool {
     let broken_character = std::str::from_utf8(bytes).is_err_and(|error| error.error_len().is_some());
     let mut place = Place::Ground;
@@ -297,7 +300,7 @@ fn is_cut(bytes: &[u8]) -> bool {
     broken_character || cut
 }
 
-/// Where a byte stands: outside of any sequence, or inside which kind.
+/// The state of a parser before a byte: outside of any sequence, or inside a kind of sequence.
 #[derive(Clone, Copy)]
 enum Place {
     Ground,
@@ -308,7 +311,7 @@ enum Place {
 }
 
 impl Place {
-    /// Where the next byte stands; nowhere, if this byte has no business here.
+    /// Returns the state after `byte`, or `None` where the byte is not allowed.
     fn after(self, byte: u8) -> Option<Self> {
         match (self, byte) {
             (Self::Ground, 0x1b) | (Self::Escape, 0x20..=0x2f) => Some(Self::Escape),

@@ -10,14 +10,14 @@ use std::{
 use pty_process::blocking::Pty;
 use rustix::event::{PollFd, PollFlags};
 
-/// What has been read and not yet taken.
+/// Output that has been read and not yet taken.
 #[derive(Default)]
 struct Unread {
     bytes: Vec<u8>,
     ended: bool,
 }
 
-/// What is read, and the bell that rings when there is more.
+/// Output that was read, and the condition variable that reports more.
 #[derive(Default)]
 struct Shared {
     read: Mutex<Unread>,
@@ -56,7 +56,7 @@ impl Output {
         Ok(())
     }
 
-    /// What has come since the last time.
+    /// Returns the output since the last call.
     pub(super) fn take(&self) -> Vec<u8> {
         std::mem::take(&mut self.shared.lock().bytes)
     }
@@ -68,7 +68,7 @@ impl Output {
         !wait.expect("no holder of this lock panics").0.bytes.is_empty()
     }
 
-    /// All that has come when this marker has, without it; or when the output has ended by itself.
+    /// Returns the output before `marker`, once that has come or the output has ended.
     #[track_caller]
     pub(super) fn take_up_to(&self, marker: Option<&[u8]>) -> Vec<u8> {
         let find = |bytes: &[u8]| {

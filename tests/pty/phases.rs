@@ -1,4 +1,4 @@
-//! How far the child is: it says so before it goes on, and is told what shall go wrong there.
+//! The phases of a child: it reports each before it goes on, and is told what shall fail there.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -12,10 +12,10 @@ use tempfile::TempDir;
 
 use super::{Deadline, SOON, Seen, Session, rest::bytes_read};
 
-/// What is to happen where the child is.
+/// The action of a child at a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// Nothing: it goes on.
+    /// Goes on.
     GoOn,
     /// An error.
     Error,
@@ -31,7 +31,7 @@ pub(crate) struct Phases {
     path: PathBuf,
     _folder: TempDir,
     child: Option<BufReader<UnixStream>>,
-    /// How many bytes the child had read, if its last phase was a rest.
+    /// The number of bytes that the child had read, if its last phase was a rest.
     rested: Option<u64>,
 }
 
@@ -44,7 +44,7 @@ impl Phases {
         Self { listener, path, _folder: folder, child: None, rested: None }
     }
 
-    /// Where the child finds it.
+    /// Returns the path of the socket that the child connects to.
     pub(crate) fn path(&self) -> &PathBuf {
         &self.path
     }
@@ -61,7 +61,7 @@ impl Phases {
         }
     }
 
-    /// The same, while its terminal is read, and answers.
+    /// Waits for a phase while the terminal is read and answers.
     #[track_caller]
     pub(crate) fn wait_for_on(&mut self, phase: &str, session: &mut Session) {
         let mut deadline = Deadline::after(SOON);
@@ -77,7 +77,9 @@ impl Phases {
         }
     }
 
-    /// Lets the child go on until its terminal fulfils a condition, or for so long; how often it reaches this phase.
+    /// Lets the child go on until its terminal fulfils a condition or the limit has passed.
+    ///
+    /// Returns how often the child reached `phase`.
     pub(crate) fn count_on(
         &mut self,
         phase: &str,
@@ -96,7 +98,10 @@ impl Phases {
         count
     }
 
-    /// The same until the child rests, having read all that was typed: nothing more happens by itself then.
+    /// Lets the child go on until it rests with all input read, after which nothing happens by
+    /// itself.
+    ///
+    /// Returns how often the child reached `phase`.
     #[track_caller]
     pub(crate) fn count_until_rest(&mut self, phase: &str, session: &mut Session) -> usize {
         let mut deadline = Deadline::after(SOON);
@@ -114,7 +119,7 @@ impl Phases {
         }
     }
 
-    /// Whether the child says something now, or in a moment.
+    /// Returns whether the child reports a phase now or within a moment.
     fn is_told(&self) -> bool {
         let moment = super::LOOK.try_into().expect("it is short");
         let told = match &self.child {

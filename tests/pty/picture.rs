@@ -1,15 +1,15 @@
-//! What the library makes of a scene, and whether a terminal shows it.
+//! The pictures that the library makes of scenes, and a test whether a terminal shows them.
 
 use super::screen::{Colour, Screen};
 use termtrace::internals::cell;
 use termtrace::{CellMode, Grid, Ink, Sampling, Scene, Size, render, tone};
 
-/// What a scene looks like in the end on a screen, whose cells' height is `aspect` times their width.
+/// Returns the final picture of a scene on a screen whose cells are `aspect` times as high as wide.
 pub(crate) fn picture(scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {
     picture_with(Sampling::BEST, scene, mode, size, aspect)
 }
 
-/// The same with other samples.
+/// Returns the picture of a scene with the given sampling.
 pub(crate) fn picture_with(sampling: Sampling, scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {
     let resolution = cell::resolution(mode, size, aspect).expect("a size that pictures can have");
     let framebuffer = render(scene, scene.camera(), resolution, sampling);
@@ -26,7 +26,9 @@ impl From<Ink> for Colour {
     }
 }
 
-/// Whether a screen shows exactly these cells: of a picture the halves' colours, whichever block shows them.
+/// Returns whether a screen shows exactly these cells.
+///
+/// Of a picture the colours of the halves count, with either half block.
 pub(crate) fn shows(screen: &Screen, grid: &Grid) -> bool {
     let columns = usize::from(grid.size().columns);
     grid.cells().iter().enumerate().all(|(at, wanted)| {

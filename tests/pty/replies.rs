@@ -9,16 +9,16 @@ const DA1: &[u8] = b"\x1b[c";
 /// The query for the flags of the kitty keyboard protocol.
 const KEYBOARD: &[u8] = b"\x1b[?u";
 
-/// What happens to a reply.
+/// A fault of a reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
-    /// It never comes.
+    /// The reply never comes.
     Lost,
-    /// It comes twice.
+    /// The reply comes twice.
     Doubled,
     /// One to a query that was not made comes in its place.
     Garbled,
-    /// It comes so much later than those behind it.
+    /// The reply comes this much later than the replies behind it.
     Late(Duration),
 }
 
@@ -42,13 +42,13 @@ impl Which {
 
 /// Which queries the terminal answers, and how.
 pub(super) struct Replies {
-    /// From where on queries in the output have no reply; `None`: they never get one.
+    /// The byte of the output from which on queries have no reply; `None` if none are answered.
     pub(super) unanswered: Option<usize>,
     pub(super) kitty: bool,
-    /// Whether it reports modes (DECRQM), none of which it knows.
+    /// Whether the terminal reports modes (DECRQM), none of which it knows.
     pub(super) modes: bool,
     pub(super) fault: Option<(Fault, Which)>,
-    /// How many replies were due to DA1 and about modes.
+    /// The number of replies to DA1 and about modes that were due.
     pub(super) count: usize,
     late: Vec<(Instant, Vec<u8>)>,
 }
@@ -60,7 +60,8 @@ impl Default for Replies {
 }
 
 impl Replies {
-    /// The replies to the queries in the output that have none yet, and those late ones that are due.
+    /// Returns the replies to the queries in the output that have none yet, and the late ones that
+    /// are due.
     pub(super) fn to(&mut self, output: &[u8]) -> Vec<u8> {
         let mut replies = self.take_due(Instant::now());
         let Some(from) = self.unanswered else { return replies };
@@ -99,7 +100,7 @@ impl Replies {
         self.late.extract_if(.., |(due, _)| *due <= now).flat_map(|(_, reply)| reply).collect()
     }
 
-    /// When the next late reply is due, if there is one.
+    /// Returns when the next late reply is due, if there is one.
     pub(super) fn next_due(&self) -> Option<Instant> {
         self.late.iter().map(|(due, _)| *due).min()
     }

@@ -12,10 +12,11 @@ use std::{
 
 use tempfile::TempDir;
 
-/// What a child has said of its rests.
+/// The rests that a child has reported.
 pub(super) struct Rest {
     folder: TempDir,
-    /// One more than the number of bytes that the child had read when it last rested; 0: it has not rested.
+    /// The number of bytes that the child had read when it last rested, plus one; 0 before the
+    /// first rest.
     said: Arc<AtomicU64>,
 }
 
@@ -31,12 +32,12 @@ impl Rest {
         Self { folder, said }
     }
 
-    /// Where the child finds the listener.
+    /// Returns the path of the socket that the child connects to.
     pub(super) fn path(&self) -> PathBuf {
         self.folder.path().join("phases")
     }
 
-    /// Whether the child's last rest was after it had read so many bytes.
+    /// Returns whether the child's last rest was after it had read `typed` bytes.
     pub(super) fn is_after(&self, typed: u64) -> bool {
         self.said.load(Ordering::SeqCst) == typed + 1
     }
@@ -54,7 +55,7 @@ fn hear(listener: &UnixListener, said: &AtomicU64) {
     }
 }
 
-/// How many bytes a child that rests has read, if that is the phase.
+/// Returns the number of bytes that a resting child has read, if the phase is a rest.
 pub(super) fn bytes_read(phase: &str) -> Option<u64> {
     phase.strip_prefix("rest ")?.parse().ok()
 }

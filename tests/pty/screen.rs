@@ -1,4 +1,4 @@
-//! What a terminal shows after some bytes, by two models of other hands.
+//! The screen of a terminal after some bytes, by two emulators that are not ours.
 
 use std::num::NonZeroU16;
 
@@ -28,9 +28,9 @@ impl From<Option<avt::Color>> for Colour {
 pub(crate) struct Cell {
     /// The character.
     pub(crate) glyph: char,
-    /// What the character is drawn in.
+    /// The colour of the character.
     pub(crate) foreground: Colour,
-    /// What lies behind it.
+    /// The colour behind the character.
     pub(crate) background: Colour,
 }
 
@@ -89,7 +89,7 @@ impl Screen {
         self.terminal.cursor().position()
     }
 
-    /// Whether the alternate screen is shown.
+    /// Returns whether the alternate screen is shown.
     pub(crate) fn is_alternate(&self) -> bool {
         self.second.screen().alternate_screen()
     }
@@ -104,7 +104,7 @@ fn at_least_one(count: u16) -> NonZeroU16 {
     NonZeroU16::new(count).unwrap_or(NonZeroU16::MIN)
 }
 
-/// How many of the bytes are not the beginning of a character cut off at the end.
+/// Returns the number of bytes before a character that is cut off at the end.
 fn whole_characters(bytes: &[u8]) -> usize {
     let tail = bytes.len().saturating_sub(3);
     let start = bytes[tail..].iter().rposition(|&byte| byte >= 0xc0).map(|at| tail + at);

@@ -8,9 +8,11 @@ use signal_hook::consts::FORBIDDEN;
 /// The numbers of the standard signals.
 const STANDARD: std::ops::RangeInclusive<i32> = 1..=31;
 
-/// Gives children that this thread starts from now on the default dispositions and an empty mask, whatever the process
-/// that runs the tests inherited: a shell without job control ignores SIGINT and SIGQUIT for what it starts with `&`,
-/// and `nohup` ignores SIGHUP.
+/// Gives children that this thread starts from now on default dispositions and an empty signal
+/// mask.
+///
+/// The process that runs the tests may have inherited others: a shell without job control ignores SIGINT and SIGQUIT
+/// for what it starts with `&`, and `nohup` ignores SIGHUP.
 ///
 /// Setting a disposition to the default would need `unsafe`. A handler does not: `exec` resets a caught signal to its
 /// default, and keeps only ignored ones. The handlers do nothing, as the signals did when they were ignored.
