@@ -1,4 +1,4 @@
-//! What the encoder sends, against ratatui's own backend in the same run. By hand:
+//! The encoder's bytes, against those of ratatui's own backend in the same run. By hand:
 //!
 //! - `cargo bench --bench bytes` makes four sequences of 120 frames at two sizes;
 //! - `cargo bench --bench bytes -- --seed N` adds two that are drawn from the seed;
@@ -26,7 +26,7 @@ use termtrace::{Order, Picture, Quality, Size, Srgb8};
 
 const SIZES: [Size; 2] = [Size::new(80, 24), Size::new(200, 60)];
 
-/// What is asked for.
+/// The options of a run.
 #[derive(Default)]
 struct Options {
     folder: Option<PathBuf>,
@@ -84,7 +84,7 @@ impl Frames {
         Self { name, kind: Some(sequence.kind), is_drawn, size, pictures }
     }
 
-    /// From a file, by the size in its name.
+    /// Reads a sequence from a file, with the size in its name.
     fn read(path: &Path, most: usize) -> Option<Self> {
         let (name, size) = path.file_name()?.to_str()?.strip_suffix(".rgb")?.rsplit_once('_')?;
         let (columns, rows) = size.split_once('x')?;
@@ -119,11 +119,11 @@ impl Frames {
     }
 }
 
-/// What a sequence takes.
+/// The measurements of a sequence.
 struct Measured {
     name: String,
     kind: Option<Kind>,
-    /// From a seed: not one of the four.
+    /// Whether it is a random sequence, from a seed, and not one of the four.
     is_drawn: bool,
     size: Size,
     ratatui: Sent,
@@ -131,7 +131,8 @@ struct Measured {
     raster: Sent,
     equal: Outcome,
     fast: Outcome,
-    /// CPU time, in microseconds a frame: ratatui's, and those of `color`, `raster`, `equal` and `fast`.
+    /// CPU time, in microseconds a frame: ratatui's, and those of `color`, `raster`, `equal` and
+    /// `fast`.
     times: [f64; 5],
 }
 
@@ -151,7 +152,7 @@ fn given(options: &Options) -> Vec<Frames> {
     options.sizes().iter().flat_map(|&size| Kind::ALL.map(|kind| made(size, kind))).collect()
 }
 
-/// Those drawn from the seeds; says what they are.
+/// Returns the random sequences of the seeds, and prints what they are.
 fn drawn(options: &Options) -> Vec<Frames> {
     let mut all = Vec::new();
     for seed in &options.seeds {

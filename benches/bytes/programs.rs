@@ -28,7 +28,7 @@ use termtrace::{Encoder, EncoderBackend, Order, Picture, Quality, Size};
 /// The columns beside the list.
 const LIST: u16 = 24;
 
-/// What a program draws at a step.
+/// A function that draws the step of a program.
 type Draw<'a> = &'a dyn Fn(&mut Frame<'_>, usize);
 
 /// A line with an emulator at its end.
@@ -41,7 +41,7 @@ impl Wire {
         Self(Rc::new(RefCell::new((vt100::Parser::new(side(size.rows), side(size.columns), 0), 0))))
     }
 
-    /// All that can be told of two cells: of a blank, the colour behind it.
+    /// Returns all that two cells may differ in: of a blank, the background.
     fn cells(&self, size: Size) -> Vec<String> {
         let places = (0..size.rows).flat_map(|row| (0..size.columns).map(move |column| (row, column)));
         let line = self.0.borrow();
@@ -71,7 +71,7 @@ impl Write for Wire {
     }
 }
 
-/// What a program's frames took, and every tenth screen.
+/// The bytes of a program's frames, and every tenth screen.
 struct Run {
     bytes: usize,
     screens: Vec<Vec<String>>,
@@ -116,7 +116,7 @@ struct Measured {
     ratatui: usize,
     /// Row by row, by colour, and nearly exact.
     ways: [f64; 3],
-    /// What is wanted of them.
+    /// The limits of these figures.
     wanted: [f64; 3],
     is_equal: bool,
 }
@@ -188,7 +188,7 @@ fn measure_pane(size: Size) -> Measured {
     measure(size, [f64::INFINITY, 0.70, 0.40], &draw)
 }
 
-/// What moves on a dashboard: gauges, a sparkline, lists, charts, a map, styled text.
+/// Draws a dashboard that moves: gauges, a sparkline, lists, charts, a map, styled text.
 fn demo(frame: &mut Frame<'_>, step: usize) {
     let rows = [Constraint::Length(3), Constraint::Length(8), Constraint::Fill(1), Constraint::Length(4)];
     let [top, gauges, middle, bottom] = Layout::vertical(rows).areas(frame.area());

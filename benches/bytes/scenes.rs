@@ -1,5 +1,7 @@
-//! The sequences that the encoder is judged by: shadowed spheres on a floor, in which the camera, a sphere or the light
-//! moves. Four are fixed; as many more as one likes are drawn from a seed, of the same kinds.
+//! The sequences on which the encoder is judged: a camera, a sphere or the light moves over a
+//! floor.
+//!
+//! Four are fixed; any number of others of the same kinds are drawn from a seed.
 
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_8, PI, TAU};
@@ -12,10 +14,10 @@ use termtrace::{
     Sphere, ViewRectangle, render, tone,
 };
 
-/// How many frames a sequence has, 1/30 s apart.
+/// The number of frames of a sequence, 1/30 s apart.
 pub(crate) const FRAMES: usize = 120;
 
-/// What moves, and over which floor: sequences of one kind take about as many bytes.
+/// The object that moves, and the floor: sequences of one kind take about as many bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// The camera goes around, over a checker.
@@ -67,7 +69,7 @@ struct Ball {
 /// A light, at rest or on a circle over the origin.
 #[derive(Clone, Copy, Debug)]
 struct Lamp {
-    /// Where it is at first.
+    /// The position at first.
     position: Vec3,
     circles: bool,
     intensity: f32,
@@ -77,14 +79,14 @@ struct Lamp {
 /// The eye's way around the vertical axis, in radians and world units.
 #[derive(Clone, Copy, Debug)]
 struct EyePath {
-    /// Where it begins.
+    /// The azimuth at first.
     azimuth: f32,
-    /// How far it goes around.
+    /// The angle of the orbit in the whole sequence.
     turn: f32,
-    /// How far it goes to and fro.
+    /// The angle by which it swings to and fro.
     sway: f32,
     distance: f32,
-    /// How far it goes away and comes back.
+    /// The distance by which it goes away and comes back.
     breath: f32,
     height: f32,
 }
@@ -264,7 +266,7 @@ impl Draw {
         self.between(least, most) * Vec2::new(cos, sin)
     }
 
-    /// So many spheres that lie on the floor and do not touch: there is room for more.
+    /// Returns `count` spheres that lie on the floor and do not touch. The floor has room for more.
     fn balls(&mut self, count: usize) -> Vec<Ball> {
         let mut balls: Vec<Ball> = Vec::new();
         while balls.len() < count {

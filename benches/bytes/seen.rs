@@ -1,5 +1,7 @@
-//! How near to the wanted pictures a terminal shows those of a lossy way, and what it takes until all is exact: by what
-//! an emulator makes of the bytes, not by the encoder's own word.
+//! The difference of a lossy way's screens from the wanted pictures, and the cost until all is
+//! exact.
+//!
+//! By the screens of an emulator, not by the encoder's own account.
 
 use crate::send::{self, Lossy, encoder, time_of};
 use std::num::NonZeroU16;
@@ -8,23 +10,23 @@ use termtrace::internals::cell::grid_from_picture;
 use termtrace::internals::color::Oklab;
 use termtrace::{CellMode, Order, Picture, Quality, Srgb8};
 
-/// What came of a sequence.
+/// The result of a sequence.
 pub(crate) struct Outcome {
     /// Bytes a frame after the first, in the mean, those that made the last one exact counted in.
     pub(crate) mean: f64,
     /// Peak signal-to-noise ratio of the worst frame, in decibels.
     pub(crate) psnr_of_worst: f64,
-    /// Of all frames together.
+    /// The PSNR of all frames together.
     pub(crate) psnr: f64,
     /// The largest distance of any half cell in any frame, in `OKLab`.
     pub(crate) distance: f32,
     /// The bytes from the last change to rest, in frames drawn whole and exactly.
     pub(crate) rest_in_frames: f64,
-    /// Those of them that were sent after the frame of the last change.
+    /// The part of them that was sent after the frame of the last change.
     pub(crate) due_in_frames: f64,
-    /// How long after the last change all is at rest.
+    /// The time from the last change until no more is sent.
     pub(crate) rest: Duration,
-    /// Whether it is exact then.
+    /// Whether the screen is exact then.
     pub(crate) is_exact: bool,
 }
 
@@ -97,12 +99,12 @@ impl Errors {
     }
 }
 
-/// In decibels; infinite where nothing differs.
+/// Returns the PSNR in decibels; infinite for equal pictures.
 fn psnr(mean_square: f64) -> f64 {
     10.0 * libm::log10(255.0 * 255.0 / mean_square)
 }
 
-/// What a terminal shows.
+/// The screen of a terminal.
 struct Screen(vt100::Parser);
 
 impl Screen {
@@ -115,7 +117,7 @@ impl Screen {
         self.0.process(bytes);
     }
 
-    /// As the picture has them: row by row from the top.
+    /// Returns the pixels in the picture's order: row by row from the top.
     fn pixels(&self) -> Vec<Srgb8> {
         let (rows, columns) = self.0.screen().size();
         let line = |row, half: usize| (0..columns.get()).map(move |column| self.halves(column, row)[half]);

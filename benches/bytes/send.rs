@@ -1,4 +1,4 @@
-//! The ways to send a sequence: ratatui's own backend and ours; what they send, and what CPU time that takes.
+//! The ways to send a sequence, ratatui's own backend and ours: their bytes and CPU time.
 
 use flate2::{Compress, Compression, FlushCompress};
 use ratatui::layout::Rect;
@@ -47,7 +47,7 @@ impl Way {
     }
 }
 
-/// When a frame is sent.
+/// Returns the time at which a frame is sent.
 pub(crate) fn time_of(frame: usize) -> Duration {
     Duration::from_secs(frame as u64) / 30
 }
@@ -76,13 +76,13 @@ impl Lossy {
         &self.bytes
     }
 
-    /// When the last picture is to be sent again.
+    /// Returns when the last picture is to be sent again.
     pub(crate) fn due(&self) -> Option<Duration> {
         self.encoder.due()
     }
 }
 
-/// Where ratatui's backend writes to.
+/// The writer of ratatui's backend.
 #[derive(Clone, Default)]
 struct Sink(Rc<RefCell<Vec<u8>>>);
 
@@ -123,7 +123,8 @@ fn fill(buffer: &mut ratatui::buffer::Buffer, picture: &Picture) {
 #[derive(Clone, Copy)]
 pub(crate) struct Sent {
     pub(crate) raw: f64,
-    /// After one streaming zlib window, level 6, with a sync flush after each frame, as `ssh -C` does it.
+    /// The bytes of one streaming zlib window, level 6, flushed after each frame, as `ssh -C` does
+    /// it.
     pub(crate) zlib: f64,
 }
 
@@ -140,13 +141,14 @@ pub(crate) fn sent(way: Way, frames: &[Picture]) -> Sent {
     Sent { raw: mean(&raw), zlib: mean(&compressed) }
 }
 
-/// Of all frames but the first.
+/// Returns the mean of all frames but the first.
 pub(crate) fn mean(frames: &[usize]) -> f64 {
     frames[1..].iter().sum::<usize>() as f64 / (frames.len() - 1) as f64
 }
 
-/// The least CPU time of each way, in microseconds a frame. The ways take turns, so that what else the machine does falls
-/// on all of them.
+/// Returns the least CPU time of each way, in microseconds a frame.
+///
+/// The ways take turns, so that other load of the machine falls on all of them.
 pub(crate) fn times<const N: usize>(ways: [Way; N], frames: &[Picture], rounds: usize) -> [f64; N] {
     let mut least = [f64::INFINITY; N];
     for _ in 0..rounds {
@@ -161,7 +163,7 @@ pub(crate) fn times<const N: usize>(ways: [Way; N], frames: &[Picture], rounds: 
     least
 }
 
-/// Of this thread, in seconds.
+/// Returns the CPU time of this thread, in seconds.
 fn cpu_time() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9

@@ -102,7 +102,7 @@ pub(crate) fn limited(value: f64, wanted: f64) -> String {
     marked(format!("{value:.3} ({wanted:.2})"), (value * 100.0).round() <= wanted * 100.0 + 1e-9)
 }
 
-/// Whether it is so, as it should be.
+/// Returns "yes" or "no", the latter marked as a fault.
 pub(crate) fn yes(is_so: bool) -> String {
     marked(if is_so { "yes" } else { "no" }.into(), is_so)
 }

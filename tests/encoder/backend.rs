@@ -1,5 +1,6 @@
-//! The encoder as ratatui's backend: any program's screen is the one that it has with ratatui's own backend, on two
-//! emulators, with the cursor and with what has gone into the scrollback.
+//! The encoder as ratatui's backend, against ratatui's own.
+//!
+//! On two emulators any program has the same screen, cursor and scrollback with either.
 
 use super::panel;
 use super::screens::{Clusters, Screens, glyph_of, seen_by_avt, seen_by_vt100};
@@ -83,7 +84,8 @@ impl Wire {
         self.0.borrow().vt100.screen().contents()
     }
 
-    /// What has gone out of the screen at its top, and what is on it; erased or blank is all the same.
+    /// Returns the lines that were scrolled off the top, and those on the screen. Erased and blank
+    /// are equal.
     pub(crate) fn scrollback(&self) -> Vec<String> {
         let screen = &mut self.0.borrow_mut().vt100;
         let screen = screen.screen_mut();
@@ -95,7 +97,7 @@ impl Wire {
         lines.collect()
     }
 
-    /// What has been written since the last time, write by write.
+    /// Returns the writes since the last call.
     pub(crate) fn take_writes(&self) -> Vec<String> {
         std::mem::take(&mut self.0.borrow_mut().writes)
     }
@@ -175,7 +177,7 @@ impl Backend for Theirs {
     }
 }
 
-/// The same program twice.
+/// One program on two backends.
 pub(crate) struct Pair {
     pub(crate) ours: Terminal<EncoderBackend<Wire>>,
     pub(crate) theirs: Terminal<Theirs>,
@@ -185,7 +187,7 @@ pub(crate) struct Pair {
 
 pub(crate) const SIZE: Size = Size::new(12, 6);
 
-/// What a shell has left, the cursor in the row behind it.
+/// Returns the output of a shell that leaves the cursor in the row below.
 pub(crate) fn shell(rows: u16) -> String {
     let lines: Vec<String> = (0..rows).map(|row| format!("$ \x1b[3{}mls -l {row}\x1b[m\r\n", row % 8)).collect();
     lines.concat()
@@ -201,7 +203,7 @@ impl Pair {
         Self::with_backend(backend, [line, other_line], viewport)
     }
 
-    /// With that one of ours on the first of two lines that show the same.
+    /// Makes a pair whose backend of ours has drawn the first of two equal lines.
     pub(crate) fn with_backend(
         backend: EncoderBackend<Wire>,
         [line, other_line]: [Wire; 2],
@@ -253,7 +255,7 @@ impl Pair {
         backend.set_cursor_position(cursor).expect("it can be written");
     }
 
-    /// The same call of both backends.
+    /// Makes the same call of both backends.
     #[track_caller]
     fn call(&mut self, call: impl Fn(&mut dyn Calls) -> io::Result<()>) {
         call(self.ours.backend_mut()).expect("it can be written");
@@ -261,7 +263,7 @@ impl Pair {
         self.assert_equal();
     }
 
-    /// Something else writes on both screens.
+    /// Writes on both screens behind the backends' back.
     fn disturb(&self, text: &str) {
         self.line.feed(text);
         self.other_line.feed(text);
@@ -338,7 +340,7 @@ fn each_region_is_cleared() {
     }
 }
 
-/// It mends what something else has written there, and only there.
+/// Clearing mends what another program has written there, and only there.
 #[test]
 fn clearing_is_not_believed_to_be_done() {
     for region in REGIONS {
@@ -350,7 +352,7 @@ fn clearing_is_not_believed_to_be_done() {
     }
 }
 
-/// Whatever pen something else has left is laid down with that, and the cursor is hidden again.
+/// Clearing the screen resets the pen that another program has left, and hides the cursor again.
 #[test]
 fn clearing_the_screen_mends_it_all() {
     let line = Wire::new(SIZE);
@@ -362,7 +364,7 @@ fn clearing_the_screen_mends_it_all() {
     assert!(!line.is_cursor_visible());
 }
 
-/// What an encoder has drawn elsewhere is not on this screen.
+/// The encoder may have drawn on another screen before: nothing is taken as shown.
 #[test]
 fn an_encoder_that_has_drawn_before() {
     let mut grid = Grid::new(grid::Size::new(SIZE.width, SIZE.height));
@@ -373,7 +375,7 @@ fn an_encoder_that_has_drawn_before() {
     pair.draw(|frame| frame.buffer_mut().set_string(2, 1, "x", Style::new()));
 }
 
-/// Something else has changed it: what the program says of it is sent, even if it has said so before.
+/// Another program may have changed the cursor: its state is sent even if it was sent before.
 #[test]
 fn the_cursor_is_not_believed_to_be_there() {
     let mut pair = Pair::fullscreen();
@@ -391,8 +393,9 @@ fn the_cursor_is_not_believed_to_be_there() {
     pair.draw(render);
 }
 
-/// A terminal that takes a cluster apart writes over what stands behind it, which is then sent again; not so what is
-/// not the program's.
+/// A terminal that splits a cluster writes over the cells behind it, which are sent again.
+///
+/// Cells that are not the program's are left alone.
 #[test]
 fn what_stands_behind_a_cluster() {
     let line = Wire::new(SIZE);
@@ -418,7 +421,7 @@ fn lines_are_appended() {
     }
 }
 
-/// What the shell has left stands above an inline viewport, and what is inserted comes in between.
+/// An inline viewport keeps the shell's lines above it, and inserted lines come in between.
 #[test]
 fn inline_viewports() {
     // With scrolling regions ratatui's own backend asks for a region of one row where the viewport fills the screen, or
@@ -484,7 +487,7 @@ fn the_cursor_is_where_the_program_wants_it() {
     }
 }
 
-/// Where the frame is, the cursor is no news.
+/// A frame that changes nothing sends nothing, and no cursor that is where the frame ends.
 #[test]
 fn nothing_new_is_nothing_sent() {
     for synchronized in [false, true] {
@@ -534,7 +537,7 @@ pub(crate) fn assert_bracketed(frame: &str, synchronized: bool) {
     assert!(!inside.unwrap_or(frame).contains("2026"), "{frame:?}");
 }
 
-/// What the program writes itself is in no colour of ours; the next frame is right all the same.
+/// Bytes that the program writes itself have no colour of ours, and the next frame is right.
 #[test]
 fn what_the_program_writes_itself() {
     let mut pair = Pair::fullscreen();
@@ -553,7 +556,8 @@ fn what_the_program_writes_itself() {
     }
 }
 
-/// It has been lost, and the program knows: what it draws or clears is sent, even if it should be there.
+/// The program knows that the screen was lost: what it draws or clears is sent, even if nothing
+/// changed.
 #[test]
 fn what_is_drawn_again_is_sent_again() {
     let mut pair = Pair::fullscreen();
@@ -568,7 +572,8 @@ fn what_is_drawn_again_is_sent_again() {
     }
 }
 
-/// After a fault in the line nobody knows what has arrived: all is drawn again, the cursor's state too.
+/// After a failed write the state of the terminal is unknown: all is drawn again, with the cursor's
+/// state.
 #[test]
 fn a_line_that_fails() {
     struct Failing(Wire, bool);
@@ -628,15 +633,16 @@ fn the_size_is_its_owners() {
     assert_eq!(backend.window_size().expect("it is known"), window(100, 30, Size::ZERO));
 }
 
-/// What the strict model of a terminal takes for the screen: without what it does not know.
+/// Returns the bytes without the modes that the strict model does not know.
 fn without_modes(bytes: &str) -> String {
     ["\x1b[?25h", "\x1b[?25l", "\x1b[?2026h", "\x1b[?2026l"]
         .iter()
         .fold(bytes.to_owned(), |bytes, mode| bytes.replace(mode, ""))
 }
 
-/// A ratatui program on the strict model: what it shows is what the program has drawn, the lines below in their
-/// colours, what is wide, and clusters.
+/// A ratatui program on the strict model of a terminal.
+///
+/// The screen is what the program has drawn: underlines in their colours, wide characters, and clusters.
 pub(crate) struct Strict {
     terminal: Terminal<EncoderBackend<Vec<u8>>>,
     screens: Screens,
@@ -686,8 +692,9 @@ fn render(buffers: &[Buffer], frame: &mut Frame<'_>) {
     }
 }
 
-/// No cell of a row stands on the second half of another, or goes over the edge; that half has the first one's style,
-/// or ratatui would not say what is to be there once only the first is gone.
+/// Removes wide characters that overlap another one or the edge, and gives both halves one style.
+///
+/// Otherwise ratatui would not say what is to be there once only the first half is gone.
 fn halve(buffer: &mut Buffer, y: u16) {
     let right = buffer.area.right();
     let mut x = buffer.area.left();
@@ -709,9 +716,10 @@ fn encoder() -> impl Strategy<Value = Encoder> {
         .prop_map(|(order, synchronized)| Encoder::new().with_order(order).with_synchronized_output(synchronized))
 }
 
-/// What the emulators take from ratatui's own backend as they do from ours: bold and dim are one scale to them, of two
-/// speeds of blinking one is switched off with the other, the colour of a line they take for other things, and of half
-/// a wide character they make what they like.
+/// Reduces a buffer to what the emulators show alike for both backends.
+///
+/// To them bold and dim are one scale, either speed of blinking is switched off with the other, an underline's colour
+/// means something else, and half a wide character is shown in any way.
 pub(crate) fn commonly_known(mut buffer: Buffer) -> Buffer {
     for cell in &mut buffer.content {
         if cell.cell_width() != 1 {

@@ -40,7 +40,7 @@ fn a_first_frame_says_each_colour_once() {
     );
 }
 
-/// The first eight colours take two digits, but not where they are bold: many terminals would brighten them.
+/// The first eight colours take two digits, but not with bold: many terminals would brighten them.
 #[test]
 fn the_first_colours_are_short() {
     let mut encoder = Encoder::new();
@@ -129,8 +129,10 @@ fn attributes_are_added_and_all_switched_off_together() {
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[0;48;2;200;100;0m ", "a plain space's colour is not seen");
 }
 
-/// Neighbours follow each other. A gap of one is written again, if the pen is right for it: a byte instead of three.
-/// After the last column nobody knows where the cursor is; from anywhere else a line feed goes down.
+/// A run of changes has one position.
+///
+/// A gap of one is written again, if the pen is right for it: a byte instead of three. After the last column the
+/// cursor's position is unknown; from anywhere else a line feed goes down.
 #[test]
 fn a_run_of_changes_says_its_place_once() {
     let mut encoder = Encoder::new();
@@ -162,7 +164,9 @@ fn moves_are_the_cheapest() {
     assert_eq!(change(&[(2, 0), (2, 3)]), "\x1b[1;3Hy\n\n\n\x08x", "three down");
 }
 
-/// By colour, all cells of two colours come before the next two, wherever they stand; then the way is back.
+/// In the order of colours, all cells of two colours come before those of the next two.
+///
+/// They may be anywhere on the screen; the next pair starts from the last cell.
 #[test]
 fn cells_of_the_same_colours_follow_each_other() {
     let mut grid = Grid::new(Size::new(5, 1));
@@ -177,8 +181,9 @@ fn cells_of_the_same_colours_follow_each_other() {
     );
 }
 
-/// With either half a cell looks the same: the second one wants only one other colour. Never the terminal's own
-/// colours: the one for characters is not the one behind them.
+/// Either half block shows the same cell; the other one may need only one new colour.
+///
+/// Never with the terminal's own colours: its foreground is not its background.
 #[test]
 fn either_half_saves_a_colour() {
     let mut grid = Grid::new(Size::new(2, 1));
@@ -192,8 +197,9 @@ fn either_half_saves_a_colour() {
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[H\x1b[38;5;200;48;5;9m▀", "the upper one, where both cost the same");
 }
 
-/// The pen has the colour already, for glyphs: its two are exchanged, and stay so as long as that serves. Never the
-/// terminal's own: the one for glyphs is not the one behind them.
+/// A space uses the pen's foreground as its background, inverted, for as long as that saves bytes.
+///
+/// Never with the terminal's own colours: its foreground is not its background.
 #[test]
 fn a_space_takes_the_colour_that_glyphs_have() {
     let mut encoder = Encoder::new();
@@ -218,7 +224,7 @@ fn a_space_takes_the_colour_that_glyphs_have() {
     assert_eq!(cells([x(Ink::Default, C), space(Ink::Default), space(C), space(C)]), default);
 }
 
-/// By colour too, where a space looks ahead to the colour of the next glyph.
+/// In the order of colours, too, where a space looks ahead to the colour of the next glyph.
 #[test]
 fn an_exchanged_space_keeps_its_colour() {
     let (one, two) = (Ink::Indexed(1), Ink::Indexed(200));
@@ -232,7 +238,9 @@ fn an_exchanged_space_keeps_its_colour() {
     );
 }
 
-/// A gap of one half block takes three bytes either way: it is written again, with the half for which the pen is right.
+/// A gap of one half block takes three bytes either way.
+///
+/// It is written again, with the half for which the pen is right.
 #[test]
 fn a_half_block_on_the_way_is_written_again() {
     for (turned, expected) in [(false, "\x1b[1;2Hx▄x"), (true, "\x1b[1;2Hx▀x")] {
@@ -246,7 +254,7 @@ fn a_half_block_on_the_way_is_written_again() {
     }
 }
 
-/// What is not seen is not sent.
+/// Colours that are not visible are not sent.
 #[test]
 fn the_colour_of_a_plain_space_is_not_sent() {
     for order in [Order::Raster, Order::Color] {
@@ -273,8 +281,9 @@ fn cluster(text: &str) -> Cell {
     Cell { glyph: Glyph::Cluster(text.into()), ..Cell::BLANK }
 }
 
-/// After a cluster nobody knows where the cursor is: the next cell says its place. What stands behind it is written
-/// again, as far as a terminal that takes it apart writes over it; nothing else is.
+/// After a cluster the cursor's position is unknown: the next cell has a position of its own.
+///
+/// Cells that a terminal writes over when it splits the cluster are written again, and no others.
 #[test]
 fn clusters_are_followed_by_a_place() {
     let mut encoder = Encoder::new();
@@ -290,7 +299,7 @@ fn clusters_are_followed_by_a_place() {
     assert_eq!(encoded(&mut encoder, &grid), "\x1b[3;4Hy", "what stands before a cluster is not");
 }
 
-/// In some terminals a wide cluster takes one cell: both are wiped out first.
+/// In some terminals a wide cluster takes one cell: both are erased first.
 #[test]
 fn wide_clusters_are_written_on_blanks() {
     let mut encoder = Encoder::new();
@@ -307,7 +316,7 @@ fn wide_clusters_are_written_on_blanks() {
     );
 }
 
-/// The colour of an underline has a sequence of its own, with colons; where no line is drawn nothing is said.
+/// An underline's colour has a sequence of its own, with colons; without an underline none is sent.
 #[test]
 fn underlines_have_a_colour() {
     let mut encoder = Encoder::new();
@@ -329,7 +338,8 @@ fn underlines_have_a_colour() {
     }
 }
 
-/// After `forget` and after a resize everything is said again, as if for the first time; nothing is ever cleared.
+/// After `forget` and after a resize all cells are sent, as for the first time. Nothing is ever
+/// cleared.
 #[test]
 fn forgetting_draws_everything_again() {
     let grid = flat(&Cell::new('▄', A, B));
@@ -344,7 +354,7 @@ fn forgetting_draws_everything_again() {
     assert_eq!(encoded(&mut encoder, &grid), first);
 }
 
-/// Bytes are appended: whatever stands in the buffer already is sent first.
+/// Bytes are appended to the buffer, whose contents are sent first.
 #[test]
 fn bytes_are_appended() {
     let mut bytes = b"before".to_vec();
@@ -390,7 +400,7 @@ fn synchronized_frames_are_bracketed() {
     assert!(bytes.starts_with(b"before\x1b[?2026h") && bytes.ends_with(b" \x1b[?2026l"));
 }
 
-/// With any quality; what the brackets take is of what a frame may take.
+/// Frames of any quality are bracketed; the brackets count against the limit of a frame.
 #[test]
 fn lossy_frames_are_bracketed_too() {
     let sent = |encoder: &mut Encoder, cell, quality, max_bytes, now| {
@@ -445,7 +455,7 @@ impl Synchronizing {
         }
     }
 
-    /// What is shown after these bytes, too: glyphs and both colours.
+    /// Returns the cells that are shown after these bytes: glyphs and both colours.
     fn shows(&mut self, bytes: &[u8]) -> Vec<(char, ansi::Color, ansi::Color)> {
         self.parser.advance(&mut self.terminal, bytes);
         self.terminal.grid().display_iter().map(|cell| (cell.c, cell.fg, cell.bg)).collect()
@@ -474,7 +484,7 @@ fn a_synchronized_frame_is_never_shown_by_half() {
     }
 }
 
-/// A line that takes so many bytes, and then fails once.
+/// A writer that accepts this number of bytes, and then fails once.
 struct Line(Vec<u8>, usize);
 
 impl Write for Line {
@@ -494,7 +504,9 @@ impl Write for Line {
     }
 }
 
-/// What `encode` would append; after a fault all of it again, because nobody knows what has arrived.
+/// A writer gets the bytes that `encode` would append.
+///
+/// After a failed write it gets all of them again, because the state of the terminal is unknown.
 #[test]
 fn frames_are_written_to_a_line() {
     let grid = flat(&Cell::new('▄', A, B));

@@ -1,5 +1,4 @@
-//! What holds for any grids, any pen and any damage, drawn from bytes: said once, for the fuzzer and for the replay of its
-//! corpus.
+//! Properties of any grids, pen and damage drawn from bytes, for the fuzzer and for its corpus.
 
 use super::grids::{filled, put_at};
 use super::screens::{Clusters, glyph_of};

@@ -1,5 +1,5 @@
-//! Frames that may be near the wanted ones: the stories of the exact ones, told at a pace, at every quality and under
-//! limits, and then until all is exact.
+//! Lossy frames: the exact ones' sequences at a pace, at every quality and under limits, until all
+//! is exact.
 
 use super::grids::filled;
 use super::screens::Clusters;
@@ -123,7 +123,8 @@ fn encoded(encoder: &mut Encoder, grid: &Grid, allowance: Allowance) -> String {
     String::from_utf8(bytes).expect("UTF-8")
 }
 
-/// What nobody sees is left out at first, and said half a second after the change: neither earlier nor twice.
+/// An invisible change is left out at first, and sent half a second later: neither earlier nor
+/// twice.
 #[test]
 fn a_small_change_waits_for_half_a_second() {
     for quality in [Quality::Equal, Quality::Fast] {
@@ -172,7 +173,7 @@ fn either_half_may_be_what_differs() {
     }
 }
 
-/// Of several changes under a limit the largest comes first, and each frame keeps the limit.
+/// Of several changes under a limit the largest is sent first, and each frame keeps the limit.
 #[test]
 fn the_largest_errors_come_first() {
     let size = Size::new(30, 8);
@@ -221,7 +222,8 @@ fn nearly_grey(size: Size, number: &mut impl FnMut() -> u32) -> Grid {
     grid
 }
 
-/// A picture of noise comes to rest in frames that tmux does not throw away, unless there is nothing else to do.
+/// A picture of noise becomes exact in frames that tmux does not drop, unless nothing else is to be
+/// sent.
 #[test]
 fn exact_colours_are_spread_over_frames() {
     let size = Size::new(40, 10);
@@ -262,7 +264,7 @@ fn small_screens_come_to_rest() {
     }
 }
 
-/// `Exact` is what `encode` does, whatever the limit.
+/// `Exact` is the same as `encode`, whatever the limit.
 #[test]
 fn exact_is_exact() {
     let size = Size::new(9, 3);
@@ -279,7 +281,8 @@ fn exact_is_exact() {
     }
 }
 
-/// A panel's blanks are text: they do not wait, and the picture comes back from under them, and to rest.
+/// A panel's blanks are text: they are not delayed, and the picture behind them comes back and gets
+/// exact.
 #[test]
 fn blanks_of_text_do_not_wait() {
     let size = Size::new(30, 8);

@@ -1,5 +1,7 @@
-//! The encoder's bytes, judged by what three terminals show of them: random grids, changes, panels and resizes, and
-//! after each frame every cell of every screen is the wanted one, or, where that is allowed, near it.
+//! The encoder's bytes, judged by the screens of three terminals.
+//!
+//! Frames are random grids, changes, panels and resizes. After each frame every cell of every screen is the wanted one,
+//! or, where that is allowed, near it.
 
 mod backend;
 mod bytes;
@@ -60,10 +62,11 @@ fn cell(texts: &'static [&'static str]) -> impl Strategy<Value = Cell> {
     })
 }
 
-/// What a picture is made of.
+/// The glyphs of a picture.
 const PICTURE: &[&str] = &["▄", " ", "▀"];
 
-/// What a grid can hold: the picture's, plain and accented letters, and wide ones; and clusters.
+/// Returns the glyphs that a grid may have: a picture's, plain and accented letters, wide ones and
+/// clusters.
 fn anything(clusters: Clusters) -> &'static [&'static str] {
     match clusters {
         Clusters::None => &["▄", "▄", " ", " ", "▀", "a", "@", "é", "│", "世", "🙂"],
@@ -117,20 +120,20 @@ fn panel(clusters: Clusters) -> impl Strategy<Value = Panel> {
     (area, text, style).prop_map(|(area, text, style)| Panel { area, text, style })
 }
 
-/// What the next frame is.
+/// The change from one frame to the next.
 #[derive(Clone, Debug)]
 enum Step {
-    /// The same again.
+    /// The same frame again.
     Same,
     /// Some cells are others.
     Change(Vec<(usize, Cell)>),
-    /// Every cell may be another.
+    /// A frame of which any cell may change.
     Redraw(Vec<Cell>),
     /// A picture with a panel over it; the panel is gone with the next frame.
     Panel(Vec<Cell>, Panel),
     /// The window has another size.
     Resize(Size, Vec<Cell>),
-    /// Something else has written on the screen.
+    /// Bytes of another program on the screen.
     Disturb,
 }
 

@@ -1,11 +1,13 @@
-//! How near a screen is to the wanted grid: the picture's half cells by their colours, and everything else exactly. The
-//! formulas are worked out here in f64, from their sources; the library's own are not asked.
+//! The difference between a screen and a wanted grid.
+//!
+//! A picture's half cells may differ in colour, all other cells may not. The formulas are worked out here in f64, from
+//! their sources, without the library's own.
 
 use super::screens::Screens;
 use std::sync::LazyLock;
 use termtrace::{Cell, Glyph, Grid, Ink, Quality, Srgb8};
 
-/// What a quality promises.
+/// The differences that a quality allows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Caps {
     /// The most that a half cell may differ, in `OKLab`.
@@ -25,9 +27,10 @@ impl Caps {
     }
 }
 
-/// The upper and the lower colour of a cell of the picture: of a half block in truecolor, or of a space that has no other
-/// colour, without modifiers.
-/// Everything else is text.
+/// Returns the upper and the lower colour of a picture's cell.
+///
+/// That is a half block in truecolor, or a space without another colour, and without modifiers. All other cells are
+/// text.
 pub(crate) fn halves(cell: &Cell) -> Option<[Srgb8; 2]> {
     let (Ink::Rgb(bg), true) = (cell.bg, cell.attributes.is_empty()) else { return None };
     match (&cell.glyph, cell.fg) {
@@ -76,7 +79,7 @@ pub(crate) fn square(a: Srgb8, b: Srgb8) -> u32 {
     [a.r.abs_diff(b.r), a.g.abs_diff(b.g), a.b.abs_diff(b.b)].map(|band| u32::from(band).pow(2)).iter().sum()
 }
 
-/// In `OKLab`.
+/// Returns the distance of two colours in `OKLab`.
 pub(crate) fn distance(a: Srgb8, b: Srgb8) -> f64 {
     // Most cells are exact.
     if a == b {
@@ -86,7 +89,9 @@ pub(crate) fn distance(a: Srgb8, b: Srgb8) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// The linear light of an encoded band (IEC 61966-2-1), from a table: the powers took 35 % of the time of a sequence.
+/// Returns the linear light of an encoded channel (IEC 61966-2-1).
+///
+/// From a table: the powers took 35 % of the time of a sequence.
 fn linear(band: u8) -> f64 {
     static LINEAR: LazyLock<[f64; 256]> = LazyLock::new(|| {
         std::array::from_fn(|band| {
@@ -97,7 +102,7 @@ fn linear(band: u8) -> f64 {
     LINEAR[usize::from(band)]
 }
 
-/// By Ottosson's matrices.
+/// Returns a colour in `OKLab`, by Ottosson's matrices.
 fn oklab(color: Srgb8) -> [f64; 3] {
     let [r, g, b] = [color.r, color.g, color.b].map(linear);
     let times = |m: [[f64; 3]; 3], v: [f64; 3]| m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);

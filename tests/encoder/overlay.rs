@@ -61,7 +61,9 @@ pub(crate) fn assert_lies_over(grid: &Grid, before: &Grid, buffer: &Buffer) {
     }
 }
 
-/// The named colours by ECMA-48's numbers: black, red, green, yellow, blue, magenta, cyan, white; then the bright ones.
+/// Returns a named colour by its number in ECMA-48.
+///
+/// Black, red, green, yellow, blue, magenta, cyan, white; then the bright ones.
 fn ink(color: Color) -> Ink {
     const NAMED: [Color; 16] = [
         Color::Black,
@@ -95,7 +97,7 @@ fn line(text: &str, style: Style) -> Buffer {
     buffer
 }
 
-/// What the terminals show of a grid; they agree.
+/// Asserts that all terminals show a grid.
 #[track_caller]
 fn assert_shown(grid: &Grid, clusters: Clusters) {
     let mut bytes = Vec::new();
@@ -175,7 +177,7 @@ fn clusters_are_kept_whole() {
     }
 }
 
-/// Where a terminal takes a cluster apart, all that stands behind it is right in the end.
+/// All cells behind a cluster are right in a terminal that splits it.
 #[test]
 fn clusters_taken_apart_disturb_nothing() {
     for symbol in ["e\u{301}", "👨\u{200d}👩\u{200d}👧", "🇫🇷", "👍🏽"] {
@@ -200,8 +202,7 @@ fn clusters_taken_apart_disturb_nothing() {
     }
 }
 
-/// A skipped cell is left alone: something else is drawn there. One that is said to be wider than its text takes so many
-/// columns.
+/// A skipped cell is left alone, and a cell that claims more columns than its text takes them.
 #[test]
 #[expect(deprecated, reason = "the older one of the two ways to skip a cell still counts")]
 fn ratatuis_options_are_respected() {
@@ -216,7 +217,7 @@ fn ratatuis_options_are_respected() {
     assert_eq!(grid.cell(5, 1).glyph, Glyph::Covered);
 }
 
-/// What would be a command to the terminal is a blank.
+/// A control character is a blank.
 #[test]
 fn control_characters_are_blanks() {
     for symbol in ["\n", "\x1b[2J", "a\u{7}", "\u{9b}2J"] {
@@ -242,7 +243,7 @@ fn a_character_without_width_is_a_blank() {
     }
 }
 
-/// Two panels, of which the second cuts the first one's wide characters: their other halves are blanks.
+/// A panel may cut the wide characters of another: the remaining halves are blanks.
 #[test]
 fn a_panel_over_half_of_a_wide_character() {
     for column in 1..6 {

@@ -7,7 +7,9 @@ use termtrace::{Cell, Grid, Ink, Size};
 
 const SIZE: Size = Size::new(53, 17);
 
-/// A picture from the colour of each half cell; like the program's own, a cell of one colour is a space.
+/// Returns a picture from the colour of each half cell.
+///
+/// As in the program's pictures a cell of one colour is a space.
 fn picture(size: Size, mut color: impl FnMut(u16, u16) -> Ink) -> Grid {
     let mut grid = Grid::new(size);
     for row in 0..size.rows {
@@ -35,7 +37,7 @@ fn any_color(number: u32) -> Ink {
     rgb(r, g, b)
 }
 
-/// Every terminal shows every one of them, however they are encoded.
+/// Asserts that every terminal shows each frame, for all settings of the encoder.
 #[track_caller]
 fn assert_shown(frames: &[Grid]) {
     for mut stage in Stage::all(&frames[0], Clusters::None) {
@@ -73,7 +75,7 @@ fn gradients_that_move() {
     assert_shown(&[0, 1, 2, 9].map(|time| picture(SIZE, |x, y| shade(2 * x + 3 * y + time))));
 }
 
-/// Long runs of spaces, with gaps that are cheaper written over than left out, and a square that moves over them.
+/// A square moves over long runs of spaces, whose gaps are cheaper to write again than to skip.
 #[test]
 fn flat_areas_with_a_square_that_moves() {
     let flat = |x: u16, y: u16| if (x / 20 + y / 12).is_multiple_of(2) { rgb(255, 255, 255) } else { rgb(0, 0, 0) };

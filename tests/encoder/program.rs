@@ -1,5 +1,4 @@
-//! What a whole program does with its backend besides drawing: its own escape sequences, a window that changes, a
-//! quality, a rate, scrolling.
+//! Uses of the backend besides drawing: own escape sequences, resizes, quality, rate, scrolling.
 
 use super::backend::{Pair, SIZE, Wire, full, shell};
 use ratatui::backend::Backend;
@@ -15,7 +14,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use termtrace::{Cell, Encoder, EncoderBackend, Ink, Quality};
 
-/// The same bytes through both backends.
+/// Sends the same bytes through both backends.
 macro_rules! execute_both {
     ($pair:expr, $($command:expr),+) => {{
         execute!($pair.ours.backend_mut(), $($command),+).expect("it can be written");
@@ -52,7 +51,7 @@ fn clear(pair: &mut Pair) {
     pair.theirs.clear().expect("it can be written");
 }
 
-/// A sequence comes through in one piece even if it is written in several, and what was drawn before it stays.
+/// An escape sequence stays in one piece even if it is written in several, and earlier cells stay.
 #[test]
 fn sequences_between_frames() {
     let mut pair = Pair::new(SIZE, Encoder::new(), &Viewport::Fullscreen, "");
@@ -73,7 +72,7 @@ fn sequences_between_frames() {
     assert!(pair.line.text().contains("own"));
 }
 
-/// What was drawn and not flushed goes out before what the program writes.
+/// Drawn cells that were not flushed are sent before the program's own bytes.
 #[test]
 fn bytes_keep_their_order() {
     let mut backend = EncoderBackend::new(Vec::new(), (4, 1));
@@ -111,7 +110,7 @@ impl Asked {
     }
 }
 
-/// No one tells the backend or the terminal of the new size.
+/// A resize is noticed although neither backend nor terminal is told of it.
 #[test]
 fn windows_are_followed() {
     for (viewport, before) in [(Viewport::Fullscreen, 0), (Viewport::Inline(3), 2), (Viewport::Inline(2), 5)] {
@@ -194,7 +193,7 @@ impl Timed {
         panic!("it is never at rest")
     }
 
-    /// Every cell is the one of an exact terminal.
+    /// Asserts that every cell is that of an exact terminal.
     #[track_caller]
     fn assert_exact(&self, step: u16) {
         let mut exact = Self::new(Quality::Exact, None);
@@ -225,7 +224,7 @@ fn a_quality_saves_bytes_and_comes_to_rest() {
     assert!(10 * equal < 8 * exact && fast < equal, "{exact}, {equal}, {fast}");
 }
 
-/// What a program writes itself finds, and leaves, an exact picture.
+/// The picture is exact before and after the program's own bytes.
 #[test]
 fn a_picture_is_exact_before_other_bytes() {
     let mut timed = Timed::new(Quality::Fast, None);
@@ -308,8 +307,8 @@ fn lines_are_inserted_above_any_viewport() {
     }
 }
 
-/// Any region, either way, by any number of rows: as ratatui's own model of a terminal has it, and the next frame is
-/// right.
+/// Scrolling any region by any number of rows gives the screen of ratatui's own model, and the next
+/// frame is right.
 #[cfg(feature = "scrolling-regions")]
 #[test]
 fn any_region_is_scrolled() {

@@ -1,5 +1,5 @@
-//! What terminals show after some bytes: two emulators of other hands, and a strict model that refuses what the encoder
-//! has no business to send.
+//! Screens of terminals: two emulators that are not ours, and a strict model that refuses other
+//! bytes.
 //!
 //! Where an emulator does not keep what was sent, it is not asked, and the model alone is the judge:
 //! - `vt100` knows neither blinking nor hidden nor crossed-out text, and no colour of a wide character's second half;
@@ -24,7 +24,7 @@ const AVT_KNOWS: Attributes = Attributes::BOLD
 
 const VT100_KNOWS: Attributes = AVT_KNOWS.difference(Attributes::SLOW_BLINK).difference(Attributes::CROSSED_OUT);
 
-/// What the clusters of a frame are, by which of the emulators keep them.
+/// The clusters of a frame, by the emulators that keep them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Clusters {
     None,
@@ -64,7 +64,7 @@ impl Screens {
         screens
     }
 
-    /// As a window does it: what stands where in one of another size is the terminal's affair.
+    /// Resizes the screens as a window does. Each terminal arranges its contents in its own way.
     pub(crate) fn resize(&mut self, size: Size) {
         if size == self.model.size {
             return;
@@ -85,7 +85,7 @@ impl Screens {
         self.feed_in(&[usize::MAX], bytes);
     }
 
-    /// Shows one frame's bytes, read in pieces of these lengths, one after another and then from the first again.
+    /// Shows the bytes of a frame, read in pieces of these lengths, which repeat.
     #[track_caller]
     pub(crate) fn feed_in(&mut self, lengths: &[usize], bytes: &[u8]) {
         let text = std::str::from_utf8(bytes).expect("a frame ends in no character's middle");
@@ -108,12 +108,12 @@ impl Screens {
         }
     }
 
-    /// What the model shows, row by row from the top.
+    /// Returns the model's screen, row by row from the top.
     pub(crate) fn shown(&self) -> &[Cell] {
         &self.model.cells
     }
 
-    /// What the two emulators show in a cell.
+    /// Returns the cells of the two emulators.
     pub(crate) fn emulated(&self) -> impl Fn(u16, u16) -> [Cell; 2] {
         let (avt, vt100) = (self.avt.as_ref().expect("avt is asked"), self.vt100.as_ref().expect("vt100 is asked"));
         |column, row| [seen_by_avt(avt, column, row), seen_by_vt100(vt100, column, row)]
@@ -125,7 +125,8 @@ impl Screens {
         self.assert_show_as(grid, |cell| cell);
     }
 
-    /// Each of them shows this grid in the same colours, half cell by half cell: with whichever half they were written.
+    /// Asserts that all screens show this grid's colours, half cell by half cell, with either half
+    /// block.
     #[track_caller]
     pub(crate) fn assert_show_halves(&self, grid: &Grid) {
         self.assert_show_as(grid, lower_half);
@@ -155,8 +156,10 @@ impl Screens {
     }
 }
 
-/// The bytes in pieces of these lengths. The rest of a character that is cut is a piece of its own: `vte` 0.15 loses what
-/// follows it in one (as `a` in C3, A9 61 C3, A9).
+/// Splits bytes into pieces of these lengths.
+///
+/// The rest of a character that is cut is a piece of its own: `vte` 0.15 loses what follows it in one (as `a` in C3, A9
+/// 61 C3, A9).
 fn pieces<'a>(text: &'a str, lengths: &'a [usize]) -> impl Iterator<Item = &'a [u8]> {
     let (mut lengths, mut start) = (lengths.iter().cycle(), 0);
     std::iter::from_fn(move || {
@@ -167,7 +170,7 @@ fn pieces<'a>(text: &'a str, lengths: &'a [usize]) -> impl Iterator<Item = &'a [
     })
 }
 
-/// In pieces of these lengths, or somewhat longer: `avt` takes whole characters.
+/// Splits text into pieces of these lengths or somewhat longer, as `avt` takes whole characters.
 fn whole_characters<'a>(text: &'a str, lengths: &'a [usize]) -> impl Iterator<Item = &'a str> {
     let (mut lengths, mut rest) = (lengths.iter().cycle(), text);
     std::iter::from_fn(move || {
@@ -235,8 +238,10 @@ pub(crate) fn glyph_of(text: &str) -> Glyph {
     }
 }
 
-/// What can be seen of a cell: a plain space has no colour of its own, nor has a line that is not drawn. A space whose
-/// colours are exchanged is one of the other colour, but the terminal's own for glyphs cannot be said behind them.
+/// Returns a cell with only its visible attributes.
+///
+/// A plain space has no foreground, nor has an underline that is not drawn a colour. An inverted space is one of the
+/// other colour, but the terminal's own foreground is no background.
 fn seen_of(cell: Cell) -> Cell {
     if cell.glyph == ' ' && cell.attributes == Attributes::REVERSED && cell.fg != Ink::Default {
         return Cell::new(' ', Ink::Default, cell.fg);
@@ -250,8 +255,9 @@ fn seen_of(cell: Cell) -> Cell {
     }
 }
 
-/// A cell of two colours as its lower half on its upper one's colour. The terminal's own colours stay where they are:
-/// that of characters is not that behind them.
+/// Returns a cell of two colours as a lower half block.
+///
+/// The terminal's own colours stay: its foreground is not its background.
 fn lower_half(cell: Cell) -> Cell {
     if !cell.attributes.is_empty() || cell.bg == Ink::Default {
         return cell;
@@ -280,16 +286,20 @@ impl Known for Cell {
     }
 }
 
-/// A terminal in raw mode that knows CUP, CUF, CHA, CR, BS, LF, SGR and characters. At anything else it panics: erasing,
-/// scrolling, going over an edge, going anywhere from beyond the last column (where terminals disagree), other control
-/// characters, and anything but a place after a cluster (where terminals disagree, too). What the encoder learns to say, this has to learn to read.
+/// A strict model of a terminal in raw mode. It knows CUP, CUF, CHA, CR, BS, LF, SGR and
+/// characters.
+///
+/// It panics at anything else: erasing, scrolling, going over an edge, moving from beyond the last column (where
+/// terminals disagree), other control characters, and anything but CUP after a cluster (where terminals disagree, too).
+/// A sequence that the encoder begins to use must be added here.
 struct Model {
     size: Size,
     cells: Vec<Cell>,
     pen: Cell,
-    /// Where the next character goes; none until something says so. Beyond the last column only CUP is allowed.
+    /// The position of the next character; `None` if unknown. Beyond the last column only CUP is
+    /// allowed.
     cursor: Option<(u16, u16)>,
-    /// Where the last character went: the next one may be part of the same cluster, if nothing comes between.
+    /// The position of the last character. The next one may be part of the same cluster.
     last: Option<(u16, u16)>,
 }
 
@@ -303,7 +313,7 @@ impl Model {
         usize::from(row) * usize::from(self.size.columns) + usize::from(column)
     }
 
-    /// Where half of a wide character goes, the other half is a blank.
+    /// Replaces the other half of a wide character by a blank.
     fn break_up(&mut self, column: u16, row: u16) {
         let at = self.index(column, row);
         if self.cells[at].glyph == Glyph::Covered {
@@ -327,7 +337,7 @@ impl Model {
         self.last = None;
     }
 
-    /// What is shown with that character, if it goes on with the last one.
+    /// Returns the cluster that a character continues, with its position, if it continues one.
     fn cluster_with(&self, c: char) -> Option<(u16, u16, String)> {
         let (column, row) = self.last?;
         let text = format!("{}{c}", self.cells[self.index(column, row)].glyph);

@@ -1,7 +1,8 @@
-//! The sequences of `cargo bench --bench bytes`, and two that are drawn from a seed, in every order, with either half and
-//! at every quality: every frame of them is shown as it is wanted, or near it, and exactly in the end. Of the 120 frames
-//! every eighth is asked for on a small screen and every thirtieth on a large one; all of them by hand:
-//! `cargo test --release --test encoder -- --ignored`.
+//! The sequences of `cargo bench --bench bytes`, and two random ones, in every order and at every
+//! quality.
+//!
+//! Every frame is shown as wanted or near it, and exactly in the end. Of the 120 frames every eighth is encoded on a
+//! small screen and every thirtieth on a large one. All of them: `cargo test --release --test encoder -- --ignored`.
 
 use super::WAYS;
 use super::near::halves;
@@ -17,7 +18,7 @@ use termtrace::{CellMode, Encoder, Grid, Order, Quality, Size};
 const SMALL: Size = Size::new(80, 24);
 const LARGE: Size = Size::new(200, 60);
 
-/// Every `step`-th frame, and when it is sent.
+/// Returns every `step`-th frame, and when it is sent.
 fn frames(sequence: &Sequence, size: Size, step: usize) -> Vec<(Duration, Grid)> {
     let time = |k: usize| Duration::from_secs(k as u64) / 30;
     let grid = |k| grid_from_picture(CellMode::HALF_BLOCK, &sequence.frame(k, size));

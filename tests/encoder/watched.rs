@@ -15,13 +15,14 @@ pub(crate) struct Watched {
     screens: Screens,
     /// The last wanted grid. (A blank of text looks like one of the picture.)
     last: Option<Grid>,
-    /// Whether the encoder knows what the screens show: if not, it has to draw all of the picture, whatever the limit.
+    /// Whether the encoder knows the screens. If not, it has to draw the whole picture, whatever
+    /// the limit.
     is_known: bool,
-    /// How long the pieces are in which the terminals read, one after another and then from the first again.
+    /// The lengths of the pieces in which the terminals read, which repeat.
     pieces: Vec<usize>,
 }
 
-/// How long it took from a frame until all was exact, and how many bytes.
+/// The time and bytes from a frame until all is exact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rest {
     pub(crate) bytes: usize,
@@ -42,13 +43,14 @@ impl Watched {
         }
     }
 
-    /// From here on the terminals read pieces of these lengths, which are not 0.
+    /// Makes the terminals read pieces of these lengths from now on, which are not 0.
     pub(crate) fn in_pieces(self, pieces: Vec<usize>) -> Self {
         Self { pieces, ..self }
     }
 
-    /// The window has another size. The encoder finds that out by the next frame; where that has the size of the last one
-    /// again, it has to be told.
+    /// Resizes the window.
+    ///
+    /// The encoder notices a new size by the next frame; if that has the last frame's size again, it has to be told.
     pub(crate) fn resize(&mut self, size: Size) {
         if self.last.as_ref().is_some_and(|last| last.size() == size) {
             self.encoder.forget();
@@ -57,7 +59,7 @@ impl Watched {
         self.screens.resize(size);
     }
 
-    /// Something else has written on the screen, and the encoder has been told so.
+    /// Writes on the screen as another program, and tells the encoder so.
     pub(crate) fn disturb(&mut self, size: Size) {
         self.is_known = false;
         self.screens = Screens::disturbed(size, self.clusters);
@@ -111,7 +113,8 @@ impl Watched {
         bytes.len()
     }
 
-    /// What the screen is known to show of a picture, and something else where it shows text.
+    /// Returns the picture's cells that the screen is known to show, and a mark where it shows
+    /// text.
     fn pictures_shown(&self) -> Vec<Cell> {
         let last = self.last.iter().flat_map(Grid::cells).map(|cell| halves(cell).is_some());
         let is_picture = last.chain(std::iter::repeat(true)).map(|is| is && self.is_known);
@@ -123,7 +126,7 @@ impl Watched {
             .collect()
     }
 
-    /// Something is due where anything is not exact; until then nothing is sent.
+    /// Asserts that a frame is due if any cell is not exact, and that none is sent before.
     #[track_caller]
     fn assert_due(&mut self, seen: &Grid, wanted: &Grid, allowance: Allowance) {
         let is_exact = seen.cells().iter().zip(wanted.cells()).all(|(a, b)| halves(a) == halves(b));
@@ -138,7 +141,7 @@ impl Watched {
         }
     }
 
-    /// Sends the wanted grid again whenever something is due, until nothing is: all is exact then, and stays.
+    /// Sends the wanted grid whenever a frame is due, until all is exact and stays so.
     #[track_caller]
     pub(crate) fn rest(&mut self, wanted: &Grid, from: Allowance) -> Rest {
         let mut rest = Rest { bytes: 0, after: Duration::ZERO };
@@ -156,7 +159,7 @@ impl Watched {
         rest
     }
 
-    /// Every one of these cells has its exact colours.
+    /// Asserts that these cells have their exact colours.
     #[track_caller]
     pub(crate) fn assert_exact_at(&self, places: impl Iterator<Item = usize>, wanted: &Grid) {
         for at in places {
@@ -166,14 +169,14 @@ impl Watched {
         }
     }
 
-    /// No cell is written with its upper half: all are, but for the colours, as they are wanted.
+    /// Asserts that no cell is written with its upper half: all are as wanted but for the colours.
     #[track_caller]
     pub(crate) fn assert_no_upper_half(&self) {
         assert!(self.screens.shown().iter().all(|cell| cell.glyph != '▀'), "an upper half is shown");
     }
 }
 
-/// The halves before and after and those that are wanted, of each cell where all of them are a picture's.
+/// Returns the halves before, after and wanted of each cell for which all three are a picture's.
 fn pictures<'a>(
     before: &'a [Cell],
     seen: &'a Grid,
@@ -183,14 +186,16 @@ fn pictures<'a>(
     cells.filter_map(|((before, seen), wanted)| Some([halves(before)?, halves(seen)?, halves(wanted)?]))
 }
 
-/// A limit is kept; where it is not, nothing was written that could wait but the one cell that always may be.
+/// Asserts that a limit is kept.
+///
+/// A frame over the limit has no cell that could be delayed but the one that every frame may have.
 #[track_caller]
 fn assert_limited(before: &[Cell], seen: &Grid, wanted: &Grid, (bytes, most): (usize, usize)) {
     let written = pictures(before, seen, wanted).filter(|[before, seen, _]| before != seen).count();
     assert!(bytes <= most || written <= 1, "{bytes} bytes for {written} cells, where {most} are allowed");
 }
 
-/// What is left differs no more than what was written did.
+/// Asserts that the cells left differ no more than those written did.
 #[track_caller]
 fn assert_largest_first(before: &[Cell], seen: &Grid, wanted: &Grid, caps: Caps) {
     let error = |a: [_; 2], b: [_; 2]| (0..2).map(|half| square(a[half], b[half])).max();

@@ -1,4 +1,4 @@
-//! All of ratatui's widgets, frame by frame, through our backend and through ratatui's own: equal screens.
+//! All of ratatui's widgets, frame by frame, through our backend and ratatui's own: equal screens.
 
 use super::backend::{Pair, Strict, Wire, assert_bracketed, commonly_known};
 use super::screens::Clusters;
@@ -50,7 +50,7 @@ fn bar_chart(frame: &mut Frame<'_>, time: u8) {
     frame.render_widget(chart.value_style(Style::new().black().on_green()), frame.area());
 }
 
-/// Between 0 and 100, another for each time.
+/// Returns a number from 0 to 100, another for each time.
 fn value(time: u8, k: u8) -> u64 {
     u64::from(time.wrapping_mul(37).wrapping_add(k.wrapping_mul(59)) % 101)
 }
@@ -248,8 +248,9 @@ fn transitions() -> impl Iterator<Item = (Draw, u8)> {
     (1..count).flat_map(move |step| (0..count).map(move |at| (WIDGETS[at * step % count].1, at as u8)))
 }
 
-/// What was there before is gone. (Without wide characters: over half of one, with ratatui's own backend, some of its
-/// successor's colour stays.)
+/// A widget that replaces another leaves nothing of it.
+///
+/// Without wide characters: over half of one, ratatui's own backend leaves some of its successor's colour.
 #[test]
 fn every_widget_over_every_other() {
     for (mut pair, _) in pairs() {
@@ -269,7 +270,7 @@ fn every_widget_over_every_other() {
     }
 }
 
-/// With wide characters ours is what the program has drawn.
+/// With wide characters our screen is what the program has drawn.
 #[test]
 fn every_widget_over_every_other_with_wide_characters() {
     for order in [Order::Raster, Order::Color] {
