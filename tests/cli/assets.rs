@@ -1,4 +1,5 @@
-//! The manual and the completions in `assets/`, which packagers install, are what the program prints.
+//! The manual and the completions in `assets/`, which packagers install, are those that the program
+//! prints.
 //!
 //! `BLESS=1 cargo test --test cli assets` writes them anew.
 
@@ -48,7 +49,7 @@ fn the_manual_and_the_completions_are_current() {
     assert!(stale.is_empty(), "{stale:?}: BLESS=1 cargo test --test cli assets writes them anew");
 }
 
-/// Every page that the manual refers to is there, and no file that is in no list.
+/// Each page that the manual refers to exists, and the folder has no file that is in no list.
 #[test]
 fn the_manual_is_whole() {
     let listed: BTreeSet<_> = ASSETS.iter().map(|(name, _)| (*name).to_owned()).collect();

@@ -6,14 +6,16 @@ use std::num::NonZeroU32;
 use termtrace::internals::hit::closest_hit;
 use termtrace::{Resolution, Scene, export, render, tone};
 
-/// Each round's figures, by what stands before and behind them: `7 hits` is 7 of hits, `hash 7` is 7 of hash.
+/// Returns the figures of each round by the words before and after them.
+///
+/// `7 hits` is 7 of hits, `hash 7` is 7 of hash.
 fn rounds(text: &str) -> Vec<HashMap<&str, &str>> {
     let pairs = |(_, line)| str::split(line, [',', ';']).filter_map(|figure| figure.trim().split_once(' '));
     let rounds = text.lines().filter_map(|line| line.strip_prefix("round ")?.split_once(": "));
     rounds.map(|round| pairs(round).flat_map(|(a, b)| [(a, b), (b, a)]).collect()).collect()
 }
 
-/// The light that is timed is the light that a frame shows, and what is traced is what a frame's rays meet.
+/// The timed picture is that of `frame`, and the counted hits are those of its rays.
 #[test]
 fn it_times_what_frame_shows() {
     let folder = Folder::new();

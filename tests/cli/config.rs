@@ -9,7 +9,7 @@ fn with_settings(text: &str) -> Folder {
     with_file("config.ron", text)
 }
 
-/// The same with another of his files.
+/// Returns a folder with a second file of the user's.
 fn with_file(name: &str, text: &str) -> Folder {
     let folder = Folder::new();
     fs::create_dir_all(folder.path("settings/termtrace")).expect("a folder can be made");
@@ -24,7 +24,9 @@ fn in_the_readme(words: &str) -> String {
     blocks.find(|text| text.contains(words)).expect("the README shows one").to_owned()
 }
 
-/// What holds of a setting, and who says so, with `~` for the folder; without `NO_COLOR` and the like.
+/// Returns the settings with their sources.
+///
+/// `~` stands for the folder; `NO_COLOR` and the like are not set.
 #[track_caller]
 fn held(folder: &Folder, arguments: &str, environment: &[(&str, &str)], setting: &str) -> String {
     let text = config(folder, arguments, environment).text();
@@ -130,7 +132,7 @@ fn the_old_name_of_a_setting_leads_to_the_new_one() {
     run.fails(2, "config.ron:1:2: unknown setting \"view\"; the name is now \"map\"\n");
 }
 
-/// All that is wrong, in the file's order, each with its place and what would be right.
+/// All errors of a file are in one message, in its order, each with its position and a correction.
 #[test]
 fn a_file_that_is_wrong_is_told_of_in_one_message() {
     let folder = with_settings(WRONG);
@@ -177,7 +179,7 @@ fn a_variable_that_is_wrong_is_told_of_by_its_name() {
     config(&Folder::new(), "--fps 3", &[("TERMTRACE_FPS", "many")]).done();
 }
 
-/// What golden frames are made of depends on arguments alone.
+/// Golden frames depend on arguments alone.
 #[test]
 fn frames_know_nothing_of_settings() {
     let plain = Folder::new();

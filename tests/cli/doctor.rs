@@ -2,7 +2,7 @@
 
 use crate::{Folder, Run, finish};
 
-/// What it says with this environment and nothing else in it.
+/// Runs `doctor` in this environment and nothing else in it.
 fn doctor(arguments: &str, environment: &[(&str, &str)]) -> Run {
     let mut command = Folder::new().command(&format!("doctor {arguments}"));
     finish(command.env_clear().envs(environment.iter().copied()).current_dir("/"))

@@ -1,4 +1,4 @@
-//! What is wrong is said, once, on standard error, with an exit code that tells whose fault it is.
+//! Each error is reported once, on standard error, with an exit code that tells whose fault it is.
 
 use super::{BALL, Folder, shipped_scenes};
 
@@ -15,7 +15,7 @@ fn check_says_what_is_wrong_or_that_all_is_fine() {
     }
 }
 
-/// As a compiler's: file, line, column, the line, a caret, and all faults in one run.
+/// Errors are reported as a compiler does: file, line, column, the line, a caret, all in one run.
 #[test]
 fn a_faulty_scene_is_told_as_by_a_compiler() {
     let folder = Folder::new();
@@ -70,7 +70,7 @@ fn files_that_are_no_scenes() {
     }
 }
 
-/// The one fault of a scene file that only the system knows of. Who may read everything cannot try it.
+/// A file without permission to read is an error. Root may read every file, and cannot test this.
 #[test]
 fn files_that_may_not_be_read() {
     use std::os::unix::fs::PermissionsExt;
@@ -186,7 +186,9 @@ fn names_of_files_reach_the_terminal_without_their_control_characters() {
     }
 }
 
-/// What a message may not hold: it would control the terminal, or turn the direction of writing.
+/// Returns whether a message may not have this character.
+///
+/// It would control the terminal, or turn the direction of writing.
 fn is_unprintable(c: char) -> bool {
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}');
     c != '\n' && c.is_control() || turns
@@ -209,7 +211,8 @@ fn flags_with_values(help: &str) -> Vec<String> {
     flags.map(|(flag, _)| flag.trim_end_matches([' ', '=']).to_owned()).collect()
 }
 
-/// The same of every flag, every command and every other argument, whether clap quotes it or the program.
+/// Every flag, command and argument is quoted without control characters, by clap or by the
+/// program.
 #[test]
 fn no_argument_reaches_the_terminal_unquoted() {
     let folder = Folder::new();
@@ -233,7 +236,7 @@ fn no_argument_reaches_the_terminal_unquoted() {
     assert!(count > 60, "{count} flags were found");
 }
 
-/// What there is not enough memory for is refused before it is begun.
+/// A picture that does not fit in the memory is refused before it is begun.
 #[cfg(target_os = "linux")]
 #[test]
 fn too_little_memory_is_an_error_message() {

@@ -18,7 +18,7 @@ fn says(name: &str, arguments: &str) {
     assert_eq!(said, golden(name));
 }
 
-/// The ball from the front, its floor in light and in its shadow, the sky, and a triangle of a mesh.
+/// Pixels of the ball, the lit floor, its shadow, the sky and a mesh are explained.
 #[test]
 fn pixels_are_explained_in_the_lectures_symbols() {
     says("ball", "ball.ron --pixel 30,20");

@@ -1,4 +1,4 @@
-//! What a frame is written as, where to, and what else decides about its pixels.
+//! The formats and outputs of a frame, and the flags that decide about its pixels.
 
 use super::{Folder, finish};
 
@@ -78,7 +78,7 @@ fn more_samples_smooth_the_edges() {
     }
 }
 
-/// Where a picture is one colour, no number of samples changes it.
+/// In an area of one colour the number of samples has no effect.
 #[test]
 fn samples_of_one_colour_are_that_colour() {
     let folder = Folder::new();
@@ -132,7 +132,9 @@ fn threads_are_a_number_from_one_on() {
     }
 }
 
-/// A cell's aspect is its height over its width: where cells are flatter, a ball of so many rows takes fewer columns.
+/// A cell's aspect is its height over its width.
+///
+/// In flatter cells a ball of the same rows takes fewer columns.
 #[test]
 fn a_ball_is_round_in_cells_of_any_aspect() {
     let folder = Folder::new();
@@ -151,7 +153,7 @@ fn a_ball_is_round_in_cells_of_any_aspect() {
         assert!((height - 40.0 * radius).abs() <= 2.0, "{height} rows at aspect {aspect}");
         let expected = 40.0 * radius * aspect.parse::<f64>().expect("a number");
         assert!((width - expected).abs() <= 2.0, "{width} columns at aspect {aspect}, not {expected}");
-        // The program that nobody asked for a size prints the same shape.
+        // Without a size, the program prints the same shape.
         let usual = folder.frame(&format!("round.ron --cell-aspect {aspect}"));
         assert!(usual == folder.run(&format!("round.ron --cell-aspect {aspect}")).done());
     }

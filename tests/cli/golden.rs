@@ -29,7 +29,7 @@ fn bless_check_change_check() {
     }
 }
 
-/// The difference of a frame from a golden, as a person reads it.
+/// Returns the readable difference of a frame from a golden.
 #[track_caller]
 fn difference(folder: &Folder, arguments: &str) -> String {
     let run = folder.run(&format!("frame {arguments}"));

@@ -1,4 +1,4 @@
-//! Whatever stands behind a name is read within bounds, or told in a line.
+//! Every named input is read within bounds, or is an error of one line.
 
 use super::{BALL, Folder, Run, finish};
 use nix::sys::stat::Mode;
@@ -103,7 +103,7 @@ fn a_pipe_that_stops_is_given_up() {
     each_fails(make, |_| "this pipe delivered nothing for a second".to_owned());
 }
 
-/// As much as may be is read, and no more. (2 GiB for a mesh would take too long here.)
+/// Input without an end is read up to the limit. A mesh's limit, 2 GiB, would take too long here.
 #[test]
 fn a_pipe_without_end_is_given_up() {
     for named in NAMED.iter().filter(|named| named.most != "2 GiB") {
@@ -129,7 +129,7 @@ fn written(folder: &Folder, named: &Named, write: impl FnOnce(File) + Send) -> R
     })
 }
 
-/// What is right for each name, which as a file is no error.
+/// Returns contents that are no error under each name.
 fn right(folder: &Folder, named: &Named) -> Vec<u8> {
     const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
@@ -169,7 +169,7 @@ fn what_comes_through_a_pipe_is_as_good_as_a_file() {
     }
 }
 
-/// As shells have it: `frame --check <(...)`, a pipe by the number of its descriptor.
+/// A golden frame may come from a descriptor's number, as for a shell's `frame --check <(...)`.
 #[test]
 fn a_golden_frame_may_come_out_of_a_descriptor() {
     let folder = Folder::new();

@@ -1,5 +1,6 @@
-//! The program from outside: arguments, files and pipes in; bytes and an exit code out. Only the progress of `record`
-//! needs a terminal here; the live view has tests of its own.
+//! The program from outside: arguments, files and pipes in; bytes and an exit code out.
+//!
+//! Only the progress of `record` needs a terminal here; the live view has tests of its own.
 
 mod assets;
 mod bench;
@@ -31,7 +32,8 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A ball on a chequered floor, with nothing in it symmetrical: a picture that is turned or shifted is another one.
+/// A ball on a chequered floor without symmetry: a picture that is turned or shifted is another
+/// one.
 pub(crate) const BALL: &str = r##"(
     camera: (eye: (1, 1.5, 6), target: (0, 0.7, 0), up: (0, 1, 0), vertical_fov: 40),
     background: "#87a6cc",
@@ -69,8 +71,9 @@ impl Folder {
         fs::read(self.path(name)).expect("the file was written")
     }
 
-    /// The program, called here; no argument has a blank in it. Whoever runs the tests has no settings: their folder is
-    /// `settings` in this one.
+    /// Returns a command of the program, whose arguments have no blanks in them.
+    ///
+    /// The user's own settings have no effect: their folder is `settings` in this one.
     pub(crate) fn command(&self, arguments: &str) -> Command {
         pty::reset_for_children();
         let mut command = Command::new(env!("CARGO_BIN_EXE_termtrace"));
@@ -95,7 +98,7 @@ impl Folder {
         finish(self.command(arguments).stdin(file))
     }
 
-    /// What it writes when all is well.
+    /// Returns the output of a frame without errors.
     #[track_caller]
     pub(crate) fn frame(&self, arguments: &str) -> Vec<u8> {
         self.run(&format!("frame {arguments}")).done()
@@ -106,7 +109,7 @@ fn scratch() -> File {
     tempfile::tempfile().expect("a file can be made")
 }
 
-/// What came of a run.
+/// The result of a run.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) code: Option<i32>,
@@ -152,8 +155,9 @@ impl Run {
         String::from_utf8(self.done()).expect("text is UTF-8")
     }
 
-    /// It could not be done: this code, nothing written, and one message that begins with the program's name and has
-    /// these words in it.
+    /// Asserts that the run failed with this exit code, without output, and with one message.
+    ///
+    /// The message begins with the program's name and has `words` in it.
     #[track_caller]
     pub(crate) fn fails(&self, code: i32, words: &str) {
         assert_eq!(self.code, Some(code), "{self:?}");
@@ -168,7 +172,7 @@ impl Run {
         assert!(self.stderr.chars().all(|c| c == '\n' || !c.is_control()), "{self:?}");
     }
 
-    /// As [`Run::fails`], in one line.
+    /// Asserts as [`Run::fails`], for a message of one line.
     #[track_caller]
     pub(crate) fn fails_in_a_line(&self, code: i32, words: &str) {
         self.fails(code, words);

@@ -1,4 +1,4 @@
-//! What stands under an output's name when a command ends, however it ends: the old file, or the whole new one.
+//! Output files: however a command ends, a name has the old file or the whole new one.
 
 use super::pty::SOON;
 use super::{Folder, finish};
@@ -29,7 +29,9 @@ const WRITERS: [(&str, &str); 9] = [
     ("record ball.ron --seconds 0.1 --pixels 600x400 --samples 4 -o x-%d.png", "x-1.png"),
 ];
 
-/// Where no file becomes larger than 8 blocks, of 512 bytes or 1 kB: as on a full disk, an error comes in the middle.
+/// Runs the program where no file becomes larger than 8 blocks, of 512 bytes or 1 kB.
+///
+/// As on a full disk, an error comes in the middle.
 fn in_a_small_space(folder: &Folder, program: &Path, arguments: &str) -> Command {
     let script = format!("trap '' XFSZ; ulimit -f 8; exec '{}' {arguments}", program.display());
     let mut command = Command::new("sh");
@@ -79,7 +81,7 @@ const DEADLY: [Signal; 12] = [
     Signal::TRAP,
 ];
 
-/// A child ignores what its parent ignores, as after `cargo test &`; what the parent catches, it heeds.
+/// Restores signals that the child would ignore because its parent does, as after `cargo test &`.
 fn heed_signals() {
     for deadly in DEADLY {
         let dies = Arc::new(AtomicBool::new(true));
@@ -132,7 +134,7 @@ fn a_signal_leaves_the_old_film_or_none() {
     }
 }
 
-/// It waits for the pipe's reader, or in the middle for room in the pipe.
+/// A signal ends a program that waits for a pipe's reader, or in the middle for room in the pipe.
 #[test]
 fn a_signal_ends_who_writes_to_a_pipe() {
     for is_read in [false, true] {
@@ -215,10 +217,10 @@ fn a_descriptor_is_written_directly() {
     assert_eq!(names(&folder), ["ball.ron", "x.txt"]);
 }
 
-/// Nobody's user: what root may do cannot be seen as root.
+/// The user `nobody`: the limits of permissions do not hold for root.
 const NOBODY: u32 = 65534;
 
-/// The program, or a copy that nobody's user can read.
+/// Returns the program, or a copy that the user `nobody` can read.
 fn plain_users_program(folder: &Folder) -> PathBuf {
     if !is_root(folder) {
         return PROGRAM.into();
@@ -232,7 +234,7 @@ fn plain_users_program(folder: &Folder) -> PathBuf {
     copy
 }
 
-/// A command of a user who may not write everything: of whoever runs the tests, or nobody.
+/// Runs a command as a user without root's rights: the current user or `nobody`.
 fn as_a_plain_user(folder: &Folder, mut command: Command) -> Command {
     if is_root(folder) {
         command.uid(NOBODY).gid(NOBODY);
@@ -268,7 +270,7 @@ fn what_may_not_be_written_is_refused_though_the_folder_may() {
     }
 }
 
-/// Whose folder takes no new file, it is written in place; so it is where the owner cannot be given back.
+/// In a folder that takes no new file, or if the owner cannot be kept, a file is written in place.
 #[test]
 fn where_it_cannot_be_replaced_a_file_is_written_in_place() {
     for folders_mode in [0o555, 0o1777, 0o777] {
@@ -291,7 +293,8 @@ fn where_it_cannot_be_replaced_a_file_is_written_in_place() {
     }
 }
 
-/// In place the disk is found to be full when a part is written over the old bytes.
+/// A file that is written in place keeps its old bytes when the disk is full, for the part not
+/// reached.
 #[test]
 fn a_full_disk_leaves_the_old_bytes_where_a_file_is_written_in_place() {
     let folder = Folder::new();

@@ -1,5 +1,6 @@
-//! PNG and ANSI are the same picture: a PNG decoder and a terminal emulator, both of other hands, agree about every
-//! pixel, and the plain text is what CIE's formula makes of them.
+//! PNG and ANSI show the same picture, to a PNG decoder and a terminal emulator that are not ours.
+//!
+//! The plain text is what CIE's formula makes of its pixels.
 
 use super::{Folder, shipped_scenes};
 use png::{ColorType, Decoder, PixelDimensions, SrgbRenderingIntent, Unit};
@@ -42,8 +43,10 @@ impl Png {
 /// A character with its colours; `None` is the terminal's own.
 type AnsiCell = (char, Option<Rgb>, Option<Rgb>);
 
-/// The lines of cells that the bytes say, by a reader that knows characters, `CSI ... m` with 0, 38;2 and 48;2, and
-/// nothing else. Each line has to end with the terminal's own colours.
+/// Reads the lines of cells of ANSI output.
+///
+/// The reader knows characters, `CSI ... m` with 0, 38;2 and 48;2, and nothing else. Each line has to end with the
+/// terminal's own colours.
 #[track_caller]
 fn cells_of_ansi(bytes: &[u8]) -> Vec<Vec<AnsiCell>> {
     let text = std::str::from_utf8(bytes).expect("ANSI is UTF-8");
@@ -78,7 +81,7 @@ fn cells_of_ansi(bytes: &[u8]) -> Vec<Vec<AnsiCell>> {
         .collect()
 }
 
-/// What a terminal of that size shows after the bytes were printed on it.
+/// Returns the screen of a terminal of that size after the bytes were printed on it.
 fn shown(bytes: &[u8], columns: usize, rows: usize) -> vt100::Parser {
     let side = |length: usize| NonZeroU16::new(length as u16).expect("not zero");
     // A row more than the frame has: the line feed after the last row scrolls nothing away.
@@ -110,7 +113,7 @@ fn assert_shows((glyph, fg, bg): AnsiCell, (upper, lower): (Rgb, Option<Rgb>)) {
     }
 }
 
-/// Of one scene at one size: PNG, ANSI as a file, and ANSI on a screen.
+/// Compares PNG, an ANSI file and ANSI on a screen of one scene at one size.
 #[track_caller]
 fn judge(folder: &Folder, arguments: &str) {
     folder.frame(&format!("{arguments} -o frame.png"));
@@ -196,7 +199,7 @@ fn scale_makes_each_pixel_a_square() {
     }
 }
 
-/// pHYs says how many pixels make up a unit each way: pixels higher than wide are more across than down.
+/// pHYs has the number of pixels of a unit on each axis: of high pixels more fit across than down.
 #[test]
 fn pixels_that_are_not_square_are_marked() {
     let folder = Folder::new();
@@ -213,8 +216,10 @@ fn pixels_that_are_not_square_are_marked() {
     }
 }
 
-/// The numbers by hand: a colour said as sRGB comes out as it went in; linear 0.5 is 1.055 * 0.5^(1/2.4) - 0.055 =
-/// 0.7354 of 255 = 187.5, rounded up; what is brighter than white is white.
+/// The expected numbers are worked out by hand.
+///
+/// A colour given as sRGB is kept; linear 0.5 is 1.055 * 0.5^(1/2.4) - 0.055 = 0.7354 of 255 = 187.5, rounded up;
+/// brighter than white is white.
 #[test]
 fn colours_are_srgb_by_the_real_transfer_function() {
     let folder = Folder::new();

@@ -33,7 +33,7 @@ fn without_a_terminal_one_frame_is_printed() {
     folder.run("ball.ron --color=perhaps").is_misused("auto, always, never");
 }
 
-/// No alternate screen, no cursor that goes away, no query that waits for an answer.
+/// There is no alternate screen, no hidden cursor and no query without a terminal.
 #[test]
 fn without_a_terminal_nothing_is_switched_on() {
     let folder = Folder::new();
@@ -107,7 +107,7 @@ fn a_closed_pipe_is_no_error() {
     }
 }
 
-/// Where nobody reads the complaint, the exit code still says it.
+/// Without a standard error the exit code still reports the error.
 #[test]
 fn a_closed_standard_error_is_no_panic() {
     let folder = Folder::new();

@@ -29,7 +29,7 @@ fn picture(scene: &Scene, camera: &Camera, resolution: Resolution) -> Picture {
     tone(&render(scene, camera, resolution, NonZeroU32::MIN), scene)
 }
 
-/// What a terminal shows after each event of an asciicast: header, then time and screen.
+/// The screens of a terminal after each event of an asciicast: header, then times and screens.
 struct Played {
     header: serde_json::Value,
     events: Vec<(f64, String)>,
@@ -82,7 +82,7 @@ fn halves_wanted(grid: &Grid) -> Vec<[Option<avt::Color>; 2]> {
     glyphs.zip(grid.cells()).map(halves).collect()
 }
 
-/// Every event of the cast shows exactly the cells of its camera.
+/// Asserts that every event of the cast shows exactly the cells of its camera.
 #[track_caller]
 fn assert_shows(cast: &[u8], fps: u32, resolution: Resolution, cameras: &[Camera]) {
     let scene = ball();
@@ -130,7 +130,7 @@ fn a_cast_shows_each_frame_of_the_orbit() {
     assert_shows(&cast, 30, Resolution::square(9, 8), &[*scene.camera()]);
 }
 
-/// How far two screens are apart: the largest distance of two halves in OKLab.
+/// Returns the largest distance of two halves of two screens in `OKLab`.
 fn distance(shown: &[[Option<avt::Color>; 2]], wanted: &[[Option<avt::Color>; 2]]) -> f32 {
     let oklab = |color: Option<avt::Color>| match color {
         Some(avt::Color::RGB(c)) => Oklab::from_srgb8(Srgb8::new(c.r, c.g, c.b)),
@@ -180,7 +180,8 @@ fn a_cast_of_less_quality_is_near_and_becomes_exact() {
     }
 }
 
-/// Every frame but the first, which has to draw all, and the last, which has to be exact, keeps to its share.
+/// Every frame keeps to the rate but the first, which draws all cells, and the last, which is
+/// exact.
 #[test]
 fn a_cast_keeps_to_its_rate() {
     let folder = Folder::new();
@@ -245,7 +246,7 @@ fn the_defaults() {
     }
 }
 
-/// Nothing that changes a mode, and no question that a viewer's terminal would answer.
+/// A cast has no mode changes, and no query that a viewer's terminal would answer.
 #[test]
 fn a_cast_holds_nothing_but_frames() {
     let folder = Folder::new();
@@ -293,7 +294,7 @@ fn gif_frames(bytes: &[u8]) -> (gif::Decoder<&[u8]>, Vec<gif::Frame<'static>>) {
     (decoder, frames)
 }
 
-/// The delays add up to the film's length, whatever they are rounded to, and it plays again and again.
+/// The rounded delays add up to the film's length, and the film repeats.
 #[test]
 fn a_gif_takes_its_time_and_loops() {
     let folder = Folder::new();
@@ -339,7 +340,7 @@ fn a_gif_shows_each_frame() {
     }
 }
 
-/// On the square pixels of a viewer a ball is as wide as it is high, whatever the terminal's cells were.
+/// In a viewer's square pixels a ball is as wide as high, whatever the terminal's cells were.
 #[test]
 fn a_ball_is_round_in_a_gif() {
     let folder = Folder::new();
@@ -557,7 +558,7 @@ fn a_dumb_terminal_gets_no_bar() {
     assert_eq!(session.seen().bytes(), b"");
 }
 
-/// The bar is for a person, the film for the pipe: neither gets the other's bytes.
+/// The bar goes to the terminal and the film to the pipe: neither gets the other's bytes.
 #[test]
 fn the_bar_stays_out_of_a_pipe() {
     let folder = Folder::new();

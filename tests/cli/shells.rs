@@ -1,4 +1,4 @@
-//! What shells, `man` and people who misspell get told.
+//! Completions for shells, the manual, and suggestions for misspelt words.
 
 use super::Folder;
 

@@ -1,10 +1,10 @@
-//! How large a frame is.
+//! The size of a frame.
 
 use super::{BALL, Folder};
 use termtrace::internals::cell::RAMP;
 use termtrace::{Scene, Size, text_frame};
 
-/// Lines and their length, which is the same for all; nothing but the ramp's characters and line feeds.
+/// Returns the number of lines and their common length, in characters of the ramp.
 #[track_caller]
 fn text_size(frame: &[u8]) -> (usize, usize) {
     assert_eq!(frame.last(), Some(&b'\n'));

@@ -1,4 +1,4 @@
-//! Frames for the web: SVG and HTML, byte for byte as they were when they were last looked at in a browser.
+//! Frames for the web: SVG and HTML, byte for byte as last checked in a browser.
 //!
 //! `BLESS=1 cargo test --test cli web` writes them anew; look at them before they are committed.
 
@@ -6,7 +6,7 @@ use super::Folder;
 use std::fs;
 use std::path::Path;
 
-/// Not square, so that a cell's aspect is seen to be heeded.
+/// The frames. Cells that are not square show that a cell's aspect is used.
 const FRAMES: [(&str, &str); 6] = [
     ("half.svg", "--size 24x8"),
     ("half.html", "--size 24x8"),
@@ -32,7 +32,7 @@ fn frames_for_the_web_are_golden() {
     }
 }
 
-/// Nothing runs, nothing is loaded, and what HTML would take for a tag is a character.
+/// A frame runs no script and loads nothing, and escapes the characters of HTML's tags.
 #[test]
 fn frames_for_the_web_are_alone() {
     let folder = Folder::new();

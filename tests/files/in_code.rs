@@ -156,7 +156,7 @@ fn meshes_say_what_is_wrong_with_them() {
     assert!(Mesh::from_triangles(corners(), vec![[0, 1, 1]]).is_ok(), "without an area, as in a mesh file");
 }
 
-/// Whatever a scene file accepts can be built in code, and is the same scene.
+/// Every scene that a file accepts can be built in code, and is the same scene.
 #[test]
 fn a_scene_in_code_is_the_scene_of_a_file() {
     let text = "(

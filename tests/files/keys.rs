@@ -1,4 +1,4 @@
-//! Any file of keys: it is told what is wrong with it, or its table can be written, read again, and left.
+//! Any file of keys has an error, or gives a table that can be written, read again, and left.
 
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
@@ -23,7 +23,7 @@ fn file() -> impl Strategy<Value = String> {
     })
 }
 
-/// What every key means in every mode.
+/// Returns the command of every key in every mode.
 fn meanings(keymap: &Keymap) -> Vec<Option<(Command, bool)>> {
     let keys = KEYS.map(|name| Key::from_name(name).expect("a key"));
     let meant = |mode| keys.map(|key| keymap.command(&[mode, KeyMode::Always], &key.pressed()));

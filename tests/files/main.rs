@@ -1,4 +1,4 @@
-//! What files of scenes, meshes and keys mean, and what is wrong with them.
+//! The meaning of files of scenes, meshes and keys, and their errors.
 
 #[path = "../corpus/mod.rs"]
 mod corpus;

@@ -1,5 +1,7 @@
-//! Meshes as they are read against what is meant. `tests/meshes/` describes two shapes in every format and variety: a
-//! tetrahedron, and a square with a normal, colours, texture coordinates and a material.
+//! Meshes as read, compared with their meaning.
+//!
+//! `tests/meshes/` describes two shapes in every format and variety: a tetrahedron, and a square with a normal,
+//! colours, texture coordinates and a material.
 
 use glam::{Vec2, Vec3};
 use std::io;
@@ -28,7 +30,7 @@ fn meshes_of(shape: &str) -> Vec<(String, MeshFile)> {
     paths.iter().filter(is_mesh).map(read).collect()
 }
 
-/// No mesh that names no other file may ask for one.
+/// Refuses to read: a mesh that names no other file may not ask for one.
 fn alone(path: &Path) -> io::Result<Vec<u8>> {
     panic!("{} was asked for", path.display())
 }
@@ -124,7 +126,7 @@ fn colors_of_vertices_become_linear_light() {
     assert_eq!(colors[1..], [LinearRgb::new(0.0, 0.0, 1.0), LinearRgb::grey(1.0)]);
 }
 
-/// What OBJ's corners choose, each for itself.
+/// The three indices of a corner in OBJ are independent.
 #[test]
 fn corners_of_obj_have_indices_of_their_own() {
     let mesh = read(
@@ -223,7 +225,7 @@ fn nodes_of_gltf_stand_in_their_parents() {
     assert!(mesh.positions()[1].abs_diff_eq(Vec3::new(0.0, 4.0, 0.0), 1e-6), "{}", mesh.positions()[1]);
 }
 
-/// The primitives of a glTF mesh share their vertices, whatever they have besides.
+/// The primitives of a glTF mesh share their vertices, with any other attributes.
 #[test]
 fn vertices_that_primitives_share_are_kept_once() {
     let mut document = std::fs::read_to_string(folder().join("square.gltf")).unwrap();
@@ -330,7 +332,8 @@ fn a_mesh_made_by_hand_is_checked_too() {
     assert_eq!(MeshFile::new(vec![Vec3::NAN; 3], vec![[0, 1, 2]]), None);
 }
 
-/// The mesh that comes with termtrace: standing on y = 0, with normals that point where its triangles face.
+/// The mesh that comes with termtrace stands on y = 0 and has normals on its triangles' front
+/// sides.
 #[test]
 fn the_teapot_is_a_teapot() {
     let teapot = MeshFile::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/teapot.obj")).unwrap();

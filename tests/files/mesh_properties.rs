@@ -1,5 +1,4 @@
-//! Properties of meshes: what is written in any format is read back; whatever happens to a file, it gives a mesh or an
-//! error.
+//! Properties of meshes: each format reads what it wrote, and any file gives a mesh or an error.
 
 use crate::mesh_laws;
 use crate::mesh_writers::{WRITERS, Written};

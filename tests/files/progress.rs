@@ -1,4 +1,4 @@
-//! How far a mesh is on its way to a scene: what who waits for it is told, and that he may go.
+//! Progress of loading a mesh into a scene: reports, and a cancel after any of them.
 
 use crate::mesh_writers::{WRITERS, ball, written};
 use std::fs;
@@ -13,13 +13,13 @@ use termtrace::internals::scene_file::SceneFile;
 use termtrace::internals::scene_text::{Faults, parse};
 use termtrace::{Progress, Resolution, Scene, Srgb8, Work, render, tone};
 
-/// A ball of so many triangles that a test has read.
+/// Returns a ball of `triangles` triangles that was read from a file.
 fn read(triangles: u32) -> MeshFile {
     let bytes = written(&ball(triangles), "binary.stl");
     MeshFile::from_bytes("ball.stl", &bytes, &mut |_| unreachable!("it names no file")).expect("it is a mesh")
 }
 
-/// What somebody hears who waits for some work, and goes after so many reports.
+/// Returns the reports of a reader that cancels after `most` of them, and the result of the work.
 fn heard<T>(most: usize, work: impl FnOnce(&Reporter<'_>) -> T) -> (Vec<Progress>, T) {
     let heard = Mutex::new(Vec::new());
     let on_progress = |progress| {
@@ -41,7 +41,7 @@ fn unless_cancelled<T, E: std::fmt::Debug>(done: Result<T, Unfinished<E>>) -> Op
     }
 }
 
-/// In every format: how far it is is told from beginning to end, and after any report it can be given up.
+/// Each format reports its progress from start to end, and can be cancelled after any report.
 #[test]
 fn reading_is_watched_and_can_be_given_up() {
     let folder = tempfile::tempdir().expect("a folder can be made");
@@ -68,7 +68,7 @@ fn reading_is_watched_and_can_be_given_up() {
     }
 }
 
-/// That work is told of in steps of about that size, up to its end.
+/// Asserts that the reports of this work go up to its end in steps of about that size.
 #[track_caller]
 fn assert_steps(reports: &[Progress], work: &Work, step: usize, total: usize) {
     let steps: Vec<usize> = reports.iter().filter(|report| report.work == *work).map(|report| report.done).collect();
@@ -95,7 +95,7 @@ fn a_scenes_meshes_are_watched() {
     }
 }
 
-/// A scene of so many balls.
+/// Returns the text of a scene of `count` balls.
 fn balls(count: usize) -> String {
     let balls = "Sphere(center: (1, 2, 3), radius: 0.5),\n".repeat(count);
     format!("(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [{balls}])")
@@ -114,7 +114,7 @@ fn a_scenes_text_is_watched_and_can_be_given_up() {
     }
 }
 
-/// What comes after the text's syntax tree gives up, too.
+/// The steps behind the syntax tree can be cancelled, too.
 #[test]
 fn a_scenes_objects_are_given_up() {
     let cancelled = Cancellation::default();

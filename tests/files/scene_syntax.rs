@@ -1,5 +1,7 @@
-//! Any bytes give a scene or faults inside the text: never a panic, a stack overflow, or a bill in the square of the
-//! size. And what is valid RON to the RON project's own reader is so to ours.
+//! Any bytes give a scene or faults inside the text: no panic, no stack overflow, no quadratic
+//! time.
+//!
+//! What is valid RON to the RON project's own reader is so to ours.
 
 use proptest::prelude::*;
 use std::fmt::Write;
@@ -50,7 +52,7 @@ fn every_beginning_of_a_scene_gives_a_fault() {
     }
 }
 
-/// In the 2 MiB of a usual thread's stack.
+/// Deep nesting is a fault within the 2 MiB of a usual thread's stack.
 #[test]
 fn deep_nesting_is_a_fault() {
     for opening in ["(", "[", "{", "a(", "a(b:", "Some(", "{1:", "[(", "(a:[", "/*", "#![", "r#", "\"\\"] {

@@ -1,4 +1,4 @@
-//! What is written is what is drawn: units, colour spaces, defaults and the two forms of each thing.
+//! The values of scene files: units, colour spaces, defaults and the two forms of each item.
 
 use glam::{Vec2, Vec3};
 use std::path::Path;
@@ -62,7 +62,7 @@ fn a_color_has_many_forms() {
     assert_eq!(gradient, Background::Gradient { bottom, top });
 }
 
-/// What a view does not say is the camera's; of the lens, all or nothing.
+/// A view takes missing fields from the camera; of the lens, all or none.
 #[test]
 fn views_go_by_the_camera() {
     let text = "(
@@ -81,7 +81,7 @@ fn views_go_by_the_camera() {
     assert_eq!(scene.views(), [like_it, other]);
 }
 
-/// As the live view writes them.
+/// A view in the form that the live view writes is the camera.
 #[test]
 fn a_camera_can_be_written_as_a_view() {
     let line = "camera: (eye: (0, 1.5, 6), target: (0, 0.7, 0), up: (0, 1, 0), vertical_fov: 40)";
@@ -151,8 +151,9 @@ fn triangles_have_three_corners() {
     assert_eq!(scene.objects()[0].material, Material::DEFAULT);
 }
 
-/// Scaled, turned about x, y and z, and moved, in this order. (The file has the tetrahedron between the origin and the
-/// points at the distances 1, 2 and 3 on the axes.)
+/// Meshes are scaled, turned about x, y and z, and moved, in this order.
+///
+/// The file has the tetrahedron between the origin and the points at the distances 1, 2 and 3 on the axes.
 #[test]
 fn meshes_are_put_where_the_scene_wants_them() {
     let mesh = |fields: &str| {
@@ -188,7 +189,7 @@ fn meshes_are_put_where_the_scene_wants_them() {
     );
 }
 
-/// What a file says of its colours holds, unless the scene says otherwise.
+/// A file's own colours are used, unless the scene has others.
 #[test]
 fn meshes_bring_their_colours() {
     let light = |fields: &str| {
@@ -245,7 +246,7 @@ fn a_mesh_that_nobody_could_see_is_told() {
     }
 }
 
-/// No number that a scene may hold makes the tracer divide by nothing or pass what it asks of its values.
+/// The extreme numbers of a scene divide by no zero and overflow no bound of the tracer.
 #[test]
 fn the_outermost_values_make_a_picture() {
     let text = "(
