@@ -1,4 +1,5 @@
-//! How near cells come to their picture, seen from some way off: measured here by a blur and a colour space of our own.
+//! The difference between cells and their picture at a distance, by a blur and a colour space of
+//! our own.
 
 use std::path::Path;
 use termtrace::export::text;
@@ -29,7 +30,7 @@ impl Plane {
         Self { width: picture.width() as usize, values: picture.pixels().iter().map(|&pixel| value(pixel)).collect() }
     }
 
-    /// After a Gaussian blur; beyond the edge the picture is mirrored.
+    /// Returns the picture after a Gaussian blur, mirrored at its edges.
     fn blurred(&self, deviation: f64) -> Self {
         self.blurred_rows(deviation).turned().blurred_rows(deviation).turned()
     }
@@ -83,7 +84,9 @@ fn oklab([r, g, b]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The mean difference of two pictures in OKLab, times 100, after a blur of their light by 1.5 pixels.
+/// Returns the mean difference of two pictures in OKLab, times 100.
+///
+/// Their light is blurred by 1.5 pixels.
 fn difference(a: &Picture, b: &Picture) -> f64 {
     let seen = |picture: &Picture| {
         let bands = [|c: Srgb8| linear(c.r), |c: Srgb8| linear(c.g), |c: Srgb8| linear(c.b)];
@@ -98,7 +101,7 @@ fn difference(a: &Picture, b: &Picture) -> f64 {
     100.0 * (0..pixels).map(distance).sum::<f64>() / pixels as f64
 }
 
-/// What xterm shows for an index.
+/// Returns the colour that xterm shows for an index.
 fn shown(index: u8) -> Srgb8 {
     let Colors::Indexed16(sixteen) = Colors::SIXTEEN else { unreachable!() };
     let level = |step: u8| if step == 0 { 0 } else { 55 + 40 * step };
@@ -124,7 +127,7 @@ fn pixels(grid: &Grid) -> Picture {
     Picture::from_pixels(width, height, rows.collect()).expect("all its pixels")
 }
 
-/// The nearest colour to each pixel by its bands: what is done where nobody thinks of it.
+/// Returns the nearest colour to each pixel by its channels, as simple programs choose it.
 fn nearest(picture: &Picture, indices: std::ops::RangeInclusive<u8>) -> Picture {
     let apart = |a: Srgb8, b: Srgb8| {
         [a.r.abs_diff(b.r), a.g.abs_diff(b.g), a.b.abs_diff(b.b)].map(|band| u32::from(band).pow(2)).iter().sum::<u32>()
@@ -153,7 +156,8 @@ fn few_colours_look_like_the_picture_from_some_way_off() {
     }
 }
 
-/// The characters as a terminal draws them in cells of 10x20 pixels, side by side: how much ink each pixel has.
+/// Returns the coverage of each pixel of the characters, drawn by a terminal in cells of 10x20
+/// pixels.
 fn glyph_sheet() -> Vec<Vec<f64>> {
     let file = std::io::Cursor::new(include_bytes!("../cells/dejavu_sans_mono_16.png"));
     let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
@@ -163,7 +167,7 @@ fn glyph_sheet() -> Vec<Vec<f64>> {
     (0..95).map(|glyph| (0..20).flat_map(|y| row(glyph, y)).collect()).collect()
 }
 
-/// What lines of characters look like, white on black.
+/// Returns lines of characters as pixels, white on black.
 fn drawn(lines: &str, sheet: &[Vec<f64>]) -> Plane {
     let row = |line: &str, y: usize| -> Vec<f64> {
         line.bytes().flat_map(|byte| sheet[usize::from(byte) - 32][y * 10..][..10].to_vec()).collect()
@@ -172,7 +176,9 @@ fn drawn(lines: &str, sheet: &[Vec<f64>]) -> Plane {
     Plane { width: 600, values }
 }
 
-/// The peak signal-to-noise ratio in decibels after a blur of 4 pixels, the picture no lighter than the densest glyph.
+/// Returns the peak signal-to-noise ratio in decibels after a blur of 4 pixels.
+///
+/// The picture is no lighter than the densest glyph.
 fn psnr(lines: &str, picture: &Picture, sheet: &[Vec<f64>]) -> f64 {
     let white = sheet.iter().map(|ink| ink.iter().sum::<f64>() / ink.len() as f64).fold(0.0, f64::max);
     let luma = |c: Srgb8| (0.2126 * f64::from(c.r) + 0.7152 * f64::from(c.g) + 0.0722 * f64::from(c.b)) / 255.0;

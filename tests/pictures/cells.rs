@@ -21,7 +21,7 @@ fn color(letter: char) -> Srgb8 {
     }
 }
 
-/// Cells as the glyph, the character's colour and the one behind it; a minus for the terminal's own.
+/// Returns cells as glyph, foreground and background; a minus stands for the terminal's own colour.
 fn written(grid: &Grid) -> Vec<String> {
     let letter = |ink: Ink| match ink {
         Ink::Default => '-',
@@ -58,7 +58,7 @@ fn an_odd_row_fills_the_upper_half() {
     assert_half_blocks(&["bw", "br", "rw"], &[" -b ▄rw", "▀r- ▀w-"]);
 }
 
-/// No attributes in a picture, and one column for each pixel.
+/// A picture has no attributes, and one column for each pixel.
 #[test]
 fn a_grid_is_as_wide_as_its_picture() {
     for (width, height, rows) in [(1, 1, 1), (1, 2, 1), (2, 3, 2), (7, 4, 2), (300, 1, 1), (1, 301, 151)] {
@@ -79,8 +79,10 @@ fn assert_ramp(rows: &[&str], expected: &str) {
     assert!(grid.cells().iter().all(|cell| (cell.fg, cell.bg) == (Ink::Default, Ink::Default)), "no colour");
 }
 
-/// Lightness by hand: red's luminance is 0.2126, L* = 116 * 0.5968 - 16 = 53.2, the sixth step; the grey's is 0.1845,
-/// L* = 50.03, the sixth as well.
+/// Lightness is worked out by hand.
+///
+/// Red's luminance is 0.2126, L* = 116 * 0.5968 - 16 = 53.2, the sixth step; the grey's is 0.1845, L* = 50.03, the
+/// sixth as well.
 #[test]
 fn the_ramp_is_by_lightness() {
     assert_ramp(&["bwrg", "bwrg"], " @++\n");
@@ -88,8 +90,10 @@ fn the_ramp_is_by_lightness() {
     assert_ramp(&["b"], " \n");
 }
 
-/// A cell is as light as the mean of its pixels' light, not of their numbers: half black and half white is a luminance
-/// of 0.5, L* = 76.1, the eighth step; red and black 0.1063, L* = 38.9, the fourth.
+/// A cell's lightness is that of the mean light of its pixels, not of their codes.
+///
+/// Half black and half white is a luminance of 0.5, L* = 76.1, the eighth step; red and black 0.1063, L* = 38.9, the
+/// fourth.
 #[test]
 fn the_ramp_takes_the_mean_of_light() {
     assert_ramp(&["bwr", "wbb"], "##-\n");
@@ -135,14 +139,14 @@ fn pixels_of_shapes() {
     }
 }
 
-/// All that cells can be made of.
+/// Returns all cell modes.
 fn modes() -> impl Iterator<Item = CellMode> {
     let colors = [Colors::None, Colors::SIXTEEN, Colors::Indexed256, Colors::Truecolor];
     let glyphs = [Glyphs::Half, Glyphs::Shape, Glyphs::Ramp];
     glyphs.into_iter().flat_map(move |glyphs| colors.map(|colors| CellMode { glyphs, colors }))
 }
 
-/// Every colour there is, in no order, and none twice beside each other.
+/// Returns a picture of all colours in no order, without equal neighbours.
 fn confetti(seed: u32) -> Picture {
     let (width, height) = (80, 96);
     let mix = |at: u32| (at + seed).wrapping_mul(0x9e37_79b1) >> 8;
@@ -175,7 +179,7 @@ fn only_the_colours_of_the_mode_are_used() {
     }
 }
 
-/// Nothing that the painter has seen before is in its cells.
+/// A picture that stays gives the same cells.
 #[test]
 fn a_still_picture_sends_nothing() {
     for mode in modes() {
@@ -190,7 +194,7 @@ fn a_still_picture_sends_nothing() {
     }
 }
 
-/// What a pixel becomes depends on its colour and its place alone: a picture in a part of another is the same there.
+/// A pixel's dither depends on its colour and position alone: part of a picture is the same there.
 #[test]
 fn dithering_keeps_to_its_pixel() {
     let picture = confetti(1);
@@ -231,7 +235,7 @@ fn few_colours_of_flat_pictures() {
     assert_eq!(indices(Colors::Indexed16(turned), 255), [3].into());
 }
 
-/// Where the terminal's own colours are all there are, and it writes dark on light, what is light is left blank.
+/// With only the terminal's own colours, dark on light, light pixels are blank.
 #[test]
 fn a_light_background_turns_what_has_no_colour() {
     for mode in modes() {
@@ -260,7 +264,8 @@ fn without_colour_a_half_is_lit_or_not() {
     assert_eq!(export::text(&grid_from_picture(mode, &picture(&["bwbw", "bbww", "wwbb"]))), " ▀▄█\n▀▀  \n");
 }
 
-/// The glyph says how bright the brightest band is, its colour the rest; on black, whatever the terminal's own is.
+/// The glyph shows the brightest channel, the colour the rest; on black, whatever the terminal's
+/// own is.
 #[test]
 fn characters_are_coloured_as_bright_as_can_be() {
     let flat = |glyphs, pixel| {
@@ -277,7 +282,8 @@ fn characters_are_coloured_as_bright_as_can_be() {
     }
 }
 
-/// A golden frame of each kind that a person can read: characters, or the number of each half's colour in hexadecimal.
+/// Readable goldens of each cell kind: characters, or the index of each half's colour in
+/// hexadecimal.
 #[test]
 fn goldens() {
     let mut settings = insta::Settings::clone_current();
@@ -312,7 +318,8 @@ fn numbers(grid: &Grid, digits: usize) -> String {
     grid.rows().flat_map(|row| [line(row, &|cell| cell.bg), line(row, &lower)]).collect()
 }
 
-/// The escape sequences of a file by hand: only what differs is said, and no colour is left on at a line's end.
+/// The escape sequences of a file by hand: only changes are written, and a line ends without
+/// colours.
 #[test]
 fn ansi_of_a_picture() {
     let grid = grid_from_picture(CellMode::HALF_BLOCK, &picture(&["bb", "ww", "rr"]));
@@ -331,7 +338,7 @@ fn covered_cells_are_not_written_to_files() {
     assert_eq!(String::from_utf8_lossy(&export::ansi(&grid)), "世e\u{301}👨\u{200d}👩\u{200d}👧 \x1b[0m\n");
 }
 
-/// What is put over half of something wide leaves blanks of its colours beside it.
+/// A panel over half of a wide character leaves blanks of its colours beside it.
 #[test]
 fn what_is_cut_becomes_blanks() {
     let wide = |text: &str| Cell { glyph: Glyph::Cluster(text.into()), bg: Ink::Indexed(1), ..Cell::BLANK };

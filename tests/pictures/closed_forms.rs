@@ -48,7 +48,7 @@ fn picture(scene: &Scene, width: u32, height: u32) -> Framebuffer {
     render(scene, scene.camera(), Resolution::square(width, height), NonZeroU32::MIN)
 }
 
-/// What arrives along the middle of the view.
+/// Returns the light that arrives along the middle of the view.
 fn seen(scene: &Scene) -> f64 {
     f64::from(picture(scene, 1, 1).pixel(0, 0).g)
 }

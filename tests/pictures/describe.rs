@@ -1,4 +1,4 @@
-//! What `describe` says of scenes: goldens, and where its words must change when the scene does.
+//! The descriptions of scenes: goldens, and the words that must change with a scene.
 
 use std::path::Path;
 use termtrace::{Resolution, Scene, describe};

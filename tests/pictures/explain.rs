@@ -1,4 +1,4 @@
-//! What is said of a pixel is what the picture is made of.
+//! The explanation of a pixel, compared with the picture.
 
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ fn shipped_scenes() -> Vec<(PathBuf, Scene)> {
     scenes.map(|path| (path.clone(), Scene::load(&path).unwrap_or_else(|error| panic!("{error}")))).collect()
 }
 
-/// Not a whole number of tiles, and pixels that are not square.
+/// A size that is not a whole number of tiles, with pixels that are not square.
 const SIZE: Resolution = match Resolution::square(60, 34).with_pixel_aspect(1.25) {
     Ok(size) => size,
     Err(_) => panic!("a shape of pixels"),
@@ -26,7 +26,7 @@ fn pixels() -> impl Iterator<Item = [u32; 2]> {
     (0..SIZE.height()).flat_map(|y| (0..SIZE.width()).map(move |x| [x, y]))
 }
 
-/// What the explanation says comes to what it says that it comes to, to the bit.
+/// Asserts that the parts of an explanation add up to its result, to the bit.
 #[track_caller]
 fn adds_up(scene: &Scene, explanation: &Explanation) {
     let Explanation { tested, hit: seen, light, .. } = explanation;
@@ -71,7 +71,7 @@ fn exposure_and_curve_are_the_frames() {
     }
 }
 
-/// The lecture's equations have the picture's t among their roots, and the text is short enough for any panel.
+/// The explained equations have the picture's t as a root, and the text fits in any panel.
 #[test]
 fn equations_and_lines_say_the_same_as_the_picture() {
     for (path, scene) in shipped_scenes() {

@@ -1,4 +1,4 @@
-//! A golden frame of every shipped scene: 80x24 characters that a person can read in a diff.
+//! A golden frame of every shipped scene: 80x24 characters that can be read in a diff.
 //!
 //! After a wanted change of the pictures, `INSTA_UPDATE=always cargo test --test pictures goldens` writes them anew (a golden
 //! whose scene is gone is removed by hand); read them before they are committed. Without that variable, a frame that
@@ -29,7 +29,9 @@ fn scenes() -> BTreeSet<String> {
     stems(&folder("scenes"), ".ron")
 }
 
-/// The frame with a bar on each side of a row: what reads goldens may drop blanks at the end of a line, and these count.
+/// Returns the frame with a bar on each side of a row.
+///
+/// Readers of goldens may drop blanks at the end of a line, which count here.
 fn framed(frame: &str) -> String {
     let edge = format!("+{}+\n", "-".repeat(SIZE.columns.into()));
     let mut framed = edge.clone();
@@ -69,7 +71,7 @@ fn every_scene_looks_as_its_golden() {
     );
 }
 
-/// Goldens are read by people: 24 rows of 80 plain characters, no two scenes alike, and none a flat wall.
+/// Goldens can be read: 24 rows of 80 plain characters, no two scenes alike, and none of one glyph.
 fn goldens_are_pictures() {
     let mut seen = BTreeSet::new();
     for name in stems(&folder("tests/snapshots"), ".snap") {

@@ -1,4 +1,4 @@
-//! The same frame bit for bit: on any number of threads, twice in a row, in debug and release builds, on any machine.
+//! Hashes of pictures: the same bits on any number of threads, in any build, on any machine.
 //!
 //! `tests/hashes.txt` has a hash of the light of every shipped scene (before tone and rounding, which would hide a
 //! wrong last bit). `BLESS=1 cargo test --test pictures hashes` writes it anew. Both builds are held to this one file.
@@ -96,7 +96,8 @@ fn differences(expected: &BTreeMap<String, String>, found: &BTreeMap<String, Str
     })
 }
 
-/// No two frames are the same light: a size or a number of samples that is not used would show.
+/// Asserts that no two frames are equal: a size or a number of samples without effect would be
+/// seen.
 fn all_differ(hashes: &BTreeMap<String, String>) {
     let mut frames = BTreeMap::new();
     for (frame, hash) in hashes {
@@ -114,14 +115,15 @@ fn picture(width: u32, height: u32, bits: &[u32]) -> Framebuffer {
     framebuffer
 }
 
-/// Worked out outside the crate, by a few lines of another language: FNV-1a of the words 1, 1, 0x3f800000, 0x3f000000,
-/// 0x80000000.
+/// The expected hash was computed outside the crate, by a few lines of another language.
+///
+/// FNV-1a of the words 1, 1, 0x3f800000, 0x3f000000, 0x80000000.
 #[test]
 fn the_hash_is_fnv_1a() {
     assert_eq!(picture(1, 1, &[0x3f80_0000, 0x3f00_0000, 0x8000_0000]).hash(), 0xc8ec_a5a6_6acd_7755);
 }
 
-/// What a wrong hash function would overlook: the last bit, the sign of zero, the order, the shape.
+/// The hash depends on the last bit, the sign of zero, the order and the shape.
 #[test]
 fn the_hash_sees_every_bit() {
     let bits = [1, 2, 3, 4, 5, 6];

@@ -1,4 +1,4 @@
-//! What is seen, and what is said of it.
+//! Pictures, and the texts about them.
 
 mod cell_quality;
 mod cells;

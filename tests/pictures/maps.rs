@@ -1,5 +1,5 @@
-//! Every map of the same scene: looked at as text, the same bytes for any number of threads, and true to what the
-//! scene's own functions say of a pixel.
+//! Every map of one scene: goldens, the same bytes on any number of threads, and the values of each
+//! pixel.
 //!
 //! `INSTA_UPDATE=always cargo test --test pictures maps` writes the goldens in `tests/snapshots/maps` and the hashes anew.
 
@@ -50,7 +50,7 @@ fn every_map_looks_as_its_golden() {
     }
 }
 
-/// The same bytes on any number of threads, or without a pool; and no two maps alike.
+/// A map has the same bytes on any number of threads, or without a pool; and no two maps are alike.
 #[test]
 fn every_map_has_the_same_bytes_everywhere() {
     let mut hashes = Vec::new();
@@ -90,7 +90,7 @@ fn a_coarse_map_is_of_larger_pixels() {
     }
 }
 
-/// What one ray at a time finds, and the formulas of the README, pixel by pixel.
+/// Maps are the values that single rays find and the formulas of the README give, pixel by pixel.
 #[test]
 fn maps_say_what_is_there() {
     for name in ["three_spheres", "inside_sphere", "teapots", "bare"] {
@@ -143,8 +143,9 @@ fn eye_ray(camera: &Camera, resolution: Resolution, at: usize) -> termtrace::int
     camera.eye_rays(resolution.aspect_ratio()).through(qu, qv)
 }
 
-/// Of the three spheres and the plane, which no tree leaves out, each ray is tested against all four: the eye ray, and one
-/// for each light that the surface faces.
+/// Each ray is tested against the three spheres and the plane, for which no tree is built.
+///
+/// The rays are the eye ray, and one for each light that the surface faces.
 #[test]
 fn the_cost_is_what_rays_are_tested_against() {
     let scene = scene("three_spheres");

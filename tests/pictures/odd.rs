@@ -1,5 +1,6 @@
-//! Odd arguments to the library's functions: each returns, is an error, or panics as its documentation says. None takes
-//! memory or time without a bound.
+//! Odd arguments to the library's functions.
+//!
+//! Each call returns, is an error, or panics as its documentation says. None takes memory or time without a bound.
 
 use glam::{Mat3, Vec2, Vec3};
 use ratatui::buffer::Buffer;
@@ -18,12 +19,12 @@ use termtrace::{
     describe, explain, export, frame_grid, lay_over, render, text_frame, tone,
 };
 
-/// How a call has to end.
+/// The end of a call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ends {
-    /// It returns this, or an error whose message begins so.
+    /// It returns a value, or an error, whose text begins so.
     With(&'static str),
-    /// It panics with a message that begins so: its documentation says when.
+    /// It panics with a message that begins so, as its documentation says.
     InPanic(&'static str),
 }
 
@@ -54,12 +55,12 @@ fn empty() -> Scene {
     Scene::builder(camera()).light(lamp()).build().expect("a scene")
 }
 
-/// What there is, in words, or why not.
+/// Returns a value in words, or the error.
 fn told<T, E: ToString>(made: Result<T, E>, words: impl FnOnce(T) -> String) -> String {
     made.map_or_else(|error| error.to_string(), words)
 }
 
-/// That it was made, or why not.
+/// Returns that a value was made, or the error.
 fn made<T, E: ToString>(made: Result<T, E>) -> String {
     told(made, |_| "made".to_owned())
 }

@@ -135,7 +135,9 @@ fn crossings(shape: &Shape, ray: &Ray) -> Vec<f64> {
     found.into_iter().filter(|t| t.is_finite() && *t >= 0.0).collect()
 }
 
-/// Where the line meets the triangle's plane, by Cramer's rule: the shares of its second and third corner, and t.
+/// Returns the barycentric coordinates of the second and third corner, and t, by Cramer's rule.
+///
+/// At the point where the line meets the triangle's plane.
 fn shares_and_t(triangle: &Triangle, ray: &Ray) -> ([f64; 2], f64) {
     let [a, b, c] = triangle.corners().map(Vec3::as_dvec3);
     let (to_b, to_c, f, d) = (b - a, c - a, ray.origin.as_dvec3() - a, ray.direction.as_dvec3());
@@ -212,8 +214,9 @@ proptest! {
         }
     }
 
-    /// Among others and alone a ray gets the same bits; also along the axes, where some of them divide by zero, and among
-    /// objects that lie in one another.
+    /// A ray in a packet gets the same bits as a single one.
+    ///
+    /// Also along the axes, where some divide by zero, and among objects that lie in one another.
     #[test]
     fn many_rays_are_each_traced_as_if_alone(objects in objects(), twice in 0..3_usize, rays in prop::collection::vec(any_ray(), 0..30)) {
         let camera = Camera::new(Pose { eye: Vec3::ZERO, target: Vec3::X, up: Vec3::Y }, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
@@ -374,7 +377,7 @@ fn surfaces_do_not_shadow_themselves() {
     }
 }
 
-/// The same for planes of any direction.
+/// Of the lit points of a plane of any direction, at most 10 may seem to be in its own shadow.
 #[test]
 fn planes_do_not_shadow_themselves() {
     let mut numbers = Numbers(2);

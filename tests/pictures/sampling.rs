@@ -1,4 +1,4 @@
-//! More samples where there are edges: what they give, what they cost, and that the steps do not show.
+//! More samples at edges: their result, their cost, and no visible steps.
 
 use glam::Vec3;
 use std::num::NonZeroU32;
@@ -26,7 +26,7 @@ fn samples(count: u32) -> NonZeroU32 {
     NonZeroU32::new(count).expect("at least one")
 }
 
-/// Of the colours that are shown, in dB.
+/// Returns the PSNR of the displayed colours, in dB.
 fn psnr(scene: &Scene, a: &Framebuffer, b: &Framebuffer) -> f64 {
     let (a, b) = (tone(a, scene), tone(b, scene));
     let bands = |p: &termtrace::Srgb8| [p.r, p.g, p.b].map(f64::from);
@@ -75,8 +75,9 @@ fn samples_go_where_the_edges_are() {
     }
 }
 
-/// A level that is a whole pass is what it says it is: at most so many samples, and at least one. Also where the picture
-/// ends within a tile.
+/// A level that is a whole pass has at most its number of samples for a pixel, and at least one.
+///
+/// Also where the picture ends within a tile.
 #[test]
 fn one_sample_at_most_is_one_sample() {
     for (path, scene) in shipped() {
@@ -157,7 +158,9 @@ fn far_checkers_are_grey() {
     }
 }
 
-/// One ray with the pattern's mean over its pixel is nearer to the truth (1,024 rays that each see a point) than 16 are.
+/// One ray with a filtered pattern is nearer to the truth than 16 rays are.
+///
+/// The truth is 1,024 rays that each see a point.
 #[test]
 fn a_filtered_pattern_is_near_the_truth() {
     for size in [0.3, 1.0] {
@@ -171,7 +174,7 @@ fn a_filtered_pattern_is_near_the_truth() {
     }
 }
 
-/// The lecture's formula for the plane, and the colour of the square, 32 times 32 times in each pixel.
+/// Returns the truth by the lecture's formula for the plane, with 32 times 32 samples of a pixel.
 fn truth(scene: &Scene, size: f32) -> Framebuffer {
     let eye_rays = scene.camera().eye_rays(SIZE.aspect_ratio());
     let shade = |x: f32, y: f32| {

@@ -32,7 +32,7 @@ fn mesh(points: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Shape {
     Mesh::new(MeshFile::new(points, triangles).expect("it is a mesh")).expect("a mesh nearby").into()
 }
 
-/// The icosahedron, each of whose triangles is cut into four so many times, on the unit sphere.
+/// Returns an icosahedron on the unit sphere whose triangles are each cut into four, `cuts` times.
 fn icosphere(cuts: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let golden = f32::midpoint(1.0, 5.0_f32.sqrt());
     let mut points: Vec<Vec3> = [(0.0, 1.0, golden), (1.0, golden, 0.0), (golden, 0.0, 1.0)]
@@ -83,7 +83,7 @@ fn icosphere(cuts: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (points, triangles)
 }
 
-/// Rays from inside that are aimed exactly at corners and at points of edges, of a closed mesh at any place and scale.
+/// Rays from inside a closed mesh are aimed exactly at corners and points of edges, at any scale.
 #[test]
 fn a_closed_mesh_lets_no_ray_out() {
     let (points, triangles) = icosphere(4);
@@ -154,7 +154,7 @@ fn meshes_do_not_shadow_themselves() {
                 let position = center + direction() * (8.0 * scale);
                 let lamp =
                     PointLight::new(position, LinearRgb::grey(1.0)).expect("a light").with_falloff(Falloff::None);
-                // Convex: whatever faces the light is lit by it.
+                // The mesh is convex: each surface that faces the light is lit.
                 let faces = (position - point.position).normalize().dot(point.geometric_normal) > 1e-3;
                 faces && any_hit(&scene, &shadow_ray(&lamp.into(), &point), PointLight::IN_THE_WAY)
             })
@@ -175,8 +175,9 @@ fn determinant([a, b, c]: [[i128; 3]; 3]) -> i128 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-    /// Rays through points of an edge, rounded to whole numbers, and by one beside them: each triangle, however small for
-    /// its distance, is met if the ray goes by all three edges on the same side.
+    /// Rays go through points of an edge, rounded to whole numbers, and one beside them.
+    ///
+    /// Each triangle, however small for its distance, is hit if the ray passes all three edges on the same side.
     #[test]
     fn on_which_side_of_an_edge_a_ray_goes_by_is_told_exactly(
         origin in whole(1 << 22),
@@ -231,7 +232,7 @@ fn a_triangle_is_between_its_corners() {
     assert_eq!(flat.closest_crossing(&Probe::new(ray), Interval::IN_FRONT), None);
 }
 
-/// Of a mesh with normals the light is smooth, but the ray that leaves it starts off the triangle.
+/// The light on a mesh with normals is smooth, but shadow rays start off the flat triangle.
 #[test]
 fn normals_between_corners_are_interpolated() {
     let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
@@ -258,7 +259,9 @@ fn normals_between_corners_are_interpolated() {
 
 // The tree -----------------------------------------------------------------------------------------------------------
 
-/// Coordinates of which many are equal: triangles without an area, boxes without a size, things in one place.
+/// Returns coordinates of which many are equal.
+///
+/// They give triangles without an area, boxes without a size, and objects in one place.
 fn coarse() -> impl Strategy<Value = Vec3> {
     [-3..=3_i8, -3..=3_i8, -3..=3_i8].prop_map(|[x, y, z]| Vec3::new(x.into(), y.into(), z.into()))
 }
@@ -294,7 +297,7 @@ fn ray() -> impl Strategy<Value = Ray> {
         .prop_filter("it goes somewhere", |ray| ray.direction != Vec3::ZERO)
 }
 
-/// Every part of every object is tried.
+/// Returns the closest hit by testing every primitive of every object.
 fn brute_force(scene: &Scene, ray: &Ray, within: Interval) -> Option<Hit> {
     let probe = Probe::new(*ray);
     let objects = (0..).zip(scene.objects());
@@ -327,7 +330,9 @@ impl Observer for TestRecorder {
 }
 
 impl TestRecorder {
-    /// What it was told is true: of no part twice, of each where it is crossed, and of what was met.
+    /// Returns whether the reported tests are right.
+    ///
+    /// No primitive is reported twice; each has its crossing and the closest is the hit.
     fn is_right(&self, scene: &Scene, ray: &Ray, min: f32, met: Option<Hit>) -> bool {
         let from_min = Interval { min, max: f32::MAX };
         let crossing = |test: &PrimitiveTest| {
@@ -346,7 +351,7 @@ impl TestRecorder {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1_000))]
 
-    /// Who is watched meets the same, and the observer is told how that was found.
+    /// An observed ray has the same hit, and the observer gets each step to it.
     #[test]
     fn a_witness_changes_nothing_and_knows_all(shapes in prop::collection::vec(shape(), 1..40), ray in ray()) {
         let scene = scene(shapes);
@@ -381,7 +386,7 @@ proptest! {
         }
     }
 
-    /// Things that nobody sees make another tree, and the same picture.
+    /// Objects that are not visible change the tree, but not the picture.
     #[test]
     fn the_tree_does_not_show(shapes in prop::collection::vec(shape(), 1..40), hidden in prop::collection::vec(anywhere(), 1..40)) {
         let light = PointLight::new(Vec3::new(3.0, 6.0, 5.0), LinearRgb::grey(40.0)).expect("a light");
@@ -394,7 +399,7 @@ proptest! {
         prop_assert_eq!(picture(shapes), picture(more));
     }
 
-    /// What lies in a box is on the way through it, and a box in a box too.
+    /// The interval of a ray in a box has that of its contents, and of a box in it.
     #[test]
     fn ways_through_boxes_contain_one_another(corners in [place(), place()], more in place(), ray in ray(), share in [0.0_f32..=1.0, 0.0..=1.0, 0.0..=1.0]) {
         let inner = Bounds::of(corners);
@@ -422,8 +427,9 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
-    /// Together, alone, with the CPU's own instructions or without: the same. Some of the rays are a bundle, as a packet
-    /// likes them, from one origin or to one light; the others go anywhere.
+    /// Packets and single rays, with and without the CPU's own instructions, find the same.
+    ///
+    /// Some of the rays are a bundle, as a packet likes them, from one origin or to one light; the others are random.
     #[test]
     fn all_kernels_find_the_same(
         shapes in prop::collection::vec(shape(), 1..40),
@@ -471,7 +477,7 @@ proptest! {
     }
 }
 
-/// Of these rays those, as [`EightRays`] wants it.
+/// Returns the active ones of these rays as [`EightRays`] needs them.
 fn some_of(rays: &EightRays, active: u32) -> EightRays {
     let active = active & rays.active;
     let one = set_bits(active).next().unwrap_or(0);
@@ -479,7 +485,7 @@ fn some_of(rays: &EightRays, active: u32) -> EightRays {
     EightRays { active, ..EightRays::of(&each) }
 }
 
-/// How many boxes were visited.
+/// A visitor that counts the visited boxes.
 struct Count<'l>(&'l Leaves, usize);
 
 /// Its boxes have no contents.

@@ -62,7 +62,9 @@ impl<'a> Surface<'a> {
         self.lines.insert((path.to_owned(), line));
     }
 
-    /// Takes the items of a module: first those at its own level, so that an item has its shortest path.
+    /// Lists the items of a module.
+    ///
+    /// Its own level goes first, so that an item has its shortest path.
     fn walk(&mut self, module: &Value, path: &str) {
         let Some(module) = self.item(module) else { return };
         let mut modules = Vec::new();
@@ -162,7 +164,8 @@ impl<'a> Surface<'a> {
         self.add(&path, line);
     }
 
-    /// Lists the methods of a type, or that it implements a trait of this surface or of another crate.
+    /// Lists the methods of a type, or that it implements a trait of this surface or of another
+    /// crate.
     fn list_implementation(&mut self, owner: &str, path: &str, id: &Value) {
         let Some(implementation) = self.item(id) else { return };
         let body = &implementation["inner"]["impl"];
@@ -194,7 +197,7 @@ impl<'a> Surface<'a> {
         self.add(&format!("{path} "), line);
     }
 
-    /// Whether a type or trait is this crate's.
+    /// Returns whether a type or trait is this crate's.
     fn is_of_crate(&self, id: &Value) -> bool {
         self.json["paths"].get(id.to_string()).is_some_and(|summary| summary["crate_id"] == 0)
     }

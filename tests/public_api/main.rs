@@ -1,7 +1,9 @@
-//! The promised surface: `tests/public_api.txt` lists it, one item, method, field, variant and implemented trait a line.
+//! The promised surface: `tests/public_api.txt` lists its items, methods, fields, variants and
+//! traits.
 //!
-//! A change of the surface that the list does not have fails here. Read the lines it shows: what is gone or changed needs a
-//! breaking release. `BLESS=1 cargo test --test public_api` accepts it. Not part of `cargo test`: it runs rustdoc.
+//! A change of the surface that the list does not have fails here. Read the lines it shows: a removal or change needs a
+//! breaking release. `BLESS=1 cargo test --test public_api` accepts it. It runs rustdoc, and is not part of `cargo
+//! test`.
 
 mod listing;
 mod signature;
@@ -12,8 +14,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// The most items and methods that the surface may have. Each is a promise: what is not needed by a task goes to
-/// `internals`, or is hidden.
+/// The most items and methods of the surface. Each is a promise.
+///
+/// An item that no task needs goes to `internals`, or is hidden.
 const MOST: usize = 200;
 
 /// The features that are on: what docs.rs shows.

@@ -68,7 +68,7 @@ fn qualified(body: &Value) -> String {
     }
 }
 
-/// Formats the generic arguments of a path: in angle brackets, or in the parentheses of a closure's trait.
+/// Formats the generic arguments of a path, in angle brackets or in a closure's parentheses.
 pub(crate) fn arguments(of: &Value) -> String {
     if let Some(of) = of.get("parenthesized") {
         return format!("({}){}", joined(list(&of["inputs"]).map(written), ", "), returned(&of["output"]));
