@@ -1,4 +1,4 @@
-//! Tells the library whether its compiler has AVX-512, which came with Rust 1.89: before, the library does without.
+//! Tells the library whether its compiler has AVX-512, which came with Rust 1.89.
 
 use std::env;
 use std::process::Command;

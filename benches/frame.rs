@@ -1,4 +1,4 @@
-//! How long a frame takes, stage by stage: trace, tone, cells, bytes. Run by hand: `cargo bench`.
+//! The time of a frame, stage by stage: trace, tone, cells, bytes. Run by hand: `cargo bench`.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::Vec3;

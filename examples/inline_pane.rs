@@ -1,5 +1,7 @@
-//! A scene in an inline viewport, below what the shell has printed: looks for a view, and prints it. Arrows go around
-//! the target, plus and minus come nearer and go away, Enter prints the eye point above the picture, `q` leaves.
+//! A scene in an inline viewport, below the shell's output: finds a view, and prints it.
+//!
+//! Arrows orbit the target, plus and minus move nearer and away, Enter prints the eye point above the picture, `q`
+//! leaves.
 
 use ratatui::crossterm::event::{self, Event, KeyCode};
 use ratatui::text::Line;

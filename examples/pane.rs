@@ -1,5 +1,6 @@
-//! A list of scenes beside a pane that shows one of them, traced off the thread that draws. Up and down choose, left and
-//! right go around it, plus and minus come nearer and go away, `q` leaves.
+//! A list of scenes beside a pane that shows one of them, traced off the thread that draws.
+//!
+//! Up and down choose, left and right orbit, plus and minus move nearer and away, `q` leaves.
 
 use ratatui::crossterm::event::{self, Event, KeyCode};
 use ratatui::layout::{Constraint, Layout};

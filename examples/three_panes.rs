@@ -1,6 +1,7 @@
-//! Three panes that share one scene, each traced by a thread of its own, with the mouse: the left button goes around
-//! the target, the right one shifts the picture, the wheel comes nearer to what is under the pointer, and a click says
-//! which object that is. `f` sees everything, `q` leaves.
+//! Three panes that share one scene, each traced by a thread of its own, with the mouse.
+//!
+//! The left button orbits the target, the right one shifts the picture, the wheel moves nearer to the point under the
+//! pointer, and a click names the object there. `f` frames the whole scene, `q` leaves.
 
 use ratatui::crossterm::event::{self, DisableMouseCapture, EnableMouseCapture, Event, KeyCode};
 use ratatui::crossterm::event::{MouseButton, MouseEvent, MouseEventKind};

@@ -1,4 +1,4 @@
-//! Any bytes, in any split, with any waits given up: the same events, no panic, no key invented, none stuck.
+//! Any bytes, in any split, with any waits given up: the same events, no key invented, none stuck.
 #![no_main]
 
 #[path = "../../tests/input_laws/mod.rs"]

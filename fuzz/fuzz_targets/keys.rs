@@ -1,4 +1,4 @@
-//! Any bytes as a file of keys: a table that can be written and read again, or faults that can be shown.
+//! Any bytes as a file of keys: a table that can be written and read again, or printable faults.
 
 #![no_main]
 #![allow(dead_code, reason = "the other targets ask for more of this module")]

@@ -1,4 +1,4 @@
-//! Any bytes as OBJ, with MTL and a texture behind a NUL each: a sound mesh, or an error that can be shown.
+//! Any bytes as OBJ, with MTL and a texture behind a NUL each: a valid mesh, or a printable error.
 
 #![no_main]
 #![allow(dead_code, reason = "the tests ask for more of this module")]

@@ -1,4 +1,6 @@
-//! Any bytes as a scenario of keys, replies, sizes, scenes, frames and time: the rules of `viewer::scenario` hold throughout.
+//! Any bytes as a session of keys, replies, sizes, scenes, frames and time.
+//!
+//! The rules of `viewer::story` hold throughout.
 
 #![no_main]
 

@@ -1,5 +1,7 @@
-//! cargo run --release -- SCENE[,SCENE...] [--size 1024x1024] [--spp 1] [--threads 1,2] [--rounds 5] [--only prefix,prefix]
-//!     [--frames | --incoherent | --same-origins] [--brief] [--shadow-offset 1e-3]
+//! The kernels of termtrace, Embree and obvhs on the same scenes and rays.
+//!
+//! cargo run --release -- SCENE[,SCENE...] [--size 1024x1024] [--spp 1] [--threads 1,2] [--rounds 5] [--only
+//! prefix,prefix] [--frames | --incoherent | --same-origins] [--brief] [--shadow-offset 1e-3]
 mod embree;
 mod obvhs_backend;
 mod scene;
@@ -22,7 +24,9 @@ fn render(b: &dyn Backend, f: &Frame, tile: u32, pool: Option<&rayon::ThreadPool
     }
 }
 
-/// The same arrays of rays through all who trace any ray, on one thread: medians of the rounds, in Mrays/s.
+/// Traces the same arrays of rays with all tracers that can, on one thread.
+///
+/// Prints medians of the rounds, in Mrays/s.
 fn arrays(name: &str, bs: &[Box<dyn Backend + '_>], rays: &Rays, rounds: usize) {
     let mut rates = vec![vec![]; bs.len()];
     let mut sums = vec![Acc::default(); bs.len()];
@@ -42,7 +46,7 @@ fn arrays(name: &str, bs: &[Box<dyn Backend + '_>], rays: &Rays, rounds: usize) 
     }
 }
 
-/// How many rays go where they like.
+/// The number of incoherent rays.
 const INCOHERENT: usize = 1 << 20;
 
 fn main() {

@@ -1,5 +1,6 @@
-//! The best portable Rust crate that was found: obvhs, its tree with two boxes in a node, one ray at a time. Spheres, plane
-//! and normals are the harness's own.
+//! The best portable Rust crate that was found: obvhs, with two boxes in a node and single rays.
+//!
+//! Spheres, plane and normals are the bench's own.
 use crate::scene::*;
 use glam::Vec3A;
 use obvhs::{
@@ -17,7 +18,7 @@ use std::time::{Duration, Instant};
 
 pub struct Obvhs {
     bvh: Bvh2,
-    /// In the order of the tree's leaves, as the crate advises; one of them is empty.
+    /// Triangles in the order of the tree's leaves, as the crate advises. May be empty.
     triangles: Vec<RtTriangle>,
     spheres: Vec<[f32; 4]>,
     plane: Option<Plane>,

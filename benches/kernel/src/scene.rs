@@ -53,7 +53,9 @@ fn base(name: &str) -> Scene {
     }
 }
 
-/// A (2,3) torus knot of `nu * nv * 2` triangles with a little displacement: no file, the same everywhere but for libm's last bit.
+/// A (2,3) torus knot of `nu * nv * 2` triangles with a little displacement.
+///
+/// It needs no file, and is the same everywhere but for libm's last bit.
 fn knot(name: &str, nu: u32, nv: u32) -> Scene {
     let mut s = base(name);
     let pos = |u: f64| {
@@ -183,14 +185,15 @@ impl Acc {
 /// Rays in no order that helps, made once and handed to all alike.
 pub struct Rays {
     pub rays: Vec<[Vec3A; 2]>,
-    /// Whether it is asked what lies between t = 0 and 1, not what is closest.
+    /// Whether any hit between t = 0 and 1 is asked for, not the closest one.
     pub any: bool,
 }
 
 pub trait Backend: Sync {
     fn name(&self) -> String;
     fn tile(&self, f: &Frame, x0: u32, y0: u32, x1: u32, y1: u32) -> Acc;
-    /// Seconds, and what was found; who does not trace one ray at a time, or not any ray, is not asked.
+    /// Returns the seconds and the hits. `None` for tracers that have no single rays or no any-hit
+    /// query.
     fn rays(&self, _: &Rays) -> Option<(f64, Acc)> {
         None
     }
@@ -232,13 +235,14 @@ fn hit_points(t: &dyn Tracer, eps: f32, f: &Frame) -> Vec<[Vec3A; 2]> {
     pixels.filter_map(hit).collect()
 }
 
-/// From each hit point to the light: origins that know of an epsilon, the same for all.
+/// Returns rays from each hit point to the light, whose origins have the same epsilon for all
+/// tracers.
 pub fn shadow_rays(t: &dyn Tracer, s: &Scene, f: &Frame) -> Rays {
     let rays = hit_points(t, s.eps, f).into_iter().map(|[p, _]| [p, s.light - p]).collect();
     Rays { rays, any: true }
 }
 
-/// So many from the hit points, one after the other and again from the first, with directions by the cosine.
+/// Returns `count` rays from the hit points in turn, with directions weighted by the cosine.
 pub fn incoherent_rays(t: &dyn Tracer, s: &Scene, f: &Frame, count: usize) -> Rays {
     let points = hit_points(t, s.eps, f);
     let ray = |(i, &[p, n]): (u32, &[Vec3A; 2])| {

@@ -1,5 +1,6 @@
-//! termtrace through its public functions, in the way its own renderer calls them: a tile's rays at a time, shadow rays
-//! from origins that know no epsilon.
+//! termtrace through its public functions, called as its own renderer does.
+//!
+//! A tile's rays at a time, and shadow rays from origins without an epsilon.
 use crate::scene::{Acc, Backend, Frame, Rays, Scene};
 use glam::{Vec3, Vec3A};
 use std::cell::RefCell;
@@ -65,7 +66,7 @@ impl Termtrace {
         self.scene.tree_bytes()
     }
 
-    /// The same scene, traced in that way.
+    /// Returns the same scene, traced by that kernel.
     pub fn by(&self, kernel: Kernel) -> Self {
         Self { kernel, scene: self.scene.clone(), ..*self }
     }
