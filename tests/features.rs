@@ -1,4 +1,5 @@
-//! The table of features in the crate's documentation, against the manifest and against what cargo resolves.
+//! The features in the crate's documentation, against the manifest and the crates that cargo
+//! resolves.
 
 use std::collections::BTreeSet;
 use std::env;
@@ -7,7 +8,7 @@ use std::process::Command;
 const LIB: &str = include_str!("../src/lib.rs");
 const MANIFEST: &str = include_str!("../Cargo.toml");
 
-/// How many crates may be compiled at most, this one included: with these features each.
+/// The most crates that may be compiled with these features, this one included.
 const MOST: [(&str, usize); 3] = [("", 5), ("`ron`, `parallel`", 26), ("`cli`", 140)];
 
 /// The rows of the table: features, and how many crates are said to be compiled with them.
@@ -21,7 +22,7 @@ fn rows() -> Vec<(&'static str, usize)> {
     rows.collect()
 }
 
-/// How many crates cargo compiles for the library with these features.
+/// Returns the number of crates that cargo compiles for the library with these features.
 fn crates(features: &str) -> usize {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut tree = Command::new(cargo);

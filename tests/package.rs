@@ -50,7 +50,9 @@ fn paths(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Returns whether Windows refuses a file name: a device's, with any extension, or one with a reserved character.
+/// Returns whether Windows refuses a file name.
+///
+/// A device's, with any extension, or one with a reserved character.
 fn is_refused_by_windows(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
     let is_numbered =

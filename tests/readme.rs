@@ -1,4 +1,4 @@
-//! What the README says, held.
+//! The statements of the README, tested.
 
 use std::fs;
 use std::path::Path;
@@ -89,7 +89,7 @@ fn every_key_is_listed() {
     }
 }
 
-/// The first column of the table of keys: whatever stands there in quotes is bound.
+/// Every key in quotes in the first column of the table of keys is bound.
 #[test]
 fn every_key_of_its_table_does_something() {
     let readme = readme();

@@ -1,5 +1,7 @@
-//! Limits in time, each at three times what is promised: a busy machine is not a fault. The figures themselves are taken
-//! by hand, from what these tests print (`cargo test --test slow -- --nocapture --test-threads 1`).
+//! Limits in time, each three times the promise, as the machine may be busy.
+//!
+//! The figures themselves are taken by hand, from the output of these tests (`cargo test --test slow -- --nocapture
+//! --test-threads 1`).
 
 #![cfg(feature = "test-hooks")]
 
@@ -31,26 +33,30 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 
 /// A terminal that has stopped reading is left within this.
 const STOPPED: Duration = Duration::from_secs(2);
-/// What is still loading is left within this.
+/// The longest time to leave while a mesh is loading.
 const LOADING: Duration = Duration::from_millis(200);
-/// A terminal that has never answered is left within this: waiting for an answer would take a second.
+/// The longest time to leave a terminal that has never replied. A wait for a reply would take a
+/// second.
 const SILENT: Duration = Duration::from_millis(250);
-/// A key is seen within this while the terminal loses a reply, before the first reply and after it.
+/// The longest time until a key is seen while the terminal loses a reply, before the first reply
+/// and after it.
 const KEY: [Duration; 2] = [Duration::from_millis(500), Duration::from_millis(250)];
-/// A terminal that has vanished is left within this,
+/// The longest time to leave a terminal that has vanished.
 const VANISHED: Duration = Duration::from_secs(1);
-/// with so many hundredths of a second of CPU.
+/// The most CPU time that this takes, in hundredths of a second.
 const VANISHED_TICKS: u64 = 10;
-/// The replies that are lost: those at the start, at which the program knows least, and some later ones.
+/// The indices of the lost replies: those at the start, where the program knows least, and some
+/// later ones.
 const REPLIES: [usize; 11] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
-/// A scene that is saved is seen within this.
+/// The longest time until a saved scene is shown.
 const SAVED: Duration = Duration::from_millis(100);
-/// A render is given up within this after its token is cancelled.
+/// The longest time until a cancelled render has ended.
 const CANCELLED: Duration = Duration::from_millis(50);
-/// A draw call of a ratatui program whose screen is one pane, traced in the background with the best samples: what the 95th
-/// of 100 takes of the CPU, at 200x60 cells.
+/// The longest CPU time of a draw call, for 95 of 100 calls.
+///
+/// The program of ratatui has one pane, traced in the background with the best samples, at 200x60 cells.
 const DRAW: Duration = Duration::from_millis(5);
-/// A mesh that is saved is seen within so much of the time that it takes to read and build it.
+/// The longest time until a saved mesh is shown, in times that it takes to read and build it.
 const MESH_SAVED: f64 = 1.2;
 
 /// Waits for the exit, which has a limit.
@@ -64,7 +70,8 @@ fn exit_within(limit: Duration, what: &str, session: &mut Session) -> ExitStatus
     session.wait_exit(SOON)
 }
 
-/// In the middle of a frame nobody reads any more (Ctrl-S, a dead link): then a key, a signal or a fault.
+/// Leaves in the middle of a frame that is no longer read (Ctrl-S, a dead link), by a key, a signal
+/// or a fault.
 fn a_reader_that_stopped(what: &str, code: Option<i32>, act: impl FnOnce(&Session) -> Answer) -> ExitStatus {
     let mut phases = Phases::new();
     let start = Start::new(PROGRAM).arg(SCENE).size(Size::cells(300, 120));
@@ -177,7 +184,9 @@ fn a_terminal_that_vanishes_in_mid_frame() {
     }
 }
 
-/// The keys come from another terminal, which stays. (The leader of the session, here a shell, gets more signals.)
+/// The screen vanishes; the keys come from another terminal, which stays.
+///
+/// The leader of the session, here a shell, gets more signals.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_screen_that_vanishes_while_the_keys_stay() {
@@ -207,7 +216,8 @@ fn a_mesh_that_does_not_come_is_left() {
     }
 }
 
-/// A file is put in its place at once, as editors do; how long until the middle of the screen shows something else.
+/// Replaces a file at once, as editors do, and returns the time until the middle of the screen
+/// changes.
 fn reload(session: &mut Session, path: &Path, contents: &[u8]) -> Duration {
     let new = path.with_extension("new");
     std::fs::write(&new, contents).expect("a file can be written");
@@ -242,7 +252,7 @@ fn a_scene_that_is_saved_is_soon_seen() {
     }
 }
 
-/// A scene of so many balls that cannot be seen, and one that can, in that colour.
+/// Returns a scene of `count` balls that cannot be seen, and one that can, in that colour.
 #[cfg(target_os = "linux")]
 fn balls(count: usize, color: &str) -> String {
     let balls = "Sphere(center: (9, 9, 9), radius: 0.1),\n".repeat(count);
@@ -284,7 +294,8 @@ fn saved(times: usize) -> [f64; 2] {
     memory(&session)
 }
 
-/// However often a large scene is saved while it is read, one is read at a time, and its memory is used again.
+/// A large scene that is saved again and again while it is read is read once at a time, and its
+/// memory used again.
 #[cfg(target_os = "linux")]
 #[test]
 fn many_saves_take_the_memory_of_one() {
@@ -295,7 +306,8 @@ fn many_saves_take_the_memory_of_one() {
     assert!(many[0] < 2.0 * one[0] && many[1] < 1.6 * one[1], "{one:?} {many:?}");
 }
 
-/// It takes as long as to read and build it, and no more: `check` does nothing else.
+/// A saved mesh is shown after the time that it takes to read and build it, which is that of
+/// `check`.
 #[test]
 fn a_mesh_that_is_saved_is_seen_when_it_is_built() {
     let folder = tempfile::tempdir().expect("a folder can be made");
@@ -326,7 +338,8 @@ fn eye(seen: &Seen) -> Option<String> {
     text.iter().find_map(|line| Some(line.split_once("  eye ")?.1.trim_end().to_owned()))
 }
 
-/// How long the slowest of the key presses takes to be seen, until that reply and some more are due.
+/// Returns the time until the slowest key press is seen, with faults of replies up to the `last`
+/// one.
 fn slowest_key(reports_modes: bool, fault: Fault, which: Which, last: usize) -> Duration {
     let start = Start::new(PROGRAM).arg(SCENE).arg("--reduced-motion").with_fault(fault, which);
     let start = if reports_modes { start.reports_modes() } else { start };
@@ -348,7 +361,7 @@ fn slowest_key(reports_modes: bool, fault: Fault, which: Which, last: usize) -> 
     slowest
 }
 
-/// Whichever reply of a terminal that is near is lost, doubled, garbled or late, no key waits for it.
+/// A key waits for no reply that is lost, doubled, garbled or late, whichever it is.
 #[test]
 fn a_lost_reply_holds_no_key() {
     let faults = [Fault::Lost, Fault::Doubled, Fault::Garbled, Fault::Late(Duration::from_secs(20))];
@@ -383,7 +396,7 @@ fn refining(scene: &NamedTempFile) -> (Session, Phases) {
     (session, phases)
 }
 
-/// What takes long is given up where somebody presses a key.
+/// A long refinement is given up at a key press.
 #[test]
 fn a_key_does_not_wait_for_a_refinement() {
     let scene = gravel();
@@ -416,7 +429,7 @@ fn a_key_does_not_wait_for_a_refinement() {
     assert!(left * 4 < refined, "left after {left:?} of {refined:?}");
 }
 
-/// What `--max-rate` says is kept, and used.
+/// The limit of `--max-rate` is kept, and used.
 #[test]
 fn the_rate_is_kept() {
     for quality in ["exact", "equal"] {
@@ -486,7 +499,9 @@ fn a_cancelled_render_is_given_up_at_once() {
     }
 }
 
-/// The time of the draw thread is measured: on a busy machine a draw call may last longer, and traces nothing all the same.
+/// The CPU time of the draw thread is measured.
+///
+/// On a busy machine a draw call may last longer although it traces nothing.
 #[test]
 fn a_draw_call_with_a_pane_in_the_background_is_short() {
     let scene = Scene::load(Path::new(SCENE)).expect("a scene");

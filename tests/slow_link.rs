@@ -1,6 +1,8 @@
-//! Slow links: how soon a key is seen, and what is sent. Limits in time are at three times what is promised: a busy
-//! machine is not a fault. The figures themselves are taken by hand, from what these tests print (`SLOW_LINK_KEYS=200
-//! SLOW_LINK_PROGRAM=target/release/termtrace cargo test --test slow_link -- --nocapture --test-threads 1`).
+//! Slow links: the time until a key is seen, and the bytes that are sent.
+//!
+//! Limits in time are three times the promise, as the machine may be busy. The figures themselves are taken by hand,
+//! from the output of these tests (`SLOW_LINK_KEYS=200 SLOW_LINK_PROGRAM=target/release/termtrace cargo test --test
+//! slow_link -- --nocapture --test-threads 1`).
 
 mod pty;
 #[path = "slow_link/relay.rs"]
@@ -18,7 +20,7 @@ mod source;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 
-/// So much later than promised may it be.
+/// The factor by which a time may be longer than promised.
 const SLACK: f64 = 3.0;
 
 const SLOW: Link = Link { rate: 50_000.0, round_trip: Duration::from_millis(200), answers: true };
@@ -54,13 +56,16 @@ fn eye(status: &str) -> Option<[f64; 3]> {
     numbers.try_into().ok()
 }
 
-/// Where the eye is at first.
+/// The eye at the start.
 const HOME: [f64; 3] = [0.0, 1.0, 5.0];
 /// Which keys move the eye down and up an axis.
 const AXES: [(usize, [&[u8]; 2]); 2] = [(0, [b"a", b"d"]), (2, [b"w", b"s"])];
 
-/// Presses keys that change the direction of the movement, in irregular intervals; how long each takes to be seen. Each is
-/// along another axis than the one before, and leads home: elsewhere there may be less to see, and to send.
+/// Presses keys that change the direction of the movement, and returns how long each takes to be
+/// seen.
+///
+/// The intervals are irregular. Each key is along another axis than the one before, and leads home: elsewhere a frame
+/// may have fewer bytes.
 fn walk(relay: &mut Relay, keys: usize) -> Vec<Duration> {
     let mut chance = 12_345_u64;
     let steps = AXES.iter().cycle().take(keys);
@@ -128,7 +133,7 @@ fn a_key_is_soon_seen_on_a_slow_link() {
     assert!(relay.frames.last().is_some_and(|frame| frame.status.contains("slow link")));
 }
 
-/// How long each of these takes until something is seen to be different from before.
+/// Returns how long each of these takes until the screen differs from before.
 fn seen_after<T: PartialEq>(
     relay: &mut Relay,
     inputs: &[Vec<u8>],
@@ -202,7 +207,7 @@ fn a_key_is_soon_seen_among_frames_of_four_kilobytes() {
 
 const SPHERES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 
-/// What the spheres look like from there, in 80x24 cells.
+/// Returns the picture of the spheres from there, in 80x24 cells.
 fn spheres(scene: &Scene, eye: Option<[f64; 3]>) -> Grid {
     let mut scene = scene.clone();
     if let Some(eye) = eye {
@@ -276,8 +281,9 @@ fn a_picture_in_motion_is_near_on_a_slow_link_and_exact_once_still() {
     assert!(median >= 15.0, "{median} dB");
 }
 
-/// How long after the drop a key pressed then would be late for the last time: the first frame that is sent when it has
-/// been heard comes more than 400 ms after it was pressed.
+/// Returns the last time after a drop at which a key press is late.
+///
+/// The first frame that is sent after the key arrives comes more than 400 ms after the press.
 fn late_until(relay: &Relay, dropped: Duration) -> Duration {
     let is_late = |pressed: Duration| {
         let heard = pressed + relay.link.round_trip / 2;
@@ -322,7 +328,7 @@ fn a_link_that_becomes_fast_is_used() {
     assert!(!status.contains("slow link"), "{status}");
 }
 
-/// Keeps the eye moving for so long, and back.
+/// Keeps the eye moving there and back for this time.
 fn keep_moving(relay: &mut Relay, time: Duration) {
     let end = relay.now() + time;
     for key in [b"a", b"d"].into_iter().cycle() {
@@ -334,8 +340,10 @@ fn keep_moving(relay: &mut Relay, time: Duration) {
     }
 }
 
-/// How many frames a second are shown while the eye moves: how often the status line, which comes last in a frame, tells
-/// another eye point. (InitialQueries do not tell: there are none for most frames of a terminal that does not answer.)
+/// Returns how many frames a second are shown while the eye moves.
+///
+/// It counts the eyes in the status line, which comes last in a frame. Most frames have no query for a terminal that
+/// does not reply.
 fn frames_per_second(relay: &mut Relay, time: Duration) -> f64 {
     let mut seen = relay.session.seen().bytes().len();
     let (mut frames, mut eye) = (0, relay.session.seen().screen().text().pop());
@@ -388,7 +396,7 @@ fn max_rate_caps_the_bytes() {
     assert!((50_000.0 * 0.95 / SLACK..=50_000.0 * 1.05).contains(&rate), "{rate} bytes/s");
 }
 
-/// How often the threads of a process have gone to sleep.
+/// Returns how often the threads of a process have gone to sleep.
 #[cfg(target_os = "linux")]
 fn sleeps(relay: &Relay) -> u64 {
     let pid = relay.session.pid().as_raw_nonzero();
@@ -400,7 +408,7 @@ fn sleeps(relay: &Relay) -> u64 {
     statuses.map(|status| count(status.expect("it runs")).expect("it is told")).sum()
 }
 
-/// Also with questions that nobody has answered.
+/// At rest nothing is computed or sent, even with queries that have no reply.
 #[cfg(target_os = "linux")]
 #[test]
 fn at_rest_nothing_happens() {
@@ -415,7 +423,7 @@ fn at_rest_nothing_happens() {
     }
 }
 
-/// Answers to nothing, answers twice, and halves of them: no key is pressed, and keys go on to be seen.
+/// Replies without a query, doubled and cut ones press no key, and keys go on to be seen.
 #[test]
 fn answers_that_nobody_asked_for_do_no_harm() {
     let mut relay = looking(termtrace(), SLOW);

@@ -1,5 +1,6 @@
-//! What holds for any bytes fed to the parser of input, and for what its keys move: said once, for the fuzzer and for the
-//! replay of its corpus.
+//! Properties of the input parser for any bytes, and of the camera that its keys move.
+//!
+//! For the fuzzer and for the replay of its corpus.
 
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Duration;
@@ -51,7 +52,7 @@ fn events(mut parser: Parser, pieces: &[&[u8]]) -> Vec<Input> {
     out
 }
 
-/// Gives up after each piece, and asks in the end that a key is still a key, in either way of writing it.
+/// Flushes the parser after each piece, and asserts that a key is still read in either encoding.
 fn keys_come_again(mut parser: Parser, pieces: &[&[u8]]) {
     let mut out = Vec::new();
     for piece in pieces {
@@ -76,7 +77,7 @@ fn is_key(input: &Input) -> bool {
     matches!(input, Input::Event(Event::Key(_)))
 }
 
-/// Nothing that is pasted, or stands in an answer, is a key.
+/// Asserts that no key comes from a paste or a reply.
 fn no_key_is_invented(start: Parser, bytes: &[u8]) {
     let held_by = |opening: &[u8], bytes: &[u8], closing: &[u8]| [opening, bytes, closing].concat();
     let end = b"\x1b[201~";
@@ -96,8 +97,10 @@ fn no_key_is_invented(start: Parser, bytes: &[u8]) {
     assert!(!inputs.iter().any(is_key), "{inputs:?}");
 }
 
-/// Moves as the live view does, a piece every 30 ms. When the focus is lost, when all keys are let go, and when a terminal
-/// without releases is silent, all stands still.
+/// Asserts that no key is stuck.
+///
+/// Moves as the live view does, a piece every 30 ms. When the focus is lost, when all keys are released, and when a
+/// terminal without releases is silent, the camera stands still.
 fn no_key_is_stuck(keys_are_sequences: bool, pieces: &[&[u8]]) {
     let mut motion = Motion::default();
     motion.set_reports_releases(keys_are_sequences);

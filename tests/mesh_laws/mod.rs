@@ -1,4 +1,4 @@
-//! What holds for any bytes that are read as a mesh: for the tests and for the fuzzer.
+//! Properties of any bytes that are read as a mesh, for the tests and for the fuzzer.
 
 use glam::{Vec2, Vec3};
 use std::io;
@@ -6,9 +6,10 @@ use std::path::Path;
 use termtrace::internals::mesh_file::{FilePosition, MeshFile};
 use termtrace::{LinearRgb, MeshError};
 
-/// A mesh that is as it should be, or an error that can be shown. The file may name others: what stands after the
-/// first NUL is every MTL file, what stands after the second one every other file. (OBJ and MTL have no NUL, other
-/// formats are all of the bytes and every other file too.)
+/// Asserts that bytes give a valid mesh, or an error that can be printed.
+///
+/// The file may name others: the bytes behind the first NUL are every MTL file, those behind the second one every other
+/// file. (OBJ and MTL have no NUL; for other formats the bytes are the file and every other file.)
 pub(crate) fn hold_for(name: &str, bytes: &[u8]) {
     let is_obj = Path::new(name).extension().is_some_and(|ending| ending == "obj");
     let parts: Vec<&[u8]> = if is_obj { bytes.splitn(3, |&byte| byte == 0).collect() } else { vec![bytes; 3] };
@@ -23,13 +24,13 @@ pub(crate) fn hold_for(name: &str, bytes: &[u8]) {
     }
 }
 
-/// The same for any bytes as a texture.
+/// Asserts that bytes give a valid texture, or an error that can be printed.
 pub(crate) fn hold_for_texture(bytes: &[u8]) {
     let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nmtllib x.mtl\nusemtl x\nf 1/1 2/1 3/1\n\0newmtl x\nmap_Kd x.png\n\0";
     hold_for("x.obj", &[mesh.as_bytes(), bytes].concat());
 }
 
-/// No URL, nothing absolute.
+/// Asserts that a path is no URL and not absolute.
 fn assert_local(path: &Path) {
     let text = path.to_str().expect("paths are UTF-8");
     assert!(path.is_relative() && !text.contains("://") && !text.contains('\0') && !text.is_empty(), "{text}");

@@ -50,7 +50,7 @@ impl Writer {
     }
 }
 
-/// A ball of about so many triangles, with its poles above and below.
+/// Returns a ball of about `triangles` triangles, with its poles above and below.
 pub(crate) fn ball(triangles: u32) -> Written {
     let rows = (f64::from(triangles) / 4.0).sqrt() as u32;
     let columns = 2 * rows;
@@ -75,7 +75,7 @@ pub(crate) fn ball(triangles: u32) -> Written {
 }
 
 impl Written {
-    /// Whether the mesh that was read is this one, as far as the format can say it.
+    /// Compares a mesh that was read with this one, as far as the format can hold it.
     pub(crate) fn compare(&self, mesh: &MeshFile, writer: &Writer) -> Result<(), TestCaseError> {
         let name = writer.name;
         if writer.has_indices {

@@ -1,33 +1,32 @@
-//! A link between a program's terminal and the one who looks at it: it delays both ways and has a rate, and its far end
-//! answers questions.
+//! A link between a program's terminal and a far terminal, with a delay, a rate and replies.
 
 use crate::pty::{Screen, Session, Start};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// What the program asks after each frame.
+/// The query that ends each frame.
 const QUESTION: &[u8] = b"\x1b[c";
-/// What the far end answers: an xterm.
+/// The reply of the far terminal: an xterm's.
 const ANSWER: &[u8] = b"\x1b[?64;1;2;6;9;15;16;17;18;21;22;28c";
-/// The link passes on so many bytes at once.
+/// The number of bytes that the link passes on at once.
 const PIECE: usize = 64;
 
-/// How the link is.
+/// The properties of a link.
 #[derive(Clone, Copy)]
 pub(crate) struct Link {
-    /// In bytes per second.
+    /// The rate in bytes per second.
     pub(crate) rate: f64,
     /// The way there and back.
     pub(crate) round_trip: Duration,
-    /// Whether the far end answers.
+    /// Whether the far terminal replies to queries.
     pub(crate) answers: bool,
 }
 
 /// A frame that has come to the far end.
 pub(crate) struct Frame {
-    /// When its last byte was sent.
+    /// The time at which its last byte was sent.
     pub(crate) sent: Duration,
-    /// When that came.
+    /// The time at which its last byte arrived.
     pub(crate) at: Duration,
     pub(crate) bytes: usize,
     /// The lowest line of the screen.
@@ -39,15 +38,17 @@ pub(crate) struct Relay {
     pub(crate) session: Session,
     pub(crate) link: Link,
     start: Instant,
-    /// How many bytes of the program's the link has taken.
+    /// The number of bytes that the link has taken from the program.
     taken: usize,
-    /// How many of them are answered.
+    /// The number of bytes whose queries have replies.
     answered: usize,
-    /// What waits for the link, piece by piece, and when it was sent: it will be passed on at the rate that holds then.
+    /// The queue of the link: pieces, with the times at which they were sent.
+    ///
+    /// A piece is passed on at the rate of that time.
     waiting: VecDeque<(Duration, Vec<u8>)>,
-    /// When the link has passed on what it has begun with.
+    /// The time at which the link is free for the next piece.
     free_at: Duration,
-    /// What is on its way: when it comes, when it was sent, and it.
+    /// The pieces on their way: arrival, time of sending, bytes.
     there: VecDeque<(Duration, Duration, Vec<u8>)>,
     /// Keys and answers on their way back, and how many bytes each answers.
     back: VecDeque<(Duration, Vec<u8>, usize)>,
@@ -86,12 +87,12 @@ impl Relay {
         self.now().saturating_sub(then)
     }
 
-    /// How many bytes the program has written.
+    /// Returns the number of bytes that the program has written.
     pub(crate) fn taken(&self) -> usize {
         self.taken
     }
 
-    /// What the far end shows.
+    /// Returns the screen of the far terminal.
     pub(crate) fn screen(&self) -> &Screen {
         &self.screen
     }

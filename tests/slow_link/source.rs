@@ -10,8 +10,9 @@ use termtrace::internals::pace::Link;
 /// The bytes of a frame, with its question.
 const FRAME: usize = 4_000;
 
-/// Writes frames to a terminal in raw mode, each with the eye that the keys up to then have led to, until it is sent `q`
-/// or has gone.
+/// Writes frames to a terminal in raw mode, until it reads `q` or the terminal is gone.
+///
+/// Each frame has the eye after all keys up to then.
 pub(crate) fn run(mut terminal: File) {
     let mut link = Link::new(None, None, true);
     let (start, mut parser, mut begun) = (Instant::now(), Parser::new(), Duration::ZERO);
@@ -57,7 +58,7 @@ pub(crate) fn run(mut terminal: File) {
     }
 }
 
-/// A frame without its question: a status line, and spaces that nobody sees.
+/// Returns a frame without its query: a status line, and spaces whose colours are not visible.
 fn frame(eye: [i32; 2], slow: bool) -> Vec<u8> {
     let link = if slow { "slow link" } else { "" };
     let status = format!("\x1b[24;1H {link} eye {}.00 1.00 {}.00\x1b[K", eye[0], 5 + eye[1]);

@@ -1,4 +1,6 @@
-//! What holds for any bytes that are read as a scene, a camera path or a file of keys: for the tests and for the fuzzer.
+//! Properties of any bytes that are read as a scene, a camera path or a file of keys.
+//!
+//! For the tests and for the fuzzer.
 
 use termtrace::internals::control::Keymap;
 use termtrace::internals::scene_text::text_from;
