@@ -15,7 +15,7 @@ const LEFT_OUT: [(&str, &str); 13] = [
     ("features", "the crates that each feature brings"),
     ("files", "scene files, meshes and textures, right and wrong"),
     ("input_corpus", "a fuzzer's inputs, once more"),
-    ("laws", "the order of the modules"),
+    ("laws", "the order of the modules, the language of comments"),
     ("live", "the live view on a pseudo-terminal"),
     ("package", "what is in the package"),
     ("pictures", "pictures, bit for bit"),

@@ -57,7 +57,7 @@ impl From<Fault> for Faults {
 /// compiler's message:
 ///
 /// ```text
-/// scenes/x.ron:3:32: unknown field "radus"; did you mean "radius"?
+/// my.ron:3:32: unknown field "radus"; did you mean "radius"?
 ///   3 |         Sphere(center: (0, 1, 0), radus: 1),
 ///     |                                   ^^^^^
 /// ```
