@@ -8,36 +8,36 @@ mod common_origin;
 
 pub use common_origin::CommonOrigin;
 
-/// `origin + t * direction`. The direction need not have unit length: t is counted in lengths of it.
+/// The half line `origin + t * direction`. `t` is measured in lengths of the direction, which need not be 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where the ray begins: the lecture's **o** (or **p**).
+    /// The start of the ray: the lecture's **o** (or **p**).
     pub origin: Vec3,
-    /// Where it goes: the lecture's **d**; not zero.
+    /// The direction: the lecture's **d**; not zero.
     pub direction: Vec3,
 }
 
 impl Ray {
-    /// The point at `t`: `origin + t * direction`.
+    /// Returns the point at `t`: `origin + t * direction`.
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + self.direction * t
     }
 }
 
-/// A ray or several, with what tests against many shapes have in common.
+/// One ray or eight rays, with values that tests against all shapes share, computed once per ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Rays<N: Number> {
-    /// Where each begins.
+    /// The origins.
     pub origin: Vector<N>,
-    /// Where it goes; not zero.
+    /// The directions; not zero.
     pub direction: Vector<N>,
-    /// One over the direction, coordinate by coordinate; infinite where that is zero.
+    /// The reciprocal of each coordinate of the direction; infinite where that is zero.
     pub inverse: Vector<N>,
-    /// The direction's length, squared.
+    /// The squared length of the direction.
     pub squared_length: N,
-    /// One over that.
+    /// The reciprocal of `squared_length`.
     pub inverse_squared_length: N,
-    /// What brings the direction to (0, 0, 1).
+    /// The shear that maps the direction to (0, 0, 1), for triangles.
     pub shear: Shear<N>,
 }
 
@@ -64,7 +64,7 @@ impl<N: Number> Rays<N> {
 }
 
 impl<N: Lanes> Rays<N> {
-    /// Of eight. The shear is left out where no surface asks for it.
+    /// Loads eight rays. The shear costs a division per ray, so it is omitted for scenes without triangles.
     #[inline(always)]
     pub fn load(rays: &EightRays, needs_shear: bool) -> Self {
         let direction = rays.direction.load();
@@ -72,7 +72,9 @@ impl<N: Lanes> Rays<N> {
         Self { shear, ..Self::without_shear(rays.origin.load(), direction) }
     }
 
-    /// One of them, in every place.
+    /// Returns the ray of `lane` in all lanes.
+    ///
+    /// Shuffles within registers: through memory, single rays in three spheres were 22 % slower.
     #[inline(always)]
     pub(crate) fn splat_lane(&self, lane: usize) -> Self {
         Self {
@@ -90,23 +92,23 @@ impl<N: Lanes> Rays<N> {
     }
 }
 
-/// Eight rays side by side, or fewer.
+/// Up to eight rays in SoA layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EightRays {
-    /// Where each begins.
+    /// The origins.
     pub origin: Vector<F32x8>,
-    /// Where it goes; not zero.
+    /// The directions; not zero.
     pub direction: Vector<F32x8>,
-    /// Which of them are asked about, a bit for each, the first the lowest. In the place of the others stands one of
-    /// these; if there are none, anything.
+    /// The active mask, lane 0 lowest. Inactive lanes repeat an active ray, so that they widen no bounds of a packet;
+    /// if no lane is active, they hold any numbers.
     pub active: u32,
 }
 
 impl EightRays {
-    /// Of eight rays, or of fewer.
+    /// Packs one to eight rays; unused lanes repeat the last ray.
     ///
     /// # Panics
-    /// If there is none.
+    /// If `rays` is empty.
     pub fn of(rays: &[Ray]) -> Self {
         let ray = |lane: usize| &rays[lane.min(rays.len() - 1)];
         Self {
@@ -116,52 +118,53 @@ impl EightRays {
         }
     }
 
-    /// One of them.
+    /// Returns the ray of `lane`.
     ///
     /// # Panics
-    /// If there is none in that place.
+    /// If `lane` is 8 or more.
     #[inline(always)]
     pub fn ray(&self, lane: usize) -> Ray {
         Ray { origin: self.origin.of_lane(lane), direction: self.direction.of_lane(lane) }
     }
 }
 
-/// A ray by itself, with what tests against many shapes have in common.
+/// A single ray, also as [`Rays`] of one lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Probe {
     /// The ray.
     pub ray: Ray,
-    /// The same for formulas that may be asked for several.
+    /// The ray in the form that formulas over [`Number`] take.
     pub rays: Rays<f32>,
 }
 
 impl Probe {
-    /// Of that ray.
+    /// Precomputes the shared values of a ray.
     #[inline]
     pub fn new(ray: Ray) -> Self {
         Self { ray, rays: Rays::new(Vector::splat(ray.origin), Vector::splat(ray.direction)) }
     }
 }
 
-/// The change of coordinates in which a ray runs along the z axis, one unit for each t: first the axes are exchanged, so
-/// that z is the one along which the direction is longest, then x and y are sheared (Woop, Benthin and Wald, Watertight
-/// Ray/Triangle Intersection, JCGT 2013).
+/// The transform to coordinates in which a ray runs along z, one unit per unit of t.
+///
+/// The axes are rotated so that z is the dominant axis of the direction, then x and y are sheared (Woop, Benthin and
+/// Wald, Watertight Ray/Triangle Intersection, JCGT 2013).
 #[derive(Clone, Copy, Debug)]
 pub struct Shear<N: Number> {
     axis: DominantAxis<N::Mask>,
-    /// How far it goes along x and y, and how much t grows, while it goes one unit along its longest axis.
+    /// The slopes of the ray in x and y per unit of the dominant axis, and the increase of t per unit.
     factor: Vector<N>,
-    /// How far the direction goes along its longest axis.
+    /// The length of the direction along its dominant axis.
     pub length: N,
 }
 
-/// Along which axis a direction is longest.
+/// The dominant axis of one direction or several.
 #[derive(Clone, Copy, Debug)]
 enum DominantAxis<M> {
     X,
     Y,
     Z,
-    /// Not the same for all: where it is x, and where y.
+    /// Different axes: the masks of the lanes with x and with y; the others have z.
     PerLane {
         x: M,
         y: M,
@@ -169,7 +172,7 @@ enum DominantAxis<M> {
 }
 
 impl<N: Number> Shear<N> {
-    /// Of rays that no triangle asks for it.
+    /// Returns a placeholder for rays that are not tested against triangles.
     #[inline(always)]
     fn none() -> Self {
         let zero = N::splat(0.0);
@@ -194,8 +197,7 @@ impl<N: Number> Shear<N> {
         Self { axis, factor: Vector { x: x / z, y: y / z, z: N::splat(1.0) / z }, length: z.abs() }
     }
 
-    /// A vector from the ray's origin in those coordinates. Its x and y are off by 2 |x| + 4 |z| [`length`](Self::length)
-    /// units of 2^-24, at most and to first order: no factor of theirs is more than 1.
+    /// Transforms a vector from the ray's origin. For the error of x and y see `culling.md`, 6.
     #[inline(always)]
     pub fn apply(&self, from_origin: Vector<N>) -> Vector<N> {
         let Vector { x, y, z } = self.axis.rotate_to_z(from_origin);
@@ -203,9 +205,10 @@ impl<N: Number> Shear<N> {
     }
 }
 
-/// A vector from the ray's origin in the coordinates of [`Shear`], in f64, with x and y multiplied by the direction along
-/// its longest axis. So they need no division, and as f64 holds the product of two f32 whole, they are exact, or where f64
-/// does not reach so far down, off by 2^-53 of themselves.
+/// Transforms a vector from the ray's origin as [`Shear`] does, in f64, with x and y scaled by the dominant coordinate
+/// of the direction.
+///
+/// The scale avoids a division, whose rounding would move the corners. For what is exact see `culling.md`, 8.
 pub fn sheared_in_f64(from_origin: DVec3, direction: Vec3) -> DVec3 {
     let [x, y, z] = match Shear::of(Vector::<f32>::splat(direction)).axis {
         DominantAxis::X => [1, 2, 0],
@@ -217,13 +220,13 @@ pub fn sheared_in_f64(from_origin: DVec3, direction: Vec3) -> DVec3 {
 }
 
 impl<M: Mask> DominantAxis<M> {
-    /// Whether both say of all that it is along the same axis.
+    /// Returns whether all lanes of both have the same dominant axis.
     #[inline(always)]
     fn is_same_for_all<O>(self, other: DominantAxis<O>) -> bool {
         matches!((self, other), (Self::X, DominantAxis::X) | (Self::Y, DominantAxis::Y) | (Self::Z, DominantAxis::Z))
     }
 
-    /// The coordinates turned about so that the longest is z. A right-handed basis stays one.
+    /// Rotates the coordinates so that the dominant one is z. Keeps a right-handed basis right-handed.
     #[inline(always)]
     fn rotate_to_z<N: Number<Mask = M>>(self, Vector { x, y, z }: Vector<N>) -> Vector<N> {
         match self {
@@ -239,12 +242,12 @@ impl<M: Mask> DominantAxis<M> {
 }
 
 impl<M: LaneMask> DominantAxis<M> {
-    /// Of one of them: never `Each`.
+    /// Returns the axis of one lane; never `PerLane`.
     #[inline(always)]
     fn of_lane(self, lane: usize) -> Self {
         match self {
             Self::PerLane { x, y } => {
-                // Nobody can guess it: a table does not ask the CPU to.
+                // A table instead of branches: the axis of an incoherent ray cannot be predicted.
                 let at = (x.bits() >> lane & 1) + 2 * (y.bits() >> lane & 1);
                 [Self::Z, Self::X, Self::Y, Self::Y][at as usize % 4]
             }
@@ -256,28 +259,28 @@ impl<M: LaneMask> DominantAxis<M> {
 /// A closed interval of t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The least t.
+    /// The lower end.
     pub min: f32,
-    /// The greatest t.
+    /// The upper end.
     pub max: f32,
 }
 
 impl Interval {
-    /// All that lies in front of the ray's origin: [0, infinity).
+    /// Everything in front of the ray's origin: [0, `f32::MAX`].
     pub const IN_FRONT: Self = Self { min: 0.0, max: f32::MAX };
 
-    /// The `t` inside that is nearest to this one; none if there is nothing inside. (NaN stays NaN.)
+    /// Clamps `t` to the interval, or returns `None` if the interval is empty. NaN stays NaN.
     pub fn nearest(self, t: f32) -> Option<f32> {
         (self.min <= self.max).then_some(nearest_in(self.min, self.max, t))
     }
 
-    /// Whether `t` lies inside. NaN does not, nor does infinity.
+    /// Returns whether `t` lies inside; false for NaN and infinity.
     pub fn contains(self, t: f32) -> bool {
         self.min <= t && t <= self.max
     }
 }
 
-/// Of all from `min` to `max`, what is nearest to `t`. (NaN stays NaN.)
+/// Clamps `t` to `min..=max`. NaN stays NaN, unlike with `Number::max` and `Number::min`.
 #[inline(always)]
 pub fn nearest_in<N: Number>(min: N, max: N, t: N) -> N {
     N::select(t.lt(min), min, N::select(max.lt(t), max, t))

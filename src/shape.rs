@@ -1,11 +1,11 @@
-//! Surfaces: where a ray crosses them, and what they are like at that point.
+//! Surfaces: their crossings with rays, and the surface point at a crossing.
 //!
-//! The lecture's way: a surface is given implicitly by f(x) = 0, and putting the ray's x = p + t d into it leaves one
-//! equation in t. Each surface solves its own in a file of its own under `shape/`. To add one, write that file, with an
-//! implementation of [`Surface`], and give it a line in the table `surfaces` here. It is then tested [`ScalarLeaf`]; where
-//! that is too slow, a type that is [`SoaLeaf`] takes the place of that.
+//! As in the lecture, a surface is given implicitly by f(x) = 0, and inserting the ray x = p + t d leaves one equation
+//! in t. Each surface solves its equation in a file of its own under `shape/`. To add one, write that file, with an
+//! implementation of [`Surface`], and add a line to the table `surfaces` here. It is then tested as a [`ScalarLeaf`];
+//! if that is too slow, implement [`SoaLeaf`] for a type of its own.
 //!
-//! This module knows nothing of materials and light.
+//! This module does not depend on materials and light.
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
@@ -37,59 +37,61 @@ pub use triangle::{EdgeFunctions, Triangle, TriangleN};
 pub(crate) use written::without_coordinates;
 pub use written::{CheckedShape, Meshes, WrittenShape};
 
-/// What every surface can answer.
+/// A surface that rays can cross.
 pub trait Surface {
-    /// The smallest box around it; nothing where it has no end.
+    /// Returns the smallest box around the surface, or `None` if it is unbounded.
     fn bounds(&self) -> Option<Bounds>;
 
-    /// The least t inside the interval at which the ray crosses the surface: a root of f(origin + t direction) = 0.
+    /// Returns the least t in the interval at which the ray crosses the surface: a root of f(origin + t direction) = 0.
     ///
-    /// A surface with bounds is only met [inside them](Bounds::crossed): however rounding has moved a crossing, it is not
-    /// before the box or behind it, so that leaving out what a box cannot contain leaves out nothing.
+    /// The crossing of a bounded surface is clamped to the [interval of its box](Bounds::crossed), however rounding has
+    /// moved it. So culling by boxes never drops a hit (`culling.md`, 2).
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32>;
 
-    /// The surface at the crossing `t` that [`closest_crossing`](Self::closest_crossing) found for this ray.
+    /// Returns the surface point at the crossing `t` that [`closest_crossing`](Self::closest_crossing) found for this
+    /// ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint;
 
-    /// How far [`uv`](SurfacePoint::uv) reaches in a pixel: from the crossing at `t` of a ray in that direction to those of
-    /// its neighbours, whose directions differ by these steps. Zero where the surface has no coordinates.
+    /// Returns the footprint of a pixel in [`uv`](SurfacePoint::uv): the distance from the crossing at `t` to the
+    /// crossings of the neighbouring rays, whose directions differ by `steps`. Zero if the surface has no coordinates.
     #[inline(always)]
     fn footprint<N: Number>(&self, _direction: Vector<N>, _t: N, _steps: [Vec3; 2]) -> [N; 2] {
         [N::splat(0.0); 2]
     }
 }
 
-/// A surface's formula for one ray and one of its kind, for several rays, or for several of its kind: a number stands for
-/// each pair.
+/// The crossing formula of a surface, for one ray and one surface, eight rays and one surface, or one ray and eight
+/// surfaces: a lane for each pair.
 pub trait Crossable<N: Number> {
-    /// Of each pair, the first crossing from `min` on and whether there is one, as
-    /// [`closest_crossing`](Surface::closest_crossing) has it; nothing where there is none at all.
+    /// Returns the hit mask and the first crossing at `min` or later of each pair, as
+    /// [`closest_crossing`](Surface::closest_crossing) does; `None` only if no lane hits.
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)>;
 
-    /// The same of rays of a pencil, with what is known of all of them ([`EdgeFunctions::packet_error_bound`]); infinite: nothing.
+    /// Computes [`first_crossing`](Self::first_crossing) for rays of a packet with a common error bound
+    /// ([`EdgeFunctions::packet_error_bound`]); infinity if none is known.
     #[inline(always)]
     fn first_crossing_with_bound(&self, rays: &Rays<N>, min: N, _error_bound: N) -> Option<(N::Mask, N)> {
         self.first_crossing(rays, min)
     }
 
-    /// The smallest boxes around them: from where to where.
+    /// Returns the minima and maxima of the smallest boxes around the surfaces.
     fn boxes(&self) -> [Vector<N>; 2];
 }
 
 /// A surface's [`at_crossing`](Surface::at_crossing) for one ray or several.
 pub trait AtCrossing<N: Number> {
-    /// The surfaces at crossings that were found.
+    /// Returns the surface points at crossings that [`Crossable::first_crossing`] found.
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N>;
 }
 
-/// The surfaces at crossings, a number for each: what [`SurfacePoint`] has of all surfaces.
+/// One surface point, or eight in SoA layout: the fields of [`SurfacePoint`] that all surfaces have.
 #[derive(Clone, Copy, Debug)]
 pub struct Points<N: Number> {
     /// [`SurfacePoint::position`].
     pub position: Vector<N>,
     /// [`SurfacePoint::geometric_normal`].
     pub geometric_normal: Vector<N>,
-    /// [`SurfacePoint::side`]: whether the front is seen.
+    /// The mask of points seen from the [front](SurfacePoint::side).
     is_front: N::Mask,
     /// [`SurfacePoint::clearance`].
     pub clearance: N,
@@ -98,7 +100,8 @@ pub struct Points<N: Number> {
 }
 
 impl<N: Number> Points<N> {
-    /// At `position`, where the front has this normal.
+    /// Returns the point at `position`, where the front has the normal `front`; `size` is the largest coordinate
+    /// involved.
     #[inline(always)]
     fn seen_by(rays: &Rays<N>, position: Vector<N>, front: Vector<N>, size: N, uv: [N; 2]) -> Self {
         let is_front = rays.direction.dot(front).lt(N::splat(0.0));
@@ -107,14 +110,14 @@ impl<N: Number> Points<N> {
         Self { position, geometric_normal, is_front, clearance: N::splat(CLEARANCE) * size, uv }
     }
 
-    /// Where nothing is.
+    /// Returns a placeholder for rays without a hit.
     #[inline(always)]
     pub fn nowhere() -> Self {
         let (zero, zeros) = (N::splat(0.0), Vector::splat(Vec3::ZERO));
         Self { position: zeros, geometric_normal: zeros, is_front: zero.lt(zero), clearance: zero, uv: [zero; 2] }
     }
 
-    /// `yes` where the answer was yes, else `no`.
+    /// Returns `yes` where the mask is set, else `no`.
     #[inline(always)]
     pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
         let of_two = |yes: N, no: N| N::select(mask, yes, no);
@@ -142,45 +145,45 @@ impl Points<f32> {
     }
 }
 
-/// A surface without an end: it stands in no tree.
+/// An unbounded surface, which is in no tree.
 pub trait Endless: Surface + Copy {
-    /// What has its formula.
+    /// The type with the formula.
     type Of<N: Lanes>: Crossable<N> + AtCrossing<N>;
 
-    /// The same in every place, for several rays.
+    /// Returns the surface in all lanes, for eight rays.
     fn splat<N: Lanes>(&self) -> Self::Of<N>;
 }
 
-/// Eight surfaces of one kind, side by side in memory.
+/// A leaf: up to eight surfaces of one kind in SoA layout.
 pub trait SoaLeaf: Copy {
-    /// One of them.
+    /// The type of one surface.
     type Shape: Surface + Copy + Sync;
 
-    /// What has their formula.
+    /// The type with the formula.
     type Of<N: Lanes>: Crossable<N> + AtCrossing<N>;
 
-    /// Whether their formula asks for the [shear](Rays::shear) of rays.
+    /// Whether the formula needs the [shear](Rays::shear) of rays.
     const NEED_SHEAR: bool = false;
 
-    /// Of eight or fewer.
+    /// Packs up to eight surfaces.
     fn of(shapes: &[Self::Shape]) -> Self;
 
-    /// All of them, for one ray that is the same in every place.
+    /// Returns all surfaces, for one ray in all lanes.
     fn load<N: Lanes>(&self) -> Self::Of<N>;
 
-    /// One of them, the same in every place, for several rays.
+    /// Returns the surface of `lane` in all lanes, for eight rays.
     fn splat<N: Lanes>(&self, lane: usize) -> Self::Of<N>;
 
-    /// One of them in each place, for several rays, as [`Lanes::gather`] has it.
+    /// Gathers a surface for each lane, for eight rays, as [`Lanes::gather`] does.
     fn gather<N: Lanes>(&self, lanes: N) -> Self::Of<N>;
 
-    /// `yes` where the answer was yes, else `no`.
+    /// Returns `yes` where the mask is set, else `no`.
     fn select<N: Lanes>(mask: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;
 
-    /// Whether they have [`edge_functions`](Self::edge_functions).
+    /// Whether [`edge_functions`](Self::edge_functions) returns any.
     const HAVE_EDGE_FUNCTIONS: bool = false;
 
-    /// What tells beforehand that rays pass by one of them, where that takes less than the test itself.
+    /// Returns edge functions that cull groups of rays before the exact test, if they cost less than the test.
     #[inline(always)]
     fn edge_functions<N: Lanes>(&self, _: &CommonOrigin<N>) -> Option<EdgeFunctions> {
         None
@@ -190,26 +193,26 @@ pub trait SoaLeaf: Copy {
 /// A point on a surface, as seen from where the ray came.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
-    /// The lecture's **p**, moved onto the surface as exactly as f32 can say.
+    /// The lecture's **p**, moved onto the surface up to the precision of f32.
     pub position: Vec3,
-    /// The normal **n** on the side that the ray came from. Unit length.
+    /// The shading normal **n**, on the side that the ray came from: on smooth meshes interpolated. Unit length.
     pub shading_normal: Vec3,
-    /// The same of the surface as it is, where `normal` is that of a smooth one that it stands for. Unit length.
+    /// The geometric normal, on the side that the ray came from. Unit length.
     pub geometric_normal: Vec3,
-    /// Which side of the surface is seen.
+    /// The visible side of the surface.
     pub side: Side,
-    /// How far, along `geometric_normal`, the true surface may lie from `position`, and as far again as a ray that starts
-    /// there needs to be clear of it. In proportion to the coordinates involved; no constant of the scene's size.
+    /// The distance along `geometric_normal` at which a ray may start without hitting the surface again. Proportional
+    /// to the coordinates involved, not a constant of the scene's size.
     pub clearance: f32,
-    /// Coordinates on the surface for a pattern: on a plane in world units, in a triangle the shares of its second and
-    /// third corner; zero where the surface has none.
+    /// Coordinates on the surface for patterns: on a plane in world units, in a triangle the barycentric weights of its
+    /// second and third corner; zero if the surface has none.
     pub uv: Vec2,
 }
 
 impl SurfacePoint {
-    /// Where a ray that leaves the surface starts: off it by the clearance, so that the surface does not shadow
-    /// itself (after Waechter and Binder, Ray Tracing Gems, chapter 6, and pbrt's `OffsetRayOrigin`: the hit's error
-    /// box is left behind, whatever the scale; a fixed epsilon fails in small and in large scenes).
+    /// Returns the origin of a ray that leaves the surface: `position`, moved by the clearance, so that the surface
+    /// does not shadow itself (after Waechter and Binder, Ray Tracing Gems, chapter 6, and pbrt's `OffsetRayOrigin`).
+    /// It lies outside the error box of the hit at any scale; a fixed epsilon fails in small and in large scenes.
     pub fn ray_origin(&self) -> Vec3 {
         self.position + self.geometric_normal * self.clearance
     }
@@ -218,24 +221,24 @@ impl SurfacePoint {
 /// A surface's two sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The side that the surface's own normal points to: the outside of a sphere.
+    /// The side to which the surface's own normal points: the outside of a sphere.
     Front,
-    /// The other one: the inside of a sphere.
+    /// The opposite side: the inside of a sphere.
     Back,
 }
 
-/// The relative clearance. The coordinates of a point are off by a few units of 2^-24, and so is what a second ray
-/// computes from them; 32 of these units are clear of both (the property tests count false shadows at all scales).
+/// The clearance relative to the coordinates: 32 units of 2^-24. A point is off by a few units, and so is the crossing
+/// of a second ray. Not proved, but counted: at most 10 false shadows of 100,000 at each scale (`culling.md`, 15).
 const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 
-/// Hands the table of all surfaces to a macro, one line each: whether they stand in a `tree` or, as they have no end, in a
-/// `list`; what the accelerator calls that; the type; what is kept of eight of them, or of one without an end; what they are.
+/// Passes the table of all surfaces to a macro, one line each: `tree`, or `list` for unbounded ones; the field of the
+/// accelerator; the type; the type of a leaf, or of one unbounded surface; a description.
 macro_rules! surfaces {
     ($with:ident) => {
         $with! {
             tree spheres: Sphere as $crate::shape::SphereN<$crate::lanes::F32x8>, "All points at one distance from a centre.";
-            list planes: Plane as $crate::shape::Plane, "All points whose difference to a given one is perpendicular to the normal.";
-            tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>, "What lies between three points.";
+            list planes: Plane as $crate::shape::Plane, "All points whose difference from a given point is perpendicular to the normal.";
+            tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>, "The part of a plane between three points.";
             #[cfg(test)]
             tree cubes: Cube as $crate::shape::ScalarLeaf<$crate::shape::Cube>, "All points at one distance from a centre, along the axis along which they are farthest.";
         }
@@ -257,7 +260,7 @@ macro_rules! shapes {
         }
 
         impl Shape {
-            /// How many parts it has, each of which is a surface: one, but for meshes.
+            /// Returns the number of primitives: the triangles of a mesh, one for other shapes.
             #[doc(hidden)]
             pub fn primitive_count(&self) -> u32 {
                 match self {
@@ -266,10 +269,10 @@ macro_rules! shapes {
                 }
             }
 
-            /// One of its parts.
+            /// Returns a primitive by its index.
             ///
             /// # Panics
-            /// If a mesh has fewer.
+            /// If a mesh has no such triangle.
             #[doc(hidden)]
             #[inline]
             pub fn primitive(&self, index: u32) -> Primitive<'_> {
@@ -279,7 +282,7 @@ macro_rules! shapes {
                 }
             }
 
-            /// [`Surface::footprint`]; that of a mesh is zero.
+            /// Returns the [footprint](Surface::footprint) of the surface; zero for a mesh.
             #[doc(hidden)]
             #[inline(always)]
             pub fn footprint<N: Number>(&self, direction: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
@@ -296,7 +299,7 @@ macro_rules! shapes {
             }
         })*
 
-        /// What a ray is tested against: a surface, or a triangle of a mesh. It hands every question on.
+        /// A primitive, which rays are tested against: a surface, or a triangle of a mesh.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Primitive<'s> {
             $(#[doc = $of] $(#[$on])* $surface(&'s $surface),)*
@@ -339,8 +342,8 @@ impl From<Mesh> for Shape {
 }
 
 impl Primitive<'_> {
-    /// The diffuse reflectance that the surface brings itself where it has these [coordinates](SurfacePoint::uv): that of
-    /// a mesh whose file has colours.
+    /// Returns the diffuse reflectance of the surface itself at these [coordinates](SurfacePoint::uv): that of a mesh
+    /// whose file has colours.
     pub fn own_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         match self {
             Self::Facet(facet) => facet.reflectance(uv),

@@ -1,10 +1,11 @@
-//! What the CPU at hand can do: eight numbers in one register where it has such.
+//! Vectors of eight numbers in registers, chosen for the CPU at run time.
 //!
-//! SimdKernel over [`Lanes`](crate::lanes::Lanes) is compiled once for each set of instructions, and [`dispatch`] asks the CPU which
-//! of them it has. What is on the way has to be inlined (`#[inline(always)]`) down to here: only then is it made of those
-//! instructions. None of them is but what IEEE 754 defines to the last bit; none multiplies and adds at once.
+//! A [`SimdKernel`] is compiled once for each instruction set, and [`dispatch`] selects one by the features of the CPU.
+//! Everything that a kernel calls must be `#[inline(always)]`: a function that is not inlined loses the target
+//! features, and closures do as well. All operations are exactly defined by IEEE 754; none is fused, as FMA rounds
+//! differently.
 //!
-//! This module alone has unsafe code.
+//! Only this module has unsafe code.
 
 #![allow(unsafe_code)]
 
@@ -13,17 +14,17 @@ use crate::lanes::F32x8;
 pub use crate::lanes::SimdKernel;
 pub use prefetch::prefetch;
 
-/// Does the work with the best that this CPU has.
+/// Runs the kernel with the widest instruction set of this CPU.
 #[inline]
 pub fn dispatch<K: SimdKernel>(kernel: K) -> K::Output {
     #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
     if has_avx512() {
-        // SAFETY: the CPU was asked right here.
+        // SAFETY: `has_avx512` has checked the CPU.
         return unsafe { avx512::run(kernel) };
     }
     #[cfg(target_arch = "x86_64")]
     return if has_avx2() {
-        // SAFETY: the CPU was asked right here.
+        // SAFETY: `has_avx2` has checked the CPU.
         unsafe { avx2::run(kernel) }
     } else {
         sse2::run(kernel)
@@ -32,7 +33,7 @@ pub fn dispatch<K: SimdKernel>(kernel: K) -> K::Output {
     run_scalar(kernel)
 }
 
-/// Does the work with plain arrays: the truth that all else is tested against.
+/// Runs the kernel with plain arrays: the reference for the tests of all instruction sets.
 #[inline]
 pub fn run_scalar<K: SimdKernel>(kernel: K) -> K::Output {
     kernel.run::<F32x8>()
@@ -62,7 +63,7 @@ fn has_avx512() -> bool {
 mod avx;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-// The build script looks at the compiler's version, which clippy knows nothing of.
+// AVX-512 needs Rust 1.89; the build script checks the compiler, which clippy does not know.
 #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
 #[clippy::msrv = "1.89"]
 mod avx512;
@@ -75,7 +76,7 @@ mod tests {
     use super::*;
     use crate::lanes::{LANES, LaneMask, Lanes};
 
-    /// Each operation on pairs of eight, in a row: numbers as bits, and answers.
+    /// The results of each operation on pairs of vectors: the bits of numbers, and masks.
     struct All<'w>(&'w [[F32x8; 2]]);
 
     impl SimdKernel for All<'_> {
@@ -94,7 +95,7 @@ mod tests {
                 let spread = (0..LANES).flat_map(one).chain([N::splat(b.0[0])]);
                 let all_numbers =
                     numbers.into_iter().chain(chosen).chain(mapped).chain(spread).chain([x.gather(y), y.gather(x)]);
-                // Which NaN comes of an operation is nobody's business: none is ever seen.
+                // The payload of NaN differs between CPUs, and no NaN reaches a picture.
                 let bits = |number: f32| if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() };
                 all.extend(all_numbers.map(|numbers| numbers.store().0.map(bits)));
                 let from_bits = [N::mask_from_bits(0b1010_0110), x.has_bits(a.0[3].to_bits())];
@@ -108,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Every pair of numbers at the edges of what there is.
+    /// Every pair of numbers at the limits of f32 and of the conversions.
     #[test]
     fn all_instructions_have_the_same_bits() {
         let mut edges =
@@ -132,12 +133,12 @@ mod tests {
         {
             check(sse2::run(All(&pairs)), "SSE2");
             if has_avx2() {
-                // SAFETY: the CPU was asked right here.
+                // SAFETY: the condition above has checked the CPU.
                 check(unsafe { avx2::run(All(&pairs)) }, "AVX2");
             }
             #[cfg(compiler_has_avx512)]
             if has_avx512() {
-                // SAFETY: the CPU was asked right here.
+                // SAFETY: the condition above has checked the CPU.
                 check(unsafe { avx512::run(All(&pairs)) }, "AVX-512");
             }
         }

@@ -1,4 +1,4 @@
-//! Counts how often trees are built, for the test that no picture builds one.
+//! Counts builds of trees, for the tests that a scene builds its trees once and no picture builds one.
 
 use crate::camera::Pose;
 use crate::color::LinearRgb;
@@ -54,7 +54,7 @@ fn builds(work: impl FnOnce() + Send) -> u32 {
 }
 
 #[test]
-fn a_scene_is_built_once_whichever_way_it_is_made() {
+fn every_way_to_make_a_scene_builds_its_trees_once() {
     assert_eq!(builds(|| drop(Scene::from_ron("x", SPHERES).expect("a scene"))), 1);
     let draft = || Draft::from_bytes("x", SPHERES.as_bytes(), &Reporter::silent()).expect("a scene");
     assert_eq!(builds(|| drop(draft())), 0);

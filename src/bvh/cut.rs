@@ -1,13 +1,14 @@
 //! The choice of a cut between the items of a node: the one that the surface area heuristic expects to be cheapest
-//! (Goldsmith and Salmon 1987), among the cuts between a few bins along each axis (Wald, On fast Construction of SAH-based
-//! Bounding Volume Hierarchies, 2007).
+//! (Goldsmith and Salmon 1987), among the cuts between a few bins along each axis (Wald, On fast Construction of
+//! SAH-based Bounding Volume Hierarchies, 2007).
 
 use crate::bounds::Bounds;
 use crate::lanes::LANES;
 use glam::Vec3;
 use std::array::from_fn;
 
-/// A box as two rows of four numbers, which fit the CPU's registers.
+/// A box as two rows of four numbers, which fit the CPU's registers. Together with two passes over the items instead of
+/// five, and leaves of eight, the dragon's tree took .6 of the time.
 #[derive(Clone, Copy)]
 #[repr(align(16))]
 pub(super) struct Rows {
@@ -108,8 +109,8 @@ pub(super) fn cut(items: &mut [Item], around: &Around, depth: usize) -> Option<H
     Some(partition(items, |item| bin.of(item) < before))
 }
 
-/// Moves the items for which `is_first` is true before the others. The bounds of both sides are computed on the way: with
-/// a separate pass over the items of each node, the tree of the dragon's 871 k triangles took 1.01 times as long.
+/// Moves the items for which `is_first` is true before the others. The bounds of both sides are computed on the way:
+/// with a separate pass over the items of each node, the tree of the dragon's 871 k triangles took 1.01 times as long.
 fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
     let (mut start, mut end) = (0, items.len());
     let [mut first, mut last] = [Around::NOTHING; 2];
@@ -127,10 +128,10 @@ fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
     Halves { cut: start, around: [first, last] }
 }
 
-/// Largest number of bins.
+/// Largest number of bins per axis: the usual 16 (Wald 2007).
 const MAX_BINS: usize = 16;
 
-/// Number of items below which half as many bins are used.
+/// Number of items below which half as many bins are used, as each node clears and scans its bins.
 const MIN_ITEMS_FOR_MAX_BINS: usize = 48;
 
 /// Equal parts along one axis.

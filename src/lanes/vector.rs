@@ -1,52 +1,52 @@
-//! Three coordinates, for one point or for several side by side.
+//! Vectors of three coordinates, for one point or for eight.
 
 use super::{F32x8, LANES, Lanes, Number};
 use glam::Vec3;
 use std::ops::{Add, Mul, Sub};
 
-/// Three coordinates, each a [`Number`].
+/// A vector of three coordinates, each a [`Number`]: one vector, or eight in SoA layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vector<N> {
-    /// Along x.
+    /// The x coordinate.
     pub x: N,
-    /// Along y.
+    /// The y coordinate.
     pub y: N,
-    /// Along z.
+    /// The z coordinate.
     pub z: N,
 }
 
 impl<N: Number> Vector<N> {
-    /// The same vector everywhere.
+    /// Returns `v` in all lanes.
     #[inline(always)]
     pub fn splat(v: Vec3) -> Self {
         Self { x: N::splat(v.x), y: N::splat(v.y), z: N::splat(v.z) }
     }
 
-    /// The least coordinates of both.
+    /// Returns the smaller of each coordinate.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
     }
 
-    /// The greatest coordinates of both.
+    /// Returns the larger of each coordinate.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         Self { x: self.x.max(other.x), y: self.y.max(other.y), z: self.z.max(other.z) }
     }
 
-    /// The greatest absolute coordinate.
+    /// Returns the largest absolute coordinate.
     #[inline(always)]
     pub fn largest(self) -> N {
         self.x.abs().max(self.y.abs()).max(self.z.abs())
     }
 
-    /// `yes` where the answer was yes, else `no`.
+    /// Returns `yes` where the mask is set, else `no`.
     #[inline(always)]
     pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
         Self { x: N::select(mask, yes.x, no.x), y: N::select(mask, yes.y, no.y), z: N::select(mask, yes.z, no.z) }
     }
 
-    /// The cross product.
+    /// Returns the cross product.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl<N: Number> Vector<N> {
         }
     }
 
-    /// The dot product, summed in the order of the coordinates.
+    /// Returns the dot product, summed in the order x, y, z on every CPU.
     #[inline(always)]
     pub fn dot(self, other: Self) -> N {
         self.x * other.x + self.y * other.y + self.z * other.z
@@ -64,28 +64,28 @@ impl<N: Number> Vector<N> {
 }
 
 impl Vector<F32x8> {
-    /// Eight times nothing.
+    /// Zero in all lanes.
     pub const ZERO: Self = Self { x: F32x8::ZERO, y: F32x8::ZERO, z: F32x8::ZERO };
 
-    /// Eight vectors side by side.
+    /// Transposes eight vectors into SoA layout.
     #[inline(always)]
     pub fn of(vectors: [Vec3; LANES]) -> Self {
         Self { x: F32x8(vectors.map(|v| v.x)), y: F32x8(vectors.map(|v| v.y)), z: F32x8(vectors.map(|v| v.z)) }
     }
 
-    /// The same in what the CPU has.
+    /// Loads the coordinates into vectors of type `N`.
     #[inline(always)]
     pub fn load<N: Lanes>(&self) -> Vector<N> {
         Vector { x: N::load(&self.x), y: N::load(&self.y), z: N::load(&self.z) }
     }
 
-    /// Puts it in that place.
+    /// Sets the vector of `lane`.
     #[inline(always)]
     pub fn put(&mut self, lane: usize, v: Vec3) {
         (self.x.0[lane], self.y.0[lane], self.z.0[lane]) = (v.x, v.y, v.z);
     }
 
-    /// One of the eight.
+    /// Returns the vector of `lane`.
     #[inline(always)]
     pub fn of_lane(&self, lane: usize) -> Vec3 {
         Vec3::new(self.x.0[lane], self.y.0[lane], self.z.0[lane])
@@ -93,19 +93,19 @@ impl Vector<F32x8> {
 }
 
 impl<N: Lanes> Vector<N> {
-    /// One of the eight in each place, as [`Lanes::gather`] has it.
+    /// Gathers lanes of each coordinate, as [`Lanes::gather`] does.
     #[inline(always)]
     pub(crate) fn gather(self, lanes: N) -> Self {
         Self { x: self.x.gather(lanes), y: self.y.gather(lanes), z: self.z.gather(lanes) }
     }
 
-    /// One of the eight, everywhere.
+    /// Returns the vector of `lane` in all lanes.
     #[inline(always)]
     pub(crate) fn splat_lane(self, lane: usize) -> Self {
         Self { x: self.x.splat_lane(lane), y: self.y.splat_lane(lane), z: self.z.splat_lane(lane) }
     }
 
-    /// To memory.
+    /// Stores the coordinates to memory.
     #[inline(always)]
     pub fn store(self) -> Vector<F32x8> {
         Vector { x: self.x.store(), y: self.y.store(), z: self.z.store() }

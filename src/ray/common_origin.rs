@@ -1,36 +1,39 @@
-//! Rays through one point.
+//! Packets whose rays share an origin.
 
 use super::{DominantAxis, Rays, Shear};
 use crate::lanes::{LANES, Lanes, Mask, Vector};
 
-/// Groups of eight rays whose lines pass through one point, the origin: the eye, or a light. Seen from there, each ray is a
-/// point of a picture, and what it may meet can be told from the place of that point.
+/// The common origin of a packet: the eye, or a light. Seen from there each ray is a point of an image plane, its
+/// *offset*, and culling becomes a test of offsets.
+///
+/// Bounds of errors are numbered statements in `culling.md`.
 #[derive(Clone, Copy, Debug)]
 pub struct CommonOrigin<N: Lanes> {
     origin: Vector<N>,
-    /// How far the lines miss the origin, along any axis, at most: a length, times 2^24.
+    /// Upper bound of the distance by which a line misses the origin along any axis, times 2^24 (statement 9).
     pub origin_error: N,
     axis: DominantAxis<N::Mask>,
-    /// How far the ray in the picture's middle goes along x and y, while it goes one unit along its longest axis.
+    /// The slopes in x and y of a ray in the middle of the packet, per unit of its dominant axis.
     slope: [N; 2],
-    /// A ray's place in the picture is how far it goes along x and y, while it goes one unit along that axis, less the
-    /// slope. The middle of each group's places:
+    /// The center of each group's offsets in x and y. A ray's offset is its slope less `slope`.
     pub centers: [N; 2],
-    /// and how far from it one of them is, at most.
+    /// The half extents of each group's offsets around `centers`.
     pub half_extents: [N; 2],
-    /// How far a place is from zero, along either axis, at most: up to 1.
+    /// The largest absolute coordinate of an offset, at most 1.
     pub max_offset: N,
-    /// Between where along z, from the origin on, the rays' origins lie, if that is the axis which is longest for all of them
-    /// and nothing on their way is too long or too short for f32; else without an end.
+    /// The range of the rays' origins along z, relative to the common origin. Infinite unless all rays have this
+    /// dominant axis and a length in [`SAFE_LENGTHS`].
     pub depth_range: [N; 2],
 }
 
-/// Lengths that a direction usually has: what is divided by one and multiplied by it again is off by no more than 2^-117,
-/// and not too great for f32 unless it was more than 2^95 before.
+/// Lengths by which a depth can be divided and multiplied again with an underflow of 2^-117 at most, and no overflow
+/// below 2^95 (`culling.md`, 14). Without the limit, a review found, directions of 2^120 decided wrongly for their
+/// packet.
 const SAFE_LENGTHS: [f32; 2] = [1.0 / 4_294_967_296.0, 4_294_967_296.0];
 
 impl<N: Lanes> CommonOrigin<N> {
-    /// Of these rays, if all begin in one point, or have one at t = 1 but for rounding, and are not too wide apart.
+    /// Finds the common origin of rays that start in one point (eye rays) or have one at t = 1 up to rounding (shadow
+    /// rays). Returns `None` for others, and for rays with offsets over 1.
     #[inline(always)]
     pub fn of(groups: &[Rays<N>; LANES]) -> Option<Self> {
         let zero = N::splat(0.0);
@@ -42,11 +45,11 @@ impl<N: Lanes> CommonOrigin<N> {
         let direction = middle.direction.splat_lane(0);
         let end = middle.origin.splat_lane(0) + direction;
         let off = max_distance(groups, N::splat(1.0), end);
-        // What is far off tells nothing.
+        // With a larger origin error the bounds cull nothing: no statement depends on the 4096.
         if !(off * N::splat(4096.0)).le(direction.largest()).all() {
             return None;
         }
-        // As far as was found, where each end is rounded by a unit itself, twice over.
+        // Statement 9: twice the distance found, in units of 2^-24, and twice the rounding of each end.
         Self::around(end, off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0), groups)
     }
 
@@ -62,10 +65,10 @@ impl<N: Lanes> CommonOrigin<N> {
             let (direction, inverse) = (axis.rotate_to_z(rays.direction), axis.rotate_to_z(rays.inverse));
             xs[at] = direction.x * inverse.z - slope[0];
             ys[at] = direction.y * inverse.z - slope[1];
-            // No for NaN as well.
+            // Compared this way round, NaN is not near.
             are_near = are_near & xs[at].abs().le(one) & ys[at].abs().le(one);
             let depth = axis.rotate_to_z(rays.origin - origin).z;
-            // In this order, so that NaN is left out.
+            // In this order `min` and `max` skip NaN.
             depth_range = [depth.min(depth_range[0]), depth.max(depth_range[1])];
             share_axis &= rays.shear.axis.is_same_for_all(axis);
             let length = rays.shear.length;
@@ -75,7 +78,7 @@ impl<N: Lanes> CommonOrigin<N> {
         let (y0, y1) = (N::min_of_each(&ys), N::max_of_each(&ys));
         let half = N::splat(0.5);
         let centers = [(x0 + x1) * half, (y0 + y1) * half];
-        // So much that no rounding makes it too little.
+        // 4 units for the two roundings here (statement 12).
         let more = N::splat(1.0 + 1.0 / 4_194_304.0);
         let half_extents =
             [(x1 - centers[0]).max(centers[0] - x0) * more, (y1 - centers[1]).max(centers[1] - y0) * more];
@@ -98,9 +101,8 @@ impl<N: Lanes> CommonOrigin<N> {
         })
     }
 
-    /// A point in coordinates around the origin, in which the ray in the middle runs along z. (Rounding of the slope is no
-    /// error: the picture is that of the slope as it is.) To first order, in units of 2^-24, its x and y are off by 2 |x| + 3
-    /// |z| at most and its z by |z|; for a line that misses the origin, by twice the origin_error and by the origin_error more.
+    /// Transforms a point to coordinates relative to the common origin in which the ray with `slope` runs along z. For
+    /// the errors see statement 10; rounding of `slope` is none, as offsets are relative to the rounded one.
     #[inline(always)]
     pub fn apply(&self, point: Vector<N>) -> Vector<N> {
         let Vector { x, y, z } = self.axis.rotate_to_z(point - self.origin);
@@ -108,12 +110,13 @@ impl<N: Lanes> CommonOrigin<N> {
     }
 }
 
-/// How far from that point the rays are at t, along any axis, at most.
+/// Returns the largest distance of the rays at `t` from `point`, along any axis.
 #[inline(always)]
 fn max_distance<N: Lanes>(groups: &[Rays<N>; LANES], t: N, point: Vector<N>) -> N {
     let mut distance = N::splat(0.0);
     for rays in groups {
-        // In this order, so that NaN is left out: what is not finite meets nothing, whoever goes with it.
+        // In this order `max` skips NaN: a ray that is not finite hits nothing, and must not hide the distance of
+        // another.
         distance = (rays.origin + rays.direction * t - point).largest().max(distance);
     }
     N::splat(distance.reduce_max())
@@ -127,7 +130,7 @@ mod tests {
     use glam::Vec3;
     use std::array::from_fn;
 
-    /// A packet of rays from one point, but for some.
+    /// A packet of rays from one point, except for `others`.
     fn packet(others: &[(usize, usize, Ray)]) -> Option<CommonOrigin<F32x8>> {
         let mut rays = [[Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, 1.0) }; LANES]; LANES];
         for &(group, lane, ray) in others {
@@ -138,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_beside_the_point_is_noticed() {
+    fn a_ray_beside_the_origin_is_noticed() {
         let beside = Ray { origin: Vec3::X * 5.0, direction: Vec3::new(0.1, 0.1, 1.0) };
         let endless = Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, f32::INFINITY) };
         let across = Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 0.0, 0.0) };

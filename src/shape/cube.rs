@@ -1,4 +1,4 @@
-//! Ray-cube intersection: for tests, a surface that is one file, and one line in the table of surfaces.
+//! Ray-cube intersection: a surface for tests, which shows that one file and one line of the table suffice.
 
 use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};
@@ -16,7 +16,7 @@ pub struct Cube {
 }
 
 impl Cube {
-    /// The cube about `center` with sides of twice `half_side`.
+    /// Returns the cube about `center` with sides of twice `half_side`.
     pub fn new(center: Vec3, half_side: f32) -> Self {
         Self { center, half_side }
     }
@@ -27,7 +27,7 @@ impl Surface for Cube {
         Some(Bounds { min: self.center - self.half_side, max: self.center + self.half_side })
     }
 
-    /// The box is its own bounds.
+    /// The cube is its own box.
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
         let Bounds { min, max } = self.bounds()?;
         let [enters, leaves] = crossed([Vector::splat(min), Vector::splat(max)], &probe.rays);
@@ -55,7 +55,7 @@ impl Described for Cube {
         format!("a {color} cube with sides of {}", number(2.0 * self.half_side))
     }
 
-    /// Those of the planes of its faces between which the line is inside all the others.
+    /// Solves for the planes of the faces between which the line is inside all others.
     fn equation(&self, ray: &Ray) -> Equation {
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let (c, h) = (self.center.as_dvec3(), f64::from(self.half_side));
@@ -95,7 +95,7 @@ mod tests {
         Ray { origin: Vec3::new(0.0, y, 10.0), direction: Vec3::new(0.0, 0.0, -1.0) }
     }
 
-    /// That number of cubes of half side 1 along the x axis, three apart.
+    /// A scene of `count` cubes of half side 1 along the x axis, three apart.
     fn scene(count: u32) -> Scene {
         let pose = Pose { eye: Vec3::new(0.0, 0.0, 10.0), target: Vec3::ZERO, up: Vec3::Y };
         let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(0.8).expect("an angle")).expect("a pose");

@@ -1,4 +1,4 @@
-//! How surfaces are spoken of: in descriptions and explanations.
+//! Surfaces in the text of descriptions and explanations.
 
 use super::{Equation, Mesh, Primitive, Shape, Surface, surfaces};
 use crate::bounds::Bounds;
@@ -6,33 +6,33 @@ use crate::ray::Ray;
 use crate::text::number;
 use glam::Vec3;
 
-/// What is said of a surface.
+/// The text about a surface.
 pub trait Described {
-    /// What it is called: "sphere".
+    /// The name of its kind: "sphere".
     const KIND: &'static str;
 
-    /// Returns what it is, in that colour: "a red sphere of radius 1".
+    /// Returns a noun phrase with the colour: "a red sphere of radius 1".
     fn described(&self, color: &str) -> String;
 
     /// Returns the lecture's equation for the ray.
     fn equation(&self, ray: &Ray) -> Equation;
 
-    /// Returns whether the point lies inside it; nothing is inside a surface that encloses nothing.
+    /// Returns whether the point lies inside the surface; false for surfaces that enclose no volume.
     fn encloses(&self, _point: Vec3) -> bool {
         false
     }
 
-    /// Returns the centre and radius of the circle that it is seen as from each side, if it is.
+    /// Returns centre and radius of the surface if its outline is a circle from every side: a sphere's.
     fn circle(&self) -> Option<(Vec3, f32)> {
         None
     }
 }
 
-/// Hands what is asked of shapes and parts on to each surface of the table.
+/// Delegates the methods of shapes and primitives to the surfaces of the table.
 macro_rules! described {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         impl Shape {
-            /// What it is called: "sphere".
+            /// Returns the name of its kind: "sphere".
             #[doc(hidden)]
             pub fn kind(&self) -> &'static str {
                 match self {
@@ -41,7 +41,7 @@ macro_rules! described {
                 }
             }
 
-            /// Returns what it is, in that colour: "a red sphere of radius 1".
+            /// Returns a noun phrase with the colour: "a red sphere of radius 1".
             #[doc(hidden)]
             pub fn described(&self, color: &str) -> String {
                 match self {
@@ -52,7 +52,7 @@ macro_rules! described {
                 }
             }
 
-            /// Returns whether the point lies inside it; a mesh need not be closed, and encloses nothing.
+            /// Returns whether the point lies inside the shape; false for meshes, which need not be closed.
             #[doc(hidden)]
             pub fn encloses(&self, point: Vec3) -> bool {
                 match self {
@@ -61,7 +61,7 @@ macro_rules! described {
                 }
             }
 
-            /// Returns the smallest box around it; nothing where it has no end.
+            /// Returns the smallest box around the shape, or `None` if it is unbounded.
             #[doc(hidden)]
             pub fn bounds(&self) -> Option<Bounds> {
                 match self {
@@ -80,7 +80,7 @@ macro_rules! described {
                 }
             }
 
-            /// Returns the centre and radius of the circle that it is seen as from each side, if it is.
+            /// Returns centre and radius of the primitive if its outline is a circle from every side.
             pub fn circle(&self) -> Option<(Vec3, f32)> {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.circle(),)*
@@ -97,7 +97,7 @@ fn whole(mesh: &Mesh) -> Bounds {
     Bounds::of(mesh.file().positions().iter().copied())
 }
 
-/// Returns how long a box is along each axis, in words.
+/// Returns the size of a box along each axis, in words.
 pub(super) fn sides(bounds: &Bounds) -> String {
     let Vec3 { x, y, z } = bounds.extent();
     format!("{} by {} by {} in x, y and z", number(x), number(y), number(z))

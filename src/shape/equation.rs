@@ -1,18 +1,18 @@
-//! The lecture's equations for where a ray crosses a surface: what is put in, and what comes out.
+//! The lecture's equations for the crossing of a ray and a surface, with inputs and results.
 //!
-//! They are solved as they stand in the lecture, in f64. What the picture is made with are other forms of them that keep
-//! their digits in f32; so the last digits may differ.
+//! They are solved in the lecture's form, in f64. Pictures use forms that are stable in f32, so that the last digits
+//! may differ.
 
-/// Where a ray's line crosses a surface, in front of the origin or behind it.
+/// The crossings of a ray's line and a surface, in front of the origin or behind it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
     /// The computation, line by line.
     pub steps: Vec<Step>,
-    /// Each t at which the line crosses the surface, or the plane in which it lies, the least first.
+    /// The values of t at which the line crosses the surface or its plane, ascending.
     pub roots: Vec<f64>,
-    /// What is said where there is no root.
+    /// The text if there is no root.
     pub without_root: &'static str,
-    /// Whether the plane is crossed outside the surface.
+    /// Whether the line crosses the plane outside the surface.
     pub is_outside: bool,
 }
 
@@ -21,13 +21,13 @@ pub struct Equation {
 pub enum Step {
     /// A formula and its value.
     Value(&'static str, f64),
-    /// A formula, or words, without a value.
+    /// A formula or words without a value.
     Text(&'static str),
-    /// Some values with what stands before them and between them.
+    /// Values, with a prefix and a separator.
     Values(&'static str, &'static str, Vec<f64>),
 }
 
-/// The quotient, if it is a number and finite.
+/// Returns the quotient if it is finite.
 pub(super) fn quotient(above: f64, below: f64) -> Option<f64> {
     Some(above / below).filter(|quotient| quotient.is_finite())
 }

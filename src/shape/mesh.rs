@@ -13,14 +13,13 @@ use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
 use std::fmt;
 use std::ops::{Add, Mul};
 
-/// Many triangles, with what their file says of them: the normals of the smooth surface that they stand for, colours and
-/// textures.
+/// A triangle mesh, with the normals, colours and textures of its file.
 #[derive(Clone, PartialEq)]
 pub struct Mesh {
     file: MeshFile,
 }
 
-/// Only its size: it may have millions of triangles.
+/// Shows the size only: a mesh may have millions of triangles.
 impl fmt::Debug for Mesh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Mesh").field("triangles", &self.triangle_count()).finish_non_exhaustive()
@@ -40,8 +39,8 @@ impl Mesh {
         Ok(Self { file })
     }
 
-    /// Returns the mesh of these triangles, each of which names the positions of its corners by index, counterclockwise
-    /// seen from outside. A triangle may have no area; no ray meets it.
+    /// Returns the mesh of triangles given by the indices of their corners in `positions`, counterclockwise seen from
+    /// outside. A triangle may have no area; no ray hits it.
     ///
     /// ```
     /// use glam::Vec3;
@@ -81,26 +80,26 @@ impl Mesh {
         Self { file }
     }
 
-    /// How many triangles there are; at least one.
+    /// Returns the number of triangles; at least one.
     pub(crate) fn triangle_count(&self) -> u32 {
         self.file.triangles().len() as u32
     }
 
-    /// Whether any of them stand for a smooth surface.
+    /// Returns whether any triangle has normals at its corners.
     pub(crate) fn is_smooth(&self) -> bool {
         self.file.has_normals()
     }
 
-    /// What it is made of.
+    /// Returns the positions, triangles and materials.
     #[doc(hidden)]
     pub fn file(&self) -> &MeshFile {
         &self.file
     }
 
-    /// One of the triangles.
+    /// Returns a triangle by its index.
     ///
     /// # Panics
-    /// If there are fewer.
+    /// If there is no such triangle.
     #[doc(hidden)]
     pub fn facet(&self, index: u32) -> Facet<'_> {
         let corners = self.file.triangles()[index as usize];
@@ -136,13 +135,13 @@ impl Surface for Facet<'_> {
 }
 
 impl Facet<'_> {
-    /// The triangle itself.
+    /// Returns the flat triangle.
     pub fn triangle(&self) -> &Triangle {
         &self.triangle
     }
 
-    /// Position and normal of the smooth surface that the triangle stands for, if it does, at the point that is seen from
-    /// that side: the corners may go round either way.
+    /// Returns the position and the shading normal of the smooth surface that the triangle approximates, if its corners
+    /// have normals. `geometric_normal` gives the visible side, as files order corners either way.
     pub fn smooth(&self, position: Vec3, geometric_normal: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
         let normals = self.mesh.file.normals_of(self.index as usize)?;
         let smooth = between(normals, uv).normalize_or(geometric_normal);
@@ -150,16 +149,16 @@ impl Facet<'_> {
         Some((position + self.lift(position, uv, normals.map(|normal| normal * sign)), smooth * sign))
     }
 
-    /// From the triangle up to where the smooth surface bulges over it: between the planes through the corners,
-    /// perpendicular to their normals (Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4). Rays that
-    /// start there do not meet the triangle's neighbours where the smooth surface is lit.
+    /// Returns the offset from the triangle to the smooth surface, interpolated from the tangent planes of the corners
+    /// (Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4). Shadow rays from there do not hit
+    /// neighbouring triangles where the smooth surface is lit.
     fn lift(&self, position: Vec3, uv: Vec2, normals: [Vec3; 3]) -> Vec3 {
         let [a, b, c] = self.triangle.corners();
         let above = |corner: Vec3, normal: Vec3| normal * (corner - position).dot(normal).max(0.0);
         between([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], uv)
     }
 
-    /// The product of what the file has for it: its material's, the texture's and the corners' colours.
+    /// Returns the product of the colours that the file has: of the material, the texture and the corners.
     pub(super) fn reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         let (file, index) = (&self.mesh.file, self.index as usize);
         let material = file.material_of(index).map(|index| &file.materials()[index]);
@@ -174,7 +173,7 @@ impl Facet<'_> {
     }
 }
 
-/// What lies between the corners' values at the shares of the second and the third.
+/// Interpolates the values of the corners by the barycentric weights of the second and the third.
 fn between<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], shares: Vec2) -> T {
     a * (1.0 - shares.x - shares.y) + b * shares.x + c * shares.y
 }
@@ -182,13 +181,13 @@ fn between<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], shares:
 /// `Mesh(path: ..., scale: ..., rotate: ..., translate: ...)`
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenMesh {
-    /// The mesh's file, seen from the scene's.
+    /// The path of the mesh's file, relative to the scene's file.
     pub path: Option<Spanned<String>>,
-    /// Along each axis; 1 if none is given.
+    /// The scale along each axis; 1 if none is given.
     pub scale: Option<WrittenVector>,
-    /// About x, then y, then z, in degrees.
+    /// The rotation about x, then y, then z, in degrees.
     pub rotate: Option<WrittenVector>,
-    /// By so much, after scale and rotation.
+    /// The translation, after scale and rotation.
     pub translate: Option<WrittenVector>,
 }
 
@@ -237,7 +236,7 @@ fn path(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Spanned<St
     Some(Spanned { value: path.to_string(), span: node.span })
 }
 
-/// One number for all axes, or three.
+/// Reads one factor for all axes, or three.
 fn scale(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
     if matches!(node.value, Value::Number(_)) {
         let number = reader.number(node)?;
@@ -252,7 +251,7 @@ fn angles(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenV
     Some(WrittenVector { components, span: node.span })
 }
 
-/// Scale, rotation and translation of a mesh.
+/// Checks scale, rotation and translation of a mesh.
 fn placement(
     validator: &mut Validator<'_>,
     &WrittenMesh { scale, rotate, translate, .. }: &WrittenMesh,
@@ -272,7 +271,7 @@ fn placement(
     Some((scale?, turn?, translation?))
 }
 
-/// Along no axis nothing is left of a mesh; it may be mirrored.
+/// Checks the scale: a factor may be negative, which mirrors the mesh, but not 0.
 fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3> {
     for factor in written.components {
         validator.accept(factor.span, checks::factor(factor.value))?;
@@ -280,7 +279,7 @@ fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3
     Some(DVec3::from_array(written.components.map(|factor| factor.value)).as_vec3())
 }
 
-/// About x first, then about y, then about z; counterclockwise for who looks against the axis.
+/// Returns the rotation about x, then y, then z; counterclockwise when looking against the axis.
 fn turn(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
     const MAX_ANGLE: f64 = 36_000.0;
     if let Some(angle) = written.components.iter().find(|angle| angle.value.abs() > MAX_ANGLE) {
@@ -293,7 +292,7 @@ fn turn(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
     Some((about_z * about_y * about_x).as_mat3())
 }
 
-/// Of an angle in degrees; exact for quarter turns.
+/// Returns cosine and sine of an angle in degrees; exact for quarter turns.
 fn cosine_and_sine(degrees: f64) -> (f64, f64) {
     let quarters = libm::round(degrees / 90.0);
     let (sine, cosine) = libm::sincos((degrees - 90.0 * quarters).to_radians());

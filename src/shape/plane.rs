@@ -12,7 +12,7 @@ use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::Vec3;
 
-/// All points x with (x - a).n = 0. It has no end, and is seen from both sides.
+/// All points x with (x - a).n = 0. Unbounded, and visible from both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     point: Vec3,
@@ -32,7 +32,7 @@ impl Plane {
         Ok(Self::unchecked(point, checks::checked_direction("normal", normal)?))
     }
 
-    /// Returns the plane, which is not checked, with a normal of unit length.
+    /// Returns the unchecked plane; `normal` has unit length.
     #[doc(hidden)]
     pub fn unchecked(point: Vec3, normal: Vec3) -> Self {
         let u = pattern_axis(normal);
@@ -40,19 +40,19 @@ impl Plane {
         Self { point, normal, u, v: u.cross(normal) }
     }
 
-    /// A point of the plane; patterns begin there.
+    /// Returns the point at which patterns start.
     #[doc(hidden)]
     pub fn point(&self) -> Vec3 {
         self.point
     }
 
-    /// Unit length.
+    /// Returns the normal, of unit length.
     #[doc(hidden)]
     pub fn normal(&self) -> Vec3 {
         self.normal
     }
 
-    /// (p + t d - a).n = 0 gives t = (a - p).n / d.n; a ray along the plane never crosses it.
+    /// Solves (p + t d - a).n = 0: t = (a - p).n / d.n, infinite or NaN for a ray parallel to the plane.
     #[inline(always)]
     fn crossing<N: Number>(&self, rays: &Rays<N>) -> N {
         let normal = Vector::splat(self.normal);
@@ -60,7 +60,7 @@ impl Plane {
     }
 }
 
-/// The x axis laid into the plane; where that is (nearly) the normal itself, the z axis.
+/// Returns the x axis projected into the plane, or the z axis if the normal is close to x.
 fn pattern_axis(normal: Vec3) -> Vec3 {
     let axis = if normal.x.abs() < 0.9 { Vec3::X } else { Vec3::Z };
     (axis - normal * axis.dot(normal)).normalize()
@@ -70,7 +70,7 @@ impl<N: Number> Crossable<N> for Plane {
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
         let t = self.crossing(rays);
-        // A ray along the plane divides by zero: infinite or NaN, and so not inside.
+        // A parallel ray divides by zero: infinite or NaN, and both comparisons reject that.
         Some((min.le(t) & t.le(N::splat(f32::MAX)), t))
     }
 
@@ -95,7 +95,7 @@ impl Surface for Plane {
         AtCrossing::points_at(self, &Probe::new(*ray).rays, t).point()
     }
 
-    /// A neighbour's ray p + t (d + e) reaches the plane where t changes by -t e.n / d.n, to first order (Igehy, Tracing Ray
+    /// A neighbouring ray p + t (d + e) crosses the plane at t - t e.n / d.n, to first order (Igehy, Tracing Ray
     /// Differentials, 1999).
     #[inline(always)]
     fn footprint<N: Number>(&self, d: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
@@ -139,7 +139,7 @@ impl Described for Plane {
         format!("an endless {color} plane")
     }
 
-    /// t = (a - o).n / d.n, for a point a of the plane.
+    /// Solves t = (a - o).n / d.n, for a point a of the plane.
     fn equation(&self, ray: &Ray) -> Equation {
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let (a, n) = (self.point.as_dvec3(), self.normal.as_dvec3());
@@ -157,9 +157,9 @@ impl Described for Plane {
 /// `Plane(point: ..., normal: ...)`
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenPlane {
-    /// Any of its points.
+    /// Any point of the plane.
     pub point: Option<WrittenVector>,
-    /// Of any length but 0.
+    /// The normal, of any length but 0.
     pub normal: Option<WrittenVector>,
 }
 
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn t_is_where_the_lecture_has_it() {
+    fn the_equation_is_the_lectures() {
         let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::new(0.0, 0.0, -2.0) };
         let equation = |normal| Plane::unchecked(Vec3::new(1.0, 2.0, 1.0), normal).equation(&ray);
         let values = |normal| {

@@ -1,4 +1,4 @@
-//! Eight surfaces of any kind, tested one after the other.
+//! A leaf for surfaces whose formula is written for one ray and one surface.
 
 use super::{AtCrossing, Crossable, Points, Side, SoaLeaf, Surface};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Vector};
@@ -6,7 +6,7 @@ use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::Vec3;
 use std::array::from_fn;
 
-/// Eight surfaces whose formula is written for one ray and one surface only.
+/// Up to eight surfaces of any kind, tested one after the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalarLeaf<S>([Option<S>; LANES]);
 
@@ -57,7 +57,7 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
 
     fn boxes(&self) -> [Vector<N>; 2] {
         let bounds = |lane: usize| self.0[lane].as_ref().and_then(Surface::bounds);
-        // From beyond all to before all: no ray meets it.
+        // Unused lanes have an inverted infinite box, which no ray meets.
         let min = from_fn(|lane| bounds(lane).map_or(Vec3::INFINITY, |bounds| bounds.min));
         let max = from_fn(|lane| bounds(lane).map_or(Vec3::NEG_INFINITY, |bounds| bounds.max));
         [Vector::of(min).load(), Vector::of(max).load()]
@@ -91,7 +91,7 @@ impl<S: Surface, N: Lanes> AtCrossing<N> for ScalarLeaf<S> {
     }
 }
 
-/// One of the rays.
+/// Returns the ray of `lane`.
 fn ray_of<N: Lanes>(rays: &Rays<N>, lane: usize) -> Ray {
     Ray { origin: rays.origin.store().of_lane(lane), direction: rays.direction.store().of_lane(lane) }
 }

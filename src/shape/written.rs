@@ -1,4 +1,4 @@
-//! Surfaces as they are written in scene files, and meshes beside them.
+//! The surfaces and meshes of scene files, before they are checked.
 
 use super::{Shape, surfaces};
 use crate::mesh_file::MeshFile;
@@ -7,24 +7,24 @@ use crate::scene_text::SyntaxNode;
 use crate::text;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator};
 
-/// A surface as it is written, and its check.
+/// A surface in a scene file, and its check.
 pub trait CheckedShape: InSceneFile {
-    /// Whether patterns can be laid out on it.
+    /// Whether the surface has coordinates for patterns.
     const HAS_COORDINATES: bool = false;
 
-    /// Whether it may bring colours of its own.
+    /// Whether the surface may have colours of its own.
     const BRINGS_COLORS: bool = false;
 
-    /// Returns the shape, if nothing is wrong with it; else faults are added, or were.
+    /// Returns the shape, or `None` after a fault has been reported to `validator`.
     fn check(written: &Self::Written, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape>;
 }
 
-/// Where meshes come from.
+/// The source of meshes.
 pub trait Meshes {
-    /// Returns the mesh of that path, as the scene's file has it.
+    /// Returns the mesh of a path in a scene file.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
+    /// The message for the user, or a cancellation.
     fn mesh(&mut self, path: &str) -> Result<MeshFile, Unfinished<String>>;
 }
 
@@ -34,7 +34,7 @@ macro_rules! written {
         written! { all $($(#[$on])* $surface,)* Mesh, }
     };
     (all $($(#[$on:meta])* $surface:ident,)*) => {
-        /// A surface as it is written, or a mesh.
+        /// A surface or a mesh in a scene file.
         #[derive(Clone, Debug, PartialEq)]
         pub enum WrittenShape {
             $($(#[$on])* #[doc = concat!("`", stringify!($surface), "(...)`")]
@@ -43,10 +43,10 @@ macro_rules! written {
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenShape {
-            /// The words that name shapes.
+            /// The names of all shapes.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* <super::$surface as InSceneFile>::NAME,)*];
 
-            /// Reads the fields of the shape of that name. Returns them, too, for the object's other fields.
+            /// Reads the fields of the shape called `name`. Also returns the fields, for those of the object.
             pub(crate) fn read<'n>(name: &str, reader: &mut NodeReader<'_>, node: &'n SyntaxNode<'n>) -> Option<(Self, Fields<'n>)> {
                 $($(#[$on])* if name == super::$surface::NAME {
                     use super::$surface as Surface;
@@ -56,34 +56,34 @@ macro_rules! written {
                 None
             }
 
-            /// Returns the shape, if nothing is wrong with it; else faults are added, or were.
+            /// Returns the shape, or `None` after a fault has been reported to `validator`.
             pub(crate) fn check(&self, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
                 match self {
                     $($(#[$on])* Self::$surface(written) => super::$surface::check(written, validator, meshes),)*
                 }
             }
 
-            /// Its name after an article, for messages.
+            /// Returns the name with an article, for messages.
             pub(crate) fn owner(&self) -> &'static str {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::OWNER,)*
                 }
             }
 
-            /// The names, after articles, of the surfaces on which patterns can be laid out.
+            /// Returns the names, with articles, of the surfaces that have coordinates for patterns.
             pub(crate) fn with_coordinates() -> Vec<&'static str> {
                 let all = [$($(#[$on])* (super::$surface::HAS_COORDINATES, super::$surface::OWNER),)*];
                 all.into_iter().filter_map(|(has_coordinates, owner)| has_coordinates.then_some(owner)).collect()
             }
 
-            /// Whether patterns can be laid out on it.
+            /// Returns whether the shape has coordinates for patterns.
             pub(crate) fn has_coordinates(&self) -> bool {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::HAS_COORDINATES,)*
                 }
             }
 
-            /// Whether it may bring colours of its own.
+            /// Returns whether the shape may have colours of its own.
             pub(crate) fn brings_colors(&self) -> bool {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::BRINGS_COLORS,)*
@@ -95,11 +95,11 @@ macro_rules! written {
 
 surfaces! { written }
 
-/// Makes what is asked of a checked [`Shape`] about its kind from the table of surfaces.
+/// Makes the methods of a checked [`Shape`] that depend on its kind only, from the table of surfaces.
 macro_rules! of_kind {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         impl Shape {
-            /// Its name after an article, for messages.
+            /// Returns the name with an article, for messages.
             pub(crate) fn owner(&self) -> &'static str {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::OWNER,)*
@@ -107,7 +107,7 @@ macro_rules! of_kind {
                 }
             }
 
-            /// Whether patterns can be laid out on it.
+            /// Returns whether the shape has coordinates for patterns.
             pub(crate) fn has_coordinates(&self) -> bool {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::HAS_COORDINATES,)*
@@ -120,8 +120,8 @@ macro_rules! of_kind {
 
 surfaces! { of_kind }
 
-/// The message for a material and its [pattern](crate::material::Reflecting::PATTERN) on a shape without coordinates, each
-/// after an article.
+/// Returns the message for a material and its [pattern](crate::material::Reflecting::PATTERN) on a shape without
+/// coordinates, each with an article.
 pub(crate) fn without_coordinates((material, pattern): (&str, &str), shape: &str) -> String {
     let wanted = text::any_of(&WrittenShape::with_coordinates());
     format!("{material} needs {wanted}, on which {pattern} are laid out; this is {shape}")

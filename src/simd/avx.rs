@@ -1,4 +1,4 @@
-//! Eight numbers in a register of AVX2. What their comparisons answer depends on whether the CPU has AVX-512, too.
+//! Vectors of eight numbers in a register of AVX2. The type of their masks depends on whether the CPU has AVX-512.
 
 #![allow(unsafe_code)]
 
@@ -13,12 +13,12 @@ use std::arch::x86_64::{
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// LaneMask for eight numbers in a register, and the instructions that give them.
+/// The mask type of an instruction set, and its comparisons.
 pub(super) trait MaskOps: LaneMask {
-    /// Does the work with registers that have such answers.
+    /// Runs the kernel with registers that have this mask type.
     ///
     /// # Safety
-    /// The CPU has the instructions that they need.
+    /// The CPU has the instruction set.
     unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output;
 
     /// [`Number::lt`].
@@ -37,7 +37,7 @@ pub(super) trait MaskOps: LaneMask {
     fn has_bits(numbers: __m256, bits: u32) -> Self;
 }
 
-/// Only [`MaskOps::run`] has work done with it: where there is one, the CPU has AVX2.
+/// Eight numbers in a register. Only [`MaskOps::run`] starts kernels with it: where one exists, the CPU has AVX2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Register<M>(__m256, PhantomData<M>);
 
@@ -48,18 +48,19 @@ impl<M> Register<M> {
     }
 }
 
-/// An instruction on such a register.
+/// Runs an instruction of AVX2, or of AVX-512 in its mask type.
 macro_rules! avx {
     ($instruction:expr) => {
-        // SAFETY: the CPU has AVX2, as `Register` says, and where masks are asked for AVX-512, as theirs says; what is
-        // loaded and stored is a whole and aligned `F32x8`.
+        // SAFETY: a `Register` or a mask exists only within `MaskOps::run`, whose caller has promised the instruction
+        // set; loads and stores are of a whole and aligned `F32x8`.
         unsafe { $instruction }
     };
 }
 
 pub(super) use avx;
 
-/// What is chosen of each eight, where the order does not count: of neighbours, then of pairs, then of halves.
+/// Reduces eight registers to one with the minimum or maximum of each: over neighbours, pairs, then halves. A
+/// transposing reduction takes three rounds, where scalars from memory take eight loads per register.
 macro_rules! of_each {
     ($choose:ident, $eights:expr) => {{
         let [a, b, c, d, e, f, g, h] = *$eights;
@@ -134,7 +135,7 @@ impl<M: MaskOps> Number for Register<M> {
         Self::of(mask.select(yes.0, no.0))
     }
 
-    /// Of the instruction, too: where one is NaN and where both are zero, the second.
+    // The instruction returns its second operand if one is NaN or both are zero, as `Number::max` is defined.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::of(avx!(_mm256_max_ps(self.0, other.0)))
@@ -157,7 +158,7 @@ impl<M: MaskOps> Number for Register<M> {
 impl<M: MaskOps> Lanes for Register<M> {
     #[inline(always)]
     fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output {
-        // SAFETY: outside this module the type is only named within `MaskOps::run`, whose caller has promised the same.
+        // SAFETY: outside this module the type is named only within `MaskOps::run`, whose caller has promised the same.
         unsafe { M::run(kernel) }
     }
 
@@ -212,13 +213,13 @@ impl<M: MaskOps> Lanes for Register<M> {
     }
 }
 
-/// The first and the last numbers of both, neighbours beside each other.
+/// Interleaves the first and the last numbers of both registers.
 #[inline(always)]
 fn neighbours<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([Register::of(_mm256_unpacklo_ps(a.0, b.0)), Register::of(_mm256_unpackhi_ps(a.0, b.0))])
 }
 
-/// The first and the last pairs of both.
+/// Returns the first and the last pairs of both registers.
 #[inline(always)]
 fn pairs<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([
@@ -227,7 +228,7 @@ fn pairs<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     ])
 }
 
-/// The first and the last halves of both.
+/// Returns the first and the last halves of both registers.
 #[inline(always)]
 fn halves<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([

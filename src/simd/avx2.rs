@@ -1,4 +1,4 @@
-//! AVX2: the answers for eight numbers are a register of their own.
+//! AVX2: masks are registers.
 
 #![allow(unsafe_code)]
 
@@ -11,7 +11,7 @@ use std::arch::x86_64::{
 };
 use std::ops::{BitAnd, BitOr, Not};
 
-/// Does the work with the registers of AVX2.
+/// Runs the kernel with AVX2.
 ///
 /// # Safety
 /// The CPU has AVX2, BMI1, LZCNT and POPCNT.
@@ -20,7 +20,7 @@ pub(super) unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
     unsafe { Mask256::run(kernel) }
 }
 
-/// All bits of a number are set for yes, none for no.
+/// A mask whose set lanes have all bits set.
 #[derive(Clone, Copy, Debug)]
 struct Mask256(__m256);
 

@@ -1,5 +1,7 @@
-//! AVX-512: the answers for eight numbers are a bit each. (Registers of sixteen are not used: what eight rays or eight
-//! boxes need is in one of eight.)
+//! AVX-512: masks are bits, which cost nothing to select by, store and count, and there are 32 registers.
+//!
+//! Against AVX2: three spheres 1.27 times as fast, 1,000 spheres and bunny 1.07 to 1.09. Registers of sixteen are not
+//! used: groups, nodes and leaves have eight.
 
 #![allow(unsafe_code)]
 
@@ -11,7 +13,7 @@ use std::arch::x86_64::{
 };
 use std::ops::{BitAnd, BitOr, Not};
 
-/// Does the work with the registers and masks of AVX-512.
+/// Runs the kernel with AVX-512.
 ///
 /// # Safety
 /// The CPU has AVX-512 (F, VL, DQ, BW), AVX2, BMI1, BMI2, LZCNT and POPCNT.
@@ -20,7 +22,7 @@ pub(super) unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
     unsafe { Bitmask::run(kernel) }
 }
 
-/// A bit for each number, 1 for yes. Only [`MaskOps::run`] has work done with it: where there is one, the CPU has AVX-512.
+/// A mask with a bit per lane. Only [`MaskOps::run`] starts kernels with it: where one exists, the CPU has AVX-512.
 #[derive(Clone, Copy, Debug)]
 struct Bitmask(u8);
 

@@ -1,13 +1,12 @@
-//! Memory asked for before it is needed.
+//! Prefetching of values into the cache.
 
 #![allow(unsafe_code)]
 
-/// Bytes that a CPU fetches at once.
+/// Size of a cache line in bytes.
 #[cfg(target_arch = "x86_64")]
 const CACHE_LINE: usize = 64;
 
-/// Asks the CPU to bring a value into its nearest cache, and does not wait for it. Where the CPU has no such instruction,
-/// nothing happens.
+/// Starts to load all cache lines of a value into the L1 cache. Does nothing on CPUs other than x86-64.
 #[inline(always)]
 pub fn prefetch<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]

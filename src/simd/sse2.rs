@@ -1,4 +1,4 @@
-//! Eight numbers in two registers of SSE2, which every x86-64 has.
+//! Vectors of eight numbers in two registers of SSE2, which every x86-64 CPU has.
 
 #![allow(unsafe_code)]
 
@@ -12,13 +12,13 @@ use std::arch::x86_64::{
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// Does the work with the registers of SSE2.
+/// Runs the kernel with SSE2.
 #[inline(never)]
 pub(super) fn run<K: SimdKernel>(kernel: K) -> K::Output {
     kernel.run::<Registers>()
 }
 
-/// [`Number::map_lanes`] of what is in registers.
+/// Implements [`Number::map_lanes`] for registers, through memory.
 #[inline(always)]
 pub(super) fn map_lanes<N: Lanes, const IN: usize, const OUT: usize>(
     numbers: [N; IN],
@@ -35,18 +35,18 @@ pub(super) fn map_lanes<N: Lanes, const IN: usize, const OUT: usize>(
     results
 }
 
-/// The first four numbers and the last.
+/// The first four and the last four numbers.
 #[derive(Clone, Copy, Debug)]
 struct Registers([__m128; 2]);
 
-/// All bits of a number are set for yes, none for no.
+/// A mask whose set lanes have all bits set.
 #[derive(Clone, Copy, Debug)]
 struct Masks([__m128; 2]);
 
-/// From this on all numbers are whole.
+/// 2^23: from here on all f32 are integers.
 const INTEGERS_FROM: f32 = 8_388_608.0;
 
-/// An instruction of SSE2.
+/// Runs an instruction of SSE2.
 macro_rules! sse {
     ($instruction:expr) => {
         // SAFETY: every x86-64 has SSE2; what is loaded and stored is four numbers of an `F32x8`, which is aligned.
@@ -64,7 +64,8 @@ fn select(mask: __m128, yes: __m128, no: __m128) -> __m128 {
     sse!(_mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no)))
 }
 
-/// Rounded towards zero, and one less where that is greater; where it cannot be told so, the number is whole or NaN.
+/// Rounds down: truncates, and subtracts 1 where that is above the number. SSE2 has no `floor` (SSE4.1), and its
+/// conversion overflows from 2^31 on; from 2^23 on, and for NaN, the number is returned as it is.
 #[inline(always)]
 fn floor(number: __m128) -> __m128 {
     sse!({
@@ -72,7 +73,7 @@ fn floor(number: __m128) -> __m128 {
         let is_less = _mm_cmplt_ps(_mm_andnot_ps(_mm_set1_ps(-0.0), number), _mm_set1_ps(INTEGERS_FROM));
         let truncated = _mm_cvtepi32_ps(_mm_cvttps_epi32(number));
         let one = _mm_and_ps(_mm_cmplt_ps(number, truncated), _mm_set1_ps(1.0));
-        // Of -0 too: its sign stays.
+        // The sign is restored for -0 and for numbers that truncate to 0.
         select(is_less, _mm_or_ps(_mm_sub_ps(truncated, one), sign), number)
     })
 }
@@ -158,7 +159,7 @@ impl Number for Registers {
         Self([select(mask[0], yes.0[0], no.0[0]), select(mask[1], yes.0[1], no.0[1])])
     }
 
-    /// Of the instruction, too: where one is NaN and where both are zero, the second.
+    // The instruction returns its second operand if one is NaN or both are zero, as `Number::max` is defined.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self(both(self.0, other.0, |a, b| sse!(_mm_max_ps(a, b))))

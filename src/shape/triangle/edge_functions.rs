@@ -1,26 +1,27 @@
-//! Triangles as they are seen from a pencil's apex.
+//! Edge functions of triangles in the image plane of a common origin.
 
 use super::TriangleN;
 use crate::lanes::{F32x8, LaneMask, Lanes, Vector};
 use crate::ray::CommonOrigin;
 
-/// What tells of eight triangles beforehand which rays of a pencil pass them by, and how much doubt there is of the others.
+/// The edge functions of eight triangles in the image plane of a packet's common origin (Pineda, A Parallel Algorithm
+/// for Polygon Rasterization, 1988).
 ///
-/// In the picture that is seen from the apex, the weight of each corner is a linear function of the place, zero along the
-/// edge between the other two (Pineda, A Parallel Algorithm for Polygon Rasterization, 1988). So it is worked out once for
-/// all rays, and its least and greatest value for a group takes a few steps. Where the weights of two corners differ in
-/// sign for the whole group, beyond all doubt, no ray of it crosses the triangle, neither in f32 nor in f64.
+/// The weight of each corner is a linear function of a ray's offset. It is set up once for all 64 rays, and its range
+/// over a group takes a few steps. Where two weights differ in sign over the whole group, no ray of it hits. On the
+/// bunny this culls 87 % of the tests of a group that would find nothing: 1.16 times as many rays in the same time.
+/// Tests ray by ray culled as many and gained nothing: they moved the branch that the CPU predicts wrongly.
 pub struct EdgeFunctions {
-    /// What stands before the place's x and y, and what is added, for each corner.
+    /// The coefficients of x and y of an offset, and the constant, for each corner's edge function.
     weights: [Vector<F32x8>; 3],
-    /// By how much they may be off, at most.
+    /// Upper bound of the error of an edge function at any offset of a group (`culling.md`, 12).
     error_bound: F32x8,
-    /// By how much the weights of any ray of the pencil may be off in the test itself, at most: no less than its own doubt.
+    /// Upper bound of `weight_error_bound` of every ray of the packet (`culling.md`, 14).
     pub packet_error_bound: F32x8,
 }
 
 impl EdgeFunctions {
-    /// Which groups of the pencil pass by that triangle with all their rays: a bit for each.
+    /// Returns the mask of groups whose rays all miss the triangle of `lane` (`culling.md`, 13).
     #[inline(always)]
     pub fn culled_groups<N: Lanes>(&self, lane: usize, common_origin: &CommonOrigin<N>) -> u32 {
         let [a, b, c] = &self.weights;
@@ -33,7 +34,7 @@ impl EdgeFunctions {
     }
 }
 
-/// Between what a weight lies for the rays of each group.
+/// Returns the range of an edge function over the offsets of each group.
 #[inline(always)]
 fn range<N: Lanes>(weight: &Vector<F32x8>, lane: usize, common_origin: &CommonOrigin<N>) -> [N; 2] {
     let Vector { x, y, z } = Vector::<N>::splat(weight.of_lane(lane));
@@ -43,30 +44,18 @@ fn range<N: Lanes>(weight: &Vector<F32x8>, lane: usize, common_origin: &CommonOr
 }
 
 impl<N: Lanes> TriangleN<N> {
-    /// The edges as they are seen from the apex.
+    /// Computes the edge functions and their error bounds.
     ///
-    /// Let s be the largest x or y of a corner, r the largest z or the blur, and u the width; all errors are in units of
-    /// 2^-24. A place is off by 2 + 3 u, an x or y by 2 s + 8 r, a z by 2 r. Then what stands before x and y is off by
-    /// 12 s r + 16 r r, what is added by 12 s s + 32 s r, and a weight by 32 u r r + (40 + 36 u) s r + 12 s s at most. To work
-    /// out its range takes 40 u s r + 10 s s more. All that is less than 96 (s + u r) (s + r).
-    ///
-    /// What is left of that is more than the products of two errors, (12 + 6 u) s r where s is more than 16 * 2^-24 r (where
-    /// it is not, no weight is so great), and than the 3 + 3 u by which a place is off besides where a direction is so long,
-    /// over 2^126, that its inverse is not whole: for u up to 1. The factor 4 comes first, so that what is too great for f32
-    /// is so here before it is elsewhere: beyond an infinite doubt is nothing.
-    ///
-    /// A ray that is longest along the same axis has a corner, in its own coordinates, at the x and y of here less the place
-    /// times z, and at a z that is counted from its origin: so no x or y is more than s + u r, and no z than f, the farthest that
-    /// a corner is from an origin along z. Rounding here and there adds 4 s + 16 r + 4 f to these x and y, and less than 16 (r +
-    /// f) to z; 256 (r + f) is added here. So [`weight_error_bound`](super::weight_error_bound), each step of which is monotone, is never more than the
-    /// same steps make of this: with a unit in 24 for s, and for the 2^-117 by which z may be off besides; where that is more
-    /// than such a part of x or y, all of it is less than the numbers that are added. Where z is too great for f32, so is this.
+    /// With s the largest x or y (`across`), r the largest z or origin error (`along`) and w the largest offset:
+    /// 96 (s + w r)(s + r) units for a group (`culling.md`, 12), and 25 instead of 24 units for a packet's rays
+    /// (`culling.md`, 14).
     #[inline(always)]
     pub(super) fn edge_functions(&self, common_origin: &CommonOrigin<N>) -> EdgeFunctions {
         let [a, b, c] = self.0;
         let [a, b, c] = [common_origin.apply(a), common_origin.apply(b), common_origin.apply(c)];
         let across = a.x.abs().max(a.y.abs()).max(b.x.abs().max(b.y.abs())).max(c.x.abs().max(c.y.abs()));
         let along = a.z.abs().max(b.z.abs()).max(c.z.abs().max(common_origin.origin_error));
+        // The 4 comes first, so that the bound overflows before an edge function does (`culling.md`, 12).
         let error_bound = (across + common_origin.max_offset * along)
             * N::splat(4.0)
             * (across + along)
@@ -93,7 +82,7 @@ mod tests {
     use glam::Vec3;
     use std::array::from_fn;
 
-    /// Numbers from -1 to 1, the same each time.
+    /// A fixed sequence of numbers from -1 to 1.
     struct Numbers(u64);
 
     impl Numbers {
@@ -111,9 +100,9 @@ mod tests {
         f32::from_bits(((127 + power) as u32) << 23)
     }
 
-    /// Groups of rays from one point, or to one, each aimed at a corner or an edge of one of eight triangles, or a hair
-    /// beside it; small triangles and large ones, and those without an area; from afar and from close by, and from behind.
-    fn story(seed: u64) -> (Vec<Triangle>, [EightRays; LANES]) {
+    /// Eight triangles, and groups of rays from one point or to one, each aimed at or just beside a corner or an edge.
+    /// The triangles are small, large or without area; near, far or behind the rays.
+    fn random_case(seed: u64) -> (Vec<Triangle>, [EightRays; LANES]) {
         let mut numbers = Numbers(seed);
         let scale = two_to((seed % 41) as i32 * 2 - 40);
         let size = two_to(-((seed / 41 % 12) as i32));
@@ -132,7 +121,7 @@ mod tests {
         let mut aim = |group: usize| {
             let corners = triangles[(group + seed as usize) % LANES].corners();
             from_fn::<Ray, LANES, _>(|lane| {
-                // Every other group is as narrow as rays can be.
+                // Every other group is as narrow as possible: all its rays aim at one edge.
                 let (at, is_beside) =
                     if group.is_multiple_of(2) { (lane, lane % 2 == 1) } else { (group / 2, group % 4 == 1) };
                 let share = [0.0, 0.25, 0.5, 1.0][(at + seed as usize / 2) % 4];
@@ -152,36 +141,36 @@ mod tests {
         (triangles, rays)
     }
 
-    /// Whether the rays have the apex at t = 1.
+    /// Returns whether the rays have the common origin at t = 1.
     fn is_backward(seed: u64) -> bool {
         seed % 2 == 1
     }
 
-    /// What the test finds that goes by `rough` first: t where a ray crosses the triangle.
+    /// The result of the test with a packet's bound: the bits of t, or of -1 for rays that miss.
     fn found(shape: &TriangleN<F32x8>, rays: &Rays<F32x8>, packet_error_bound: f32) -> Option<[u32; LANES]> {
         let crossing = shape.first_crossing_with_bound(rays, F32x8::ZERO, F32x8::splat(packet_error_bound));
         crossing.map(|(crosses, t)| F32x8::select(crosses, t, F32x8::splat(-1.0)).0.map(f32::to_bits))
     }
 
-    /// However long or short directions are, and whoever else is among the rays.
+    /// Directions of 2^-126 to 2^127 beside others, and infinite ones.
     #[test]
-    fn what_f32_cannot_hold_is_not_decided_for_all() {
+    fn unusual_lengths_are_not_decided_by_the_packet_bound() {
         let forward = Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, 1.0) };
         let endless = Ray { direction: Vec3::new(0.1, 0.1, f32::INFINITY), ..forward };
         let across = [Vec3::new(-1.0, -1.0, 5.0), Vec3::new(3.0, -1.0, 5.0), Vec3::new(-1.0, 3.0, 5.0)];
         let along = [Vec3::new(1.0, -1.0, 1000.0), Vec3::new(-1.0, -1.0, -800.0), Vec3::new(0.0, 1.0, 0.0)];
         let close = [Vec3::new(1e-9, -1e-9, 2e-7), Vec3::new(-1e-9, -1e-9, 2e-7), Vec3::new(0.0, 1e-9, 2e-7)];
-        let stories = [-126, -120, -60, -30, 0, 30, 60, 120, 127].map(|power| {
+        let cases = [-126, -120, -60, -30, 0, 30, 60, 120, 127].map(|power| {
             (
                 Ray { direction: Vec3::Z * two_to(power), ..forward },
                 Ray { direction: forward.direction * two_to(power), ..forward },
             )
         });
-        for (one, other) in stories.into_iter().chain([(forward, endless)]) {
+        for (one, other) in cases.into_iter().chain([(forward, endless)]) {
             let mut rays = [[one; LANES]; LANES];
             rays[3][5] = other;
             let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&EightRays::of(&rays[group]), true));
-            let common_origin = CommonOrigin::of(&groups).expect("all begin in one point");
+            let common_origin = CommonOrigin::of(&groups).expect("all rays start in one point");
             let shapes = TriangleN::<F32x8>::of(&[across, along, close].map(Triangle::unchecked));
             let edges = shapes.edge_functions(&common_origin);
             for lane in 0..3 {
@@ -197,12 +186,12 @@ mod tests {
         }
     }
 
-    /// No ray has more doubt than is said of all, and that is most often not much more.
+    /// The packet's bound is also tight: most often less than 100 times a ray's own.
     #[test]
-    fn the_doubt_of_all_is_no_less_than_that_of_each() {
+    fn the_packet_bound_is_at_least_the_bound_of_each_ray() {
         let (mut near, mut all) = (0, 0);
         for seed in 0..6_000 {
-            let (triangles, rays) = story(seed);
+            let (triangles, rays) = random_case(seed);
             let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&rays[group], true));
             let Some(common_origin) = CommonOrigin::of(&groups) else { continue };
             let shapes = TriangleN::<F32x8>::of(&triangles);
@@ -228,12 +217,12 @@ mod tests {
         assert!(all > 100_000 && near > all / 2, "{near} of {all}");
     }
 
-    /// Whom the edges let off would not have crossed the triangle; and most of those who do not cross it are let off.
+    /// Over a quarter of the groups that miss are culled, and none of those that hit.
     #[test]
-    fn who_passes_by_does_not_cross() {
+    fn culled_groups_do_not_cross_the_triangle() {
         let (mut passing, mut missing, mut packets) = (0, 0, [0; 2]);
         for seed in 0..6_000 {
-            let (triangles, rays) = story(seed);
+            let (triangles, rays) = random_case(seed);
             let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&rays[group], true));
             let shapes = TriangleN::<F32x8>::of(&triangles);
             let Some(common_origin) = CommonOrigin::of(&groups) else { continue };
@@ -252,6 +241,6 @@ mod tests {
             }
         }
         assert!(packets.into_iter().all(|count| count > 1_000), "{packets:?} packets");
-        assert!(passing > missing / 4, "{passing} of {missing} are let off");
+        assert!(passing > missing / 4, "{passing} of {missing} are culled");
     }
 }
