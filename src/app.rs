@@ -73,8 +73,8 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
 /// good picture.
 ///
 /// # Errors
-/// If there is no source or no terminal, the terminal goes away, there is not enough memory for its window, or the first
-/// scene cannot be loaded.
+/// If there is no source or no terminal, the terminal goes away, there is not enough memory for its window, or the
+/// first scene cannot be loaded.
 ///
 /// # Panics
 /// With the payload of a thread that panicked while tracing, or while reading or building a scene.
@@ -125,7 +125,8 @@ fn view<E: Into<Notice> + Send + 'static>(
     options: Options,
     signals: &mut Signals,
 ) -> Result<Outcome, Error<E>> {
-    // Declared last, and therefore dropped first: the terminal is restored even if dropping the others blocks or panics.
+    // Declared last, and therefore dropped first: the terminal is restored even if dropping the others blocks or
+    // panics.
     let waker = signals.waker()?;
     let mut renderer = terminal::without_signals(|| Renderer::start(options.threads, waker))?;
     scenes.wait().map_err(Error::Scene)?;

@@ -34,7 +34,7 @@ const EXAMPLES: &str = "\
 Without a scene there is one to look into that is built in. Of several, n shows the next, and p the one before.
 
 Examples:
-  termtrace scenes/three_spheres.ron                     look into a scene; ? shows the keys, q leaves
+  termtrace scenes/three_spheres.ron                     look into a scene; ? shows the keys, q quits
   termtrace scenes/three_spheres.ron --eye 0,4,9         from another eye point
   termtrace frame scenes/three_spheres.ron               one frame as text
   termtrace frame scenes/three_spheres.ron -o ball.png --pixels 800x600 --samples 16

@@ -1,6 +1,6 @@
-//! Keys, mouse + camera -> camera, pure: what each key does, what the mouse does, and how the eye moves.
+//! The keymap, the gestures of the mouse, and the motion of the camera by held keys.
 //!
-//! Time is a number that is handed in, so that every movement can be tested without a clock.
+//! Pure: times are passed in, so that every motion can be tested without a clock.
 
 mod command;
 mod key;
@@ -10,7 +10,7 @@ mod camera_moves;
 mod motion;
 mod pointer;
 
-// Drags are said in the words of what they move.
+// Part of the signatures of `dragged` and `Gesture`.
 pub use crate::camera::Grip;
 pub use camera_moves::{dragged, on_turntable, speed, wheeled};
 pub use command::{Command, Direction, Side, Toward};

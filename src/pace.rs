@@ -14,14 +14,14 @@
 //! (`Recovering`): frames are sent one at a time, until a reply arrives or the terminal is considered silent
 //! (`Silent`). The state decides:
 //!
-//! | State      | next frame                                  | query             | left by                               |
-//! |------------|---------------------------------------------|-------------------|---------------------------------------|
-//! | Unqueried  | at the rate                                 | none              | nothing                               |
-//! | Unanswered | when a reply or the timeout has come        | each frame, alone | a reply, the timeout                  |
-//! | Steady     | when the congestion window has room         | each frame, alone | the timeout, a reply to another query |
-//! | Recovering | when a reply or the timeout has come; small | each frame        | a reply, patience                     |
-//! | Resyncing  | at the rate                                 | none              | no reply for a second                 |
-//! | Silent     | at the rate, 30 a second                    | one at a time     | a reply                               |
+//! | State      | next frame                          | query             | left by                               |
+//! |------------|-------------------------------------|-------------------|---------------------------------------|
+//! | Unqueried  | at the rate                         | none              | nothing                               |
+//! | Unanswered | on a reply or the timeout           | each frame, alone | a reply, the timeout                  |
+//! | Steady     | when the congestion window has room | each frame, alone | the timeout, a reply to another query |
+//! | Recovering | on a reply or the timeout; small    | each frame        | a reply, the silence timeout          |
+//! | Resyncing  | at the rate                         | none              | no reply for a second                 |
+//! | Silent     | at the rate, 30 a second            | one at a time     | a reply                               |
 //!
 //! After a resync on a slow link, `Steady` has at most one query in flight until enough replies have arrived in order: the
 //! frames in between end without one, and the next reply shows that they have arrived.

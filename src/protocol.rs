@@ -1,4 +1,5 @@
-//! The protocol with a terminal: modes that are on, queries, and outstanding replies. Pure: bytes and times in, bytes out.
+//! The protocol with a terminal: modes that are on, queries, and outstanding replies. Pure: bytes and times in, bytes
+//! out.
 //!
 //! ```
 //! use std::time::Duration;

@@ -96,7 +96,7 @@ pub(crate) enum Request {
     Copy(String),
     /// Write the picture into a file.
     Export(crate::export::Format),
-    /// Request the user whether to write this camera into the scene's file, if it has one.
+    /// Ask the user whether to write this camera into the scene's file, if it has one.
     ProposeView(Camera),
     /// Write the camera that was proposed last.
     KeepView,

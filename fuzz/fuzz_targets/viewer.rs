@@ -1,6 +1,6 @@
-//! Any bytes as a session of keys, replies, sizes, scenes, frames and time.
+//! Any bytes as a scenario of keys, replies, window sizes, scenes, frames and time.
 //!
-//! The rules of `viewer::story` hold throughout.
+//! The rules of `viewer::scenario` hold throughout.
 
 #![no_main]
 

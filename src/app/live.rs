@@ -93,7 +93,7 @@ impl Live {
                 && !self.terminal.is_sending()
                 && let Some(problem) = scenes.watch()?
             {
-                self.viewer.say(format!("changes of the scene's files will not be seen: {problem}"));
+                self.viewer.say(format!("changes to the scene's files will not be noticed: {problem}"));
                 continue;
             }
             renderer.panic_if_asked();
@@ -186,7 +186,7 @@ impl Live {
                 Request::Copy(text) => self.terminal.copy(&text)?,
                 Request::Export(format) => {
                     let said = self.export(format).map_or_else(
-                        |error| format!("it could not be written: {error}"),
+                        |error| format!("could not write the picture: {error}"),
                         |name| format!("written: {name}"),
                     );
                     self.viewer.say(said);
@@ -194,8 +194,8 @@ impl Live {
                 Request::ProposeView(camera) => self.propose(camera),
                 Request::KeepView => {
                     let said = match self.proposed.take().map_or(Ok(()), |view| view.write()) {
-                        Ok(()) => "written into the scene's views".to_owned(),
-                        Err(error) => format!("the scene's file is as it was: {error}"),
+                        Ok(()) => "view saved to the scene file".to_owned(),
+                        Err(error) => format!("scene file left unchanged: {error}"),
                     };
                     self.viewer.say(said);
                 }
@@ -211,7 +211,7 @@ impl Live {
 
     /// Writes the shown picture into a new file and returns its name.
     fn export(&self, format: Format) -> io::Result<String> {
-        let nothing = || io::Error::other("there is nothing to write, or nowhere");
+        let nothing = || io::Error::other("there is no picture, or no folder for it");
         let (frame, folder) = self.viewer.frame().zip(self.exports.as_deref()).ok_or_else(nothing)?;
         let stem = picture_export::stem(self.shown().map_or("scene", |scene| &scene.name));
         let contents = picture_export::contents(format, &frame.picture, self.viewer.capabilities())?;
@@ -224,7 +224,7 @@ impl Live {
         self.proposed = file.and_then(|file| ProposedView::new(file, camera));
         match &self.proposed {
             Some(view) => self.viewer.ask_keep(view.file_name()),
-            None => self.viewer.say("this scene stands in no scene file"),
+            None => self.viewer.say("this scene has no scene file to save views to"),
         }
     }
 

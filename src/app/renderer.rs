@@ -151,8 +151,8 @@ impl Renderer {
         }
     }
 
-    /// Returns whether a frame is predicted to take less than [`MAX_INLINE_TRACE_TIME`], from the time per pixel of the last one like
-    /// it.
+    /// Returns whether a frame is predicted to take less than [`MAX_INLINE_TRACE_TIME`], from the time per pixel of the
+    /// last one like it.
     fn is_small(&self, job: &Job) -> bool {
         let pixels = job.shot.resolution.pixel_count() as f64;
         let is_short = |(shot, seconds): (Shot, f64)| {

@@ -34,12 +34,12 @@ impl ProposedView {
     pub(super) fn write(&self) -> io::Result<()> {
         let path = self.file.path();
         let text = fs::read_to_string(path)?;
-        let written = with_view(&text, &self.camera).ok_or_else(|| io::Error::other("this is no scene file"))?;
+        let written = with_view(&text, &self.camera).ok_or_else(|| io::Error::other("this is not a scene file"))?;
         let mut file = OutputFile::create(path)?;
         file.remove_stale();
         file.write_all(written.as_bytes())?;
         if self.file.has_changed() || fs::read_to_string(path)? != text {
-            return Err(io::Error::other("it has changed meanwhile"));
+            return Err(io::Error::other("it has changed in the meantime"));
         }
         file.finish()
     }

@@ -48,9 +48,10 @@ fn draft(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
 impl<E> Source<E> {
     /// Returns a source that calls `read`, with the name shown to the user.
     ///
-    /// `read` should return soon after its reporter [is cancelled](Reporter::is_cancelled), with any result: one scene is read at a
-    /// time, and the next one waits for it. Only after reporting a pipe to its reporter may it block for ever. The files
-    /// that it reports as [dependencies](Reporter::report_dependency) are watched, and the scene is read again when one changes.
+    /// `read` should return soon after its reporter [is cancelled](Reporter::is_cancelled), with any result: one scene
+    /// is read at a time, and the next one waits for it. Only after reporting a pipe to its reporter may it block for
+    /// ever. The files that it reports as [dependencies](Reporter::report_dependency) are watched, and the scene is
+    /// read again when one changes.
     #[doc(hidden)]
     pub fn new(
         name: impl Into<String>,

@@ -23,7 +23,7 @@ use termtrace::{Colors, Sampling, Size, export};
 
 /// For who has not named a scene.
 fn welcome(keymap: &Keymap) -> String {
-    let said = [(Command::Help, "shows the keys"), (Command::Quit, "leaves")].map(|(command, does)| {
+    let said = [(Command::Help, "shows the keys"), (Command::Quit, "quits")].map(|(command, does)| {
         let key = keymap.key_of(&[KeyMode::Fly, KeyMode::Always], command);
         key.map_or_else(String::new, |key| format!("; {key} {does}"))
     });

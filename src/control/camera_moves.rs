@@ -4,13 +4,16 @@ use super::KeyMode;
 use crate::camera::{Camera, Grip};
 use glam::{Vec2, Vec3};
 
-/// World units per second at which a scene is pleasant to fly through: half the way to the target.
+/// Returns the speed of flight in world units per second: half the distance to the target.
+// Relative to the target, because scenes differ in scale by orders of magnitude (a bunny is 0.15 high).
 pub fn speed(camera: &Camera) -> f32 {
     0.5 * camera.target_distance()
 }
 
-/// Returns the camera after the picture has been dragged to the right and down by that part of its width and height:
-/// the view turns, in `orbit` about the target, or shifts so that the target follows.
+/// Returns the camera after a drag by `by`, to the right and down, in shares of the picture's width and height.
+///
+/// [`Grip::Turn`] turns the view, or in orbit mode the eye about the target. [`Grip::Pan`] shifts eye and target so
+/// that the target follows the pointer.
 pub fn dragged(camera: &Camera, mode: KeyMode, grip: Grip, by: Vec2, aspect_ratio: f32) -> Camera {
     match grip {
         Grip::Pan => camera.panned(by, aspect_ratio),
@@ -19,16 +22,18 @@ pub fn dragged(camera: &Camera, mode: KeyMode, grip: Grip, by: Vec2, aspect_rati
     }
 }
 
-/// Returns the camera after the eye has come nearer to a point, which stays where it is in the picture, by notches of
-/// the wheel. In `orbit` the target comes nearer to it, too, in a scene of that size.
+/// Returns the camera after the wheel has moved the eye towards `point` by `notches`.
+///
+/// The point stays at its position in the picture. In orbit mode the target moves towards it as well; `size` is the
+/// scene's size, which bounds the motion.
 pub fn wheeled(camera: &Camera, mode: KeyMode, point: Vec3, notches: f32, size: f32) -> Camera {
     if mode == KeyMode::Orbit { camera.wheeled_around(point, notches, size) } else { camera.wheeled(point, notches) }
 }
 
-/// The turntable turns so many radians a second: once around in twenty seconds.
+/// Angular speed of the turntable in radians per second: one turn in 20 s.
 const TURNTABLE_SPEED: f32 = std::f32::consts::PI / 10.0;
 
-/// The eye goes around the target as it would stand before a turntable, for so many seconds.
+/// Returns the camera after `seconds` on the turntable, which orbits the target.
 pub fn on_turntable(camera: &Camera, seconds: f32) -> Camera {
     camera.orbited(TURNTABLE_SPEED * seconds, 0.0)
 }

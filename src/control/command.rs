@@ -1,98 +1,98 @@
-//! What a key can mean, with a name for it and words for the help.
+//! Commands of keys, with their names in the keymap and their descriptions in the help.
 
 use crate::export::Format;
 
-/// What a key can mean.
+/// A command of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// The eye moves while the key is held, and what it looks at with it.
+    /// Moves eye and target while the key is held.
     Move(Direction),
-    /// The view turns while the key is held.
+    /// Turns the view about the eye while the key is held.
     Look(Toward),
-    /// The eye goes around the target while the key is held.
+    /// Orbits the eye about the target while the key is held.
     Around(Toward),
-    /// The eye comes nearer to the target while the key is held.
+    /// Moves the eye towards the target while the key is held.
     Nearer,
-    /// The eye goes away from the target while the key is held.
+    /// Moves the eye away from the target while the key is held.
     Farther,
-    /// From flying to going around the target, or back.
+    /// Switches between flight and orbit.
     ChangeMode,
-    /// All of the scene is seen.
+    /// Moves the eye back or forth until everything finite fills the picture.
     FrameAll,
-    /// The field of view becomes narrower.
+    /// Narrows the field of view.
     Narrower,
-    /// The field of view becomes wider.
+    /// Widens the field of view.
     Wider,
-    /// The eye goes around the target by itself, or no more.
+    /// Starts or stops the turntable, which orbits the target without a key.
     Turntable,
-    /// To a view of the scene file, or one that was saved: from 1 to 9.
+    /// Goes to view 1 to 9: one saved by the user, otherwise one of the scene file.
     View(u8),
-    /// The view is saved under the number that follows.
+    /// Asks for a number and saves the view under it.
     SaveView,
-    /// Back to the view at the start.
+    /// Returns to the scene's own camera.
     Reset,
-    /// The next map of the scene.
+    /// Shows the next map.
     NextMap,
-    /// The map before.
+    /// Shows the previous map.
     LastMap,
-    /// Two maps side by side, with a line between them, or one again.
+    /// Switches from one map to two side by side, to a wipe, and back.
     Compare,
-    /// The line between two maps moves.
+    /// Moves the line of a wipe.
     Wipe(Side),
-    /// The next of several scenes.
+    /// Shows the next scene.
     NextScene,
-    /// The one before.
+    /// Shows the previous scene.
     LastScene,
-    /// The picture into a file.
+    /// Asks for a format and exports the picture to a file.
     Export,
-    /// The camera, as a line for a scene file, into the clipboard.
+    /// Copies the camera to the clipboard, as a line of a scene file.
     CopyCamera,
-    /// The view into the scene file's list of them.
+    /// Asks whether to save the view to the `views` of the scene file.
     KeepView,
-    /// The explanation of a pixel on or off.
+    /// Opens or closes the explanation of a pixel.
     Explain,
-    /// A light is taken hold of, the nearest to the pointer; or the next one.
+    /// Takes hold of the light nearest to the pointer; if one is held, of the next one.
     Light,
-    /// It moves as the screen has it, at the same depth.
+    /// Moves the held light in a direction of the screen, at constant depth.
     MoveLight(Toward),
-    /// It comes nearer to the eye.
+    /// Moves the held light towards the eye.
     LightNearer,
-    /// It goes away from the eye.
+    /// Moves the held light away from the eye.
     LightFarther,
-    /// It goes back to where the scene has it.
+    /// Returns the held light to its position in the scene.
     LightBack,
-    /// The status line on or off.
+    /// Opens or closes the status line.
     Status,
-    /// The help on or off.
+    /// Opens the help, turns its page, or closes it.
     Help,
-    /// What lies over the picture goes, the topmost first.
+    /// Closes the topmost panel or releases the held light.
     Close,
-    /// The whole screen again, in case something else wrote on it.
+    /// Redraws the whole screen, in case another program has written on it.
     Redraw,
-    /// Back to the shell, to come again.
+    /// Suspends the program; the shell's `fg` continues it.
     Suspend,
-    /// Out.
+    /// Quits the program.
     Quit,
-    /// The cursor to another pixel.
+    /// Moves the cursor of the explanation.
     Point(Toward),
-    /// Earlier lines of a text.
+    /// Scrolls the explanation up.
     ScrollUp,
-    /// Later lines of a text.
+    /// Scrolls the explanation down.
     ScrollDown,
-    /// The picture is to be written in that format.
+    /// Answers the dialog of the export: write this format.
     Write(Format),
-    /// What was asked is to be done.
+    /// Answers a dialog: yes.
     Yes,
-    /// It is not.
+    /// Answers a dialog: no.
     No,
 }
 
-/// A direction as the camera sees it.
+/// A direction relative to the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// Along the view.
+    /// Along the view direction, -w.
     Forward,
-    /// Against it.
+    /// Against the view direction, along w.
     Back,
     /// Against u.
     Left,
@@ -107,38 +107,38 @@ pub enum Direction {
 /// A direction on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Toward {
-    /// To its left edge.
+    /// Towards the left edge.
     Left,
-    /// To its right edge.
+    /// Towards the right edge.
     Right,
-    /// To its upper edge.
+    /// Towards the upper edge.
     Up,
-    /// To its lower edge.
+    /// Towards the lower edge.
     Down,
 }
 
 /// A side of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The left one.
+    /// The left side.
     Left,
-    /// The right one.
+    /// The right side.
     Right,
 }
 
-/// Writes the table below as the list of all commands and as a `match` over them: a command without a row does not
-/// compile. Those that write the picture are named by the [`Format`].
+/// Expands the table below to the list of all commands and a `match` over them, so that a command without a row does
+/// not compile. Commands that export have the names of their [`Format`].
 macro_rules! commands {
     ($([$($command:tt)+] $name:literal, $does:expr;)*) => {
-        /// All commands but those that write the picture in a format.
+        /// All commands except those that export a format.
         const COMMANDS: &[Command] = &[$($($command)+),*];
 
-        /// The name where a person binds keys to the command, and what the help says of it.
+        /// Returns the command's name in the keymap and its description in the help.
         const fn words(command: Command) -> (&'static str, &'static str) {
             match command {
                 $($($command)+ => ($name, $does),)*
                 Command::Write(format) => (format.command(), format.title()),
-                // No key can mean it: views have the numbers above.
+                // Unreachable by a key: the table has rows for 1 to 9, but the compiler counts to 255.
                 Command::View(_) => ("View", A_VIEW),
             }
         }
@@ -156,17 +156,17 @@ commands! {
     [Command::Look(Toward::Right)] "LookRight", "look right";
     [Command::Look(Toward::Up)] "LookUp", "look up";
     [Command::Look(Toward::Down)] "LookDown", "look down";
-    [Command::Around(Toward::Left)] "AroundLeft", "around to the left";
-    [Command::Around(Toward::Right)] "AroundRight", "around to the right";
-    [Command::Around(Toward::Up)] "AroundUp", "around upwards";
-    [Command::Around(Toward::Down)] "AroundDown", "around downwards";
-    [Command::Nearer] "Nearer", "nearer";
-    [Command::Farther] "Farther", "farther away";
-    [Command::ChangeMode] "ChangeMode", "orbit, or fly again";
-    [Command::FrameAll] "Frame", "see everything";
-    [Command::Narrower] "Narrower", "narrower field of view";
-    [Command::Wider] "Wider", "wider field of view";
-    [Command::Turntable] "Turntable", "turntable";
+    [Command::Around(Toward::Left)] "AroundLeft", "orbit to the left";
+    [Command::Around(Toward::Right)] "AroundRight", "orbit to the right";
+    [Command::Around(Toward::Up)] "AroundUp", "orbit upwards";
+    [Command::Around(Toward::Down)] "AroundDown", "orbit downwards";
+    [Command::Nearer] "Nearer", "closer to the target";
+    [Command::Farther] "Farther", "away from the target";
+    [Command::ChangeMode] "ChangeMode", "switch fly and orbit";
+    [Command::FrameAll] "Frame", "fit everything in view";
+    [Command::Narrower] "Narrower", "zoom in (field of view)";
+    [Command::Wider] "Wider", "zoom out (field of view)";
+    [Command::Turntable] "Turntable", "turntable on or off";
     [Command::View(1)] "View1", A_VIEW;
     [Command::View(2)] "View2", A_VIEW;
     [Command::View(3)] "View3", A_VIEW;
@@ -176,84 +176,84 @@ commands! {
     [Command::View(7)] "View7", A_VIEW;
     [Command::View(8)] "View8", A_VIEW;
     [Command::View(9)] "View9", A_VIEW;
-    [Command::SaveView] "SaveView", "save the view as 1 to 9";
-    [Command::Reset] "Reset", "back to the first view";
-    [Command::NextMap] "NextMap", "next map: depth ...";
-    [Command::LastMap] "LastMap", "the map before";
+    [Command::SaveView] "SaveView", "save view as 1-9";
+    [Command::Reset] "Reset", "reset view";
+    [Command::NextMap] "NextMap", "next map (depth, ...)";
+    [Command::LastMap] "LastMap", "previous map";
     [Command::Compare] "Compare", "compare two maps";
-    [Command::Wipe(Side::Left)] "WipeLeft", "their line to the left";
-    [Command::Wipe(Side::Right)] "WipeRight", "their line to the right";
+    [Command::Wipe(Side::Left)] "WipeLeft", "divider left";
+    [Command::Wipe(Side::Right)] "WipeRight", "divider right";
     [Command::NextScene] "NextScene", "next scene";
-    [Command::LastScene] "LastScene", "scene before";
-    [Command::Export] "Export", "picture to a file";
-    [Command::CopyCamera] "CopyCamera", "copy the camera";
-    [Command::KeepView] "KeepView", "view into the scene file";
-    [Command::Explain] "Explain", "explain a pixel's ray";
+    [Command::LastScene] "LastScene", "previous scene";
+    [Command::Export] "Export", "save picture";
+    [Command::CopyCamera] "CopyCamera", "copy camera";
+    [Command::KeepView] "KeepView", "save view to scene file";
+    [Command::Explain] "Explain", "explain a pixel";
     [Command::Light] "Light", "move a light";
     [Command::MoveLight(Toward::Left)] "LightLeft", "light to the left";
     [Command::MoveLight(Toward::Right)] "LightRight", "light to the right";
     [Command::MoveLight(Toward::Up)] "LightUp", "light up";
     [Command::MoveLight(Toward::Down)] "LightDown", "light down";
-    [Command::LightNearer] "LightNearer", "light nearer to the eye";
-    [Command::LightFarther] "LightFarther", "light farther away";
-    [Command::LightBack] "LightBack", "light back to its place";
-    [Command::Status] "Status", "status line";
+    [Command::LightNearer] "LightNearer", "light closer";
+    [Command::LightFarther] "LightFarther", "light farther";
+    [Command::LightBack] "LightBack", "reset light position";
+    [Command::Status] "Status", "status line on or off";
     [Command::Help] "Help", "this help";
-    [Command::Close] "Close", "close it";
-    [Command::Redraw] "Redraw", "draw the screen again";
-    [Command::Suspend] "Suspend", "to the shell; fg returns";
-    [Command::Quit] "Quit", "leave";
+    [Command::Close] "Close", "close panel";
+    [Command::Redraw] "Redraw", "redraw";
+    [Command::Suspend] "Suspend", "suspend (fg returns)";
+    [Command::Quit] "Quit", "quit";
     [Command::Point(Toward::Left)] "PointLeft", "cursor to the left";
     [Command::Point(Toward::Right)] "PointRight", "cursor to the right";
     [Command::Point(Toward::Up)] "PointUp", "cursor up";
     [Command::Point(Toward::Down)] "PointDown", "cursor down";
-    [Command::ScrollUp] "ScrollUp", "earlier lines";
-    [Command::ScrollDown] "ScrollDown", "later lines";
+    [Command::ScrollUp] "ScrollUp", "scroll up";
+    [Command::ScrollDown] "ScrollDown", "scroll down";
     [Command::Yes] "Yes", "yes";
-    [Command::No] "No", "no";
+    [Command::No] "No", "cancel";
 }
 
-/// The help has them in one row.
-const A_VIEW: &str = "a saved view";
+/// The description of all nine view commands, which the help lists in one row.
+const A_VIEW: &str = "go to view 1-9";
 
 impl Command {
-    /// All of them.
+    /// Returns all commands.
     pub fn all() -> impl Iterator<Item = Self> {
         COMMANDS.iter().copied().chain(Format::ALL.iter().copied().map(Self::Write))
     }
 
-    /// The command of that name.
+    /// Returns the command of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::all().find(|command| command.name() == name)
     }
 
-    /// What it is called where a person binds keys to it. Names stay: people's files have them.
+    /// Returns the command's name in the keymap. Names never change, because users' files contain them.
     pub fn name(self) -> &'static str {
         words(self).0
     }
 
-    /// What the help says of it, in a few words.
+    /// Returns a description for the help, of at most 24 characters: two columns then fit 80 columns.
     pub fn description(self) -> &'static str {
         words(self).1
     }
 
-    /// Whether it goes on as long as its key is held.
+    /// Returns whether the command lasts as long as its key is held.
     pub fn moves(self) -> bool {
         matches!(self, Self::Move(_) | Self::Look(_) | Self::Around(_) | Self::Nearer | Self::Farther)
     }
 
-    /// Whether it answers a question.
+    /// Returns whether the command answers a dialog.
     pub fn answers(self) -> bool {
         matches!(self, Self::Write(_) | Self::Yes | Self::No)
     }
 
-    /// Whether the key's own repeats do it again.
+    /// Returns whether repeats of a held key execute the command again.
     pub fn repeats(self) -> bool {
         let of_panels = matches!(self, Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_));
         of_panels || self.moves_light() || matches!(self, Self::Narrower | Self::Wider)
     }
 
-    /// Whether Shift with the key does more of it.
+    /// Returns whether Shift with the key makes the command faster.
     pub fn has_faster(self) -> bool {
         self.moves() || self.moves_light() || matches!(self, Self::Point(_))
     }
@@ -267,7 +267,7 @@ impl Command {
 mod tests {
     use super::*;
 
-    /// Its own, and by it the command is found.
+    /// Each name is unique, and finds its command.
     #[test]
     fn each_command_has_a_name() {
         for command in Command::all() {

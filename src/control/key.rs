@@ -1,4 +1,4 @@
-//! A key that something can be bound to, and how a person writes it.
+//! Keys of the keymap and their names.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use std::fmt;
@@ -6,13 +6,13 @@ use std::fmt;
 /// A key: its code, as the terminal's user types it (`?`, not Shift and `/`), and whether Ctrl is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
-    /// Which one. A letter may be a capital, but not with Ctrl.
+    /// The key code. A letter may be a capital, but not with Ctrl.
     pub code: KeyCode,
-    /// With Ctrl.
+    /// Whether Ctrl is held.
     pub ctrl: bool,
 }
 
-/// What keys without a character of their own are called.
+/// Names of the keys that type no character.
 const NAMED: [(&str, KeyCode); 14] = [
     ("Left", KeyCode::Left),
     ("Right", KeyCode::Right),
@@ -34,23 +34,24 @@ const SPACE: &str = "Space";
 const CTRL: &str = "Ctrl-";
 
 impl Key {
-    /// The key that types this character.
+    /// Returns the key that types this character.
     pub const fn letter(c: char) -> Self {
         Self { code: KeyCode::Char(c), ctrl: false }
     }
 
-    /// The key of this small letter, with Ctrl.
+    /// Returns the key of this lower-case letter with Ctrl.
     pub const fn ctrl(c: char) -> Self {
         Self { code: KeyCode::Char(c), ctrl: true }
     }
 
-    /// A key without a character of its own.
+    /// Returns a key that types no character.
     pub const fn named(code: KeyCode) -> Self {
         Self { code, ctrl: false }
     }
 
-    /// The key that a person calls so: a character, `Ctrl-` and a letter, or a name such as `PageUp`, `Space` or `F1`.
-    /// Nothing where plain terminals send no such key: [`is_plain`](Self::is_plain).
+    /// Parses a key: a character, `Ctrl-` and a letter, or a name such as `PageUp`, `Space` or `F1`.
+    ///
+    /// `None` for an unknown name, and for a key that not every terminal sends (see [`is_plain`](Self::is_plain)).
     pub fn from_name(name: &str) -> Option<Self> {
         let key = match name.strip_prefix(CTRL) {
             Some(letter) => Self { ctrl: true, ..Self::from_bare_name(&letter.to_ascii_lowercase())? },
@@ -71,16 +72,18 @@ impl Key {
         code.map(Self::named)
     }
 
-    /// What keys without a character of their own are called.
+    /// Returns the names of keys, to suggest the closest one for a misspelt name.
     pub(super) fn names() -> impl Iterator<Item = &'static str> {
         NAMED.iter().map(|&(name, _)| name).chain([SPACE])
     }
 
-    /// Whether every terminal sends it, as itself: none without the kitty keyboard protocol can tell Ctrl-I from Tab,
-    /// nor Ctrl and an arrow from the arrow.
+    /// Returns whether every terminal sends the key unambiguously.
+    ///
+    /// Without the kitty keyboard protocol, terminals send the same byte for Ctrl-I and Tab, and some send the same
+    /// sequence for an arrow with and without Ctrl.
     pub fn is_plain(self) -> bool {
         match self.code {
-            // Ctrl-H is Backspace, I is Tab, J and M are Enter.
+            // The same bytes as Backspace (H), Tab (I), and Enter (J, M).
             KeyCode::Char(c) if self.ctrl => c.is_ascii_lowercase() && !matches!(c, 'h' | 'i' | 'j' | 'm'),
             KeyCode::Char(c) => !c.is_control(),
             KeyCode::F(1..=12) => !self.ctrl,
@@ -88,18 +91,18 @@ impl Key {
         }
     }
 
-    /// What a plain terminal tells when it is pressed.
+    /// Returns the event that a plain terminal sends for a press of the key.
     pub fn pressed(self) -> KeyEvent {
         KeyEvent::new(self.code, if self.ctrl { KeyModifiers::CONTROL } else { KeyModifiers::NONE })
     }
 
-    /// What was typed.
+    /// Returns the key of an event, with Shift applied to its character.
     pub(super) fn typed(event: &KeyEvent) -> Self {
         let shift = event.modifiers.contains(KeyModifiers::SHIFT);
         let ctrl = event.modifiers.contains(KeyModifiers::CONTROL);
         let code = match event.code {
             KeyCode::Char(c) if ctrl => KeyCode::Char(c.to_ascii_lowercase()),
-            // A terminal that does not tell what Shift makes of a key: it is so on most keyboards.
+            // For terminals that report the base key instead of the shifted character. Most layouts have `?` on `/`.
             KeyCode::Char('/') if shift => KeyCode::Char('?'),
             KeyCode::Char(c) if shift => KeyCode::Char(c.to_ascii_uppercase()),
             code => code,
@@ -107,13 +110,13 @@ impl Key {
         Self { code, ctrl }
     }
 
-    /// A capital is its letter with Shift.
+    /// Returns the key with a capital replaced by its lower-case letter.
     pub(super) fn without_shift(self) -> Self {
         Self { code: unshifted(self.code), ..self }
     }
 }
 
-/// A terminal sends a capital; a capital is its letter with Shift.
+/// Returns the code of the key without Shift: terminals send a capital for Shift and a letter.
 pub(super) fn unshifted(code: KeyCode) -> KeyCode {
     match code {
         KeyCode::Char(c) => KeyCode::Char(c.to_ascii_lowercase()),
@@ -121,7 +124,7 @@ pub(super) fn unshifted(code: KeyCode) -> KeyCode {
     }
 }
 
-/// As [`Key::from_name`] reads it.
+/// Writes the name that [`Key::from_name`] parses.
 impl fmt::Display for Key {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.code {

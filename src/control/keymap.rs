@@ -1,35 +1,35 @@
-//! What each key does, mode by mode: one table.
+//! The keymap: for each mode, the commands of its keys.
 
 use super::command::{Command, Direction, Side, Toward};
 use super::key::Key;
 use crate::export::Format;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// What the keys are for. Several modes hold at a time, the topmost first: what one does not bind is left to the next.
+/// A mode of the keys. Several are active at a time; a key that the topmost does not bind is looked up in the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KeyMode {
     /// The eye flies.
     Fly,
-    /// The eye goes around what it looks at.
+    /// The eye orbits the target.
     Orbit,
-    /// A pixel is explained; above fly or orbit.
+    /// A pixel is explained. Above fly and orbit.
     Explain,
-    /// A light is held; above all of these.
+    /// A light is held. Above all of these.
     Light,
-    /// The user is asked what the picture is to be written as; a key that does not answer takes the question away.
+    /// A dialog asks for the format of an export. Keys that do not answer dismiss it.
     Export,
-    /// The user is asked whether the view is to be written into the scene's file; likewise.
+    /// A dialog asks whether to save the view to the scene file. Keys that do not answer dismiss it.
     Keep,
-    /// Below fly or orbit, whichever it is.
+    /// Below fly and orbit.
     Always,
 }
 
 impl KeyMode {
-    /// All of them, in the order of the help.
+    /// All modes, in the order of the help.
     pub const ALL: [Self; 7] =
         [Self::Fly, Self::Orbit, Self::Explain, Self::Light, Self::Export, Self::Keep, Self::Always];
 
-    /// What it is called where a person binds keys.
+    /// Returns the name of the mode in the user's keymap and in panels.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fly => "fly",
@@ -42,7 +42,7 @@ impl KeyMode {
         }
     }
 
-    /// Whether the command can mean anything in it: answers are for questions.
+    /// Returns whether a command can be bound in the mode: answers only where a dialog asks for them.
     pub fn takes(self, command: Command) -> bool {
         match self {
             Self::Export => matches!(command, Command::Write(_) | Command::No),
@@ -51,37 +51,37 @@ impl KeyMode {
         }
     }
 
-    /// The mode of that name.
+    /// Returns the mode of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|mode| mode.name() == name)
     }
 }
 
-/// Keys of a mode, and what they do.
+/// The keys of a command in a mode.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
-    /// When.
+    /// The mode.
     pub mode: KeyMode,
-    /// Each of them does it. None: it cannot be asked for.
+    /// The keys; empty if the user has unbound them all.
     pub keys: Vec<Key>,
-    /// What they do.
+    /// The command of each key.
     pub command: Command,
 }
 
 impl Binding {
-    /// How the help writes the keys.
+    /// Returns the keys as the help writes them.
     pub fn label(&self) -> String {
         self.keys.iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
     }
 }
 
-/// What all keys do: the one table that is asked when a key is pressed, and that the help shows.
+/// The keymap that key presses are looked up in and that the help lists.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Keymap {
     rows: Vec<Binding>,
 }
 
-/// Those that the program comes with.
+/// Returns the built-in keymap.
 impl Default for Keymap {
     fn default() -> Self {
         let row = |&(mode, keys, command): &Row| Binding { mode, keys: keys.to_vec(), command };
@@ -107,7 +107,10 @@ const DOWN: &[Key] = &[Key::named(KeyCode::Down), letter('j')];
 const HIGHER: &[Key] = &[letter('e'), Key::named(KeyCode::PageUp)];
 const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 
-/// In the order of the help. What writes a picture is bound to the keys of the [`Format`]s, before them.
+/// The built-in bindings in the order of the help, after those of the [`Format`]s, whose keys are in their files.
+// WASD moves on the left hand while the arrows turn with the right; hjkl stand in for the arrows on keyboards without
+// them. Explanation and light take the arrows only, so that hjkl and WASD go on moving the eye meanwhile. No key needs
+// Alt or a function key, which window managers and multiplexers take for themselves.
 const BUILT_IN: &[Row] = &[
     (KeyMode::Fly, &[letter('w')], Command::Move(Direction::Forward)),
     (KeyMode::Fly, &[letter('s')], Command::Move(Direction::Back)),
@@ -182,17 +185,17 @@ const BUILT_IN: &[Row] = &[
 ];
 
 impl Keymap {
-    /// What each mode binds, in the order of the help.
+    /// Returns all bindings, in the order of the help.
     pub fn rows(&self) -> &[Binding] {
         &self.rows
     }
 
-    /// What one mode binds.
+    /// Returns the bindings of a mode.
     pub fn of(&self, mode: KeyMode) -> impl Iterator<Item = &Binding> {
         self.rows.iter().filter(move |row| row.mode == mode)
     }
 
-    /// From now on the key does that in that mode, or nothing; whatever it did before.
+    /// Binds a key to a command in a mode, or unbinds it, and removes its previous binding.
     pub fn bind(&mut self, mode: KeyMode, key: Key, command: Option<Command>) {
         for row in self.rows.iter_mut().filter(|row| row.mode == mode) {
             row.keys.retain(|bound| *bound != key);
@@ -204,9 +207,9 @@ impl Keymap {
         }
     }
 
-    /// What the key means in these modes, the topmost first, and whether Shift asks for more of it.
+    /// Returns the command of a key in these modes, topmost first, and whether Shift makes it faster.
     pub fn command(&self, modes: &[KeyMode], event: &KeyEvent) -> Option<(Command, bool)> {
-        // Keys of the window manager: only terminals that tell of everything tell of them.
+        // Shortcuts of the window manager, which the kitty keyboard protocol reports too.
         if event.modifiers.intersects(KeyModifiers::SUPER | KeyModifiers::HYPER | KeyModifiers::META) {
             return None;
         }
@@ -215,13 +218,13 @@ impl Keymap {
         let shift = event.modifiers.contains(KeyModifiers::SHIFT) && !has_character;
         modes.iter().find_map(|&mode| {
             let exactly = self.bound(mode, typed).map(|command| (command, shift && command.has_faster()));
-            // A capital that is not bound itself is its letter with Shift.
+            // A capital without a binding of its own means its letter with Shift, if Shift makes that faster.
             let with_shift = || self.bound(mode, typed.without_shift()).filter(|command| command.has_faster());
             exactly.or_else(|| with_shift().map(|command| (command, true)))
         })
     }
 
-    /// A key that does it in these modes, if one does: the first, and one without Ctrl where there is any.
+    /// Returns a key for a command in these modes: the first one that no higher mode hides, preferably without Ctrl.
     pub fn key_of(&self, modes: &[KeyMode], command: Command) -> Option<Key> {
         let rows = modes.iter().flat_map(|&mode| self.of(mode)).filter(|row| row.command == command);
         let does = |key: &&Key| self.command(modes, &key.pressed()).is_some_and(|(meant, _)| meant == command);
@@ -248,7 +251,7 @@ mod tests {
         Keymap::default().command(FLY, event)
     }
 
-    /// The keys of what holds at the same time, and is not meant to hide what is below it.
+    /// Returns the keys of modes that are active together and must not hide each other's keys.
     fn keys_of(keymap: &Keymap, modes: &[KeyMode]) -> Vec<Key> {
         let rows = modes.iter().flat_map(|&mode| keymap.of(mode));
         rows.flat_map(|row| row.keys.iter().copied()).collect()

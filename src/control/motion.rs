@@ -1,4 +1,4 @@
-//! How held keys move the eye.
+//! The motion of the camera by held keys.
 
 use super::key::unshifted;
 use super::{Command, Direction, Toward};
@@ -7,31 +7,31 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifi
 use glam::{Vec2, Vec3};
 use std::time::Duration;
 
-/// The movement that keys keep going.
+/// The keys that are held, and the motion that they cause.
 ///
-/// A terminal that tells of releases (the kitty keyboard protocol) leaves nothing to guess: any number of keys are held,
-/// each from its press to its release.
+/// With the kitty keyboard protocol the terminal reports releases, and each of any number of keys is held from its
+/// press to its release.
 ///
-/// A plain terminal tells of a press, is silent for about 660 ms, then repeats the last key some 25 times a second, and
-/// never tells of a release. So a press glides until the first repeat may have come, unless another key is pressed;
-/// once it repeats, it stops soon after the last one.
+/// A plain terminal reports a press, then after about 660 ms repeats of the last key, some 25 a second, and no release.
+/// So a press moves for [`GLIDE_TIME`], which bridges the delay before the first repeat, and each repeat for
+/// [`COAST_TIME`], which bridges the interval between repeats. Another key ends the motion at once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
     held: Vec<Held>,
-    /// When all of them stop if nothing more is heard.
+    /// Time at which the motion stops without further events; `Duration::MAX` where releases are reported.
     until: Duration,
-    /// With Shift.
+    /// Whether Shift is held.
     fast: bool,
     reports_releases: bool,
     key_speed: KeySpeed,
 }
 
-/// How fast keys move and turn the view, in multiples of what is usual.
+/// Factors of the default speeds of keys.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeySpeed {
-    /// Ways, and distances from the target.
+    /// Factor of moving, and of changing the distance to the target.
     pub moving: f32,
-    /// Turns, of the view and around the target.
+    /// Factor of turning the view and of orbiting the target.
     pub turning: f32,
 }
 
@@ -47,25 +47,28 @@ struct Held {
     command: Command,
 }
 
-/// A place on the keyboard, whatever Shift makes of it: the code, and whether it is of the keypad.
+/// A key of the keyboard, independent of Shift: the unshifted code, and whether it is on the keypad.
 type PhysicalKey = (KeyCode, bool);
 
 fn physical_key(key: &KeyEvent) -> PhysicalKey {
     (unshifted(key.code), key.state.contains(KeyEventState::KEYPAD))
 }
 
-/// How long a press moves when no repeat follows: just longer than terminals wait before the first one.
+/// Duration of the motion by a press without repeats.
+// X11 repeats after 660 ms by default, the longest delay among common systems: with less, a held key stutters once.
+// The price is that a tap glides as long; only releases could shorten it.
 pub const GLIDE_TIME: Duration = Duration::from_millis(700);
-/// How long a repeated key moves on after its last repeat: longer than the pause between two.
+/// Duration of the motion after the last repeat of a key.
+// Repeats are 33 to 40 ms apart; three may be lost or late on a slow link without a visible stop.
 pub const COAST_TIME: Duration = Duration::from_millis(150);
 
 impl Motion {
-    /// Nothing is held yet; what will be moves the eye at that key_speed.
+    /// Returns a motion without held keys, at these speeds.
     pub fn with_speed(key_speed: KeySpeed) -> Self {
         Self { key_speed, ..Self::default() }
     }
 
-    /// Whether the terminal tells of releases from now on. What is held is let go of when it no longer does.
+    /// Sets whether the terminal reports releases. Held keys are released if it no longer does.
     pub fn set_reports_releases(&mut self, reports_releases: bool) {
         if self.reports_releases && !reports_releases {
             self.stop();
@@ -73,13 +76,14 @@ impl Motion {
         self.reports_releases = reports_releases;
     }
 
-    /// Whether the terminal tells of releases.
+    /// Returns whether the terminal reports releases.
     pub fn reports_releases(&self) -> bool {
         self.reports_releases
     }
 
-    /// A key event at a time, what the key means, and whether Shift asks for more of it. Where releases are not told, any
-    /// press stops what was going on before.
+    /// Takes a key event at time `now`, with its command from the keymap and whether Shift makes that faster.
+    ///
+    /// Without reports of releases, any press ends the previous motion.
     pub fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
         match (key.kind, meant.filter(|(command, _)| command.moves())) {
             (KeyEventKind::Release, _) => self.held.retain(|held| held.key != physical_key(key)),
@@ -88,7 +92,7 @@ impl Motion {
             (_, None) => self.held.clear(),
         }
         if let KeyCode::Modifier(ModifierKeyCode::LeftShift | ModifierKeyCode::RightShift) = key.code {
-            // Of two held, one may be let go.
+            // Of the two Shift keys, one may still be held: the modifiers of the event tell.
             self.fast = key.kind != KeyEventKind::Release || key.modifiers.contains(KeyModifiers::SHIFT);
         }
     }
@@ -96,7 +100,8 @@ impl Motion {
     fn hold(&mut self, key: Held, fast: bool, kind: KeyEventKind, now: Duration) {
         let glides = self.until < Duration::MAX;
         let again = now <= self.until && self.held.contains(&key) || kind == KeyEventKind::Repeat;
-        // Whether a key that glides is still held, nobody knows.
+        // Without reports of releases it is unknown whether the previous key is still held; it is assumed not to be,
+        // because terminals repeat only the key pressed last.
         self.held.retain(|held| !glides && held.key != key.key);
         self.held.push(key);
         self.fast = fast;
@@ -107,23 +112,24 @@ impl Motion {
         };
     }
 
-    /// Nothing is held any more.
+    /// Releases all keys.
     pub fn stop(&mut self) {
         self.held.clear();
         self.until = Duration::ZERO;
     }
 
-    /// Whether anything moves at that time.
+    /// Returns whether a key causes motion at time `now`.
     pub fn is_moving(&self, now: Duration) -> bool {
         now < self.until && self.net_motion() != NetMotion::default()
     }
 
-    /// The camera after the time from `from` to `to`, at `speed` world units per second.
+    /// Returns the camera after the motion from time `from` to `to`, at `speed` world units per second.
     pub fn step(&self, camera: &Camera, speed: f32, from: Duration, to: Duration) -> Camera {
         let net = self.net_motion();
         let seconds = to.min(self.until).saturating_sub(from).as_secs_f32();
         let seconds = if self.fast { SHIFT_SPEED_FACTOR * seconds } else { seconds };
-        // Half of the turn before the way and half after it: a curve is nearly the same in one step as in many.
+        // Strang splitting: half of the turn before the translation and half after it. The error is of third order in
+        // the step, so that a curve hardly depends on the frame rate.
         let half = 0.5 * TURN_SPEED * self.key_speed.turning * seconds;
         let (view, around) = (half * net.turn, half * net.around);
         let turn = |camera: Camera| camera.turned(-view.x, view.y).orbited(-around.x, around.y);
@@ -133,7 +139,7 @@ impl Motion {
         turn(camera.nearer_within(libm::expf(-NEARER_SPEED * seconds * net.nearer), speed))
     }
 
-    /// Opposite keys cancel; two keys for the same are one.
+    /// Returns the motion of all held keys together: opposite keys cancel, and two keys of one command count once.
     fn net_motion(&self) -> NetMotion {
         let holds = |command: Command| self.held.iter().any(|held| held.command == command);
         let number = |command: Command| f32::from(u8::from(holds(command)));
@@ -155,24 +161,25 @@ impl Motion {
     }
 }
 
-/// What all held keys come to.
+/// The direction of the motion of all held keys; each component is -1, 0 or 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct NetMotion {
-    /// Along u, up and w.
+    /// Translation along u, up and w.
     way: Vec3,
-    /// To the left about up, and upwards about u.
+    /// Rotation of the view: to the left about up, and upwards about u.
     turn: Vec2,
-    /// The eye around the target, to the left and upwards.
+    /// Rotation of the eye about the target: to the left, and upwards.
     around: Vec2,
-    /// The eye to the target.
+    /// Approach of the eye to the target.
     nearer: f32,
 }
 
-/// With Shift.
+/// Factor of all speeds while Shift is held.
 const SHIFT_SPEED_FACTOR: f32 = 4.0;
-/// Radians per second.
+/// Angular speed of turning in radians per second: a full turn in 8 s.
 const TURN_SPEED: f32 = std::f32::consts::FRAC_PI_4;
-/// In a second the distance to the target becomes 1/e of it.
+/// Rate of approach per second: the distance to the target falls to 1/e of itself in one second.
+// Exponential, so that the target is approached at every scale and never passed.
 const NEARER_SPEED: f32 = 1.0;
 
 #[cfg(test)]

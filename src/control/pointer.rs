@@ -1,48 +1,49 @@
-//! What the mouse does: events at times -> gestures, pure.
+//! Gestures of the mouse, recognised from its events and their times.
 
 use crate::camera::Grip;
 use crossterm::event::{KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use glam::Vec2;
 use std::time::Duration;
 
-/// What a person does with the mouse. Places are parts of the screen's width and height, from its upper left corner.
+/// A gesture of the mouse. Positions are shares of the screen's width and height, from its upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Gesture {
-    /// Something is taken hold of.
+    /// A button is pressed.
     Press {
-        /// Where.
+        /// The position.
         at: Vec2,
-        /// With what.
+        /// The motion that the button and Shift select.
         grip: Grip,
     },
-    /// What was taken hold of is moved.
+    /// The pointer moves while a button is held.
     Drag {
-        /// From the place that was heard of before.
+        /// The previous position.
         from: Vec2,
-        /// To this one.
+        /// The new position.
         to: Vec2,
-        /// With what.
+        /// The motion that the button and Shift select.
         grip: Grip,
     },
-    /// It is let go of.
+    /// The button is released.
     Release,
-    /// Two clicks of the left button in one place, one after the other.
+    /// Two clicks of the left button at the same position, in quick succession.
     DoubleClick,
-    /// The wheel is turned away from the person, by so many notches.
+    /// The wheel is turned.
     Wheel {
-        /// Where the pointer is.
+        /// The position of the pointer.
         at: Vec2,
-        /// Less than zero: towards the person.
+        /// Number of notches, positive away from the user.
         notches: f32,
     },
 }
 
-/// Two clicks are one double click when they are no further apart in time,
+/// Longest time between the clicks of a double click. Desktops use 400 to 500 ms by default.
 const DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
-/// and on the screen, in parts of it.
+/// Greatest distance between the clicks of a double click, as a share of the screen in either direction: 1.6 columns of
+/// 80, because without pixel reports a tremor of the hand may cross a cell boundary.
 const DOUBLE_CLICK_DISTANCE: f32 = 0.02;
 
-/// What has been heard of the mouse.
+/// The state of the mouse: position, held button and last click.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pointer {
     at: Option<Vec2>,
@@ -51,27 +52,27 @@ pub struct Pointer {
 }
 
 impl Pointer {
-    /// The last place that was heard of.
+    /// Returns the last reported position.
     pub fn at(&self) -> Option<Vec2> {
         self.at
     }
 
-    /// Whether something is held.
+    /// Returns whether a button is held.
     pub fn holds(&self) -> bool {
         self.held.is_some()
     }
 
-    /// The same place on another screen, where nothing is held.
+    /// Releases the held button, because its release will not be reported.
     pub fn release(&mut self) {
         self.held = None;
     }
 
-    /// An event at a place and a time: what it comes to.
+    /// Takes an event at a position and a time, and returns the gesture that it completes, if any.
     pub fn take(&mut self, event: &MouseEvent, at: Vec2, now: Duration) -> Option<Gesture> {
         let from = self.at.replace(at).unwrap_or(at);
         match event.kind {
             MouseEventKind::Down(button) => Some(self.press(button, event.modifiers, at, now)),
-            // What was pressed elsewhere, before we listened, is nothing that is held here.
+            // Without a press before it, the button was pressed in another program, and the drag is not for this one.
             MouseEventKind::Drag(_) => self.held.map(|grip| Gesture::Drag { from, to: at, grip }),
             MouseEventKind::Up(_) => self.held.take().map(|_| Gesture::Release),
             MouseEventKind::ScrollUp => Some(Gesture::Wheel { at, notches: 1.0 }),
@@ -89,10 +90,11 @@ impl Pointer {
         };
         let clicked = self.clicked.replace((now, at)).filter(|_| !pans);
         if clicked.is_some_and(is_same) {
-            // A third click begins anew.
+            // So that a third click starts a new double click instead of completing a second one.
             self.clicked = None;
             return Gesture::DoubleClick;
         }
+        // Panning is not part of a double click: its frame-all would undo the pan.
         if pans {
             self.clicked = None;
         }
@@ -113,7 +115,7 @@ mod tests {
         MouseEvent { kind, column: 0, row: 0, modifiers }
     }
 
-    /// All gestures of plain events, a tenth of a second apart.
+    /// Returns the gestures of events 100 ms apart, without modifiers.
     fn gestures(events: &[(MouseEventKind, Vec2)]) -> Vec<Option<Gesture>> {
         let mut pointer = Pointer::default();
         let at = |number: usize| Duration::from_millis(100 * number as u64);

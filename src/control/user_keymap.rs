@@ -1,4 +1,4 @@
-//! Keymap of one's own: RON -> the built-in table, changed; and back.
+//! The user's keymap: changes of the built-in keymap, read from RON and written back.
 
 use super::{Command, Key, KeyMode, Keymap};
 use crate::scene_text::{self, Faults, Field, SceneError, Span, SyntaxNode, Value, clipped, quoted};
@@ -6,12 +6,12 @@ use crate::text::{closest, listed};
 use std::collections::HashSet;
 use std::fmt::Write;
 
-/// Always leaves, whatever is bound: nobody is to be caught.
+/// The key that always quits, so that no keymap can lock the user in.
 const ALWAYS_QUITS: Key = Key::ctrl('c');
 
 impl Keymap {
-    /// The built-in keymap, changed as the text says: for each mode a map from a key, or a list of keys, to a command,
-    /// or to `None` for nothing. The name is the file's, for messages only.
+    /// Returns the built-in keymap with the changes in `text`: for each mode a map from a key, or a list of keys, to a
+    /// command, or to `None` to unbind. `name` is the file's name in messages.
     ///
     /// ```
     /// use crossterm::event::KeyCode;
@@ -28,8 +28,8 @@ impl Keymap {
     /// ```
     ///
     /// # Errors
-    /// The first fault of the syntax; if there is none, all others: unknown modes, commands and keys, keys that not every
-    /// terminal sends, what is bound twice or hidden by another mode's binding, and a table in which no key leaves.
+    /// The first syntax error; without one, all other errors: unknown modes, commands and keys, keys that not every
+    /// terminal sends, keys bound twice or hidden by another mode's binding, and a keymap in which no key quits.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
         scene_text::read(name, text, "file of keys is ()", |root, faults| {
             let entries = entries(root, faults);
@@ -42,7 +42,7 @@ impl Keymap {
         })
     }
 
-    /// All of it as a file of one's own, with what each command does: [`from_ron`](Self::from_ron) reads the same from it.
+    /// Writes the whole keymap as RON, with a comment on each command. [`from_ron`](Self::from_ron) reads it back.
     pub fn to_ron(&self) -> String {
         let mut text = "(\n".to_owned();
         for mode in KeyMode::ALL {
@@ -59,21 +59,21 @@ impl Keymap {
         text + ")\n"
     }
 
-    /// The keys that do something by the built-in table, and nothing by this.
+    /// Returns the keys that the built-in keymap binds in `mode` and this one does not.
     fn freed(&self, mode: KeyMode) -> Vec<Key> {
         let bound: HashSet<_> = self.of(mode).flat_map(|row| &row.keys).copied().collect();
         let built_in = Self::default();
         built_in.of(mode).flat_map(|row| row.keys.clone()).filter(|key| !bound.contains(key)).collect()
     }
 
-    /// Whether each entry does what it says, and there is a way out.
+    /// Reports entries without effect, and a keymap without a key that quits.
     fn check(&self, entries: &[Entry], faults: &mut Faults) {
         for (i, entry) in entries.iter().enumerate() {
             let Entry { mode, key, .. } = *entry;
             if entries[..i].iter().any(|before| (before.mode, before.key) == (mode, key)) {
                 faults.add(entry.span, || format!("{} is bound twice in {}", quoted_key(key), mode.name()));
             } else if key == ALWAYS_QUITS && entry.command != Some(Command::Quit) {
-                faults.add(entry.span, || format!("{} always leaves", quoted_key(key)));
+                faults.add(entry.span, || format!("{} always quits", quoted_key(key)));
             } else {
                 self.check_is_reached(entry, entries, faults);
             }
@@ -84,12 +84,13 @@ impl Keymap {
                 built_in.of(KeyMode::Always).any(|row| row.command == Command::Quit && row.keys.contains(&entry.key))
             };
             let span = entries.iter().rev().find(takes_it).map(|entry| entry.span).unwrap_or_default();
-            let message = "no key but Ctrl-C leaves any more: bind one to Quit in always";
+            let message = "no key but Ctrl-C quits: bind one to Quit in always";
             faults.add(span, || message.to_owned());
         }
     }
 
-    /// What is bound always is hidden where a mode above binds the same key. That is meant if the file itself says both.
+    /// Reports an entry of `always` that a binding of a higher mode hides, unless the file itself contains that
+    /// binding: then it is intended.
     fn check_is_reached(&self, entry: &Entry, entries: &[Entry], faults: &mut Faults) {
         let Entry { mode: KeyMode::Always, key, command: Some(command), span } = *entry else { return };
         for above in [KeyMode::Fly, KeyMode::Orbit] {
@@ -97,13 +98,13 @@ impl Keymap {
             let meant = self.command(&[above, KeyMode::Always], &key.pressed()).map(|(meant, _)| meant);
             if let Some(meant) = meant.filter(|&meant| meant != command && !entries.iter().any(hides)) {
                 let (key, above, meant) = (quoted_key(key), above.name(), meant.name());
-                faults.add(span, || format!("{key} is {meant} in {above}, which goes before always"));
+                faults.add(span, || format!("{key} is {meant} in {above}, which takes precedence over always"));
                 return;
             }
         }
     }
 
-    /// Whether some key that can be bound leaves, however the eye moves.
+    /// Returns whether a key besides [`ALWAYS_QUITS`] quits both in flight and in orbit.
     fn can_be_left(&self) -> bool {
         let leaves =
             |above, key: Key| self.command(&[above, KeyMode::Always], &key.pressed()) == Some((Command::Quit, false));
@@ -113,11 +114,11 @@ impl Keymap {
     }
 }
 
-/// What a file says of one key.
+/// A key of the file and its command.
 struct Entry {
     mode: KeyMode,
     key: Key,
-    /// Where the key stands.
+    /// Position of the key in the file.
     span: Span,
     command: Option<Command>,
 }
@@ -126,13 +127,13 @@ fn quoted_key(key: Key) -> String {
     format!("\"{key}\"")
 }
 
-/// `"w"`, or `["Up", "k"]`.
+/// Formats keys as RON: `"w"`, or `["Up", "k"]`.
 fn keys_as_ron(keys: &[Key]) -> String {
     let keys: Vec<_> = keys.iter().map(|key| format!("{:?}", key.to_string())).collect();
     if let [only] = &keys[..] { only.clone() } else { format!("[{}]", keys.join(", ")) }
 }
 
-/// `(mode: { key: command, ... }, ...)`
+/// Reads the entries of `(mode: { key: command, ... }, ...)`.
 fn entries(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Entry> {
     const FORM: &str = "modes with their keys, as in (fly: { \"8\": MoveForward })";
     let Some(fields) = root.fields() else {
@@ -173,7 +174,7 @@ fn unknown_mode(name: &str) -> String {
     }
 }
 
-/// A key or a list of keys, and where each stands.
+/// Reads a key or a list of keys, each with its position.
 fn keys_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<(Key, Span)> {
     match &node.value {
         Value::List(items) => items.iter().filter_map(|item| Some((key_of(item, faults)?, item.span))).collect(),
@@ -191,8 +192,8 @@ fn key_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Key> {
         faults.add(node.span, || match closest(name, Key::names()) {
             Some(meant) => format!("there is no key {}; did you mean \"{meant}\"?", quoted(name)),
             None => format!(
-                "{} is no key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, or a name \
-                 such as PageUp, Space or F1",
+                "{} is not a key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, or a \
+                 name such as PageUp, Space or F1",
                 quoted(name)
             ),
         });
@@ -200,7 +201,7 @@ fn key_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Key> {
     key
 }
 
-/// The command, if it is one that means something in the mode.
+/// Reads a command that has a meaning in `mode`.
 fn command_of(mode: KeyMode, node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Command> {
     let Some(word) = node.word() else {
         let expected = "expected a command without quotes, such as MoveForward, or None";
@@ -214,7 +215,7 @@ fn command_of(mode: KeyMode, node: &SyntaxNode<'_>, faults: &mut Faults) -> Opti
         return None;
     };
     if !mode.takes(command) {
-        faults.add(node.span, || format!("{word} means nothing in {}", mode.name()));
+        faults.add(node.span, || format!("{word} has no meaning in {}", mode.name()));
         return None;
     }
     Some(command)
@@ -232,7 +233,7 @@ mod tests {
         keymap.command(&[mode, KeyMode::Always], &key.pressed()).map(|(command, _)| command)
     }
 
-    /// Each fault's place and message.
+    /// Returns the position and message of each error.
     fn faults(text: &str) -> Vec<String> {
         let error = Keymap::from_ron("keys.ron", text).expect_err(text);
         error.reports().iter().map(|report| format!("{}:{} {}", report.line, report.column, report.message)).collect()
@@ -262,9 +263,9 @@ mod tests {
         assert_eq!(meant(&keymap, KeyMode::Export, Key::letter('g')).map(Command::name), Some("WritePng"));
     }
 
-    /// The table can be the start of one's own, changed or not.
+    /// A written keymap can serve as the start of a file, changed or not.
     #[test]
-    fn what_is_written_is_read_again() {
+    fn a_written_keymap_is_read_back() {
         let changes = r#"(fly: { ["8", "\\", "\""]: MoveForward, "w": None }, always: { "x": None, "z": Explain })"#;
         for text in ["()", changes] {
             let keymap = Keymap::from_ron("keys.ron", text).unwrap_or_else(|error| panic!("{error}"));
@@ -280,11 +281,11 @@ mod tests {
         let written = Keymap::default().to_ron();
         let lines: Vec<_> = written.lines().collect();
         assert_eq!(lines[..3], ["(", "    fly: {", r#"        "w": MoveForward,                   // move forward"#]);
-        assert!(lines.contains(&r#"        ["q", "Ctrl-C"]: Quit,              // leave"#), "{written}");
+        assert!(lines.contains(&r#"        ["q", "Ctrl-C"]: Quit,              // quit"#), "{written}");
     }
 
     #[test]
-    fn all_that_is_wrong_is_told_at_once() {
+    fn all_errors_are_reported_at_once() {
         let text = r#"(
     flying: {},
     fly: {
@@ -307,20 +308,20 @@ mod tests {
             faults(text),
             [
                 "2:5 there is no mode \"flying\"; there are fly, orbit, explain, light, export, keep and always",
-                "4:9 \"PgUp\" is no key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, or \
-                 a name such as PageUp, Space or F1",
+                "4:9 \"PgUp\" is not a key that every terminal sends: a character, Ctrl- and a letter but H, I, J and \
+                 M, or a name such as PageUp, Space or F1",
                 "5:9 there is no key \"Pageup\"; did you mean \"PageUp\"?",
-                "6:9 \"Ctrl-I\" is no key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, \
-                 or a name such as PageUp, Space or F1",
+                "6:9 \"Ctrl-I\" is not a key that every terminal sends: a character, Ctrl- and a letter but H, I, J and \
+                 M, or a name such as PageUp, Space or F1",
                 "7:9 expected a key in quotes, as in \"w\", or a list of keys",
                 "8:14 there is no command MovForward; did you mean MoveForward?",
                 "9:14 there is no command Dance",
                 "10:14 expected a command without quotes, such as MoveForward, or None",
                 "11:15 \"6\" is bound twice in fly",
-                "12:14 WritePng means nothing in fly",
-                "14:18 MoveUp means nothing in keep",
-                "15:15 \"w\" is MoveForward in fly, which goes before always",
-                "15:28 \"Ctrl-C\" always leaves",
+                "12:14 WritePng has no meaning in fly",
+                "14:18 MoveUp has no meaning in keep",
+                "15:15 \"w\" is MoveForward in fly, which takes precedence over always",
+                "15:28 \"Ctrl-C\" always quits",
                 "16:14 expected modes with their keys, as in (fly: { \"8\": MoveForward })",
                 "17:5 duplicate mode \"fly\"",
             ]
@@ -328,12 +329,12 @@ mod tests {
         assert_eq!(faults("[]"), ["1:1 expected modes with their keys, as in (fly: { \"8\": MoveForward })"]);
     }
 
-    /// A capital of a key that moves is its Shift.
+    /// The capital of a movement key is that key with Shift, and cannot be bound in `always`.
     #[test]
-    fn what_could_never_be_reached_is_refused() {
+    fn a_binding_that_a_higher_mode_hides_is_refused() {
         assert_eq!(
             faults(r#"(always: { "W": Status })"#),
-            ["1:12 \"W\" is MoveForward in fly, which goes before always"]
+            ["1:12 \"W\" is MoveForward in fly, which takes precedence over always"]
         );
         for text in [
             r#"(fly: { "w": None }, orbit: { "w": None }, always: { "w": Status })"#,
@@ -345,13 +346,13 @@ mod tests {
     }
 
     #[test]
-    fn somebody_must_be_able_to_leave() {
-        let caught = "no key but Ctrl-C leaves any more: bind one to Quit in always";
+    fn a_keymap_needs_a_key_that_quits() {
+        let caught = "no key but Ctrl-C quits: bind one to Quit in always";
         assert_eq!(faults(r#"(always: { "q": None })"#), [format!("1:12 {caught}")]);
         assert_eq!(faults(r#"(always: { "q": Status })"#), [format!("1:12 {caught}")]);
         assert!(Keymap::from_ron("keys.ron", r#"(always: { "q": None, "Q": Quit })"#).is_ok());
         assert!(Keymap::from_ron("keys.ron", r#"(always: { ["q", "Ctrl-C"]: Quit })"#).is_ok());
-        // Hidden by another mode, it is no way out there.
+        // A binding hidden by another mode does not count there.
         assert_eq!(faults(r#"(fly: { "q": Status })"#), [format!("1:9 {caught}")]);
     }
 }

@@ -1,4 +1,4 @@
-//! How the eye moves, beside what held keys do.
+//! Commands that move the camera at once. Motion by held keys is the eye's.
 
 use super::Viewer;
 use crate::control::Command;
@@ -7,11 +7,12 @@ use crate::hit::closest_hit;
 use crate::ray::Ray;
 use glam::Vec3;
 
-/// How many times as large a press makes the view rectangle.
+/// Factor by which a key press scales the view rectangle.
+// A repeated key zooms by a factor of two in seven repeats, a quarter of a second.
 pub(super) const ZOOM_FACTOR: f32 = 1.1;
 
 impl Viewer {
-    /// The eye goes around what is in the middle of the picture, or flies again.
+    /// Switches between flight and orbit about the point in the middle of the picture.
     pub(super) fn change_mode(&mut self) {
         let in_the_middle = self.in_the_middle();
         self.eye.change_mode(in_the_middle);
@@ -19,36 +20,36 @@ impl Viewer {
         self.say(format!("{}{}", self.eye.mode().name(), self.hint(Command::Help, "shows its keys")));
     }
 
-    /// What a key does about what a note says, for its end; nothing, if no key is bound to that.
+    /// Returns the end of a note: a key for `command` and what it does; empty if no key is bound to it.
     pub(super) fn hint(&self, command: Command, does: &str) -> String {
         let key = self.keymap().key_of(&self.screen.modes(self.size()), command);
         key.map_or_else(String::new, |key| format!("; {key} {does}"))
     }
 
-    /// The point of the scene that the eye looks at.
+    /// Returns the point of the scene in the middle of the picture.
     fn in_the_middle(&self) -> Option<Vec3> {
         let (scene, camera) = (&self.screen.frame()?.scene, self.eye.camera()?);
         let ray = Ray { origin: camera.pose().eye, direction: -camera.basis().w };
         closest_hit(scene, &ray).map(|hit| ray.at(hit.t))
     }
 
-    /// All that has an end is seen, as large as it can be; from the same direction.
+    /// Moves the eye along the view direction until everything finite fills the picture. (Planes are infinite.)
     pub(super) fn frame_everything(&mut self) {
         let Some(bounds) = self.screen.frame().and_then(|frame| frame.scene.bounds()) else {
-            self.say("nothing here has an end");
+            self.say("nothing finite to fit in view");
             return;
         };
         let aspect_ratio = self.part().aspect_ratio();
         self.eye.change(self.now, |camera, _| camera.framing(&bounds, aspect_ratio));
     }
 
-    /// The picture's size; of two maps side by side, each is a picture of its own.
+    /// Returns the size of a picture: of two maps side by side, that of the left one.
     pub(super) fn part(&self) -> Resolution {
         let whole = self.resolution();
         self.layout.parts(whole).first().map_or(whole, |(_, part)| *part)
     }
 
-    /// The field of view becomes narrower or wider, and is told.
+    /// Scales the view rectangle by `factor`, and shows the field of view in a note.
     pub(super) fn zoom(&mut self, factor: f32) {
         self.eye.change(self.now, |camera, _| camera.zoomed(factor));
         if let Some(camera) = self.eye.camera() {
@@ -57,16 +58,16 @@ impl Viewer {
         }
     }
 
-    /// The eye goes around by itself, where the user has not asked that nothing does.
+    /// Starts or stops the turntable, unless the user has asked for reduced motion.
     pub(super) fn toggle_turntable(&mut self) {
         if self.options.reduced_motion {
-            self.say("nothing moves by itself with --reduced-motion");
+            self.say("the turntable is off: --reduced-motion");
             return;
         }
         self.eye.toggle_turntable(self.now);
     }
 
-    /// To a view of the scene's file, or one that was saved.
+    /// Goes to a view saved by the user, or to one of the scene file.
     pub(super) fn go_to_view(&mut self, number: u8) {
         if self.eye.go_to(number, self.now).is_none() {
             let hint = self.hint(Command::SaveView, "saves this one");
@@ -74,10 +75,10 @@ impl Viewer {
         }
     }
 
-    /// This view can be come back to.
+    /// Saves the current view under a number until the program ends.
     pub(super) fn save_view(&mut self, number: u8) {
         self.eye.save(number);
-        let hint = self.hint(Command::KeepView, "writes it into the scene's file");
-        self.say(format!("saved as view {number}, until you leave{hint}"));
+        let hint = self.hint(Command::KeepView, "saves it to the scene file");
+        self.say(format!("saved as view {number} until you quit{hint}"));
     }
 }

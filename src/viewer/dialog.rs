@@ -80,8 +80,8 @@ impl Dialog {
 
     fn title(&self) -> &'static str {
         match self {
-            Self::Export => " write the picture as ",
-            Self::Keep(_) => " write this view into the scene's file? ",
+            Self::Export => " save picture as ",
+            Self::Keep(_) => " save this view to the scene file? ",
             Self::Save => " save this view as ",
         }
     }
@@ -110,9 +110,9 @@ impl Dialog {
     /// Returns the question in one line, for small screens: its keys and as few words as possible.
     fn line(&self, keymap: &Keymap) -> String {
         let word = match self {
-            Self::Export => "write",
-            Self::Keep(_) => "keep?",
-            Self::Save => "as",
+            Self::Export => "save as",
+            Self::Keep(_) => "save?",
+            Self::Save => "view",
         };
         format!("{word} {}", self.keys(keymap))
     }

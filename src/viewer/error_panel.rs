@@ -42,7 +42,7 @@ impl ErrorPanel {
             lines.extend(excerpt.iter().map(|line| part(line, cut, width)));
         }
         if self.0.has_more {
-            lines.push("more is wrong: termtrace check tells all".chars().take(width).collect());
+            lines.push("more errors: termtrace check lists them all".chars().take(width).collect());
         }
         lines
     }
@@ -123,7 +123,7 @@ mod tests {
             "my.ron:2:3: unknown field \"radus\"; did you mean \"radius\"?",
             "  2 |   radus: 1)",
             "    |   ^^^^^",
-            "more is wrong: termtrace check tells all",
+            "more errors: termtrace check lists them all",
         ];
         assert_eq!(panel.lines(78), wide);
         for width in 1..100 {

@@ -129,7 +129,7 @@ fn rows(keymap: &Keymap, modes: &[KeyMode]) -> Vec<KeyRow> {
             rows.push((keys.join(" "), row.command.description()));
         }
     }
-    rows.push(("Shift".to_owned(), "with a movement: faster"));
+    rows.push(("Shift".to_owned(), "hold: moves 4x faster"));
     let alike = rows.chunk_by(|(_, description), (_, next)| description == next);
     alike.map(|rows| (joined(rows), rows[0].1)).collect()
 }
@@ -169,7 +169,7 @@ fn width(lines: &[String]) -> usize {
 /// Returns the mode's name and as many of its important keys as fit.
 pub(super) fn status_line(keymap: &Keymap, modes: &[KeyMode], room: usize) -> String {
     let Some(&mode) = modes.first() else { return String::new() };
-    let always = [(&[Command::Help][..], "help"), (&[Command::Quit], "leave")];
+    let always = [(&[Command::Help][..], "help"), (&[Command::Quit], "quit")];
     let mut line = format!(" {}", mode.name());
     for (commands, description) in always.into_iter().chain(status_line_keys(mode).iter().copied()) {
         if let Some(keys) = keys(keymap, modes, commands) {
@@ -225,14 +225,14 @@ fn status_line_keys(mode: KeyMode) -> &'static [(&'static [Command], &'static st
             (&[Command::Explain], "explain"),
         ],
         KeyMode::Explain => &[
-            (POINT, "another pixel"),
-            (&[Command::ScrollUp, Command::ScrollDown], "more"),
+            (POINT, "move cursor"),
+            (&[Command::ScrollUp, Command::ScrollDown], "scroll"),
             (&[Command::Close], "close"),
         ],
         KeyMode::Light => &[
-            (LIGHT, "move it"),
+            (LIGHT, "move"),
             (&[Command::Close], "done"),
-            (&[Command::LightBack], "back"),
+            (&[Command::LightBack], "reset"),
             (&[Command::LightFarther, Command::LightNearer], "distance"),
         ],
         KeyMode::Export | KeyMode::Keep | KeyMode::Always => &[],
@@ -304,7 +304,7 @@ mod tests {
         keymap.bind(KeyMode::Always, Key::letter('o'), None);
         let text = shown(&keymap, &[KeyMode::Fly, KeyMode::Always], 80, 24);
         assert!(text.contains("8        ") && text.contains("move forward"), "{text}");
-        assert!(!text.contains("picture to a file"), "{text}");
+        assert!(!text.contains("save picture"), "{text}");
         assert_eq!(keys(&keymap, &[KeyMode::Fly], &[Command::Move(Direction::Forward)]).as_deref(), Some("8"));
         assert_eq!(keys(&keymap, &[KeyMode::Fly, KeyMode::Always], &[Command::Export]), None);
     }
@@ -321,10 +321,10 @@ mod tests {
     fn the_line_has_as_much_as_fits() {
         let keymap = Keymap::default();
         let fly = [KeyMode::Fly, KeyMode::Always];
-        let whole = " fly   ? help   q leave   Tab orbit   wasd move   arrows look   x explain";
+        let whole = " fly   ? help   q quit   Tab orbit   wasd move   arrows look   x explain";
         assert_eq!(status_line(&keymap, &fly, 80), whole);
-        assert_eq!(status_line(&keymap, &fly, 40), " fly   ? help   q leave   Tab orbit");
+        assert_eq!(status_line(&keymap, &fly, 40), " fly   ? help   q quit   Tab orbit");
         let explain = status_line(&keymap, &[KeyMode::Explain, KeyMode::Orbit, KeyMode::Always], 80);
-        assert_eq!(explain, " explain   ? help   q leave   arrows another pixel   PageUp PageDown more");
+        assert_eq!(explain, " explain   ? help   q quit   arrows move cursor   PageUp PageDown scroll");
     }
 }

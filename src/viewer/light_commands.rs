@@ -1,4 +1,4 @@
-//! Commands for the light that is held.
+//! Commands for the held light.
 
 use super::Viewer;
 use super::light_marker::LightMarker;
@@ -8,13 +8,14 @@ use crate::control::{Command, Toward};
 use crate::light::Light;
 use glam::{Vec2, Vec3};
 
-/// How far a press moves a light, in parts of the picture's height.
+/// Distance that a key press moves the light, as a share of the picture's height.
+// One row of 32: a step is visible in the smallest window with panels, and 8 with Shift cross the picture.
 const LIGHT_STEP: f32 = 1.0 / 32.0;
-/// How many times as far it does with Shift.
+/// Factor of that distance with Shift.
 const LIGHT_SHIFT_FACTOR: f32 = 4.0;
 
 impl Viewer {
-    /// Takes hold of the light that is nearest to the pointer on the screen; of the next one, if one is held.
+    /// Takes hold of the light nearest to the pointer on the screen; if one is held, of the next one.
     pub(super) fn take_light(&mut self) {
         let (camera, aspect_ratio) = (self.eye.camera(), self.part().aspect_ratio());
         let pointer = self.pointer.at().unwrap_or(Vec2::splat(0.5));
@@ -24,7 +25,7 @@ impl Viewer {
             Some((light, lights.all().len(), lights.held()))
         });
         let Some((light, count, at)) = taken else {
-            self.say("this scene has no light that could be moved");
+            self.say("this scene has no movable light");
             return;
         };
         let is_seen = |camera: Camera| at.is_some_and(|at| camera.project(at, 1.0).is_some());
@@ -34,7 +35,7 @@ impl Viewer {
         self.say(format!("light {} of {count}{behind}: drag it{hint}", light + 1));
     }
 
-    /// Marks the light that is held, where it is.
+    /// Opens the marker of the held light, or closes it if none is held.
     pub(super) fn mark_light(&mut self) {
         self.screen.set(self.held_light().map(LightMarker));
     }
@@ -43,7 +44,7 @@ impl Viewer {
         self.scenes.lights()?.held()
     }
 
-    /// Lets go of it; whether there was one.
+    /// Releases the held light. Returns whether there was one.
     pub(super) fn leave_light(&mut self) -> bool {
         let was_held = self.scenes.lights_mut().is_some_and(Lights::release);
         self.mark_light();
@@ -54,7 +55,7 @@ impl Viewer {
         self.held_light().is_some()
     }
 
-    /// The light goes one step as the screen has it.
+    /// Moves the light by one step in a direction of the screen.
     pub(super) fn step_light(&mut self, toward: Toward, faster: bool) {
         let (across, down) = match toward {
             Toward::Left => (-1.0, 0.0),
@@ -66,18 +67,18 @@ impl Viewer {
         self.drag_light(step * Vec2::new(across / self.part().aspect_ratio(), down));
     }
 
-    /// The light goes so far to the right and down, in parts of the picture's width and height.
+    /// Moves the light to the right and down by shares of the picture's width and height, at constant depth.
     pub(super) fn drag_light(&mut self, by: Vec2) {
         let aspect_ratio = self.part().aspect_ratio();
         self.move_light(|camera, from| camera.point_dragged(from, by, aspect_ratio));
     }
 
-    /// The light goes away from the eye.
+    /// Moves the light away from the eye by notches of the wheel.
     pub(super) fn wheel_light(&mut self, notches: f32) {
         self.move_light(|camera, from| camera.point_wheeled(from, notches));
     }
 
-    /// The light goes back to where the scene has it.
+    /// Returns the light to its position in the scene file.
     pub(super) fn put_light_back(&mut self) {
         if let Some(lights) = self.scenes.lights_mut()
             && let Some(home) = lights.home()
@@ -96,7 +97,7 @@ impl Viewer {
     }
 }
 
-/// The light in front of the eye that is nearest to the pointer on the screen, or any if there is none in front of it.
+/// Returns the light in front of the eye nearest to the pointer on the screen; without one in front, the first light.
 fn nearest(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
     let away = |position: Vec3| {
         let place = camera.project(position, aspect_ratio);

@@ -1,4 +1,4 @@
-//! A mark over the picture where something is that cannot be seen: a light.
+//! A marker over the picture at the position of the held light, which itself is invisible.
 
 use super::frame::Frame;
 use super::layers::{Canvas, Layer, Level};
@@ -8,7 +8,7 @@ use glam::Vec3;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
 
-/// The light that is held, and where it is.
+/// The marker of a light at this position in the scene.
 #[derive(PartialEq)]
 pub(super) struct LightMarker(pub(super) Vec3);
 
@@ -29,7 +29,8 @@ impl Layer for LightMarker {
     }
 }
 
-/// Where the mark of a light is over a frame: in the left one of two pictures.
+/// Returns the cells of a light's marker on the screen, or `None` if the light is behind the eye. Of two pictures side
+/// by side, the left one has it.
 fn marker_area(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
     let (part, _) = frame.part_at([0, 0]);
     let place = frame.camera().project(light, part.aspect_ratio())?;
@@ -40,7 +41,7 @@ fn marker_area(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
 const MARKER: &str = "(*)";
 const MARKER_WIDTH: u16 = MARKER.len() as u16;
 
-/// The cells of a mark whose middle is in that column and row of the screen, or as near to them as there is room.
+/// Returns the cells of a marker centred at a column and row, moved to the screen's edge if they are outside.
 fn area(screen: Rect, column: f32, row: f32) -> Rect {
     let within = |at: f32, size: u16, of: u16| at.clamp(0.0, f32::from(of.saturating_sub(size))) as u16;
     let x = within(column.floor() - f32::from(MARKER_WIDTH / 2), MARKER_WIDTH, screen.width);

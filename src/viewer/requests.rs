@@ -10,7 +10,7 @@ impl Viewer {
     pub(super) fn copy_camera(&mut self) {
         if let Some(camera) = self.eye.camera() {
             self.requests.push_back(Request::Copy(format!("{},", camera.to_ron())));
-            self.say("camera copied, where OSC 52 is allowed; on leaving it is printed, too");
+            self.say("camera copied, if the terminal allows it; it is also printed on exit");
         }
     }
 

@@ -270,6 +270,10 @@ mod tests {
     use super::*;
     use proptest::collection::vec;
     use proptest::prelude::*;
+    use proptest::sample::select;
+
+    /// Keys with a meaning in some mode.
+    const KEYS: &[u8] = b"wasdqezxhjklfogtvVcnNpPimLr?1[]<>\t\x1b 5";
 
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
@@ -282,7 +286,7 @@ mod tests {
         /// Keys with a meaning, in a loaded scene.
         #[test]
         fn the_rules_hold_whatever_keys_are_pressed(
-            keys in vec((prop::sample::select(&b"wasdqezxhjklfogtvVcnNpPimLr?1[]<>\t\x1b 5"[..]), 0_u8..9, any::<u8>()), 0..60),
+            keys in vec((select(KEYS), 0_u8..9, any::<u8>()), 0..60),
         ) {
             let shown = [6, 0, 0, 3, 1, 5, 4];
             let pressed = keys.into_iter().flat_map(|(key, event, more)| [0, 1, key, event, more, 3, 2, 4]);

@@ -244,7 +244,8 @@ mod tests {
         ) -> Facts {
             let (moved_until, frame_time) = (moves.then_some(NOW), FRAME);
             Facts {
-                busy, picture, holds_first_back, begun, moved_until, frame_time, link_free_at, is_changed, improvable_at,
+                busy, picture, holds_first_back, begun, moved_until, frame_time, link_free_at, is_changed,
+                improvable_at,
             }
         }
     }

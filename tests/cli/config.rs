@@ -224,7 +224,8 @@ fn keys_that_are_wrong_are_told_of_in_one_message() {
     for command in ["config", "config --keys"] {
         let run = folder.run(command);
         run.fails(2, "keys.ron:2:17: there is no command MovForward; did you mean MoveForward?\n");
-        for (place, words) in [("2:29", "is no key that every terminal sends"), ("3:15", "no key but Ctrl-C leaves")] {
+        for (place, words) in [("2:29", "is not a key that every terminal sends"), ("3:15", "no key but Ctrl-C quits")]
+        {
             assert!(run.stderr.contains(&format!("keys.ron:{place}: ")) && run.stderr.contains(words), "{run:?}");
         }
     }

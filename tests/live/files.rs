@@ -69,7 +69,7 @@ fn the_picture_is_written_in_five_formats_and_never_over_a_file() {
         ("s", "ball-2.svg"),
     ] {
         session.send(b"o");
-        session.wait_for_text("write the picture as");
+        session.wait_for_text("save picture as");
         session.send(key.as_bytes());
         session.wait_for_text(&format!("written: {name}"));
     }
@@ -84,7 +84,7 @@ fn the_picture_is_written_in_five_formats_and_never_over_a_file() {
     assert!(fs::read(folder.path().join("ball.png")).is_ok_and(|png| png.starts_with(b"\x89PNG")));
     // Any other key leaves the question.
     session.send(b"o");
-    session.wait_for_text("write the picture as");
+    session.wait_for_text("save picture as");
     session.send(b"\x1b");
     sees_all(&mut session, TEXT);
     assert_eq!(fs::read_dir(folder.path()).expect("the folder is there").count(), 7);
@@ -104,13 +104,13 @@ fn a_full_disk_leaves_nothing_of_a_picture_and_the_scene_as_it_was() {
     let mut session = Start::shell(&script).spawn();
     sees_all(&mut session, TEXT);
     session.send(b"o");
-    session.wait_for_text("write the picture as");
+    session.wait_for_text("save picture as");
     session.send(b"s");
-    session.wait_for_text("it could not be written: File too large");
+    session.wait_for_text("could not write the picture: File too large");
     session.send(b"Y");
     session.wait_for_text("  yes");
     session.send(b"y");
-    session.wait_for_text("the scene's file is as it was: File too large");
+    session.wait_for_text("scene file left unchanged: File too large");
     assert_eq!(read(&folder, "ball.ron"), text);
     assert_eq!(fs::read_dir(folder.path()).expect("the folder is there").count(), 1);
     leave(&mut session);
@@ -131,7 +131,7 @@ fn a_view_is_written_into_the_scene_after_a_yes() {
     session.send(b"Y");
     session.wait_for_text("  yes");
     session.send(b"y");
-    session.wait_for_text("written into the scene's views");
+    session.wait_for_text("view saved to the scene file");
     let scene = Scene::load(&folder.path().join("ball.ron")).expect("it is a scene");
     assert_eq!(scene.views().len(), 1);
     assert_eq!(scene.views()[0].pose().eye, glam::Vec3::new(2.0, 1.0, 4.0));
@@ -148,7 +148,7 @@ fn a_scene_that_has_changed_is_left_alone() {
     let changed = TEXT.replace("Mine", "Changed");
     fs::write(folder.path().join("ball.ron"), &changed).expect("a file can be written");
     session.send(b"y");
-    session.wait_for_text("it has changed meanwhile");
+    session.wait_for_text("it has changed in the meantime");
     assert_eq!(read(&folder, "ball.ron"), changed);
     leave(&mut session);
 }
@@ -177,6 +177,6 @@ fn a_built_in_scene_keeps_nothing() {
     let mut session = Start::new(program).spawn();
     session.wait_for_text("a built-in scene; termtrace FILE opens yours");
     session.send(b"Y");
-    session.wait_for_text("this scene stands in no scene file");
+    session.wait_for_text("this scene has no scene file to save views to");
     leave(&mut session);
 }

@@ -311,7 +311,7 @@ fn what_cannot_be_watched_is_said() {
     let mut session = program().arg(&path).env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
     phases.wait_for_on("watching", &mut session);
     phases.answer(Answer::Error);
-    session.wait_for_text("changes of the scene's files will not be seen: a test asked for an error");
+    session.wait_for_text("changes to the scene's files will not be noticed: a test asked for an error");
     session.send(b" ");
     let wanted = picture(&Scene::load(&path).expect("it is a scene"), Size::cells(80, 24));
     session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));

@@ -169,7 +169,7 @@ fn help_shows_every_binding_and_goes_away() {
     session.send(b"?");
     wait_for_picture(&mut session, Size::cells(80, 24));
     session.send(b"?");
-    session.wait_for_text("leave");
+    session.wait_for_text("quit");
     session.send(b"\x1b");
     wait_for_picture(&mut session, Size::cells(80, 24));
     leave(&mut session);

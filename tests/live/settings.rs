@@ -129,7 +129,7 @@ fn all_that_is_said_of_keys_goes_by_the_file() {
     let keys = r#"(explain: { "Space": ScrollDown, "PageDown": None }, always: { "Q": Quit, "q": None, "F1": Help, "?": None })"#;
     let home = user(&[("keys.ron", keys)]);
     let mut session = Start::new(env!("CARGO_BIN_EXE_termtrace")).env("HOME", home.path()).spawn();
-    wait_for_last(&mut session, "; F1 shows the keys; Q leaves");
+    wait_for_last(&mut session, "; F1 shows the keys; Q quits");
     session.send(b"\t");
     wait_for_last(&mut session, "orbit; F1 shows its keys");
     session.send(b"x");
@@ -200,12 +200,12 @@ fn the_status_line_tells_the_mode_and_its_keys() {
     let row = |session: &mut Session, words: &str| {
         session.wait_for(words, SOON, |seen| seen.screen().text()[22].trim_end() == words);
     };
-    row(&mut session, " fly   ? help   q leave   Tab orbit   wasd move   arrows look   x explain");
+    row(&mut session, " fly   ? help   q quit   Tab orbit   wasd move   arrows look   x explain");
     wait_for_last(&mut session, "rays/s");
     session.send(b"\t");
-    row(&mut session, " orbit   ? help   q leave   Tab fly   arrows turn   ws distance   x explain");
+    row(&mut session, " orbit   ? help   q quit   Tab fly   arrows turn   ws distance   x explain");
     session.send(b"x");
-    row(&mut session, " explain   ? help   q leave   arrows another pixel   PageUp PageDown more");
+    row(&mut session, " explain   ? help   q quit   arrows move cursor   PageUp PageDown scroll");
     leave(&mut session);
 }
 

@@ -147,7 +147,7 @@ fn the_limit_on_the_size_of_files_is_an_error_message() {
     };
     let mut session = looking(limited(""));
     session.send(b"o");
-    session.wait_for_text("write the picture as");
+    session.wait_for_text("save picture as");
     session.send(b"p");
     session.wait_for_text("File too large");
     session.send(b"q");

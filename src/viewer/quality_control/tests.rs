@@ -96,8 +96,8 @@ fn room_now_and_then_is_no_room() {
     assert_eq!(changes(&levels), 0, "{levels:?}");
 }
 
-/// Where there are edges everywhere, a level takes four times as long as the one before: that is found out, and not tried
-/// again and again.
+/// Where there are edges everywhere, a level takes four times as long as the one before: that is found out, and not
+/// tried again and again.
 #[test]
 fn what_a_level_takes_is_learnt() {
     let mut control = QualityControl::new(None);
