@@ -26,11 +26,11 @@ use renderer::Renderer;
 use scenes::Scenes;
 pub use source::Source;
 
-/// How the live view ended.
+/// The outcome of the live view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Outcome {
-    /// Why.
+    /// The reason why it ended.
     pub ending: Ending,
     /// The last camera, if the user has moved it.
     pub moved: Option<Camera>,
@@ -38,11 +38,11 @@ pub struct Outcome {
     pub heard: bool,
 }
 
-/// Why the live view ended.
+/// The reason why the live view ended.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Ending {
-    /// The user left.
+    /// The user quit.
     Left,
     /// The signal of this number asked the program to end.
     Signal(i32),

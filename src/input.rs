@@ -57,14 +57,17 @@ pub use reply::Reply;
 use state::{State, Text};
 use token::{Token, Tokeniser};
 
-/// Limit on the bytes of an OSC, DCS or APC string. A longer string is dropped as a whole, because a truncated reply
-/// would be a wrong one. The longest reply that is used has about 40 bytes.
+/// Limit on the bytes of an OSC, DCS or APC string. A longer string is dropped as a whole.
+// A truncated reply would be a wrong one. The longest reply that is used has about 40 bytes; the limit bounds what a
+// hostile terminal can make the parser keep.
 const MAX_STRING_BYTES: usize = 4096;
 
 /// Limit on the bytes of a CSI or SS3 sequence that are kept.
+// The longest useful ones, DA1 replies with all their parameters, have about 40 bytes.
 const MAX_SEQUENCE_BYTES: usize = 256;
 
 /// Limit on the bytes that are dropped as the late rest of an incomplete sequence.
+// Without it, a lone `ESC [` would swallow everything typed after it.
 const MAX_LATE_BYTES: usize = 256;
 
 const ESC: u8 = 0x1b;
@@ -238,6 +241,7 @@ impl Parser {
     }
 
     fn take_plain(&mut self, byte: u8, out: &mut Vec<Input>) {
+        // Kept from the tokeniser, which would continue over it.
         if byte == ESC {
             // An incomplete character is dropped.
             self.reset();
@@ -260,6 +264,7 @@ impl Parser {
 
     fn take_after_escape(&mut self, byte: u8, out: &mut Vec<Input>) {
         match byte {
+            // Alt with a key in rxvt, PuTTY and Terminal.app. With keys as sequences no terminal sends it for a key.
             ESC => {
                 self.release_escape(out);
                 self.escaped = self.key_encoding == KeyEncoding::Legacy;
@@ -272,6 +277,7 @@ impl Parser {
             b']' => self.state = State::Text(Text::Osc),
             b'P' => self.state = State::Text(Text::Dcs),
             b'_' => self.state = State::Text(Text::Apc),
+            // Never replies, but their text must not be taken for keys.
             b'X' | b'^' => self.state = State::Text(Text::Other),
             _ => {
                 self.release_escape(out);
@@ -337,6 +343,7 @@ impl Parser {
                 self.late = None;
                 self.state = State::TextEscape(kind);
             }
+            // xterm's own terminator of OSC, used by most terminals in replies to queries that were ended by it.
             BEL if kind == Text::Osc => self.finish_text(kind, out),
             CAN | SUB => self.drop_and_parse(byte, out),
             // Strings from terminals contain no control characters.
@@ -359,6 +366,7 @@ impl Parser {
     fn finish_text(&mut self, kind: Text, out: &mut Vec<Input>) {
         let text = std::mem::take(&mut self.text);
         let meaning = match kind {
+            // Part of a reply may be wrong: a colour without its last digits is another colour.
             _ if self.overflow => Meaning::Nothing,
             Text::Osc => Meaning::Reply(Reply::Osc(text)),
             Text::Dcs => Meaning::Reply(Reply::Dcs(text)),

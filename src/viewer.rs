@@ -1,15 +1,15 @@
-//! One person's view, without a terminal.
+//! A user's view of scenes, without a terminal.
 //!
-//! In go the terminal's bytes, the window's size, scenes, finished frames and the time; out come bytes, frames to
-//! trace, requests to the driver and the time of the next wake-up.
+//! Inputs are the terminal's bytes, the window's size, scenes, finished frames and the time. Outputs are bytes, frames
+//! to trace, requests to the driver and the time of the next wake-up.
 //!
 //! Pure: it reads no clock, file or environment, and starts no thread. A driver (`app` on a terminal, or a test)
 //! reports events, carries out what [`Viewer::step`] returns until nothing is left to do, and then the requests of
 //! [`Viewer::next_request`].
 //!
-//! Each piece of state has one owner: `display` (the terminal), `receiver` (its bytes), `gallery` (the scene and its
-//! lights), `eye` (the camera), `hand` (the mouse), `screen` (frame, layers, cells), `pacing` (frames begun and sent).
-//! `schedule` decides when each thing is done.
+//! Each piece of state has one owner: `display` (the terminal), `receiver` (its bytes), `scenes` (the scene and its
+//! lights), `eye` (the camera), `pointer` (the mouse), `screen` (frame, layers, cells), `pacing` (frames begun and
+//! sent). `schedule` decides when each thing is done.
 
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
@@ -79,8 +79,9 @@ pub(crate) use schedule::{DriverState, Tracing};
 use screen::Screen;
 pub(crate) use view_layout::{INITIAL_WIPE, ViewLayout};
 
-/// Time for which the first picture is held back to be refined. Up to this long it is shown once, complete; a longer
-/// wait is felt. With 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, 9 of which went into refinement.
+/// Time for which the first picture is held back to be refined. Up to this long it is shown once, complete.
+// A longer wait is felt: with 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, 9 of which went into
+// refinement. Without it small pictures would be sent twice.
 const FIRST_REFINEMENT: Duration = Duration::from_millis(4);
 
 /// A request to the driver.
@@ -114,7 +115,7 @@ pub(crate) enum Step {
     Wait(Option<Duration>),
 }
 
-/// One person's view of a scene.
+/// A user's view of scenes.
 pub(crate) struct Viewer {
     options: Options,
     display: Display,
@@ -178,6 +179,7 @@ impl Viewer {
     pub(crate) fn resize(&mut self, window: Window) -> Result<(), OutOfMemory> {
         let before = *self.display.capabilities();
         self.display.set_window(window);
+        // The cell shape may have changed with the font, and with it the half blocks that join.
         self.heed_capabilities(&before)?;
         self.display.check_memory()?;
         self.redraw();
@@ -196,6 +198,8 @@ impl Viewer {
     /// Forgets what the terminal shows: everything is drawn anew, and the part outside the picture is cleared.
     fn redraw(&mut self) {
         let (size, window) = (self.display.size(), self.display.window_size());
+        // Erased only where the picture leaves a part free: otherwise the frame itself covers the window, and erasing
+        // first would flash.
         self.screen.redraw(self.display.capabilities().half_blocks, size != window);
         if size != window {
             let [size, window] = [size, window].map(|Size { columns, rows }| format!("{columns}x{rows}"));
@@ -220,6 +224,8 @@ impl Viewer {
     /// Shows scene number `of`, from its own camera; from where the user left it, if its own camera is the same as
     /// then.
     pub(crate) fn show(&mut self, scene: Scene, of: usize, orbits: bool) {
+        // The progress panel goes with the first frame of the scene: drawing the screen once more without it would
+        // delay that frame.
         self.screen.close_later::<ProgressPanel>();
         self.screen.close::<ErrorPanel>();
         self.open(scene, of, orbits);
@@ -233,6 +239,7 @@ impl Viewer {
                 self.scenes.leave(before, left);
             }
         }
+        // Also for a scene whose view is kept: its file may have got other views.
         self.eye.set_written(written);
     }
 
@@ -250,6 +257,7 @@ impl Viewer {
     /// Takes a finished frame.
     pub(crate) fn take_frame(&mut self, frame: Frame) {
         self.pacing.took(&frame);
+        // Refinements at rest would make the frame rate of a motion seem higher.
         let moving = self.is_in_motion().then_some(self.now);
         self.screen.take_frame(frame, moving);
     }
@@ -257,6 +265,7 @@ impl Viewer {
     /// Returns the driver's next action.
     pub(crate) fn step(&mut self, busy: DriverState, now: Duration) -> Step {
         self.set_time(now);
+        // The eye moves first, so that the decision is made about the view of now and not of the last wake-up.
         self.eye.advance(now);
         self.screen.set_moving(self.eye.mode());
         self.mark_light();
@@ -265,6 +274,7 @@ impl Viewer {
             Action::Draw => Step::Draw,
             Action::Trace => self.trace(),
             Action::Refine => self.refine(),
+            // An incomplete escape sequence needs a wake-up of its own: no bytes may follow.
             Action::Wait(until) => Step::Wait(until.into_iter().chain(self.receiver.escape_due(now)).min()),
         }
     }
@@ -351,11 +361,14 @@ impl Viewer {
         if bytes.is_empty() {
             return;
         }
-        // Also at rest: a frame's round trip is longer than the link's own, which the rate is derived from.
+        // Also at rest: a frame's round trip is longer than the link's own, from which the rate is derived. On a link
+        // of 50 KB/s and 200 ms, a refinement without a query before it had a round trip of 267 ms, which was taken for
+        // the link's own, and the rate then seemed 562 KB/s.
         let probe = self.pacing.probe(now);
         self.receiver.sent(&probe, now);
         self.pacing.send(bytes, now);
         self.receiver.sent(bytes, now);
+        // The query goes before the frame, so that its reply does not wait for the frame's transmission.
         bytes.splice(0..0, probe);
     }
 

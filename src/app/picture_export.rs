@@ -9,10 +9,11 @@ use crate::tone::Picture;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Pixels of a PNG per pixel of the screen, in both directions. A picture of 80x24 cells becomes 640 pixels wide.
+/// Pixels of a PNG per pixel of the screen, in both directions.
+// A picture of 80x24 cells becomes 640 pixels wide, which viewers show without blurring it.
 const PNG_SCALE: u32 = 8;
 
-/// Limit on the numbered names that are tried.
+/// Limit on the numbered names that are tried, so that a full or hostile folder does not keep the loop busy.
 const MAX_NUMBERED_NAMES: u32 = 9999;
 
 /// Returns the contents of an export without panels: the cells as the terminal shows them, in truecolor if the format
@@ -25,6 +26,7 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
             write(picture, one.pixel_aspect(), PNG_SCALE)
         }
         Contents::Cells { has_colors, write } => {
+            // Truecolor even on a terminal of 16 colours: a file outlives the terminal.
             let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { cell_mode.plain() };
             Ok(write(&cell::grid_from_picture(mode, picture), mode.colors, cell_aspect))
         }
@@ -39,6 +41,7 @@ pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u
         let name = format!("{stem}{number}.{}", format.extension());
         match write_unused(&folder.join(&name), contents) {
             Ok(()) => return Ok(name),
+            // Created exclusively instead of looked for first, so that two programs never write one file.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
         }

@@ -25,6 +25,9 @@ use std::time::{Duration, Instant};
 type Traced = Result<Result<Frame, Cancelled>, Box<dyn Any + Send>>;
 
 /// Limit on the predicted time of frames that the loop traces itself.
+// Waking the render thread and its pool and being woken takes 0.15 to 0.3 ms, and 1 to 4 ms in one of twenty cases.
+// Three spheres at 80x24 take one thread 0.59 ms and two threads 0.62 to 0.64 ms; the median time from a key to its
+// first byte fell from 0.87 to 0.65 ms. Keys wait for such a frame, so the limit stays well below a frame time.
 const MAX_INLINE_TRACE_TIME: Duration = Duration::from_micros(1500);
 
 /// The loop's side of the tracing thread.
@@ -59,6 +62,7 @@ impl Renderer {
         let (done, frames) = channel();
         let mut tracer = Tracer::default();
         let thread = thread::Builder::new().name("render".to_owned()).spawn(move || {
+            // A pool of its own, because a scene that is being built may occupy rayon's global pool for seconds.
             let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).use_current_thread().build();
             let pool = match pool {
                 Ok(pool) => pool,
@@ -177,6 +181,7 @@ impl Drop for Renderer {
         for work in &self.pending {
             work.token.cancel();
         }
+        // Closing the channel ends the thread's loop.
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
@@ -237,7 +242,7 @@ impl RefinablePicture {
 
 impl Tracer {
     fn trace(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
-        // It may be of an older frame, as the loop traces small ones, or of another view.
+        // The kept picture may be of an older frame, because the loop traces small ones itself, or of another view.
         let mut kept = self.kept.take();
         frame_of(job, |map, resolution| {
             let last = if map.refines() { kept.take() } else { None };

@@ -38,6 +38,7 @@ impl ProposedView {
         let mut file = OutputFile::create(path)?;
         file.remove_stale();
         file.write_all(written.as_bytes())?;
+        // Compared after writing the temporary file, as late as possible: an editor may save at any moment.
         if self.file.has_changed() || fs::read_to_string(path)? != text {
             return Err(io::Error::other("it has changed in the meantime"));
         }

@@ -87,6 +87,7 @@ impl<E: Send + 'static> Scenes<E> {
 
     /// Switches to the scene `steps` further on, in a cycle. Does nothing if there is only one.
     pub(super) fn go(&mut self, steps: isize) -> io::Result<()> {
+        // The only scene would merely be loaded again.
         if self.sources.len() < 2 {
             return Ok(());
         }
@@ -111,7 +112,7 @@ impl<E: Send + 'static> Scenes<E> {
         let Some(files) = self.unwatched.take().filter(|files| !files.is_empty()) else { return Ok(None) };
         let problem = match self.started() {
             Ok(watching) => {
-                // A file has changed between reading and watching.
+                // A file may have changed between reading and watching.
                 if watching.watch(files) {
                     self.read_again()?;
                 }
@@ -119,6 +120,7 @@ impl<E: Send + 'static> Scenes<E> {
             }
             Err(problem) => Some(problem),
         };
+        // Reported once: the reason stays the same at each reload, and a note hides the lowest row.
         let is_new = problem != self.reported_problem;
         self.reported_problem.clone_from(&problem);
         Ok(problem.filter(|_| is_new))

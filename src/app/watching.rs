@@ -55,7 +55,8 @@ enum FileChange {
     Written,
 }
 
-/// Limit on how often the way to a file is resolved again because it has changed meanwhile.
+/// Limit on how often the path to a file is resolved again because it has changed in the meantime.
+// A program that keeps replacing a link would otherwise keep the loop here. The next event tries again.
 const MAX_RESOLUTIONS: usize = 8;
 
 impl Watching {
@@ -223,6 +224,7 @@ fn of_file(kind: EventKind, path: &Path) -> FileChange {
         {
             FileChange::Written
         }
+        // Its writer closes it later, which is an event of its own.
         EventKind::Create(_) if is_about_to_be_written(path) => FileChange::Nothing,
         // Anything else has taken the name; or the permissions have changed, and the file may have become readable.
         EventKind::Create(_) | EventKind::Modify(ModifyKind::Name(_) | ModifyKind::Metadata(_)) => FileChange::Moved,

@@ -249,6 +249,7 @@ impl Command {
 
     /// Returns whether repeats of a held key execute the command again.
     pub fn repeats(self) -> bool {
+        // Not toggles: a key held too long would open and close a panel 25 times a second.
         let of_panels = matches!(self, Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_));
         of_panels || self.moves_light() || matches!(self, Self::Narrower | Self::Wider)
     }

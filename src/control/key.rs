@@ -53,6 +53,7 @@ impl Key {
     ///
     /// `None` for an unknown name, and for a key that not every terminal sends (see [`is_plain`](Self::is_plain)).
     pub fn from_name(name: &str) -> Option<Self> {
+        // `Ctrl-L` and `Ctrl-l` are the same key: the control character has no case.
         let key = match name.strip_prefix(CTRL) {
             Some(letter) => Self { ctrl: true, ..Self::from_bare_name(&letter.to_ascii_lowercase())? },
             None => Self::from_bare_name(name)?,
@@ -86,6 +87,7 @@ impl Key {
             // The same bytes as Backspace (H), Tab (I), and Enter (J, M).
             KeyCode::Char(c) if self.ctrl => c.is_ascii_lowercase() && !matches!(c, 'h' | 'i' | 'j' | 'm'),
             KeyCode::Char(c) => !c.is_control(),
+            // F13 and up have no common encoding.
             KeyCode::F(1..=12) => !self.ctrl,
             code => !self.ctrl && NAMED.iter().any(|&(_, named)| named == code),
         }

@@ -200,6 +200,7 @@ impl Keymap {
         for row in self.rows.iter_mut().filter(|row| row.mode == mode) {
             row.keys.retain(|bound| *bound != key);
         }
+        // The key is added to the command's row, so that the help lists all its keys in one line.
         let Some(command) = command else { return };
         match self.rows.iter_mut().find(|row| (row.mode, row.command) == (mode, command)) {
             Some(row) => row.keys.push(key),
@@ -215,6 +216,7 @@ impl Keymap {
         }
         let typed = Key::typed(event);
         let has_character = matches!(typed.code, KeyCode::Char(_));
+        // Where the key types a character, Shift is in the character already.
         let shift = event.modifiers.contains(KeyModifiers::SHIFT) && !has_character;
         modes.iter().find_map(|&mode| {
             let exactly = self.bound(mode, typed).map(|command| (command, shift && command.has_faster()));

@@ -85,6 +85,7 @@ impl Motion {
     ///
     /// Without reports of releases, any press ends the previous motion.
     pub fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
+        // Releases by the physical key, not by the command: the mode may have changed while it was held.
         match (key.kind, meant.filter(|(command, _)| command.moves())) {
             (KeyEventKind::Release, _) => self.held.retain(|held| held.key != physical_key(key)),
             (_, Some((command, fast))) => self.hold(Held { key: physical_key(key), command }, fast, key.kind, now),
@@ -99,6 +100,7 @@ impl Motion {
 
     fn hold(&mut self, key: Held, fast: bool, kind: KeyEventKind, now: Duration) {
         let glides = self.until < Duration::MAX;
+        // Plain terminals send repeats as presses; a press of the same key within the glide is taken for one.
         let again = now <= self.until && self.held.contains(&key) || kind == KeyEventKind::Repeat;
         // Without reports of releases it is unknown whether the previous key is still held; it is assumed not to be,
         // because terminals repeat only the key pressed last.
@@ -126,6 +128,7 @@ impl Motion {
     /// Returns the camera after the motion from time `from` to `to`, at `speed` world units per second.
     pub fn step(&self, camera: &Camera, speed: f32, from: Duration, to: Duration) -> Camera {
         let net = self.net_motion();
+        // A glide may have ended between two frames.
         let seconds = to.min(self.until).saturating_sub(from).as_secs_f32();
         let seconds = if self.fast { SHIFT_SPEED_FACTOR * seconds } else { seconds };
         // Strang splitting: half of the turn before the translation and half after it. The error is of third order in

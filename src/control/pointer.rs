@@ -82,6 +82,7 @@ impl Pointer {
     }
 
     fn press(&mut self, button: MouseButton, modifiers: KeyModifiers, at: Vec2, now: Duration) -> Gesture {
+        // Any other button pans, and so does Shift: a touchpad has often only one button.
         let pans = button != MouseButton::Left || modifiers.contains(KeyModifiers::SHIFT);
         let grip = if pans { Grip::Pan } else { Grip::Turn };
         self.held = Some(grip);

@@ -47,6 +47,7 @@ impl Keymap {
         let mut text = "(\n".to_owned();
         for mode in KeyMode::ALL {
             let _ = writeln!(text, "    {}: {{", mode.name());
+            // Keys that are unbound follow as `None`: read back without them, the built-in binding would return.
             for row in self.of(mode).filter(|row| !row.keys.is_empty()) {
                 let entry = format!("{}: {},", keys_as_ron(&row.keys), row.command.name());
                 let _ = writeln!(text, "        {entry:<36}// {}", row.command.description());
@@ -83,6 +84,7 @@ impl Keymap {
             let takes_it = |entry: &&Entry| {
                 built_in.of(KeyMode::Always).any(|row| row.command == Command::Quit && row.keys.contains(&entry.key))
             };
+            // At the entry that took the last such key away, or at the start of the file if none did alone.
             let span = entries.iter().rev().find(takes_it).map(|entry| entry.span).unwrap_or_default();
             let message = "no key but Ctrl-C quits: bind one to Quit in always";
             faults.add(span, || message.to_owned());
@@ -93,6 +95,7 @@ impl Keymap {
     /// binding: then it is intended.
     fn check_is_reached(&self, entry: &Entry, entries: &[Entry], faults: &mut Faults) {
         let Entry { mode: KeyMode::Always, key, command: Some(command), span } = *entry else { return };
+        // Explanation, light and dialogs are meant to hide keys for as long as they are open.
         for above in [KeyMode::Fly, KeyMode::Orbit] {
             let hides = |other: &Entry| other.mode == above && [key, key.without_shift()].contains(&other.key);
             let meant = self.command(&[above, KeyMode::Always], &key.pressed()).map(|(meant, _)| meant);

@@ -86,9 +86,12 @@ impl Sequence<'_> {
 
     fn key(&self) -> Option<KeyEvent> {
         match self.last {
+            // rxvt's arrows with Shift.
             'a'..='d' if self.is_bare() => key::from_letter(self.last.to_ascii_uppercase(), KeyModifiers::SHIFT),
+            // Number 27 is no key of its own: xterm's modifyOtherKeys.
             '~' if self.params[0] == [27] => key::from_other_keys(&self.params),
             '~' => key::from_number(&self.params, KeyModifiers::NONE),
+            // rxvt's final bytes for Ctrl, and for Ctrl with Shift.
             '^' => key::from_number(&self.params, KeyModifiers::CONTROL),
             '@' => key::from_number(&self.params, KeyModifiers::CONTROL | KeyModifiers::SHIFT),
             'u' => key::from_kitty(&self.params),

@@ -18,6 +18,7 @@ pub(super) fn from_char(c: char) -> Option<KeyEvent> {
         '\u{7f}' => Some(KeyCode::Backspace.into()),
         '\u{fffd}' => None,
         c if c.is_control() => None,
+        // As crossterm reports capitals.
         c if c.is_uppercase() => Some(KeyEvent::new(KeyCode::Char(c), KeyModifiers::SHIFT)),
         c => Some(KeyCode::Char(c).into()),
     }
@@ -113,6 +114,7 @@ pub(super) fn from_number(params: &[&[u16]], more: KeyModifiers) -> Option<KeyEv
         return None;
     };
     let code = match u8::try_from(number).ok()? {
+        // Gaps as on the VT220, whose function keys stood in groups: 16, 22, 27 and 30 do not exist.
         1 | 7 => KeyCode::Home,
         2 => KeyCode::Insert,
         3 => KeyCode::Delete,

@@ -3,10 +3,11 @@
 use crossterm::event::Event;
 
 /// Limit on the bytes of a paste that are kept; the rest is dropped.
+// No paste has a meaning here; it is parsed only so that its text is not taken for keys.
 pub const MAX_PASTE_BYTES: usize = 1 << 20;
 
-/// Number of timeouts in a row after which an unfinished paste ends. A slow link delivers a paste in pieces, and a
-/// piece parsed as keys would run commands.
+/// Number of timeouts in a row after which an unfinished paste ends: one second of 50 ms each.
+// A slow link delivers a paste in pieces, and a piece parsed as keys would run commands.
 pub const MAX_PASTE_WAITS: u32 = 20;
 
 /// The sequence that ends a paste.

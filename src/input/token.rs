@@ -28,6 +28,7 @@ pub(super) struct Tokeniser(vte::Parser);
 impl Tokeniser {
     /// Enters the state after `ESC [`.
     pub(super) fn begin_csi(&mut self) {
+        // The parser has kept the ESC back until this byte was known.
         self.0.advance(&mut Tokens { tokens: Vec::new(), text: &[] }, b"\x1b[");
     }
 

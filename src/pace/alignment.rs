@@ -11,11 +11,14 @@ use std::time::Duration;
 
 /// Number of consecutive replies at the time of the next query's until one is considered lost: one more than occur
 /// while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
+// With three, a link that becomes ten times slower is taken for one that has lost a reply, and a key waits for 3.8 s.
+// The same happens if newer queries than the second oldest are compared.
 const MIN_MISALIGNED_REPLIES: u32 = 4;
 /// Tolerance for a reply to the second oldest query. A queue that drains by a seventh of the interval between two
 /// frames stays within it for three of them.
 const SECOND_QUERY_TOLERANCE: Duration = Duration::from_millis(5);
-/// Tolerance for a reply to the oldest query: in doubt the count is right.
+/// Tolerance for a reply to the oldest query.
+// Twice that for the second oldest: in doubt the count is right, because a false alarm costs a second of silence.
 const OLDEST_QUERY_TOLERANCE: Duration = Duration::from_millis(10);
 
 /// The evidence for a misalignment.
@@ -69,7 +72,7 @@ mod tests {
     use super::*;
 
     /// Frames of 1,000 bytes are sent every 25 ms through 50 KB/s and 200 ms, and their replies arrive this much later
-    /// than through an empty link. The expected value tells which reply shows a loss.
+    /// than through an empty link. Returns the number of the reply that shows a loss, if any.
     fn shows_loss(frames: usize, later: impl Fn(usize) -> u64) -> Option<usize> {
         let mut alignment = Alignment::default();
         (0..frames).find(|&number| {

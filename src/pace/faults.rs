@@ -11,16 +11,16 @@ use std::collections::VecDeque;
 enum Fault {
     Lost,
     Doubled,
-    /// A reply to an unsent query arrives instead.
+    /// A reply to a query that was never sent arrives instead.
     Foreign,
     Late(Duration),
-    /// It is late, and so are all after it.
+    /// The reply is late, and so are all after it.
     Held(Duration),
-    /// It is lost, and so is each third after it.
+    /// The reply is lost, and so is each third after it.
     EachThird,
-    /// It is late, and so is each third after it.
+    /// The reply is late, and so is each third after it.
     EachThirdLate(Duration),
-    /// It is lost, and so are all after it.
+    /// The reply is lost, and so are all after it.
     Stopped,
 }
 
@@ -262,8 +262,8 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
 #[test]
 fn no_key_waits_much_longer_on_a_slow_link() {
     each_fault(ms(800), |tags, fault, at| {
-        let never_tells = matches!(fault, Fault::Held(late) if late > ms(1_000)) || fault == Fault::Stopped;
-        if at == 1 || at == 2 && never_tells {
+        let hides_rate = matches!(fault, Fault::Held(late) if late > ms(1_000)) || fault == Fault::Stopped;
+        if at == 1 || at == 2 && hides_rate {
             return Duration::ZERO;
         }
         let mut world = World::new(tags, fault, at).slow();

@@ -4,9 +4,11 @@
 
 use std::time::Duration;
 
-/// Bytes that may be sent until a reply arrives: 40 ms of a link of 50 KB/s.
+/// Bytes that may be sent until a reply arrives.
+// 40 ms of a link of 50 KB/s. One of 2 KB/s, the slowest considered, drains them in a second.
 const INITIAL_BYTES: usize = 2_000;
 /// Least useful size of a frame in bytes.
+// Smaller frames change too few cells to show the effect of a key.
 const MIN_USEFUL_BYTES: usize = 120;
 /// Bytes that each [`REFILL_INTERVAL`] adds once the window is spent, for a terminal that has replied before: 3.3 KB/s.
 const REFILL_BYTES: usize = 300;
@@ -14,7 +16,7 @@ const REFILL_BYTES: usize = 300;
 /// one waited for 360 ms where DA1 is counted.
 const REFILL_INTERVAL: Duration = Duration::from_millis(90);
 
-/// The amount sent without knowing the rate.
+/// The budget of bytes sent before the rate is known.
 pub(super) struct InitialWindow {
     left: usize,
     last_sent: Duration,
@@ -27,7 +29,7 @@ impl Default for InitialWindow {
 }
 
 impl InitialWindow {
-    /// Returns the limit on the next frame: half of what is left, so that something always is.
+    /// Returns the limit on the next frame in bytes: half of the rest, so that a later key has some left too.
     pub(super) fn max_bytes(&self) -> usize {
         if self.is_spent() { REFILL_BYTES } else { self.left / 2 }
     }

@@ -10,8 +10,9 @@ use crate::protocol::Tag;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Limit on the queries kept after their timeout: those sent while the first picture is on its way through a very slow
-/// link, one every 150 to 200 ms for 10 s.
+/// Limit on the queries kept after their timeout.
+// While the first picture is on its way through a very slow link, one query is sent every 150 to 200 ms for 10 s, all
+// of which may be answered late.
 const MAX_TIMED_OUT_QUERIES: usize = 64;
 
 /// The kind of query behind a frame.
@@ -67,7 +68,7 @@ pub(super) struct Matched {
     pub(super) validity: Validity,
 }
 
-/// The conclusions that a match allows.
+/// The estimates for which a matched reply is a valid sample (Karn's algorithm).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
     /// The reply is this query's, and no query before it has timed out: it gives round trip and rate.

@@ -164,7 +164,7 @@ impl World {
 }
 
 #[test]
-fn keys_are_soon_seen_at_full_throughput() {
+fn keys_are_visible_soon_at_full_throughput() {
     for (frame, fits, p50, p99) in [(SCREEN, true, 310, 400), (4_000, false, 420, 480)] {
         let mut world = World { frame, fits, ..World::new(50_000.0, ms(200)) };
         world.run(ms(3_000));
@@ -273,7 +273,7 @@ fn a_pause_does_not_make_a_link_slow_for_long() {
 
 /// The first picture arrives at once, the next bytes .4 s later, and from the first second on thirty times a second.
 #[test]
-fn a_terminal_that_never_answers_gets_thirty_frames_a_second() {
+fn a_terminal_that_never_replies_gets_thirty_frames_a_second() {
     let mut world = World { replies: false, ..World::new(1e7, ms(2)) };
     world.run(ms(400));
     assert_eq!(world.sent.iter().filter(|sent| sent.is_frame).count(), 1);
@@ -282,7 +282,7 @@ fn a_terminal_that_never_answers_gets_thirty_frames_a_second() {
     assert!((28.0..=30.1).contains(&fps), "{fps} fps");
     assert_eq!(world.link.slow_limit(SCREEN), None);
     assert!(world.link.replies.ledger.in_flight().count() <= 8, "few outstanding queries");
-    // It was slow at the start.
+    // The terminal replies after all, having been slow to start.
     world.replies = true;
     world.run(ms(2_000));
     let [fps, _] = world.throughput(world.ago(1_000), world.now);
@@ -300,7 +300,7 @@ fn a_terminal_that_falls_silent_is_waited_for_a_while() {
 }
 
 #[test]
-fn a_lost_answer_is_forgotten() {
+fn a_lost_reply_is_forgotten() {
     let mut world = World { frame: 2_000, ..World::new(1e7, ms(20)) };
     world.run(ms(1_000));
     let lost = world.replies_due.pop_front();
@@ -312,7 +312,7 @@ fn a_lost_answer_is_forgotten() {
 
 /// The first reply arrives when the terminal is already considered silent.
 #[test]
-fn a_very_long_way_is_taken_for_silence_only_at_first() {
+fn a_very_long_round_trip_is_taken_for_silence_only_at_first() {
     let mut world = World::new(200_000.0, ms(900));
     world.run(ms(5_000));
     world.rest(ms(5_000));
@@ -329,7 +329,7 @@ fn a_very_long_way_is_taken_for_silence_only_at_first() {
 
 /// Unsolicited replies, and duplicates.
 #[test]
-fn answers_too_many_do_no_lasting_harm() {
+fn unsolicited_replies_do_no_lasting_harm() {
     let mut world = World::new(50_000.0, ms(200));
     world.run(ms(5_000));
     for _ in 0..40 {
@@ -349,7 +349,7 @@ fn answers_too_many_do_no_lasting_harm() {
 }
 
 #[test]
-fn a_longer_way_is_noticed() {
+fn a_longer_round_trip_is_noticed() {
     let mut world = World::new(50_000.0, ms(100));
     world.run(ms(5_000));
     world.round_trip = ms(300);
@@ -362,7 +362,7 @@ fn a_longer_way_is_noticed() {
 }
 
 #[test]
-fn a_shorter_way_is_noticed() {
+fn a_shorter_round_trip_is_noticed() {
     for (rate, round_trip) in [(50_000.0, 20), (50_000.0, 1), (200_000.0, 5), (1e8, 20), (1e8, 1)] {
         let mut world = World::new(50_000.0, ms(200));
         world.run(ms(5_000));
@@ -378,9 +378,9 @@ fn a_shorter_way_is_noticed() {
     }
 }
 
-/// As by a link that has always been this short.
+/// Key times and throughput equal those of a link that has always had this round trip.
 #[test]
-fn a_way_that_is_a_little_shorter_is_used_as_well() {
+fn a_slightly_shorter_round_trip_is_used_fully() {
     for round_trip in [150, 100, 50] {
         let [[now, now_share], [always, share]] = [200, round_trip].map(|before| {
             let mut world = World::new(50_000.0, ms(before));

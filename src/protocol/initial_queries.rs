@@ -34,6 +34,8 @@ impl InitialQueries {
         if safe_queries == SafeQueries::None {
             return Self::default();
         }
+        // The block first, while nothing else is on the screen; the fence last. Of GNU screen only the cursor position
+        // is requested, because it passes device control strings on to the outer terminal, which may print them.
         if blocks {
             bytes.extend_from_slice(BLOCK_WIDTH.as_bytes());
         }

@@ -34,10 +34,12 @@ const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUAT
     .union(KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES);
 
 /// The query for the flags of the kitty keyboard protocol that are set.
+// Its reply shows from which key on the terminal sends sequences: keys before it are in the legacy encoding.
 const KEYBOARD_QUERY: &str = "\x1b[?u";
 
 impl TerminalMode {
     /// The live view's modes that every terminal supports or ignores, in the order in which they are switched on.
+    // The alternate screen first: the cursor, for example, is hidden there and not on the shell's screen.
     pub const ALL_TERMINALS: [Self; 7] = [
         Self::AlternateScreen,
         Self::Colors,
@@ -51,6 +53,7 @@ impl TerminalMode {
     fn on(self) -> String {
         match self {
             Self::AlternateScreen => ansi(terminal::EnterAlternateScreen),
+            // Frames set colours themselves; only the end needs bytes.
             Self::Colors => String::new(),
             Self::HiddenCursor => ansi(cursor::Hide),
             Self::BracketedPaste => ansi(event::EnableBracketedPaste),

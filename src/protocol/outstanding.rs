@@ -6,6 +6,8 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Time after the last query at which a terminal counts as one that does not reply.
+// A lone ESC is held back for longer while replies are outstanding, and quitting waits for them; the longest round trip
+// that is expected of a link (a satellite) is below one second.
 const REPLY_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Limit on the recorded queries: twice the number that [`REPLY_TIMEOUT`] holds at 60 frames a second.
@@ -34,6 +36,7 @@ impl Outstanding {
     pub fn sent(&mut self, bytes: &[u8], now: Duration) {
         let fence = bytes.ends_with(FENCE).then_some(Query::Fence);
         if let Some(query) = fence.or_else(|| Tag::at_end_of(bytes).map(Query::Tag)) {
+            // The oldest is the least likely to be answered.
             if self.queries.len() == MAX_QUERIES {
                 self.queries.pop_front();
             }

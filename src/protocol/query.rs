@@ -15,6 +15,7 @@ use std::ops::RangeInclusive;
 pub const FENCE: &[u8] = b"\x1b[c";
 
 /// Private mode numbers that no terminal uses.
+// DEC's own numbers end at 117, and those of xterm and its followers start at 1000.
 const NUMBERS: RangeInclusive<u16> = 200..=999;
 
 /// A numbered query: DECRQM of a private mode that does not exist, whose reply repeats the number.

@@ -4,10 +4,12 @@ use super::outstanding::Outstanding;
 use crate::input::{Input, Parser};
 use std::time::Duration;
 
-/// Timeout after which a lone `ESC` is the Escape key. 50 ms is the usual choice of editors: longer than the gap within
-/// a sequence on most links, shorter than what is felt as a delay.
+/// Timeout after which a lone `ESC` is the Escape key.
+// 50 ms is the usual choice of editors: longer than the gap within a sequence on most links, shorter than what is felt
+// as a delay.
 const ESCAPE_TIMEOUT: Duration = Duration::from_millis(50);
 /// Timeout where a lone `ESC` is probably the first byte of a reply, or keys are sequences and it cannot be the key.
+// A reply cut in two by a slow link arrives within a round trip.
 const SEQUENCE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Parser of a terminal's bytes that also tracks outstanding replies.
@@ -73,6 +75,7 @@ impl Receiver {
     /// start a new stream.
     pub fn forget(&mut self) {
         self.forget_replies();
+        // A new parser, because the shell may have read the rest of a sequence.
         self.parser = Parser::new();
         self.keys_are_sequences = false;
     }

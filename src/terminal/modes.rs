@@ -18,8 +18,9 @@ pub(super) struct Modes {
     on: protocol::TerminalModes,
 }
 
-/// Timeout for the last bytes and replies. A terminal that has stopped reading (Ctrl-S, a dead link) delays the exit by
-/// this much and does not get the rest.
+/// Timeout for the last bytes and replies.
+// A terminal that has stopped reading (Ctrl-S, a dead link) delays the exit by this much and does not get the rest. A
+// second is longer than the round trip of any usual link, after which a late reply would be typed into the shell.
 const RESTORE_TIMEOUT: Duration = Duration::from_secs(1);
 
 impl Modes {

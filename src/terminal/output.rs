@@ -22,8 +22,9 @@ pub(super) struct Output {
     written: usize,
 }
 
-/// Largest write to a shared file, in bytes. A terminal that polls as writable accepts this much without blocking:
-/// Linux accounts for the buffer of a pseudo-terminal in blocks of 256 bytes.
+/// Largest write to a shared file, in bytes.
+// A terminal that polls as writable accepts this much without blocking: Linux accounts for the buffer of a
+// pseudo-terminal in blocks of 256 bytes. A larger write may block in the middle, with signals and keys unhandled.
 const MAX_SHARED_WRITE: usize = 256;
 
 impl Output {

@@ -73,8 +73,9 @@ const UNBLOCKED: &[Signal] = &[
     Signal::SIGCONT,
 ];
 
-/// Timeout for this process's own copy of a signal that it has sent to its group. Delivery takes well under a
-/// millisecond on an idle machine; the limit only keeps a lost signal from hanging the program.
+/// Timeout for this process's own copy of a signal that it has sent to its group.
+// Delivery takes well under a millisecond on an idle machine; the limit only keeps a lost signal from hanging the
+// program.
 const GROUP_SIGNAL_TIMEOUT: Duration = Duration::from_millis(100);
 
 /// The processes that [`Signals::stop`] stops.

@@ -63,7 +63,7 @@ impl Dialog {
         match self {
             Self::Export => KeyMode::Export,
             Self::Keep(_) => KeyMode::Keep,
-            // The key that will return to the view.
+            // The mode with the digits, so that the key that saves a view is the one that returns to it.
             Self::Save => KeyMode::Always,
         }
     }

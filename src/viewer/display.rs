@@ -95,6 +95,7 @@ impl Display {
         let replies = self.queries.replies();
         let knows = !self.queries.is_open() && replies.pixel_mouse == Some(true);
         let is_cell = |&(width, height): &(u16, u16)| width > 0 && height > 0;
+        // The window size of the kernel first: it follows a change of the font, the reply is of the start.
         self.window.cell_pixels.or(replies.cell_pixels).filter(is_cell).filter(|_| knows)
     }
 

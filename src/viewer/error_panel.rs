@@ -12,6 +12,8 @@ use ratatui_widgets::paragraph::Paragraph;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Limit on the panel's rows, besides a third of the screen.
+// Five for the message, two for the excerpt and one for the hint at more errors. The last good picture above them
+// should stay recognisable.
 const MAX_ERROR_ROWS: u16 = 8;
 
 /// The first error of a scene, with its source line and a caret.

@@ -43,6 +43,7 @@ impl Viewer {
     /// # Errors
     /// As for [`receive`](Self::receive).
     pub(crate) fn receive_typed(&mut self, mut typed: Vec<Input>, now: Duration) -> Result<(), OutOfMemory> {
+        // The other program has popped the keyboard flags; the reply to the new query sets them again.
         self.receiver.set_keys_are_sequences(false);
         typed.retain(|input| !matches!(input, Input::Reply(_)));
         self.take_inputs(&typed, now)
@@ -64,6 +65,7 @@ impl Viewer {
                 Input::Reply(reply) => self.take_reply(reply)?,
                 Input::Event(_) => {}
             }
+            // Keys typed after Ctrl-Z belong to the shell, and after `q` to nothing.
             if matches!(self.requests.back(), Some(Request::Leave | Request::Suspend)) {
                 break;
             }
@@ -80,10 +82,12 @@ impl Viewer {
         match reply {
             // Terminals reply in order: first to the initial queries, then to those at the end of frames.
             Reply::DeviceAttributes(_) if !self.display.queries().is_open() => self.pacing.take_reply(self.now),
+            // A reply to a frame shows that the fence of the initial queries is lost: they were sent before it.
             &Reply::Mode { mode, .. } if self.pacing.take_mode(mode, self.now) => drop(self.display.close_queries()),
             reply => drop(self.display.take_reply(reply)),
         }
         self.heed_capabilities(&capabilities)?;
+        // Other glyphs have other pixels per cell, and the limit is one of pixels.
         if self.size() != size {
             self.redraw();
         }
@@ -99,6 +103,7 @@ impl Viewer {
 
     fn take_key(&mut self, key: &KeyEvent) {
         let is_press = key.kind == KeyEventKind::Press;
+        // Not for releases: the release of the key that caused a note would close it at once.
         if is_press {
             self.screen.close::<Note>();
         }
@@ -109,6 +114,7 @@ impl Viewer {
         if is_press && (answer.is_some() || !is_for_all) && self.take_answer(answer) {
             return;
         }
+        // Before the command, so that the motion up to now happens with the camera as it was.
         self.eye.take_key(key, meant, self.now);
         if let Some((command, more)) = meant
             && (is_press || key.kind == KeyEventKind::Repeat && command.repeats())

@@ -52,6 +52,7 @@ impl Layer for ExplainPanel {
     /// Updates the explanation for a frame, which may be of another view or size.
     fn take_frame(&mut self, frame: &Frame) {
         let (old, new) = (self.resolution, frame.resolution());
+        // The explained ray is the same; only the mean of its neighbours has changed.
         if frame.refines && old == new {
             self.notes = notes(frame, self.pixel, &self.explanation);
             return;

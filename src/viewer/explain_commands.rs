@@ -4,9 +4,11 @@ use super::Viewer;
 use crate::control::Toward;
 
 /// Pixels that the cursor moves per key press with Shift.
+// Ten presses then cross a picture of 80 columns.
 const SHIFT_CURSOR_PIXELS: i32 = 8;
 
 /// Lines that the panel scrolls per page.
+// Less than the 13 lines visible at 80x24, so that some of them stay in view.
 const PAGE_LINES: isize = 10;
 
 impl Viewer {

@@ -7,7 +7,8 @@ use crossterm::event::{KeyEvent, KeyEventKind};
 use glam::Vec3;
 use std::time::Duration;
 
-/// The motion in the first frame after a key press: as if the key had been held for the time of a frame.
+/// Duration of the motion in the first frame after a key press, as if the key had been held for the time of a frame.
+// Without it the first frame would be the old picture, and a press would be visible one frame later.
 pub(crate) const FIRST_FRAME_MOTION: Duration = Duration::from_micros(16_667);
 
 /// The camera and the motion of it.
@@ -58,7 +59,8 @@ impl ViewState {
     }
 }
 
-/// Time for which a held key moves as far as one step: a tenth of the way to the target, or nine degrees.
+/// Duration of a held key's motion that a single step equals with reduced motion.
+// A tenth of the distance to the target, or nine degrees: large enough to see a change between two still pictures.
 const REDUCED_MOTION_STEP: Duration = Duration::from_millis(200);
 
 impl Eye {
@@ -70,6 +72,7 @@ impl Eye {
 
     /// Looks at another scene. Returns the view of the previous one.
     pub(super) fn open(&mut self, view: ViewState) -> Option<ViewState> {
+        // A turntable that went on in the new scene would move it before the user has seen where it starts.
         self.turntable = false;
         self.view.replace(view)
     }
@@ -104,6 +107,7 @@ impl Eye {
     /// Carries out the motion up to `now`.
     pub(super) fn advance(&mut self, now: Duration) {
         let Some(since) = self.moved_until else { return };
+        // Asked before the step, which may end the motion: the rest of it is carried out below.
         self.moved_until = (self.turntable || self.motion.is_moving(now)).then_some(now);
         let Some(view) = &mut self.view else { return };
         view.camera = self.motion.step(&view.camera, view.speed, since, now);
@@ -138,6 +142,7 @@ impl Eye {
     pub(super) fn go_to(&mut self, number: u8, now: Duration) -> Option<()> {
         let view = self.view.as_ref()?;
         let at = usize::from(number).checked_sub(1)?;
+        // A view saved by the user hides the one of the file with its number.
         let saved = view.saved.get(at).copied().flatten().or_else(|| view.written.get(at).copied())?;
         self.change(now, |_, _| saved);
         Some(())
@@ -163,6 +168,8 @@ impl Eye {
         let Some(view) = &mut self.view else { return };
         view.orbits = !view.orbits;
         if let (true, Some(target)) = (view.orbits, in_the_middle) {
+            // Only the target changes, along the view direction: the picture stays as it is. A target in the eye is
+            // refused.
             view.camera = view.camera.with_pose(Pose { target, ..view.camera.pose() }).unwrap_or(view.camera);
         }
     }
@@ -174,6 +181,7 @@ impl Eye {
             return;
         }
         self.advance(now);
+        // Any movement key stops the turntable, which would otherwise fight against it.
         self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.moves());
         self.motion.take_key(key, meant, now);
         self.start_motion(now);
@@ -204,6 +212,7 @@ impl Eye {
 
     /// Sets whether the terminal reports releases. Held keys are released if it no longer does.
     pub(super) fn set_reports_releases(&mut self, reports_releases: bool, now: Duration) {
+        // Their releases would never be reported, and they would move the eye for ever.
         if self.reports_releases() && !reports_releases {
             self.release(now);
         }

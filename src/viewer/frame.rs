@@ -11,7 +11,7 @@ use std::time::Duration;
 /// The content of a frame. Equal shots have equal pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shot {
-    /// Number of the scene among those shown one after the other.
+    /// Serial number of the scene: a scene that is loaded again gets another one.
     pub(crate) scene: u32,
     /// Number of times that its lights have been moved.
     pub(crate) lights: u32,
@@ -23,6 +23,7 @@ pub(crate) struct Shot {
 impl Shot {
     /// Returns whether tracing takes about as long as for `other`: only the camera or the lights may differ.
     pub(super) fn takes_as_long_as(&self, other: &Self) -> bool {
+        // The cost of a view changes gradually with the camera, that of another scene or size at once.
         let about = |shot: &Self| (shot.scene, shot.resolution, shot.layout);
         about(self) == about(other)
     }

@@ -13,10 +13,10 @@ use ratatui_widgets::paragraph::Paragraph;
 use std::collections::HashSet;
 use unicode_width::UnicodeWidthStr;
 
-/// Space between two columns.
+/// Blank columns between two columns of the help.
 const COLUMN_GAP: usize = 2;
 
-/// Cells beside the text: the border and a blank on each side.
+/// Columns and rows beside the text: the border, and a blank on the left and right.
 const PANEL_BORDER: (u16, u16) = (4, 2);
 
 /// Keys and their meaning.
@@ -153,6 +153,7 @@ fn pages(rows: &[KeyRow], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>>
     let fits = |page: &Vec<Vec<String>>| {
         page.iter().map(|column| width(column) + COLUMN_GAP).sum::<usize>() <= columns + COLUMN_GAP
     };
+    // As many columns as needed for a single page first: turning pages is worse than short columns.
     (2..=needed).rev().map(laid_out).find(|pages| pages.iter().all(fits)).unwrap_or_else(|| laid_out(1))
 }
 

@@ -63,6 +63,7 @@ impl Layers {
     /// Opens a layer and replaces the open one of its type.
     pub(super) fn open<L: Layer>(&mut self, layer: L) {
         self.close::<L>();
+        // Above others of its level: what was opened last is seen.
         let at = self.stack.partition_point(|below| below.level() <= layer.level());
         self.stack.insert(at, Box::new(layer));
     }
@@ -86,6 +87,7 @@ impl Layers {
 
     /// Returns the modes of keys on a screen of this size, topmost first, with `below` under all layers.
     pub(super) fn modes(&self, screen: Rect, moving: KeyMode) -> Vec<KeyMode> {
+        // A question takes the keys of movement too: a key that does not answer it should only dismiss it.
         if let Some(question) = self.stack.iter().find(|layer| layer.takes_all_keys()) {
             return question.mode(screen).into_iter().chain([KeyMode::Always]).collect();
         }

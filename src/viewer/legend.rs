@@ -28,6 +28,7 @@ fn legend_areas(texts: &[String], line: Rect) -> impl Iterator<Item = (&str, Rec
     let count = texts.len().max(1) as u16;
     (0..).zip(texts).map(move |(at, text)| {
         let room = line.width / count;
+        // Legends are ASCII, so that bytes are columns.
         let width = (text.len() as u16).saturating_add(2).min(room);
         (text.as_str(), Rect { x: line.x + (line.width * at).div_ceil(count), width, ..line })
     })

@@ -9,7 +9,7 @@ use crate::light::Light;
 use glam::{Vec2, Vec3};
 
 /// Distance that a key press moves the light, as a share of the picture's height.
-// One row of 32: a step is visible in the smallest window with panels, and 8 with Shift cross the picture.
+// 32 presses cross the picture, or 8 with Shift.
 const LIGHT_STEP: f32 = 1.0 / 32.0;
 /// Factor of that distance with Shift.
 const LIGHT_SHIFT_FACTOR: f32 = 4.0;
@@ -18,6 +18,7 @@ impl Viewer {
     /// Takes hold of the light nearest to the pointer on the screen; if one is held, of the next one.
     pub(super) fn take_light(&mut self) {
         let (camera, aspect_ratio) = (self.eye.camera(), self.part().aspect_ratio());
+        // Without a mouse event so far, the middle of the screen.
         let pointer = self.pointer.at().unwrap_or(Vec2::splat(0.5));
         let nearest = |lights: &[Light]| nearest(lights, &camera?, pointer, aspect_ratio);
         let taken = self.scenes.lights_mut().and_then(|lights| {

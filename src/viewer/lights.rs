@@ -63,9 +63,11 @@ impl Lights {
 
     /// Moves the held light, if any, to a finite position.
     pub(super) fn move_held(&mut self, to: Vec3) {
+        // A drag near the horizon may end in infinity.
         if let Some(held) = self.held.filter(|_| to.is_finite()) {
             let mut lights = self.all().to_vec();
             lights[held] = lights[held].moved_to(to);
+            // Cheap: copies of a scene share its objects and trees.
             self.scene = self.scene.clone().with_lights(lights);
             self.moves += 1;
         }

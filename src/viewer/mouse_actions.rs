@@ -10,9 +10,12 @@ use crossterm::event::{Event, MouseEvent, MouseEventKind};
 use glam::{Vec2, Vec3};
 
 /// Distance in columns within which a press takes hold of the line between two maps.
+// The line is one column wide, which is hard to hit with a pointer that moves by whole cells.
 const WIPE_GRAB_COLUMNS: f32 = 2.0;
 
-/// Consecutive motions of one drag that arrive together are merged: the last position tells all.
+/// Returns whether `next` supersedes `input`: of consecutive motions of one drag that arrive together, only the last
+/// position matters.
+// Each motion would otherwise trace a frame, and on a slow link the picture would lag behind the pointer.
 pub(super) fn is_superseded(input: &Input, next: Option<&Input>) -> bool {
     let way = |input: &Input| match input {
         Input::Event(Event::Mouse(MouseEvent { kind: kind @ MouseEventKind::Drag(_), .. })) => Some(*kind),
@@ -57,6 +60,8 @@ impl Viewer {
     /// Returns the thing under the pointer.
     fn drag_target_at(&self, at: Vec2, grip: Grip, modes: &[KeyMode]) -> DragTarget {
         let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.size().columns);
+        // The line first: it is the smallest target, and cannot be reached otherwise. Panning never hits a thing, so
+        // that the view can be shifted whatever is under the pointer.
         match grip {
             Grip::Turn if self.layout.is_wipe() && beside <= WIPE_GRAB_COLUMNS => DragTarget::Line,
             Grip::Turn if modes.contains(&KeyMode::Light) => DragTarget::Light,
@@ -84,6 +89,7 @@ impl Viewer {
     }
 
     fn wheel(&mut self, at: Vec2, notches: f32) {
+        // The wheel then moves the light in depth, which a drag cannot.
         if self.holds_light() {
             self.wheel_light(notches);
             return;

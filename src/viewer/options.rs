@@ -11,7 +11,7 @@ use std::path::PathBuf;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Options {
-    /// The user's choices for the terminal, and what the environment tells about it.
+    /// The user's choices for the terminal, and what the environment says about it.
     #[doc(hidden)]
     pub hints: Hints,
     /// The order in which changed cells are sent. `None` chooses raster order, which takes the least time, and order by

@@ -18,7 +18,7 @@ pub(super) struct Pacing {
 struct Begun {
     shot: Shot,
     at: Duration,
-    /// Whether more was moving at that time.
+    /// Whether the view was in motion at that time, so that the next frame was expected to be of another view.
     in_motion: bool,
 }
 
@@ -41,10 +41,12 @@ impl Pacing {
     /// Records that a frame of a new view is begun, and returns its sampling.
     pub(super) fn begin(&mut self, shot: Shot, in_motion: bool, now: Duration) -> Sampling {
         let before = self.begun.replace(Begun { shot, at: now, in_motion });
+        // A ratio of times is learnt from two consecutive pictures, which must differ in their level alone.
         if before.as_ref().is_some_and(|before| !shot.takes_as_long_as(&before.shot)) {
             self.quality.forget_last();
         }
-        // On a slow link the next frame begins when a reply arrives, so tracing adds to the link's time.
+        // On a slow link the next frame begins when a reply arrives, so that tracing takes time from the link: of 50
+        // KB/s, 81 to 84 % were used with as many samples as time allows, and 84.5 to 85.2 % with one.
         self.quality.for_new_view(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
     }
 
@@ -60,6 +62,7 @@ impl Pacing {
 
     /// Records a finished frame.
     pub(super) fn took(&mut self, frame: &Frame) {
+        // A refinement continues from the samples that are there; its time says little about a new picture.
         if !frame.refines {
             self.quality.took(frame.sampling, frame.trace, self.link.frame_time());
         }

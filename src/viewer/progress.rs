@@ -28,6 +28,7 @@ impl Layer for ProgressPanel {
 }
 
 /// The panel's width where there is room.
+// Holds the verb and names of 34 characters; for longer ones the end is shown.
 const PROGRESS_WIDTH: u16 = 46;
 const PROGRESS_HEIGHT: u16 = 4;
 

@@ -8,28 +8,34 @@ use std::num::NonZeroU32;
 use std::time::Duration;
 
 /// The levels of sampling, from the coarsest to the final one.
+// Factors of four, because the error of a mean falls with the square root of the number of samples: each level halves
+// it.
 const LEVELS: [Sampling; 5] = [Sampling::Coarse, up_to(1), up_to(4), up_to(16), Sampling::BEST];
 
 const fn up_to(samples: u32) -> Sampling {
     Sampling::UpTo(NonZeroU32::new(samples).expect("no level is without samples"))
 }
 
-/// The level of one sample per pixel.
+/// Index of the level of one sample per pixel.
 const ONE_SAMPLE_LEVEL: usize = 1;
-/// The highest level in motion.
+/// Index of the highest level in motion.
+// The final level, of up to 64 samples, takes several times as long, and is reached at rest in one step anyway.
 const MAX_MOTION_LEVEL: usize = 3;
-/// Initial ratios of each level's time to that of the level before it, until they are measured. Coarse pixels stand for
-/// four; the higher levels trace only edges again.
+/// Initial ratios of each level's time to that of the level before it, until they are measured.
+// A coarse pixel stands for four. The higher levels trace only pixels with edges again, about a third of them.
 const INITIAL_COST_RATIOS: [f64; MAX_MOTION_LEVEL + 1] = [1.0, 4.0, 2.0, 3.0];
 /// Share of a frame's time that tracing may take.
+// The rest is for cells, bytes and the terminal, which draws on the same cores.
 const TRACING_SHARE: f64 = 0.75;
-/// Share of that time up to which a finer level is tried. Between this and the whole the level stays, so that it does
-/// not oscillate.
+/// Share of the time for tracing up to which a finer level is tried.
+// Between this and the whole the level stays, so that it does not oscillate: `no_level_flickers` tries all frame times
+// up to 40 ms with a noise of a tenth.
 const FINER_LEVEL_SHARE: f64 = 0.8;
 /// Number of frames in a row that must have room for a finer level before it is tried.
+// An eighth of a second at 60 frames: a wrong attempt costs one late frame, a late attempt goes unnoticed.
 const FRAMES_BEFORE_FINER: u32 = 8;
-/// Number of late frames in a row before a coarser level is chosen. A single frame may be late by chance, unless it is
-/// very late.
+/// Number of late frames in a row before a coarser level is chosen.
+// A single frame may be late because another process had the core, unless it is very late.
 const LATE_FRAMES_BEFORE_COARSER: u32 = 2;
 
 /// The level of sampling of the next picture.
@@ -63,6 +69,7 @@ impl QualityControl {
 
     /// Returns the sampling of a new view: within a motion, or after a rest, when the user waits for the picture.
     pub(super) fn for_new_view(&self, in_motion: bool) -> Sampling {
+        // After a rest the user waits for this one frame, and it is refined anyway if the view stays.
         let level = if in_motion { self.level } else { self.level.min(ONE_SAMPLE_LEVEL) };
         self.forced.unwrap_or(LEVELS[level])
     }
@@ -72,6 +79,7 @@ impl QualityControl {
     /// A picture and its refinements are at most three frames, and two and a half times the bytes of a whole one: a
     /// coarse frame takes less than half.
     pub(super) fn next_refinement(&self, shown: Sampling) -> Option<Sampling> {
+        // From a coarse picture one step in between: the final level alone would leave it on the screen for long.
         let next = if shown == Sampling::Coarse { LEVELS[ONE_SAMPLE_LEVEL + 1] } else { Sampling::BEST };
         (self.forced.is_none() && shown != next).then_some(next)
     }
@@ -98,8 +106,10 @@ impl QualityControl {
         self.late_frames = if fits < self.level { self.late_frames + 1 } else { 0 };
         self.frames_with_room = if has_room > self.level { self.frames_with_room + 1 } else { 0 };
         if self.late_frames >= LATE_FRAMES_BEFORE_COARSER || is_very_late {
+            // At once to the level that fits, which may be several lower: each late frame is visible.
             self.level = fits;
         } else if self.frames_with_room >= FRAMES_BEFORE_FINER {
+            // One level at a time, because the time of a level never tried is a guess.
             self.level += 1;
             self.frames_with_room = 0;
         }

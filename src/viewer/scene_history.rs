@@ -31,6 +31,8 @@ impl SceneHistory {
     pub(super) fn show(&mut self, scene: Scene, of: usize, orbits: bool) -> Option<ViewState> {
         let home = *scene.camera();
         let before = self.current.as_ref().map(|current| (current.of, current.home));
+        // A reload with the same camera keeps the user's view: only something else in the file was edited. If the
+        // camera was edited, the user wants to see the new one.
         let view = (before != Some((of, home))).then(|| {
             let left = self.left.remove(&of).filter(|left| left.home() == home);
             left.unwrap_or_else(|| ViewState::of(&scene, orbits))

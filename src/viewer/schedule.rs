@@ -75,14 +75,17 @@ pub(super) enum Action {
 /// Never returns a time that has passed: the driver would spin.
 pub(super) fn decide(facts: &Facts, now: Duration) -> Action {
     let Facts { busy, picture, .. } = *facts;
+    // First of all, because the tracing thread stays busy with the old view until the job is cancelled. A frame of a
+    // new view is never cancelled: while the view keeps changing, no frame would ever be finished.
     if picture == Picture::Stale && busy.tracing == Some(Tracing::Refinement) {
         return Action::GiveUp;
     }
     let (draw_at, frame_at) = (facts.draw_at(), facts.frame_at());
+    // A finished frame goes before the next one, so that its bytes travel while that is traced.
     if !busy.sending && draw_at.is_some_and(|at| at <= now) {
         return Action::Draw;
     }
-    // Nothing is traced that cannot be sent.
+    // Nothing is traced that cannot be sent: by the time it could, a newer view would be wanted.
     if !busy.sending && busy.tracing.is_none() && frame_at <= now {
         match picture {
             Picture::Stale => return Action::Trace,
@@ -105,6 +108,8 @@ impl Facts {
         if self.perfects_first() {
             return None;
         }
+        // On a link of 50 KB/s and 200 ms, improvements that did not wait for newer frames took every other frame's
+        // place: a key was visible after 330 ms instead of 291 ms in the median.
         let lasts = self.picture != Picture::Stale && self.busy.tracing != Some(Tracing::NewView);
         let at = if self.is_changed { Some(Duration::ZERO) } else { self.improvable_at.filter(|_| lasts) };
         at.map(|at| at.max(self.link_free_at))
@@ -116,6 +121,8 @@ impl Facts {
             return Duration::ZERO;
         }
         let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.frame_time);
+        // A view that changed by a key or the mouse is due a frame time after the last one was begun. One that moves by
+        // itself also waits until it has moved for a frame time, or the loop would spin.
         let at = if self.picture == Picture::Stale {
             next(self.begun)
         } else {

@@ -65,7 +65,7 @@ impl Status {
     fn text(&self) -> String {
         let Self { cells, eye, .. } = self;
         let shown = self.shown.map_or_else(|| "-".to_owned(), |fps| format!("{fps:.0}"));
-        // The facts that limit the frame rate.
+        // The facts that limit the frame rate: on a slow link tracing and encoding do not.
         let stages = match self.slow {
             Some(rate) => format!("slow link {}B/s", short(rate)),
             None => {

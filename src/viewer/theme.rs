@@ -68,7 +68,8 @@ const ASCII_BORDER: border::Set<'static> = border::Set {
     horizontal_bottom: "-",
 };
 
-/// The smallest screen with panels.
+/// The smallest screen with panels, in columns and rows.
+// The explanation has 39 columns and takes half of the rows of a narrow screen.
 pub(super) const MIN_PANEL_SCREEN: (u16, u16) = (40, 12);
 
 /// Returns the area of the whole screen.

@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whoever_may_change_it_counts() {
+    fn a_mutable_borrow_counts_as_a_change() {
         let mut list = Tracked::new(vec![1]);
         assert!(list.is_changed());
         list.settle();

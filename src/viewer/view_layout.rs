@@ -89,8 +89,9 @@ impl ViewLayout {
         self.maps().map(|map| map.legend(scene, camera)).collect()
     }
 
-    /// Returns the sampling for these maps where `wanted` is asked for: one ray per pixel, unless a map refines.
+    /// Returns the sampling for these maps if `wanted` is requested: one ray per pixel, unless a map refines.
     pub(super) fn sampling(self, wanted: Sampling) -> Sampling {
+        // Depths, normals and costs of several samples have no meaningful mean at an edge.
         if wanted == Sampling::Coarse || self.maps().any(Map::refines) {
             return wanted;
         }
@@ -172,7 +173,7 @@ mod tests {
 
     /// Side by side, two maps have no more pixels than one; a wipe traces both in full.
     #[test]
-    fn two_pictures_are_as_much_work_as_one_or_two() {
+    fn two_maps_side_by_side_cost_one_picture_and_a_wipe_two() {
         let whole = Resolution::square(80, 4).with_pixel_aspect(0.5).expect("a shape of pixels");
         let parts = shown(Map::Shaded, Map::Depth, Split::Beside).parts(whole);
         let widths: Vec<_> = parts.iter().map(|(_, part)| part.width()).collect();
@@ -184,7 +185,7 @@ mod tests {
 
     /// Maps other than the shaded one get one ray per pixel.
     #[test]
-    fn light_alone_is_refined() {
+    fn only_the_shaded_map_is_refined() {
         let one = Sampling::UpTo(NonZeroU32::MIN);
         assert_eq!(ViewLayout::default().sampling(Sampling::BEST), Sampling::BEST);
         assert_eq!(ViewLayout::one(Map::Depth).sampling(Sampling::BEST), one);
@@ -197,14 +198,14 @@ mod tests {
         Picture { width, height: 2, pixels: vec![Srgb8::new(band, band, band); 2 * width as usize] }
     }
 
-    /// Returns the rows as text: a digit for each pixel, which tells its picture, and a bar for the line.
+    /// Returns the rows as text: a digit for each pixel, which identifies its picture, and a bar for the line.
     fn rows(picture: &Picture) -> Vec<String> {
         let text = |pixel: &Srgb8| if *pixel == LINE { '|' } else { char::from(b'0' + pixel.r) };
         picture.pixels.chunks(picture.width as usize).map(|row| row.iter().map(text).collect()).collect()
     }
 
     #[test]
-    fn a_line_parts_two_pictures() {
+    fn a_line_separates_two_pictures() {
         let beside = shown(Map::Shaded, Map::Depth, Split::Beside);
         assert_eq!(rows(&beside.combined(&[flat(3, 1), flat(4, 2)], 0.5).expect("two")), ["111|2222"; 2]);
         let wipe = shown(Map::Shaded, Map::Depth, Split::Wipe);

@@ -68,6 +68,7 @@ impl Dependency {
     /// Returns whether the path leads to something new. A missing file does not count: an event reports when it comes
     /// back.
     pub(in crate::app) fn has_changed(&self) -> bool {
+        // Editors replace a file in two steps: it is missing for a moment.
         let now = State::of(&self.path);
         now != State::Missing && now != self.state
     }

@@ -1,10 +1,12 @@
 //! Resolution of a path as the system does it: folder by folder and link by link.
+//!
+//! `canonicalize` gives only the end, and fails if anything is missing; a change of any step must be noticed.
 
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Limit on the links followed, the same as that of Linux.
+/// Limit on the links followed, the same as that of Linux: links may form a cycle.
 const MAX_LINKS: usize = 40;
 
 /// The folders and links that a path leads through. None of their own paths contains a link.

@@ -1,10 +1,10 @@
-//! Keys at times, and where the eye is after them.
+//! Key events at given times, and the position of the eye afterwards.
 
 use super::*;
 use crate::camera::{Pose, ViewRectangle};
 use crate::control::{KeyMode, Keymap};
 
-/// Keys that mean what they do when one flies.
+/// A motion that takes keys with their meaning in flight.
 trait Flown {
     fn key(&mut self, key: &KeyEvent, now: Duration);
 }
@@ -36,7 +36,7 @@ fn release(c: char) -> KeyEvent {
     event(c, KeyEventKind::Release)
 }
 
-/// Keys pressed at time 0 on a terminal that tells of releases, and kept down.
+/// Returns a motion with keys held since time 0, on a terminal that reports releases.
 fn holding(keys: &str) -> Motion {
     let mut motion = Motion::default();
     motion.set_reports_releases(true);
@@ -46,7 +46,7 @@ fn holding(keys: &str) -> Motion {
     motion
 }
 
-/// Where the eye and the direction of view are after that time at speed 1.
+/// Returns the eye and the view direction after `time` at speed 1.
 fn after(motion: &Motion, time: Duration) -> (Vec3, Vec3) {
     let pose = motion.step(&camera(), 1.0, ms(0), time).pose();
     (pose.eye, (pose.target - pose.eye).normalize())
@@ -63,7 +63,7 @@ const AHEAD: [f32; 3] = [0.0, 0.0, -1.0];
 const HERE: [f32; 3] = [0.0, 0.0, 4.0];
 
 #[test]
-fn ways_and_turns_have_a_pace_of_their_own() {
+fn moving_and_turning_have_separate_speeds() {
     let after = |keys, key_speed| {
         let motion = Motion { key_speed, ..holding(keys) };
         after(&motion, ms(1_000))
@@ -76,7 +76,7 @@ fn ways_and_turns_have_a_pace_of_their_own() {
     assert!(view.abs_diff_eq(Vec3::X, 1e-5), "{view}");
 }
 
-/// Key, and where eye and view direction are after a second of it at speed 1.
+/// Checks eye and view direction after holding each key for a second at speed 1.
 #[test]
 fn each_key_moves_the_camera_its_way() {
     let turn = std::f32::consts::FRAC_1_SQRT_2; // sine and cosine of the 45 degrees that a second turns
@@ -107,12 +107,12 @@ fn any_number_of_keys_move_together() {
     assert_after_a_second("ah", [-0.923_88, 0.0, 4.0 + 0.382_68], [-turn, 0.0, -turn]);
     // To the left and upwards: 45 degrees each.
     assert_after_a_second("hk", HERE, [-0.5, turn, -0.5]);
-    // Ahead on a curve: half of the turn before the way.
+    // Forward on a curve: half of the turn before the translation.
     assert_after_a_second("wh", [-0.382_68, 0.0, 4.0 - 0.923_88], [-turn, 0.0, -turn]);
 }
 
 #[test]
-fn opposite_keys_cancel_and_two_for_the_same_are_one() {
+fn opposite_keys_cancel_and_two_keys_of_a_command_count_once() {
     for keys in ["ws", "ad", "ec", "hl", "kj", "wsadechlkj"] {
         let motion = holding(keys);
         assert!(!motion.is_moving(ms(10)), "{keys}");
@@ -216,7 +216,7 @@ fn with_releases_other_keys_stop_nothing() {
 }
 
 #[test]
-fn a_release_counts_whatever_modifiers_are_held_by_then() {
+fn a_release_counts_with_any_modifiers() {
     use KeyModifiers as Mods;
     for modifiers in [Mods::SHIFT, Mods::CONTROL, Mods::ALT, Mods::SUPER, Mods::CONTROL | Mods::SHIFT] {
         for c in ['w', 'W'] {
@@ -228,7 +228,7 @@ fn a_release_counts_whatever_modifiers_are_held_by_then() {
 }
 
 #[test]
-fn a_release_without_a_press_is_nothing() {
+fn a_release_without_a_press_is_ignored() {
     let mut motion = holding("");
     let before = motion.clone();
     motion.key(&release('w'), ms(10));
@@ -236,8 +236,8 @@ fn a_release_without_a_press_is_nothing() {
 }
 
 #[test]
-fn a_repeat_without_a_press_is_a_key_that_is_held() {
-    // It was pressed before the window had the focus.
+fn a_repeat_without_a_press_holds_the_key() {
+    // The press went to another window, which had the focus then.
     let mut motion = holding("");
     motion.key(&event('w', KeyEventKind::Repeat), ms(10));
     assert!(motion.is_moving(ms(10_000)));
@@ -246,7 +246,7 @@ fn a_repeat_without_a_press_is_a_key_that_is_held() {
 }
 
 #[test]
-fn the_keypad_is_another_place() {
+fn keypad_keys_are_separate_keys() {
     let keypad = |kind| KeyEvent { kind, state: KeyEventState::KEYPAD, ..KeyCode::Left.into() };
     let mut motion = holding("");
     motion.key(&KeyCode::Left.into(), ms(0));
@@ -256,7 +256,7 @@ fn the_keypad_is_another_place() {
 }
 
 #[test]
-fn shift_makes_what_is_held_faster_while_it_is_held() {
+fn shift_makes_held_keys_faster_while_it_is_held() {
     let shift =
         |kind, modifiers| KeyEvent::new_with_kind(KeyCode::Modifier(ModifierKeyCode::LeftShift), modifiers, kind);
     let way = |motion: &Motion| 4.0 - after(motion, ms(100)).0.z;
@@ -272,7 +272,7 @@ fn shift_makes_what_is_held_faster_while_it_is_held() {
 }
 
 #[test]
-fn a_glide_from_before_releases_were_told_ends_as_a_glide() {
+fn a_glide_from_before_reports_of_releases_ends_as_a_glide() {
     let mut motion = Motion::default();
     motion.key(&press('w'), ms(0));
     motion.set_reports_releases(true);
@@ -280,13 +280,13 @@ fn a_glide_from_before_releases_were_told_ends_as_a_glide() {
     let mut repeated = motion.clone();
     repeated.key(&event('w', KeyEventKind::Repeat), ms(660));
     assert!(repeated.is_moving(ms(5_000)), "it is held after all");
-    // Nobody knows whether it still is.
+    // Whether the key is still held is unknown.
     motion.key(&press('d'), ms(300));
     assert_eq!(motion, holding("d"));
 }
 
 #[test]
-fn nothing_is_held_when_all_is_stopped_or_releases_are_no_longer_told() {
+fn all_keys_are_released_on_a_stop_and_when_reports_of_releases_end() {
     let mut motion = holding("wdh");
     motion.stop();
     assert!(!motion.is_moving(ms(0)));
@@ -327,7 +327,7 @@ fn the_view_never_turns_over_the_pole() {
 }
 
 #[test]
-fn a_tilted_up_is_what_is_turned_about() {
+fn the_view_turns_about_a_tilted_up() {
     let up = Vec3::new(1.0, 1.0, 0.0);
     let camera = camera().with_pose(Pose { up, ..camera().pose() }).unwrap();
     let mut motion = Motion::default();
@@ -339,9 +339,9 @@ fn a_tilted_up_is_what_is_turned_about() {
     assert!((eye - camera.pose().eye).abs_diff_eq(up.normalize() * 0.5, 1e-5));
 }
 
-/// Going around: the distance stays, and so does what is looked at.
+/// Orbiting keeps the target and the distance to it.
 #[test]
-fn the_eye_goes_around_the_target() {
+fn the_eye_orbits_the_target() {
     let after = |key: KeyCode, shift: bool| {
         let modifiers = if shift { KeyModifiers::SHIFT } else { KeyModifiers::NONE };
         let key = KeyEvent::new(key, modifiers);

@@ -33,6 +33,7 @@ pub(super) struct Inset {
 }
 
 /// Length of a ray without a hit, in distances of the eye from the target.
+// Beyond the target, so that it is seen to pass the scene.
 const MISS_LENGTH: f32 = 1.5;
 
 /// Distance at which the view rectangle is drawn, as a share of the ray. Only the ratios of its distance and sides

@@ -10,16 +10,18 @@ use ratatui_core::layout::Rect;
 /// Width of the panel, with its border and a blank on each side.
 const PANEL_WIDTH: u16 = MAX_LINE_WIDTH as u16 + 4;
 
-/// Rows at the bottom of the screen that are reserved for others.
+/// Rows at the bottom of the screen that stay free.
+// One for notes and legends, and one for the status line.
 const RESERVED_ROWS: u16 = 2;
 
-/// Least and greatest height of the inset within the panel.
+/// Least and greatest height of the inset within the panel, in rows.
+// With fewer rows the letters o, q and p overlap; more would take room from the text without showing more.
 const INSET_HEIGHT: [u16; 2] = [6, 16];
 
 /// Returns the panel's area, on the side of the screen away from the cell.
 pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
     let (middle, height) = (screen.width / 2, screen.height.saturating_sub(RESERVED_ROWS));
-    // The cursor's mark beside the cell takes a column as well.
+    // Greater, not equal: the cursor's mark beside the cell takes a column as well.
     if middle > PANEL_WIDTH {
         let x = if column < middle { screen.width - PANEL_WIDTH } else { 0 };
         return Rect::new(x, 0, PANEL_WIDTH, height);

@@ -1,14 +1,14 @@
 use super::*;
 
-/// A sixtieth of a second: 12.5 ms of it are for tracing.
+/// The time of a frame, 12.5 ms of which are for tracing.
 const FRAME: Duration = Duration::from_micros(16_667);
 
 fn ms(milliseconds: f64) -> Duration {
     Duration::from_secs_f64(milliseconds / 1000.0)
 }
 
-/// Flies on a machine whose picture at each level takes so many milliseconds; the levels of so many frames, the first
-/// after a rest.
+/// Returns the levels of `frames` frames in motion, the first after a rest. `time` gives the milliseconds that a frame
+/// takes at a level.
 fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usize) -> f64) -> Vec<usize> {
     let levels = (0..frames).map(|frame| {
         let sampling = control.for_new_view(frame > 0);
@@ -19,12 +19,13 @@ fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usiz
     levels.collect()
 }
 
-/// What the levels take where a third of the pixels has edges and one sample of each takes so long.
+/// Returns the time of each level in a scene where a third of the pixels has edges; one sample takes `one`
+/// milliseconds.
 fn machine(one: f64) -> impl Fn(usize) -> f64 {
     move |level| one * [0.25, 1.0, 2.0, 6.0][level]
 }
 
-/// How often the level changes.
+/// Returns the number of changes of the level.
 fn changes(levels: &[usize]) -> usize {
     levels.windows(2).filter(|pair| pair[0] != pair[1]).count()
 }
@@ -65,7 +66,7 @@ fn a_scene_that_becomes_slow_is_soon_kept_up_with() {
     assert!(levels[..2] == [1, 3] && levels[2..].iter().all(|&level| level == 2), "{levels:?}");
 }
 
-/// Whatever the time of a frame is, small changes of it do not change the level all the time.
+/// Small changes of the frame time do not make the level oscillate, whatever the frame time is.
 #[test]
 fn no_level_flickers() {
     for tenth in 1..400 {
@@ -79,7 +80,7 @@ fn no_level_flickers() {
     }
 }
 
-/// Now and then something else on the machine holds a frame up.
+/// Another process may delay a single frame.
 #[test]
 fn one_late_frame_changes_nothing() {
     let mut control = QualityControl::new(None);
@@ -88,7 +89,7 @@ fn one_late_frame_changes_nothing() {
     assert_eq!(changes(&levels[1..]), 0, "{levels:?}");
 }
 
-/// A finer level is tried when there has been room for it for a while, not as soon as there is.
+/// A finer level is tried only after several frames in a row with room for it.
 #[test]
 fn room_now_and_then_is_no_room() {
     let mut control = QualityControl::new(None);
@@ -96,16 +97,16 @@ fn room_now_and_then_is_no_room() {
     assert_eq!(changes(&levels), 0, "{levels:?}");
 }
 
-/// Where there are edges everywhere, a level takes four times as long as the one before: that is found out, and not
-/// tried again and again.
+/// Where there are edges everywhere, a level takes four times as long as the one before: the control learns this, and
+/// does not try the level again and again.
 #[test]
-fn what_a_level_takes_is_learnt() {
+fn the_cost_ratio_of_a_level_is_learnt() {
     let mut control = QualityControl::new(None);
     let levels = fly(&mut control, 600, |_, level| 4.0 * [0.25, 1.0, 4.0, 16.0][level]);
     assert!(levels.contains(&2) && changes(&levels) <= 6, "{levels:?}");
 }
 
-/// Frames that may take longer, as with few of them in a second, get more samples.
+/// With fewer frames a second, each may take longer and gets more samples.
 #[test]
 fn the_time_of_a_frame_is_what_counts() {
     let mut control = QualityControl::new(None);
@@ -117,7 +118,7 @@ fn the_time_of_a_frame_is_what_counts() {
     assert_eq!(control.for_new_view(true), LEVELS[3]);
 }
 
-/// From what is shown to the end, with three pictures at most in all.
+/// From any level a picture is refined to the final one in at most two steps.
 #[test]
 fn a_picture_that_stands_still_is_refined_to_the_end() {
     let control = QualityControl::new(None);
@@ -130,7 +131,7 @@ fn a_picture_that_stands_still_is_refined_to_the_end() {
 }
 
 #[test]
-fn what_is_forced_is_all_there_is() {
+fn a_forced_level_is_the_only_one() {
     for sampling in [Sampling::BEST, Sampling::Each(NonZeroU32::MIN), Sampling::Each(NonZeroU32::new(9).expect("9"))] {
         let mut control = QualityControl::new(Some(sampling));
         for _ in 0..20 {
