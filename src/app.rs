@@ -56,7 +56,7 @@ pub enum Ending {
 /// # Panics
 /// With the payload of a thread that panicked while tracing.
 pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<Outcome> {
-    let scenes = Scenes::<Infallible>::done(scene, signals)?;
+    let scenes = Scenes::<Infallible>::of_scene(scene, signals)?;
     view(scenes, options, signals).map_err(|error| match error {
         Error::Terminal(error) => error,
         Error::Scene(never) => match never {},
@@ -129,6 +129,7 @@ fn view<E: Into<Notice> + Send + 'static>(
     // panics.
     let waker = signals.waker()?;
     let mut renderer = terminal::without_signals(|| Renderer::start(options.threads, waker))?;
+    // An error that is found at once is printed in the shell, where it stays readable.
     scenes.wait().map_err(Error::Scene)?;
     let killed = |signal| Outcome { ending: Ending::Signal(signal), moved: None, heard: true };
     if let Some(signal) = signals.deadly() {
@@ -139,8 +140,8 @@ fn view<E: Into<Notice> + Send + 'static>(
         // A signal may have arrived while it waited for the foreground.
         Err(error) => return signals.deadly().map(killed).ok_or(Error::Terminal(error)),
     };
-    let mut live = Live::new(terminal, options, scenes.named())?;
-    let ended = live.run(&mut renderer, &mut scenes, signals);
+    let mut live = Live::new(terminal, options, scenes.names())?;
+    let ended = live.drive(&mut renderer, &mut scenes, signals);
     let ending = ended.or_else(|error| match error {
         // When the terminal vanishes, the system says so by a signal too.
         Error::Terminal(error) => signals.deadly().map(Ending::Signal).ok_or(Error::Terminal(error)),

@@ -150,6 +150,7 @@ impl Parser {
     ///
     /// Afterwards the parser no longer waits, except for a paste, which ends after [`MAX_PASTE_WAITS`] such calls.
     pub fn give_up_waiting(&mut self, out: &mut Vec<Input>) {
+        // Called too late by a driver, bytes may have completed the sequence in the meantime.
         if !self.is_waiting() {
             return;
         }
@@ -193,7 +194,9 @@ impl Parser {
         };
         self.late = Some(left - 1);
         match self.state {
+            // Any other byte after ESC would be Alt with a key, and is more likely a key typed later.
             State::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
+            // The first byte decides: typed letters do not begin a reply.
             State::Text(kind) if self.text.is_empty() => kind.begins_with(byte),
             State::Text(_) => byte >= 0x20 || byte == BEL || byte == ESC,
             State::TextEscape(_) => byte == b'\\',
@@ -313,7 +316,7 @@ impl Parser {
             }
         }
         if (0x40..=0x7e).contains(&byte) {
-            // The tokeniser returns no token for a malformed sequence.
+            // The tokeniser returns no token for a malformed sequence, which must end nevertheless.
             self.finish(meaning.unwrap_or(Meaning::Nothing), out);
         }
     }
@@ -327,6 +330,7 @@ impl Parser {
     }
 
     fn take_old_mouse(&mut self, byte: u8, out: &mut Vec<Input>) {
+        // Coordinates start at 32: a control character means that the report was cut off.
         if byte < 0x20 {
             return self.drop_and_parse(byte, out);
         }
@@ -385,6 +389,7 @@ impl Parser {
     fn finish(&mut self, meaning: Meaning, out: &mut Vec<Input>) {
         let late = self.late.is_some();
         if let Meaning::Key(mut key) = meaning {
+            // Only keys can carry Alt. Before anything else the first ESC was the Escape key.
             if self.escaped {
                 key.modifiers |= KeyModifiers::ALT;
             }
@@ -401,6 +406,7 @@ impl Parser {
         self.forget_sequence();
         match meaning {
             Meaning::Reply(reply) => out.push(Input::Reply(reply)),
+            // The rest of a mouse report that was given up may be of a click seconds ago.
             Meaning::Event(event) if !late => out.push(Input::Event(event)),
             Meaning::PasteStart => self.state = State::Paste,
             Meaning::OldMouse => self.state = State::OldMouse,

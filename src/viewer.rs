@@ -92,7 +92,7 @@ pub(crate) enum Request {
     /// Stop the job, as Ctrl-Z does.
     Suspend,
     /// Switch to the scene that many further on.
-    GoOn(isize),
+    SwitchScene(isize),
     /// Copy this text to the user's clipboard.
     Copy(String),
     /// Write the picture into a file.
@@ -100,7 +100,7 @@ pub(crate) enum Request {
     /// Ask the user whether to write this camera into the scene's file, if it has one.
     ProposeView(Camera),
     /// Write the camera that was proposed last.
-    KeepView,
+    SaveView,
 }
 
 /// The driver's next action.
@@ -154,7 +154,7 @@ impl Viewer {
             options: Options { welcome: None, ..options.clone() },
         };
         if let Some(welcome) = options.welcome.take() {
-            viewer.say(welcome);
+            viewer.show_note(welcome);
         }
         viewer.resize(window)?;
         Ok(viewer)
@@ -203,7 +203,7 @@ impl Viewer {
         self.screen.redraw(self.display.capabilities().half_blocks, size != window);
         if size != window {
             let [size, window] = [size, window].map(|Size { columns, rows }| format!("{columns}x{rows}"));
-            self.say(format!("the picture covers {size} of the window's {window} cells"));
+            self.show_note(format!("the picture covers {size} of the window's {window} cells"));
         }
     }
 
@@ -226,7 +226,7 @@ impl Viewer {
     pub(crate) fn show(&mut self, scene: Scene, of: usize, orbits: bool) {
         // The progress panel goes with the first frame of the scene: drawing the screen once more without it would
         // delay that frame.
-        self.screen.close_later::<ProgressPanel>();
+        self.screen.close_quietly::<ProgressPanel>();
         self.screen.close::<ErrorPanel>();
         self.open(scene, of, orbits);
     }
@@ -245,18 +245,18 @@ impl Viewer {
 
     /// Shows the error of a load.
     pub(crate) fn show_error(&mut self, fault: Notice) {
-        self.screen.close_later::<ProgressPanel>();
+        self.screen.close_quietly::<ProgressPanel>();
         self.screen.open(ErrorPanel(fault));
     }
 
     /// Shows a note in the lowest row until the next key.
-    pub(crate) fn say(&mut self, text: impl Into<String>) {
+    pub(crate) fn show_note(&mut self, text: impl Into<String>) {
         self.screen.open(Note(text.into()));
     }
 
     /// Takes a finished frame.
     pub(crate) fn take_frame(&mut self, frame: Frame) {
-        self.pacing.took(&frame);
+        self.pacing.record_frame(&frame);
         // Refinements at rest would make the frame rate of a motion seem higher.
         let moving = self.is_in_motion().then_some(self.now);
         self.screen.take_frame(frame, moving);
@@ -357,7 +357,7 @@ impl Viewer {
     ///
     /// `now` is later than at [`draw`](Self::draw): the time for cells and bytes must not count as the link's.
     pub(crate) fn end_frame(&mut self, bytes: &mut Vec<u8>, now: Duration) {
-        self.screen.took(now.saturating_sub(self.now));
+        self.screen.record_encode_time(now.saturating_sub(self.now));
         if bytes.is_empty() {
             return;
         }

@@ -75,7 +75,7 @@ fn every_scene_file_is_listed() {
 #[test]
 fn every_key_is_listed() {
     let readme = readme();
-    for key in Keymap::default().rows().iter().flat_map(|row| &row.keys).map(Key::to_string) {
+    for key in Keymap::default().bindings().iter().flat_map(|row| &row.keys).map(Key::to_string) {
         let listed = match &*key {
             "Left" | "Right" | "Up" | "Down" => "arrows".to_owned(),
             named if named.len() > 1 => named.to_owned(),
@@ -102,7 +102,7 @@ fn every_key_of_its_table_does_something() {
         let first = first.split(" | ").next().unwrap_or_default().replace("||", "|");
         for name in first.split('`').skip(1).step_by(2) {
             let key = Key::from_name(name);
-            let is_bound = key.is_some_and(|key| keymap.rows().iter().any(|row| row.keys.contains(&key)));
+            let is_bound = key.is_some_and(|key| keymap.bindings().iter().any(|row| row.keys.contains(&key)));
             assert!(is_bound, "{name} does nothing: {row}");
             count += 1;
         }

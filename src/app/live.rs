@@ -42,7 +42,7 @@ pub(super) struct Live {
     // fell from 1.08 to 0.98 of the time that it took before the viewer was a module of its own.
     bytes: Vec<u8>,
     /// The names of the scenes.
-    named: Vec<SceneName>,
+    names: Vec<SceneName>,
     exports: Option<PathBuf>,
     /// The view that the user was last asked to confirm.
     proposed: Option<ProposedView>,
@@ -59,11 +59,11 @@ impl Live {
     ///
     /// # Errors
     /// If the terminal is gone, or there is not enough memory for its window.
-    pub(super) fn new(terminal: Terminal, options: Options, named: Vec<SceneName>) -> io::Result<Self> {
+    pub(super) fn new(terminal: Terminal, options: Options, names: Vec<SceneName>) -> io::Result<Self> {
         let exports = options.exports.clone();
         let viewer = Viewer::new(options, terminal.window()?)?;
         let clock = Clock { start: Instant::now() };
-        Ok(Self { viewer, terminal, clock, bytes: Vec::new(), named, exports, proposed: None })
+        Ok(Self { viewer, terminal, clock, bytes: Vec::new(), names, exports, proposed: None })
     }
 
     /// Returns the camera if the user has moved it.
@@ -77,7 +77,7 @@ impl Live {
     }
 
     /// Queries the terminal and runs until the user leaves.
-    pub(super) fn run<E: Into<Notice> + Send + 'static>(
+    pub(super) fn drive<E: Into<Notice> + Send + 'static>(
         &mut self,
         renderer: &mut Renderer,
         scenes: &mut Scenes<E>,
@@ -95,7 +95,7 @@ impl Live {
                 && !self.terminal.is_sending()
                 && let Some(problem) = scenes.watch()?
             {
-                self.viewer.say(format!("changes to the scene's files will not be noticed: {problem}"));
+                self.viewer.show_note(format!("changes to the scene's files will not be noticed: {problem}"));
                 continue;
             }
             renderer.panic_if_asked();
@@ -115,7 +115,7 @@ impl Live {
             for mode in self.viewer.modes() {
                 self.terminal.switch_on(mode)?;
             }
-            while let Some(frame) = renderer.finished() {
+            while let Some(frame) = renderer.take_finished() {
                 self.viewer.take_frame(frame);
             }
         }
@@ -169,6 +169,7 @@ impl Live {
         }
         let mut buffer = [0; 4096];
         let bytes = if woken.keys { self.terminal.read(&mut buffer)? } else { &[] };
+        // Readable without bytes is the end of the file: the loop would spin on it.
         if woken.keys && bytes.is_empty() {
             return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
         }
@@ -185,22 +186,22 @@ impl Live {
             match request {
                 Request::Leave => return Ok(true),
                 Request::Suspend => self.suspend(Some(StopTarget::Group), signals)?,
-                Request::GoOn(steps) => scenes.go(steps)?,
+                Request::SwitchScene(steps) => scenes.switch(steps)?,
                 Request::Copy(text) => self.terminal.copy(&text)?,
                 Request::Export(format) => {
-                    let said = self.export(format).map_or_else(
+                    let note = self.export(format).map_or_else(
                         |error| format!("could not write the picture: {error}"),
                         |name| format!("written: {name}"),
                     );
-                    self.viewer.say(said);
+                    self.viewer.show_note(note);
                 }
                 Request::ProposeView(camera) => self.propose(camera),
-                Request::KeepView => {
-                    let said = match self.proposed.take().map_or(Ok(()), |view| view.write()) {
+                Request::SaveView => {
+                    let note = match self.proposed.take().map_or(Ok(()), |view| view.write()) {
                         Ok(()) => "view saved to the scene file".to_owned(),
                         Err(error) => format!("scene file left unchanged: {error}"),
                     };
-                    self.viewer.say(said);
+                    self.viewer.show_note(note);
                 }
             }
         }
@@ -209,7 +210,7 @@ impl Live {
 
     /// Returns the name of the shown scene.
     fn shown(&self) -> Option<&SceneName> {
-        self.named.get(self.viewer.shown_scene()?)
+        self.names.get(self.viewer.shown_scene()?)
     }
 
     /// Writes the shown picture into a new file and returns its name.
@@ -226,14 +227,14 @@ impl Live {
         let file = self.shown().and_then(|scene| scene.file.as_deref());
         self.proposed = file.and_then(|file| ProposedView::new(file, camera));
         match &self.proposed {
-            Some(view) => self.viewer.ask_keep(view.file_name()),
-            None => self.viewer.say("this scene has no scene file to save views to"),
+            Some(view) => self.viewer.ask_to_save_view(view.file_name()),
+            None => self.viewer.show_note("this scene has no scene file to save views to"),
         }
     }
 
     /// Shows an event of a load. An error of loading is returned if there is no scene to show it over.
     fn handle_event<E: Into<Notice>>(&mut self, SceneEvent { of, event, is_slow }: SceneEvent<E>) -> Result<(), E> {
-        let orbits = self.named.get(of).is_some_and(|scene| scene.orbited);
+        let orbits = self.names.get(of).is_some_and(|scene| scene.orbited);
         match event {
             LoadEvent::Progress(progress) if is_slow => self.viewer.show_progress(progress),
             LoadEvent::Progress(_) | LoadEvent::Dependencies(_) => {}
@@ -264,6 +265,7 @@ impl Live {
         if signals.deadly().is_some() {
             return Ok(());
         }
+        // It waits for the foreground, and so continues only when the shell has handed the terminal over.
         self.terminal.take_again(signals)?;
         // Replies to earlier queries are lost.
         self.terminal.send(&self.viewer.queries(self.clock.now()))?;

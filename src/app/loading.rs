@@ -64,7 +64,7 @@ impl<E> Drop for Loading<E> {
 
 impl<E> Loading<E> {
     /// Returns a finished load of `scene`.
-    pub(super) fn done(scene: Scene) -> Self {
+    pub(super) fn finished(scene: Scene) -> Self {
         let (_, events) = channel();
         let received = VecDeque::from([LoadEvent::Scene(scene)]);
         Self { events, received, begun: Instant::now(), cancellation: Cancellation::default() }
@@ -143,26 +143,27 @@ struct Worker<E> {
 impl<E: Send + 'static> Worker<E> {
     fn start(self) -> io::Result<()> {
         let thread = thread::Builder::new().name("load".to_owned());
-        terminal::without_signals(|| thread.spawn(|| self.run())).map(drop)
+        terminal::without_signals(|| thread.spawn(|| self.load_all())).map(drop)
     }
 
     /// Loads scenes until the queue is closed or another thread has taken over.
-    fn run(self) {
+    fn load_all(self) {
         let mut pool = None;
         loop {
             let request = self.queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
             let Ok(request) = request else { return };
+            // Of many saves in a row only the last one is read.
             if request.cancellation.is_cancelled() {
                 continue;
             }
-            let is_relieved = AtomicBool::new(false);
-            let relieve = || {
-                if !is_relieved.load(Ordering::Relaxed) {
-                    is_relieved.store(self.start_another().is_ok(), Ordering::Relaxed);
+            let is_handed_over = AtomicBool::new(false);
+            let hand_over_queue = || {
+                if !is_handed_over.load(Ordering::Relaxed) {
+                    is_handed_over.store(self.start_another().is_ok(), Ordering::Relaxed);
                 }
             };
-            request.carry_out(&self.waker, &relieve, || pool.get_or_insert_with(|| self.pool()).as_ref());
-            if is_relieved.into_inner() {
+            request.process(&self.waker, &hand_over_queue, || pool.get_or_insert_with(|| self.pool()).as_ref());
+            if is_handed_over.into_inner() {
                 return;
             }
         }
@@ -180,16 +181,17 @@ impl<E: Send + 'static> Worker<E> {
 }
 
 impl<E: Send> LoadRequest<E> {
-    /// Loads the scene. Calls `relieve` before opening a file that may block, and builds on the threads of `pool`.
-    fn carry_out<'p>(
+    /// Loads the scene. Calls `hand_over_queue` before opening a file that may block, and builds on the threads of
+    /// `pool`.
+    fn process<'p>(
         self,
         waker: &Mutex<Waker>,
-        relieve: &(dyn Fn() + Sync),
+        hand_over_queue: &(dyn Fn() + Sync),
         pool: impl FnOnce() -> Option<&'p ThreadPool>,
     ) {
         let Self { source, events: sender, cancellation } = self;
         let events = EventSender { events: sender, waker, last_progress: Mutex::new(None) };
-        let work = || load(&source, &cancellation, &events, relieve, pool);
+        let work = || load(&source, &cancellation, &events, hand_over_queue, pool);
         if let Err(panic) = catch_unwind(AssertUnwindSafe(work)) {
             events.send(LoadEvent::Panic(panic));
         }
@@ -206,7 +208,7 @@ struct EventSender<'w, E> {
 
 impl<E> EventSender<'_, E> {
     fn send(&self, event: LoadEvent<E>) {
-        // A closed channel means that the load is cancelled.
+        // A closed channel means that the load is cancelled; the loop then needs no wake-up.
         if self.events.send(event).is_ok()
             && let Ok(mut waker) = self.waker.lock()
         {
@@ -231,7 +233,7 @@ fn load<'p, E: Send>(
     source: &Source<E>,
     cancellation: &Cancellation,
     events: &EventSender<'_, E>,
-    relieve: &(dyn Fn() + Sync),
+    hand_over_queue: &(dyn Fn() + Sync),
     pool: impl FnOnce() -> Option<&'p ThreadPool>,
 ) {
     let on_progress = |progress| {
@@ -242,7 +244,7 @@ fn load<'p, E: Send>(
     let on_dependency = |file: &Path| {
         let file = Dependency::now(file);
         if file.is_other() {
-            relieve();
+            hand_over_queue();
         }
         if let Ok(mut needed) = needed.lock() {
             needed.push(file);

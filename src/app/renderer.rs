@@ -73,6 +73,7 @@ impl Renderer {
             };
             let _ = begun.send(Ok(()));
             for task in wanted {
+                // The panic is passed to the loop, which restores the terminal before it goes on.
                 let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| task(&mut tracer))));
                 // The receiver is gone if the loop has ended.
                 let heard = done.send(traced).is_ok();
@@ -91,6 +92,7 @@ impl Renderer {
     pub(super) fn tracing(&self) -> Option<Tracing> {
         let wanted = self.pending.iter().filter(|work| work.is_wanted());
         let tracing = wanted.map(|work| if work.refines { Tracing::Refinement } else { Tracing::NewView });
+        // The refinement may be cancelled, the new view may not: it decides what the loop waits for.
         tracing.min_by_key(|&tracing| tracing == Tracing::Refinement)
     }
 
@@ -142,7 +144,7 @@ impl Renderer {
     ///
     /// # Panics
     /// With the payload of a panic in the thread.
-    pub(super) fn finished(&mut self) -> Option<Frame> {
+    pub(super) fn take_finished(&mut self) -> Option<Frame> {
         loop {
             let traced = self.frames.try_recv().ok()?;
             let is_wanted = self.pending.pop_front().is_some_and(|work| work.is_wanted());
@@ -160,6 +162,7 @@ impl Renderer {
     fn is_small(&self, job: &Job) -> bool {
         let pixels = job.shot.resolution.pixel_count() as f64;
         let is_short = |(shot, seconds): (Shot, f64)| {
+            // Other cameras may cost more or less, but change little from frame to frame.
             let is_alike = (shot.scene, shot.layout) == (job.shot.scene, job.shot.layout);
             is_alike && seconds * pixels < MAX_INLINE_TRACE_TIME.as_secs_f64()
         };
@@ -329,10 +332,10 @@ mod tests {
         assert_eq!(renderer.tracing(), Some(Tracing::NewView));
         let _ = done.send(Ok(Ok(frame(true))));
         renderer.cancel_refinements();
-        assert!(renderer.finished().is_none());
+        assert!(renderer.take_finished().is_none());
         assert!(renderer.tracing().is_some());
         let _ = done.send(Ok(Ok(frame(false))));
-        assert!(renderer.finished().is_some_and(|frame| !frame.refines));
+        assert!(renderer.take_finished().is_some_and(|frame| !frame.refines));
         assert_eq!(renderer.tracing(), None);
     }
 
@@ -389,7 +392,7 @@ mod tests {
 
     fn wait_for(renderer: &mut Renderer) -> Frame {
         loop {
-            if let Some(frame) = renderer.finished() {
+            if let Some(frame) = renderer.take_finished() {
                 return frame;
             }
             thread::yield_now();

@@ -36,8 +36,8 @@ pub(super) struct SceneEvent<E> {
 
 impl<E: Send + 'static> Scenes<E> {
     /// Returns a list of one loaded scene.
-    pub(super) fn done(scene: Scene, signals: &Signals) -> io::Result<Self> {
-        Self::new(Vec::new(), None, Loading::done(scene), signals)
+    pub(super) fn of_scene(scene: Scene, signals: &Signals) -> io::Result<Self> {
+        Self::new(Vec::new(), None, Loading::finished(scene), signals)
     }
 
     /// Starts to load the first scene.
@@ -81,12 +81,12 @@ impl<E: Send + 'static> Scenes<E> {
     }
 
     /// Returns the names of the scenes.
-    pub(super) fn named(&self) -> Vec<SceneName> {
+    pub(super) fn names(&self) -> Vec<SceneName> {
         self.sources.iter().map(|source| source.named().clone()).collect()
     }
 
     /// Switches to the scene `steps` further on, in a cycle. Does nothing if there is only one.
-    pub(super) fn go(&mut self, steps: isize) -> io::Result<()> {
+    pub(super) fn switch(&mut self, steps: isize) -> io::Result<()> {
         // The only scene would merely be loaded again.
         if self.sources.len() < 2 {
             return Ok(());
@@ -99,6 +99,7 @@ impl<E: Send + 'static> Scenes<E> {
     /// Cancels the load in progress and starts one of the current scene.
     fn read_again(&mut self) -> io::Result<()> {
         if let (Some(source), Some(loader)) = (self.sources.get(self.wanted), &self.loader) {
+            // The new load reports its files itself.
             self.unwatched = None;
             self.loading = loader.load(source.clone())?;
         }

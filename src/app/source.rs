@@ -34,6 +34,7 @@ impl Source {
         let is_mesh = mesh_file::is_mesh(&name, &[]);
         let source = Self::new(name, move |reporter| draft(&file, reporter));
         let source = source.with_file(path.to_owned());
+        // A mesh is a single object, which is looked at from all sides.
         if is_mesh { source.orbited() } else { source }
     }
 }

@@ -205,8 +205,8 @@ impl Shared {
             return FileChange::Moved;
         }
         let meaning = |path: &PathBuf| match (self.ends.contains(path), self.steps.contains(path)) {
-            (true, _) => of_file(event.kind, path),
-            (false, true) => of_step(event.kind),
+            (true, _) => file_change(event.kind, path),
+            (false, true) => step_change(event.kind),
             (false, false) => FileChange::Nothing,
         };
         event.paths.iter().map(meaning).max().unwrap_or_default()
@@ -215,7 +215,7 @@ impl Shared {
 
 /// Returns the meaning of an event for a file. New contents count when the writer closes the file, so that no file is
 /// read half written.
-fn of_file(kind: EventKind, path: &Path) -> FileChange {
+fn file_change(kind: EventKind, path: &Path) -> FileChange {
     match kind {
         EventKind::Remove(_) | EventKind::Modify(ModifyKind::Name(RenameMode::From)) => FileChange::Gone,
         // Not for pipes: writing to one is not a change of the scene.
@@ -238,7 +238,7 @@ fn is_about_to_be_written(path: &Path) -> bool {
 }
 
 /// Returns the meaning of an event for a folder or link on the way to a file.
-fn of_step(kind: EventKind) -> FileChange {
+fn step_change(kind: EventKind) -> FileChange {
     match kind {
         EventKind::Access(_) | EventKind::Modify(ModifyKind::Data(_)) => FileChange::Nothing,
         _ => FileChange::Moved,

@@ -47,6 +47,7 @@ impl KeyMode {
         match self {
             Self::Export => matches!(command, Command::Write(_) | Command::No),
             Self::Keep => matches!(command, Command::Yes | Command::No),
+            // A mode without a question has nothing to answer.
             _ => !command.answers(),
         }
     }
@@ -78,23 +79,24 @@ impl Binding {
 /// The keymap that key presses are looked up in and that the help lists.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Keymap {
-    rows: Vec<Binding>,
+    bindings: Vec<Binding>,
 }
 
 /// Returns the built-in keymap.
 impl Default for Keymap {
     fn default() -> Self {
-        let row = |&(mode, keys, command): &Row| Binding { mode, keys: keys.to_vec(), command };
+        let row = |&(mode, keys, command): &BuiltInBinding| Binding { mode, keys: keys.to_vec(), command };
         let write = |&format: &Format| Binding {
             mode: KeyMode::Export,
             keys: vec![letter(format.key())],
             command: Command::Write(format),
         };
-        Self { rows: Format::ALL.iter().map(write).chain(BUILT_IN.iter().map(row)).collect() }
+        // Formats first, so that the dialog lists them before the key that cancels it.
+        Self { bindings: Format::ALL.iter().map(write).chain(BUILT_IN.iter().map(row)).collect() }
     }
 }
 
-type Row = (KeyMode, &'static [Key], Command);
+type BuiltInBinding = (KeyMode, &'static [Key], Command);
 
 const fn letter(c: char) -> Key {
     Key::letter(c)
@@ -111,7 +113,7 @@ const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 // WASD moves on the left hand while the arrows turn with the right; hjkl stand in for the arrows on keyboards without
 // them. Explanation and light take the arrows only, so that hjkl and WASD go on moving the eye meanwhile. No key needs
 // Alt or a function key, which window managers and multiplexers take for themselves.
-const BUILT_IN: &[Row] = &[
+const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Fly, &[letter('w')], Command::Move(Direction::Forward)),
     (KeyMode::Fly, &[letter('s')], Command::Move(Direction::Back)),
     (KeyMode::Fly, &[letter('a')], Command::Move(Direction::Left)),
@@ -186,25 +188,25 @@ const BUILT_IN: &[Row] = &[
 
 impl Keymap {
     /// Returns all bindings, in the order of the help.
-    pub fn rows(&self) -> &[Binding] {
-        &self.rows
+    pub fn bindings(&self) -> &[Binding] {
+        &self.bindings
     }
 
     /// Returns the bindings of a mode.
     pub fn of(&self, mode: KeyMode) -> impl Iterator<Item = &Binding> {
-        self.rows.iter().filter(move |row| row.mode == mode)
+        self.bindings.iter().filter(move |row| row.mode == mode)
     }
 
     /// Binds a key to a command in a mode, or unbinds it, and removes its previous binding.
     pub fn bind(&mut self, mode: KeyMode, key: Key, command: Option<Command>) {
-        for row in self.rows.iter_mut().filter(|row| row.mode == mode) {
+        for row in self.bindings.iter_mut().filter(|row| row.mode == mode) {
             row.keys.retain(|bound| *bound != key);
         }
         // The key is added to the command's row, so that the help lists all its keys in one line.
         let Some(command) = command else { return };
-        match self.rows.iter_mut().find(|row| (row.mode, row.command) == (mode, command)) {
+        match self.bindings.iter_mut().find(|row| (row.mode, row.command) == (mode, command)) {
             Some(row) => row.keys.push(key),
-            None => self.rows.push(Binding { mode, keys: vec![key], command }),
+            None => self.bindings.push(Binding { mode, keys: vec![key], command }),
         }
     }
 

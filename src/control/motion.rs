@@ -90,8 +90,10 @@ impl Motion {
             (KeyEventKind::Release, _) => self.held.retain(|held| held.key != physical_key(key)),
             (_, Some((command, fast))) => self.hold(Held { key: physical_key(key), command }, fast, key.kind, now),
             (_, None) if self.reports_releases => {}
+            // The terminal repeats only the newest key, so the previous one would glide on unnoticed.
             (_, None) => self.held.clear(),
         }
+        // Reported by the kitty keyboard protocol only: Shift pressed or released while a key is held.
         if let KeyCode::Modifier(ModifierKeyCode::LeftShift | ModifierKeyCode::RightShift) = key.code {
             // Of the two Shift keys, one may still be held: the modifiers of the event tell.
             self.fast = key.kind != KeyEventKind::Release || key.modifiers.contains(KeyModifiers::SHIFT);
@@ -108,6 +110,7 @@ impl Motion {
         self.held.push(key);
         self.fast = fast;
         self.until = match again {
+            // A release will come, or the loss of the focus.
             _ if self.reports_releases => Duration::MAX,
             true => now + COAST_TIME,
             false => now + GLIDE_TIME,
@@ -139,6 +142,7 @@ impl Motion {
         let seconds = self.key_speed.moving * seconds;
         let way = speed * seconds * net.way;
         let camera = turn(*camera).moved(way.x, way.y, -way.z);
+        // `libm`, so that a motion has the same bits on every machine.
         turn(camera.nearer_within(libm::expf(-NEARER_SPEED * seconds * net.nearer), speed))
     }
 

@@ -69,6 +69,7 @@ impl Pointer {
 
     /// Takes an event at a position and a time, and returns the gesture that it completes, if any.
     pub fn take(&mut self, event: &MouseEvent, at: Vec2, now: Duration) -> Option<Gesture> {
+        // The position of every event counts, so that a drag starts where the button was pressed.
         let from = self.at.replace(at).unwrap_or(at);
         match event.kind {
             MouseEventKind::Down(button) => Some(self.press(button, event.modifiers, at, now)),
@@ -89,6 +90,7 @@ impl Pointer {
         let is_same = |(then, there): (Duration, Vec2)| {
             now.saturating_sub(then) <= DOUBLE_CLICK_TIME && (at - there).abs().max_element() <= DOUBLE_CLICK_DISTANCE
         };
+        // A panning click neither completes nor starts a double click.
         let clicked = self.clicked.replace((now, at)).filter(|_| !pans);
         if clicked.is_some_and(is_same) {
             // So that a third click starts a new double click instead of completing a second one.

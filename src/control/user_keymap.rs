@@ -34,6 +34,7 @@ impl Keymap {
         scene_text::read(name, text, "file of keys is ()", |root, faults| {
             let entries = entries(root, faults);
             let mut keymap = Self::default();
+            // All entries are bound before any is checked: whether one is hidden depends on the others.
             for entry in &entries {
                 keymap.bind(entry.mode, entry.key, entry.command);
             }
@@ -111,7 +112,7 @@ impl Keymap {
     fn can_be_left(&self) -> bool {
         let leaves =
             |above, key: Key| self.command(&[above, KeyMode::Always], &key.pressed()) == Some((Command::Quit, false));
-        let rows = self.rows().iter().filter(|row| row.command == Command::Quit);
+        let rows = self.bindings().iter().filter(|row| row.command == Command::Quit);
         let keys: Vec<_> = rows.flat_map(|row| row.keys.clone()).filter(|&key| key != ALWAYS_QUITS).collect();
         [KeyMode::Fly, KeyMode::Orbit].into_iter().all(|above| keys.iter().any(|&key| leaves(above, key)))
     }
@@ -154,6 +155,7 @@ fn entries(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Entry> {
                 for (keys, command) in pairs {
                     let keys = keys_of(keys, faults);
                     let command = match command.word() {
+                        // RON's word for an absent value.
                         Some("None") => None,
                         _ => match command_of(mode, command, faults) {
                             None => continue,
@@ -194,6 +196,7 @@ fn key_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Key> {
     if key.is_none() {
         faults.add(node.span, || match closest(name, Key::names()) {
             Some(meant) => format!("there is no key {}; did you mean \"{meant}\"?", quoted(name)),
+            // Without a similar name the user may not know the forms of names, which this lists.
             None => format!(
                 "{} is not a key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, or a \
                  name such as PageUp, Space or F1",

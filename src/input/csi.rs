@@ -29,6 +29,7 @@ pub(super) enum Meaning {
 pub(super) fn meaning(params: &Params, marks: &[u8], ignored: bool, last: char, text: &[u8]) -> Meaning {
     let sequence = Sequence { params: params.iter().collect(), last, text };
     let meaning = match marks {
+        // More parameters or intermediates than `vte` keeps: the rest is unknown.
         _ if ignored => None,
         b"" => sequence.plain(),
         b"?" => sequence.private().map(Meaning::Reply),
@@ -69,6 +70,7 @@ impl Sequence<'_> {
             '~' if self.params[0] == [200] => Some(Meaning::PasteStart),
             // The end of a paste that was given up, or never begun.
             '~' if self.params[0] == [201] => Some(Meaning::Nothing),
+            // With parameters `M` is rxvt's mouse report, below.
             'M' if self.is_bare() => Some(Meaning::OldMouse),
             '[' if self.is_bare() => Some(Meaning::LinuxFunction),
             'I' if self.is_bare() => Some(Meaning::Event(Event::FocusGained)),
@@ -77,6 +79,7 @@ impl Sequence<'_> {
                 let [code, column, row] = self.exactly()?;
                 mouse::from_rxvt(code, column, row).map(Meaning::Event)
             }
+            // With parameters; bare it is F3.
             'R' if !self.is_bare() => self.cursor_position().map(Meaning::Reply),
             'n' => self.exactly().map(|[status]| Meaning::Reply(Reply::Status(status))),
             't' => Some(Meaning::Reply(self.window())),

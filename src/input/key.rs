@@ -32,6 +32,7 @@ pub(super) fn from_control(byte: u8) -> Option<KeyEvent> {
         0x08 => return Some(KeyCode::Backspace.into()),
         b'\t' => return Some(KeyCode::Tab.into()),
         b'\r' => return Some(KeyCode::Enter.into()),
+        // Ctrl with @ and with 2 send the same byte; Space is the one that people use.
         0x00 => b' ',
         0x01..=0x1a => byte - 1 + b'a',
         // Ctrl with \ ] ^ _, which crossterm reports as Ctrl with the digits that send the same bytes.
@@ -62,6 +63,7 @@ pub(super) fn from_ss3(numbers: &[u8], letter: u8) -> Option<KeyEvent> {
 /// Returns the keypad key of a letter in application keypad mode.
 fn from_keypad(letter: u8, modifiers: KeyModifiers) -> Option<KeyEvent> {
     let code = match letter {
+        // The letters stand for the ASCII characters 0x40 below them.
         b'p'..=b'y' => KeyCode::Char((letter - b'p' + b'0').into()),
         b'j'..=b'o' => KeyCode::Char((letter - b'j' + b'*').into()),
         b'X' => KeyCode::Char('='),
@@ -81,6 +83,7 @@ pub(super) fn from_letter(letter: char, modifiers: KeyModifiers) -> Option<KeyEv
         'B' => KeyCode::Down,
         'C' => KeyCode::Right,
         'D' => KeyCode::Left,
+        // The 5 of the keypad without Num Lock.
         'E' => KeyCode::KeypadBegin,
         'F' => KeyCode::End,
         'H' => KeyCode::Home,
@@ -128,6 +131,7 @@ pub(super) fn from_number(params: &[&[u16]], more: KeyModifiers) -> Option<KeyEv
         n @ 31..=34 => KeyCode::F(n - 14),
         _ => return None,
     };
+    // More parameters belong to a report of another kind, such as a window's.
     (params.len() <= 2).then(|| press.press(code, more))
 }
 
@@ -153,6 +157,7 @@ pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
         (LATIN_END.., Some(base @ 0x20..0x7f)) => (base, None),
         (code, _) => (code, alternate(1)),
     };
+    // Reserved for later versions of the protocol, which may give the others another meaning.
     if params.len() > 3 {
         return None;
     }
@@ -174,6 +179,7 @@ const LATIN_END: u16 = 0x370;
 fn key_from_code(code: u16, shifted: Option<u16>, press: Press) -> Option<KeyEvent> {
     let key = match code {
         0x08 | 0x7f => KeyCode::Backspace,
+        // As the legacy encoding has it, so that the keymap knows one Shift+Tab.
         0x09 if press.modifiers.contains(KeyModifiers::SHIFT) => KeyCode::BackTab,
         0x09 => KeyCode::Tab,
         0x0d => KeyCode::Enter,
@@ -227,6 +233,7 @@ impl Press {
         }
         let shown = shifted.unwrap_or_else(|| upper_case(c));
         let mut event = self.press(KeyCode::Char(shown), KeyModifiers::NONE);
+        // The character contains Shift already; capitals keep it, as crossterm reports them.
         if shifted.is_some() && !shown.is_uppercase() {
             event.modifiers.remove(KeyModifiers::SHIFT);
         }
@@ -236,6 +243,7 @@ impl Press {
 
 /// Returns the upper case of a letter if it is a single character, otherwise the letter itself.
 fn upper_case(c: char) -> char {
+    // German sharp s becomes two letters, which are no key.
     let mut upper = c.to_uppercase();
     match (upper.next(), upper.next()) {
         (Some(upper), None) => upper,

@@ -34,6 +34,7 @@ pub(super) fn from_bytes(code: u8, column: u8, row: u8) -> Option<Event> {
     Some(event(kind_from_code(code)?, code, column, row))
 }
 
+// Saturating, because a terminal may report 0 for a position outside the window.
 fn event(kind: MouseEventKind, code: u16, column: u16, row: u16) -> Event {
     Event::Mouse(MouseEvent {
         kind,
@@ -48,6 +49,7 @@ fn kind_from_code(code: u16) -> Option<MouseEventKind> {
     let button = (code & 0b11) | ((code & 0b1100_0000) >> 4);
     let moved = code & MOTION != 0;
     Some(match (button, moved) {
+        // Bits beyond the eighth have no meaning in any encoding.
         _ if code > 0xff => return None,
         (0, false) => MouseEventKind::Down(MouseButton::Left),
         (1, false) => MouseEventKind::Down(MouseButton::Middle),

@@ -49,6 +49,7 @@ impl Paste {
     /// Returns the paste as an event and starts a new one.
     pub(super) fn finish(&mut self) -> Event {
         let paste = std::mem::take(self);
+        // Lossy, because the limit may cut a character in two.
         Event::Paste(String::from_utf8_lossy(&paste.text).into_owned())
     }
 

@@ -100,7 +100,7 @@ impl World {
         Self { rate: 50_000.0, round_trip: ms(200), ..self }
     }
 
-    fn run(&mut self, time: Duration) {
+    fn simulate(&mut self, time: Duration) {
         let end = self.now + time;
         if self.replies == 0 && self.frames.is_empty() && self.tags {
             self.due.push((self.now + self.round_trip, Reply::Mode(200)));
@@ -206,7 +206,7 @@ fn each_fault(limit: Duration, mut worst: impl FnMut(bool, Fault, usize) -> Dura
 fn no_key_waits_longer_than_250_ms_once_a_local_terminal_has_replied() {
     each_fault(ms(250), |tags, fault, at| {
         let mut world = World::new(tags, fault, at);
-        world.run(ms(25_000));
+        world.simulate(ms(25_000));
         world.worst_key(world.first_reply.unwrap_or(ms(2_000)), ms(25_500))
     });
 }
@@ -215,7 +215,7 @@ fn no_key_waits_longer_than_250_ms_once_a_local_terminal_has_replied() {
 fn no_key_waits_longer_than_500_ms_before_a_local_terminal_has_replied() {
     each_fault(ms(500), |tags, fault, at| {
         let mut world = World::new(tags, fault, at);
-        world.run(ms(3_000));
+        world.simulate(ms(3_000));
         world.worst_key(ms(1_000), world.first_reply.unwrap_or(ms(3_000)))
     });
 }
@@ -226,7 +226,7 @@ fn no_key_waits_longer_than_500_ms_before_a_local_terminal_has_replied() {
 fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
     each_fault(ms(250), |tags, fault, at| {
         let mut world = World { wanted: 800, start: ms(3), round_trip: ms(1), ..World::new(tags, fault, at) };
-        world.run(ms(5_000));
+        world.simulate(ms(5_000));
         let limit = world.link.replies.rates.best().filter(|rate| rate.is_limit);
         assert_eq!(limit, None, "with numbers: {tags}, {fault:?} at {at}");
         world.worst_key(world.first_reply.unwrap_or(ms(2_000)), ms(5_500))
@@ -237,7 +237,7 @@ fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
 fn little_is_sent_between_the_first_picture_and_the_first_reply() {
     for tags in [true, false] {
         let mut world = World::new(tags, Fault::Stopped, 1);
-        world.run(ms(1_000));
+        world.simulate(ms(1_000));
         let sent: usize = world.frames[1..].iter().map(|frame| frame.1).sum();
         assert!(world.frames.len() > 1 && sent <= 2_000, "{sent} bytes");
     }
@@ -248,10 +248,10 @@ fn little_is_sent_between_the_first_picture_and_the_first_reply() {
 fn the_first_picture_of_a_slow_link_is_waited_for() {
     for tags in [true, false] {
         let mut world = World::new(tags, Fault::Doubled, 1_000_000).slow();
-        world.run(ms(500));
+        world.simulate(ms(500));
         let sent: usize = world.frames[1..].iter().map(|frame| frame.1).sum();
         assert!(sent <= 2_000, "{sent} bytes");
-        world.run(ms(5_000));
+        world.simulate(ms(5_000));
         assert!(world.worst_key(ms(4_000), ms(5_500)) <= ms(350));
     }
 }
@@ -267,7 +267,7 @@ fn no_key_waits_much_longer_on_a_slow_link() {
             return Duration::ZERO;
         }
         let mut world = World::new(tags, fault, at).slow();
-        world.run(ms(25_000));
+        world.simulate(ms(25_000));
         world.worst_key(ms(4_000), ms(25_000))
     });
 }
@@ -277,7 +277,7 @@ fn a_terminal_that_replies_again_gets_all_frames_again() {
     for tags in [true, false] {
         for late in [300, 5_000] {
             let mut world = World::new(tags, Fault::Held(ms(late)), 30);
-            world.run(ms(late + 3_000));
+            world.simulate(ms(late + 3_000));
             let since = world.now.saturating_sub(ms(1_000));
             let frames = world.frames.iter().filter(|frame| frame.0 >= since).count();
             assert!(frames >= 55, "tags {tags}, held {late} ms: {frames} frames a second");
@@ -322,9 +322,9 @@ fn a_lost_query_without_a_frame_is_sent_again() {
 #[test]
 fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
     let mut world = World::new(true, Fault::Held(ms(3_000)), 30);
-    world.run(ms(2_000));
+    world.simulate(ms(2_000));
     world.tags = false;
-    world.run(ms(8_000));
+    world.simulate(ms(8_000));
     assert_eq!(world.link.replies.tag_support, TagSupport::Possible);
     let since = world.now.saturating_sub(ms(1_000));
     assert!(world.frames.iter().filter(|frame| frame.0 >= since).count() >= 55);
@@ -334,9 +334,9 @@ fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
 #[test]
 fn after_a_loss_one_query_is_in_flight_on_a_slow_link() {
     let mut world = World::new(false, Fault::EachThird, 5).slow();
-    world.run(ms(4_000));
+    world.simulate(ms(4_000));
     for _ in 0..6_000 {
-        world.run(ms(1));
+        world.simulate(ms(1));
         let replies = &world.link.replies;
         assert!(replies.state != State::Steady || replies.ledger.in_flight().count() <= 1, "at {:?}", world.now);
     }

@@ -62,7 +62,7 @@ impl World {
         }
     }
 
-    pub(super) fn run(&mut self, time: Duration) {
+    pub(super) fn simulate(&mut self, time: Duration) {
         let end = self.now + time;
         while self.now < end {
             self.now += ms(1);
@@ -167,10 +167,10 @@ impl World {
 fn keys_are_visible_soon_at_full_throughput() {
     for (frame, fits, p50, p99) in [(SCREEN, true, 310, 400), (4_000, false, 420, 480)] {
         let mut world = World { frame, fits, ..World::new(50_000.0, ms(200)) };
-        world.run(ms(3_000));
+        world.simulate(ms(3_000));
         world.excess = f64::MIN;
         let from = world.now;
-        world.run(ms(40_000));
+        world.simulate(ms(40_000));
         let to = world.ago(2_000);
         let [median, worst] = world.keys(from, to);
         let [fps, share] = world.throughput(from, to);
@@ -185,10 +185,10 @@ fn keys_are_visible_soon_at_full_throughput() {
 fn frames_below_their_share_fill_the_link_too() {
     for utilisation in [0.75, 0.8, 0.83, 0.9] {
         let mut world = World { utilisation, ..World::new(50_000.0, ms(200)) };
-        world.run(ms(3_000));
+        world.simulate(ms(3_000));
         world.excess = f64::MIN;
         let from = world.now;
-        world.run(ms(20_000));
+        world.simulate(ms(20_000));
         let [_, share] = world.throughput(from, world.now);
         assert!(share >= 0.86, "{share} of the link with {utilisation} of each frame");
         assert!(world.excess <= 0.0, "{} bytes too many in flight", world.excess);
@@ -200,10 +200,10 @@ fn any_link_is_used_and_never_overfilled() {
     for rate in [3_000.0, 20_000.0, 80_000.0, 200_000.0] {
         for round_trip in [5, 40, 90, 130, 350] {
             let mut world = World::new(rate, ms(round_trip));
-            world.run(ms(12_000));
+            world.simulate(ms(12_000));
             world.excess = f64::MIN;
             let from = world.now;
-            world.run(ms(20_000));
+            world.simulate(ms(20_000));
             let to = world.ago(3_000);
             let [_, worst] = world.keys(from, to);
             let [fps, share] = world.throughput(from, to);
@@ -221,10 +221,10 @@ fn any_link_is_used_and_never_overfilled() {
 fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
     let late = |phase: u64| {
         let mut world = World { utilisation: 0.93, ..World::new(50_000.0, ms(200)) };
-        world.run(ms(10_000 + phase));
+        world.simulate(ms(10_000 + phase));
         world.rate /= 10.0;
         let dropped = world.now;
-        world.run(ms(20_000));
+        world.simulate(ms(20_000));
         (0..15_000).rev().find(|&at| world.key(dropped + ms(at)) > ms(400)).unwrap_or(0)
     };
     let mut late: Vec<_> = (0..70).step_by(5).map(late).collect();
@@ -237,10 +237,10 @@ fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
 #[test]
 fn a_link_that_becomes_fast_is_fast_soon() {
     let mut world = World::new(20_000.0, ms(100));
-    world.run(ms(5_000));
+    world.simulate(ms(5_000));
     assert!(world.link.slow_limit(SCREEN).is_some());
     world.rate = 1e8;
-    world.run(ms(3_000));
+    world.simulate(ms(3_000));
     assert_eq!(world.link.slow_limit(SCREEN), None);
     let [fps, _] = world.throughput(world.ago(1_000), world.now);
     assert!(fps > 55.0, "{fps} fps");
@@ -252,7 +252,7 @@ fn a_fast_link_is_never_slow() {
     for frame in [40, 700, SCREEN] {
         for round_trip in [0, 16, 30, 120] {
             let mut world = World { frame, ..World::new(1e7, ms(round_trip)) };
-            world.run(ms(2_000));
+            world.simulate(ms(2_000));
             assert_eq!(world.link.slow_limit(SCREEN), None, "{frame} bytes, {round_trip} ms");
             let [fps, _] = world.throughput(world.ago(1_000), world.now);
             assert!(fps > if round_trip < 17 { 55.0 } else { 7.0 }, "{frame} bytes, {round_trip} ms: {fps} fps");
@@ -263,11 +263,11 @@ fn a_fast_link_is_never_slow() {
 #[test]
 fn a_pause_does_not_make_a_link_slow_for_long() {
     let mut world = World { frame: 2_000, ..World::new(1e7, ms(2)) };
-    world.run(ms(1_000));
+    world.simulate(ms(1_000));
     world.rate = 1.0;
-    world.run(ms(400));
+    world.simulate(ms(400));
     world.rate = 1e7;
-    world.run(ms(100));
+    world.simulate(ms(100));
     assert_eq!(world.link.slow_limit(SCREEN), None);
 }
 
@@ -275,16 +275,16 @@ fn a_pause_does_not_make_a_link_slow_for_long() {
 #[test]
 fn a_terminal_that_never_replies_gets_thirty_frames_a_second() {
     let mut world = World { replies: false, ..World::new(1e7, ms(2)) };
-    world.run(ms(400));
+    world.simulate(ms(400));
     assert_eq!(world.sent.iter().filter(|sent| sent.is_frame).count(), 1);
-    world.run(ms(2_600));
+    world.simulate(ms(2_600));
     let [fps, _] = world.throughput(world.ago(2_000), world.now);
     assert!((28.0..=30.1).contains(&fps), "{fps} fps");
     assert_eq!(world.link.slow_limit(SCREEN), None);
     assert!(world.link.replies.ledger.in_flight().count() <= 8, "few outstanding queries");
     // The terminal replies after all, having been slow to start.
     world.replies = true;
-    world.run(ms(2_000));
+    world.simulate(ms(2_000));
     let [fps, _] = world.throughput(world.ago(1_000), world.now);
     assert!(fps > 55.0, "{fps} fps");
 }
@@ -292,9 +292,9 @@ fn a_terminal_that_never_replies_gets_thirty_frames_a_second() {
 #[test]
 fn a_terminal_that_falls_silent_is_waited_for_a_while() {
     let mut world = World::new(1e7, ms(20));
-    world.run(ms(1_000));
+    world.simulate(ms(1_000));
     world.replies = false;
-    world.run(ms(4_000));
+    world.simulate(ms(4_000));
     let [fps, _] = world.throughput(world.ago(2_000), world.now);
     assert!((28.0..=30.1).contains(&fps), "{fps} fps");
 }
@@ -302,10 +302,10 @@ fn a_terminal_that_falls_silent_is_waited_for_a_while() {
 #[test]
 fn a_lost_reply_is_forgotten() {
     let mut world = World { frame: 2_000, ..World::new(1e7, ms(20)) };
-    world.run(ms(1_000));
+    world.simulate(ms(1_000));
     let lost = world.replies_due.pop_front();
     assert!(lost.is_some());
-    world.run(ms(3_000));
+    world.simulate(ms(3_000));
     let [fps, _] = world.throughput(world.ago(1_000), world.now);
     assert!(fps > 25.0, "{fps} fps");
 }
@@ -314,12 +314,12 @@ fn a_lost_reply_is_forgotten() {
 #[test]
 fn a_very_long_round_trip_is_taken_for_silence_only_at_first() {
     let mut world = World::new(200_000.0, ms(900));
-    world.run(ms(5_000));
+    world.simulate(ms(5_000));
     world.rest(ms(5_000));
-    world.run(ms(5_000));
+    world.simulate(ms(5_000));
     world.excess = f64::MIN;
     let from = world.now;
-    world.run(ms(10_000));
+    world.simulate(ms(10_000));
     let to = world.ago(3_000);
     let [_, worst] = world.keys(from, to);
     let [fps, share] = world.throughput(from, to);
@@ -331,16 +331,16 @@ fn a_very_long_round_trip_is_taken_for_silence_only_at_first() {
 #[test]
 fn unsolicited_replies_do_no_lasting_harm() {
     let mut world = World::new(50_000.0, ms(200));
-    world.run(ms(5_000));
+    world.simulate(ms(5_000));
     for _ in 0..40 {
         world.link.receive_attributes(world.now);
-        world.run(ms(37));
+        world.simulate(ms(37));
     }
     // Each reply is matched to another frame until there is a pause.
     world.rest(ms(5_000));
-    world.run(ms(7_000));
+    world.simulate(ms(7_000));
     let from = world.now;
-    world.run(ms(10_000));
+    world.simulate(ms(10_000));
     let to = world.ago(2_000);
     let [_, worst] = world.keys(from, to);
     let [fps, share] = world.throughput(from, to);
@@ -351,11 +351,11 @@ fn unsolicited_replies_do_no_lasting_harm() {
 #[test]
 fn a_longer_round_trip_is_noticed() {
     let mut world = World::new(50_000.0, ms(100));
-    world.run(ms(5_000));
+    world.simulate(ms(5_000));
     world.round_trip = ms(300);
-    world.run(ms(15_000));
+    world.simulate(ms(15_000));
     let from = world.now;
-    world.run(ms(10_000));
+    world.simulate(ms(10_000));
     let to = world.ago(2_000);
     let [fps, share] = world.throughput(from, to);
     assert!(fps >= 10.0 && share >= 0.8, "{fps} fps, {share} of the link");
@@ -365,11 +365,11 @@ fn a_longer_round_trip_is_noticed() {
 fn a_shorter_round_trip_is_noticed() {
     for (rate, round_trip) in [(50_000.0, 20), (50_000.0, 1), (200_000.0, 5), (1e8, 20), (1e8, 1)] {
         let mut world = World::new(50_000.0, ms(200));
-        world.run(ms(5_000));
+        world.simulate(ms(5_000));
         (world.rate, world.round_trip) = (rate, ms(round_trip));
         // In pieces, as keys arrive.
         for _ in 0..12 {
-            world.run(ms(190));
+            world.simulate(ms(190));
             world.rest(ms(30));
         }
         let shortest = world.link.replies.round_trip.shortest();
@@ -384,11 +384,11 @@ fn a_slightly_shorter_round_trip_is_used_fully() {
     for round_trip in [150, 100, 50] {
         let [[now, now_share], [always, share]] = [200, round_trip].map(|before| {
             let mut world = World::new(50_000.0, ms(before));
-            world.run(ms(5_000));
+            world.simulate(ms(5_000));
             world.round_trip = ms(round_trip);
-            world.run(ms(5_000));
+            world.simulate(ms(5_000));
             let from = world.now;
-            world.run(ms(20_000));
+            world.simulate(ms(20_000));
             let to = world.ago(2_000);
             let [_, worst] = world.keys(from, to);
             let [_, share] = world.throughput(from, to);
@@ -402,12 +402,12 @@ fn a_slightly_shorter_round_trip_is_used_fully() {
 #[test]
 fn an_old_limit_does_not_last() {
     let mut world = World::new(100_000.0, ms(20));
-    world.run(ms(3_000));
+    world.simulate(ms(3_000));
     world.rate = 1e8;
     (world.frame, world.fits) = (700, false);
-    world.run(ms(5_000));
+    world.simulate(ms(5_000));
     (world.frame, world.fits) = (SCREEN, true);
-    world.run(ms(1_000));
+    world.simulate(ms(1_000));
     assert_eq!(world.link.slow_limit(SCREEN), None);
 }
 
@@ -415,7 +415,7 @@ fn an_old_limit_does_not_last() {
 fn caps_are_kept() {
     for rate in [5_000, 50_000, 200_000, 1_000_000] {
         let mut world = World { link: Link::new(Some(rate), None, true), ..World::new(1e8, ms(10)) };
-        world.run(ms(3_000));
+        world.simulate(ms(3_000));
         let [_, share] = world.throughput(world.ago(2_000), world.now);
         let share = share * 1e8 / f64::from(rate);
         let most = SCREEN as f64 * 60.0 / f64::from(rate);
@@ -423,7 +423,7 @@ fn caps_are_kept() {
     }
     for cap in [5.0, 24.0, 60.0] {
         let mut world = World { link: Link::new(None, Some(cap), true), ..World::new(1e8, ms(1)) };
-        world.run(ms(3_000));
+        world.simulate(ms(3_000));
         let [fps, _] = world.throughput(world.ago(2_000), world.now);
         assert!((0.9 * f64::from(cap)..=1.05 * f64::from(cap)).contains(&fps), "{fps} fps of {cap}");
     }

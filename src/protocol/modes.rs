@@ -91,14 +91,14 @@ impl TerminalModes {
     ///
     /// Call this before sending the bytes, so that a mode whose bytes were sent in part is switched off too.
     pub fn switch_on(&mut self, mode: TerminalMode, bytes: &mut Vec<u8>) {
-        if !self.are_on(mode) {
+        if !self.is_on(mode) {
             self.on.push(mode);
             bytes.extend_from_slice(mode.on().as_bytes());
         }
     }
 
     /// Returns whether a mode is on.
-    pub fn are_on(&self, mode: TerminalMode) -> bool {
+    pub fn is_on(&self, mode: TerminalMode) -> bool {
         self.on.contains(&mode)
     }
 
@@ -141,7 +141,7 @@ mod tests {
         let (mut modes, mut bytes) = (TerminalModes::default(), Vec::new());
         modes.switch_on(TerminalMode::MousePixels, &mut bytes);
         modes.switch_on(TerminalMode::MousePixels, &mut bytes);
-        assert!(modes.are_on(TerminalMode::MousePixels) && !modes.are_on(TerminalMode::Keyboard));
+        assert!(modes.is_on(TerminalMode::MousePixels) && !modes.is_on(TerminalMode::Keyboard));
         modes.switch_all_off(&mut bytes);
         modes.switch_all_off(&mut bytes);
         assert_eq!(bytes, b"\x1b[?1016h\x1b[?1016l");

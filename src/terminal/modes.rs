@@ -71,7 +71,7 @@ impl Modes {
         output.drop_frame();
         // With the kitty keyboard protocol the terminal reports key releases until it has processed the sequence that
         // switches them off, and the release of `q` comes about then. The reply to a fence follows the last report.
-        let needs_fence = self.on.are_on(TerminalMode::Keyboard) && !is_in_background(keys);
+        let needs_fence = self.on.is_on(TerminalMode::Keyboard) && !is_in_background(keys);
         let mut off = Vec::new();
         self.on.switch_all_off(&mut off);
         output.put(&off);

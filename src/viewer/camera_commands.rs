@@ -17,7 +17,7 @@ impl Viewer {
         let in_the_middle = self.in_the_middle();
         self.eye.change_mode(in_the_middle);
         self.screen.set_moving(self.eye.mode());
-        self.say(format!("{}{}", self.eye.mode().name(), self.hint(Command::Help, "shows its keys")));
+        self.show_note(format!("{}{}", self.eye.mode().name(), self.hint(Command::Help, "shows its keys")));
     }
 
     /// Returns the end of a note: a key for `command` and what it does; empty if no key is bound to it.
@@ -36,7 +36,7 @@ impl Viewer {
     /// Moves the eye along the view direction until everything finite fills the picture. (Planes are infinite.)
     pub(super) fn frame_everything(&mut self) {
         let Some(bounds) = self.screen.frame().and_then(|frame| frame.scene.bounds()) else {
-            self.say("nothing finite to fit in view");
+            self.show_note("nothing finite to fit in view");
             return;
         };
         let aspect_ratio = self.part().aspect_ratio();
@@ -54,14 +54,14 @@ impl Viewer {
         self.eye.change(self.now, |camera, _| camera.zoomed(factor));
         if let Some(camera) = self.eye.camera() {
             let degrees = camera.rectangle().vertical_fov().to_degrees();
-            self.say(format!("field of view: {degrees:.1} degrees"));
+            self.show_note(format!("field of view: {degrees:.1} degrees"));
         }
     }
 
     /// Starts or stops the turntable, unless the user has asked for reduced motion.
     pub(super) fn toggle_turntable(&mut self) {
         if self.options.reduced_motion {
-            self.say("the turntable is off: --reduced-motion");
+            self.show_note("the turntable is off: --reduced-motion");
             return;
         }
         self.eye.toggle_turntable(self.now);
@@ -71,7 +71,7 @@ impl Viewer {
     pub(super) fn go_to_view(&mut self, number: u8) {
         if self.eye.go_to(number, self.now).is_none() {
             let hint = self.hint(Command::SaveView, "saves this one");
-            self.say(format!("there is no view {number}{hint}"));
+            self.show_note(format!("there is no view {number}{hint}"));
         }
     }
 
@@ -79,6 +79,6 @@ impl Viewer {
     pub(super) fn save_view(&mut self, number: u8) {
         self.eye.save(number);
         let hint = self.hint(Command::KeepView, "saves it to the scene file");
-        self.say(format!("saved as view {number} until you quit{hint}"));
+        self.show_note(format!("saved as view {number} until you quit{hint}"));
     }
 }

@@ -19,7 +19,7 @@ pub(super) enum Dialog {
     /// The format of an export.
     Export,
     /// Whether to write a view into the scene file of this name.
-    Keep(String),
+    SaveToFile(String),
     /// The number under which to save the view.
     Save,
 }
@@ -28,7 +28,7 @@ pub(super) enum Dialog {
 pub(super) enum Answer {
     Save(u8),
     Export(Format),
-    Keep,
+    SaveToFile,
     /// The question is dismissed.
     Nothing,
 }
@@ -39,7 +39,7 @@ impl Layer for Dialog {
     }
 
     fn mode(&self, _screen: Rect) -> Option<KeyMode> {
-        Some(self.keys_are_for())
+        Some(self.key_mode())
     }
 
     fn takes_all_keys(&self) -> bool {
@@ -59,10 +59,10 @@ impl Layer for Dialog {
 
 impl Dialog {
     /// Returns the mode that keys have while the question is open.
-    fn keys_are_for(&self) -> KeyMode {
+    fn key_mode(&self) -> KeyMode {
         match self {
             Self::Export => KeyMode::Export,
-            Self::Keep(_) => KeyMode::Keep,
+            Self::SaveToFile(_) => KeyMode::Keep,
             // The mode with the digits, so that the key that saves a view is the one that returns to it.
             Self::Save => KeyMode::Always,
         }
@@ -72,8 +72,9 @@ impl Dialog {
     pub(super) fn answer(self, meant: Option<Command>) -> Answer {
         match (self, meant) {
             (Self::Export, Some(Command::Write(format))) => Answer::Export(format),
-            (Self::Keep(_), Some(Command::Yes)) => Answer::Keep,
+            (Self::SaveToFile(_), Some(Command::Yes)) => Answer::SaveToFile,
             (Self::Save, Some(Command::View(number))) => Answer::Save(number),
+            // Any other key dismisses the question: users who opened it by mistake need not know a key for that.
             _ => Answer::Nothing,
         }
     }
@@ -81,7 +82,7 @@ impl Dialog {
     fn title(&self) -> &'static str {
         match self {
             Self::Export => " save picture as ",
-            Self::Keep(_) => " save this view to the scene file? ",
+            Self::SaveToFile(_) => " save this view to the scene file? ",
             Self::Save => " save this view as ",
         }
     }
@@ -89,13 +90,14 @@ impl Dialog {
     /// Returns the keys that answer the question, with their meanings.
     fn answers<'b>(&self, keymap: &'b Keymap) -> impl Iterator<Item = &'b Binding> {
         let saves = matches!(self, Self::Save);
-        keymap.of(self.keys_are_for()).filter(move |row| !saves || matches!(row.command, Command::View(_)))
+        keymap.of(self.key_mode()).filter(move |row| !saves || matches!(row.command, Command::View(_)))
     }
 
     fn lines(&self, keymap: &Keymap) -> Vec<String> {
         let name = match self {
             Self::Export => None,
-            Self::Keep(name) => Some(visible(name)),
+            // A file name may contain escape sequences.
+            Self::SaveToFile(name) => Some(visible(name)),
             Self::Save => return vec![self.keys(keymap)],
         };
         let answers: Vec<_> = self.answers(keymap).map(|row| (row.label(), row.command.description())).collect();
@@ -111,7 +113,7 @@ impl Dialog {
     fn line(&self, keymap: &Keymap) -> String {
         let word = match self {
             Self::Export => "save as",
-            Self::Keep(_) => "save?",
+            Self::SaveToFile(_) => "save?",
             Self::Save => "view",
         };
         format!("{word} {}", self.keys(keymap))

@@ -39,7 +39,7 @@ impl ErrorPanel {
         let mut lines = wrapped(&self.0.message, width);
         if let Some(excerpt) = &self.0.excerpt {
             let [_, caret] = excerpt;
-            // Scrolled so far that the caret is visible.
+            // Scrolled so far that the caret is visible: the line may be long, and its start says nothing of the error.
             let cut = caret.width().saturating_sub(width).min(caret.find('^').unwrap_or(0));
             lines.extend(excerpt.iter().map(|line| part(line, cut, width)));
         }
@@ -72,6 +72,7 @@ fn inner(width: u16) -> usize {
 /// Wraps the text at `columns`, between words where possible.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
+    // Also after slashes, because paths are the longest words of messages.
     for word in text.split_inclusive([' ', '/']) {
         let mut word = word.to_owned();
         if lines.last().is_some_and(|line| !line.is_empty() && line.width() + word.trim_end().width() > width) {

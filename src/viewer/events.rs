@@ -131,14 +131,15 @@ impl Viewer {
             Command::Suspend => self.requests.push_back(Request::Suspend),
             Command::ChangeMode => self.change_mode(),
             Command::FrameAll => self.frame_everything(),
+            // Not continuous as motion is: a field of view is set once and then left alone.
             Command::Narrower => self.zoom(1.0 / ZOOM_FACTOR),
             Command::Wider => self.zoom(ZOOM_FACTOR),
             Command::Turntable => self.toggle_turntable(),
             Command::View(number) => self.go_to_view(number),
             Command::SaveView => self.screen.open(Dialog::Save),
             Command::Reset => self.eye.reset(self.now),
-            Command::NextScene => self.requests.push_back(Request::GoOn(1)),
-            Command::LastScene => self.requests.push_back(Request::GoOn(-1)),
+            Command::NextScene => self.requests.push_back(Request::SwitchScene(1)),
+            Command::LastScene => self.requests.push_back(Request::SwitchScene(-1)),
             Command::CopyCamera => self.copy_camera(),
             Command::Export => self.ask_export(),
             Command::KeepView => self.requests.extend(self.eye.camera().map(Request::ProposeView)),
@@ -179,6 +180,7 @@ impl Viewer {
 
     /// Closes the help; without it, releases a light; without one, closes the explanation.
     fn close_topmost(&mut self) {
+        // In the order of the layers: the help lies over everything.
         if self.screen.close::<HelpPanel>().is_none() && !self.leave_light() {
             self.screen.close::<ExplainPanel>();
         }

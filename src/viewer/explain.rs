@@ -144,9 +144,11 @@ impl ExplainPanel {
         let lines = self.lines(mode);
         let inside = area.inner(Margin::new(2, 1));
         let [text, inset] = placement::split(inside, lines.len() as u16);
+        // Clamped here and not on the key, because the number of lines depends on the pixel and the panel's height.
         self.scrolled = self.scrolled.min(lines.len().saturating_sub(text.height.into()));
         let last = lines.len().min(self.scrolled + usize::from(text.height));
         Clear.render(area, buffer);
+        // The keys stand in the lower border, because a line of their own would take one from the text.
         let mut block = Block::bordered().border_set(theme.border()).style(theme.style()).title(" explain ");
         if usize::from(text.height) < lines.len() {
             let first = self.scrolled + 1;

@@ -22,7 +22,7 @@ pub(super) struct Eye {
     /// The time up to which the motion has been carried out; `None` at rest.
     moved_until: Option<Duration>,
     /// Whether motion is reduced: each press is one step at once, and nothing moves by itself.
-    steps: bool,
+    reduced_motion: bool,
 }
 
 /// The state of looking at a scene.
@@ -66,8 +66,8 @@ const REDUCED_MOTION_STEP: Duration = Duration::from_millis(200);
 impl Eye {
     /// Returns an eye without a scene. With `reduced_motion` each press is one step at once and nothing glides, for
     /// people prone to motion sickness.
-    pub(super) fn new(key_speed: KeySpeed, steps: bool) -> Self {
-        Self { motion: Motion::with_speed(key_speed), steps, ..Self::default() }
+    pub(super) fn new(key_speed: KeySpeed, reduced_motion: bool) -> Self {
+        Self { motion: Motion::with_speed(key_speed), reduced_motion, ..Self::default() }
     }
 
     /// Looks at another scene. Returns the view of the previous one.
@@ -176,7 +176,7 @@ impl Eye {
 
     /// Carries out the motion so far, then passes the key to it.
     pub(super) fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
-        if self.steps {
+        if self.reduced_motion {
             self.take_step(key, meant);
             return;
         }

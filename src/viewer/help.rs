@@ -121,6 +121,7 @@ fn no_room() -> String {
 /// Returns the keys in force and their meaning. A key that a higher mode binds is left out below. Of several keys for
 /// one command, such as digits, the first and the last are listed.
 fn rows(keymap: &Keymap, modes: &[KeyMode]) -> Vec<KeyRow> {
+    // Modes are topmost first, so that the first binding of a key is the one in force.
     let mut taken = HashSet::new();
     let mut rows = Vec::new();
     for row in modes.iter().flat_map(|&mode| keymap.of(mode)) {
@@ -175,6 +176,7 @@ pub(super) fn status_line(keymap: &Keymap, modes: &[KeyMode], room: usize) -> St
     for (commands, description) in always.into_iter().chain(status_line_keys(mode).iter().copied()) {
         if let Some(keys) = keys(keymap, modes, commands) {
             let item = format!("   {keys} {description}");
+            // An item that does not fit is left out, and a shorter one after it may still fit.
             if line.width() + item.width() < room {
                 line += &item;
             }
@@ -247,6 +249,7 @@ pub(super) fn keys(keymap: &Keymap, modes: &[KeyMode], commands: &[Command]) -> 
     let arrows = [KeyCode::Left, KeyCode::Right, KeyCode::Up, KeyCode::Down].map(Key::named);
     let names: Vec<_> = keys.iter().map(Key::to_string).collect();
     let is_short = names.iter().all(|name| name.width() == 1);
+    // "arrows" is shorter than four names, and says as much.
     Some(if keys == arrows { "arrows".to_owned() } else { names.join(if is_short { "" } else { " " }) })
 }
 

@@ -26,14 +26,14 @@ impl Viewer {
             Some((light, lights.all().len(), lights.held()))
         });
         let Some((light, count, at)) = taken else {
-            self.say("this scene has no movable light");
+            self.show_note("this scene has no movable light");
             return;
         };
         let is_seen = |camera: Camera| at.is_some_and(|at| camera.project(at, 1.0).is_some());
         let behind = if camera.is_some_and(is_seen) { "" } else { ", behind the eye" };
         self.mark_light();
         let hint = self.hint(Command::Help, "shows its keys");
-        self.say(format!("light {} of {count}{behind}: drag it{hint}", light + 1));
+        self.show_note(format!("light {} of {count}{behind}: drag it{hint}", light + 1));
     }
 
     /// Opens the marker of the held light, or closes it if none is held.

@@ -38,6 +38,7 @@ fn marker_area(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
     Some(area(screen, place.x * columns, place.y * f32::from(screen.height)))
 }
 
+// ASCII, so that every terminal can show it.
 const MARKER: &str = "(*)";
 const MARKER_WIDTH: u16 = MARKER.len() as u16;
 

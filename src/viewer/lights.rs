@@ -42,6 +42,7 @@ impl Lights {
         let lights = self.all();
         let after =
             |held: usize| (held + 1..lights.len()).chain(0..=held).find(|&next| lights[next].position().is_some());
+        // In the order of the file, so that repeating the key visits every light.
         self.held = self.held.and_then(after).or_else(|| first(lights));
         self.held
     }

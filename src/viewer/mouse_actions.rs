@@ -43,6 +43,7 @@ impl Viewer {
             Gesture::DoubleClick if self.pointer.drag_target() == DragTarget::View => {
                 self.execute(Command::FrameAll, false)
             }
+            // A second click on a thing is a click on it, not a command for the view.
             Gesture::DoubleClick => self.drag(at, at, Grip::Turn),
             Gesture::Wheel { at, notches } => self.wheel(at, notches),
         }
@@ -53,6 +54,7 @@ impl Viewer {
         let (width, height) = self.display.mouse_pixels().unwrap_or((1, 1));
         let size = self.size();
         let screen = Vec2::new(f32::from(width) * f32::from(size.columns), f32::from(height) * f32::from(size.rows));
+        // The middle of the cell or pixel, as no position within it is known.
         let at = Vec2::new(f32::from(event.column), f32::from(event.row)) + 0.5;
         (at / screen).clamp(Vec2::ZERO, Vec2::ONE)
     }

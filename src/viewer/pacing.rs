@@ -61,10 +61,10 @@ impl Pacing {
     }
 
     /// Records a finished frame.
-    pub(super) fn took(&mut self, frame: &Frame) {
+    pub(super) fn record_frame(&mut self, frame: &Frame) {
         // A refinement continues from the samples that are there; its time says little about a new picture.
         if !frame.refines {
-            self.quality.took(frame.sampling, frame.trace, self.link.frame_time());
+            self.quality.record_time(frame.sampling, frame.trace, self.link.frame_time());
         }
     }
 

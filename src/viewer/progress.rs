@@ -56,6 +56,7 @@ fn what_is_done(work: &Work, theme: Theme, width: usize) -> String {
     };
     let room = width.saturating_sub(verb.len() + 1);
     let name = Path::new(name).file_name().map_or_else(|| name.into(), |name| name.to_string_lossy());
+    // A terminal without block characters may lack all others beyond ASCII.
     let is_shown = |c: char| c.is_ascii() || !theme.bar()[0].is_ascii();
     let mut name: String = visible(&name).chars().map(|c| if is_shown(c) { c } else { '?' }).collect();
     while name.width() > room {
@@ -70,6 +71,7 @@ fn bar(progress: &Progress, theme: Theme, width: usize) -> String {
         return String::new();
     }
     let share = (progress.done as f64 / progress.total as f64).min(1.0);
+    // Rounded down: 100 % must mean that nothing is left.
     let per_cent = format!(" {:3.0} %", (100.0 * share).floor());
     let room = width.saturating_sub(per_cent.len());
     let filled = (share * room as f64) as usize;

@@ -90,7 +90,7 @@ impl QualityControl {
     }
 
     /// Records the time that a picture of a new view took, as a share of a frame's time.
-    pub(super) fn took(&mut self, sampling: Sampling, time: Duration, frame: Duration) {
+    pub(super) fn record_time(&mut self, sampling: Sampling, time: Duration, frame: Duration) {
         let Some(level) = LEVELS.iter().position(|&level| level == sampling).filter(|&level| level <= MAX_MOTION_LEVEL)
         else {
             return;

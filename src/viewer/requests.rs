@@ -10,7 +10,7 @@ impl Viewer {
     pub(super) fn copy_camera(&mut self) {
         if let Some(camera) = self.eye.camera() {
             self.requests.push_back(Request::Copy(format!("{},", camera.to_ron())));
-            self.say("camera copied, if the terminal allows it; it is also printed on exit");
+            self.show_note("camera copied, if the terminal allows it; it is also printed on exit");
         }
     }
 
@@ -22,8 +22,8 @@ impl Viewer {
     }
 
     /// Asks whether to write the proposed camera into the scene file of this name.
-    pub(crate) fn ask_keep(&mut self, file: String) {
-        self.screen.open(Dialog::Keep(file));
+    pub(crate) fn ask_to_save_view(&mut self, file: String) {
+        self.screen.open(Dialog::SaveToFile(file));
     }
 
     /// Treats `command` as the answer to an open question. Returns whether there was one.
@@ -31,7 +31,7 @@ impl Viewer {
         let Some(dialog) = self.screen.close::<Dialog>() else { return false };
         match dialog.answer(meant) {
             Answer::Export(format) => self.requests.push_back(Request::Export(format)),
-            Answer::Keep => self.requests.push_back(Request::KeepView),
+            Answer::SaveToFile => self.requests.push_back(Request::SaveView),
             Answer::Save(number) => self.save_view(number),
             Answer::Nothing => {}
         }

@@ -127,8 +127,8 @@ impl Driver {
                     excerpt: Some(["  1 | (", "    | ^"].map(str::to_owned)),
                     has_more: true,
                 }),
-                1 => self.viewer.ask_keep("x.ron".to_owned()),
-                _ => self.viewer.say("a note"),
+                1 => self.viewer.ask_to_save_view("x.ron".to_owned()),
+                _ => self.viewer.show_note("a note"),
             },
         }
     }

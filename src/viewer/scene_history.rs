@@ -34,6 +34,7 @@ impl SceneHistory {
         // A reload with the same camera keeps the user's view: only something else in the file was edited. If the
         // camera was edited, the user wants to see the new one.
         let view = (before != Some((of, home))).then(|| {
+            // Only if the file's camera is still the same: an edited camera is meant to be seen.
             let left = self.left.remove(&of).filter(|left| left.home() == home);
             left.unwrap_or_else(|| ViewState::of(&scene, orbits))
         });

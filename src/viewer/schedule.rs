@@ -137,6 +137,7 @@ impl Facts {
         let DriverState { sending, tracing } = self.busy;
         let moves = self.picture == Picture::Stale || self.moved_until.is_some();
         let can_refine = self.picture == Picture::Refinable;
+        // A new view in progress ends by itself and wakes the driver; nothing needs a timer until then.
         let lacks_frame = moves && tracing != Some(Tracing::NewView) || tracing.is_none() && can_refine;
         [lacks_frame.then_some(frame_at), draw_at].into_iter().flatten().filter(|_| !sending).min()
     }

@@ -141,7 +141,7 @@ impl Screen {
     }
 
     /// Closes the layer of a type when the picture is to show something else.
-    pub(super) fn close_later<L: Layer>(&mut self) {
+    pub(super) fn close_quietly<L: Layer>(&mut self) {
         self.content.quietly().layers.close::<L>();
     }
 
@@ -242,6 +242,7 @@ impl Screen {
     /// background for panels.
     fn can_show(&self, size: Size) -> bool {
         let Some(frame) = self.frame() else { return self.awaits_scene() };
+        // After a resize the old frame would be cut off or leave a part of the window empty.
         let wanted = cell::resolution(self.painter.mode(), size, 1.0);
         wanted.is_ok_and(|wanted| (frame.picture.width, frame.picture.height) == (wanted.width(), wanted.height()))
     }
@@ -292,7 +293,7 @@ impl Screen {
     }
 
     /// Records the time for making and encoding the cells.
-    pub(super) fn took(&mut self, encode: Duration) {
+    pub(super) fn record_encode_time(&mut self, encode: Duration) {
         self.encode = encode;
     }
 }
@@ -319,6 +320,7 @@ impl FrameRate {
     fn count(&mut self, moving: Option<Duration>) {
         let between = self.last.zip(moving).map(|(last, now)| now.saturating_sub(last));
         self.last = moving;
+        // An interval of 0 would be infinitely many frames a second.
         self.frames_per_second =
             between.filter(|&between| between < MAX_MOTION_GAP && between > Duration::ZERO).map(|between| {
                 let now = 1.0 / between.as_secs_f32();

@@ -24,6 +24,7 @@ impl Theme {
     pub(super) fn of(cell_mode: CellMode) -> Self {
         let style = match cell_mode.colors {
             Colors::Truecolor => Style::new().fg(Color::Rgb(0xe6, 0xe6, 0xe6)).bg(Color::Rgb(0x18, 0x1c, 0x24)),
+            // Greys of the fixed part of the palette: the user may have changed the first 16 colours.
             Colors::Indexed256 => Style::new().fg(Color::Indexed(254)).bg(Color::Indexed(234)),
             Colors::Indexed16(_) => Style::new().fg(Color::White).bg(Color::Black),
             Colors::None => Style::new(),
@@ -31,6 +32,7 @@ impl Theme {
         let (border, bar) =
             if cell_mode.glyphs.has_blocks() { (border::ROUNDED, ['█', '░']) } else { (ASCII_BORDER, ['#', '.']) };
         let mark = match cell_mode.colors {
+            // Bold is no colour, and `NO_COLOR` allows it.
             Colors::None => style.add_modifier(Modifier::BOLD),
             _ => style.fg(Color::LightYellow),
         };

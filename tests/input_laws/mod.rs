@@ -114,7 +114,7 @@ fn no_key_is_stuck(keys_are_sequences: bool, pieces: &[&[u8]]) {
         now += Duration::from_millis(30);
     }
     let mut let_go = motion.clone();
-    for key in Keymap::default().rows().iter().flat_map(|row| &row.keys) {
+    for key in Keymap::default().bindings().iter().flat_map(|row| &row.keys) {
         for state in [crossterm::event::KeyEventState::NONE, crossterm::event::KeyEventState::KEYPAD] {
             let kind = KeyEventKind::Release;
             let release = KeyEvent::new_with_kind_and_state(key.code, KeyModifiers::NONE, kind, state);

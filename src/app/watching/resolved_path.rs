@@ -17,12 +17,12 @@ pub(super) struct ResolvedPath {
     /// The file, or the first missing component.
     end: PathBuf,
     /// Whether the file exists.
-    is_whole: bool,
+    is_complete: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Step {
-    place: PathBuf,
+    path: PathBuf,
     is_link: bool,
 }
 
@@ -39,23 +39,23 @@ impl ResolvedPath {
                 name.go(&mut folder);
                 continue;
             };
-            let place = folder.join(name);
-            let is_link = fs::symlink_metadata(&place).map(|data| data.is_symlink());
+            let path = folder.join(name);
+            let is_link = fs::symlink_metadata(&path).map(|data| data.is_symlink());
             match is_link {
                 Ok(true) if links < MAX_LINKS => {
                     links += 1;
-                    left.extend(fs::read_link(&place).map(|target| names(&target)).unwrap_or_default());
-                    steps.push(Step { place, is_link: true });
+                    left.extend(fs::read_link(&path).map(|target| names(&target)).unwrap_or_default());
+                    steps.push(Step { path, is_link: true });
                 }
-                Ok(false) if left.is_empty() => return Some(Self { steps, end: place, is_whole: true }),
+                Ok(false) if left.is_empty() => return Some(Self { steps, end: path, is_complete: true }),
                 Ok(false) => {
-                    folder.clone_from(&place);
-                    steps.push(Step { place, is_link: false });
+                    folder.clone_from(&path);
+                    steps.push(Step { path, is_link: false });
                 }
-                _ => return Some(Self { steps, end: place, is_whole: false }),
+                _ => return Some(Self { steps, end: path, is_complete: false }),
             }
         }
-        Some(Self { steps, end: folder, is_whole: true })
+        Some(Self { steps, end: folder, is_complete: true })
     }
 
     pub(super) fn end(&self) -> &Path {
@@ -63,13 +63,13 @@ impl ResolvedPath {
     }
 
     pub(super) fn steps(&self) -> impl Iterator<Item = &Path> {
-        self.steps.iter().map(|step| &*step.place)
+        self.steps.iter().map(|step| &*step.path)
     }
 
     /// Returns the folders that contain the file and the links. Watching them is indispensable.
     pub(super) fn searched_folders(&self) -> impl Iterator<Item = &Path> {
-        let links = self.steps.iter().filter(|step| step.is_link).map(|step| &*step.place);
-        links.chain([&*self.end]).filter_map(Path::parent).filter(|folder| !is_made_up(folder))
+        let links = self.steps.iter().filter(|step| step.is_link).map(|step| &*step.path);
+        links.chain([&*self.end]).filter_map(Path::parent).filter(|folder| !is_virtual(folder))
     }
 
     /// Returns further folders to watch: those on the way, each of which reports when it is replaced.
@@ -78,15 +78,15 @@ impl ResolvedPath {
     /// their parents are watched too. Folders directly below the root are watched only then: they are permanent, and
     /// busy.
     pub(super) fn outer_folders(&self) -> impl Iterator<Item = &Path> {
-        let folders = self.steps.iter().filter(|step| !step.is_link).map(|step| &*step.place);
+        let folders = self.steps.iter().filter(|step| !step.is_link).map(|step| &*step.path);
         let own = folders.clone().filter(|folder| folder.components().count() > 2);
-        let outer = folders.filter_map(Path::parent).filter(|_| !self.is_whole);
-        own.chain(outer).filter(|folder| !is_made_up(folder))
+        let outer = folders.filter_map(Path::parent).filter(|_| !self.is_complete);
+        own.chain(outer).filter(|folder| !is_virtual(folder))
     }
 }
 
 /// Returns whether a folder belongs to a virtual file system, where nothing is saved and events are frequent.
-fn is_made_up(folder: &Path) -> bool {
+fn is_virtual(folder: &Path) -> bool {
     ["/proc", "/sys", "/dev"].iter().any(|root| folder.starts_with(root)) && !folder.starts_with("/dev/shm")
 }
 

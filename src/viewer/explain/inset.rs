@@ -77,6 +77,7 @@ impl Inset {
         let (across, down) = mode.pixels_per_cell();
         let cell_aspect = resolution.pixel_aspect() * down as f32 / across as f32;
         let [x, y] = self.bounds(f32::from(area.width), f32::from(area.height) * cell_aspect);
+        // Braille dots are square at the usual cell aspect of 2, half blocks are too coarse for lines.
         let marker = if mode.glyphs.has_blocks() { Marker::Braille } else { Marker::Custom('*') };
         let ink = |color: Color| if mode.colors == Colors::None { Color::Reset } else { color };
         let line = |from: Vec2, to: Vec2, color: Color| {
@@ -92,6 +93,7 @@ impl Inset {
             for &(light, is_seen) in &self.lights {
                 canvas.draw(&line(self.end, light, if is_seen { Color::LightYellow } else { Color::DarkGray }));
             }
+            // A layer each, because dots of one layer share their cell's colour.
             canvas.layer();
             canvas.draw(&line(self.rectangle[0], self.rectangle[1], Color::LightBlue));
             canvas.draw(&line(Vec2::ZERO, self.end, Color::LightGreen));
@@ -108,6 +110,7 @@ impl Inset {
     /// Returns the part of the plane to draw in this much room: everything but spheres and lights, centred, with a
     /// margin.
     fn bounds(&self, width: f32, height: f32) -> [[f64; 2]; 2] {
+        // Spheres and lights are left out: one far away would shrink the ray to a dot.
         let points = [Vec2::ZERO, self.rectangle[0], self.rectangle[1], self.end];
         let min = points.into_iter().reduce(Vec2::min).unwrap_or_default();
         let max = points.into_iter().reduce(Vec2::max).unwrap_or_default();

@@ -13,7 +13,7 @@ fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usiz
     let levels = (0..frames).map(|frame| {
         let sampling = control.for_new_view(frame > 0);
         let level = LEVELS.iter().position(|&level| level == sampling).expect("it is one of them");
-        control.took(sampling, ms(time(frame, level)), FRAME);
+        control.record_time(sampling, ms(time(frame, level)), FRAME);
         level
     });
     levels.collect()
@@ -113,7 +113,7 @@ fn the_time_of_a_frame_is_what_counts() {
     for _ in 0..100 {
         let sampling = control.for_new_view(true);
         let level = LEVELS.iter().position(|&level| level == sampling).expect("it is one of them");
-        control.took(sampling, ms(machine(10.0)(level)), 6 * FRAME);
+        control.record_time(sampling, ms(machine(10.0)(level)), 6 * FRAME);
     }
     assert_eq!(control.for_new_view(true), LEVELS[3]);
 }
@@ -135,7 +135,7 @@ fn a_forced_level_is_the_only_one() {
     for sampling in [Sampling::BEST, Sampling::Each(NonZeroU32::MIN), Sampling::Each(NonZeroU32::new(9).expect("9"))] {
         let mut control = QualityControl::new(Some(sampling));
         for _ in 0..20 {
-            control.took(sampling, ms(500.0), FRAME);
+            control.record_time(sampling, ms(500.0), FRAME);
         }
         assert_eq!([control.for_new_view(false), control.for_new_view(true)], [sampling; 2]);
         assert_eq!(control.next_refinement(sampling), None);
