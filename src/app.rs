@@ -34,7 +34,9 @@ pub struct Outcome {
     pub ending: Ending,
     /// The last camera, if the user has moved it.
     pub moved: Option<Camera>,
-    /// Whether the terminal accepted all bytes. If not, it has stopped reading, and printing to it would block.
+    /// Whether the terminal accepted all bytes.
+    ///
+    /// If not, it has stopped reading, and printing to it would block.
     pub heard: bool,
 }
 

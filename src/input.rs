@@ -90,12 +90,15 @@ impl From<KeyEvent> for Input {
     }
 }
 
-/// An incremental parser from bytes to [`Input`]. The result does not depend on how the bytes are split.
+/// An incremental parser from bytes to [`Input`].
+///
+/// The result does not depend on how the bytes are split.
 #[derive(Default)]
 pub struct Parser {
     tokeniser: Tokeniser,
     state: State,
-    /// Whether a second ESC precedes the current sequence: Alt, or the Escape key if the sequence is not a key.
+    /// Whether a second ESC precedes the current sequence: Alt, or the Escape key if the sequence
+    /// is not a key.
     escaped: bool,
     /// Whether ESC precedes the current character, so that Alt was held.
     alt: bool,
@@ -104,7 +107,8 @@ pub struct Parser {
     /// Whether the current string exceeds its limit.
     overflow: bool,
     paste: Paste,
-    /// After a timeout within a sequence: the number of late bytes that may still be dropped as its rest.
+    /// After a timeout within a sequence: the number of late bytes that may still be dropped as its
+    /// rest.
     late: Option<usize>,
     key_encoding: KeyEncoding,
 }
@@ -125,8 +129,8 @@ impl Parser {
         Self::default()
     }
 
-    /// Sets whether the terminal sends every key as a sequence and reports releases: flags 2 and 8 of the kitty
-    /// keyboard protocol.
+    /// Sets whether the terminal sends every key as a sequence and reports releases: flags 2 and 8
+    /// of the kitty keyboard protocol.
     pub fn set_keys_are_sequences(&mut self, keys_are_sequences: bool) {
         self.key_encoding = if keys_are_sequences { KeyEncoding::Sequences } else { KeyEncoding::Legacy };
     }
@@ -138,7 +142,8 @@ impl Parser {
         }
     }
 
-    /// Returns whether more bytes may complete an input: after a lone `ESC`, in a sequence, a character or a paste.
+    /// Returns whether more bytes may complete an input: after a lone `ESC`, in a sequence, a
+    /// character or a paste.
     ///
     /// The caller then waits a short time (some 50 ms) for more bytes, and calls [`Parser::give_up_waiting`] if none
     /// arrive.
@@ -146,7 +151,8 @@ impl Parser {
         self.state != State::Ground && self.late.is_none()
     }
 
-    /// Reports a timeout: a lone `ESC` becomes the Escape key, and an incomplete sequence is dropped.
+    /// Reports a timeout: a lone `ESC` becomes the Escape key, and an incomplete sequence is
+    /// dropped.
     ///
     /// Afterwards the parser no longer waits, except for a paste, which ends after [`MAX_PASTE_WAITS`] such calls.
     pub fn give_up_waiting(&mut self, out: &mut Vec<Input>) {
@@ -187,7 +193,8 @@ impl Parser {
         }
     }
 
-    /// Returns whether `byte` may belong to the rest of a sequence dropped at a timeout, and counts it if so.
+    /// Returns whether `byte` may belong to the rest of a sequence dropped at a timeout, and counts
+    /// it if so.
     fn continues_late_sequence(&mut self, byte: u8) -> bool {
         let Some(left @ 1..) = self.late else {
             return false;

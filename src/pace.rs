@@ -106,7 +106,8 @@ pub struct Limit {
 }
 
 impl Link {
-    /// Returns a link with limits on bytes and frames per second, to a terminal that tolerates queries or does not.
+    /// Returns a link with limits on bytes and frames per second, to a terminal that tolerates
+    /// queries or does not.
     pub fn new(max_rate: Option<u32>, max_frames: Option<f32>, may_ask: bool) -> Self {
         Self {
             max_rate: max_rate.map(f64::from),
@@ -123,8 +124,9 @@ impl Link {
         self.replies.receive_attributes(now);
     }
 
-    /// Records a report of a mode. Returns whether it is the reply to a query in flight: a duplicate, a late one, or
-    /// one to another query is not.
+    /// Records a report of a mode.
+    ///
+    /// Returns whether it is the reply to a query in flight: a duplicate, a late one, or one to another query is not.
     pub fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
         self.replies.receive_mode(mode, now)
     }
@@ -173,7 +175,8 @@ impl Link {
         }
     }
 
-    /// Returns the time at which the congestion window has room for another frame, if no reply arrives before.
+    /// Returns the time at which the congestion window has room for another frame, if no reply
+    /// arrives before.
     fn window_opens_at(&self, now: Duration) -> Duration {
         let Some(times_out_at) = self.replies.times_out_at() else { return Duration::ZERO };
         if self.replies.is_late(now) {
@@ -187,7 +190,9 @@ impl Link {
         }
     }
 
-    /// Returns the limits for a frame sent now, on a link for screens of `screen` bytes; `None` without limits.
+    /// Returns the limits for a frame sent now, on a link for screens of `screen` bytes.
+    ///
+    /// `None` without limits.
     pub fn limit(&mut self, screen: usize, now: Duration) -> Option<Limit> {
         self.replies.check_timeouts(now);
         let initial =
@@ -195,8 +200,8 @@ impl Link {
         self.slow_limit(screen).or(initial)
     }
 
-    /// Returns whether at most the bandwidth-delay product is in flight beside one large frame, which was sent at a
-    /// higher rate. The next frame then need not wait for the whole round trip of its reply.
+    /// Returns whether at most the bandwidth-delay product is in flight beside one large frame,
+    /// which was sent at a higher rate. The next frame then need not wait for the whole round trip of its reply.
     fn has_room_beside_largest(&self) -> bool {
         let Some(rate) = self.replies.rates.best().filter(|_| self.is_slow()) else { return false };
         let largest = self.replies.ledger.in_flight().map(|query| query.bytes as f64).fold(0.0, f64::max);
@@ -237,8 +242,9 @@ impl Link {
         self.record_sent(frame.len(), now);
     }
 
-    /// Returns a query without a frame if one is due; otherwise no bytes. Its round trip is the link's own, whatever
-    /// the rate.
+    /// Returns a query without a frame if one is due; otherwise no bytes.
+    ///
+    /// Its round trip is the link's own, whatever the rate.
     pub fn probe(&mut self, now: Duration) -> Vec<u8> {
         self.replies.check_timeouts(now);
         let mut bytes = Vec::new();

@@ -1,5 +1,6 @@
-//! The protocol with a terminal: modes that are on, queries, and outstanding replies. Pure: bytes and times in, bytes
-//! out.
+//! The protocol with a terminal: modes that are on, queries, and outstanding replies.
+//!
+//! Pure: bytes and times in, bytes out.
 //!
 //! ```
 //! use std::time::Duration;

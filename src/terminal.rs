@@ -1,4 +1,5 @@
-//! The single owner of the terminal: every mode that it switches on it switches off again, in reverse order.
+//! The single owner of the terminal: every mode that it switches on it switches off again, in
+//! reverse order.
 //!
 //! Dropping a [`Terminal`] restores the terminal: on return, on an error, and while a panic unwinds. A signal that
 //! would end the process ends the loop of [`app`](crate::app) instead, which drops the `Terminal` too; `main` then
@@ -56,7 +57,8 @@ pub struct Readable {
 }
 
 impl Terminal {
-    /// Takes control of the terminal: raw mode, the alternate screen, reports of keys, mouse and focus.
+    /// Takes control of the terminal: raw mode, the alternate screen, reports of keys, mouse and
+    /// focus.
     ///
     /// Frames go to standard output. Keys come from standard input, or from the controlling terminal if standard input
     /// is not a terminal. A process in the background waits here until it is in the foreground.
@@ -94,8 +96,10 @@ impl Terminal {
         Ok(Window { size, cell, cell_pixels })
     }
 
-    /// Sends a frame or queries, in a single write if the terminal accepts all of it. The rest is written during
-    /// [`wait`](Self::wait). The caller reports any queries among the bytes to its [`Receiver`].
+    /// Sends a frame or queries, in a single write if the terminal accepts all of it.
+    ///
+    /// The rest is written during [`wait`](Self::wait). The caller reports any queries among the bytes to its
+    /// [`Receiver`].
     ///
     /// # Errors
     /// If the terminal is gone.
@@ -103,8 +107,9 @@ impl Terminal {
         self.output.send(bytes)
     }
 
-    /// Switches on a mode that not every terminal supports, until the terminal is restored. Sends nothing if the mode
-    /// is already on.
+    /// Switches on a mode that not every terminal supports, until the terminal is restored.
+    ///
+    /// Sends nothing if the mode is already on.
     ///
     /// # Errors
     /// If the terminal is gone.
@@ -126,7 +131,8 @@ impl Terminal {
         self.output.is_pending()
     }
 
-    /// Restores the terminal and waits for outstanding replies, which the shell would otherwise read as typed text.
+    /// Restores the terminal and waits for outstanding replies, which the shell would otherwise
+    /// read as typed text.
     ///
     /// Both the last bytes and the replies share a timeout of one second. Returns whether the terminal accepted all
     /// bytes: if it did not, it has stopped reading, and writing to it would block.
@@ -136,7 +142,8 @@ impl Terminal {
         is_drained
     }
 
-    /// Restores the terminal after a stop that could not be caught (SIGSTOP), and returns the input read meanwhile.
+    /// Restores the terminal after a stop that could not be caught (SIGSTOP), and returns the input
+    /// read meanwhile.
     ///
     /// Unlike [`restore`](Self::restore) it does not flush unread input: the program continues and reads it.
     pub fn restore_keeping_input(&mut self, receiver: &mut Receiver, now: Duration) -> Vec<Input> {
@@ -163,8 +170,8 @@ impl Terminal {
         }
     }
 
-    /// Sleeps until keys arrive, the wake pipe is readable, or the terminal accepts more pending bytes, which are then
-    /// written. Returns after `timeout` at the latest; `None` waits without a limit.
+    /// Sleeps until keys arrive, the wake pipe is readable, or the terminal accepts more pending
+    /// bytes, which are then written. Returns after `timeout` at the latest. `None` waits without a limit.
     ///
     /// # Errors
     /// If the terminal is gone, or polling fails.
@@ -193,14 +200,15 @@ impl Terminal {
 }
 
 impl Drop for Terminal {
-    /// Restores the terminal without waiting for replies: only a caller with a [`Receiver`] knows of outstanding ones,
-    /// and calls [`restore`](Terminal::restore) first.
+    /// Restores the terminal without waiting for replies: only a caller with a [`Receiver`] knows
+    /// of outstanding ones, and calls [`restore`](Terminal::restore) first.
     fn drop(&mut self) {
         self.modes.restore(&self.keys, &mut self.output, None, None);
     }
 }
 
-/// Opens the source of keys: standard input if it is a terminal, otherwise the controlling terminal.
+/// Opens the source of keys: standard input if it is a terminal, otherwise the controlling
+/// terminal.
 fn keys_file() -> io::Result<File> {
     if io::stdin().is_terminal() {
         return Ok(File::from(io::stdin().as_fd().try_clone_to_owned()?));

@@ -79,7 +79,9 @@ pub(crate) use schedule::{DriverState, Tracing};
 use screen::Screen;
 pub(crate) use view_layout::{INITIAL_WIPE, ViewLayout};
 
-/// Time for which the first picture is held back to be refined. Up to this long it is shown once, complete.
+/// Time for which the first picture is held back to be refined.
+///
+/// Up to this long it is shown once, complete.
 // A longer wait is felt: with 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, 9 of which went into
 // refinement. Without it small pictures would be sent twice.
 const FIRST_REFINEMENT: Duration = Duration::from_millis(4);
@@ -195,7 +197,8 @@ impl Viewer {
         Ok(())
     }
 
-    /// Forgets what the terminal shows: everything is drawn anew, and the part outside the picture is cleared.
+    /// Forgets what the terminal shows: everything is drawn anew, and the part outside the picture
+    /// is cleared.
     fn redraw(&mut self) {
         let (size, window) = (self.display.size(), self.display.window_size());
         // Erased only where the picture leaves a part free: otherwise the frame itself covers the window, and erasing
@@ -212,8 +215,9 @@ impl Viewer {
         self.screen.open(ProgressPanel(progress));
     }
 
-    /// Shows a coarse scene until the complete one is loaded. It replaces a picture of another scene, but not a good
-    /// picture of the same scene before its file changed.
+    /// Shows a coarse scene until the complete one is loaded.
+    ///
+    /// It replaces a picture of another scene, but not a good picture of the same scene before its file changed.
     pub(crate) fn show_sketch(&mut self, sketch: Scene, of: usize, orbits: bool) {
         if self.scenes.shown() != Some(of) {
             self.screen.close::<ErrorPanel>();
@@ -221,8 +225,8 @@ impl Viewer {
         }
     }
 
-    /// Shows scene number `of`, from its own camera; from where the user left it, if its own camera is the same as
-    /// then.
+    /// Shows scene number `of`, from its own camera; from where the user left it, if its own camera
+    /// is the same as then.
     pub(crate) fn show(&mut self, scene: Scene, of: usize, orbits: bool) {
         // The progress panel goes with the first frame of the scene: drawing the screen once more without it would
         // delay that frame.
@@ -304,7 +308,9 @@ impl Viewer {
         }
     }
 
-    /// Begins a frame of a new view. A query before it measures the link's round trip without a frame's bytes.
+    /// Begins a frame of a new view.
+    ///
+    /// A query before it measures the link's round trip without a frame's bytes.
     fn trace(&mut self) -> Step {
         let Some((scene, shot)) = self.scene().zip(self.wanted()) else { return Step::Wait(None) };
         let probe = self.pacing.probe(self.now);
@@ -332,7 +338,8 @@ impl Viewer {
         Some(Shot { scene, lights: lights.moves(), camera, resolution, layout: self.layout })
     }
 
-    /// Returns the sampling of the next refinement of the shown frame, or `None` if it cannot be refined.
+    /// Returns the sampling of the next refinement of the shown frame, or `None` if it cannot be
+    /// refined.
     fn next_refinement(&self) -> Option<Sampling> {
         // Refining a sketch would take time from building the scene.
         let frame = self.screen.frame().filter(|_| !self.screen.awaits_scene())?;
@@ -345,7 +352,9 @@ impl Viewer {
         self.eye.is_moving() || self.pointer.holds()
     }
 
-    /// Appends the bytes that bring the screen up to date. Call [`end_frame`](Self::end_frame) with them afterwards.
+    /// Appends the bytes that bring the screen up to date.
+    ///
+    /// Call [`end_frame`](Self::end_frame) with them afterwards.
     pub(crate) fn draw(&mut self, now: Duration, bytes: &mut Vec<u8>) {
         self.set_time(now);
         let size = self.display.size();

@@ -21,7 +21,9 @@ use std::panic::resume_unwind;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// The loop's clock. It starts at the time of one frame, so that a key pressed at once may have been held for a frame.
+/// The loop's clock.
+///
+/// It starts at the time of one frame, so that a key pressed at once may have been held for a frame.
 struct Clock {
     start: Instant,
 }
@@ -232,7 +234,9 @@ impl Live {
         }
     }
 
-    /// Shows an event of a load. An error of loading is returned if there is no scene to show it over.
+    /// Shows an event of a load.
+    ///
+    /// An error of loading is returned if there is no scene to show it over.
     fn handle_event<E: Into<Notice>>(&mut self, SceneEvent { of, event, is_slow }: SceneEvent<E>) -> Result<(), E> {
         let orbits = self.names.get(of).is_some_and(|scene| scene.orbited);
         match event {
@@ -247,8 +251,8 @@ impl Live {
         Ok(())
     }
 
-    /// Restores the terminal, stops if `stop` is given, takes the terminal again, and draws everything anew at its
-    /// current size.
+    /// Restores the terminal, stops if `stop` is given, takes the terminal again, and draws
+    /// everything anew at its current size.
     ///
     /// After a signal that ends the program the terminal stays restored. Without `stop` no shell has had the terminal,
     /// and the input read meanwhile is kept.

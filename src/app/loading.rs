@@ -181,8 +181,9 @@ impl<E: Send + 'static> Worker<E> {
 }
 
 impl<E: Send> LoadRequest<E> {
-    /// Loads the scene. Calls `hand_over_queue` before opening a file that may block, and builds on the threads of
-    /// `pool`.
+    /// Loads the scene.
+    ///
+    /// Calls `hand_over_queue` before opening a file that may block, and builds on the threads of `pool`.
     fn process<'p>(
         self,
         waker: &Mutex<Waker>,

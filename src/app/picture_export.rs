@@ -13,11 +13,12 @@ use std::path::Path;
 // A picture of 80x24 cells becomes 640 pixels wide, which viewers show without blurring it.
 const PNG_SCALE: u32 = 8;
 
-/// Limit on the numbered names that are tried, so that a full or hostile folder does not keep the loop busy.
+/// Limit on the numbered names that are tried, so that a full or hostile folder does not keep the
+/// loop busy.
 const MAX_NUMBERED_NAMES: u32 = 9999;
 
-/// Returns the contents of an export without panels: the cells as the terminal shows them, in truecolor if the format
-/// has colours.
+/// Returns the contents of an export without panels: the cells as the terminal shows them, in
+/// truecolor if the format has colours.
 pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabilities) -> io::Result<Vec<u8>> {
     let Capabilities { cell_mode, cell_aspect, .. } = *capabilities;
     match format.contents() {
@@ -33,8 +34,8 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
     }
 }
 
-/// Writes a new file named after `stem` and `format`, with the first unused number if that name exists. Returns its
-/// name.
+/// Writes a new file named after `stem` and `format`, with the first unused number if that name
+/// exists. Returns its name.
 pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u8]) -> io::Result<String> {
     for number in 1..=MAX_NUMBERED_NAMES {
         let number = if number == 1 { String::new() } else { format!("-{number}") };
@@ -56,7 +57,8 @@ fn write_unused(path: &Path, contents: &[u8]) -> io::Result<()> {
     file.finish()
 }
 
-/// Returns the stem of an export's file name: the scene's name without folders, extension and special characters.
+/// Returns the stem of an export's file name: the scene's name without folders, extension and
+/// special characters.
 pub(super) fn stem(name: &str) -> String {
     let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');

@@ -37,7 +37,8 @@ pub(super) struct Renderer {
     thread: Option<JoinHandle<()>>,
     /// Jobs sent and not finished, in the order in which they will finish.
     pending: VecDeque<PendingJob>,
-    /// The last frame of one sample per pixel, and its time per pixel in seconds, all threads together.
+    /// The last frame of one sample per pixel, and its time per pixel in seconds, all threads
+    /// together.
     seconds_per_pixel: Option<(Shot, f64)>,
 }
 
@@ -54,8 +55,10 @@ impl PendingJob {
 }
 
 impl Renderer {
-    /// Starts the thread and the pool that it shares the tiles with. The thread is a member of the pool: handing a
-    /// frame to another thread and waiting for it takes as long as a small frame.
+    /// Starts the thread and the pool that it shares the tiles with.
+    ///
+    /// The thread is a member of the pool: handing a frame to another thread and waiting for it takes as long as a
+    /// small frame.
     pub(super) fn start(threads: Option<usize>, mut waker: Waker) -> io::Result<Self> {
         let (jobs, wanted) = channel::<TraceTask>();
         let (begun, started) = channel();
@@ -157,8 +160,8 @@ impl Renderer {
         }
     }
 
-    /// Returns whether a frame is predicted to take less than [`MAX_INLINE_TRACE_TIME`], from the time per pixel of the
-    /// last one like it.
+    /// Returns whether a frame is predicted to take less than [`MAX_INLINE_TRACE_TIME`], from the
+    /// time per pixel of the last one like it.
     fn is_small(&self, job: &Job) -> bool {
         let pixels = job.shot.resolution.pixel_count() as f64;
         let is_short = |(shot, seconds): (Shot, f64)| {

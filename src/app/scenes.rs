@@ -66,7 +66,9 @@ impl<E: Send + 'static> Scenes<E> {
         self.loading.wait(PROGRESS_DELAY)
     }
 
-    /// Returns the next event of the load, if one has arrived. Starts to read the scene again if a file has changed.
+    /// Returns the next event of the load, if one has arrived.
+    ///
+    /// Starts to read the scene again if a file has changed.
     pub(super) fn next(&mut self) -> io::Result<Option<SceneEvent<E>>> {
         if self.watching.as_mut().is_some_and(Watching::take_changed) {
             self.read_again()?;
@@ -106,7 +108,8 @@ impl<E: Send + 'static> Scenes<E> {
         Ok(())
     }
 
-    /// Starts to watch the current scene's files, and reads the scene again if one has changed since it was read.
+    /// Starts to watch the current scene's files, and reads the scene again if one has changed
+    /// since it was read.
     ///
     /// Returns the reason why changes will not be noticed, unless it was returned before.
     pub(super) fn watch(&mut self) -> io::Result<Option<String>> {

@@ -35,7 +35,7 @@ pub(super) struct Watching {
 /// The state shared with the thread, which fills `change`.
 #[derive(Default)]
 struct Shared {
-    /// Folders and links on the way to the files.
+    /// Folders and links on the path to the files.
     steps: HashSet<PathBuf>,
     /// The files themselves.
     ends: HashSet<PathBuf>,
@@ -49,7 +49,7 @@ enum FileChange {
     Nothing,
     /// A file was removed, perhaps for a moment; it may come back through another folder or link.
     Gone,
-    /// A folder or link on the way to a file has changed, so the path may lead to another file.
+    /// A folder or link on the path to a file has changed, so the path may lead to another file.
     Moved,
     /// A file has new contents.
     Written,
@@ -85,7 +85,9 @@ impl Watching {
         Ok(watching)
     }
 
-    /// Watches these files instead of the previous ones. Returns whether one has changed since it was read.
+    /// Watches these files instead of the previous ones.
+    ///
+    /// Returns whether one has changed since it was read.
     pub(super) fn watch(&mut self, dependencies: Vec<Dependency>) -> bool {
         self.dependencies = dependencies;
         self.update_watches(true)
@@ -112,46 +114,49 @@ impl Watching {
         self.problem.as_deref()
     }
 
-    /// Watches the current ways to the files. Returns whether a file has changed: any file if `all`, otherwise one
-    /// whose folder was not watched before. (For the others the end of writing is reported; read now, they might be
-    /// incomplete.)
+    /// Watches the current paths to the files.
+    ///
+    /// Returns whether a file has changed: any file if `all`, otherwise one whose folder was not watched before. (For
+    /// the others the end of writing is reported; read now, they might be incomplete.)
     fn update_watches(&mut self, all: bool) -> bool {
         let mut fresh = HashSet::new();
         for _ in 0..MAX_RESOLUTIONS {
-            let ways = self.ways();
-            self.share(&ways);
-            fresh.extend(self.watch_folders(&ways));
+            let paths = self.resolve();
+            self.share(&paths);
+            fresh.extend(self.watch_folders(&paths));
             // A link may have been replaced before its folder was watched.
-            if self.ways() == ways {
+            if self.resolve() == paths {
                 break;
             }
         }
         let is_fresh = |dependency: &Dependency| {
             ResolvedPath::to(dependency.path())
-                .is_some_and(|way| way.end().parent().is_some_and(|folder| fresh.contains(folder)))
+                .is_some_and(|path| path.end().parent().is_some_and(|folder| fresh.contains(folder)))
         };
         self.dependencies.iter().any(|dependency| (all || is_fresh(dependency)) && dependency.has_changed())
     }
 
-    fn ways(&self) -> Vec<ResolvedPath> {
+    fn resolve(&self) -> Vec<ResolvedPath> {
         self.dependencies.iter().filter_map(|dependency| ResolvedPath::to(dependency.path())).collect()
     }
 
-    fn share(&self, ways: &[ResolvedPath]) {
+    fn share(&self, paths: &[ResolvedPath]) {
         let mut shared = lock(&self.shared);
-        shared.steps = ways.iter().flat_map(ResolvedPath::steps).map(Path::to_owned).collect();
-        shared.ends = ways.iter().map(|way| way.end().to_owned()).collect();
+        shared.steps = paths.iter().flat_map(ResolvedPath::steps).map(Path::to_owned).collect();
+        shared.ends = paths.iter().map(|path| path.end().to_owned()).collect();
     }
 
-    /// Watches the folders of these ways and no others. Returns those that were not watched before.
-    fn watch_folders(&mut self, ways: &[ResolvedPath]) -> Vec<PathBuf> {
+    /// Watches the folders of these paths and no others.
+    ///
+    /// Returns those that were not watched before.
+    fn watch_folders(&mut self, paths: &[ResolvedPath]) -> Vec<PathBuf> {
         let mut searched_folders: HashSet<_> =
-            ways.iter().flat_map(ResolvedPath::searched_folders).map(Path::to_owned).collect();
+            paths.iter().flat_map(ResolvedPath::searched_folders).map(Path::to_owned).collect();
         if cfg!(not(target_os = "linux")) {
             // kqueue reports only changes of names for a folder; for contents the file itself must be watched.
-            searched_folders.extend(ways.iter().map(ResolvedPath::end).map(Path::to_owned));
+            searched_folders.extend(paths.iter().map(ResolvedPath::end).map(Path::to_owned));
         }
-        let outer_folders = ways.iter().flat_map(ResolvedPath::outer_folders).map(Path::to_owned);
+        let outer_folders = paths.iter().flat_map(ResolvedPath::outer_folders).map(Path::to_owned);
         let folders: HashSet<_> = searched_folders.iter().cloned().chain(outer_folders).collect();
         let watcher = &mut self.watcher;
         self.folders.retain(|folder, _| {
@@ -213,8 +218,9 @@ impl Shared {
     }
 }
 
-/// Returns the meaning of an event for a file. New contents count when the writer closes the file, so that no file is
-/// read half written.
+/// Returns the meaning of an event for a file.
+///
+/// New contents count when the writer closes the file, so that no file is read half written.
 fn file_change(kind: EventKind, path: &Path) -> FileChange {
     match kind {
         EventKind::Remove(_) | EventKind::Modify(ModifyKind::Name(RenameMode::From)) => FileChange::Gone,
@@ -232,12 +238,13 @@ fn file_change(kind: EventKind, path: &Path) -> FileChange {
     }
 }
 
-/// Returns whether a path that was just created is a new file, and not a folder, a symbolic or a hard link.
+/// Returns whether a path that was just created is a new file, and not a folder, a symbolic or a
+/// hard link.
 fn is_about_to_be_written(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|data| data.is_file() && data.nlink() == 1)
 }
 
-/// Returns the meaning of an event for a folder or link on the way to a file.
+/// Returns the meaning of an event for a folder or link on the path to a file.
 fn step_change(kind: EventKind) -> FileChange {
     match kind {
         EventKind::Access(_) | EventKind::Modify(ModifyKind::Data(_)) => FileChange::Nothing,

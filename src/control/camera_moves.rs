@@ -10,7 +10,8 @@ pub fn speed(camera: &Camera) -> f32 {
     0.5 * camera.target_distance()
 }
 
-/// Returns the camera after a drag by `by`, to the right and down, in shares of the picture's width and height.
+/// Returns the camera after a drag by `by`, to the right and down, in shares of the picture's width
+/// and height.
 ///
 /// [`Grip::Turn`] turns the view, or in orbit mode the eye about the target. [`Grip::Pan`] shifts eye and target so
 /// that the target follows the pointer.

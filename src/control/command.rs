@@ -126,8 +126,8 @@ pub enum Side {
     Right,
 }
 
-/// Expands the table below to the list of all commands and a `match` over them, so that a command without a row does
-/// not compile. Commands that export have the names of their [`Format`].
+/// Expands the table below to the list of all commands and a `match` over them, so that a command
+/// without a row does not compile. Commands that export have the names of their [`Format`].
 macro_rules! commands {
     ($([$($command:tt)+] $name:literal, $does:expr;)*) => {
         /// All commands except those that export a format.
@@ -227,12 +227,15 @@ impl Command {
         Self::all().find(|command| command.name() == name)
     }
 
-    /// Returns the command's name in the keymap. Names never change, because users' files contain them.
+    /// Returns the command's name in the keymap.
+    ///
+    /// Names never change, because users' files contain them.
     pub fn name(self) -> &'static str {
         words(self).0
     }
 
-    /// Returns a description for the help, of at most 24 characters: two columns then fit 80 columns.
+    /// Returns a description for the help, of at most 24 characters: two columns then fit 80
+    /// columns.
     pub fn description(self) -> &'static str {
         words(self).1
     }

@@ -3,7 +3,8 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use std::fmt;
 
-/// A key: its code, as the terminal's user types it (`?`, not Shift and `/`), and whether Ctrl is held.
+/// A key: its code, as the terminal's user types it (`?`, not Shift and `/`), and whether Ctrl is
+/// held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
     /// The key code. A letter may be a capital, but not with Ctrl.
@@ -49,7 +50,8 @@ impl Key {
         Self { code, ctrl: false }
     }
 
-    /// Parses a key: a character, `Ctrl-` and a letter, or a name such as `PageUp`, `Space` or `F1`.
+    /// Parses a key: a character, `Ctrl-` and a letter, or a name such as `PageUp`, `Space` or
+    /// `F1`.
     ///
     /// `None` for an unknown name, and for a key that not every terminal sends (see [`is_plain`](Self::is_plain)).
     pub fn from_name(name: &str) -> Option<Self> {

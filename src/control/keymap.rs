@@ -5,7 +5,9 @@ use super::key::Key;
 use crate::export::Format;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// A mode of the keys. Several are active at a time; a key that the topmost does not bind is looked up in the next.
+/// A mode of the keys.
+///
+/// Several are active at a time; a key that the topmost does not bind is looked up in the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KeyMode {
     /// The eye flies.
@@ -18,7 +20,9 @@ pub enum KeyMode {
     Light,
     /// A dialog asks for the format of an export. Keys that do not answer dismiss it.
     Export,
-    /// A dialog asks whether to save the view to the scene file. Keys that do not answer dismiss it.
+    /// A dialog asks whether to save the view to the scene file.
+    ///
+    /// Keys that do not answer dismiss it.
     Keep,
     /// Below fly and orbit.
     Always,
@@ -42,7 +46,8 @@ impl KeyMode {
         }
     }
 
-    /// Returns whether a command can be bound in the mode: answers only where a dialog asks for them.
+    /// Returns whether a command can be bound in the mode: answers only where a dialog asks for
+    /// them.
     pub fn takes(self, command: Command) -> bool {
         match self {
             Self::Export => matches!(command, Command::Write(_) | Command::No),
@@ -109,7 +114,8 @@ const DOWN: &[Key] = &[Key::named(KeyCode::Down), letter('j')];
 const HIGHER: &[Key] = &[letter('e'), Key::named(KeyCode::PageUp)];
 const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 
-/// The built-in bindings in the order of the help, after those of the [`Format`]s, whose keys are in their files.
+/// The built-in bindings in the order of the help, after those of the [`Format`]s, whose keys are
+/// in their files.
 // WASD moves on the left hand while the arrows turn with the right; hjkl stand in for the arrows on keyboards without
 // them. Explanation and light take the arrows only, so that hjkl and WASD go on moving the eye meanwhile. No key needs
 // Alt or a function key, which window managers and multiplexers take for themselves.
@@ -210,7 +216,8 @@ impl Keymap {
         }
     }
 
-    /// Returns the command of a key in these modes, topmost first, and whether Shift makes it faster.
+    /// Returns the command of a key in these modes, topmost first, and whether Shift makes it
+    /// faster.
     pub fn command(&self, modes: &[KeyMode], event: &KeyEvent) -> Option<(Command, bool)> {
         // Shortcuts of the window manager, which the kitty keyboard protocol reports too.
         if event.modifiers.intersects(KeyModifiers::SUPER | KeyModifiers::HYPER | KeyModifiers::META) {
@@ -228,7 +235,8 @@ impl Keymap {
         })
     }
 
-    /// Returns a key for a command in these modes: the first one that no higher mode hides, preferably without Ctrl.
+    /// Returns a key for a command in these modes: the first one that no higher mode hides,
+    /// preferably without Ctrl.
     pub fn key_of(&self, modes: &[KeyMode], command: Command) -> Option<Key> {
         let rows = modes.iter().flat_map(|&mode| self.of(mode)).filter(|row| row.command == command);
         let does = |key: &&Key| self.command(modes, &key.pressed()).is_some_and(|(meant, _)| meant == command);

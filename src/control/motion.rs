@@ -18,7 +18,8 @@ use std::time::Duration;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
     held: Vec<Held>,
-    /// Time at which the motion stops without further events; `Duration::MAX` where releases are reported.
+    /// Time at which the motion stops without further events; `Duration::MAX` where releases are
+    /// reported.
     until: Duration,
     /// Whether Shift is held.
     fast: bool,
@@ -47,7 +48,8 @@ struct Held {
     command: Command,
 }
 
-/// A key of the keyboard, independent of Shift: the unshifted code, and whether it is on the keypad.
+/// A key of the keyboard, independent of Shift: the unshifted code, and whether it is on the
+/// keypad.
 type PhysicalKey = (KeyCode, bool);
 
 fn physical_key(key: &KeyEvent) -> PhysicalKey {
@@ -81,7 +83,8 @@ impl Motion {
         self.reports_releases
     }
 
-    /// Takes a key event at time `now`, with its command from the keymap and whether Shift makes that faster.
+    /// Takes a key event at time `now`, with its command from the keymap and whether Shift makes
+    /// that faster.
     ///
     /// Without reports of releases, any press ends the previous motion.
     pub fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
@@ -128,7 +131,8 @@ impl Motion {
         now < self.until && self.net_motion() != NetMotion::default()
     }
 
-    /// Returns the camera after the motion from time `from` to `to`, at `speed` world units per second.
+    /// Returns the camera after the motion from time `from` to `to`, at `speed` world units per
+    /// second.
     pub fn step(&self, camera: &Camera, speed: f32, from: Duration, to: Duration) -> Camera {
         let net = self.net_motion();
         // A glide may have ended between two frames.
@@ -146,7 +150,8 @@ impl Motion {
         turn(camera.nearer_within(libm::expf(-NEARER_SPEED * seconds * net.nearer), speed))
     }
 
-    /// Returns the motion of all held keys together: opposite keys cancel, and two keys of one command count once.
+    /// Returns the motion of all held keys together: opposite keys cancel, and two keys of one
+    /// command count once.
     fn net_motion(&self) -> NetMotion {
         let holds = |command: Command| self.held.iter().any(|held| held.command == command);
         let number = |command: Command| f32::from(u8::from(holds(command)));

@@ -5,7 +5,9 @@ use crossterm::event::{KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use glam::Vec2;
 use std::time::Duration;
 
-/// A gesture of the mouse. Positions are shares of the screen's width and height, from its upper left corner.
+/// A gesture of the mouse.
+///
+/// Positions are shares of the screen's width and height, from its upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Gesture {
     /// A button is pressed.
@@ -39,8 +41,8 @@ pub enum Gesture {
 
 /// Longest time between the clicks of a double click. Desktops use 400 to 500 ms by default.
 const DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
-/// Greatest distance between the clicks of a double click, as a share of the screen in either direction: 1.6 columns of
-/// 80, because without pixel reports a tremor of the hand may cross a cell boundary.
+/// Greatest distance between the clicks of a double click, as a share of the screen in either
+/// direction: 1.6 columns of 80, because without pixel reports a tremor of the hand may cross a cell boundary.
 const DOUBLE_CLICK_DISTANCE: f32 = 0.02;
 
 /// The state of the mouse: position, held button and last click.

@@ -10,8 +10,8 @@ use std::fmt::Write;
 const ALWAYS_QUITS: Key = Key::ctrl('c');
 
 impl Keymap {
-    /// Returns the built-in keymap with the changes in `text`: for each mode a map from a key, or a list of keys, to a
-    /// command, or to `None` to unbind. `name` is the file's name in messages.
+    /// Returns the built-in keymap with the changes in `text`: for each mode a map from a key, or a
+    /// list of keys, to a command, or to `None` to unbind. `name` is the file's name in messages.
     ///
     /// ```
     /// use crossterm::event::KeyCode;
@@ -43,7 +43,9 @@ impl Keymap {
         })
     }
 
-    /// Writes the whole keymap as RON, with a comment on each command. [`from_ron`](Self::from_ron) reads it back.
+    /// Writes the whole keymap as RON, with a comment on each command.
+    ///
+    /// [`from_ron`](Self::from_ron) reads it back.
     pub fn to_ron(&self) -> String {
         let mut text = "(\n".to_owned();
         for mode in KeyMode::ALL {
@@ -92,8 +94,8 @@ impl Keymap {
         }
     }
 
-    /// Reports an entry of `always` that a binding of a higher mode hides, unless the file itself contains that
-    /// binding: then it is intended.
+    /// Reports an entry of `always` that a binding of a higher mode hides, unless the file itself
+    /// contains that binding: then it is intended.
     fn check_is_reached(&self, entry: &Entry, entries: &[Entry], faults: &mut Faults) {
         let Entry { mode: KeyMode::Always, key, command: Some(command), span } = *entry else { return };
         // Explanation, light and dialogs are meant to hide keys for as long as they are open.

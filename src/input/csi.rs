@@ -24,8 +24,9 @@ pub(super) enum Meaning {
     Nothing,
 }
 
-/// Returns the meaning of a sequence. `marks` are its private marker and intermediates, `text` is all of it after `ESC
-/// [`.
+/// Returns the meaning of a sequence.
+///
+/// `marks` are its private marker and intermediates, `text` is all of it after `ESC [`.
 pub(super) fn meaning(params: &Params, marks: &[u8], ignored: bool, last: char, text: &[u8]) -> Meaning {
     let sequence = Sequence { params: params.iter().collect(), last, text };
     let meaning = match marks {

@@ -3,8 +3,9 @@
 /// A terminal's reply to a query.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// `CSI ? n ; ... c`: the device attributes (DA1). Every terminal sends this reply, which makes the query for it
-    /// the fence behind a batch of queries.
+    /// `CSI ? n ; ... c`: the device attributes (DA1).
+    ///
+    /// Every terminal sends this reply, which makes the query for it the fence behind a batch of queries.
     DeviceAttributes(Vec<u16>),
     /// `CSI > n ; ... c`: the terminal's type and version (DA2).
     SecondaryAttributes(Vec<u16>),

@@ -1,4 +1,5 @@
-//! A table of byte sequences and their inputs, and properties: above all, that the split of the bytes does not matter.
+//! A table of byte sequences and their inputs, and properties: above all, that the split of the
+//! bytes does not matter.
 
 use super::{Input, MAX_PASTE_BYTES, MAX_PASTE_WAITS, Parser, Reply};
 use crossterm::event::{Event, KeyCode, KeyEventKind};
@@ -260,7 +261,8 @@ proptest! {
         prop_assert_eq!(out, vec![letter('c', CONTROL), letter('w', NONE)]);
     }
 
-    /// Of sequences with any final byte and parameters, only those with the final byte of a key are keys.
+    /// Of sequences with any final byte and parameters, only those with the final byte of a key are
+    /// keys.
     #[test]
     fn unknown_sequences_are_not_keys(
         mark in prop::sample::select(vec!["", "?", ">", "<", "="]),

@@ -1,4 +1,5 @@
-//! Detection of a misalignment: replies without a number are counted one query behind, because one of them was lost.
+//! Detection of a misalignment: replies without a number are counted one query behind, because one
+//! of them was lost.
 //!
 //! No timeout notices the loss while frames follow each other: each reply is matched to the query before its own, and
 //! every round trip seems longer by the interval between two frames. The estimated rate is then too low, frames are
@@ -9,13 +10,14 @@ use super::ledger::InFlight;
 use super::{MAX_TRANSMISSION_TIME, MIN_FRAME_BYTES};
 use std::time::Duration;
 
-/// Number of consecutive replies at the time of the next query's until one is considered lost: one more than occur
-/// while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
+/// Number of consecutive replies at the time of the next query's until one is considered lost: one
+/// more than occur while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
 // With three, a link that becomes ten times slower is taken for one that has lost a reply, and a key waits for 3.8 s.
 // The same happens if newer queries than the second oldest are compared.
 const MIN_MISALIGNED_REPLIES: u32 = 4;
-/// Tolerance for a reply to the second oldest query. A queue that drains by a seventh of the interval between two
-/// frames stays within it for three of them.
+/// Tolerance for a reply to the second oldest query.
+///
+/// A queue that drains by a seventh of the interval between two frames stays within it for three of them.
 const SECOND_QUERY_TOLERANCE: Duration = Duration::from_millis(5);
 /// Tolerance for a reply to the oldest query.
 // Twice that for the second oldest: in doubt the count is right, because a false alarm costs a second of silence.
@@ -24,16 +26,17 @@ const OLDEST_QUERY_TOLERANCE: Duration = Duration::from_millis(10);
 /// The evidence for a misalignment.
 #[derive(Default)]
 pub(super) struct Alignment {
-    /// The last estimate in bytes per second by which a reply to the oldest query was on time: that from before the
-    /// loss.
+    /// The last estimate in bytes per second by which a reply to the oldest query was on time: that
+    /// from before the loss.
     rate: Option<f64>,
     /// Number of consecutive replies at the time of the one to the second oldest query.
     misaligned: u32,
 }
 
 impl Alignment {
-    /// Counts a reply that arrives now while these queries are in flight, oldest first. Returns whether this and the
-    /// previous replies show that one is lost.
+    /// Counts a reply that arrives now while these queries are in flight, oldest first.
+    ///
+    /// Returns whether this and the previous replies show that one is lost.
     pub(super) fn is_misaligned<'a>(
         &mut self,
         queries: impl IntoIterator<Item = &'a InFlight>,
@@ -71,8 +74,8 @@ mod tests {
     use super::super::tests::ms;
     use super::*;
 
-    /// Frames of 1,000 bytes are sent every 25 ms through 50 KB/s and 200 ms, and their replies arrive this much later
-    /// than through an empty link. Returns the number of the reply that shows a loss, if any.
+    /// Frames of 1,000 bytes are sent every 25 ms through 50 KB/s and 200 ms, and their replies
+    /// arrive this much later than through an empty link. Returns the number of the reply that shows a loss, if any.
     fn shows_loss(frames: usize, later: impl Fn(usize) -> u64) -> Option<usize> {
         let mut alignment = Alignment::default();
         (0..frames).find(|&number| {

@@ -1,4 +1,5 @@
-//! Estimates of the shortest round trip and the rate, both of the last moments, because links change.
+//! Estimates of the shortest round trip and the rate, both of the last moments, because links
+//! change.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -11,7 +12,8 @@ const ROUND_TRIP_AGE: Duration = Duration::from_secs(5);
 // The maximum over it ignores frames that were delayed elsewhere; a real drop of the rate is noticed at once by the
 // first late reply, which drops all higher rates.
 const RATE_AGE: Duration = Duration::from_millis(500);
-/// A frame with less transmission time was not limited by the link: it gives a lower bound of the rate only.
+/// A frame with less transmission time was not limited by the link: it gives a lower bound of the
+/// rate only.
 // Terminals that draw 60 times a second delay replies by up to 17 ms, which must not look like transmission.
 const MIN_SERVICE_TIME: Duration = Duration::from_millis(20);
 /// Part of a short time that may be jitter of the clock and the scheduler.
@@ -20,7 +22,8 @@ const JITTER: Duration = Duration::from_millis(5);
 // A frame of a slow link is transmitted in about 28 ms, so that its rate alone varies by a quarter with the jitter of
 // 5 ms. Pooled over several frames, recovery from a tenfold drop became faster by 0.2 s.
 const SMOOTHING: f64 = 0.75;
-/// Least number of bytes for a frame to give the rate, unless the rate is so low that even those take long.
+/// Least number of bytes for a frame to give the rate, unless the rate is so low that even those
+/// take long.
 // Round trips of smaller frames consist of jitter and of the terminal's own delay.
 const MIN_SAMPLE_BYTES: f64 = 512.0;
 
@@ -36,10 +39,10 @@ pub(super) struct RoundTrip {
 }
 
 impl RoundTrip {
-    /// Records a round trip, which is the link's own if nothing was sent with the query that takes time to transmit.
-    /// Only such a round trip starts a new age: if the replies to all queries alone were lost for a while, the
-    /// transmission time of frames would seem to be part of the link's round trip, and the rate that of a link which
-    /// transmits in no time.
+    /// Records a round trip, which is the link's own if nothing was sent with the query that takes
+    /// time to transmit. Only such a round trip starts a new age: if the replies to all queries alone were lost for a
+    /// while, the transmission time of frames would seem to be part of the link's round trip, and the rate that of a
+    /// link which transmits in no time.
     pub(super) fn take(&mut self, round_trip: Duration, is_own: bool, now: Duration) {
         if is_own && now.saturating_sub(self.since) >= ROUND_TRIP_AGE {
             self.shortest = [self.shortest[1], None];
@@ -74,7 +77,9 @@ impl RoundTrip {
     }
 }
 
-/// A busy period: back-to-back transmission. Times are arrivals of replies minus one full round trip.
+/// A busy period: back-to-back transmission.
+///
+/// Times are arrivals of replies minus one full round trip.
 #[derive(Default)]
 pub(super) struct BusyPeriod {
     since: Duration,
@@ -83,8 +88,10 @@ pub(super) struct BusyPeriod {
 }
 
 impl BusyPeriod {
-    /// Records that bytes sent at `sent` have been transmitted. Returns the bytes and the time that give the rate.
-    /// Bytes that waited behind others count only together with them: alone they would seem slower than they were.
+    /// Records that bytes sent at `sent` have been transmitted.
+    ///
+    /// Returns the bytes and the time that give the rate. Bytes that waited behind others count only together with
+    /// them: alone they would seem slower than they were.
     pub(super) fn take(&mut self, sent: Duration, bytes: usize, passed: Duration) -> (usize, Duration) {
         if sent + MIN_SERVICE_TIME >= self.until {
             (self.since, self.bytes) = (sent, 0);
@@ -113,13 +120,16 @@ pub(super) struct Rate {
 pub(super) struct Rates {
     /// The samples, each with its time.
     rates: VecDeque<(Duration, Rate)>,
-    /// The decaying sums of bytes and time behind the last rate; empty if that was not the link's limit.
+    /// The decaying sums of bytes and time behind the last rate.
+    ///
+    /// Empty if that was not the link's limit.
     last: (f64, Duration),
 }
 
 impl Rates {
-    /// Records a transmission of bytes in a time, beyond the round trip. If it is late, the rate has fallen, and higher
-    /// ones are dropped.
+    /// Records a transmission of bytes in a time, beyond the round trip.
+    ///
+    /// If it is late, the rate has fallen, and higher ones are dropped.
     pub(super) fn take(&mut self, bytes: usize, service: Duration, is_late: bool, now: Duration) {
         let bytes = bytes as f64;
         // One of the previous rates is kept even after a pause.
@@ -151,8 +161,10 @@ impl Rates {
         }
     }
 
-    /// Returns the highest rate of the last moments that did not exceed the link's limit. A sudden increase is not
-    /// believed: an unsolicited reply causes one, and sending at twice the rate would queue seconds of data.
+    /// Returns the highest rate of the last moments that did not exceed the link's limit.
+    ///
+    /// A sudden increase is not believed: an unsolicited reply causes one, and sending at twice the rate would queue
+    /// seconds of data.
     fn limit(&self) -> f64 {
         let limits = self.rates.iter().filter(|(_, rate)| rate.is_limit).map(|(_, rate)| rate.bytes_per_second);
         limits.reduce(f64::max).unwrap_or(f64::INFINITY)

@@ -220,8 +220,8 @@ fn no_key_waits_longer_than_500_ms_before_a_local_terminal_has_replied() {
     });
 }
 
-/// The first round trip is longer than the others, and frames are small: a reply that may belong to an older frame
-/// gives no rate.
+/// The first round trip is longer than the others, and frames are small: a reply that may belong to
+/// an older frame gives no rate.
 #[test]
 fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
     each_fault(ms(250), |tags, fault, at| {
@@ -256,9 +256,10 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
     }
 }
 
-/// A key without a wait is visible after 310 ms, or 400 ms at worst; two more round trips are allowed. Left out
-/// are faults that make the link look like another one: its first reply, and silence from the first picture on, because
-/// then nothing shows that the link is slow.
+/// A key without a wait is visible after 310 ms, or 400 ms at worst; two round trips more are allowed.
+///
+/// Left out are faults that make the link look like another one: its first reply, and silence from the first picture on,
+/// because then nothing shows that the link is slow.
 #[test]
 fn no_key_waits_much_longer_on_a_slow_link() {
     each_fault(ms(800), |tags, fault, at| {

@@ -1,6 +1,6 @@
-//! Limits on sending before the rate of the link is known, while the reply that would give it is late. The terminal may
-//! be near and the reply lost, or the first picture may still be on its way through a slow link: keys should be visible
-//! soon in the first case, and little should be queued in the second.
+//! Limits on sending before the rate of the link is known, while the reply that would give it is
+//! late. The terminal may be near and the reply lost, or the first picture may still be on its way through a slow link:
+//! keys should be visible soon in the first case, and little should be queued in the second.
 
 use std::time::Duration;
 
@@ -10,10 +10,13 @@ const INITIAL_BYTES: usize = 2_000;
 /// Least useful size of a frame in bytes.
 // Smaller frames change too few cells to show the effect of a key.
 const MIN_USEFUL_BYTES: usize = 120;
-/// Bytes that each [`REFILL_INTERVAL`] adds once the window is spent, for a terminal that has replied before: 3.3 KB/s.
+/// Bytes that each [`REFILL_INTERVAL`] adds once the window is spent, for a terminal that has
+/// replied before: 3.3 KB/s.
 const REFILL_BYTES: usize = 300;
-/// Interval between refills. With the timeout of 150 ms a key is then visible within 250 ms; with refills every 200 ms
-/// one waited for 360 ms where DA1 is counted.
+/// Interval between refills.
+///
+/// With the timeout of 150 ms a key is then visible within 250 ms; with refills every 200 ms one waited for 360 ms
+/// where DA1 is counted.
 const REFILL_INTERVAL: Duration = Duration::from_millis(90);
 
 /// The budget of bytes sent before the rate is known.
@@ -29,12 +32,14 @@ impl Default for InitialWindow {
 }
 
 impl InitialWindow {
-    /// Returns the limit on the next frame in bytes: half of the rest, so that a later key has some left too.
+    /// Returns the limit on the next frame in bytes: half of the rest, so that a later key has some
+    /// left too.
     pub(super) fn max_bytes(&self) -> usize {
         if self.is_spent() { REFILL_BYTES } else { self.left / 2 }
     }
 
-    /// Returns the time at which the next frame may be sent, for a terminal that has replied before or has not.
+    /// Returns the time at which the next frame may be sent, for a terminal that has replied before
+    /// or has not.
     pub(super) fn opens_at(&self, has_replied: bool) -> Duration {
         match self.is_spent() {
             false => Duration::ZERO,

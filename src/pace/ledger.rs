@@ -22,7 +22,8 @@ pub(super) enum Query {
     Counted,
     /// DECRQM of a nonexistent mode.
     Tagged(Tag),
-    /// Both, either of which may be answered, to find out whether the terminal answers the second kind.
+    /// Both, either of which may be answered, to find out whether the terminal answers the second
+    /// kind.
     Both(Tag),
 }
 
@@ -60,8 +61,8 @@ pub(super) struct Matched {
     pub(super) query: Query,
     pub(super) sent: Duration,
     pub(super) bytes: usize,
-    /// Sending time of the oldest query in flight before it whose reply is lost, and the bytes up to this one: all of
-    /// them have arrived.
+    /// Sending time of the oldest query in flight before it whose reply is lost, and the bytes up
+    /// to this one: all of them have arrived.
     pub(super) acked: (Duration, usize),
     /// Whether the reply to a query without a frame is among the lost ones.
     pub(super) lost_probe: bool,
@@ -71,9 +72,11 @@ pub(super) struct Matched {
 /// The estimates for which a matched reply is a valid sample (Karn's algorithm).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
-    /// The reply is this query's, and no query before it has timed out: it gives round trip and rate.
+    /// The reply is this query's, and no query before it has timed out: it gives round trip and
+    /// rate.
     Exact,
-    /// The reply is this query's, but older bytes may precede it on a slow link: it gives the round trip.
+    /// The reply is this query's, but older bytes may precede it on a slow link: it gives the round
+    /// trip.
     AfterLoss,
     /// The reply is this query's, after its timeout, which was spurious.
     Spurious,
@@ -151,7 +154,8 @@ impl Ledger {
         self.queries.drain(..surplus);
     }
 
-    /// Records that the timeout was spurious: the remaining queries are in flight after all (as after Eifel detection).
+    /// Records that the timeout was spurious: the remaining queries are in flight after all (as
+    /// after Eifel detection).
     pub(super) fn undo_timeout(&mut self) {
         for query in &mut self.queries {
             query.timed_out = false;

@@ -25,9 +25,12 @@ const SILENCE_TIMEOUT: Duration = Duration::from_millis(300);
 /// [`SILENCE_TIMEOUT`] for a slow link.
 // Longer, because frames sent without replies to a terminal that merely pauses would queue there for seconds.
 const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
-/// [`SILENCE_TIMEOUT`] if no reply has ever arrived: with [`FIRST_RTO`] a second after the first frame.
+/// [`SILENCE_TIMEOUT`] if no reply has ever arrived: with [`FIRST_RTO`] a second after the first
+/// frame.
 const FIRST_SILENCE_TIMEOUT: Duration = Duration::from_millis(600);
-/// [`SILENCE_TIMEOUT`] if the rate is unknown. Until then small frames show keys (see [`InitialWindow`]).
+/// [`SILENCE_TIMEOUT`] if the rate is unknown.
+///
+/// Until then small frames show keys (see [`InitialWindow`]).
 // The first picture, 15 KB, may be on its way through a link of 2 KB/s, which full frames without replies would fill
 // for minutes.
 const UNKNOWN_RATE_SILENCE_TIMEOUT: Duration = Duration::from_secs(10);
@@ -37,7 +40,8 @@ const SILENT_QUERY_INTERVAL: Duration = Duration::from_millis(500);
 /// Time without replies after which all outstanding ones count as received or lost.
 // Nothing is queried meanwhile, so a late reply cannot be taken for one to a new query.
 const RESYNC_TIME: Duration = Duration::from_secs(1);
-/// A terminal with a shorter round trip is local: the order of several late replies does not matter there.
+/// A terminal with a shorter round trip is local: the order of several late replies does not matter
+/// there.
 // Longer than the 17 ms between two draws of a local terminal, shorter than most connections over the internet.
 const LOCAL_ROUND_TRIP: Duration = Duration::from_millis(20);
 /// Tolerance by which a reply may exceed the shortest round trip and count as immediate.
@@ -93,10 +97,13 @@ pub(super) enum State {
     Unanswered,
     /// Replies arrive in time.
     Steady,
-    /// A reply is late: frames are sent one at a time. Holds the time at which the terminal is considered silent.
+    /// A reply is late: frames are sent one at a time.
+    ///
+    /// Holds the time at which the terminal is considered silent.
     Recovering { until: Duration },
-    /// The match of replies to queries is unknown: no query is sent until replies stop. Holds the time of the last
-    /// reply.
+    /// The match of replies to queries is unknown: no query is sent until replies stop.
+    ///
+    /// Holds the time of the last reply.
     Resyncing { last_reply: Duration },
     /// The terminal is considered silent.
     Silent,
@@ -181,13 +188,14 @@ impl ReplyTracker {
         matches!(self.state, State::Recovering { .. } | State::Resyncing { .. }) && !self.knows_rate()
     }
 
-    /// Returns whether the rate can be relied on: one that was never reached can be after enough bytes have arrived.
+    /// Returns whether the rate can be relied on: one that was never reached can be after enough
+    /// bytes have arrived.
     pub(super) fn knows_rate(&self) -> bool {
         self.rates.best().is_some_and(|rate| rate.is_limit || self.delivered >= MIN_DELIVERED_BYTES)
     }
 
-    /// Returns whether a reply on a slow link is late: the link is slower than estimated, and more bytes would only
-    /// queue.
+    /// Returns whether a reply on a slow link is late: the link is slower than estimated, and more
+    /// bytes would only queue.
     pub(super) fn is_late(&self, now: Duration) -> bool {
         self.slow && self.ledger.oldest().is_some_and(|oldest| now > self.reply_due_at(oldest) + LATE_REPLY_MARGIN)
     }
@@ -197,12 +205,14 @@ impl ReplyTracker {
         self.transmitted_at(self.busy_period.until(), oldest) + self.round_trip.expected()
     }
 
-    /// Returns the time at which the link has transmitted everything in flight, as far as replies show.
+    /// Returns the time at which the link has transmitted everything in flight, as far as replies
+    /// show.
     pub(super) fn idle_at(&self) -> Duration {
         self.ledger.in_flight().fold(self.busy_period.until(), |free_at, query| self.transmitted_at(free_at, query))
     }
 
-    /// Returns the time at which the link, if idle by then, has transmitted the bytes up to a query.
+    /// Returns the time at which the link, if idle by then, has transmitted the bytes up to a
+    /// query.
     pub(super) fn transmitted_at(&self, free_at: Duration, query: &InFlight) -> Duration {
         (free_at.max(query.first_sent) + self.transmission_time(query.bytes)).max(query.sent)
     }
@@ -218,7 +228,8 @@ impl ReplyTracker {
         asks && self.may_query() && self.last_probe.is_none_or(|last| now >= last + PROBE_INTERVAL)
     }
 
-    /// Appends a query to bytes that are sent now, and records it with their number if they are a frame.
+    /// Appends a query to bytes that are sent now, and records it with their number if they are a
+    /// frame.
     pub(super) fn append_query(&mut self, bytes: &mut Vec<u8>, is_frame: bool, now: Duration) {
         let query = self.next_query();
         if let Query::Tagged(tag) | Query::Both(tag) = query {
@@ -230,8 +241,9 @@ impl ReplyTracker {
         self.ledger.record(query, if is_frame { bytes.len() } else { 0 }, now);
     }
 
-    /// Returns the next query. In doubt it is of both kinds: another terminal may have taken the place of the previous
-    /// one.
+    /// Returns the next query.
+    ///
+    /// In doubt it is of both kinds: another terminal may have taken the place of the previous one.
     pub(super) fn next_query(&mut self) -> Query {
         let doubts = matches!(self.state, State::Recovering { .. } | State::Silent);
         match self.tag_support {
@@ -294,8 +306,9 @@ impl ReplyTracker {
         self.delivered = 0.0;
     }
 
-    /// Records a report of a mode. Returns whether it is the reply to a query in flight: a duplicate, a late one, or
-    /// one to another query is not.
+    /// Records a report of a mode.
+    ///
+    /// Returns whether it is the reply to a query in flight: a duplicate, a late one, or one to another query is not.
     pub(super) fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
         if self.tag_support == TagSupport::Unknown {
             self.tag_support = TagSupport::Possible;
@@ -313,21 +326,22 @@ impl ReplyTracker {
         matched.is_some()
     }
 
-    /// Returns whether a reply without a number that arrives now shows that one of a slow link was lost, which no
-    /// timeout does between consecutive frames.
+    /// Returns whether a reply without a number that arrives now shows that one of a slow link was
+    /// lost, which no timeout does between consecutive frames.
     fn is_misaligned(&mut self, now: Duration) -> bool {
         let Some(rate) = self.rates.best().filter(|_| self.slow && !self.ledger.is_ambiguous()) else { return false };
         let round_trip = self.round_trip.shortest();
         self.alignment.is_misaligned(self.ledger.counted(), round_trip, rate.bytes_per_second, now)
     }
 
-    /// Returns whether a reply that arrives now belongs to another query, or the route has become shorter.
+    /// Returns whether a reply that arrives now belongs to another query, or the route has become
+    /// shorter.
     fn is_too_early(&self, sent: Duration, now: Duration) -> bool {
         self.round_trip.is_implausible(now.saturating_sub(sent))
     }
 
-    /// Returns whether a reply that arrives now, and may be late, is the one to the first picture rather than to the
-    /// last bytes: through a slow link it takes long, and a near terminal replies at once.
+    /// Returns whether a reply that arrives now, and may be late, is the one to the first picture
+    /// rather than to the last bytes: through a slow link it takes long, and a near terminal replies at once.
     fn is_reply_to_first_frame(&self, now: Duration) -> bool {
         let comes_at_once = |sent: Duration| now <= sent + self.round_trip.shortest() + IMMEDIATE_REPLY_TOLERANCE;
         let is_lasts = self.is_local() && self.ledger.last_sent().is_some_and(comes_at_once);
@@ -383,8 +397,9 @@ impl ReplyTracker {
         self.rates.take(bytes, service, is_late, now);
     }
 
-    /// Gives up matching, and starts anew when no more replies arrive. Until then bytes are sent at the rate alone if
-    /// that is a slow link's; another rate may stem from a mismatch.
+    /// Gives up matching, and starts anew when no more replies arrive.
+    ///
+    /// Until then bytes are sent at the rate alone if that is a slow link's; another rate may stem from a mismatch.
     // Dropping only the query whose reply was lost was tried: a late reply then counts twice, and a key waits for 1.8
     // s.
     fn resync(&mut self, now: Duration) {
@@ -400,7 +415,8 @@ impl ReplyTracker {
         self.state = State::Resyncing { last_reply: now };
     }
 
-    /// Returns the time at which the oldest query in flight times out, if any (the retransmission timeout).
+    /// Returns the time at which the oldest query in flight times out, if any (the retransmission
+    /// timeout).
     pub(super) fn times_out_at(&self) -> Option<Duration> {
         let oldest = self.ledger.oldest()?;
         Some(match self.last_reply {

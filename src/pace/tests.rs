@@ -1,4 +1,5 @@
-//! The link against a simulated one with a rate, a round trip, and a terminal that replies or does not.
+//! The link against a simulated one with a rate, a round trip, and a terminal that replies or does
+//! not.
 
 use super::*;
 use crate::protocol::FENCE;
@@ -271,7 +272,8 @@ fn a_pause_does_not_make_a_link_slow_for_long() {
     assert_eq!(world.link.slow_limit(SCREEN), None);
 }
 
-/// The first picture arrives at once, the next bytes .4 s later, and from the first second on thirty times a second.
+/// The first picture arrives at once, the next bytes .4 s later, and from the first second on
+/// thirty times a second.
 #[test]
 fn a_terminal_that_never_replies_gets_thirty_frames_a_second() {
     let mut world = World { replies: false, ..World::new(1e7, ms(2)) };

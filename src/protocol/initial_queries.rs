@@ -18,7 +18,8 @@ pub struct InitialQueries {
 }
 
 impl InitialQueries {
-    /// Returns the queries for the facts that the picture depends on and the environment leaves open.
+    /// Returns the queries for the facts that the picture depends on and the environment leaves
+    /// open.
     pub fn needed(hints: &Hints) -> Self {
         let needed = [hints.needs_truecolor_reply(), hints.needs_palette_reply(), hints.needs_block_width_reply()];
         Self::of(hints.safe_queries(), needed)
@@ -100,15 +101,16 @@ impl InitialQueries {
     }
 }
 
-/// Prints a half block in the corner, requests the cursor position (CPR), and erases the row: the column in the reply
-/// gives the block's width.
+/// Prints a half block in the corner, requests the cursor position (CPR), and erases the row: the
+/// column in the reply gives the block's width.
 const BLOCK_WIDTH: &str = "\x1b[H▄\x1b[6n\r\x1b[K";
 const BACKGROUND: &[u8] = b"\x1b]11;?\x1b\\";
 const SYNCHRONIZED: &[u8] = b"\x1b[?2026$p";
 const MOUSE_AND_KEYBOARD: &[u8] = b"\x1b[?1006$p\x1b[?1016$p\x1b[?u";
 const CELL_PIXELS: &[u8] = b"\x1b[16t";
 
-/// Returns the bytes that set a 24-bit background, query the current rendition (DECRQSS of SGR) and reset it.
+/// Returns the bytes that set a 24-bit background, query the current rendition (DECRQSS of SGR) and
+/// reset it.
 fn truecolor_query() -> Vec<u8> {
     let crate::color::Srgb8 { r, g, b } = TEST_COLOR;
     format!("\x1b[48;2;{r};{g};{b}m\x1bP$qm\x1b\\\x1b[0m").into_bytes()

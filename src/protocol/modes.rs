@@ -8,7 +8,9 @@ use crossterm::{Command, cursor, style, terminal};
 pub enum TerminalMode {
     /// The alternate screen (1049), whose contents are lost when it is switched off.
     AlternateScreen,
-    /// The pen's colours. No bytes switch this mode on: frames set colours, and the shell must not inherit them.
+    /// The pen's colours.
+    ///
+    /// No bytes switch this mode on: frames set colours, and the shell must not inherit them.
     Colors,
     /// A hidden cursor (25).
     HiddenCursor,
@@ -16,15 +18,15 @@ pub enum TerminalMode {
     BracketedPaste,
     /// Reports of focus changes (1004).
     FocusChange,
-    /// Reports of mouse buttons, wheel and drags (1002). crossterm's command also requests motion without a button
-    /// (1003), which would wake the loop for events without a meaning here.
+    /// Reports of mouse buttons, wheel and drags (1002). crossterm's command also requests motion
+    /// without a button (1003), which would wake the loop for events without a meaning here.
     Mouse,
     /// Mouse reports in SGR form (1006): coordinates of any size, and the button of a release.
     MouseSgr,
     /// Mouse reports in pixels (1016).
     MousePixels,
-    /// The kitty keyboard protocol: every key as a sequence, with its release and its shifted character. Its flags are
-    /// pushed on the protocol's stack and then queried.
+    /// The kitty keyboard protocol: every key as a sequence, with its release and its shifted
+    /// character. Its flags are pushed on the protocol's stack and then queried.
     Keyboard,
 }
 
@@ -38,7 +40,8 @@ const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUAT
 const KEYBOARD_QUERY: &str = "\x1b[?u";
 
 impl TerminalMode {
-    /// The live view's modes that every terminal supports or ignores, in the order in which they are switched on.
+    /// The live view's modes that every terminal supports or ignores, in the order in which they
+    /// are switched on.
     // The alternate screen first: the cursor, for example, is hidden there and not on the shell's screen.
     pub const ALL_TERMINALS: [Self; 7] = [
         Self::AlternateScreen,
@@ -87,7 +90,8 @@ pub struct TerminalModes {
 }
 
 impl TerminalModes {
-    /// Records a mode as on and appends the bytes that switch it on; appends nothing if it is on already.
+    /// Records a mode as on and appends the bytes that switch it on; appends nothing if it is on
+    /// already.
     ///
     /// Call this before sending the bytes, so that a mode whose bytes were sent in part is switched off too.
     pub fn switch_on(&mut self, mode: TerminalMode, bytes: &mut Vec<u8>) {

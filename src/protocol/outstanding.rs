@@ -10,7 +10,8 @@ use std::time::Duration;
 // that is expected of a link (a satellite) is below one second.
 const REPLY_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Limit on the recorded queries: twice the number that [`REPLY_TIMEOUT`] holds at 60 frames a second.
+/// Limit on the recorded queries: twice the number that [`REPLY_TIMEOUT`] holds at 60 frames a
+/// second.
 const MAX_QUERIES: usize = 360;
 
 /// A query at the end of a message.
@@ -45,7 +46,9 @@ impl Outstanding {
         }
     }
 
-    /// Removes the query that `reply` answers and all older ones. A reply to no outstanding query changes nothing.
+    /// Removes the query that `reply` answers and all older ones.
+    ///
+    /// A reply to no outstanding query changes nothing.
     pub fn take(&mut self, reply: &Reply) {
         let answered = match reply {
             Reply::DeviceAttributes(_) => Some(Query::Fence),
@@ -57,7 +60,9 @@ impl Outstanding {
         }
     }
 
-    /// Returns the time left until the timeout; `None` if no reply is outstanding or the timeout has passed.
+    /// Returns the time left until the timeout.
+    ///
+    /// `None` if no reply is outstanding or the timeout has passed.
     pub fn time_left(&self, now: Duration) -> Option<Duration> {
         self.queries.back()?;
         (self.last_sent + REPLY_TIMEOUT).checked_sub(now)

@@ -23,11 +23,14 @@ const NUMBERS: RangeInclusive<u16> = 200..=999;
 pub struct Tag(u16);
 
 impl Tag {
-    /// The tag among the queries sent at the start. A terminal that replies to it replies to all tags.
+    /// The tag among the queries sent at the start.
+    ///
+    /// A terminal that replies to it replies to all tags.
     pub const FIRST: Self = Self(*NUMBERS.start());
 
-    /// Returns the next tag, which is never [`FIRST`](Self::FIRST). The 799 others repeat after 13 s at 60 frames a
-    /// second.
+    /// Returns the next tag, which is never [`FIRST`](Self::FIRST).
+    ///
+    /// The 799 others repeat after 13 s at 60 frames a second.
     pub fn next(self) -> Self {
         Self(if self.0 < *NUMBERS.end() { self.0 + 1 } else { Self::FIRST.0 + 1 })
     }

@@ -8,7 +8,8 @@ use std::time::Duration;
 // 50 ms is the usual choice of editors: longer than the gap within a sequence on most links, shorter than what is felt
 // as a delay.
 const ESCAPE_TIMEOUT: Duration = Duration::from_millis(50);
-/// Timeout where a lone `ESC` is probably the first byte of a reply, or keys are sequences and it cannot be the key.
+/// Timeout where a lone `ESC` is probably the first byte of a reply, or keys are sequences and it
+/// cannot be the key.
 // A reply cut in two by a slow link arrives within a round trip.
 const SEQUENCE_TIMEOUT: Duration = Duration::from_secs(1);
 
@@ -29,8 +30,9 @@ impl Receiver {
         self.outstanding.sent(bytes, now);
     }
 
-    /// Parses the bytes that arrive at `now` and returns the inputs. Without bytes it handles the timeout of an
-    /// incomplete escape sequence, if that has passed.
+    /// Parses the bytes that arrive at `now` and returns the inputs.
+    ///
+    /// Without bytes it handles the timeout of an incomplete escape sequence, if that has passed.
     pub fn receive(&mut self, bytes: &[u8], now: Duration) -> Vec<Input> {
         let mut inputs = Vec::new();
         if !bytes.is_empty() {
@@ -55,13 +57,16 @@ impl Receiver {
         self.parser.is_waiting().then_some(self.last_event + timeout)
     }
 
-    /// Sets whether the terminal sends every key as a sequence: see [`Parser::set_keys_are_sequences`].
+    /// Sets whether the terminal sends every key as a sequence: see
+    /// [`Parser::set_keys_are_sequences`].
     pub fn set_keys_are_sequences(&mut self, keys_are_sequences: bool) {
         self.keys_are_sequences = keys_are_sequences;
         self.parser.set_keys_are_sequences(keys_are_sequences);
     }
 
-    /// Returns the time left for outstanding replies; `None` if none is outstanding or their timeout has passed.
+    /// Returns the time left for outstanding replies.
+    ///
+    /// `None` if none is outstanding or their timeout has passed.
     pub fn reply_time_left(&self, now: Duration) -> Option<Duration> {
         self.outstanding.time_left(now)
     }
@@ -71,8 +76,8 @@ impl Receiver {
         self.outstanding.clear();
     }
 
-    /// Forgets an incomplete sequence and all outstanding replies, after the terminal has been restored: the next bytes
-    /// start a new stream.
+    /// Forgets an incomplete sequence and all outstanding replies, after the terminal has been
+    /// restored: the next bytes start a new stream.
     pub fn forget(&mut self) {
         self.forget_replies();
         // A new parser, because the shell may have read the rest of a sequence.

@@ -1,4 +1,5 @@
-//! Fault injection for this crate's own tests: a test learns which phase the program has reached, and may have it fail.
+//! Fault injection for this crate's own tests: a test learns which phase the program has reached,
+//! and may have it fail.
 //!
 //! Compiled to nothing without the feature `test-hooks`, which only the tests switch on.
 
@@ -25,8 +26,9 @@ pub fn inject_faults(test: UnixStream) {
     let _ = TEST.set(Mutex::new(test));
 }
 
-/// Reports a phase of the loop to the test and obeys the answer: `e` for an error, `p` for a panic, `w` for a panic in
-/// a worker; anything else continues. Continues as well while another thread is held at its own phase.
+/// Reports a phase of the loop to the test and obeys the answer: `e` for an error, `p` for a panic,
+/// `w` for a panic in a worker; anything else continues. Continues as well while another thread is held at its own
+/// phase.
 ///
 /// # Errors
 /// If the test asks for one.
@@ -37,7 +39,8 @@ pub(crate) fn reach(phase: &str) -> io::Result<()> {
     report(test().and_then(|test| test.try_lock().ok()), phase)
 }
 
-/// Reports a phase of another thread than the loop's, as [`reach`] does, after waiting for its turn.
+/// Reports a phase of another thread than the loop's, as [`reach`] does, after waiting for its
+/// turn.
 pub(crate) fn reach_in_thread(phase: &str) -> io::Result<()> {
     report(test().and_then(|test| test.lock().ok()), phase)
 }
@@ -54,8 +57,8 @@ fn report(test: Option<MutexGuard<'_, UnixStream>>, phase: &str) -> io::Result<(
     }
 }
 
-/// Reports that the loop is about to sleep without work or timer, and how many bytes it has read, so that a test need
-/// not wait to know that nothing more happens.
+/// Reports that the loop is about to sleep without work or timer, and how many bytes it has read,
+/// so that a test need not wait to know that nothing more happens.
 ///
 /// Returns the delay after which to call again, if another thread is reporting at the moment.
 pub(crate) fn rest() -> io::Result<Option<Duration>> {

@@ -1,4 +1,5 @@
-//! The terminal's modes: raw mode first, then those of screen, mouse and keyboard; switched off in reverse order.
+//! The terminal's modes: raw mode first, then those of screen, mouse and keyboard; switched off in
+//! reverse order.
 
 use super::output::Output;
 use super::replies::{await_last, is_in_background};
@@ -24,8 +25,8 @@ pub(super) struct Modes {
 const RESTORE_TIMEOUT: Duration = Duration::from_secs(1);
 
 impl Modes {
-    /// Switches on raw mode, the alternate screen, bracketed paste and reports of focus and mouse, and hides the
-    /// cursor.
+    /// Switches on raw mode, the alternate screen, bracketed paste and reports of focus and mouse,
+    /// and hides the cursor.
     ///
     /// Each mode is recorded before it is switched on, so that a failure half-way is undone as well.
     pub(super) fn switch_on_all(&mut self, keys: &File, output: &mut Output, signals: &Signals) -> io::Result<()> {
@@ -56,7 +57,8 @@ impl Modes {
         if mode == TerminalMode::Keyboard { fault_injection::reach("keyboard") } else { Ok(()) }
     }
 
-    /// Switches off all modes, newest first, and waits for the replies that `receiver` knows to be outstanding.
+    /// Switches off all modes, newest first, and waits for the replies that `receiver` knows to be
+    /// outstanding.
     ///
     /// The unwritten rest of a frame is dropped at a sequence boundary, so that no sequence is cut in two. A step that
     /// fails does not keep the next ones from running. Unread keys are flushed, or appended to `typed` if given.
@@ -122,7 +124,8 @@ fn wait_for_foreground(keys: &File, signals: &Signals) -> io::Result<()> {
     Ok(())
 }
 
-/// Restores the settings, after flushing unread keys if `flushes`, so that the shell does not get them.
+/// Restores the settings, after flushing unread keys if `flushes`, so that the shell does not get
+/// them.
 ///
 /// TCSAFLUSH would do both in one call, but it first waits until all output is transmitted, which a terminal stopped by
 /// Ctrl-S never does.

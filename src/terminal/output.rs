@@ -95,7 +95,9 @@ impl Output {
         }
     }
 
-    /// Drops pending text and the sequences that position and colour it. TerminalMode switches and queries stay.
+    /// Drops pending text and the sequences that position and colour it.
+    ///
+    /// Mode switches and queries stay.
     pub(super) fn drop_frame(&mut self) {
         let boundary = boundary(&self.pending, self.written);
         let rest = self.pending.split_off(boundary);
@@ -103,9 +105,9 @@ impl Output {
         self.advance(0);
     }
 
-    /// Writes all pending bytes, waiting until the deadline at most, and returns whether the terminal accepts more:
-    /// then the next print does not block. (A terminal that has stopped reading may have had room for exactly these
-    /// bytes.)
+    /// Writes all pending bytes, waiting until the deadline at most, and returns whether the
+    /// terminal accepts more: then the next print does not block. (A terminal that has stopped reading may have had
+    /// room for exactly these bytes.)
     pub(super) fn drain(&mut self, deadline: Instant) -> bool {
         while self.push().is_ok() && self.is_pending() {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -118,7 +120,8 @@ impl Output {
     }
 }
 
-/// Returns the first index at or after `index` that lies inside neither an escape sequence nor a UTF-8 character.
+/// Returns the first index at or after `index` that lies inside neither an escape sequence nor a
+/// UTF-8 character.
 fn boundary(bytes: &[u8], index: usize) -> usize {
     let start = bytes[..index].iter().rposition(|&byte| byte == ESCAPE).unwrap_or(index);
     let end = index.max(start + sequence_len(&bytes[start..]).unwrap_or(0));
@@ -138,8 +141,8 @@ fn sequences(mut bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 const ESCAPE: u8 = 0x1b;
 
-/// Returns the length of the escape sequence at the start of `bytes`, or `None` if none starts there or it is
-/// incomplete.
+/// Returns the length of the escape sequence at the start of `bytes`, or `None` if none starts
+/// there or it is incomplete.
 ///
 /// Knows the forms that the program sends: CSI sequences with their final byte, OSC strings that end with ST, and
 /// two-byte sequences.
@@ -167,15 +170,15 @@ fn is_writable(file: &impl AsFd, timeout: Duration) -> bool {
     poll(&mut fds, Some(&timespec(timeout))).is_ok_and(|ready| ready > 0)
 }
 
-/// Returns whether a message to standard error would not block: it is not a terminal, or the terminal accepts bytes
-/// within 250 ms. A terminal that has stopped reading would keep the program from ending.
+/// Returns whether a message to standard error would not block: it is not a terminal, or the
+/// terminal accepts bytes within 250 ms. A terminal that has stopped reading would keep the program from ending.
 pub fn stderr_accepts_message() -> bool {
     let stderr = io::stderr();
     !stderr.is_terminal() || is_writable(&stderr, Duration::from_millis(250))
 }
 
-/// Opens the terminal a second time, non-blocking, with an open file description of its own: `O_NONBLOCK` on the shared
-/// one would outlive the program.
+/// Opens the terminal a second time, non-blocking, with an open file description of its own:
+/// `O_NONBLOCK` on the shared one would outlive the program.
 ///
 /// Opening it by name fails where the device belongs to another user (after `su`); `/dev/tty` then works if it is the
 /// terminal of this session.
@@ -203,8 +206,8 @@ mod tests {
     use std::sync::mpsc::channel;
     use std::thread;
 
-    /// Wherever the frame is cut, the bytes written end at a boundary, and all modes, strings and queries follow in
-    /// order.
+    /// Wherever the frame is cut, the bytes written end at a boundary, and all modes, strings and
+    /// queries follow in order.
     #[test]
     fn a_frame_is_dropped_at_a_sequence_boundary() {
         let picture = "\x1b[?2026h\x1b[2;3H\x1b[38;2;1;2;3m▄é\x1b[58:2::1:2:3mx\x1b[C\x1b[m\x1b[2J\x1b[?2026l\x1b[c";

@@ -9,7 +9,8 @@ use std::fs::File;
 use std::io::Read;
 use std::time::{Duration, Instant};
 
-/// Reads input up to the last reply outstanding at `now`, until the deadline at most, and returns it.
+/// Reads input up to the last reply outstanding at `now`, until the deadline at most, and returns
+/// it.
 ///
 /// The shell would read such a reply as typed text, and still does if it comes after the deadline.
 pub(super) fn await_last(keys: &File, receiver: &mut Receiver, now: Duration, deadline: Instant) -> Vec<Input> {
@@ -47,7 +48,8 @@ fn read_up_to_last(
     }
 }
 
-/// Returns whether another process group is in the foreground: reading the terminal would stop this process.
+/// Returns whether another process group is in the foreground: reading the terminal would stop this
+/// process.
 pub(super) fn is_in_background(keys: &File) -> bool {
     termios::tcgetpgrp(keys).is_ok_and(|foreground| foreground != process::getpgrp())
 }

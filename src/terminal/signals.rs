@@ -133,7 +133,9 @@ impl Signals {
         self.write.try_clone().map(Waker)
     }
 
-    /// Empties the wake pipe. Call this before looking at the flags, so that a later event wakes the loop again.
+    /// Empties the wake pipe.
+    ///
+    /// Call this before looking at the flags, so that a later event wakes the loop again.
     #[doc(hidden)]
     pub fn drain(&mut self) {
         let mut buffer = [0; 256];
@@ -158,7 +160,8 @@ impl Signals {
         self.stops.as_ref().is_some_and(|stops| stops.try_recv().is_ok())
     }
 
-    /// Returns whether the program was continued since the last call, after a stop that cannot be caught (SIGSTOP).
+    /// Returns whether the program was continued since the last call, after a stop that cannot be
+    /// caught (SIGSTOP).
     #[doc(hidden)]
     pub fn take_continued(&self) -> bool {
         self.continued.swap(false, Ordering::SeqCst)
@@ -237,8 +240,8 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
     catch_deadly(&CAUGHT_BEFORE_DEATH, ignored, &deadly, &write)
 }
 
-/// Blocks the uncaught signals in all threads and accepts them on one: SIGTSTP goes into the returned channel, any
-/// other signal asks the program to end.
+/// Blocks the uncaught signals in all threads and accepts them on one: SIGTSTP goes into the
+/// returned channel, any other signal asks the program to end.
 ///
 /// SIGTSTP is blocked rather than caught, because only its default action stops a process as its shell expects, and
 /// does nothing in an orphaned process group, where the process could not be continued (a terminal that runs the
@@ -277,8 +280,9 @@ fn blocked() -> SigSet {
     signals
 }
 
-/// The signals pending for the process, one by one. `sigwait` would do, but nix's version returns an enumeration
-/// without the real-time signals.
+/// The signals pending for the process, one by one.
+///
+/// `sigwait` would do, but nix's version returns an enumeration without the real-time signals.
 #[cfg(target_os = "linux")]
 struct PendingSignals(nix::sys::signalfd::SignalFd);
 
@@ -325,8 +329,8 @@ pub fn without_signals<T>(work: impl FnOnce() -> T) -> T {
     without(&SigSet::all(), work)
 }
 
-/// Stops the whole process group by SIGTTOU, as the kernel does when a background process changes its terminal, and
-/// returns whether it could: `false` if SIGTTOU is ignored.
+/// Stops the whole process group by SIGTTOU, as the kernel does when a background process changes
+/// its terminal, and returns whether it could: `false` if SIGTTOU is ignored.
 ///
 /// Leaving it to the kernel fails: it restarts the interrupted call after each caught signal, and so stops the process
 /// again before the signal has been handled. The group, not the process: a shell does not notice a partly stopped job.
@@ -335,7 +339,8 @@ pub(super) fn stop_for_output() -> bool {
     is_stopping && rustix::process::kill_current_process_group(rustix::process::Signal::TTOU).is_ok()
 }
 
-/// Runs `work` with SIGTTOU blocked, so that a background process may change its terminal without being stopped.
+/// Runs `work` with SIGTTOU blocked, so that a background process may change its terminal without
+/// being stopped.
 pub(super) fn in_the_background<T>(work: impl FnOnce() -> T) -> T {
     without(&SigSet::from_iter([Signal::SIGTTOU]), work)
 }
@@ -350,7 +355,9 @@ fn without<T>(signals: &SigSet, work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Returns the set of ignored signals, signal n in bit n - 1. Empty except on Linux: elsewhere they are caught too.
+/// Returns the set of ignored signals, signal n in bit n - 1.
+///
+/// Empty except on Linux: elsewhere they are caught too.
 fn ignored() -> u64 {
     ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
 }
@@ -383,7 +390,8 @@ impl Waker {
     }
 }
 
-/// Ends the process by the signal's default action, so that the parent process sees the signal as the cause.
+/// Ends the process by the signal's default action, so that the parent process sees the signal as
+/// the cause.
 ///
 /// Returns only if that fails.
 pub fn die_of(signal: i32) {
@@ -394,7 +402,8 @@ pub fn die_of(signal: i32) {
     let _ = blocked().thread_unblock();
 }
 
-/// Makes writes beyond the file size limit (`ulimit -f`) fail with an error instead of ending the process by SIGXFSZ.
+/// Makes writes beyond the file size limit (`ulimit -f`) fail with an error instead of ending the
+/// process by SIGXFSZ.
 ///
 /// Call this once, in `main`; it holds for all threads.
 ///

@@ -20,7 +20,9 @@ impl Viewer {
         self.show_note(format!("{}{}", self.eye.mode().name(), self.hint(Command::Help, "shows its keys")));
     }
 
-    /// Returns the end of a note: a key for `command` and what it does; empty if no key is bound to it.
+    /// Returns the end of a note: a key for `command` and what it does.
+    ///
+    /// Empty if no key is bound to it.
     pub(super) fn hint(&self, command: Command, does: &str) -> String {
         let key = self.keymap().key_of(&self.screen.modes(self.size()), command);
         key.map_or_else(String::new, |key| format!("; {key} {does}"))
@@ -33,7 +35,9 @@ impl Viewer {
         closest_hit(scene, &ray).map(|hit| ray.at(hit.t))
     }
 
-    /// Moves the eye along the view direction until everything finite fills the picture. (Planes are infinite.)
+    /// Moves the eye along the view direction until everything finite fills the picture.
+    ///
+    /// (Planes are infinite.)
     pub(super) fn frame_everything(&mut self) {
         let Some(bounds) = self.screen.frame().and_then(|frame| frame.scene.bounds()) else {
             self.show_note("nothing finite to fit in view");

@@ -1,4 +1,4 @@
-//! InitialQueries to the user, and the keys that answer them.
+//! Questions to the user, and the keys that answer them.
 
 use super::layers::{Canvas, Layer, Level};
 use super::theme::Theme;
@@ -68,7 +68,9 @@ impl Dialog {
         }
     }
 
-    /// Returns the answer that a command stands for. A command that is not offered dismisses the question.
+    /// Returns the answer that a command stands for.
+    ///
+    /// A command that is not offered dismisses the question.
     pub(super) fn answer(self, meant: Option<Command>) -> Answer {
         match (self, meant) {
             (Self::Export, Some(Command::Write(format))) => Answer::Export(format),
@@ -119,7 +121,8 @@ impl Dialog {
         format!("{word} {}", self.keys(keymap))
     }
 
-    /// Draws the panel in the lower left corner above the lowest row, where it hides little of the picture.
+    /// Draws the panel in the lower left corner above the lowest row, where it hides little of the
+    /// picture.
     fn area(&self, keymap: &Keymap, screen: Rect) -> Rect {
         let lines = self.lines(keymap);
         let text = lines.iter().map(|line| line.width() + 4).max().unwrap_or(0);

@@ -54,7 +54,9 @@ impl Display {
         self.conclude();
     }
 
-    /// Records a reply to the initial queries. They take effect together: returns whether this was the last.
+    /// Records a reply to the initial queries.
+    ///
+    /// They take effect together: returns whether this was the last.
     pub(super) fn take_reply(&mut self, reply: &Reply) -> bool {
         let was_last = self.queries.take(reply);
         if was_last {

@@ -14,8 +14,8 @@ use crate::memory::OutOfMemory;
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Duration;
 
-/// Flags of the kitty keyboard protocol that are required before keys are treated as sequences: disambiguation (1),
-/// releases (2) and every key as a sequence (8).
+/// Flags of the kitty keyboard protocol that are required before keys are treated as sequences:
+/// disambiguation (1), releases (2) and every key as a sequence (8).
 const KEYBOARD: u16 = 1 | 2 | 8;
 
 impl Viewer {
@@ -28,7 +28,8 @@ impl Viewer {
         self.take_inputs(&inputs, now)
     }
 
-    /// Prepares for another program having the terminal: releases all keys and forgets the outstanding queries.
+    /// Prepares for another program having the terminal: releases all keys and forgets the
+    /// outstanding queries.
     pub(crate) fn lose_terminal(&mut self, now: Duration) {
         self.set_time(now);
         self.eye.stop(now);
@@ -37,8 +38,9 @@ impl Viewer {
         self.pacing.forget_replies();
     }
 
-    /// Takes the input that was typed while another program had the terminal. Replies among it are dropped, because the
-    /// queries are sent again.
+    /// Takes the input that was typed while another program had the terminal.
+    ///
+    /// Replies among it are dropped, because the queries are sent again.
     ///
     /// # Errors
     /// As for [`receive`](Self::receive).
@@ -123,8 +125,9 @@ impl Viewer {
         }
     }
 
-    /// Carries out a command that takes effect at once; `faster` (Shift) makes it larger. Continuous motion is the
-    /// eye's.
+    /// Carries out a command that takes effect at once; `faster` (Shift) makes it larger.
+    ///
+    /// Continuous motion is the eye's.
     pub(super) fn execute(&mut self, command: Command, more: bool) {
         match command {
             Command::Quit => self.requests.push_back(Request::Leave),

@@ -139,7 +139,8 @@ impl ExplainPanel {
         lines
     }
 
-    /// Draws the panel: the text, with the keys that scroll it, and below it the view from the side.
+    /// Draws the panel: the text, with the keys that scroll it, and below it the view from the
+    /// side.
     fn paint(&mut self, scroll: &str, theme: Theme, mode: CellMode, area: Rect, buffer: &mut Buffer) {
         let lines = self.lines(mode);
         let inside = area.inner(Margin::new(2, 1));

@@ -4,8 +4,8 @@ use crate::capabilities::CellMode;
 use crate::grid::Size;
 use crate::memory::{self, OutOfMemory};
 
-/// Limit on the pixels of a live picture: 1,048,576 cells of half blocks or of the ramp, 262,144 of shapes. In a larger
-/// window the picture covers the upper left part, in the window's shape, and the rest stays empty.
+/// Limit on the pixels of a live picture: 1,048,576 cells of half blocks or of the ramp, 262,144 of
+/// shapes. In a larger window the picture covers the upper left part, in the window's shape, and the rest stays empty.
 ///
 /// Windows of real terminals have less than a tenth of it: a 4K screen has 100,000 cells of 8 by 10 pixels.
 // The limit is a memory of 600 MB: a picture of this size takes 490 MB at the peak, one of twice the size 770 MB (in

@@ -7,7 +7,8 @@ use crossterm::event::{KeyEvent, KeyEventKind};
 use glam::Vec3;
 use std::time::Duration;
 
-/// Duration of the motion in the first frame after a key press, as if the key had been held for the time of a frame.
+/// Duration of the motion in the first frame after a key press, as if the key had been held for the
+/// time of a frame.
 // Without it the first frame would be the old picture, and a press would be visible one frame later.
 pub(crate) const FIRST_FRAME_MOTION: Duration = Duration::from_micros(16_667);
 
@@ -64,8 +65,9 @@ impl ViewState {
 const REDUCED_MOTION_STEP: Duration = Duration::from_millis(200);
 
 impl Eye {
-    /// Returns an eye without a scene. With `reduced_motion` each press is one step at once and nothing glides, for
-    /// people prone to motion sickness.
+    /// Returns an eye without a scene.
+    ///
+    /// With `reduced_motion` each press is one step at once and nothing glides, for people prone to motion sickness.
     pub(super) fn new(key_speed: KeySpeed, reduced_motion: bool) -> Self {
         Self { motion: Motion::with_speed(key_speed), reduced_motion, ..Self::default() }
     }
@@ -138,7 +140,9 @@ impl Eye {
         self.moved_until = moves.then(|| self.moved_until.unwrap_or(now.saturating_sub(FIRST_FRAME_MOTION)));
     }
 
-    /// Goes to the view saved as `number`, from 1, or that view of the scene file. `None` if there is none.
+    /// Goes to the view saved as `number`, from 1, or that view of the scene file.
+    ///
+    /// `None` if there is none.
     pub(super) fn go_to(&mut self, number: u8, now: Duration) -> Option<()> {
         let view = self.view.as_ref()?;
         let at = usize::from(number).checked_sub(1)?;
@@ -162,8 +166,9 @@ impl Eye {
         if self.view.as_ref().is_some_and(|view| view.orbits) { KeyMode::Orbit } else { KeyMode::Fly }
     }
 
-    /// Switches between flight and orbit. Orbit starts around the point seen in the middle of the picture, which leaves
-    /// the picture as it is.
+    /// Switches between flight and orbit.
+    ///
+    /// Orbit starts around the point seen in the middle of the picture, which leaves the picture as it is.
     pub(super) fn change_mode(&mut self, in_the_middle: Option<Vec3>) {
         let Some(view) = &mut self.view else { return };
         view.orbits = !view.orbits;

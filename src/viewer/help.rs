@@ -118,8 +118,10 @@ fn no_room() -> String {
     format!("help needs {columns}x{rows}")
 }
 
-/// Returns the keys in force and their meaning. A key that a higher mode binds is left out below. Of several keys for
-/// one command, such as digits, the first and the last are listed.
+/// Returns the keys in force and their meaning.
+///
+/// A key that a higher mode binds is left out below. Of several keys for one command, such as digits, the first and the
+/// last are listed.
 fn rows(keymap: &Keymap, modes: &[KeyMode]) -> Vec<KeyRow> {
     // Modes are topmost first, so that the first binding of a key is the one in force.
     let mut taken = HashSet::new();
@@ -142,7 +144,8 @@ fn joined(rows: &[KeyRow]) -> String {
     }
 }
 
-/// Breaks the rows into as few columns as fit on one page; if these are too wide together, into fewer, and pages.
+/// Breaks the rows into as few columns as fit on one page; if these are too wide together, into
+/// fewer, and pages.
 fn pages(rows: &[KeyRow], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
     let lines = lines.max(1);
     let needed = rows.len().div_ceil(lines).max(1);

@@ -85,7 +85,8 @@ impl Layers {
         self.stack.iter_mut().find_map(|layer| (layer.as_mut() as &mut dyn Any).downcast_mut())
     }
 
-    /// Returns the modes of keys on a screen of this size, topmost first, with `below` under all layers.
+    /// Returns the modes of keys on a screen of this size, topmost first, with `below` under all
+    /// layers.
     pub(super) fn modes(&self, screen: Rect, moving: KeyMode) -> Vec<KeyMode> {
         // A question takes the keys of movement too: a key that does not answer it should only dismiss it.
         if let Some(question) = self.stack.iter().find(|layer| layer.takes_all_keys()) {

@@ -15,7 +15,8 @@ const LIGHT_STEP: f32 = 1.0 / 32.0;
 const LIGHT_SHIFT_FACTOR: f32 = 4.0;
 
 impl Viewer {
-    /// Takes hold of the light nearest to the pointer on the screen; if one is held, of the next one.
+    /// Takes hold of the light nearest to the pointer on the screen; if one is held, of the next
+    /// one.
     pub(super) fn take_light(&mut self) {
         let (camera, aspect_ratio) = (self.eye.camera(), self.part().aspect_ratio());
         // Without a mouse event so far, the middle of the screen.
@@ -68,7 +69,8 @@ impl Viewer {
         self.drag_light(step * Vec2::new(across / self.part().aspect_ratio(), down));
     }
 
-    /// Moves the light to the right and down by shares of the picture's width and height, at constant depth.
+    /// Moves the light to the right and down by shares of the picture's width and height, at
+    /// constant depth.
     pub(super) fn drag_light(&mut self, by: Vec2) {
         let aspect_ratio = self.part().aspect_ratio();
         self.move_light(|camera, from| camera.point_dragged(from, by, aspect_ratio));
@@ -98,7 +100,8 @@ impl Viewer {
     }
 }
 
-/// Returns the light in front of the eye nearest to the pointer on the screen; without one in front, the first light.
+/// Returns the light in front of the eye nearest to the pointer on the screen; without one in
+/// front, the first light.
 fn nearest(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
     let away = |position: Vec3| {
         let place = camera.project(position, aspect_ratio);

@@ -29,8 +29,9 @@ impl Layer for LightMarker {
     }
 }
 
-/// Returns the cells of a light's marker on the screen, or `None` if the light is behind the eye. Of two pictures side
-/// by side, the left one has it.
+/// Returns the cells of a light's marker on the screen, or `None` if the light is behind the eye.
+///
+/// Of two pictures side by side, the left one has it.
 fn marker_area(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
     let (part, _) = frame.part_at([0, 0]);
     let place = frame.camera().project(light, part.aspect_ratio())?;
@@ -42,7 +43,8 @@ fn marker_area(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
 const MARKER: &str = "(*)";
 const MARKER_WIDTH: u16 = MARKER.len() as u16;
 
-/// Returns the cells of a marker centred at a column and row, moved to the screen's edge if they are outside.
+/// Returns the cells of a marker centred at a column and row, moved to the screen's edge if they
+/// are outside.
 fn area(screen: Rect, column: f32, row: f32) -> Rect {
     let within = |at: f32, size: u16, of: u16| at.clamp(0.0, f32::from(of.saturating_sub(size))) as u16;
     let x = within(column.floor() - f32::from(MARKER_WIDTH / 2), MARKER_WIDTH, screen.width);

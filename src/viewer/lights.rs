@@ -36,8 +36,8 @@ impl Lights {
         self.moves
     }
 
-    /// Takes hold of the light after the held one, or of the one that `first` returns, and returns its index. Lights at
-    /// infinity cannot be held.
+    /// Takes hold of the light after the held one, or of the one that `first` returns, and returns
+    /// its index. Lights at infinity cannot be held.
     pub(super) fn take_next(&mut self, first: impl FnOnce(&[Light]) -> Option<usize>) -> Option<usize> {
         let lights = self.all();
         let after =

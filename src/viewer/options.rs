@@ -14,23 +14,30 @@ pub struct Options {
     /// The user's choices for the terminal, and what the environment says about it.
     #[doc(hidden)]
     pub hints: Hints,
-    /// The order in which changed cells are sent. `None` chooses raster order, which takes the least time, and order by
-    /// colour, which takes the fewest bytes, while the link is slow.
+    /// The order in which changed cells are sent.
+    ///
+    /// `None` chooses raster order, which takes the least time, and order by colour, which takes the fewest bytes,
+    /// while the link is slow.
     pub order: Option<Order>,
-    /// The fidelity of a moving picture. `None` chooses `Exact`, and `Equal` while the link is slow.
+    /// The fidelity of a moving picture.
+    ///
+    /// `None` chooses `Exact`, and `Equal` while the link is slow.
     pub quality: Option<Quality>,
     /// Limit on the average number of bytes per second. `None`: as many as the link takes.
     pub max_rate: Option<u32>,
     /// Limit on the frames per second, greater than 0. `None`: 60.
     pub max_frames: Option<f32>,
-    /// The sampling. `None`: in motion as many samples as time allows, at rest up to [`Sampling::BEST`].
+    /// The sampling.
+    ///
+    /// `None`: in motion as many samples as time allows, at rest up to [`Sampling::BEST`].
     pub sampling: Option<Sampling>,
     /// The number of tracing threads. `None`: one per core.
     pub threads: Option<usize>,
     /// The speed of moving and turning by keys.
     #[doc(hidden)]
     pub key_speed: KeySpeed,
-    /// Whether motion is reduced: each key press moves one step at once, and nothing glides or moves by itself.
+    /// Whether motion is reduced: each key press moves one step at once, and nothing glides or
+    /// moves by itself.
     pub reduced_motion: bool,
     /// The folder for exports. `None`: the user may not export.
     pub exports: Option<PathBuf>,

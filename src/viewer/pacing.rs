@@ -18,7 +18,8 @@ pub(super) struct Pacing {
 struct Begun {
     shot: Shot,
     at: Duration,
-    /// Whether the view was in motion at that time, so that the next frame was expected to be of another view.
+    /// Whether the view was in motion at that time, so that the next frame was expected to be of
+    /// another view.
     in_motion: bool,
 }
 
@@ -50,12 +51,15 @@ impl Pacing {
         self.quality.for_new_view(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
     }
 
-    /// Returns the sampling of the next refinement of a picture with this sampling; `None` at the end.
+    /// Returns the sampling of the next refinement of a picture with this sampling.
+    ///
+    /// `None` at the end.
     pub(super) fn next_refinement(&self, sampling: Sampling) -> Option<Sampling> {
         self.quality.next_refinement(sampling)
     }
 
-    /// Returns whether all further refinements of the last picture are expected to take at most this long together.
+    /// Returns whether all further refinements of the last picture are expected to take at most
+    /// this long together.
     pub(super) fn ends_within(&self, time: Duration) -> bool {
         self.quality.ends_within(time)
     }

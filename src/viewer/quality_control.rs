@@ -1,5 +1,5 @@
-//! Control of the sampling by the time that frames take: in motion as many samples as fit the time of a frame, at rest
-//! a few refinements to the end.
+//! Control of the sampling by the time that frames take: in motion as many samples as fit the time
+//! of a frame, at rest a few refinements to the end.
 //!
 //! Pure: the times of frames are passed in.
 
@@ -67,7 +67,8 @@ impl QualityControl {
         }
     }
 
-    /// Returns the sampling of a new view: within a motion, or after a rest, when the user waits for the picture.
+    /// Returns the sampling of a new view: within a motion, or after a rest, when the user waits
+    /// for the picture.
     pub(super) fn for_new_view(&self, in_motion: bool) -> Sampling {
         // After a rest the user waits for this one frame, and it is refined anyway if the view stays.
         let level = if in_motion { self.level } else { self.level.min(ONE_SAMPLE_LEVEL) };
@@ -84,7 +85,8 @@ impl QualityControl {
         (self.forced.is_none() && shown != next).then_some(next)
     }
 
-    /// Returns whether all further refinements of the last picture are expected to take at most this long together.
+    /// Returns whether all further refinements of the last picture are expected to take at most
+    /// this long together.
     pub(super) fn ends_within(&self, time: Duration) -> bool {
         self.last.is_some_and(|last| self.predicted(last, MAX_MOTION_LEVEL) <= time.as_secs_f64())
     }

@@ -1,5 +1,5 @@
-//! Requests that leave the view: the camera as text, the picture as a file, a view for the scene's file. The driver
-//! writes.
+//! Requests that leave the view: the camera as text, the picture as a file, a view for the scene's
+//! file. The driver writes.
 
 use super::dialog::{Answer, Dialog};
 use super::{Request, Viewer};

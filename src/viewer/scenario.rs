@@ -1,5 +1,6 @@
-//! A viewer driven by an arbitrary sequence of events, with the rules that hold after each. Used by the tests below and
-//! by the fuzz target.
+//! A viewer driven by an arbitrary sequence of events, with the rules that hold after each.
+//!
+//! Used by the tests below and by the fuzz target.
 
 use super::{DriverState, Frame, INITIAL_WIPE, Job, Options, Step, Tracing, Viewer};
 use crate::capabilities::{CellShape, Hints};
@@ -15,19 +16,21 @@ use crate::tone::Picture;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-/// Limit on the actions at one time: cancel a refinement, draw, begin a frame, handle the timeout of a lone Escape, and
-/// draw the result.
+/// Limit on the actions at one time: cancel a refinement, draw, begin a frame, handle the timeout
+/// of a lone Escape, and draw the result.
 const MAX_ACTIONS: usize = 5;
 
-/// Limit on the wake-ups between the last event and rest. A lossy picture becomes exact in a few frames, and a glide of
-/// 60 frames a second ends within a second.
+/// Limit on the wake-ups between the last event and rest.
+///
+/// A lossy picture becomes exact in a few frames, and a glide of 60 frames a second ends within a second.
 const MAX_WAKE_UPS: usize = 400;
 
-/// Limits on the bytes of a frame, per cell and in addition: a cell takes all attributes, both colours and a cursor
-/// move.
+/// Limits on the bytes of a frame, per cell and in addition: a cell takes all attributes, both
+/// colours and a cursor move.
 const MAX_FRAME_BYTES: [usize; 2] = [120, 4096];
 
-/// Drives a viewer by events decoded from `bytes`, the last of which choose its options, and checks the rules:
+/// Drives a viewer by events decoded from `bytes`, the last of which choose its options, and checks
+/// the rules:
 ///
 /// - no frame is drawn or begun while bytes are being sent, and none is begun while another is traced;
 /// - after every event, there is soon nothing to do at that time, and the next wake-up is later;
@@ -223,7 +226,8 @@ impl Driver {
         self.is_sending = !bytes.is_empty();
     }
 
-    /// Lets the terminal accept and answer everything without further events, and checks that the viewer comes to rest.
+    /// Lets the terminal accept and answer everything without further events, and checks that the
+    /// viewer comes to rest.
     fn come_to_rest(&mut self) {
         self.viewer.lose_terminal(self.now);
         for _ in 0..MAX_WAKE_UPS {

@@ -26,8 +26,10 @@ struct Current {
 }
 
 impl SceneHistory {
-    /// Shows a scene. Returns the view to start from, or `None` to keep the current one because it is of a scene with
-    /// the same camera. A scene with the same camera as when it was left starts from where it was left.
+    /// Shows a scene.
+    ///
+    /// Returns the view to start from, or `None` to keep the current one because it is of a scene with the same camera.
+    /// A scene with the same camera as when it was left starts from where it was left.
     pub(super) fn show(&mut self, scene: Scene, of: usize, orbits: bool) -> Option<ViewState> {
         let home = *scene.camera();
         let before = self.current.as_ref().map(|current| (current.of, current.home));

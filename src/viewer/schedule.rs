@@ -1,4 +1,5 @@
-//! The decision when to draw, trace, refine and wait, made in one function from one snapshot of facts.
+//! The decision when to draw, trace, refine and wait, made in one function from one snapshot of
+//! facts.
 //!
 //! The newest picture wins. A frame of a new view is begun when the last one can be sent; a refinement is cancelled
 //! when its view changes; the shown picture is improved only while it stays. When nothing changes, there is no timer.
@@ -97,13 +98,15 @@ pub(super) fn decide(facts: &Facts, now: Duration) -> Action {
 }
 
 impl Facts {
-    /// Returns whether to hold back the first picture because it is nearly final: showing it twice would take longer.
+    /// Returns whether to hold back the first picture because it is nearly final: showing it twice
+    /// would take longer.
     fn perfects_first(&self) -> bool {
         self.holds_first_back && self.picture == Picture::Refinable && self.moved_until.is_none()
     }
 
-    /// Returns the earliest time to draw if no event occurs before. An improvement of the shown picture waits while a
-    /// frame of a newer view is in progress.
+    /// Returns the earliest time to draw if no event occurs before.
+    ///
+    /// An improvement of the shown picture waits while a frame of a newer view is in progress.
     fn draw_at(&self) -> Option<Duration> {
         if self.perfects_first() {
             return None;
@@ -131,8 +134,10 @@ impl Facts {
         at.max(self.link_free_at)
     }
 
-    /// Returns the time until which there is nothing to do; `None` when nothing moves and the picture is final, or
-    /// while the terminal accepts bytes, whose end the driver notices.
+    /// Returns the time until which there is nothing to do.
+    ///
+    /// `None` when nothing moves and the picture is final, or while the terminal accepts bytes, whose end the driver
+    /// notices.
     fn wake_at(&self, draw_at: Option<Duration>, frame_at: Duration) -> Option<Duration> {
         let DriverState { sending, tracing } = self.busy;
         let moves = self.picture == Picture::Stale || self.moved_until.is_some();

@@ -213,7 +213,8 @@ impl Screen {
         }
     }
 
-    /// Forgets what the terminal shows: the next bytes draw everything, with either half block if both join seamlessly.
+    /// Forgets what the terminal shows: the next bytes draw everything, with these half blocks.
+    ///
     /// They erase the window first if the picture covers only a part of it.
     pub(super) fn redraw(&mut self, half_blocks: HalfBlocks, covers_a_part: bool) {
         self.encoder.forget();
@@ -238,8 +239,9 @@ impl Screen {
         self.get::<ProgressPanel>().is_some()
     }
 
-    /// Returns whether there is a frame of this size. While a scene is loading and there is none, black serves as a
-    /// background for panels.
+    /// Returns whether there is a frame of this size.
+    ///
+    /// While a scene is loading and there is none, black serves as a background for panels.
     fn can_show(&self, size: Size) -> bool {
         let Some(frame) = self.frame() else { return self.awaits_scene() };
         // After a resize the old frame would be cut off or leave a part of the window empty.
@@ -315,8 +317,9 @@ struct FrameRate {
 }
 
 impl FrameRate {
-    /// Counts a frame shown at `time`, or at rest if `None`. A pause ends the count, because frames before it say
-    /// nothing about those after it.
+    /// Counts a frame shown at `time`, or at rest if `None`.
+    ///
+    /// A pause ends the count, because frames before it say nothing about those after it.
     fn count(&mut self, moving: Option<Duration>) {
         let between = self.last.zip(moving).map(|(last, now)| now.saturating_sub(last));
         self.last = moving;
@@ -346,7 +349,8 @@ mod tests {
     use crate::viewer::view_layout::ViewLayout;
     use std::num::NonZeroU32;
 
-    /// Returns the order of cells: by colour while the link is slow, raster otherwise, unless the user has chosen one.
+    /// Returns the order of cells: by colour while the link is slow, raster otherwise, unless the
+    /// user has chosen one.
     #[test]
     fn the_order_is_the_links() {
         let text = include_str!("../../scenes/three_spheres.ron");

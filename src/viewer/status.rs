@@ -13,7 +13,8 @@ use std::time::Duration;
 pub(super) struct StatusLine;
 
 impl StatusLine {
-    /// Returns the number of rows: the statistics, and the keys below them where there is room for panels.
+    /// Returns the number of rows: the statistics, and the keys below them where there is room for
+    /// panels.
     pub(super) fn rows(screen: Rect) -> u16 {
         1 + u16::from(theme::has_room(screen))
     }

@@ -2,8 +2,9 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// A value, and whether it was borrowed mutably since the last [`settle`](Tracked::settle). So no method that changes
-/// the value has to set a flag, and none can forget it.
+/// A value, and whether it was borrowed mutably since the last [`settle`](Tracked::settle).
+///
+/// So no method that changes the value has to set a flag, and none can forget it.
 pub(super) struct Tracked<T> {
     value: T,
     is_changed: bool,

@@ -1,4 +1,6 @@
-//! The layout of maps on the screen: one map, or two to compare. The shaded picture counts as a map here.
+//! The layout of maps on the screen: one map, or two to compare.
+//!
+//! The shaded picture counts as a map here.
 
 use crate::camera::Camera;
 use crate::color::Srgb8;
@@ -89,7 +91,8 @@ impl ViewLayout {
         self.maps().map(|map| map.legend(scene, camera)).collect()
     }
 
-    /// Returns the sampling for these maps if `wanted` is requested: one ray per pixel, unless a map refines.
+    /// Returns the sampling for these maps if `wanted` is requested: one ray per pixel, unless a
+    /// map refines.
     pub(super) fn sampling(self, wanted: Sampling) -> Sampling {
         // Depths, normals and costs of several samples have no meaningful mean at an edge.
         if wanted == Sampling::Coarse || self.maps().any(Map::refines) {
@@ -111,8 +114,9 @@ impl ViewLayout {
 /// The colour of the line between two pictures.
 const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 
-/// Splits a picture's columns between the two sides of a line. A picture too narrow for both has no line and no right
-/// side.
+/// Splits a picture's columns between the two sides of a line.
+///
+/// A picture too narrow for both has no line and no right side.
 fn halves(whole: Resolution) -> [Resolution; 2] {
     let left = if whole.width() < 3 { whole.width() } else { (whole.width() - 1) / 2 };
     [left, whole.width().saturating_sub(left + 1)].map(|width| whole.with_width(width))
@@ -198,7 +202,8 @@ mod tests {
         Picture { width, height: 2, pixels: vec![Srgb8::new(band, band, band); 2 * width as usize] }
     }
 
-    /// Returns the rows as text: a digit for each pixel, which identifies its picture, and a bar for the line.
+    /// Returns the rows as text: a digit for each pixel, which identifies its picture, and a bar
+    /// for the line.
     fn rows(picture: &Picture) -> Vec<String> {
         let text = |pixel: &Srgb8| if *pixel == LINE { '|' } else { char::from(b'0' + pixel.r) };
         picture.pixels.chunks(picture.width as usize).map(|row| row.iter().map(text).collect()).collect()

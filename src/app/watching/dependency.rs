@@ -24,7 +24,9 @@ enum State {
         modified: (i64, i64),
         length: u64,
     },
-    /// A folder, pipe or device. Only its identity counts: reading alone changes the times of pipes and devices.
+    /// A folder, pipe or device.
+    ///
+    /// Only its identity counts: reading alone changes the times of pipes and devices.
     Other(Identity),
 }
 
@@ -65,8 +67,9 @@ impl Dependency {
         matches!(self.state, State::Other(_))
     }
 
-    /// Returns whether the path leads to something new. A missing file does not count: an event reports when it comes
-    /// back.
+    /// Returns whether the path leads to something new.
+    ///
+    /// A missing file does not count: an event reports when it comes back.
     pub(in crate::app) fn has_changed(&self) -> bool {
         // Editors replace a file in two steps: it is missing for a moment.
         let now = State::of(&self.path);

@@ -12,7 +12,7 @@ const MAX_LINKS: usize = 40;
 /// The folders and links that a path leads through. None of their own paths contains a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ResolvedPath {
-    /// The folders and links on the way, each of which may be replaced.
+    /// The folders and links on the path, each of which may be replaced.
     steps: Vec<Step>,
     /// The file, or the first missing component.
     end: PathBuf,
@@ -29,7 +29,7 @@ struct Step {
 impl ResolvedPath {
     /// Resolves `path`. `None` if it is relative and the current folder has been removed.
     pub(super) fn to(path: &Path) -> Option<Self> {
-        // The path of the current folder is not part of the way: the process stays in it even if it is moved.
+        // The path of the current folder is not part of the resolution: the process stays in it even if it is moved.
         let mut folder = if path.is_absolute() { PathBuf::new() } else { Path::new(".").canonicalize().ok()? };
         let mut steps = Vec::new();
         let mut left = names(path);
@@ -72,7 +72,8 @@ impl ResolvedPath {
         links.chain([&*self.end]).filter_map(Path::parent).filter(|folder| !is_virtual(folder))
     }
 
-    /// Returns further folders to watch: those on the way, each of which reports when it is replaced.
+    /// Returns further folders to watch: those on the path, each of which reports when it is
+    /// replaced.
     ///
     /// A removed folder is not reported while a process has it as its current folder. So while the file is missing,
     /// their parents are watched too. Folders directly below the root are watched only then: they are permanent, and
@@ -85,7 +86,8 @@ impl ResolvedPath {
     }
 }
 
-/// Returns whether a folder belongs to a virtual file system, where nothing is saved and events are frequent.
+/// Returns whether a folder belongs to a virtual file system, where nothing is saved and events are
+/// frequent.
 fn is_virtual(folder: &Path) -> bool {
     ["/proc", "/sys", "/dev"].iter().any(|root| folder.starts_with(root)) && !folder.starts_with("/dev/shm")
 }

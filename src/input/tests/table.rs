@@ -11,7 +11,7 @@ const SHIFT: KeyModifiers = KeyModifiers::SHIFT;
 pub(super) const ALT: KeyModifiers = KeyModifiers::ALT;
 pub(super) const CONTROL: KeyModifiers = KeyModifiers::CONTROL;
 
-type Row = (&'static [u8], Vec<Input>);
+type Case = (&'static [u8], Vec<Input>);
 
 // -- shorthands for expected inputs -----------------------------------------------------------------------------------
 
@@ -49,7 +49,7 @@ fn unknown(text: &[u8]) -> Input {
 
 // -- the table --------------------------------------------------------------------------------------------------------
 
-fn characters() -> Vec<Row> {
+fn characters() -> Vec<Case> {
     let up = KeyCode::Up;
     vec![
         (b"w", vec![letter('w', NONE)]),
@@ -77,7 +77,7 @@ fn characters() -> Vec<Row> {
     ]
 }
 
-fn broken_characters() -> Vec<Row> {
+fn broken_characters() -> Vec<Case> {
     vec![
         (b"a\xffb\xc3c\x80\x9b\xe2\x82d", ['a', 'b', 'c', 'd'].map(|c| letter(c, NONE)).to_vec()),
         (b"\xe2\x82\x1b[A\xc3\xc3\xa9", vec![key(KeyCode::Up, NONE), letter('é', NONE)]),
@@ -87,7 +87,7 @@ fn broken_characters() -> Vec<Row> {
     ]
 }
 
-pub(super) fn keys_without_a_letter() -> Vec<Row> {
+pub(super) fn keys_without_a_letter() -> Vec<Case> {
     use KeyCode::{BackTab, Delete, Down, End, F, Home, Insert, KeypadBegin, Left, PageDown, PageUp, Right, Up};
     let keys =
         |codes: &[KeyCode], modifiers| -> Vec<Input> { codes.iter().map(|&code| key(code, modifiers)).collect() };
@@ -120,7 +120,7 @@ pub(super) fn keys_without_a_letter() -> Vec<Row> {
     ]
 }
 
-pub(super) fn kitty_keys() -> Vec<Row> {
+pub(super) fn kitty_keys() -> Vec<Case> {
     use KeyEventKind::{Press, Release, Repeat};
     let w = KeyCode::Char('w');
     let shift = KeyCode::Modifier(ModifierKeyCode::LeftShift);
@@ -178,7 +178,7 @@ pub(super) fn kitty_keys() -> Vec<Row> {
     ]
 }
 
-fn mouse_reports() -> Vec<Row> {
+fn mouse_reports() -> Vec<Case> {
     use MouseButton::{Left, Middle, Right};
     use MouseEventKind::{Down, Drag, Moved, ScrollDown, ScrollLeft, ScrollRight, ScrollUp, Up};
     vec![
@@ -203,7 +203,7 @@ fn mouse_reports() -> Vec<Row> {
     ]
 }
 
-fn pastes() -> Vec<Row> {
+fn pastes() -> Vec<Case> {
     vec![
         (b"\x1b[200~q\x03\x1b[A\x1b[201~x", vec![paste("q\x03\x1b[A"), letter('x', NONE)]),
         (b"\x1b[200~\x1b[201~", vec![paste("")]),
@@ -214,7 +214,7 @@ fn pastes() -> Vec<Row> {
     ]
 }
 
-pub(super) fn replies() -> Vec<Row> {
+pub(super) fn replies() -> Vec<Case> {
     vec![
         (b"\x1b[?62;22c", vec![reply(Reply::DeviceAttributes(vec![62, 22]))]),
         (b"\x1b[>41;354;0c", vec![reply(Reply::SecondaryAttributes(vec![41, 354, 0]))]),
@@ -231,7 +231,7 @@ pub(super) fn replies() -> Vec<Row> {
     ]
 }
 
-pub(super) fn replies_in_strings_and_others() -> Vec<Row> {
+pub(super) fn replies_in_strings_and_others() -> Vec<Case> {
     vec![
         (b"\x1b]11;rgb:1e1e/1e1e/1e1e\x07", vec![reply(Reply::Osc(b"11;rgb:1e1e/1e1e/1e1e".to_vec()))]),
         (b"\x1b]4;1;rgb:cc/0/0\x1b\\x", vec![reply(Reply::Osc(b"4;1;rgb:cc/0/0".to_vec())), letter('x', NONE)]),
@@ -248,7 +248,7 @@ pub(super) fn replies_in_strings_and_others() -> Vec<Row> {
     ]
 }
 
-fn broken_sequences() -> Vec<Row> {
+fn broken_sequences() -> Vec<Case> {
     vec![
         // A sequence that starts within another aborts it.
         (b"\x1b[1;\x1b[A", vec![key(KeyCode::Up, NONE)]),
@@ -273,7 +273,7 @@ fn broken_sequences() -> Vec<Row> {
     ]
 }
 
-pub(super) fn table() -> Vec<Row> {
+pub(super) fn table() -> Vec<Case> {
     [
         characters(),
         broken_characters(),

@@ -1,4 +1,5 @@
-//! The view from the side, as the lecture draws it: the eye, the view rectangle, the ray and its hit.
+//! The view from the side, as the lecture draws it: the eye, the view rectangle, the ray and its
+//! hit.
 
 use crate::camera::{Basis, Camera};
 use crate::capabilities::{CellMode, Colors};
@@ -16,7 +17,8 @@ use ratatui_core::text::Line as Text;
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::canvas::{Canvas, Circle, Line};
 
-/// The drawing's geometry, in the plane of the view direction and the vertical: along -w and v from the eye.
+/// The drawing's geometry, in the plane of the view direction and the vertical: along -w and v from
+/// the eye.
 pub(super) struct Inset {
     /// The ends of the view rectangle.
     rectangle: [Vec2; 2],
@@ -36,8 +38,9 @@ pub(super) struct Inset {
 // Beyond the target, so that it is seen to pass the scene.
 const MISS_LENGTH: f32 = 1.5;
 
-/// Distance at which the view rectangle is drawn, as a share of the ray. Only the ratios of its distance and sides
-/// matter, so it is drawn where it is easy to see.
+/// Distance at which the view rectangle is drawn, as a share of the ray.
+///
+/// Only the ratios of its distance and sides matter, so it is drawn where it is easy to see.
 const VIEW_RECTANGLE_DISTANCE: f32 = 0.3;
 
 impl Inset {
@@ -107,8 +110,8 @@ impl Inset {
         buffer.set_style(area, Style { fg: None, ..style });
     }
 
-    /// Returns the part of the plane to draw in this much room: everything but spheres and lights, centred, with a
-    /// margin.
+    /// Returns the part of the plane to draw in this much room: everything but spheres and lights,
+    /// centred, with a margin.
     fn bounds(&self, width: f32, height: f32) -> [[f64; 2]; 2] {
         // Spheres and lights are left out: one far away would shrink the ray to a dot.
         let points = [Vec2::ZERO, self.rectangle[0], self.rectangle[1], self.end];

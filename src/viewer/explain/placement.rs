@@ -32,8 +32,8 @@ pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
     if row < half { Rect::new(x, half + 1, width, height - half - 1) } else { Rect::new(x, 0, width, half - 1) }
 }
 
-/// Returns the areas within the panel of the text, which has `lines` lines, and of the inset below it, which is empty
-/// if there is no room for it.
+/// Returns the areas within the panel of the text, which has `lines` lines, and of the inset below
+/// it, which is empty if there is no room for it.
 pub(super) fn split(inside: Rect, lines: u16) -> [Rect; 2] {
     let [least, most] = INSET_HEIGHT;
     let inset = if inside.height < 2 * least { 0 } else { inside.height.saturating_sub(lines + 1).clamp(least, most) };

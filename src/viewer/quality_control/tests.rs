@@ -7,8 +7,9 @@ fn ms(milliseconds: f64) -> Duration {
     Duration::from_secs_f64(milliseconds / 1000.0)
 }
 
-/// Returns the levels of `frames` frames in motion, the first after a rest. `time` gives the milliseconds that a frame
-/// takes at a level.
+/// Returns the levels of `frames` frames in motion, the first after a rest.
+///
+/// `time` gives the milliseconds that a frame takes at a level.
 fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usize) -> f64) -> Vec<usize> {
     let levels = (0..frames).map(|frame| {
         let sampling = control.for_new_view(frame > 0);
@@ -19,8 +20,8 @@ fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usiz
     levels.collect()
 }
 
-/// Returns the time of each level in a scene where a third of the pixels has edges; one sample takes `one`
-/// milliseconds.
+/// Returns the time of each level in a scene where a third of the pixels has edges; one sample
+/// takes `one` milliseconds.
 fn machine(one: f64) -> impl Fn(usize) -> f64 {
     move |level| one * [0.25, 1.0, 2.0, 6.0][level]
 }
@@ -97,8 +98,8 @@ fn room_now_and_then_is_no_room() {
     assert_eq!(changes(&levels), 0, "{levels:?}");
 }
 
-/// Where there are edges everywhere, a level takes four times as long as the one before: the control learns this, and
-/// does not try the level again and again.
+/// Where there are edges everywhere, a level takes four times as long as the one before: the
+/// control learns this, and does not try the level again and again.
 #[test]
 fn the_cost_ratio_of_a_level_is_learnt() {
     let mut control = QualityControl::new(None);
