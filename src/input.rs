@@ -72,6 +72,7 @@ const MAX_LATE_BYTES: usize = 256;
 
 const ESC: u8 = 0x1b;
 const BEL: u8 = 0x07;
+// These two abort a sequence or a string, as in the VT100.
 const CAN: u8 = 0x18;
 const SUB: u8 = 0x1a;
 
@@ -137,6 +138,7 @@ impl Parser {
 
     /// Parses the next bytes of the stream and appends the completed inputs to `out`.
     pub fn feed(&mut self, bytes: &[u8], out: &mut Vec<Input>) {
+        // Byte by byte, so that the result cannot depend on how the bytes are split. Input is rare and short.
         for &byte in bytes {
             self.take(byte, out);
         }
@@ -169,6 +171,7 @@ impl Parser {
             State::Escape | State::Ss3 | State::Csi | State::Text(_) | State::TextEscape(_) => {
                 self.late = Some(MAX_LATE_BYTES);
             }
+            // A paste is not ended by a single pause, as a sequence is.
             State::Paste if self.paste.survives_timeout() => {}
             State::Paste => self.finish_paste(out),
             _ => self.reset(),
@@ -199,6 +202,7 @@ impl Parser {
         let Some(left @ 1..) = self.late else {
             return false;
         };
+        // Counted, so that a terminal cannot keep the parser in this state for ever.
         self.late = Some(left - 1);
         match self.state {
             // Any other byte after ESC would be Alt with a key, and is more likely a key typed later.

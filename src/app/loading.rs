@@ -156,6 +156,7 @@ impl<E: Send + 'static> Worker<E> {
             if request.cancellation.is_cancelled() {
                 continue;
             }
+            // Once is enough, however many pipes a scene has.
             let is_handed_over = AtomicBool::new(false);
             let hand_over_queue = || {
                 if !is_handed_over.load(Ordering::Relaxed) {
@@ -254,6 +255,7 @@ fn load<'p, E: Send>(
     let reporter = Reporter::new(&on_progress).with_dependencies(&on_dependency).cancelled_by(cancellation);
     let read = source.read(&reporter);
     let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
+    // Also after an error: the file is watched, so that its correction is seen.
     events.send(LoadEvent::Dependencies(needed));
     match read {
         // The result of a cancelled load is not wanted, whatever it is.
@@ -267,6 +269,7 @@ fn load<'p, E: Send>(
 }
 
 fn build<E>(draft: Draft, reporter: &Reporter<'_>, events: &EventSender<'_, E>) {
+    // Before the trees are built, which takes most of the time of a large mesh.
     if let Some(sketch) = draft.sketch() {
         events.send(LoadEvent::Sketch(sketch));
     }

@@ -11,6 +11,7 @@ use std::{fmt, io};
 /// its files has changed. See [`open`](super::open).
 pub struct Source<E = LoadError> {
     named: SceneName,
+    // Shared with the loading thread, which may outlive the current scene.
     read: Arc<Read<E>>,
 }
 
@@ -42,6 +43,7 @@ impl Source {
 fn draft(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
     Draft::load(path, reporter).map_err(|unfinished| match unfinished {
         Unfinished::Failed(error) => error,
+        // Never shown: the result of a cancelled load is dropped.
         Unfinished::Cancelled => LoadError::CannotRead { path: path.to_owned(), error: io::Error::other(Cancelled) },
     })
 }

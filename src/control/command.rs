@@ -145,6 +145,7 @@ macro_rules! commands {
     };
 }
 
+// At most 24 characters, imperative or the thing that opens, as in other programs' help.
 commands! {
     [Command::Move(Direction::Forward)] "MoveForward", "move forward";
     [Command::Move(Direction::Back)] "MoveBack", "move back";
@@ -259,6 +260,7 @@ impl Command {
 
     /// Returns whether Shift with the key makes the command faster.
     pub fn has_faster(self) -> bool {
+        // Not the wipe and the zoom: their steps are coarse already.
         self.moves() || self.moves_light() || matches!(self, Self::Point(_))
     }
 

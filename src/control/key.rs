@@ -14,6 +14,7 @@ pub struct Key {
 }
 
 /// Names of the keys that type no character.
+// As keyboards and other programs spell them; case matters, so that there is one spelling in files and help.
 const NAMED: [(&str, KeyCode); 14] = [
     ("Left", KeyCode::Left),
     ("Right", KeyCode::Right),

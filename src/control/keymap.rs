@@ -240,6 +240,7 @@ impl Keymap {
     pub fn key_of(&self, modes: &[KeyMode], command: Command) -> Option<Key> {
         let rows = modes.iter().flat_map(|&mode| self.of(mode)).filter(|row| row.command == command);
         let does = |key: &&Key| self.command(modes, &key.pressed()).is_some_and(|(meant, _)| meant == command);
+        // Without Ctrl, because a note is read faster with a single letter.
         rows.flat_map(|row| &row.keys).filter(does).min_by_key(|key| key.ctrl).copied()
     }
 

@@ -152,6 +152,7 @@ fn entries(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Entry> {
             faults.add(name.span, || format!("duplicate mode {}", quoted(name.text)));
         }
         match (KeyMode::from_name(name.text), &value.value) {
+            // One error for an unknown mode: those of its keys would only repeat it.
             (None, _) => faults.add(name.span, || unknown_mode(name.text)),
             (Some(mode), Value::Map(pairs)) => {
                 for (keys, command) in pairs {
@@ -190,6 +191,7 @@ fn keys_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<(Key, Span)> {
 }
 
 fn key_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Key> {
+    // In quotes, because most keys are no words of RON.
     let Value::String(name) = &node.value else {
         faults.add(node.head(), || "expected a key in quotes, as in \"w\", or a list of keys".to_owned());
         return None;

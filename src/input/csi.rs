@@ -74,6 +74,7 @@ impl Sequence<'_> {
             // With parameters `M` is rxvt's mouse report, below.
             'M' if self.is_bare() => Some(Meaning::OldMouse),
             '[' if self.is_bare() => Some(Meaning::LinuxFunction),
+            // Bare only: with parameters `CSI I` moves the cursor by tabs.
             'I' if self.is_bare() => Some(Meaning::Event(Event::FocusGained)),
             'O' if self.is_bare() => Some(Meaning::Event(Event::FocusLost)),
             'M' => {

@@ -57,6 +57,7 @@ pub(super) fn from_ss3(numbers: &[u8], letter: u8) -> Option<KeyEvent> {
             let letter = char::from(letter.to_ascii_uppercase());
             from_letter(letter, modifiers | KeyModifiers::CONTROL)
         }
+        // Unambiguous only here: `CSI R` with parameters is a cursor report.
         b'R' => Some(KeyEvent::new(KeyCode::F(3), modifiers)),
         _ => from_letter(letter.into(), modifiers).or_else(|| from_keypad(letter, modifiers)),
     }
@@ -105,6 +106,7 @@ pub(super) fn from_letter_with_modifiers(letter: char, params: &[&[u16]]) -> Opt
         return None;
     }
     match letter {
+        // Shift+Tab, whose Shift the legacy form leaves out.
         'Z' => Some(press.press(KeyCode::BackTab, KeyModifiers::SHIFT)),
         // `CSI R` without parameters; with them it is a cursor report, decoded elsewhere.
         'R' => Some(press.press(KeyCode::F(3), KeyModifiers::NONE)),
@@ -221,6 +223,7 @@ impl Press {
             0 | 1 => KeyEventKind::Press,
             2 => KeyEventKind::Repeat,
             3 => KeyEventKind::Release,
+            // A kind of a later version of the protocol.
             _ => return None,
         };
         Some(Self { modifiers: modifiers_from_mask(mask), kind, state: state_from_mask(mask) })

@@ -26,6 +26,7 @@ pub(super) struct Paste {
 impl Paste {
     /// Takes a byte and returns whether it completes the paste.
     pub(super) fn ends_with(&mut self, byte: u8) -> bool {
+        // Only consecutive timeouts count: a slow paste makes progress.
         self.waits = 0;
         if byte != END[self.matched] {
             // ESC occurs only as the first byte of END, so a new match can only begin with this byte.

@@ -83,12 +83,14 @@ impl InitialQueries {
 
     /// Records a reply, and returns whether it ends the batch. Later replies are ignored.
     pub fn take(&mut self, reply: &Reply) -> bool {
+        // A reply after the fence belongs to a later query, or is forged.
         if !self.open {
             return false;
         }
         let replies = &mut self.replies;
         match reply {
             Reply::DeviceAttributes(_) => return self.close(),
+            // Only the block's query asks for the position; a user's Shift+F3 looks the same and is harmless here.
             Reply::CursorPosition { column, .. } => replies.take_cursor(*column),
             &Reply::Mode { mode, state } => replies.take_mode(mode, state),
             &Reply::CellPixels { width, height } => replies.cell_pixels = Some((width, height)),

@@ -108,6 +108,7 @@ impl TerminalModes {
 
     /// Appends the bytes that switch all modes off, newest first.
     pub fn switch_all_off(&mut self, bytes: &mut Vec<u8>) {
+        // Newest first, so that each is undone in the state in which it was switched on.
         for mode in self.on.drain(..).rev() {
             bytes.extend_from_slice(mode.off().as_bytes());
         }

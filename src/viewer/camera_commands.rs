@@ -14,6 +14,7 @@ pub(super) const ZOOM_FACTOR: f32 = 1.1;
 impl Viewer {
     /// Switches between flight and orbit about the point in the middle of the picture.
     pub(super) fn change_mode(&mut self) {
+        // Of the frame that the user sees, which may be older than the camera.
         let in_the_middle = self.in_the_middle();
         self.eye.change_mode(in_the_middle);
         self.screen.set_moving(self.eye.mode());
@@ -55,6 +56,7 @@ impl Viewer {
 
     /// Scales the view rectangle by `factor`, and shows the field of view in a note.
     pub(super) fn zoom(&mut self, factor: f32) {
+        // The view rectangle changes and not the eye, so that the perspective stays.
         self.eye.change(self.now, |camera, _| camera.zoomed(factor));
         if let Some(camera) = self.eye.camera() {
             let degrees = camera.rectangle().vertical_fov().to_degrees();

@@ -48,6 +48,7 @@ impl Layer for Dialog {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         let keymap = canvas.keymap;
+        // Unlike other panels a question is asked on every screen: its keys are in force.
         if canvas.has_room() {
             let area = self.area(keymap, canvas.screen());
             canvas.lay(area, |theme, area, buffer| self.paint(keymap, theme, area, buffer));

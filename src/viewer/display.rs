@@ -20,6 +20,7 @@ pub(super) struct Display {
 impl Display {
     /// Returns a display with the findings from the environment alone.
     pub(super) fn new(hints: Hints, window: Window) -> Self {
+        // Without a reply so far the environment alone decides: the first picture does not wait.
         let queries = InitialQueries::needed(&hints);
         let capabilities = Findings::new(&hints, window.cell, queries.replies()).capabilities();
         Self { hints, window, queries, capabilities }
@@ -104,6 +105,7 @@ impl Display {
     /// Returns the modes to switch on besides those that every terminal supports.
     pub(super) fn modes(&self) -> impl Iterator<Item = TerminalMode> {
         let keyboard = self.knows_keyboard().then_some(TerminalMode::Keyboard);
+        // After the replies, because a terminal without these modes might print their sequences.
         keyboard.into_iter().chain(self.mouse_pixels().map(|_| TerminalMode::MousePixels))
     }
 }

@@ -48,6 +48,7 @@ pub(crate) struct Frame {
     pub(crate) shot: Shot,
     pub(crate) picture: Picture,
     /// The pictures that it was combined from, if they can be combined in another way.
+    // Empty for one map and for two side by side, to save their memory.
     pub(crate) parts: Vec<Picture>,
     pub(crate) sampling: Sampling,
     /// The legends of the maps, from left to right; empty where the picture shows light.
@@ -87,6 +88,7 @@ impl Frame {
 
     /// Moves the line between two maps, if there is one, to this share of the width.
     pub(super) fn wipe(&mut self, share: f32) {
+        // From the parts, which are kept for this: nothing is traced.
         if let Some(picture) = self.shot.layout.combined(&self.parts, share) {
             self.picture = picture;
         }

@@ -35,6 +35,7 @@ impl HelpPanel {
     pub(super) fn next(&self, keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> Option<Self> {
         let pages = Help::new(keymap, modes, screen).pages();
         let page = self.page + 1;
+        // Without room for a page, the message closes at the next press.
         (page < pages && theme::has_room(screen)).then_some(Self { page })
     }
 }
@@ -67,6 +68,7 @@ impl Help {
     fn new(keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> Self {
         let room = [screen.width.saturating_sub(PANEL_BORDER.0), screen.height.saturating_sub(PANEL_BORDER.1)]
             .map(usize::from);
+        // `always` is in every list, and tells nothing.
         let modes_said: Vec<_> =
             modes.iter().filter(|mode| **mode != KeyMode::Always).map(|mode| mode.name()).collect();
         Self { title: modes_said.join(", "), pages: pages(&rows(keymap, modes), room) }
@@ -79,6 +81,7 @@ impl Help {
 
     /// Returns a page, or the last one if there are fewer.
     fn page(&self, page: usize) -> &[Vec<String>] {
+        // The last one, because a larger window or fewer modes may have left fewer pages.
         self.pages.get(page).or(self.pages.last()).map_or(&[], Vec::as_slice)
     }
 
@@ -132,6 +135,7 @@ fn rows(keymap: &Keymap, modes: &[KeyMode]) -> Vec<KeyRow> {
             rows.push((keys.join(" "), row.command.description()));
         }
     }
+    // Shift is no key of the keymap, but part of the meaning of movement keys.
     rows.push(("Shift".to_owned(), "hold: moves 4x faster"));
     let alike = rows.chunk_by(|(_, description), (_, next)| description == next);
     alike.map(|rows| (joined(rows), rows[0].1)).collect()
@@ -147,6 +151,7 @@ fn joined(rows: &[KeyRow]) -> String {
 /// Breaks the rows into as few columns as fit on one page; if these are too wide together, into
 /// fewer, and pages.
 fn pages(rows: &[KeyRow], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
+    // A screen of three rows has none left beside the border.
     let lines = lines.max(1);
     let needed = rows.len().div_ceil(lines).max(1);
     let laid_out = |count: usize| {
@@ -190,6 +195,7 @@ pub(super) fn status_line(keymap: &Keymap, modes: &[KeyMode], room: usize) -> St
 
 /// Returns the important commands of a mode, with a word for each.
 fn status_line_keys(mode: KeyMode) -> &'static [(&'static [Command], &'static str)] {
+    // In the order in which their keys are read: W A S D, and the arrows.
     const MOVE: &[Command] = &[
         Command::Move(Direction::Forward),
         Command::Move(Direction::Left),

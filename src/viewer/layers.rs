@@ -16,6 +16,7 @@ use std::time::Duration;
 /// The height of a layer in the stack, from the lowest to the topmost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Level {
+    // Marks lie lowest, so that they hide no text.
     /// On a thing in the picture.
     Mark,
     /// Beside the thing that it describes.
@@ -163,6 +164,7 @@ impl Canvas<'_> {
     pub(super) fn lay(&mut self, area: Rect, draw: impl FnOnce(Theme, Rect, &mut Buffer)) {
         let mut buffer = Buffer::empty(area);
         draw(self.theme(), area, &mut buffer);
+        // A buffer of the area only: one of the whole screen would be compared cell by cell.
         overlay::lay_over(self.grid, &buffer);
     }
 

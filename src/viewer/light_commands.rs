@@ -66,6 +66,7 @@ impl Viewer {
             Toward::Down => (0.0, 1.0),
         };
         let step = if faster { LIGHT_SHIFT_FACTOR * LIGHT_STEP } else { LIGHT_STEP };
+        // The step is a share of the height; the width counts in its own shares.
         self.drag_light(step * Vec2::new(across / self.part().aspect_ratio(), down));
     }
 

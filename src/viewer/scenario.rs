@@ -41,6 +41,7 @@ const MAX_FRAME_BYTES: [usize; 2] = [120, 4096];
 /// # Panics
 /// If a rule is broken.
 pub fn run_scenario(scenario: &[u8]) {
+    // The options come last, so that a fuzzer can change them without shifting the events.
     let (&wishes, events) = scenario.split_last().unwrap_or((&0, &[]));
     let mut driver = Driver::new(wishes);
     let mut bytes = events.iter().copied();
@@ -100,10 +101,12 @@ impl Driver {
                 let bytes: Vec<u8> = (0..next() % 24).map(|_| next()).collect();
                 self.receive(&bytes);
             }
+            // From a single cell to a little more than 64x24, so that panels have and lack room.
             1 => {
                 let size = Size::new(u16::from(next() % 70) + 1, u16::from(next() % 30) + 1);
                 self.viewer.resize(window(size)).expect("this takes little memory");
             }
+            // Up to a quarter of a second: within timeouts and beyond them.
             2 => self.now += Duration::from_millis(u64::from(next())),
             3 => self.finish_job(next()),
             4 => self.is_sending = false,
@@ -138,6 +141,7 @@ impl Driver {
 
     fn receive(&mut self, bytes: &[u8]) {
         self.viewer.receive(bytes, self.now).expect("this takes little memory");
+        // The rules are about the viewer alone: what a driver does with its requests is tested with `app`.
         while self.viewer.next_request().is_some() {}
         for mode in self.viewer.modes() {
             self.modes.switch_on(mode, &mut self.sent);
@@ -175,6 +179,7 @@ impl Driver {
     /// Returns a picture that differs from the previous one.
     fn flat(&self, resolution: Resolution) -> Picture {
         let [width, height] = [resolution.width(), resolution.height()];
+        // So that drawing a new frame always sends bytes.
         let pixel = |at: u32| Srgb8::new(self.frames, at as u8, 7);
         Picture { width, height, pixels: (0..width * height).map(pixel).collect() }
     }
@@ -229,6 +234,7 @@ impl Driver {
     /// Lets the terminal accept and answer everything without further events, and checks that the
     /// viewer comes to rest.
     fn come_to_rest(&mut self) {
+        // Keys that are held would move the eye for ever.
         self.viewer.lose_terminal(self.now);
         for _ in 0..MAX_WAKE_UPS {
             self.finish_job(1);

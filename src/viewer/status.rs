@@ -16,6 +16,7 @@ impl StatusLine {
     /// Returns the number of rows: the statistics, and the keys below them where there is room for
     /// panels.
     pub(super) fn rows(screen: Rect) -> u16 {
+        // On a small screen the keys would not fit into a row anyway.
         1 + u16::from(theme::has_room(screen))
     }
 }
@@ -89,12 +90,14 @@ impl Status {
 /// Returns the largest number of samples of a pixel.
 fn samples(sampling: Sampling) -> String {
     match sampling {
+        // One ray for 2x2 pixels.
         Sampling::Coarse => "1/4".to_owned(),
         Sampling::Each(samples) | Sampling::UpTo(samples) => samples.to_string(),
     }
 }
 
 fn per_second(count: f64, time: Duration) -> f64 {
+    // A frame of a few pixels may take no measurable time.
     count / time.as_secs_f64().max(1e-9)
 }
 

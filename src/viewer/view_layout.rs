@@ -50,6 +50,7 @@ impl ViewLayout {
         match &mut self.right {
             None => self.map = step(self.map),
             Some(right) => {
+                // Comparing a map with itself shows nothing.
                 let next = step(right.map);
                 right.map = if next == self.map { step(next) } else { next };
             }
@@ -79,12 +80,14 @@ impl ViewLayout {
     pub(crate) fn parts(self, whole: Resolution) -> Vec<(Map, Resolution)> {
         match self.right {
             Some(RightMap { split: Split::Beside, .. }) => self.maps().zip(halves(whole)).collect(),
+            // Both in full for a wipe, so that moving its line traces nothing.
             _ => self.maps().map(|map| (map, whole)).collect(),
         }
     }
 
     /// Returns the legends, from left to right; empty where the picture shows light.
     pub(crate) fn legends(self, scene: &Scene, camera: &Camera) -> Vec<String> {
+        // The shaded picture alone needs no legend, and would lose a row to it.
         if self == Self::default() {
             return Vec::new();
         }
@@ -118,6 +121,7 @@ const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 ///
 /// A picture too narrow for both has no line and no right side.
 fn halves(whole: Resolution) -> [Resolution; 2] {
+    // One column for each picture and one for the line.
     let left = if whole.width() < 3 { whole.width() } else { (whole.width() - 1) / 2 };
     [left, whole.width().saturating_sub(left + 1)].map(|width| whole.with_width(width))
 }

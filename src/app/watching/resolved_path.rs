@@ -52,6 +52,7 @@ impl ResolvedPath {
                     folder.clone_from(&path);
                     steps.push(Step { path, is_link: false });
                 }
+                // Missing, unreadable, or in a cycle of links.
                 _ => return Some(Self { steps, end: path, is_complete: false }),
             }
         }
@@ -80,6 +81,7 @@ impl ResolvedPath {
     /// busy.
     pub(super) fn outer_folders(&self) -> impl Iterator<Item = &Path> {
         let folders = self.steps.iter().filter(|step| !step.is_link).map(|step| &*step.path);
+        // Deeper than two components: `/home` and the like belong to the system.
         let own = folders.clone().filter(|folder| folder.components().count() > 2);
         let outer = folders.filter_map(Path::parent).filter(|_| !self.is_complete);
         own.chain(outer).filter(|folder| !is_virtual(folder))
@@ -103,6 +105,7 @@ impl Name {
     fn go(&self, folder: &mut PathBuf) {
         match self {
             Self::Root => *folder = PathBuf::from("/"),
+            // After links are resolved, as the system does it: `a/..` is not the current folder if `a` is a link.
             Self::Parent => drop(folder.pop()),
             Self::In(_) => {}
         }
@@ -117,5 +120,6 @@ fn names(path: &Path) -> Vec<Name> {
         Component::Normal(name) => Some(Name::In(name.to_owned())),
         Component::CurDir | Component::Prefix(_) => None,
     };
+    // Last first, so that the target of a link is pushed in front of the rest.
     path.components().rev().filter_map(name).collect()
 }
