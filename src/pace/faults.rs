@@ -256,7 +256,8 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
     }
 }
 
-/// A key without a wait is visible after 310 ms, or 400 ms at worst; two round trips more are allowed.
+/// A key without a wait is visible after 310 ms, or 400 ms at worst; two round trips more are
+/// allowed.
 ///
 /// Left out are faults that make the link look like another one: its first reply, and silence from the first picture on,
 /// because then nothing shows that the link is slow.
@@ -331,7 +332,8 @@ fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
     assert!(world.frames.iter().filter(|frame| frame.0 >= since).count() >= 55);
 }
 
-/// Otherwise each reply would be taken for that to the query before its own, and the rate for a fraction of what it is.
+/// Otherwise each reply would be taken for that to the query before its own, and the rate for a
+/// fraction of what it is.
 #[test]
 fn after_a_loss_one_query_is_in_flight_on_a_slow_link() {
     let mut world = World::new(false, Fault::EachThird, 5).slow();

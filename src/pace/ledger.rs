@@ -113,7 +113,9 @@ impl Ledger {
         self.queries.push_back(InFlight { query, sent: now, bytes, first_sent, timed_out: false, late: false });
     }
 
-    /// Records bytes that are sent now without a query. The reply to the next query shows that they have arrived.
+    /// Records bytes that are sent now without a query.
+    ///
+    /// The reply to the next query shows that they have arrived.
     pub(super) fn record_unqueried(&mut self, bytes: usize, now: Duration) {
         let (_, unqueried) = self.unqueried.get_or_insert((now, 0));
         *unqueried += bytes;

@@ -53,8 +53,9 @@ const MAX_ROUND_TRIP: Duration = Duration::from_secs(1);
 // Until then frames are sent at a rate that no longer holds. With 50 ms instead of 100 ms a tenfold drop is recovered
 // from in 1.65 to 1.87 s instead of 1.73 to 1.94 s of simulated time.
 const LATE_REPLY_MARGIN: Duration = Duration::from_millis(50);
-/// Number of replies in order after which several queries may be in flight again. With 8, a terminal that
-/// loses one reply in 20 uses 25 % of a link of 50 KB/s, with 16 it uses 41 %.
+/// Number of replies in order after which several queries may be in flight again.
+///
+/// With 8, a terminal that loses one reply in 20 uses 25 % of a link of 50 KB/s, with 16 it uses 41 %.
 const SERIAL_REPLIES: u32 = 16;
 /// Interval between queries alone while frames are sent.
 // Each costs 3 to 8 bytes. Frames cannot take their place: their transmission time would seem to be the link's round
@@ -74,7 +75,8 @@ pub(super) struct ReplyTracker {
     awaits_second_reply: bool,
     /// Time of the last reply, if any.
     pub(super) last_reply: Option<Duration>,
-    /// Number of replies to arrive in order until a query may be sent while another one is in flight.
+    /// Number of replies to arrive in order until a query may be sent while another one is in
+    /// flight.
     serial_replies: u32,
     /// Time of the last query without a frame.
     last_probe: Option<Duration>,
@@ -165,9 +167,11 @@ impl ReplyTracker {
         }
     }
 
-    /// Returns whether a query may be sent now. After a loss on a slow link, at most one is in flight: replies without a
-    /// number then cannot be matched to the wrong query. Each such mismatch makes the round trip seem longer and the rate
-    /// lower: with every third reply lost, 50 KB/s fell to 0.8 KB/s and a key took 936 ms; in this way it takes 492 ms.
+    /// Returns whether a query may be sent now.
+    ///
+    /// After a loss on a slow link, at most one is in flight: replies without a number then cannot be matched to the
+    /// wrong query. Each such mismatch makes the round trip seem longer and the rate lower: with every third reply
+    /// lost, 50 KB/s fell to 0.8 KB/s and a key took 936 ms; in this way it takes 492 ms.
     fn may_query(&self) -> bool {
         !self.slow || self.serial_replies == 0 || self.ledger.oldest().is_none()
     }

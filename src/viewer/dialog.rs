@@ -115,7 +115,7 @@ impl Dialog {
     /// Returns the question in one line, for small screens: its keys and as few words as possible.
     fn line(&self, keymap: &Keymap) -> String {
         let word = match self {
-            Self::Export => "save as",
+            Self::Export => "save:",
             Self::SaveToFile(_) => "save?",
             Self::Save => "view",
         };

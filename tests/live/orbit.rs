@@ -125,7 +125,7 @@ fn t_turns_until_the_next_move() {
 fn nothing_turns_by_itself_where_motion_is_reduced() {
     let mut session = looking(TEAPOT, &["--reduced-motion"]);
     session.send(b"t");
-    session.wait_for_text("nothing moves by itself");
+    session.wait_for_text("the turntable is off");
     session.wait_for_rest();
     assert_eq!(camera(&mut session), None);
 }

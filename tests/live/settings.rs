@@ -104,7 +104,7 @@ fn keys_of_ones_own_do_what_the_file_says_and_are_told_of() {
     let mut session = start(&home, &["--reduced-motion"]);
     wait_for_picture(&mut session);
     session.send(b"wq?i");
-    session.wait_for_text("fly   F1 help   Q leave");
+    session.wait_for_text("fly   F1 help   Q quit");
     session.send(b"\x1bOP");
     session.wait_for("its help", SOON, |seen| {
         let text = seen.screen().text();
@@ -178,9 +178,9 @@ fn below_40x12_panels_step_aside_and_their_keys_with_them() {
     session.send(b"\x1b");
     wait_for_no(&mut session, "help");
     session.send(b"o");
-    wait_for_last(&mut session, "write p a t s h Esc");
+    wait_for_last(&mut session, "save: p a t s h Esc");
     session.send(b"\x1b");
-    wait_for_no(&mut session, "write");
+    wait_for_no(&mut session, "save:");
     // The cursor of an explanation that cannot be seen takes no key: the eye looks to the left.
     session.send(b"x\x1b[D");
     session.wait_for_rest();
