@@ -23,8 +23,8 @@
 //! | Resyncing  | at the rate                         | none              | no reply for a second                 |
 //! | Silent     | at the rate, 30 a second            | one at a time     | a reply                               |
 //!
-//! After a resync on a slow link, `Steady` has at most one query in flight until enough replies have arrived in order: the
-//! frames in between end without one, and the next reply shows that they have arrived.
+//! After a resync on a slow link, `Steady` has at most one query in flight until enough replies have arrived in order.
+//! The frames in between end without one, and the next reply shows that they have arrived.
 //!
 //! Pure: the time is passed in, and there is no I/O.
 //!

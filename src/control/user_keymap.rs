@@ -321,8 +321,8 @@ mod tests {
                 "4:9 \"PgUp\" is not a key that every terminal sends: a character, Ctrl- and a letter but H, I, J and \
                  M, or a name such as PageUp, Space or F1",
                 "5:9 there is no key \"Pageup\"; did you mean \"PageUp\"?",
-                "6:9 \"Ctrl-I\" is not a key that every terminal sends: a character, Ctrl- and a letter but H, I, J and \
-                 M, or a name such as PageUp, Space or F1",
+                "6:9 \"Ctrl-I\" is not a key that every terminal sends: a character, Ctrl- and a letter but H, I, J \
+                 and M, or a name such as PageUp, Space or F1",
                 "7:9 expected a key in quotes, as in \"w\", or a list of keys",
                 "8:14 there is no command MovForward; did you mean MoveForward?",
                 "9:14 there is no command Dance",

@@ -256,11 +256,10 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
     }
 }
 
-/// A key without a wait is visible after 310 ms, or 400 ms at worst; two round trips more are
-/// allowed.
+/// A key without a wait is visible after 310 ms, or 400 ms at worst; two round trips more pass.
 ///
-/// Left out are faults that make the link look like another one: its first reply, and silence from the first picture on,
-/// because then nothing shows that the link is slow.
+/// Left out are faults that make the link look like another one: its first reply, and silence from the first picture
+/// on, because then nothing shows that the link is slow.
 #[test]
 fn no_key_waits_much_longer_on_a_slow_link() {
     each_fault(ms(800), |tags, fault, at| {
