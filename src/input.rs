@@ -98,8 +98,9 @@ impl From<KeyEvent> for Input {
 pub struct Parser {
     tokeniser: Tokeniser,
     state: State,
-    /// Whether a second ESC precedes the current sequence: Alt, or the Escape key if the sequence
-    /// is not a key.
+    /// Whether a second ESC precedes the current sequence.
+    ///
+    /// It stands for Alt, or for the Escape key if the sequence is not a key.
     escaped: bool,
     /// Whether ESC precedes the current character, so that Alt was held.
     alt: bool,
@@ -108,8 +109,7 @@ pub struct Parser {
     /// Whether the current string exceeds its limit.
     overflow: bool,
     paste: Paste,
-    /// After a timeout within a sequence: the number of late bytes that may still be dropped as its
-    /// rest.
+    /// Number of late bytes that may still be dropped, after a timeout within a sequence.
     late: Option<usize>,
     key_encoding: KeyEncoding,
 }
@@ -130,8 +130,9 @@ impl Parser {
         Self::default()
     }
 
-    /// Sets whether the terminal sends every key as a sequence and reports releases: flags 2 and 8
-    /// of the kitty keyboard protocol.
+    /// Sets whether the terminal sends every key as a sequence and reports releases.
+    ///
+    /// These are flags 2 and 8 of the kitty keyboard protocol.
     pub fn set_keys_are_sequences(&mut self, keys_are_sequences: bool) {
         self.key_encoding = if keys_are_sequences { KeyEncoding::Sequences } else { KeyEncoding::Legacy };
     }
@@ -144,8 +145,9 @@ impl Parser {
         }
     }
 
-    /// Returns whether more bytes may complete an input: after a lone `ESC`, in a sequence, a
-    /// character or a paste.
+    /// Returns whether more bytes may complete an input.
+    ///
+    /// This is so after a lone `ESC`, in a sequence, a character or a paste.
     ///
     /// The caller then waits a short time (some 50 ms) for more bytes, and calls [`Parser::give_up_waiting`] if none
     /// arrive.

@@ -1,5 +1,6 @@
-//! The single owner of the terminal: every mode that it switches on it switches off again, in
-//! reverse order.
+//! The single owner of the terminal.
+//!
+//! Every mode that it switches on it switches off again, in reverse order.
 //!
 //! Dropping a [`Terminal`] restores the terminal: on return, on an error, and while a panic unwinds. A signal that
 //! would end the process ends the loop of [`app`](crate::app) instead, which drops the `Terminal` too; `main` then
@@ -57,8 +58,9 @@ pub struct Readable {
 }
 
 impl Terminal {
-    /// Takes control of the terminal: raw mode, the alternate screen, reports of keys, mouse and
-    /// focus.
+    /// Takes control of the terminal.
+    ///
+    /// Switches on raw mode, the alternate screen, and reports of keys, mouse and focus.
     ///
     /// Frames go to standard output. Keys come from standard input, or from the controlling terminal if standard input
     /// is not a terminal. A process in the background waits here until it is in the foreground.
@@ -200,8 +202,9 @@ impl Terminal {
 }
 
 impl Drop for Terminal {
-    /// Restores the terminal without waiting for replies: only a caller with a [`Receiver`] knows
-    /// of outstanding ones, and calls [`restore`](Terminal::restore) first.
+    /// Restores the terminal without waiting for replies.
+    ///
+    /// Only a caller with a [`Receiver`] knows of outstanding ones, and calls [`restore`](Terminal::restore) first.
     fn drop(&mut self) {
         self.modes.restore(&self.keys, &mut self.output, None, None);
     }

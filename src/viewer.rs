@@ -197,8 +197,9 @@ impl Viewer {
         Ok(())
     }
 
-    /// Forgets what the terminal shows: everything is drawn anew, and the part outside the picture
-    /// is cleared.
+    /// Forgets what the terminal shows.
+    ///
+    /// Everything is drawn anew, and the part outside the picture is cleared.
     fn redraw(&mut self) {
         let (size, window) = (self.display.size(), self.display.window_size());
         // Erased only where the picture leaves a part free: otherwise the frame itself covers the window, and erasing
@@ -225,8 +226,9 @@ impl Viewer {
         }
     }
 
-    /// Shows scene number `of`, from its own camera; from where the user left it, if its own camera
-    /// is the same as then.
+    /// Shows scene number `of`, from its own camera.
+    ///
+    /// Starts from where the user left it, if its own camera is the same as then.
     pub(crate) fn show(&mut self, scene: Scene, of: usize, orbits: bool) {
         // The progress panel goes with the first frame of the scene: drawing the screen once more without it would
         // delay that frame.

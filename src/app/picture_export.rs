@@ -17,8 +17,9 @@ const PNG_SCALE: u32 = 8;
 /// loop busy.
 const MAX_NUMBERED_NAMES: u32 = 9999;
 
-/// Returns the contents of an export without panels: the cells as the terminal shows them, in
-/// truecolor if the format has colours.
+/// Returns the contents of an export without panels.
+///
+/// The cells as the terminal shows them, in truecolor if the format has colours.
 pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabilities) -> io::Result<Vec<u8>> {
     let Capabilities { cell_mode, cell_aspect, .. } = *capabilities;
     match format.contents() {
@@ -57,8 +58,9 @@ fn write_unused(path: &Path, contents: &[u8]) -> io::Result<()> {
     file.finish()
 }
 
-/// Returns the stem of an export's file name: the scene's name without folders, extension and
-/// special characters.
+/// Returns the stem of an export's file name.
+///
+/// This is the scene's name without folders, extension and special characters.
 pub(super) fn stem(name: &str) -> String {
     let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');

@@ -7,8 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::{fmt, io};
 
-/// A scene that can be read repeatedly: at the start, when the user returns to it, and when one of
-/// its files has changed. See [`open`](super::open).
+/// A scene that can be read repeatedly.
+///
+/// This happens at the start, when the user returns to it, and when one of its files has changed. See
+/// [`open`](super::open).
 pub struct Source<E = LoadError> {
     named: SceneName,
     // Shared with the loading thread, which may outlive the current scene.

@@ -235,8 +235,9 @@ impl Command {
         words(self).0
     }
 
-    /// Returns a description for the help, of at most 24 characters: two columns then fit 80
-    /// columns.
+    /// Returns a description for the help, of at most 24 characters.
+    ///
+    /// Two columns then fit 80 columns.
     pub fn description(self) -> &'static str {
         words(self).1
     }

@@ -46,8 +46,9 @@ impl KeyMode {
         }
     }
 
-    /// Returns whether a command can be bound in the mode: answers only where a dialog asks for
-    /// them.
+    /// Returns whether a command can be bound in the mode.
+    ///
+    /// Answers can be bound only where a dialog asks for them.
     pub fn takes(self, command: Command) -> bool {
         match self {
             Self::Export => matches!(command, Command::Write(_) | Command::No),
@@ -235,8 +236,9 @@ impl Keymap {
         })
     }
 
-    /// Returns a key for a command in these modes: the first one that no higher mode hides,
-    /// preferably without Ctrl.
+    /// Returns a key for a command in these modes.
+    ///
+    /// It is the first one that no higher mode hides, preferably without Ctrl.
     pub fn key_of(&self, modes: &[KeyMode], command: Command) -> Option<Key> {
         let rows = modes.iter().flat_map(|&mode| self.of(mode)).filter(|row| row.command == command);
         let does = |key: &&Key| self.command(modes, &key.pressed()).is_some_and(|(meant, _)| meant == command);

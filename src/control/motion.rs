@@ -18,8 +18,9 @@ use std::time::Duration;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
     held: Vec<Held>,
-    /// Time at which the motion stops without further events; `Duration::MAX` where releases are
-    /// reported.
+    /// Time at which the motion stops without further events.
+    ///
+    /// `Duration::MAX` where releases are reported.
     until: Duration,
     /// Whether Shift is held.
     fast: bool,
@@ -48,8 +49,9 @@ struct Held {
     command: Command,
 }
 
-/// A key of the keyboard, independent of Shift: the unshifted code, and whether it is on the
-/// keypad.
+/// A key of the keyboard, independent of Shift.
+///
+/// It consists of the unshifted code, and whether it is on the keypad.
 type PhysicalKey = (KeyCode, bool);
 
 fn physical_key(key: &KeyEvent) -> PhysicalKey {
@@ -150,8 +152,9 @@ impl Motion {
         turn(camera.nearer_within(libm::expf(-NEARER_SPEED * seconds * net.nearer), speed))
     }
 
-    /// Returns the motion of all held keys together: opposite keys cancel, and two keys of one
-    /// command count once.
+    /// Returns the motion of all held keys together.
+    ///
+    /// Opposite keys cancel, and two keys of one command count once.
     fn net_motion(&self) -> NetMotion {
         let holds = |command: Command| self.held.iter().any(|held| held.command == command);
         let number = |command: Command| f32::from(u8::from(holds(command)));

@@ -10,8 +10,10 @@ use std::fmt::Write;
 const ALWAYS_QUITS: Key = Key::ctrl('c');
 
 impl Keymap {
-    /// Returns the built-in keymap with the changes in `text`: for each mode a map from a key, or a
-    /// list of keys, to a command, or to `None` to unbind. `name` is the file's name in messages.
+    /// Returns the built-in keymap with the changes in `text`.
+    ///
+    /// For each mode, `text` maps a key or a list of keys to a command, or to `None` to unbind. `name` is the file's
+    /// name in messages.
     ///
     /// ```
     /// use crossterm::event::KeyCode;

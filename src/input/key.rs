@@ -180,8 +180,9 @@ pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
 /// The first code point after the Latin blocks: Greek.
 const LATIN_END: u16 = 0x370;
 
-/// Returns the key of a code point; `shifted` is the code point with Shift, if the terminal reports
-/// it.
+/// Returns the key of a code point.
+///
+/// `shifted` is the code point with Shift, if the terminal reports it.
 fn key_from_code(code: u16, shifted: Option<u16>, press: Press) -> Option<KeyEvent> {
     let key = match code {
         0x08 | 0x7f => KeyCode::Backspace,
@@ -195,9 +196,10 @@ fn key_from_code(code: u16, shifted: Option<u16>, press: Press) -> Option<KeyEve
     Some(press.press(key, KeyModifiers::NONE))
 }
 
-/// Returns the character of a code point that can be typed: not a control character, not in the
-/// private use area, where the kitty protocol has its functional keys, and not U+FFFF, at which the tokeniser
-/// saturates.
+/// Returns the character of a code point that can be typed.
+///
+/// Excluded are control characters, the private use area, where the kitty protocol has its functional keys, and
+/// U+FFFF, at which the tokeniser saturates.
 fn char_from_code(code: u16) -> Option<char> {
     char::from_u32(code.into()).filter(|c| !c.is_control() && !matches!(code, 0xe000..=0xf8ff | 0xfffd..))
 }
@@ -233,8 +235,10 @@ impl Press {
         KeyEvent::new_with_kind_and_state(code, self.modifiers | more, self.kind, self.state)
     }
 
-    /// Returns a character key as the legacy encoding would report it: Shift with `w` as `W` with
-    /// Shift, Shift with `/` as `?` without, if the terminal reports the shifted character.
+    /// Returns a character key as the legacy encoding would report it.
+    ///
+    /// Shift with `w` is `W` with Shift, and Shift with `/` is `?` without, if the terminal reports the shifted
+    /// character.
     fn press_char(self, c: char, shifted: Option<char>) -> KeyEvent {
         if !self.modifiers.contains(KeyModifiers::SHIFT) {
             return self.press(KeyCode::Char(c), KeyModifiers::NONE);
@@ -313,8 +317,9 @@ fn keypad(code: u16) -> Option<KeyCode> {
     }
 }
 
-/// Returns the key of a functional key code of the kitty protocol: locks, F13 and up, media and
-/// modifier keys.
+/// Returns the key of a functional key code of the kitty protocol.
+///
+/// These are locks, F13 and up, media and modifier keys.
 fn functional(code: u16) -> Option<KeyCode> {
     const LOCKS: [KeyCode; 6] =
         [KeyCode::CapsLock, KeyCode::ScrollLock, KeyCode::NumLock, KeyCode::PrintScreen, KeyCode::Pause, KeyCode::Menu];

@@ -9,8 +9,9 @@ const MOTION: u16 = 32;
 /// Offset that the older encodings add to each number, so that none is a control character.
 const OFFSET: u8 = 32;
 
-/// Decodes `CSI < code ; column ; row M`, or `m` for a release: the SGR encoding, in cells or in
-/// pixels, from 1.
+/// Decodes `CSI < code ; column ; row M`, or `m` for a release.
+///
+/// This is the SGR encoding, in cells or in pixels, from 1.
 pub(super) fn from_sgr(code: u16, column: u16, row: u16, released: bool) -> Option<Event> {
     let kind = match (kind_from_code(code)?, released) {
         (MouseEventKind::Down(button) | MouseEventKind::Drag(button), true) => MouseEventKind::Up(button),

@@ -1,5 +1,6 @@
-//! A table of byte sequences and their inputs, and properties: above all, that the split of the
-//! bytes does not matter.
+//! A table of byte sequences and their inputs, and properties.
+//!
+//! Above all, the split of the bytes does not matter.
 
 use super::{Input, MAX_PASTE_BYTES, MAX_PASTE_WAITS, Parser, Reply};
 use crossterm::event::{Event, KeyCode, KeyEventKind};

@@ -32,8 +32,10 @@ impl Tokeniser {
         self.0.advance(&mut Tokens { tokens: Vec::new(), text: &[] }, b"\x1b[");
     }
 
-    /// Returns the tokens that `byte` completes: at most two, where it also shows that the bytes
-    /// before it are an invalid character. `text` holds the bytes since `ESC [`, including this one.
+    /// Returns the tokens that `byte` completes.
+    ///
+    /// There are at most two, where it also shows that the bytes before it are an invalid character. `text` holds the
+    /// bytes since `ESC [`, including this one.
     pub(super) fn take(&mut self, byte: u8, text: &[u8]) -> Vec<Token> {
         let mut performer = Tokens { tokens: Vec::new(), text };
         self.0.advance(&mut performer, &[byte]);

@@ -10,8 +10,9 @@ use super::ledger::InFlight;
 use super::{MAX_TRANSMISSION_TIME, MIN_FRAME_BYTES};
 use std::time::Duration;
 
-/// Number of consecutive replies at the time of the next query's until one is considered lost: one
-/// more than occur while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
+/// Number of consecutive replies at the time of the next query's until one is considered lost.
+///
+/// This is one more than occur while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
 // With three, a link that becomes ten times slower is taken for one that has lost a reply, and a key waits for 3.8 s.
 // The same happens if newer queries than the second oldest are compared.
 const MIN_MISALIGNED_REPLIES: u32 = 4;
@@ -26,8 +27,9 @@ const OLDEST_QUERY_TOLERANCE: Duration = Duration::from_millis(10);
 /// The evidence for a misalignment.
 #[derive(Default)]
 pub(super) struct Alignment {
-    /// The last estimate in bytes per second by which a reply to the oldest query was on time: that
-    /// from before the loss.
+    /// The last estimate in bytes per second by which a reply to the oldest query was on time.
+    ///
+    /// This is the estimate from before the loss.
     rate: Option<f64>,
     /// Number of consecutive replies at the time of the one to the second oldest query.
     misaligned: u32,

@@ -12,8 +12,9 @@ const ROUND_TRIP_AGE: Duration = Duration::from_secs(5);
 // The maximum over it ignores frames that were delayed elsewhere; a real drop of the rate is noticed at once by the
 // first late reply, which drops all higher rates.
 const RATE_AGE: Duration = Duration::from_millis(500);
-/// A frame with less transmission time was not limited by the link: it gives a lower bound of the
-/// rate only.
+/// A frame with less transmission time was not limited by the link.
+///
+/// It gives a lower bound of the rate only.
 // Terminals that draw 60 times a second delay replies by up to 17 ms, which must not look like transmission.
 const MIN_SERVICE_TIME: Duration = Duration::from_millis(20);
 /// Part of a short time that may be jitter of the clock and the scheduler.

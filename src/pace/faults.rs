@@ -220,8 +220,9 @@ fn no_key_waits_longer_than_500_ms_before_a_local_terminal_has_replied() {
     });
 }
 
-/// The first round trip is longer than the others, and frames are small: a reply that may belong to
-/// an older frame gives no rate.
+/// The first round trip is longer than the others, and frames are small.
+///
+/// A reply that may belong to an older frame gives no rate.
 #[test]
 fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
     each_fault(ms(250), |tags, fault, at| {

@@ -32,8 +32,9 @@ impl Default for InitialWindow {
 }
 
 impl InitialWindow {
-    /// Returns the limit on the next frame in bytes: half of the rest, so that a later key has some
-    /// left too.
+    /// Returns the limit on the next frame in bytes.
+    ///
+    /// This is half of the rest, so that a later key has some left too.
     pub(super) fn max_bytes(&self) -> usize {
         if self.is_spent() { REFILL_BYTES } else { self.left / 2 }
     }

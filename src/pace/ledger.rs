@@ -72,11 +72,13 @@ pub(super) struct Matched {
 /// The estimates for which a matched reply is a valid sample (Karn's algorithm).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
-    /// The reply is this query's, and no query before it has timed out: it gives round trip and
-    /// rate.
+    /// The reply is this query's, and no query before it has timed out.
+    ///
+    /// It gives round trip and rate.
     Exact,
-    /// The reply is this query's, but older bytes may precede it on a slow link: it gives the round
-    /// trip.
+    /// The reply is this query's, but older bytes may precede it on a slow link.
+    ///
+    /// It gives the round trip.
     AfterLoss,
     /// The reply is this query's, after its timeout, which was spurious.
     Spurious,
@@ -156,8 +158,9 @@ impl Ledger {
         self.queries.drain(..surplus);
     }
 
-    /// Records that the timeout was spurious: the remaining queries are in flight after all (as
-    /// after Eifel detection).
+    /// Records that the timeout was spurious.
+    ///
+    /// The remaining queries are in flight after all (as after Eifel detection).
     pub(super) fn undo_timeout(&mut self) {
         for query in &mut self.queries {
             query.timed_out = false;

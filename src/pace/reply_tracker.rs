@@ -25,8 +25,9 @@ const SILENCE_TIMEOUT: Duration = Duration::from_millis(300);
 /// [`SILENCE_TIMEOUT`] for a slow link.
 // Longer, because frames sent without replies to a terminal that merely pauses would queue there for seconds.
 const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
-/// [`SILENCE_TIMEOUT`] if no reply has ever arrived: with [`FIRST_RTO`] a second after the first
-/// frame.
+/// [`SILENCE_TIMEOUT`] if no reply has ever arrived.
+///
+/// Together with [`FIRST_RTO`] it ends a second after the first frame.
 const FIRST_SILENCE_TIMEOUT: Duration = Duration::from_millis(600);
 /// [`SILENCE_TIMEOUT`] if the rate is unknown.
 ///
@@ -40,8 +41,9 @@ const SILENT_QUERY_INTERVAL: Duration = Duration::from_millis(500);
 /// Time without replies after which all outstanding ones count as received or lost.
 // Nothing is queried meanwhile, so a late reply cannot be taken for one to a new query.
 const RESYNC_TIME: Duration = Duration::from_secs(1);
-/// A terminal with a shorter round trip is local: the order of several late replies does not matter
-/// there.
+/// A terminal with a shorter round trip is local.
+///
+/// The order of several late replies does not matter there.
 // Longer than the 17 ms between two draws of a local terminal, shorter than most connections over the internet.
 const LOCAL_ROUND_TRIP: Duration = Duration::from_millis(20);
 /// Tolerance by which a reply may exceed the shortest round trip and count as immediate.
@@ -192,14 +194,16 @@ impl ReplyTracker {
         matches!(self.state, State::Recovering { .. } | State::Resyncing { .. }) && !self.knows_rate()
     }
 
-    /// Returns whether the rate can be relied on: one that was never reached can be after enough
-    /// bytes have arrived.
+    /// Returns whether the rate can be relied on.
+    ///
+    /// One that was never reached can be, after enough bytes have arrived.
     pub(super) fn knows_rate(&self) -> bool {
         self.rates.best().is_some_and(|rate| rate.is_limit || self.delivered >= MIN_DELIVERED_BYTES)
     }
 
-    /// Returns whether a reply on a slow link is late: the link is slower than estimated, and more
-    /// bytes would only queue.
+    /// Returns whether a reply on a slow link is late.
+    ///
+    /// Then the link is slower than estimated, and more bytes would only queue.
     pub(super) fn is_late(&self, now: Duration) -> bool {
         self.slow && self.ledger.oldest().is_some_and(|oldest| now > self.reply_due_at(oldest) + LATE_REPLY_MARGIN)
     }

@@ -90,8 +90,9 @@ pub struct TerminalModes {
 }
 
 impl TerminalModes {
-    /// Records a mode as on and appends the bytes that switch it on; appends nothing if it is on
-    /// already.
+    /// Records a mode as on and appends the bytes that switch it on.
+    ///
+    /// Appends nothing if it is on already.
     ///
     /// Call this before sending the bytes, so that a mode whose bytes were sent in part is switched off too.
     pub fn switch_on(&mut self, mode: TerminalMode, bytes: &mut Vec<u8>) {

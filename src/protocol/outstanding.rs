@@ -10,8 +10,9 @@ use std::time::Duration;
 // that is expected of a link (a satellite) is below one second.
 const REPLY_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Limit on the recorded queries: twice the number that [`REPLY_TIMEOUT`] holds at 60 frames a
-/// second.
+/// Limit on the recorded queries.
+///
+/// Twice the number that [`REPLY_TIMEOUT`] holds at 60 frames a second.
 const MAX_QUERIES: usize = 360;
 
 /// A query at the end of a message.

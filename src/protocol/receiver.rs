@@ -57,8 +57,9 @@ impl Receiver {
         self.parser.is_waiting().then_some(self.last_event + timeout)
     }
 
-    /// Sets whether the terminal sends every key as a sequence: see
-    /// [`Parser::set_keys_are_sequences`].
+    /// Sets whether the terminal sends every key as a sequence.
+    ///
+    /// See [`Parser::set_keys_are_sequences`].
     pub fn set_keys_are_sequences(&mut self, keys_are_sequences: bool) {
         self.keys_are_sequences = keys_are_sequences;
         self.parser.set_keys_are_sequences(keys_are_sequences);

@@ -1,5 +1,6 @@
-//! Fault injection for this crate's own tests: a test learns which phase the program has reached,
-//! and may have it fail.
+//! Fault injection for this crate's own tests.
+//!
+//! A test learns which phase the program has reached, and may have it fail.
 //!
 //! Compiled to nothing without the feature `test-hooks`, which only the tests switch on.
 
@@ -26,9 +27,10 @@ pub fn inject_faults(test: UnixStream) {
     let _ = TEST.set(Mutex::new(test));
 }
 
-/// Reports a phase of the loop to the test and obeys the answer: `e` for an error, `p` for a panic,
-/// `w` for a panic in a worker; anything else continues. Continues as well while another thread is held at its own
-/// phase.
+/// Reports a phase of the loop to the test and obeys the answer.
+///
+/// `e` for an error, `p` for a panic, `w` for a panic in a worker; anything else continues. Continues as well while
+/// another thread is held at its own phase.
 ///
 /// # Errors
 /// If the test asks for one.

@@ -1,5 +1,6 @@
-//! The terminal's modes: raw mode first, then those of screen, mouse and keyboard; switched off in
-//! reverse order.
+//! The terminal's modes: raw mode first, then those of screen, mouse and keyboard.
+//!
+//! They are switched off in reverse order.
 
 use super::output::Output;
 use super::replies::{await_last, is_in_background};

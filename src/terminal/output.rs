@@ -170,8 +170,10 @@ fn is_writable(file: &impl AsFd, timeout: Duration) -> bool {
     poll(&mut fds, Some(&timespec(timeout))).is_ok_and(|ready| ready > 0)
 }
 
-/// Returns whether a message to standard error would not block: it is not a terminal, or the
-/// terminal accepts bytes within 250 ms. A terminal that has stopped reading would keep the program from ending.
+/// Returns whether a message to standard error would not block.
+///
+/// That is so if it is not a terminal, or if the terminal accepts bytes within 250 ms. A terminal that has stopped
+/// reading would keep the program from ending.
 pub fn stderr_accepts_message() -> bool {
     let stderr = io::stderr();
     !stderr.is_terminal() || is_writable(&stderr, Duration::from_millis(250))

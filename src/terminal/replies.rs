@@ -48,8 +48,9 @@ fn read_up_to_last(
     }
 }
 
-/// Returns whether another process group is in the foreground: reading the terminal would stop this
-/// process.
+/// Returns whether another process group is in the foreground.
+///
+/// Reading the terminal would stop this process.
 pub(super) fn is_in_background(keys: &File) -> bool {
     termios::tcgetpgrp(keys).is_ok_and(|foreground| foreground != process::getpgrp())
 }

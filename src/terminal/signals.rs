@@ -240,8 +240,9 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
     catch_deadly(&CAUGHT_BEFORE_DEATH, ignored, &deadly, &write)
 }
 
-/// Blocks the uncaught signals in all threads and accepts them on one: SIGTSTP goes into the
-/// returned channel, any other signal asks the program to end.
+/// Blocks the uncaught signals in all threads and accepts them on one.
+///
+/// SIGTSTP goes into the returned channel, any other signal asks the program to end.
 ///
 /// SIGTSTP is blocked rather than caught, because only its default action stops a process as its shell expects, and
 /// does nothing in an orphaned process group, where the process could not be continued (a terminal that runs the

@@ -28,8 +28,9 @@ impl Viewer {
         self.take_inputs(&inputs, now)
     }
 
-    /// Prepares for another program having the terminal: releases all keys and forgets the
-    /// outstanding queries.
+    /// Prepares for another program having the terminal.
+    ///
+    /// Releases all keys and forgets the outstanding queries.
     pub(crate) fn lose_terminal(&mut self, now: Duration) {
         self.set_time(now);
         self.eye.stop(now);

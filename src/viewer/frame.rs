@@ -21,8 +21,9 @@ pub(crate) struct Shot {
 }
 
 impl Shot {
-    /// Returns whether tracing takes about as long as for `other`: only the camera or the lights
-    /// may differ.
+    /// Returns whether tracing takes about as long as for `other`.
+    ///
+    /// Only the camera or the lights may differ.
     pub(super) fn takes_as_long_as(&self, other: &Self) -> bool {
         // The cost of a view changes gradually with the camera, that of another scene or size at once.
         let about = |shot: &Self| (shot.scene, shot.resolution, shot.layout);
@@ -72,9 +73,10 @@ impl Frame {
         self.shot.resolution
     }
 
-    /// Returns the size of the picture that contains a pixel, and the pixel's coordinates there: of
-    /// two maps side by side, each is a picture of its own. (A pixel of the line between them counts as the last one of
-    /// the left map.)
+    /// Returns the size of the picture that contains a pixel, and the pixel's coordinates there.
+    ///
+    /// Of two maps side by side, each is a picture of its own. (A pixel of the line between them counts as the last one
+    /// of the left map.)
     pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
         let resolution = self.resolution();
         match *self.shot.layout.parts(resolution) {

@@ -148,8 +148,9 @@ fn joined(rows: &[KeyRow]) -> String {
     }
 }
 
-/// Breaks the rows into as few columns as fit on one page; if these are too wide together, into
-/// fewer, and pages.
+/// Breaks the rows into as few columns as fit on one page.
+///
+/// If these are too wide together, there are fewer columns, and several pages.
 fn pages(rows: &[KeyRow], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
     // A screen of three rows has none left beside the border.
     let lines = lines.max(1);

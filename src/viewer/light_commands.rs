@@ -15,8 +15,9 @@ const LIGHT_STEP: f32 = 1.0 / 32.0;
 const LIGHT_SHIFT_FACTOR: f32 = 4.0;
 
 impl Viewer {
-    /// Takes hold of the light nearest to the pointer on the screen; if one is held, of the next
-    /// one.
+    /// Takes hold of the light nearest to the pointer on the screen.
+    ///
+    /// If one is held, takes the next one.
     pub(super) fn take_light(&mut self) {
         let (camera, aspect_ratio) = (self.eye.camera(), self.part().aspect_ratio());
         // Without a mouse event so far, the middle of the screen.
@@ -101,8 +102,9 @@ impl Viewer {
     }
 }
 
-/// Returns the light in front of the eye nearest to the pointer on the screen; without one in
-/// front, the first light.
+/// Returns the light in front of the eye nearest to the pointer on the screen.
+///
+/// Without one in front, returns the first light.
 fn nearest(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
     let away = |position: Vec3| {
         let place = camera.project(position, aspect_ratio);

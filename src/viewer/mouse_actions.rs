@@ -13,8 +13,9 @@ use glam::{Vec2, Vec3};
 // The line is one column wide, which is hard to hit with a pointer that moves by whole cells.
 const WIPE_GRAB_COLUMNS: f32 = 2.0;
 
-/// Returns whether `next` supersedes `input`: of consecutive motions of one drag that arrive
-/// together, only the last position matters.
+/// Returns whether `next` supersedes `input`.
+///
+/// Of consecutive motions of one drag that arrive together, only the last position matters.
 // Each motion would otherwise trace a frame, and on a slow link the picture would lag behind the pointer.
 pub(super) fn is_superseded(input: &Input, next: Option<&Input>) -> bool {
     let way = |input: &Input| match input {
@@ -49,8 +50,9 @@ impl Viewer {
         }
     }
 
-    /// Returns the event's position as shares of the screen's width and height: the middle of its
-    /// cell or pixel.
+    /// Returns the event's position as shares of the screen's width and height.
+    ///
+    /// This is the middle of its cell or pixel.
     fn screen_position(&self, event: MouseEvent) -> Vec2 {
         let (width, height) = self.display.mouse_pixels().unwrap_or((1, 1));
         let size = self.size();
@@ -114,8 +116,9 @@ impl Viewer {
         [(at.x * resolution.width() as f32) as u32, (at.y * resolution.height() as f32) as u32]
     }
 
-    /// Returns the point of the scene seen at a position; where nothing is hit, a point as far away
-    /// as the target.
+    /// Returns the point of the scene seen at a position.
+    ///
+    /// Where nothing is hit, returns a point as far away as the target.
     fn scene_point_at(&self, at: Vec2) -> Option<Vec3> {
         let (frame, camera) = (self.screen.frame()?, self.eye.camera()?);
         let (part, [x, y]) = frame.part_at(self.pixel(at));

@@ -47,8 +47,9 @@ fn draw(progress: &Progress, theme: Theme, area: Rect, buffer: &mut Buffer) {
     Paragraph::new(lines.map(Line::from).to_vec()).style(theme.style()).render(inside, buffer);
 }
 
-/// Returns the work and, if there is room, the file's name; of a long name its end, which says more
-/// than its beginning.
+/// Returns the work and, if there is room, the file's name.
+///
+/// Of a long name the end is shown, which says more than its beginning.
 fn what_is_done(work: &Work, theme: Theme, width: usize) -> String {
     let (verb, name) = match work {
         Work::Reading(name) => ("reading", name),

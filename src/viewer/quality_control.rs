@@ -1,5 +1,6 @@
-//! Control of the sampling by the time that frames take: in motion as many samples as fit the time
-//! of a frame, at rest a few refinements to the end.
+//! Control of the sampling by the time that frames take.
+//!
+//! In motion there are as many samples as fit the time of a frame; at rest a few refinements lead to the final picture.
 //!
 //! Pure: the times of frames are passed in.
 
@@ -67,8 +68,9 @@ impl QualityControl {
         }
     }
 
-    /// Returns the sampling of a new view: within a motion, or after a rest, when the user waits
-    /// for the picture.
+    /// Returns the sampling of a new view.
+    ///
+    /// After a rest it is coarser than within a motion, because the user waits for the picture.
     pub(super) fn for_new_view(&self, in_motion: bool) -> Sampling {
         // After a rest the user waits for this one frame, and it is refined anyway if the view stays.
         let level = if in_motion { self.level } else { self.level.min(ONE_SAMPLE_LEVEL) };

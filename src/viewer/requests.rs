@@ -1,5 +1,6 @@
-//! Requests that leave the view: the camera as text, the picture as a file, a view for the scene's
-//! file. The driver writes.
+//! Requests that leave the view.
+//!
+//! These are the camera as text, the picture as a file, and a view for the scene's file. The driver writes them.
 
 use super::dialog::{Answer, Dialog};
 use super::{Request, Viewer};

@@ -16,8 +16,9 @@ use crate::tone::Picture;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-/// Limit on the actions at one time: cancel a refinement, draw, begin a frame, handle the timeout
-/// of a lone Escape, and draw the result.
+/// Limit on the actions at one time.
+///
+/// They are: cancel a refinement, draw, begin a frame, handle the timeout of a lone Escape, and draw the result.
 const MAX_ACTIONS: usize = 5;
 
 /// Limit on the wake-ups between the last event and rest.
@@ -25,8 +26,9 @@ const MAX_ACTIONS: usize = 5;
 /// A lossy picture becomes exact in a few frames, and a glide of 60 frames a second ends within a second.
 const MAX_WAKE_UPS: usize = 400;
 
-/// Limits on the bytes of a frame, per cell and in addition: a cell takes all attributes, both
-/// colours and a cursor move.
+/// Limits on the bytes of a frame, per cell and in addition.
+///
+/// A cell takes all attributes, both colours and a cursor move.
 const MAX_FRAME_BYTES: [usize; 2] = [120, 4096];
 
 /// Drives a viewer by events decoded from `bytes`, the last of which choose its options, and checks

@@ -98,8 +98,9 @@ pub(super) fn decide(facts: &Facts, now: Duration) -> Action {
 }
 
 impl Facts {
-    /// Returns whether to hold back the first picture because it is nearly final: showing it twice
-    /// would take longer.
+    /// Returns whether to hold back the first picture because it is nearly final.
+    ///
+    /// Showing it twice would take longer.
     fn perfects_first(&self) -> bool {
         self.holds_first_back && self.picture == Picture::Refinable && self.moved_until.is_none()
     }

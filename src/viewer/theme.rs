@@ -79,8 +79,9 @@ pub(super) fn area(size: Size) -> Rect {
     Rect::new(0, 0, size.columns, size.rows)
 }
 
-/// Returns whether the screen is large enough for panels; on a smaller one they would hide what
-/// they describe.
+/// Returns whether the screen is large enough for panels.
+///
+/// On a smaller one they would hide what they describe.
 pub(super) fn has_room(screen: Rect) -> bool {
     screen.width >= MIN_PANEL_SCREEN.0 && screen.height >= MIN_PANEL_SCREEN.1
 }

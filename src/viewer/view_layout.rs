@@ -94,8 +94,9 @@ impl ViewLayout {
         self.maps().map(|map| map.legend(scene, camera)).collect()
     }
 
-    /// Returns the sampling for these maps if `wanted` is requested: one ray per pixel, unless a
-    /// map refines.
+    /// Returns the sampling for these maps if `wanted` is requested.
+    ///
+    /// That is one ray per pixel, unless a map refines.
     pub(super) fn sampling(self, wanted: Sampling) -> Sampling {
         // Depths, normals and costs of several samples have no meaningful mean at an edge.
         if wanted == Sampling::Coarse || self.maps().any(Map::refines) {

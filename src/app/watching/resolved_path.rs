@@ -73,8 +73,9 @@ impl ResolvedPath {
         links.chain([&*self.end]).filter_map(Path::parent).filter(|folder| !is_virtual(folder))
     }
 
-    /// Returns further folders to watch: those on the path, each of which reports when it is
-    /// replaced.
+    /// Returns further folders to watch.
+    ///
+    /// They are on the path, and each reports when it is replaced.
     ///
     /// A removed folder is not reported while a process has it as its current folder. So while the file is missing,
     /// their parents are watched too. Folders directly below the root are watched only then: they are permanent, and

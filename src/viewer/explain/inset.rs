@@ -1,5 +1,6 @@
-//! The view from the side, as the lecture draws it: the eye, the view rectangle, the ray and its
-//! hit.
+//! The view from the side, as the lecture draws it.
+//!
+//! Shows the eye, the view rectangle, the ray and its hit.
 
 use crate::camera::{Basis, Camera};
 use crate::capabilities::{CellMode, Colors};
@@ -17,8 +18,9 @@ use ratatui_core::text::Line as Text;
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::canvas::{Canvas, Circle, Line};
 
-/// The drawing's geometry, in the plane of the view direction and the vertical: along -w and v from
-/// the eye.
+/// The drawing's geometry, in the plane of the view direction and the vertical.
+///
+/// Coordinates are lengths along -w and v from the eye.
 pub(super) struct Inset {
     /// The ends of the view rectangle.
     rectangle: [Vec2; 2],
@@ -110,8 +112,9 @@ impl Inset {
         buffer.set_style(area, Style { fg: None, ..style });
     }
 
-    /// Returns the part of the plane to draw in this much room: everything but spheres and lights,
-    /// centred, with a margin.
+    /// Returns the part of the plane to draw in this much room.
+    ///
+    /// It contains everything but spheres and lights, centred, with a margin.
     fn bounds(&self, width: f32, height: f32) -> [[f64; 2]; 2] {
         // Spheres and lights are left out: one far away would shrink the ray to a dot.
         let points = [Vec2::ZERO, self.rectangle[0], self.rectangle[1], self.end];

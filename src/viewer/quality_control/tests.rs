@@ -20,8 +20,9 @@ fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usiz
     levels.collect()
 }
 
-/// Returns the time of each level in a scene where a third of the pixels has edges; one sample
-/// takes `one` milliseconds.
+/// Returns the time of each level in a scene where a third of the pixels has edges.
+///
+/// One sample takes `one` milliseconds.
 fn machine(one: f64) -> impl Fn(usize) -> f64 {
     move |level| one * [0.25, 1.0, 2.0, 6.0][level]
 }
@@ -98,8 +99,9 @@ fn room_now_and_then_is_no_room() {
     assert_eq!(changes(&levels), 0, "{levels:?}");
 }
 
-/// Where there are edges everywhere, a level takes four times as long as the one before: the
-/// control learns this, and does not try the level again and again.
+/// Where there are edges everywhere, a level takes four times as long as the one before.
+///
+/// The control learns this, and does not try the level again and again.
 #[test]
 fn the_cost_ratio_of_a_level_is_learnt() {
     let mut control = QualityControl::new(None);
