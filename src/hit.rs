@@ -1,7 +1,7 @@
-//! What a ray meets: the closest hit for eye rays, any hit for shadow rays.
+//! Ray queries: the closest hit for eye rays, any hit for shadow rays.
 //!
-//! Both are asked for many rays at a time, so that the way in which they are traced together is this stage's choice. None
-//! of the ways shows in what is found.
+//! Both take many rays at a time, so this module chooses how to trace them: in packets, as single rays, or first in a
+//! packet and then singly. The choice never changes a result: all kernels find the same hits, to the bit.
 
 use crate::accel::{Accelerator, PrimitiveId};
 use crate::bvh::{GROUPS, PacketStack, RayStack};
@@ -23,70 +23,74 @@ pub use observer::{Observer, PrimitiveTest};
 /// The closest crossing in front of a ray's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Where on the ray.
+    /// The ray parameter of the crossing; for eye rays, the depth in world units.
     pub t: f32,
-    /// Which of the scene's objects, by its place in [`Scene::objects`].
+    /// The index of the object in [`Scene::objects`].
     pub object: u32,
-    /// Which of its shape's [parts](crate::shape::Shape::primitive).
+    /// The index of the [primitive](crate::shape::Shape::primitive) in the object's shape.
     pub primitive: u32,
 }
 
 impl Hit {
-    /// What was hit.
+    /// Returns the primitive that was hit.
     #[doc(hidden)]
     pub fn surface(self, scene: &Scene) -> Primitive<'_> {
         scene.objects()[self.object as usize].shape.primitive(self.primitive)
     }
 }
 
-/// How rays are traced. It changes how long that takes, and nothing else.
+/// A way to trace rays. It changes the time, never the hits.
+// With shadow rays the bunny at 1024x1024 runs at 49 Mrays/s in packets and at 9 singly; incoherent rays of it at 1.5
+// in packets and 1.9 singly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kernel {
-    /// Together as long as that is cheaper.
+    /// Packets, whose rays go on as single rays where that is faster.
     #[default]
     Auto,
-    /// Always together: packets of 64.
+    /// Packets of 64 rays only.
     Packet,
-    /// One ray at a time, against eight boxes or parts.
+    /// Single rays only, each against eight boxes or primitives at once.
     Single,
-    /// The same without the CPU's own instructions.
+    /// Single rays without SIMD instructions.
     Scalar,
 }
 
-/// What eight rays have met.
+/// The hits of eight rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EightHits {
-    /// Which of them have met anything, a bit for each.
+    /// The mask of rays with a hit.
     pub hit_mask: u32,
-    /// Where on the ray, of those that have.
+    /// The ray parameters of the hits. Lanes without a hit are unspecified.
     pub t: F32x8,
-    /// The place of the part that was met, or [`NO_PRIMITIVE`](Self::NO_PRIMITIVE): its bits.
+    /// The bits of the primitives' indices, or of [`NO_PRIMITIVE`](Self::NO_PRIMITIVE).
+    // Stored as floats, so that a hit's t and index are selected by the same mask in the same kind of register.
     primitives: F32x8,
 }
 
 impl EightHits {
-    /// No part's place.
+    /// The index of no primitive.
     pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 
-    /// The place of the part that one of them has met.
+    /// Returns the index of the primitive that a ray hits.
     #[inline(always)]
     pub(crate) fn primitive(&self, lane: usize) -> u32 {
         self.primitives.0[lane].to_bits()
     }
 
-    /// Who has met what has that place: a bit for each.
+    /// Returns the mask of lanes whose hit is `primitive`.
     #[inline(always)]
     pub(crate) fn mask_of<N: Lanes>(&self, primitive: u32) -> u32 {
         N::load(&self.primitives).has_bits(primitive).bits()
     }
 
-    /// Where in its leaf each of them has met something: its place, of which the lowest three bits count.
+    /// Returns the bits of the primitives' indices. Their lowest three bits are positions in a leaf.
+    // `gather` looks at those three bits only, so the others stay.
     #[inline(always)]
     pub(crate) fn lanes_in_leaf<N: Lanes>(&self) -> N {
         N::load(&self.primitives)
     }
 
-    /// In which leaf, of all that there are: the bits of these numbers.
+    /// Returns the bits of the leaves' indices.
     #[inline(always)]
     pub(crate) fn leaf_indices<N: Lanes>(&self) -> N {
         let mut leaves = F32x8::ZERO;
@@ -96,16 +100,16 @@ impl EightHits {
         N::load(&leaves)
     }
 
-    /// Who has met what has one of the primitives from the first up to the second.
+    /// Returns the mask of lanes whose hit primitive lies in `start..end`.
     #[inline(always)]
     pub(crate) fn mask_of_range(&self, start: u32, end: u32) -> u32 {
         (0..LANES).fold(0, |lanes, lane| lanes | u32::from((start..end).contains(&self.primitive(lane))) << lane)
     }
 
-    /// What one of them has met.
+    /// Returns the hit of a ray.
     ///
     /// # Panics
-    /// In another scene than that it was found in; or if there are not so many.
+    /// If `lane` is not below 8. May panic if `scene` is not the scene that was traced.
     pub fn hit(&self, scene: &Scene, lane: usize) -> Option<Hit> {
         (self.hit_mask >> lane & 1 == 1).then(|| {
             let PrimitiveId { object, index } = scene.accelerator().id(self.primitive(lane));
@@ -114,7 +118,10 @@ impl EightHits {
     }
 }
 
-/// The closest hit of each ray that is asked about, on its half line; of two at the same t, what comes first in the scene.
+/// Finds the closest hit of each active ray in front of its origin.
+///
+/// Of hits at the same t, the primitive that comes first in the scene wins.
+// Without this rule the order of traversal, and with it the kernel, would show in the picture.
 pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mut Vec<EightHits>) {
     hits.clear();
     let accel = scene.accelerator();
@@ -124,7 +131,7 @@ pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mu
     }
 }
 
-/// Which of the rays that are asked about meet anything inside the interval: a bit for each.
+/// Finds, for each group of rays, the mask of active rays with a hit in the interval.
 pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Interval, hit_masks: &mut Vec<u32>) {
     hit_masks.clear();
     let accel = scene.accelerator();
@@ -134,36 +141,37 @@ pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Inter
     }
 }
 
-/// The closest hit of one ray.
+/// Returns the closest hit of a single ray.
 pub fn closest_hit(scene: &Scene, ray: &Ray) -> Option<Hit> {
     let mut hits = Vec::with_capacity(1);
     closest_hits(Kernel::Single, scene, &[EightRays::of(std::slice::from_ref(ray))], &mut hits);
     hits.first()?.hit(scene, 0)
 }
 
-/// Whether one ray meets anything inside the interval.
+/// Returns whether a single ray has a hit in the interval.
 pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
     let mut hit_masks = Vec::with_capacity(1);
     any_hits(Kernel::Single, scene, &[EightRays::of(std::slice::from_ref(ray))], within, &mut hit_masks);
     hit_masks == [1]
 }
 
-/// [`closest_hit`], with a observer of what the ray is tested against.
+/// Returns the [`closest_hit`] of a ray, and reports all tests to `observer`.
 pub fn closest_hit_observed(scene: &Scene, ray: &Ray, observer: &mut impl Observer) -> Option<Hit> {
     let (t, primitive) = simd::dispatch(Observed::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, observer });
     let PrimitiveId { object, index } = scene.accelerator().id(primitive?);
     Some(Hit { t, object, primitive: index })
 }
 
-/// [`any_hit`], with a observer of what the ray is tested against. Returns what it met, which need not be the closest.
+/// Returns a hit of a ray in the interval, not always the closest, and reports all tests to `observer`.
 pub fn any_hit_observed(scene: &Scene, ray: &Ray, within: Interval, observer: &mut impl Observer) -> Option<Hit> {
     let (_, primitive) = simd::dispatch(Observed::<_, ANY> { scene, ray, within, observer });
     let PrimitiveId { object, index } = scene.accelerator().id(primitive?);
+    // Traversal for any hit does not keep t, so the crossing is computed again.
     let t = scene.objects()[object as usize].shape.primitive(index).closest_crossing(&Probe::new(*ray), within)?;
     Some(Hit { t, object, primitive: index })
 }
 
-/// A ray by itself that somebody watches.
+/// A single ray with an observer.
 struct Observed<'w, W, const ANY: bool> {
     scene: &'w Scene,
     ray: &'w Ray,
@@ -185,9 +193,10 @@ impl<W: Observer, const ANY: bool> SimdKernel for Observed<'_, W, ANY> {
 }
 
 impl Kernel {
-    /// Whether so many groups of rays go together.
+    /// Returns whether a packet traces this many groups of rays.
     fn uses_packet(self, groups: usize) -> bool {
         match self {
+            // A single group has too few rays to pay for a packet's bounds.
             Self::Auto => groups > 1,
             Self::Packet => true,
             Self::Single | Self::Scalar => false,
@@ -195,9 +204,12 @@ impl Kernel {
     }
 }
 
+// The values of the const parameter `ANY`. A parameter instead of a field: any hit leaves out sorting, edge tests and
+// t, and each of the two is compiled without the other's branches.
 const CLOSEST: bool = false;
 const ANY: bool = true;
 
+/// The kernel of [`closest_hits`].
 struct ClosestHits<'w> {
     kernel: Kernel,
     accel: &'w Accelerator,
@@ -213,6 +225,8 @@ impl SimdKernel for ClosestHits<'_> {
         let Self { kernel, accel, rays, hits } = self;
         let mut stacks = Stacks::default();
         let mut packet = PacketRays::<N, CLOSEST>::new(kernel, accel, Interval::IN_FRONT);
+        // After an inefficient packet the rest of the tile is traced singly, as its neighbours are likely to be alike:
+        // dragon 871k at 100x60 takes 0.91 instead of 1.10 ms; the bunny at 200x120 2.80 instead of 2.70.
         let mut uses_packets = true;
         for rays in rays.chunks(GROUPS) {
             if uses_packets && kernel.uses_packet(rays.len()) {
@@ -226,13 +240,14 @@ impl SimdKernel for ClosestHits<'_> {
     }
 }
 
-/// The same one by one.
+/// Finds the closest hits by single rays.
 #[inline(always)]
 fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], stack: &mut RayStack, hits: &mut Vec<EightHits>) {
     for rays in rays {
         let nothing = F32x8([f32::from_bits(EightHits::NO_PRIMITIVE); LANES]);
         let mut hit = EightHits { hit_mask: 0, t: F32x8::ZERO, primitives: nothing };
-        // What tests have in common is reckoned for all eight at once.
+        // Inverse directions and shears are computed for all eight rays at once, seven divisions in registers: 5 to 6 %
+        // faster than ray by ray for incoherent rays of the bunny.
         let eight = Rays::load(rays, accel.needs_shear());
         for lane in set_bits(rays.active) {
             let mut ray = SingleRay::<N, CLOSEST>::new(accel, &eight, lane, Interval::IN_FRONT);
@@ -246,6 +261,7 @@ fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], stack: &mut
     }
 }
 
+/// The kernel of [`any_hits`].
 struct AnyHits<'w> {
     kernel: Kernel,
     accel: &'w Accelerator,
@@ -262,7 +278,7 @@ impl SimdKernel for AnyHits<'_> {
         let Self { kernel, accel, rays, within, hit_masks } = self;
         let mut stacks = Stacks::default();
         let mut packet = PacketRays::<N, ANY>::new(kernel, accel, within);
-        // A packet knows of nothing behind the origins.
+        // The packets' bounds hold for t >= 0 only. Negative intervals are rare, so they take single rays.
         let mut uses_packets = within.min >= 0.0;
         for rays in rays.chunks(GROUPS) {
             if uses_packets && kernel.uses_packet(rays.len()) {
@@ -276,7 +292,7 @@ impl SimdKernel for AnyHits<'_> {
     }
 }
 
-/// The same one by one.
+/// Finds the hit masks by single rays.
 #[inline(always)]
 fn any_single<N: Lanes>(
     accel: &Accelerator,
@@ -297,7 +313,7 @@ fn any_single<N: Lanes>(
     }
 }
 
-/// Space for what is still to be visited.
+/// The stacks of traversal, reused for all rays of a call.
 #[derive(Default)]
 struct Stacks {
     packet: PacketStack,

@@ -1,14 +1,17 @@
-//! How much light goes from a surface to the eye (lecture, "Shading").
+//! Shading: the light from surfaces to the eye (lecture, "Shading").
 //!
-//! Direct light from point sources, reflected diffusely:
+//! Direct light, reflected diffusely:
 //!
 //! ```text
 //! L = reflectance * (ambient + sum over lights of V * I * max(0, n.l) / d^2)
 //! ```
 //!
-//! V is 0 where something stands between the point and the light, else 1; n is the normal on the seen side, l the
-//! unit vector to the light, d the distance to it; the 1/pi of diffuse reflection is folded into the intensity I.
-//! Nothing in it depends on where the eye is, but for the side of the surface that it sees.
+//! The visibility V is 0 if an object is between the point and the light, else 1; n is the shading normal on the
+//! visible side, l the unit vector to the light, d the distance to the light. The intensity I includes the 1/pi of
+//! diffuse reflection. The position of the eye matters only for the visible side.
+//!
+//! All steps work on groups of eight rays. Lanes without a hit compute along with values that no later step reads:
+//! branches would cost more than they save.
 
 use crate::color::LinearRgb;
 use crate::hit::{self, EightHits, Kernel};
@@ -25,21 +28,22 @@ mod points;
 
 pub use points::{EightPoints, surface_points};
 
-/// The light that eight rays bring, channel by channel.
+/// The light along eight rays, per channel.
 pub type EightLights = [F32x8; 3];
 
-/// One of the eight.
+/// Returns the light along one of eight rays.
 #[inline(always)]
 pub fn lane_light([r, g, b]: &EightLights, lane: usize) -> LinearRgb {
     LinearRgb::new(r.0[lane], g.0[lane], b.0[lane])
 }
 
-/// The light that arrives at eight points.
+/// The light that arrives at eight surface points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EightArriving {
-    /// ambient + sum over lights of V * I * max(0, n.l) / d^2.
+    /// The sum ambient + sum over lights of V * I * max(0, n.l) / d^2.
     pub light: EightLights,
-    /// Which lights it comes from, a bit for each; the thirty-third shares its bit with the first, and so on.
+    /// The mask of lights that reach each point; light 32 shares its bit with light 0, and so on.
+    // For edges of shadows, which 32 bits find in all but contrived scenes.
     pub lit_by: [u32; LANES],
 }
 
@@ -47,13 +51,14 @@ pub struct EightArriving {
 #[derive(Default)]
 pub struct ShadowRays {
     pub(crate) rays: Vec<EightRays>,
-    /// The light that each brings if nothing is in its way.
+    /// The light that arrives along each ray if it is not blocked.
     lights: Vec<EightLights>,
-    /// V = 0, a bit for each.
+    /// The masks of blocked rays: V = 0.
     pub(crate) blocked: Vec<u32>,
 }
 
-/// What arrives at each point. Returns the number of shadow rays that this took.
+/// Computes the light that arrives at each point, and returns the number of traced shadow rays.
+// Light by light, not point by point: the shadow rays of one light have the light in common, and make good packets.
 pub fn arriving_light(
     scene: &Scene,
     points: &[EightPoints],
@@ -73,7 +78,7 @@ pub fn arriving_light(
     shadow_rays
 }
 
-/// The shadow rays of points that face a light.
+/// The kernel that makes the shadow rays of points that face a light.
 struct AimShadowRays<'w> {
     light: &'w Light,
     points: &'w [EightPoints],
@@ -98,7 +103,7 @@ impl SimdKernel for AimShadowRays<'_> {
 }
 
 impl ShadowRays {
-    /// Finds out which rays meet an object before the light. Returns how many of them were traced.
+    /// Finds the blocked rays, and returns the number of traced rays.
     fn trace(&mut self, scene: &Scene, light: &Light) -> u64 {
         if scene.shadows() {
             hit::any_hits(Kernel::Auto, scene, &self.rays, light.in_the_way(), &mut self.blocked);
@@ -111,12 +116,12 @@ impl ShadowRays {
     }
 }
 
-/// How many rays are asked about.
+/// Returns the number of active rays.
 pub fn count(rays: &[EightRays]) -> u64 {
     rays.iter().map(|rays| u64::from(rays.active.count_ones())).sum()
 }
 
-/// What the light of that number adds to what arrives.
+/// The kernel that adds a light's unblocked contributions to the arriving light.
 struct AddUnblocked<'w> {
     number: usize,
     shadows: &'w ShadowRays,
@@ -142,12 +147,13 @@ impl SimdKernel for AddUnblocked<'_> {
     }
 }
 
-/// A ray to the light from each point.
+/// Makes a shadow ray from each point to a light, also from points that face away.
 pub fn shadow_rays(light: &Light, points: &[EightPoints], rays: &mut Vec<EightRays>) {
     rays.clear();
     simd::dispatch(Shadows { light, points, rays });
 }
 
+/// The kernel of [`shadow_rays`].
 struct Shadows<'w> {
     light: &'w Light,
     points: &'w [EightPoints],
@@ -165,7 +171,7 @@ impl SimdKernel for Shadows<'_> {
     }
 }
 
-/// [`shadow_ray`] from those of the points that are asked about.
+/// Returns the shadow rays of a mask of points, as [`shadow_ray`] makes them.
 #[inline(always)]
 fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32) -> EightRays {
     let origin = points.position.load() + points.geometric_normal.load() * N::load(&points.clearance);
@@ -174,6 +180,7 @@ fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32)
     if active == ALL || active == 0 {
         return rays;
     }
+    // Inactive lanes repeat an active ray, so that they do not widen the bounds of the group.
     let (one, is_active) = (rays.ray(active.trailing_zeros() as usize % LANES), N::mask_from_bits(active));
     EightRays {
         origin: Vector::select(is_active, origin, Vector::splat(one.origin)).store(),
@@ -182,8 +189,9 @@ fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32)
     }
 }
 
-/// What goes to the eye: the reflected part of the light that arrives, or the background where nothing was hit. The rays'
-/// neighbours in the picture differ from them by these steps.
+/// Computes the light towards the eye: the reflected part of the arriving light, or the background without a hit.
+///
+/// `steps` are the changes of direction to the neighbouring rays in the picture, from which footprints follow.
 pub fn reflect(
     scene: &Scene,
     rays: &[EightRays],
@@ -197,6 +205,7 @@ pub fn reflect(
     simd::dispatch(Reflect { scene, rays, steps, hits, points, arriving, lights });
 }
 
+/// The kernel of [`reflect`].
 struct Reflect<'w> {
     scene: &'w Scene,
     rays: &'w [EightRays],
@@ -217,16 +226,17 @@ impl SimdKernel for Reflect<'_> {
             if points.hit_mask != ALL {
                 light = backgrounds(self.scene, self.rays[at].direction.load());
             }
-            let mut left = points.hit_mask;
-            while left != 0 {
-                let object = points.ids.id(left.trailing_zeros() as usize % LANES).object;
-                let same = left & points.ids.mask_of_object::<N>(object);
+            // Object by object: most groups of eight hit a single one, whose material is then evaluated in all lanes.
+            let mut remaining = points.hit_mask;
+            while remaining != 0 {
+                let object = points.ids.id(remaining.trailing_zeros() as usize % LANES).object;
+                let same = remaining & points.ids.mask_of_object::<N>(object);
                 let reflectance = self.reflectances::<N>(&self.scene.objects()[object as usize], at, same);
                 for (channel, light) in light.iter_mut().enumerate() {
                     let reflected = reflectance[channel] * N::load(&self.arriving[at].light[channel]);
                     *light = N::select(N::mask_from_bits(same), reflected, *light);
                 }
-                left &= !same;
+                remaining &= !same;
             }
             let [r, g, b] = light;
             self.lights.push([r.store(), g.store(), b.store()]);
@@ -235,11 +245,12 @@ impl SimdKernel for Reflect<'_> {
 }
 
 impl Reflect<'_> {
-    /// The reflectances of an object at those of eight points that are its own.
+    /// Returns the reflectances of an object at its own points of a group; other lanes are unspecified.
     #[inline(always)]
     fn reflectances<N: Lanes>(&self, object: &Object, at: usize, own: u32) -> [N; 3] {
         let points = &self.points[at];
         match (&object.material, &object.shape) {
+            // Colours of a mesh differ by triangle and come from textures: there is nothing to share between lanes.
             (Material::Own, shape) => {
                 let mut channels = [F32x8::ZERO; 3];
                 for lane in set_bits(own) {
@@ -258,25 +269,25 @@ impl Reflect<'_> {
     }
 }
 
-/// What one light does at a point, if nothing is in its way.
+/// The light from one source at a point, if it is not blocked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Incidence {
     /// The lecture's **l**: the direction to the light. Unit length.
     pub l: Vec3,
-    /// The distance to the light; infinite if the light is infinitely far.
+    /// The distance to the light in world units, possibly infinite.
     pub distance: f32,
-    /// n.l; not greater than 0 where the surface faces away from the light, which then does nothing.
+    /// The cosine n.l; at most 0 if the surface faces away from the light, which then contributes nothing.
     pub cosine: f32,
-    /// I * n.l / d^2, or without the division where the light has no falloff.
+    /// The arriving light I * n.l / d^2, or I * n.l for a light without falloff.
     pub light: LinearRgb,
 }
 
-/// What the light does at the point, or nothing where the surface faces away from it.
+/// Returns the incidence of a light at a point, or `None` if the surface faces away.
 pub fn incidence(light: &Light, point: &SurfacePoint) -> Option<Incidence> {
     Some(incidence_on_either_side(light, point)).filter(|incidence| 0.0 < incidence.cosine)
 }
 
-/// The same also where the surface faces away from the light.
+/// Returns the incidence of a light at a point, also if the surface faces away.
 pub fn incidence_on_either_side(light: &Light, point: &SurfacePoint) -> Incidence {
     let (position, normal) = (Vector::<f32>::splat(point.position), Vector::splat(point.shading_normal));
     let (_, IncidentLight { l, distance, cosine, light: [r, g, b] }) = incident_light(light, position, normal);
@@ -284,7 +295,7 @@ pub fn incidence_on_either_side(light: &Light, point: &SurfacePoint) -> Incidenc
     Incidence { l: l.into(), distance, cosine, light: LinearRgb::new(r, g, b) }
 }
 
-/// [`Incidence`] at one point or several.
+/// The values of [`Incidence`] at one point, or at one point per lane.
 struct IncidentLight<N> {
     l: Vector<N>,
     distance: N,
@@ -292,7 +303,7 @@ struct IncidentLight<N> {
     light: [N; 3],
 }
 
-/// What the light does at points, and whether the surface there faces it.
+/// Returns the mask of points that face a light, and the light that arrives there.
 #[inline(always)]
 fn incident_light<N: Number>(light: &Light, position: Vector<N>, normal: Vector<N>) -> (N::Mask, IncidentLight<N>) {
     let to_light = light.to_light(position);
@@ -301,21 +312,22 @@ fn incident_light<N: Number>(light: &Light, position: Vector<N>, normal: Vector<
     let l = Vector { x: to_light.x / distance, y: to_light.y / distance, z: to_light.z / distance };
     let cosine = normal.dot(l);
     let light = light.irradiance(l, distance_squared, cosine).map(|channel| channel.min(N::splat(MAX_IRRADIANCE)));
-    // No also for NaN: a light that lies in the surface.
+    // False also for NaN, the cosine of a light at the point itself.
     (N::splat(0.0).lt(cosine), IncidentLight { l, distance, cosine, light })
 }
 
-/// A light nearly in its surface may be brighter than f32 can say. Bounded by this, all sums and products that follow are
-/// numbers: NaN has other bits on other CPUs. (`min` of NaN and a number is the number.)
+/// The largest arriving light per channel and light source.
+// A light very near its surface overflows f32, and infinity times 0 is NaN, whose bits differ between CPUs. Below this
+// limit all sums and products that follow stay finite. (`min` of NaN and a number is the number.)
 const MAX_IRRADIANCE: f32 = 1e30;
 
-/// The ray from a point to a light. The light is at t = 1, or infinitely far.
+/// Returns the shadow ray from a point to a light, which is at t = 1 or infinitely far.
 pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Ray {
     let origin = point.ray_origin();
     Ray { origin, direction: light.to_light(Vector::<f32>::splat(origin)).into() }
 }
 
-/// The light that comes along rays that meet nothing.
+/// Returns the background's light along rays without a hit.
 #[inline(always)]
 fn backgrounds<N: Number>(scene: &Scene, direction: Vector<N>) -> [N; 3] {
     let channels = |LinearRgb { r, g, b }: LinearRgb| [N::splat(r), N::splat(g), N::splat(b)];

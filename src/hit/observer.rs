@@ -1,27 +1,29 @@
-//! Who watches a ray on its way: nobody, usually, and that costs nothing.
+//! Traversal observers. Without one, [`NoObserver`] is compiled away.
 
 use crate::accel::PrimitiveId;
 
-/// Who is told what a ray is tested against, by the same code that traces pictures.
+/// An observer of the intersection tests of a single ray.
+// A parameter of the traversal that renders pictures, so that explanations and the cost map show its real tests, not
+// those of a second implementation.
 pub trait Observer {
-    /// Whether anybody is there. What is only for him to know is not worked out otherwise.
+    /// Whether tests are reported; if not, their data are not computed.
     const ENABLED: bool = true;
 
-    /// The ray was tested against the boxes of a node: up to eight.
+    /// Records a test against the up to eight boxes of a node.
     fn node_tested(&mut self);
 
-    /// The ray was tested against a part of an object.
+    /// Records a test against a primitive.
     fn primitive_tested(&mut self, test: PrimitiveTest);
 }
 
-/// A ray's test against a part of an object.
+/// A ray's intersection test against a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimitiveTest {
-    /// Which of the scene's objects, by its place in [`Scene::objects`](crate::scene::Scene::objects).
+    /// The index of the object in [`Scene::objects`](crate::scene::Scene::objects).
     pub object: u32,
-    /// Which of its shape's [parts](crate::shape::Shape::primitive).
+    /// The index of the [primitive](crate::shape::Shape::primitive) in the object's shape.
     pub primitive: u32,
-    /// Where the ray first crosses it, from the start of the interval on; `None`: nowhere there.
+    /// The first crossing from the start of the interval on; it may lie beyond the closest hit.
     pub t: Option<f32>,
 }
 
@@ -31,7 +33,7 @@ impl PrimitiveTest {
     }
 }
 
-/// The usual observer.
+/// The absent observer.
 pub(super) struct NoObserver;
 
 impl Observer for NoObserver {

@@ -1,50 +1,57 @@
-//! When rays leave their packet and go on as single rays.
+//! The criteria by which rays leave their packet and go on as single rays.
 //!
-//! A packet is worth its work as long as many of its rays meet the same nodes. Where it meets several boxes of a node, the
-//! rays that meet the node are counted; if they are few, they go on one by one from there. The constants were measured on spheres and meshes of 3 to
-//! 871,000 primitives, at 1024x1024 and 200x120, against packets alone and single rays alone. Tried instead: one group of
-//! eight as the measure (bunny 13 in the place of 19 Mrays/s, dragon 871k half as fast as single rays), and no measure
-//! (dragon 871k at 200x120 at a fifth of the speed).
+//! A packet is worth its work as long as many of its rays meet the same nodes. Where it meets several boxes of a node,
+//! the rays that meet the node are counted; if they are few, they go on singly from there.
+//!
+//! The constants were measured on spheres and meshes of 3 to 871,000 primitives, at 1024x1024 and 200x120, against
+//! packets alone and single rays alone. Rejected: to leave where only one group of eight meets the node (bunny 13
+//! instead of 19 Mrays/s, dragon 871k half as fast as single rays), and never to leave (dragon 871k at 200x120 five
+//! times slower).
 
 use crate::bvh::GROUPS;
 use crate::lanes::set_bits;
 
-/// At a node that no more rays than these meet, they go on as single rays. With 8 in the place of 6, and all groups
-/// counted, 1,000 spheres took 1.14 times as long.
+/// The number of rays that meet a node up to which they go on as single rays.
+// With 8 instead of 6, and all groups counted, 1,000 spheres took 1.14 times as long.
 const MAX_SINGLE_RAYS: u32 = 6;
 
-/// The same for the rays of each group on average, where that is more.
+/// The number of rays per group up to which they go on as single rays, where that is more.
 const MAX_SINGLE_RAYS_PER_GROUP: u32 = 2;
 
-/// If more groups than these may meet a node, eye rays are not counted, and of shadow rays only one group is: it stands for
-/// the others. To count all takes longer than the node. (Eye rays, whose groups are as narrow as their pixels, were never
-/// found to be few there: without the count bunny is 1.10 times as fast.)
+/// The number of groups that may meet a node up to which the rays of all groups are counted.
+// Counting more takes longer than the node. Beyond, one group of shadow rays stands for the others, and eye rays are
+// not counted at all: they have never been found to be few there, as their groups are as narrow as their pixels.
+// Without the count the bunny is 1.10 times as fast (51.7 to 56.8 Mrays/s).
 const MAX_COUNTED_GROUPS: u32 = 5;
 
-/// If more rays of the group that stands for the others meet the node, the packet goes on. With 2 in the place of 1, shadow
-/// rays of 100,000 spheres took 1.03 times as long.
+/// The number of rays of the group that stands for the others up to which all groups are counted after all.
+// With 2 instead of 1, shadow rays of 100,000 spheres took 1.03 times as long.
 const MAX_SAMPLED_RAYS: u32 = 1;
 
-/// Rays are counted at nodes of which the packet meets at least this number of boxes. Of fewer, a packet gets rid with less
-/// work than the count takes. Counted before the boxes are tested, shadow rays of 1,000 spheres took 1.05 times as long,
-/// eye rays of 100,000 spheres 1.05 times. From 3 boxes on, shadow rays of 100,000 spheres take 1.08 times as long.
+/// Returns the number of boxes of a node from which on rays are counted, if the packet meets that many.
+// Fewer boxes take the packet less work than the count. Counted before the boxes are tested, shadow rays of 1,000
+// spheres and eye rays of 100,000 spheres took 1.05 times as long. From 3 boxes on, shadow rays of 100,000 spheres take
+// 1.08 times as long.
 pub(super) const fn min_boxes_to_split(any: bool) -> u32 {
     if any { 2 } else { 4 }
 }
 
-/// A packet that has met no more leaves than these before its rays left it is of no use to the tile: its neighbours are
-/// traced as single rays from the start (dragon 871k at 100x60: .91 ms in the place of 1.10).
+/// The number of visited leaves up to which a packet left by its rays counts as inefficient.
+// Such a packet did the work of both ways. With the rest of the tile traced singly after it, dragon 871k at 100x60
+// takes 0.91 instead of 1.10 ms.
 const MAX_INEFFICIENT_LEAVES: u32 = 6;
 
-/// The rays of a packet at a node. A trait, as closures are not compiled for the registers of their caller: with one,
-/// 1,000 spheres took 1.6 times as long.
+/// The rays of a packet at a node.
+// A trait instead of a closure: closures do not inherit the target features of the function that they are written in.
+// With a closure 1,000 spheres took 1.6 times as long.
 pub(super) trait NodeRays {
     /// Returns the mask of a group's rays that meet the node.
     fn hit_mask(&self, group: usize) -> u32;
 }
 
-/// Returns the rays of each group that go on as single rays from a node that these groups may meet, or nothing if the
-/// packet goes on.
+/// Returns the masks of rays that leave the packet at a node, or `None` if the packet goes on.
+///
+/// `groups` is the mask of groups that may meet the node.
 #[inline(always)]
 pub(super) fn split_at_node<const ANY: bool>(groups: u32, node: &impl NodeRays) -> Option<[u32; GROUPS]> {
     let count = groups.count_ones();
@@ -53,7 +60,8 @@ pub(super) fn split_at_node<const ANY: bool>(groups: u32, node: &impl NodeRays) 
         if !ANY {
             return None;
         }
-        // Of six groups and more one is among the last five.
+        // Six or more of eight groups include one of the last five; the first of these stands for the others, as it
+        // lies near the middle of the packet.
         let middle = 3 + (groups >> 3).trailing_zeros() as usize;
         if node.hit_mask(middle).count_ones() > MAX_SAMPLED_RAYS {
             return None;
@@ -67,11 +75,12 @@ pub(super) fn split_at_node<const ANY: bool>(groups: u32, node: &impl NodeRays) 
     (sum <= max_rays).then_some(rays)
 }
 
-/// Returns whether packets like one whose rays left it so often, after it had met that number of leaves, had better be
-/// traced as single rays from the start.
+/// Returns whether a packet was inefficient: left by more rays than it has, with hardly a leaf visited before.
+///
+/// `rays_left` counts a ray each time that it leaves: in several trees, and at several nodes of one.
 #[inline(always)]
-pub(super) fn is_inefficient(leaves: u32, left: u32, active: u32) -> bool {
-    leaves <= MAX_INEFFICIENT_LEAVES && left > active
+pub(super) fn is_inefficient(leaves: u32, rays_left: u32, active: u32) -> bool {
+    leaves <= MAX_INEFFICIENT_LEAVES && rays_left > active
 }
 
 #[cfg(test)]
@@ -81,7 +90,7 @@ mod tests {
     const CLOSEST: bool = false;
     const ANY: bool = true;
 
-    /// The mask of each group; of the others nothing is known.
+    /// The masks of some groups; counting another one is a fault.
     struct Masks<'m>(&'m [(usize, u32)]);
 
     impl NodeRays for Masks<'_> {
@@ -108,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn a_packet_is_inefficient_that_is_left_by_more_rays_than_it_has() {
+    fn a_packet_left_by_more_rays_than_it_has_is_inefficient() {
         assert!(is_inefficient(6, 65, 64));
         assert!(!is_inefficient(7, 65, 64) && !is_inefficient(6, 64, 64));
     }
