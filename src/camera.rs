@@ -53,7 +53,7 @@ pub struct Pose {
     pub up: Vec3,
 }
 
-/// The camera's orthonormal basis: right-handed, u to the right, v up, and the camera looks along -w.
+/// The camera's right-handed orthonormal basis: u to the right, v up, w away from the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Basis {
     /// The horizontal axis of the view plane. Unit length.
@@ -73,7 +73,7 @@ pub struct ViewRectangle {
     width: Option<f32>,
     /// The height divided by the focal length.
     height: f32,
-    /// The offset of the rectangle's middle from the w axis, to the right and upwards, in heights of the rectangle.
+    /// The offset of the middle from the w axis, to the right and upwards, in heights.
     shift: Vec2,
 }
 
@@ -131,7 +131,9 @@ impl std::error::Error for CameraError {}
 const DEFAULT_FOV_DEGREES: f64 = 45.0;
 
 impl Camera {
-    /// Returns the camera at `eye` that looks at `target`, with +y up and a vertical field of view of 45 degrees.
+    /// Returns the camera at `eye` that looks at `target`, with +y up.
+    ///
+    /// The vertical field of view is 45 degrees.
     ///
     /// ```
     /// use glam::Vec3;
@@ -160,7 +162,9 @@ impl Camera {
         self.with_pose(Pose { up, ..self.pose })
     }
 
-    /// Returns the camera with another vertical field of view, in degrees. Its view rectangle keeps its aspect ratio.
+    /// Returns the camera with another vertical field of view, in degrees.
+    ///
+    /// The view rectangle keeps its aspect ratio.
     ///
     /// # Errors
     /// If the angle is not between 0 and 180 degrees, both excluded.
@@ -231,8 +235,9 @@ impl Camera {
 }
 
 impl Basis {
-    /// Returns the basis of a pose by the lecture's construction from a = -(target - eye) and b = up:
-    /// w = a / |a|, u = b x w / |b x w|, v = w x u.
+    /// Returns the basis of a pose by the lecture's construction from two vectors.
+    ///
+    /// From a = -(target - eye) and b = up follow w = a / |a|, u = b x w / |b x w|, v = w x u.
     // In f64, rounded once at the end: a target far away, or an up vector nearly along the view, costs no digits.
     fn from_pose(pose: &Pose) -> Result<Self, CameraError> {
         let [eye, target, up] = [pose.eye, pose.target, pose.up].map(Vec3::as_dvec3);
@@ -316,7 +321,9 @@ impl ViewRectangle {
         }
     }
 
-    /// Returns the rectangle of the same aspect ratio and shift with this vertical field of view in radians.
+    /// Returns the rectangle with another vertical field of view, in radians.
+    ///
+    /// The aspect ratio and the shift stay.
     ///
     /// # Errors
     /// As [`ViewRectangle::from_vertical_fov`].
@@ -353,7 +360,9 @@ impl ViewRectangle {
         if is_positive(width) { Ok(Self { width: Some(width), ..self }) } else { Err(CameraError::ViewRectangle) }
     }
 
-    /// Returns the rectangle with its middle shifted from the w axis, to the right and upwards, in its heights.
+    /// Returns the rectangle with its middle shifted from the w axis, in its heights.
+    ///
+    /// The shift is to the right and upwards.
     ///
     /// # Errors
     /// If the shift is not finite, or more than 1000 heights along an axis.
@@ -390,7 +399,7 @@ impl ViewRectangle {
         self.width.map(|width| width / self.height)
     }
 
-    /// Returns the offset of the middle from the w axis, to the right and upwards, in heights of the rectangle.
+    /// Returns the offset of the middle from the w axis, to the right and upwards, in heights.
     #[doc(hidden)]
     pub fn shift(&self) -> Vec2 {
         self.shift
@@ -427,7 +436,7 @@ pub struct EyeRays {
 }
 
 impl EyeRays {
-    /// Returns the ray through a position in the picture, from (0, 0) at the lower left corner to (1, 1).
+    /// Returns the ray through a position, from (0, 0) at the lower left corner to (1, 1).
     ///
     /// The lecture's q = q0 + w qu u + h qv v. The direction is q - eye, whose component along -w is 1, so that t is
     /// the depth.
@@ -436,7 +445,7 @@ impl EyeRays {
         Ray { origin: self.eye, direction: self.direction(qu, qv).into() }
     }
 
-    /// Returns the direction of the ray [`through`](Self::through) a position, or of one ray per lane.
+    /// Returns the direction of the ray [`through`](Self::through) a position, for each lane.
     #[inline(always)]
     pub fn direction<N: Number>(&self, qu: N, qv: N) -> Vector<N> {
         Vector::splat(self.q0) + Vector::splat(self.across) * qu + Vector::splat(self.upward) * qv

@@ -51,9 +51,10 @@ impl fmt::Display for PathError {
 impl std::error::Error for PathError {}
 
 impl CameraPath {
-    /// Returns a path from `camera` once around its target in `seconds`, which must be greater than 0.
+    /// Returns a path from `camera` once around its target in `seconds`.
     ///
     /// The eye starts to the right and turns about the axis through the target along the up vector, at constant height.
+    /// `seconds` must be greater than 0.
     ///
     /// ```
     /// use termtrace::{CameraPath, Scene};
@@ -68,7 +69,9 @@ impl CameraPath {
         Self(PathKind::Orbit { camera, seconds })
     }
 
-    /// Returns a smooth path through keyframes; `None` if there are none, or their times do not increase.
+    /// Returns a smooth path through keyframes.
+    ///
+    /// Returns `None` if there are none, or their times do not increase.
     ///
     /// Before the first and after the last keyframe the camera rests.
     ///
@@ -119,7 +122,7 @@ impl CameraPath {
     }
 }
 
-/// Returns the camera turned about the axis through its target along the up vector, by an angle in radians.
+/// Returns the camera turned about its target and up vector by an angle in radians.
 // Written as a difference from the eye, so that angle 0 gives the same bits.
 fn turned(camera: &Camera, angle: f64) -> Result<Camera, CameraError> {
     let pose = camera.pose();
@@ -160,7 +163,7 @@ struct KeyframeInterval<'a> {
 }
 
 impl KeyframeInterval<'_> {
-    /// Returns a quantity of the camera, by the cubic Hermite curve of its values and velocities at both keyframes.
+    /// Returns a quantity of the camera by its cubic Hermite curve between both keyframes.
     fn value<T: Interpolated>(&self, of: impl Fn(&Camera) -> T) -> T {
         let (start, end) = (self.before, self.before + 1);
         let seconds = self.keyframes[end].time - self.keyframes[start].time;
@@ -211,7 +214,7 @@ mod tests {
         path.camera_at(time).unwrap().pose().eye
     }
 
-    /// At any tilt: the distance to the axis and the height along it stay, and all of the circle is gone round.
+    /// Distance to the axis and height along it are constant over the whole circle, at a tilt.
     #[test]
     fn an_orbit_keeps_its_height_and_its_radius() {
         let tilted =
@@ -261,7 +264,7 @@ mod tests {
         assert_eq!(path.seconds(), 4.0);
     }
 
-    /// Neither the way nor the speed has a jump: the second differences of small steps are small everywhere.
+    /// Position and velocity have no jump: second differences of small steps are small.
     #[test]
     fn a_path_is_smooth() {
         let path = CameraPath::through(vec![
@@ -318,7 +321,7 @@ mod tests {
         }
     }
 
-    /// A slow way after a fast one: the speed at the keyframe between them does not throw the camera far out.
+    /// The velocity between a fast and a slow segment does not make the camera overshoot.
     #[test]
     fn unequal_times_do_not_throw_the_camera_out() {
         let path = CameraPath::through(vec![

@@ -1,4 +1,4 @@
-//! Descriptions of a picture in words, for people who cannot see it: positions, occlusion and lights.
+//! Descriptions of pictures in words, for people who cannot see them.
 //!
 //! Every statement comes from a [`Survey`] of traced pixels or from the scene's checked values; none is guessed.
 

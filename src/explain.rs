@@ -29,7 +29,7 @@ pub struct Explanation {
     pub resolution: Resolution,
     /// The lecture's (i, j): the column and the row, from the top left.
     pub pixel: [u32; 2],
-    /// The lecture's (qu, qv): the position in the picture, from (0, 0) at the lower left corner to (1, 1).
+    /// The lecture's (qu, qv): the position from (0, 0) at the lower left corner to (1, 1).
     pub q: Vec2,
     /// The eye ray, with the lecture's **o** and **d**; **q** is o + d.
     #[doc(hidden)]
@@ -101,7 +101,7 @@ impl LightContribution {
         0.0 < self.incidence.cosine
     }
 
-    /// Returns the contribution: the arriving light, or black if it is blocked or comes from behind.
+    /// Returns the arriving light, or black if it is blocked or comes from behind.
     pub fn light(&self) -> LinearRgb {
         if self.faces() && self.blocker.is_none() { self.incidence.light } else { LinearRgb::BLACK }
     }

@@ -87,7 +87,7 @@ impl Resolution {
         self.pixel_aspect
     }
 
-    /// Returns the picture's aspect ratio on the screen: width divided by height, with the pixel aspect.
+    /// Returns the picture's width divided by its height on the screen, with the pixel aspect.
     #[doc(hidden)]
     pub fn aspect_ratio(&self) -> f32 {
         self.width as f32 / (self.height as f32 * self.pixel_aspect)
@@ -191,7 +191,9 @@ impl Framebuffer {
         self.pixels[y as usize * self.resolution.width as usize + x as usize]
     }
 
-    /// Returns a 64-bit FNV-1a hash of the size and of the bits of all pixels, the same on every machine.
+    /// Returns a 64-bit FNV-1a hash of the size and of the bits of all pixels.
+    ///
+    /// Equal pictures have the same hash on every machine.
     // For tests, and for the bench, which prints it beside each figure. FNV-1a is written here, because the result of
     // std's default hasher may differ between versions of Rust.
     #[doc(hidden)]

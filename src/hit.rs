@@ -83,7 +83,7 @@ impl EightHits {
         N::load(&self.primitives).has_bits(primitive).bits()
     }
 
-    /// Returns the bits of the primitives' indices. Their lowest three bits are positions in a leaf.
+    /// Returns the bits of the primitives' indices; the lowest three are positions in a leaf.
     // `gather` looks at those three bits only, so the others stay.
     #[inline(always)]
     pub(crate) fn lanes_in_leaf<N: Lanes>(&self) -> N {
@@ -162,7 +162,7 @@ pub fn closest_hit_observed(scene: &Scene, ray: &Ray, observer: &mut impl Observ
     Some(Hit { t, object, primitive: index })
 }
 
-/// Returns a hit of a ray in the interval, not always the closest, and reports all tests to `observer`.
+/// Returns any hit of a ray in the interval, and reports all tests to `observer`.
 pub fn any_hit_observed(scene: &Scene, ray: &Ray, within: Interval, observer: &mut impl Observer) -> Option<Hit> {
     let (_, primitive) = simd::dispatch(Observed::<_, ANY> { scene, ray, within, observer });
     let PrimitiveId { object, index } = scene.accelerator().id(primitive?);

@@ -20,12 +20,12 @@ pub use sun::Sun;
 
 /// A kind of light source.
 pub trait LightSource: InSceneFile + Copy {
-    /// The interval of t in which an object on a ray along [`to_light`](Self::to_light) blocks the light.
+    /// The interval of a shadow ray's t in which an object blocks the light.
     // Excludes t = 0: the ray's origin is offset in proportion to its coordinates, which vanishes at the origin of the
     // world, where the ray starts exactly in its own surface.
     const IN_THE_WAY: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 };
 
-    /// Returns the vectors from points to the light; for a light at infinity, the unit vector towards it.
+    /// Returns the vectors from points to the light; at infinity, the unit vector towards it.
     fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N>;
 
     /// Returns the irradiance at surfaces times 1/pi, per channel.

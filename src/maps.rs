@@ -41,7 +41,9 @@ pub enum Map {
     /// The scene's light.
     #[default]
     Shaded,
-    /// The sum of n.l over all lights that the surface faces, clamped to 1, without colours, distances and shadows.
+    /// The sum of n.l over all lights that the surface faces, clamped to 1.
+    ///
+    /// Colours, distances and shadows have no influence.
     Lambert,
     /// The depth t along the direction of view, as a grey of 1 / (1 + (t / d)^2).
     ///
@@ -53,7 +55,9 @@ pub enum Map {
     Object,
     /// The number of lights that reach the surface, from dark grey for none to white for all.
     Shadow,
-    /// The number of intersection tests of the pixel's eye ray and shadow rays, each traced as a single ray.
+    /// The number of intersection tests of the pixel's eye ray and shadow rays.
+    ///
+    /// Each ray is traced singly.
     ///
     /// Counts surfaces and nodes of the tree. Colours go from blue over green to red and white, one for each power of
     /// four.

@@ -75,7 +75,7 @@ macro_rules! materials {
                 }
             }
 
-            /// Returns the name with an article and the [pattern](Reflecting::PATTERN) of a patterned material.
+            /// Returns a patterned material's name with an article, and its pattern's name.
             pub(crate) fn pattern(&self) -> Option<(&'static str, &'static str)> {
                 match self {
                     $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
@@ -124,7 +124,7 @@ macro_rules! materials {
                 }
             }
 
-            /// Returns the name with an article and the [pattern](Reflecting::PATTERN) of a patterned material.
+            /// Returns a patterned material's name with an article, and its pattern's name.
             pub(crate) fn pattern(&self) -> Option<(&'static str, &'static str)> {
                 match self {
                     $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
@@ -165,7 +165,7 @@ impl Material {
         Diffuse::new(reflectance).map(Self::Diffuse)
     }
 
-    /// Returns a material of squares with alternating linear reflectances and sides of length `size`.
+    /// Returns a material of squares with alternating linear reflectances and side `size`.
     ///
     /// Only a plane can have it.
     ///

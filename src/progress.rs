@@ -52,7 +52,9 @@ pub enum Work {
     Building,
 }
 
-/// A reporter of progress to a callback, from any thread, by which the callback can cancel the work.
+/// A reporter of progress to a callback, which can cancel the work.
+///
+/// Reports may come from any thread.
 pub struct Reporter<'w> {
     on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
     on_dependency: Option<&'w (dyn Fn(&Path) + Sync)>,

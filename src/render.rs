@@ -39,7 +39,19 @@ pub use sampling::Sampling;
 pub use schedule::Executor;
 pub use single_pixel::{PixelTrace, trace_pixel};
 
-/// Returns the picture of `scene` seen by `camera`. The first ray of a pixel goes through its centre.
+/// Returns the picture of `scene` seen by `camera`.
+///
+/// The first ray of a pixel goes through its centre.
+///
+/// ```
+/// use std::num::NonZeroU32;
+/// use termtrace::{Resolution, Scene, render};
+///
+/// let scene = Scene::from_ron("empty.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))")?;
+/// let light = render(&scene, scene.camera(), Resolution::new(4, 3)?, NonZeroU32::MIN);
+/// assert_eq!(light.pixels().len(), 12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Framebuffer {
     render_partial(Executor::Pool, scene, camera, resolution, sampling.into()).framebuffer
 }
@@ -83,7 +95,7 @@ pub fn render_by(
     executor.finish(render_partial(executor, scene, camera, resolution, sampling.into()))
 }
 
-/// Returns the total of a [`Report`](report::Report): the [progress units](steps::ProgressUnit) of all tiles.
+/// Returns the [progress units](steps::ProgressUnit) of a whole picture.
 fn units(resolution: Resolution, sampling: Sampling) -> u64 {
     let pixels = resolution.pixel_count() as u64;
     match sampling.bounded() {
@@ -93,7 +105,7 @@ fn units(resolution: Resolution, sampling: Sampling) -> u64 {
     }
 }
 
-/// Renders as [`render`] does on the threads of `executor`; after a cancel, returns an incomplete picture.
+/// Renders on the threads of `executor`; after a cancel, returns an incomplete picture.
 pub(crate) fn render_partial(
     executor: Executor<'_>,
     scene: &Scene,

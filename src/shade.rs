@@ -189,7 +189,7 @@ fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32)
     }
 }
 
-/// Computes the light towards the eye: the reflected part of the arriving light, or the background without a hit.
+/// Computes the light towards the eye: reflected light, or the background without a hit.
 ///
 /// `steps` are the changes of direction to the neighbouring rays in the picture, from which footprints follow.
 pub fn reflect(
@@ -245,7 +245,7 @@ impl SimdKernel for Reflect<'_> {
 }
 
 impl Reflect<'_> {
-    /// Returns the reflectances of an object at its own points of a group; other lanes are unspecified.
+    /// Returns the reflectances of an object at a group's points; other lanes are unspecified.
     #[inline(always)]
     fn reflectances<N: Lanes>(&self, object: &Object, at: usize, own: u32) -> [N; 3] {
         let points = &self.points[at];
@@ -276,7 +276,7 @@ pub struct Incidence {
     pub l: Vec3,
     /// The distance to the light in world units, possibly infinite.
     pub distance: f32,
-    /// The cosine n.l; at most 0 if the surface faces away from the light, which then contributes nothing.
+    /// The cosine n.l; at most 0 if the surface faces away from the light.
     pub cosine: f32,
     /// The arriving light I * n.l / d^2, or I * n.l for a light without falloff.
     pub light: LinearRgb,

@@ -17,7 +17,9 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Returns the picture with these pixels, row by row from the top; `None` unless there are `width * height`.
+    /// Returns the picture with these pixels, row by row from the top.
+    ///
+    /// Returns `None` unless there are `width * height` pixels.
     ///
     /// ```
     /// use termtrace::{Picture, Srgb8};
@@ -105,7 +107,7 @@ fn apply_curve(curve: ToneCurve, light: LinearRgb) -> LinearRgb {
     }
 }
 
-/// Returns a channel after Krzysztof Narkowicz's fit (2015) to the ACES reference rendering and output transforms.
+/// Returns a channel after Krzysztof Narkowicz's fit (2015) to the ACES transforms.
 fn filmic(x: f32) -> f32 {
     // Clamped far beyond white: the square of a brighter light is infinite in f32, and the quotient NaN, which would
     // be black.

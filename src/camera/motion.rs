@@ -27,10 +27,10 @@ pub(crate) const FRAMED_SHARE: f32 = 0.95;
 const FOV_RANGE: [f32; 2] = [0.017_453_3, 2.617_994];
 
 impl Camera {
-    /// Returns the camera with the eye moved around the target, to the right and upwards, by angles in radians.
+    /// Returns the camera with the eye moved around the target by angles in radians.
     ///
-    /// The eye keeps its distance from the target, and stops 0.02 radians before the poles straight above and below the
-    /// target. An angle that is not finite changes nothing.
+    /// The angles are to the right and upwards. The eye keeps its distance from the target, and stops 0.02 radians
+    /// before the poles straight above and below the target. An angle that is not finite changes nothing.
     ///
     /// ```
     /// use glam::Vec3;
@@ -52,9 +52,10 @@ impl Camera {
         self.with_valid_pose(Pose { eye: pose.target - self.turned_view(right, -up), ..pose })
     }
 
-    /// Returns the camera with the target moved around the eye, to the right and upwards, by angles in radians.
+    /// Returns the camera with the target moved around the eye by angles in radians.
     ///
-    /// The view stops 0.02 radians before straight up and straight down. An angle that is not finite changes nothing.
+    /// The angles are to the right and upwards. The view stops 0.02 radians before straight up and straight down. An
+    /// angle that is not finite changes nothing.
     #[must_use]
     pub fn turned(&self, right: f32, up: f32) -> Self {
         if is_no_turn(right, up) {
@@ -63,7 +64,9 @@ impl Camera {
         self.with_valid_pose(Pose { target: self.pose.eye + self.turned_view(-right, up), ..self.pose })
     }
 
-    /// Returns the camera with eye and target moved to the right, along the up vector, and forward, in world units.
+    /// Returns the camera with eye and target moved by distances in world units.
+    ///
+    /// The distances are to the right, along the up vector, and forward.
     #[must_use]
     pub fn moved(&self, right: f32, up: f32, forward: f32) -> Self {
         if (right, up, forward) == (0.0, 0.0, 0.0) {
@@ -95,7 +98,9 @@ impl Camera {
         rectangle.scaled(wanted / height).map_or(*self, |rectangle| self.with_rectangle(rectangle))
     }
 
-    /// Returns the camera at the distance from which a box fills 95 % of a picture, with the same direction of view.
+    /// Returns the camera at the distance from which a box fills 95 % of a picture.
+    ///
+    /// The direction of view stays.
     ///
     /// `aspect_ratio` is the picture's width divided by its height. The target becomes the box's centre. A box of size
     /// 0 changes nothing.
@@ -145,7 +150,7 @@ impl Camera {
         self.with_pose(pose).unwrap_or(*self)
     }
 
-    /// Returns the vector from the eye to the target after a turn to the left about up, and upwards about u.
+    /// Returns the vector from eye to target after turns to the left and upwards, in radians.
     fn turned_view(&self, left: f32, upwards: f32) -> Vec3 {
         let Pose { eye, target, up } = self.pose;
         let upwards = self.up_to_the_pole(upwards);
@@ -154,7 +159,9 @@ impl Camera {
         rotated(rotated(target - eye, axis_up, left), u, upwards)
     }
 
-    /// Returns an upward turn limited by the poles. A view beyond the limit may only turn away from its pole.
+    /// Returns an upward turn limited by the poles.
+    ///
+    /// A view beyond the limit may only turn away from its pole.
     fn up_to_the_pole(&self, angle: f32) -> f32 {
         let limit = std::f32::consts::FRAC_PI_2 - POLE_MARGIN;
         let sine = -self.basis.w.dot(self.pose.up.normalize_or_zero());
@@ -168,7 +175,7 @@ fn is_no_turn(right: f32, up: f32) -> bool {
     (right, up) == (0.0, 0.0) || !(right.is_finite() && up.is_finite())
 }
 
-/// Returns the distance from a box's centre, along the basis vector w, at which the eye sees all of its corners.
+/// Returns the distance from a box's centre, along w, at which all of its corners are seen.
 ///
 /// Corners must be within `half` a width and height of `middle`, on the plane at distance 1.
 pub(crate) fn framing_distance(bounds: &Bounds, [u, v, w]: [Vec3; 3], half: Vec2, middle: Vec2) -> f32 {
@@ -187,7 +194,9 @@ fn centre_of(bounds: &Bounds) -> Vec3 {
     bounds.min + 0.5 * bounds.extent()
 }
 
-/// Returns `v` rotated about a unit axis by an angle in radians, counterclockwise seen against the axis (Rodrigues).
+/// Returns `v` rotated about a unit axis by an angle in radians (Rodrigues' formula).
+///
+/// The rotation is counterclockwise seen against the axis.
 // The length is restored, because rounding errors of many small turns would add up.
 fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
     let (sin, cos) = libm::sincosf(angle);

@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 pub enum Grip {
     /// Turns the view; usually with the left button.
     Turn,
-    /// Shifts the picture; usually with the right or the middle button, or with the left one and Shift.
+    /// Shifts the picture; usually with the right or middle button, or with Shift and the left.
     Pan,
 }
 
@@ -24,7 +24,9 @@ const ORBIT_PER_HEIGHT: f32 = std::f32::consts::PI;
 pub(super) const WHEEL_NOTCH_FACTOR: f32 = 0.88;
 
 impl Camera {
-    /// Returns the position of a point in a picture with this aspect ratio; `None` if it is not in front of the eye.
+    /// Returns the position of a point in a picture with this aspect ratio.
+    ///
+    /// Returns `None` if the point is not in front of the eye.
     #[doc(hidden)]
     pub fn project(&self, point: Vec3, aspect_ratio: f32) -> Option<Vec2> {
         let (basis, way) = (self.basis, point - self.pose.eye);
@@ -55,7 +57,7 @@ impl Camera {
         self.turned(-turn.x, turn.y)
     }
 
-    /// Returns the camera moved towards a point by notches of the wheel; the target moves by the same vector.
+    /// Returns the camera moved towards a point by notches of the wheel, with its target.
     ///
     /// The point keeps its position in the picture.
     #[cfg(feature = "live")]
@@ -64,7 +66,9 @@ impl Camera {
         self.shifted((1.0 - factor) * (point - self.pose.eye))
     }
 
-    /// Returns the camera with eye and target scaled towards a point by notches of the wheel, in a scene of `size`.
+    /// Returns the camera with eye and target scaled towards a point by notches of the wheel.
+    ///
+    /// Limits are those of a scene of `size`.
     ///
     /// The point keeps its position in the picture.
     pub(crate) fn wheeled_around(&self, point: Vec3, notches: f32, size: f32) -> Self {
@@ -84,7 +88,9 @@ impl Camera {
         point + depth.unwrap_or(self.target_distance()) * (across.x * self.basis.u - across.y * self.basis.v)
     }
 
-    /// Returns a point moved away from the eye by notches of the wheel; it keeps its position in the picture.
+    /// Returns a point moved away from the eye by notches of the wheel.
+    ///
+    /// The point keeps its position in the picture.
     #[doc(hidden)]
     pub fn point_wheeled(&self, point: Vec3, notches: f32) -> Vec3 {
         let eye = self.pose.eye;

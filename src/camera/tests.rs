@@ -12,7 +12,7 @@ fn camera(eye: Vec3, target: Vec3) -> Camera {
     Camera::new(Pose { eye, target, up: Vec3::Y }, rectangle).expect("a pose")
 }
 
-/// The part of the picture's half width and height that a point is to the right of the middle and above it.
+/// Returns the position of a point, from -1 at the left and lower border to 1.
 fn place(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Vec2 {
     let place = camera.project(point, aspect_ratio).expect("it is in front of the eye");
     (2.0 * place - 1.0) * Vec2::new(1.0, -1.0)

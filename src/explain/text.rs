@@ -129,7 +129,7 @@ pub fn cell_of_pixel([x, y]: [u32; 2], mode: CellMode) -> String {
     format!("cell ({}, {}), {place}", x / across, y / down)
 }
 
-/// Formats the roots of a tested surface's equation, with the picture's t in the place of its own root.
+/// Formats the roots of a tested surface's equation, with the picture's t for its root.
 // The equation is solved in f64 here; the picture's t has the bits of the kernel.
 fn crossings(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
     let Equation { roots, without_root, is_outside, .. } = equation;

@@ -23,8 +23,9 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     rays: &'p [EightRays],
     groups: [Rays<N>; GROUPS],
     within: Interval,
-    /// The t_max of each ray: its closest hit so far or the interval's end; [`TERMINATED`] for inactive and finished
-    /// rays.
+    /// The t_max of each ray: its closest hit so far or the interval's end.
+    ///
+    /// [`TERMINATED`] for inactive and finished rays.
     t: [N; GROUPS],
     /// The bits of the index of each ray's hit primitive.
     primitive: [N; GROUPS],
@@ -161,7 +162,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         }
     }
 
-    /// Tests a group against the primitives outside trees: unbounded ones, and kinds with a single leaf.
+    /// Tests a group against unbounded primitives, and against trees of a single leaf.
     // Done while the group's rays are still in registers, before they are stored for the trees.
     #[inline(always)]
     fn test_unculled(&self, rays: &Rays<N>, active: u32) -> GroupHits<N, ANY> {
@@ -214,7 +215,7 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
         }
     }
 
-    /// Records a primitive for the rays that hit it closest so far, and returns whether there are any.
+    /// Records a primitive for the rays that hit it closest, and returns whether any do.
     #[inline(always)]
     fn update(&mut self, primitive: u32, crossing: Option<(N::Mask, N)>, accel: &Accelerator) -> bool {
         let Some((crosses, t)) = crossing else { return false };

@@ -24,11 +24,11 @@ const MAX_SINGLE_RAYS_PER_GROUP: u32 = 2;
 // Without the count the bunny is 1.10 times as fast (51.7 to 56.8 Mrays/s).
 const MAX_COUNTED_GROUPS: u32 = 5;
 
-/// The number of rays of the group that stands for the others up to which all groups are counted after all.
+/// The number of rays in the sampled group up to which all groups are counted after all.
 // With 2 instead of 1, shadow rays of 100,000 spheres took 1.03 times as long.
 const MAX_SAMPLED_RAYS: u32 = 1;
 
-/// Returns the number of boxes of a node from which on rays are counted, if the packet meets that many.
+/// Returns the number of boxes that a packet must meet for its rays to be counted.
 // Fewer boxes take the packet less work than the count. Counted before the boxes are tested, shadow rays of 1,000
 // spheres and eye rays of 100,000 spheres took 1.05 times as long. From 3 boxes on, shadow rays of 100,000 spheres take
 // 1.08 times as long.
@@ -75,7 +75,7 @@ pub(super) fn split_at_node<const ANY: bool>(groups: u32, node: &impl NodeRays) 
     (sum <= max_rays).then_some(rays)
 }
 
-/// Returns whether a packet was inefficient: left by more rays than it has, with hardly a leaf visited before.
+/// Returns whether a packet was left by more rays than it has, with hardly a leaf visited.
 ///
 /// `rays_left` counts a ray each time that it leaves: in several trees, and at several nodes of one.
 #[inline(always)]

@@ -8,7 +8,9 @@ use crate::scene_text::SyntaxNode;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, WrittenNumber, WrittenVector};
 use glam::Vec3;
 
-/// A point source with the same intensity in all directions (lecture, "Shading", assumptions 1 and 2).
+/// A point source (lecture, "Shading", assumptions 1 and 2).
+///
+/// Its intensity is the same in all directions.
 ///
 /// ```
 /// use glam::Vec3;

@@ -1,4 +1,4 @@
-//! Directional light, for tests: it shows that a new light takes one file and one line in the table.
+//! Directional light, for tests: a new light takes one file and one line in the table.
 
 use super::LightSource;
 use crate::color::LinearRgb;
@@ -7,7 +7,9 @@ use crate::ray::Interval;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::Vec3;
 
-/// White directional light with the same irradiance everywhere: a white surface that faces it has the radiance 1.
+/// White directional light with the same irradiance everywhere.
+///
+/// A white surface that faces it has the radiance 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     /// The direction to the light. Unit length.
@@ -70,7 +72,7 @@ mod tests {
         Scene::from_ron("sun.ron", &scene(sun, objects)).expect("a scene")
     }
 
-    /// The floor's light is 0.5 times the cosine, 0.8; and 0 if an object is in the way at any distance.
+    /// The floor's light is 0.5 times the cosine, 0.8, or 0 if an object blocks the sun.
     #[test]
     fn its_light_is_that_of_the_closed_form() {
         let resolution = Resolution::square(9, 9);

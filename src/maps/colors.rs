@@ -58,7 +58,7 @@ pub(super) fn object(number: u32) -> Srgb8 {
 const HEAT: [[f32; 3]; 6] =
     [[0.1, 0.1, 0.5], [0.12, 0.5, 0.88], [0.2, 0.72, 0.3], [0.96, 0.86, 0.22], [0.87, 0.2, 0.16], [1.0, 1.0, 1.0]];
 
-/// Returns the colour of a number of tests: blue up to 1, over green and red, to white from 1024 on.
+/// Returns the colour of a number of tests, from blue up to 1 to white from 1024 on.
 ///
 /// Between the powers of four of [`HEAT`] colours are interpolated.
 pub(super) fn heat(count: u32) -> Srgb8 {
@@ -119,7 +119,7 @@ mod tests {
         assert!(heat(8) != heat(4) && heat(8) != heat(16) && heat(9) != heat(8), "and others between");
     }
 
-    /// Objects that are neighbours in the file differ clearly, and of a thousand no two have the same colour.
+    /// Neighbours in the file differ clearly, and a thousand objects have over 900 colours.
     #[test]
     fn objects_have_colours_of_their_own() {
         let colors: Vec<_> = (0..1000).map(object).collect();

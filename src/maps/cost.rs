@@ -1,4 +1,4 @@
-//! The cost map: the intersection tests of a pixel's eye ray and shadow rays, each traced as a single ray.
+//! The cost map: the intersection tests of a pixel's rays, each traced singly.
 //!
 //! Packets share tests between pixels, so the rays that make the shaded picture have no number of tests of their own.
 

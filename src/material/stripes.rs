@@ -1,4 +1,4 @@
-//! Stripes, a material for tests: it shows that a new material takes one file and one line in the table.
+//! Stripes, for tests: a new material takes one file and one line in the table.
 
 use super::{Reflecting, channels};
 use crate::color::LinearRgb;
@@ -57,9 +57,9 @@ mod tests {
     use crate::scene::Scene;
     use std::num::NonZeroU32;
 
-    /// Seen from straight above, 4 units wide in a picture of 4 pixels, in an ambient light of 1.
+    /// Returns the text of a scene seen from above, with one pixel per unit and an ambient light of 1.
     fn scene(objects: &str) -> String {
-        let camera = "camera: (eye: (0.0, 1.0, 0.0), target: (0.0, 0.0, 0.0), up: (0.0, 0.0, -1.0), vertical_fov: 126.86989764584402)";
+        let camera = "camera: (eye: (0, 1, 0), target: (0, 0, 0), up: (0, 0, -1), vertical_fov: 126.86989764584402)";
         format!("({camera}, ambient: 1.0, objects: [{objects}])")
     }
 

@@ -31,7 +31,7 @@ impl<'a> Meter<'a> {
         if at < self.next { Ok(()) } else { self.report(at, self.total) }
     }
 
-    /// Reports progress without a position, for a parser that does not read its file from front to back.
+    /// Reports progress without a position, for a parser that reads its file in any order.
     ///
     /// # Errors
     /// [`Cancelled`], if the work is cancelled.

@@ -16,13 +16,17 @@ pub(super) struct FirstSample {
 }
 
 impl FirstSample {
-    /// Returns a sample of an object with its normal, or of the background, reached by the lights in `lit_by`.
+    /// Returns a sample of an object with its normal, or of the background.
+    ///
+    /// `lit_by` is the mask of lights that reach the hit.
     pub(super) fn new(light: LinearRgb, surface: Option<(u32, Vec3)>, lit_by: u32) -> Self {
         let (object, normal) = surface.map_or((0, Vec3::ZERO), |(object, normal)| (object + 1, normal));
         Self { light, object, normal, lit_by }
     }
 
-    /// Returns whether an edge may run between two pixels: of an object, a shadow, a pattern or a curved surface.
+    /// Returns whether an edge may run between two pixels.
+    ///
+    /// Edges are those of objects, shadows, patterns and curved surfaces.
     ///
     /// `white` is the light that is displayed as white.
     pub(super) fn is_edge_to(&self, other: &Self, white: f32) -> bool {
@@ -75,7 +79,7 @@ impl Accumulator {
         self.count > 1
     }
 
-    /// Returns whether the samples differ so much that their mean is uncertain.
+    /// Returns whether the samples differ enough to make their mean uncertain.
     pub(super) fn is_noisy(&self, white: f32) -> bool {
         differ(self.range[0], self.range[1], NOISE_CONTRAST, white)
     }

@@ -20,7 +20,9 @@ pub struct Counts {
     pub rays: u64,
     /// The number of eye rays with a hit.
     pub hits: u64,
-    /// The number of pairs of a hit and a light without an occluder between them, on either side of the surface.
+    /// The number of pairs of a hit and a light without an occluder between them.
+    ///
+    /// Lights on both sides of the surface count.
     // Light from behind counts as well: only tracing is measured, and compared with tracers that know no normals.
     pub lit: u64,
     /// The sum of the depths of all hits, in world units along the view direction: their t.

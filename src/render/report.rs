@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The time after which the next finished batch makes a report: the receiver can cancel only when it is called.
+/// The time after which the next finished batch makes a report.
 // With it, a render of 1920x1080 with best samples made 198 reports, at most 27 ms apart.
 const MAX_REPORT_PERIOD: Duration = Duration::from_millis(10);
 
@@ -39,7 +39,9 @@ struct Done {
 }
 
 impl<'a> Report<'a> {
-    /// Returns the progress at 0 of `total` units. `callback` gets the share done, and its `Break` cancels `token`.
+    /// Returns the progress at 0 of `total` units.
+    ///
+    /// `callback` gets the share done, and its `Break` cancels `token`.
     pub(super) fn new(callback: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync), token: Cancellation, total: u64) -> Self {
         Self { callback, token, total, done: Mutex::new(Done { units: 0, reported: 0.0, at: Instant::now() }) }
     }

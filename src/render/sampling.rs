@@ -44,7 +44,7 @@ impl From<NonZeroU32> for Sampling {
     }
 }
 
-/// The samples of each pass of adaptive sampling. Each pass has four times the samples of all passes before.
+/// The samples of each pass of adaptive sampling: each ends at four times those before.
 // Four times the samples about halve the error of a mean; less would hardly be worth another pass.
 pub(super) const PASSES: [Range<u32>; 4] = [0..1, 1..4, 4..16, 16..64];
 
@@ -90,7 +90,7 @@ impl SampleBatches {
     }
 }
 
-/// Divides a range of samples at the ends of passes, and into parts of at most [`MAX_BATCH_SAMPLES`].
+/// Divides a range of samples at the ends of passes and by [`MAX_BATCH_SAMPLES`].
 fn split(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
     std::iter::from_fn(move || {
         let Range { start, end } = samples;
@@ -147,7 +147,9 @@ pub(super) fn sample_position(sample: u32) -> (f32, f32) {
     (part(3_242_174_889), part(2_447_445_414))
 }
 
-/// Returns the side of a sample's footprint as a share of the pixel's: 1 for a single sample, half for one of four.
+/// Returns the side of a sample's footprint as a share of the pixel's.
+///
+/// It is 1 for a single sample, and a half for one of four.
 // The share follows the pass, not the final number of samples: a sample must not change when more are added.
 pub(super) fn footprint_share(sample: u32) -> f32 {
     match sample {
@@ -162,7 +164,7 @@ pub(super) fn footprint_share(sample: u32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Each sample of each pixel is traced exactly once, in order and at its position, in batches of equal footprints.
+    /// Each sample is traced once, in order, at its position, in batches of one footprint.
     #[test]
     fn batches_cover_each_sample_once() {
         for samples in [0..1, 0..3, 0..16, 1..4, 4..16, 16..64, 0..64, 0..65, 0..300, 5..7] {

@@ -18,7 +18,7 @@ pub enum Executor<'a> {
     Pool,
     /// The threads of the current rayon pool, until the token is cancelled.
     Cancellable(&'a Cancellation),
-    /// The threads of the current rayon pool, with progress reports, until the report's token is cancelled.
+    /// The threads of the current rayon pool, with progress reports that may cancel.
     Reporting(&'a Report<'a>),
 }
 
@@ -42,7 +42,7 @@ impl Executor<'_> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(traced) }
     }
 
-    /// Calls `trace` for each tile of a job, with the tile's part of the result, and returns the cost.
+    /// Calls `trace` for each tile of a job with its part of the result, and returns the cost.
     ///
     /// Each thread reuses one set of buffers for all of its tiles.
     pub(super) fn trace<T: Send>(

@@ -16,7 +16,7 @@ use glam::Vec2;
 /// The values between the steps of [`render`](super::render) for the first sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelTrace {
-    /// The lecture's (qu, qv): the sample's position in the picture, from (0, 0) at the lower left corner to (1, 1).
+    /// The lecture's (qu, qv): the position from (0, 0) at the lower left corner to (1, 1).
     pub q: Vec2,
     /// The eye ray.
     pub ray: Ray,
@@ -31,7 +31,9 @@ pub struct PixelTrace {
 }
 
 impl Scene {
-    /// Returns the hit of the eye ray through the centre of a pixel, given as column and row from the top left.
+    /// Returns the hit of the eye ray through the centre of a pixel.
+    ///
+    /// The pixel is given as column and row from the top left.
     ///
     /// Returns `None` if the ray hits nothing, or the pixel is outside the picture.
     ///
@@ -52,7 +54,9 @@ impl Scene {
     }
 }
 
-/// Runs the steps of [`render`](super::render) for one pixel, given as column and row from the top left.
+/// Runs the steps of [`render`](super::render) for one pixel.
+///
+/// The pixel is given as column and row from the top left.
 ///
 /// The functions are those that render pictures, so the values are the picture's to the bit.
 ///

@@ -1,5 +1,6 @@
-//! The five steps for a batch of rays and the arrays between them: eye rays, closest hits, surface points, arriving
-//! light, reflected light.
+//! The five steps for a batch of rays, and the arrays between them.
+//!
+//! The steps are eye rays, closest hits, surface points, arriving light, and reflected light.
 
 use super::sampling::{MAX_BATCH_RAYS, SampleBatch};
 use super::tiles::Tiles;

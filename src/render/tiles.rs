@@ -76,7 +76,7 @@ impl Tiles {
         tiles
     }
 
-    /// Writes the values of a tile's pixels to the tile's part of a picture, and skips pixels outside.
+    /// Writes the values of a tile's pixels to a picture, and skips pixels outside.
     ///
     /// `value` gets the position in `pixels`.
     pub(super) fn write_all<T: Copy>(&self, pixels: &[u8], value: impl Fn(usize) -> T, part: &mut [&mut [T]]) {
@@ -141,7 +141,9 @@ impl Tiles {
         simd::dispatch(MakeEyeRays { tiles: self, tile, pixels, batch, rays });
     }
 
-    /// Returns the lecture's (qu, qv) of samples: their positions in the picture, from (0, 0) at the lower left corner.
+    /// Returns the lecture's (qu, qv) of samples: their positions in the picture.
+    ///
+    /// The origin is the lower left corner.
     ///
     /// `x` and `y` are the pixels' columns and rows, `sx` and `sy` the samples' positions in their pixels.
     #[inline(always)]

@@ -111,7 +111,7 @@ fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &Eight
     at.uv = [points.uv[0].store(), points.uv[1].store()];
 }
 
-/// The visitor that computes the surface points of a primitive's hits: of its list element, or of its whole tree.
+/// The visitor that computes the surface points of a primitive's hits, or of its whole tree's.
 struct SurfacesOfPrimitive<'h, N: Lanes> {
     primitive: u32,
     rays: &'h EightRays,
