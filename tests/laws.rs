@@ -446,7 +446,7 @@ fn only_the_live_view_is_tied_to_a_system() {
 const PURE: [&str; 5] = ["input", "protocol", "pace", "control", "viewer"];
 
 #[test]
-fn what_needs_no_terminal_knows_no_system_and_no_clock() {
+fn modules_of_a_session_use_no_system_and_no_clock() {
     let files = library_files();
     for module in PURE {
         assert!(files.iter().any(|(path, _)| stage(path) == module), "there is no {module}");

@@ -97,7 +97,7 @@ fn named_features(text: &str, flag: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn workflows_and_documentation_name_features_that_there_are() {
+fn workflows_and_documentation_name_features_that_exist() {
     let known = features();
     let in_workflow = named_features(&read(".github/workflows/ci.yml"), "--features ");
     assert!(!in_workflow.is_empty(), "ci.yml names features");

@@ -37,7 +37,7 @@ fn every_scene_and_path_in_it_loads() {
 }
 
 #[test]
-fn every_kind_of_thing_is_shown() {
+fn every_kind_of_item_is_shown() {
     let readme = readme();
     let scenes = blocks(&readme, "ron").concat();
     for word in

@@ -158,7 +158,7 @@ fn looking_without_sighup() -> Start {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_terminal_that_vanishes_at_rest() {
+fn a_terminal_that_vanishes_at_rest_is_left() {
     for hears in [true, false] {
         a_terminal_that_vanishes("at rest", hears, |_| {});
     }
@@ -166,7 +166,7 @@ fn a_terminal_that_vanishes_at_rest() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_terminal_that_vanishes_in_flight() {
+fn a_terminal_that_vanishes_in_flight_is_left() {
     for hears in [true, false] {
         a_terminal_that_vanishes("in flight", hears, |session| session.send(b"w"));
     }
@@ -174,7 +174,7 @@ fn a_terminal_that_vanishes_in_flight() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_terminal_that_vanishes_in_mid_frame() {
+fn a_terminal_that_vanishes_in_mid_frame_is_left() {
     for hears in [true, false] {
         a_terminal_that_vanishes("in mid-frame", hears, |session| {
             session.stop_reading();
@@ -238,7 +238,7 @@ fn scene_of_mesh(color: &str) -> String {
 }
 
 #[test]
-fn a_scene_that_is_saved_is_soon_seen() {
+fn a_saved_scene_is_shown_soon() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let path = folder.path().join("ball.ron");
     std::fs::write(folder.path().join("ball.stl"), written(&ball(200), "binary.stl")).expect("a file can be written");
@@ -309,7 +309,7 @@ fn many_saves_take_the_memory_of_one() {
 /// A saved mesh is shown after the time that it takes to read and build it, which is that of
 /// `check`.
 #[test]
-fn a_mesh_that_is_saved_is_seen_when_it_is_built() {
+fn a_saved_mesh_is_shown_once_it_is_built() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let (path, mesh) = (folder.path().join("ball.ron"), folder.path().join("ball.stl"));
     let [here, away] = [0.0, 9.0].map(|x| {
@@ -363,7 +363,7 @@ fn slowest_key(reports_modes: bool, fault: Fault, which: Which, last: usize) -> 
 
 /// A key waits for no reply that is lost, doubled, garbled or late, whichever it is.
 #[test]
-fn a_lost_reply_holds_no_key() {
+fn a_lost_reply_does_not_delay_a_key() {
     let faults = [Fault::Lost, Fault::Doubled, Fault::Garbled, Fault::Late(Duration::from_secs(20))];
     let which: Vec<_> = REPLIES.map(Which::Only).into_iter().chain([Which::EachThirdFrom(1)]).collect();
     for (reports_modes, fault) in [true, false].into_iter().flat_map(|modes| faults.map(|fault| (modes, fault))) {
@@ -453,7 +453,7 @@ fn the_rate_is_kept() {
 
 /// A terminal that has replied to all queries is left without waiting for another reply.
 #[test]
-fn a_terminal_that_has_answered_all_is_left_at_once() {
+fn a_terminal_that_has_sent_all_replies_is_left_at_once() {
     let mut session = Start::new(PROGRAM).arg(SCENE).says_when_it_rests().spawn();
     session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
     session.wait_for_rest();
@@ -464,7 +464,7 @@ fn a_terminal_that_has_answered_all_is_left_at_once() {
 
 /// A terminal that has never answered for three seconds is not waited for.
 #[test]
-fn a_terminal_that_has_never_answered_is_left_at_once() {
+fn a_terminal_that_has_never_replied_is_left_at_once() {
     let mut session = Start::new(PROGRAM).arg(SCENE).mute().spawn();
     session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
     session.sees(Duration::from_millis(3_200), |_| false);
@@ -475,7 +475,7 @@ fn a_terminal_that_has_never_answered_is_left_at_once() {
 
 /// Wherever it is, in a picture of 10 million pixels.
 #[test]
-fn a_cancelled_render_is_given_up_at_once() {
+fn a_cancelled_render_ends_at_once() {
     let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
     let each = Sampling::Each(NonZeroU32::new(4).expect("4 is not 0"));
     for sampling in [Sampling::Coarse, each, Sampling::BEST] {

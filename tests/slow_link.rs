@@ -367,7 +367,7 @@ fn frames_per_second(relay: &mut Relay, time: Duration) -> f64 {
 }
 
 #[test]
-fn a_terminal_that_never_answers_gets_thirty_frames_a_second_at_most() {
+fn a_terminal_that_never_replies_gets_thirty_frames_a_second_at_most() {
     let mut relay = looking(termtrace(), Link { answers: false, ..FAST });
     let silent = frames_per_second(&mut relay, ms(2_000));
     let mut relay = looking(termtrace(), FAST);
@@ -425,7 +425,7 @@ fn at_rest_nothing_happens() {
 
 /// Replies without a query, doubled and cut ones press no key, and keys go on to be seen.
 #[test]
-fn answers_that_nobody_asked_for_do_no_harm() {
+fn replies_without_a_query_are_ignored() {
     let mut relay = looking(termtrace(), SLOW);
     walk(&mut relay, 2);
     relay.run(ms(2_500), |_| false);

@@ -1,4 +1,4 @@
-//! `termtrace bench`: what it says of a scene is true.
+//! `termtrace bench`: its figures are true.
 
 use super::{Folder, shipped_scenes};
 use std::collections::HashMap;
@@ -17,7 +17,7 @@ fn rounds(text: &str) -> Vec<HashMap<&str, &str>> {
 
 /// The timed picture is that of `frame`, and the counted hits are those of its rays.
 #[test]
-fn it_times_what_frame_shows() {
+fn the_timed_picture_is_that_of_frame() {
     let folder = Folder::new();
     for scene in shipped_scenes() {
         let path = scene.display();
@@ -51,9 +51,9 @@ fn it_times_what_frame_shows() {
     }
 }
 
-/// Others trace the same: the hits and depths of the last two are those that Embree finds.
+/// Other tracers have the same scenes: the hits and depths of the last two are those of Embree.
 #[test]
-fn generated_scenes_are_those_of_everybody() {
+fn generated_scenes_have_the_hits_that_embree_finds() {
     let folder = Folder::new();
     for (name, hits, depths) in
         [("three", 47_828, 501_301.8), ("s1k", 30_202, 134_031.7), ("s100k", 42_175, 171_679.05)]
@@ -69,7 +69,7 @@ fn generated_scenes_are_those_of_everybody() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn wrong_arguments_are_reported() {
     let folder = Folder::new();
     folder.run("bench none.ron").fails(2, "none.ron");
     folder.run("bench --scene four").is_misused("three");

@@ -4,7 +4,7 @@ use super::{BALL, Folder};
 
 const COMMANDS: [&str; 4] = ["frame ball.ron", "ball.ron", "record ball.ron --seconds 0.1", "check ball.ron"];
 
-/// The camera said by flags is the camera said in the file.
+/// A camera given by flags is the camera given in the file.
 #[test]
 fn flags_stand_for_fields_of_the_scene() {
     let folder = Folder::new();
@@ -39,9 +39,9 @@ fn all_flags_at_once() {
     assert_eq!(folder.run(&format!("frame ball.ron {flags}")).text(), folder.run("frame other.ron").text());
 }
 
-/// Errors, not pictures.
+/// A camera without a view is an error, not a picture.
 #[test]
-fn cameras_that_see_nothing_are_turned_away() {
+fn invalid_cameras_are_rejected() {
     let folder = Folder::new();
     for command in COMMANDS {
         for (flags, words) in [
@@ -64,7 +64,7 @@ fn cameras_that_see_nothing_are_turned_away() {
 }
 
 #[test]
-fn numbers_that_are_none_are_turned_away() {
+fn invalid_numbers_are_rejected() {
     let folder = Folder::new();
     for command in COMMANDS {
         for flag in ["--eye", "--target", "--up"] {
@@ -78,7 +78,7 @@ fn numbers_that_are_none_are_turned_away() {
     }
 }
 
-/// The ends of what f32 can say give a picture or a message.
+/// The extreme values of f32 give a picture or a message.
 #[test]
 fn extreme_cameras_do_not_panic() {
     let folder = Folder::new();
@@ -101,7 +101,7 @@ fn extreme_cameras_do_not_panic() {
     }
 }
 
-/// A scene file may say no more either, and the camera that is printed on leaving must load again.
+/// A scene file has the same limits, and the camera that is printed on leaving must load again.
 #[test]
 fn coordinates_beyond_a_scenes_limits_are_misuse() {
     let folder = Folder::new();

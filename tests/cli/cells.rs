@@ -1,8 +1,8 @@
-//! `--color` and `--glyphs`: what cells are made of, where no terminal is.
+//! `--color` and `--glyphs`: the kinds of cells without a terminal.
 
 use super::{Folder, finish};
 
-/// The numbers after each 38;5 and 48;5, and whether anything else is said of colours.
+/// Returns the numbers after each 38;5 and 48;5, and whether other sequences of colours follow.
 fn indices(ansi: &[u8]) -> (Vec<u8>, bool) {
     let text = String::from_utf8_lossy(ansi).into_owned();
     let mut others = false;
@@ -18,7 +18,7 @@ fn indices(ansi: &[u8]) -> (Vec<u8>, bool) {
 }
 
 #[test]
-fn an_ansi_frame_has_the_colours_asked_for() {
+fn an_ansi_frame_has_the_chosen_colours() {
     let folder = Folder::new();
     let frame = |flags: &str| folder.frame(&format!("ball.ron --format ansi --size 20x8 {flags}"));
     for flags in ["", "--color auto", "--color always", "--color truecolor --glyphs half"] {
@@ -66,7 +66,7 @@ fn goldens_are_of_any_kind() {
 }
 
 #[test]
-fn frames_are_no_function_of_the_environment() {
+fn frames_do_not_depend_on_the_environment() {
     let folder = Folder::new();
     for flags in ["", "--format ansi", "--format ansi --color always", "--glyphs auto", "--format ansi --color auto"] {
         let expected = folder.frame(&format!("ball.ron --size 20x8 {flags}"));
@@ -97,7 +97,7 @@ fn without_a_terminal_the_flags_say_what_is_printed() {
 }
 
 #[test]
-fn flags_that_a_format_has_no_use_for_are_turned_away() {
+fn flags_without_effect_on_a_format_are_rejected() {
     let folder = Folder::new();
     for color in ["always", "truecolor", "256", "16"] {
         folder.run(&format!("frame ball.ron --color {color}")).fails_in_a_line(2, "text has no colours");
@@ -109,7 +109,7 @@ fn flags_that_a_format_has_no_use_for_are_turned_away() {
     folder.run("frame ball.ron --glyphs octants").is_misused("auto, half, shape, ramp");
 }
 
-/// Two by four pixels make a cell of shapes.
+/// A cell of shapes has two by four pixels.
 #[test]
 fn sizes_are_in_cells_of_the_mode() {
     let folder = Folder::new();

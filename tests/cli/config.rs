@@ -1,10 +1,10 @@
-//! The user's settings: what holds, who says so, and what is said of a file that is wrong.
+//! The user's settings: their values, their sources, and faults in their file.
 
 use super::{Folder, Run, finish};
 use std::fs;
 use std::path::Path;
 
-/// A folder with that in the user's `config.ron`.
+/// Returns a folder with this text in the user's `config.ron`.
 fn with_settings(text: &str) -> Folder {
     with_file("config.ron", text)
 }
@@ -17,7 +17,7 @@ fn with_file(name: &str, text: &str) -> Folder {
     folder
 }
 
-/// The first block of RON in the README that has these words.
+/// Returns the first block of RON in the README with these words.
 fn in_the_readme(words: &str) -> String {
     let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("it is there");
     let mut blocks = readme.split("```ron\n").filter_map(|rest| rest.split("```").next());
@@ -56,7 +56,7 @@ fn a_flag_goes_before_the_environment_that_before_the_file_and_that_before_the_d
     assert_eq!(held(&Folder::new(), "", &[], "map"), "shaded default");
 }
 
-/// For colours the variables that all programs heed are the environment, too.
+/// For colours the common variables, such as `NO_COLOR`, count as environment, too.
 #[test]
 fn no_color_goes_before_the_file() {
     let folder = with_settings("(color: truecolor)");
@@ -80,7 +80,7 @@ fn a_flag_can_undo_what_the_file_turns_on() {
     assert_eq!(held(&folder, "--no-config --reduced-motion", &[], "reduced_motion"), "true --reduced-motion");
 }
 
-/// The file that the README shows has every setting, and all of them hold.
+/// The file in the README has every setting, and each takes effect.
 #[test]
 fn the_readmes_file_has_every_setting() {
     let folder = with_settings(&in_the_readme("fps:"));
@@ -97,7 +97,7 @@ fn the_readmes_file_has_every_setting() {
 }
 
 #[test]
-fn where_the_file_is_looked_for() {
+fn the_settings_file_is_searched_in_xdg_config_home_first() {
     let folder = with_settings("(fps: 30)");
     let place = |variables: &[(&str, &str)]| {
         let mut command = folder.command("config");
@@ -127,14 +127,14 @@ const WRONG: &str = "(
 
 /// Maps were called views, which are camera positions now.
 #[test]
-fn the_old_name_of_a_setting_leads_to_the_new_one() {
+fn the_old_setting_suggests_the_new_one() {
     let run = with_settings("(view: depth)").run("config");
     run.fails(2, "config.ron:1:2: unknown setting \"view\"; the name is now \"map\"\n");
 }
 
 /// All errors of a file are in one message, in its order, each with its position and a correction.
 #[test]
-fn a_file_that_is_wrong_is_told_of_in_one_message() {
+fn all_faults_of_a_file_are_in_one_message() {
     let folder = with_settings(WRONG);
     for command in ["config", "doctor", "config --fps 30"] {
         let run = folder.run(command);
@@ -173,7 +173,7 @@ fn a_file_that_is_wrong_is_told_of_in_one_message() {
 }
 
 #[test]
-fn a_variable_that_is_wrong_is_told_of_by_its_name() {
+fn a_wrong_variable_is_reported_by_its_name() {
     let run = config(&Folder::new(), "", &[("TERMTRACE_FPS", "many")]);
     run.fails_in_a_line(2, "TERMTRACE_FPS=\"many\": expected frames per second, from 0.01 to 1000");
     config(&Folder::new(), "--fps 3", &[("TERMTRACE_FPS", "many")]).done();
@@ -181,7 +181,7 @@ fn a_variable_that_is_wrong_is_told_of_by_its_name() {
 
 /// Golden frames depend on arguments alone.
 #[test]
-fn frames_know_nothing_of_settings() {
+fn settings_do_not_affect_frames() {
     let plain = Folder::new();
     for text in ["(color: truecolor, glyphs: shape, map: depth, samples: 4)", WRONG] {
         let folder = with_settings(text);
@@ -200,7 +200,7 @@ fn the_flag_goes_with_every_command() {
     folder.run("--no-config frame ball.ron").fails_in_a_line(2, "it: termtrace frame ...");
 }
 
-/// The whole table, in the form of the file: what was printed is the start of one's own.
+/// The printed table has the form of the file: it can be the start of one's own.
 #[test]
 fn the_table_of_keys_is_a_file_of_keys() {
     let built_in = Folder::new().run("config --keys").text();
@@ -218,7 +218,7 @@ fn the_table_of_keys_is_a_file_of_keys() {
 }
 
 #[test]
-fn keys_that_are_wrong_are_told_of_in_one_message() {
+fn all_faults_of_keys_are_in_one_message() {
     let folder =
         with_file("keys.ron", "(\n    fly: { \"8\": MovForward, \"Ctrl-I\": Reset },\n    always: { \"q\": None },\n)");
     for command in ["config", "config --keys"] {

@@ -3,7 +3,7 @@
 use super::Folder;
 
 #[test]
-fn a_scene_is_told_in_words() {
+fn a_scene_is_described_in_words() {
     let folder = Folder::new();
     let text = folder.run("describe ball.ron").text();
     assert!(text.starts_with("ball.ron: 2 objects and 1 light, seen from (1, 1.5, 6) towards (0, 0.7, 0)"), "{text}");
@@ -11,7 +11,7 @@ fn a_scene_is_told_in_words() {
         assert!(text.contains(words), "{words}: {text}");
     }
     assert_eq!(folder.run("describe ball.ron --threads 1").text(), text);
-    // What is seen is the camera's.
+    // The description is of the camera's view.
     let behind = folder.run("describe ball.ron --eye 0,1,-5 --target 0,1,-9").text();
     assert!(behind.contains("Not seen:\n- object 1, a red sphere of radius 1: behind the eye"), "{behind}");
     let narrow = folder.run("describe ball.ron --size 20x60").text();
@@ -19,7 +19,7 @@ fn a_scene_is_told_in_words() {
 }
 
 #[test]
-fn wrong_sizes_and_scenes_are_turned_away() {
+fn invalid_sizes_and_scenes_are_rejected() {
     let folder = Folder::new();
     for flags in
         ["ball.ron --size 0x5", "ball.ron --size 60000x60000", "none.ron", "ball.ron --eye 0,0.7,0 --target 0,0.7,0"]

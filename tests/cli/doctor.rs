@@ -1,4 +1,4 @@
-//! `termtrace doctor` where there is no terminal: what the environment tells.
+//! `termtrace doctor` without a terminal: its findings from the environment.
 
 use crate::{Folder, Run, finish};
 
@@ -9,7 +9,7 @@ fn doctor(arguments: &str, environment: &[(&str, &str)]) -> Run {
 }
 
 #[test]
-fn the_environment_is_told_of_and_who_in_it_said_so() {
+fn doctor_reports_findings_with_their_sources() {
     let environment = [("TERM", "some-terminal"), ("COLORTERM", "truecolor"), ("LANG", "en_US.UTF-8")];
     let said = doctor("", &environment).text();
     let (first, rest) = said.split_once('\n').expect("lines");
@@ -34,7 +34,7 @@ mouse, by pixels      not known                     not asked
 }
 
 #[test]
-fn another_environment_and_flags_are_told_of_too() {
+fn doctor_reports_other_environments_and_flags() {
     let environment = [("TERM", "dumb"), ("LC_ALL", "C"), ("LANG", "en_US.UTF-8"), ("NO_COLOR", "1")];
     let said = doctor("--cell-aspect 2.25", &environment).text();
     assert_eq!(

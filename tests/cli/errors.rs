@@ -5,7 +5,7 @@ use super::{BALL, Folder, shipped_scenes};
 const COMMANDS: [&str; 4] = ["", "frame", "record", "check"];
 
 #[test]
-fn check_says_what_is_wrong_or_that_all_is_fine() {
+fn check_reports_faults_or_success() {
     let folder = Folder::new();
     assert_eq!(folder.run("check ball.ron").text(), "ball.ron: fine (2 objects, 1 light)\n");
     for scene in shipped_scenes() {
@@ -17,7 +17,7 @@ fn check_says_what_is_wrong_or_that_all_is_fine() {
 
 /// Errors are reported as a compiler does: file, line, column, the line, a caret, all in one run.
 #[test]
-fn a_faulty_scene_is_told_as_by_a_compiler() {
+fn a_faulty_scene_is_reported_as_by_a_compiler() {
     let folder = Folder::new();
     folder.write("broken.ron", BALL.replace("radius", "radus").replace("intensity: 60", "intensity: -60"));
     let line = "        Sphere(center: (-0.6, 1, 0), radus: 1, material: Diffuse(\"#e04030\")),";
@@ -33,7 +33,7 @@ fn a_faulty_scene_is_told_as_by_a_compiler() {
 }
 
 #[test]
-fn files_that_are_no_scenes() {
+fn files_that_are_no_scenes_are_errors() {
     let folder = Folder::new();
     folder.write("empty.ron", "");
     folder.write("blank.ron", " \n\t\n");
@@ -72,7 +72,7 @@ fn files_that_are_no_scenes() {
 
 /// A file without permission to read is an error. Root may read every file, and cannot test this.
 #[test]
-fn files_that_may_not_be_read() {
+fn files_without_read_permission_are_errors() {
     use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new();
     let path = folder.path("ball.ron");
@@ -112,7 +112,7 @@ fn help_has_examples() {
     assert!(folder.run("-h").text().contains("Usage:"));
 }
 
-/// The examples of the help are held: each runs as it stands there.
+/// Each example of the help runs as it is printed.
 #[test]
 fn the_examples_of_the_help_run() {
     let folder = Folder::new();
@@ -138,7 +138,7 @@ fn version_is_the_crates() {
 }
 
 #[test]
-fn a_wrong_command_line_is_told_and_helped() {
+fn a_wrong_command_line_is_reported_with_help() {
     let folder = Folder::new();
     folder.run("").is_misused("<SCENE>");
     folder.run("frame").is_misused("<SCENE>");
@@ -164,7 +164,7 @@ fn a_wrong_command_line_is_told_and_helped() {
     assert_eq!(folder.run("frame ball.ron --size 8x4 --bless").code, Some(2));
 }
 
-/// A file's name may hold anything but a slash; what is said of it steers no terminal.
+/// A file's name may have any character but a slash; messages about it have no control characters.
 #[test]
 fn names_of_files_reach_the_terminal_without_their_control_characters() {
     let folder = Folder::new();
@@ -224,7 +224,7 @@ fn no_argument_reaches_the_terminal_unquoted() {
     let mut count = 0;
     for command in commands {
         for flag in flags_with_values(&folder.run(&format!("{command} --help")).text()) {
-            // Also beside a scene that would do.
+            // This holds beside a valid scene, too.
             says_nothing_unprintable(&folder, &format!("{command} {flag}={EVIL}"));
             says_nothing_unprintable(&folder, &format!("{command} ball.ron {flag}={EVIL}"));
             count += 1;
@@ -260,9 +260,9 @@ fn a_dash_is_standard_output() {
     assert_eq!(folder.frame("ball.ron --format png -o -"), folder.frame("ball.ron --format png"));
 }
 
-/// A scene may have any name: its file, or the path's, is not written over.
+/// The file of a scene or path, whatever its name, is not overwritten.
 #[test]
-fn what_a_picture_is_made_from_is_kept() {
+fn the_inputs_of_a_picture_are_not_overwritten() {
     let folder = Folder::new();
     for name in ["scene.cast", "scene.gif", "scene.txt"] {
         folder.write(name, BALL);

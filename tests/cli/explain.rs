@@ -29,7 +29,7 @@ fn pixels_are_explained_in_the_lectures_symbols() {
     says("mesh", &format!("{teapots} --pixel 24,24"));
 }
 
-/// The last lines are what the frame has there.
+/// The last lines are the bytes of the frame there.
 #[test]
 fn the_bytes_are_the_frames() {
     let folder = Folder::new();
@@ -45,7 +45,7 @@ fn the_bytes_are_the_frames() {
 }
 
 #[test]
-fn a_pixel_that_is_not_there_is_a_usage_fault() {
+fn a_pixel_outside_the_picture_is_a_usage_error() {
     let folder = Folder::new();
     for outside in ["8,0", "0,6", "4000000000,0"] {
         let run = folder.run(&format!("explain ball.ron --pixels 8x6 --pixel {outside}"));
@@ -54,7 +54,7 @@ fn a_pixel_that_is_not_there_is_a_usage_fault() {
     for wrong in ["", "8", "1,2,3", "1.5,0", "x,y", "-1,0", "99999999999,0"] {
         folder.run(&format!("explain ball.ron --pixel={wrong}")).is_misused("--pixel");
     }
-    // A word of its own that begins with a minus is a wrong pixel, not an option.
+    // A separate word that begins with a minus is a wrong pixel, not an option.
     folder.run("explain ball.ron --pixel -1,2").is_misused("expected two whole numbers");
     folder.run("explain ball.ron").is_misused("--pixel");
     folder.run("explain missing.ron --pixel 1,1").fails_in_a_line(2, "missing.ron");

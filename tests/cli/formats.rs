@@ -3,7 +3,7 @@
 use super::{Folder, finish};
 
 #[test]
-fn a_files_ending_chooses_the_format() {
+fn the_extension_chooses_the_format() {
     let folder = Folder::new();
     for (name, format) in [
         ("frame.txt", "text"),
@@ -18,7 +18,7 @@ fn a_files_ending_chooses_the_format() {
         ("frame.png", "png"),
         ("frame.PNG", "png"),
     ] {
-        // Nothing on standard output.
+        // Standard output is empty.
         assert_eq!(folder.frame(&format!("ball.ron --size 20x8 -o {name}")), b"");
         assert!(folder.read(name) == folder.frame(&format!("ball.ron --size 20x8 --format {format}")), "{name}");
     }
@@ -27,7 +27,7 @@ fn a_files_ending_chooses_the_format() {
 }
 
 #[test]
-fn the_format_said_is_stronger_than_the_ending() {
+fn the_format_flag_overrides_the_extension() {
     let folder = Folder::new();
     for (name, format) in
         [("picture.png", "text"), ("picture.txt", "png"), ("picture.jpg", "ansi"), ("picture", "text")]
@@ -38,7 +38,7 @@ fn the_format_said_is_stronger_than_the_ending() {
 }
 
 #[test]
-fn unknown_endings_and_formats_are_turned_away() {
+fn unknown_extensions_and_formats_are_rejected() {
     let folder = Folder::new();
     for name in ["frame.jpg", "frame", ".txt", "frame.txt~", "frame.bmp"] {
         folder.run(&format!("frame ball.ron -o {name}")).fails_in_a_line(2, "--format");
@@ -47,7 +47,7 @@ fn unknown_endings_and_formats_are_turned_away() {
     folder.run("frame ball.ron --format jpeg").is_misused("text, ansi, svg, html, png");
 }
 
-/// A frame that could not be made leaves the file of the last one alone.
+/// A frame that fails does not change the file of an earlier one.
 #[test]
 fn a_failure_leaves_the_file_alone() {
     let folder = Folder::new();
@@ -59,7 +59,7 @@ fn a_failure_leaves_the_file_alone() {
 }
 
 #[test]
-fn plain_text_and_no_more() {
+fn a_text_frame_is_printable_ascii() {
     let folder = Folder::new();
     let frame = folder.frame("ball.ron");
     assert!(frame.iter().all(|&byte| byte == b'\n' || (b' '..=b'~').contains(&byte)));
@@ -90,9 +90,9 @@ fn samples_of_one_colour_are_that_colour() {
     }
 }
 
-/// Neither the number of threads nor the environment nor the time is seen in any byte.
+/// No byte depends on the number of threads, the environment or the time.
 #[test]
-fn a_frame_hangs_on_nothing_else() {
+fn a_frame_depends_on_its_arguments_alone() {
     let folder = Folder::new();
     for format in ["text", "ansi", "png"] {
         let arguments = format!("frame ball.ron --size 70x30 --samples 2 --format {format}");
@@ -122,7 +122,7 @@ fn a_frame_hangs_on_nothing_else() {
 }
 
 #[test]
-fn threads_are_a_number_from_one_on() {
+fn the_number_of_threads_must_be_positive() {
     let folder = Folder::new();
     for command in ["frame ball.ron", "check ball.ron", "ball.ron"] {
         for threads in ["0", "-2", "many", "100000"] {
@@ -148,7 +148,7 @@ fn a_ball_is_round_in_cells_of_any_aspect() {
         let lines: Vec<_> = frame.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).collect();
         let height = lines.iter().filter(|line| !line.is_empty()).count() as f64;
         let width = lines.iter().map(|line| line.len()).max().unwrap_or(0) as f64;
-        // tan of half the ball's angle over tan of half the field of view, of 40 rows.
+        // The radius is tan of half the ball's angle over tan of half the field of view, of 40 rows.
         let radius = (1.0 / 99.0_f64.sqrt()) / libm::tan(10.0_f64.to_radians());
         assert!((height - 40.0 * radius).abs() <= 2.0, "{height} rows at aspect {aspect}");
         let expected = 40.0 * radius * aspect.parse::<f64>().expect("a number");

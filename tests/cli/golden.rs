@@ -4,7 +4,7 @@ use super::Folder;
 
 const ENDINGS: [&str; 3] = ["txt", "ansi", "png"];
 
-/// The whole loop of a user: no golden, bless it, equal, something changes, differing, bless it.
+/// A user's whole loop: no golden, bless, equal, a change, different, bless.
 #[test]
 fn bless_check_change_check() {
     for ending in ENDINGS {
@@ -51,14 +51,14 @@ fn a_difference_of_text_shows_rows_and_marks() {
     lines[6].replace_range(11..12, "?");
     folder.write("ball.txt", lines.join("\n") + "\n");
     let diff = difference(&folder, "ball.ron --size 30x10 --check ball.txt");
-    // The file, the place, one line as it was and as it is with a mark below, and a line each side of it.
+    // The message has the file, the position, one line before and after with a mark below, and a line each side of it.
     let mark = " ".repeat(11) + "^";
     let rows = format!("   6 |{}|\n-  7 |{}|\n+  7 |{right}|\n      {mark}\n   8 |{}|\n", lines[5], lines[6], lines[7]);
     let place = "1 of 10 rows differs: line 7, column 12";
     assert_eq!(diff, format!("ball.txt: the frame differs\n{place}\n{rows}"));
 }
 
-/// An editor that cuts blanks off the ends of lines breaks a golden, and is found out.
+/// A golden whose trailing blanks an editor has removed differs.
 #[test]
 fn blanks_at_the_end_of_a_line_count() {
     let folder = Folder::new();
@@ -80,7 +80,7 @@ fn a_difference_of_ansi_names_row_and_column() {
     let mut lines: Vec<String> = right.lines().map(str::to_owned).collect();
     let row = lines.iter().position(|line| line.contains('▄')).expect("not all cells are flat");
     let place = lines[row].rfind('▄').expect("it was found");
-    // Characters before the place: what stands after each sequence's m.
+    // The characters before the position follow each sequence's m.
     let before = lines[row][..place].split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, after)| after));
     let column: usize = before.map(|characters| characters.chars().count()).sum();
     // The upper half block differs from the lower one in the last of its three bytes only.
@@ -98,7 +98,7 @@ fn a_difference_of_ansi_names_row_and_column() {
 #[test]
 fn a_difference_of_png_names_the_pixel() {
     let folder = Folder::new();
-    // The same scene but for a small ball that covers a few pixels.
+    // The scene differs by a small ball that covers a few pixels.
     folder.run("frame ball.ron --pixels 60x40 --check ball.png --bless").done();
     let with_more = super::BALL.replace("objects: [", "objects: [Sphere(center: (1.6, 1, 0), radius: 0.04),");
     folder.write("ball.ron", &with_more);
@@ -121,17 +121,17 @@ fn decoded(bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn a_golden_of_another_size_or_kind_is_told() {
+fn a_golden_of_another_size_or_kind_is_reported() {
     let folder = Folder::new();
     folder.run("frame ball.ron --size 30x10 --check ball.png --bless").done();
     let diff = difference(&folder, "ball.ron --size 31x10 --check ball.png");
     assert!(diff.contains("30x20") && diff.contains("31x20"), "{diff}");
-    // The same pixels, said to be of another shape.
+    // The pixels are equal, but marked with another shape.
     folder.write("ball.ron", r##"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), background: "#123456")"##);
     folder.run("frame ball.ron --size 3x2 --check ball.png --bless").done();
     let diff = difference(&folder, "ball.ron --size 3x2 --cell-aspect 3 --check ball.png");
     assert!(diff.contains("pixels are equal"), "{diff}");
-    // A golden may be anything.
+    // A golden may be any file.
     for ending in ENDINGS {
         let golden = format!("other.{ending}");
         for contents in [&b""[..], b"\0\xff\xfe\x1b[2J\x07\r\n", b"\n\n\n", b"\x89PNG\r\n\x1a\n"] {
@@ -151,13 +151,13 @@ fn goldens_that_cannot_be_read_or_written() {
     folder.run("frame ball.ron --check ball.jpg").fails_in_a_line(2, "--format");
     folder.run("frame ball.ron --bless").is_misused("--check");
     folder.run("frame ball.ron --check a.txt -o b.txt").is_misused("cannot be used with");
-    // A wrong scene is never a golden.
+    // A scene with an error never becomes a golden.
     folder.run("frame missing.ron --check a.txt --bless").fails_in_a_line(2, "missing.ron");
     assert!(!folder.path("a.txt").exists());
 }
 
 #[test]
-fn the_format_of_a_golden_may_be_said() {
+fn the_format_of_a_golden_may_be_given() {
     let folder = Folder::new();
     folder.run("frame ball.ron --format text --check ball.golden --bless").done();
     assert!(folder.read("ball.golden") == folder.frame("ball.ron"));

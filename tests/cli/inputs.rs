@@ -9,7 +9,7 @@ use std::os::unix::fs::symlink;
 use std::os::unix::net::UnixListener;
 use std::thread;
 
-/// A name that a user gives, and the command that reads what stands behind it.
+/// A named input, and the command that reads it.
 struct Named {
     file: &'static str,
     command: &'static str,
@@ -37,7 +37,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// Each of the names, with that made behind it, all at once.
+/// Asserts that reading fails for each named input, made by `make`, all at once.
 fn each_fails(make: impl Fn(&Folder, &Named) + Sync, words: impl Fn(&Named) -> String + Sync) {
     thread::scope(|scope| {
         for named in &NAMED {
@@ -89,12 +89,12 @@ fn a_pipe_without_a_writer_is_given_up() {
     );
 }
 
-/// The writer stays, and writes no more.
+/// The writer keeps the pipe open and writes no more.
 #[test]
 fn a_pipe_that_stops_is_given_up() {
     let make = |folder: &Folder, named: &Named| {
         make_fifo(folder, named.file);
-        // Open for reading too: it waits for no reader, and outlives this scope.
+        // Opening for reading too waits for no reader, and the pipe outlives this scope.
         let pipe = OpenOptions::new().read(true).write(true).open(folder.path(named.file));
         let mut pipe = pipe.expect("a pipe can be opened");
         pipe.write_all(b"( // and then").expect("there is room in a pipe");
@@ -119,7 +119,7 @@ fn a_pipe_without_end_is_given_up() {
     finish(command.stdin(endless)).fails(2, "standard input:1:1: the file is larger than 16 MiB");
 }
 
-/// The command, with something that is written into its pipe meanwhile.
+/// Runs the command while its pipe is written.
 #[track_caller]
 fn written(folder: &Folder, named: &Named, write: impl FnOnce(File) + Send) -> Run {
     let path = folder.path(named.file);
@@ -145,14 +145,14 @@ fn right(folder: &Folder, named: &Named) -> Vec<u8> {
         "settings/termtrace/config.ron" => b"(fps: 30)".to_vec(),
         "settings/termtrace/keys.ron" => folder.run("config --keys").done(),
         "z.obj" => TRIANGLE.as_bytes().to_vec(),
-        // A mesh is known by its first bytes, too.
+        // A mesh is recognised by its first bytes, too.
         "scene" | "z.ply" => PLY.as_bytes().to_vec(),
         other => panic!("what is right for {other}?"),
     }
 }
 
 #[test]
-fn what_comes_through_a_pipe_is_as_good_as_a_file() {
+fn input_from_a_pipe_equals_a_file() {
     for named in &NAMED {
         let folder = folder();
         let right = right(&folder, named);
@@ -187,7 +187,7 @@ fn a_golden_frame_may_come_out_of_a_descriptor() {
     }
 }
 
-/// An empty file by another name.
+/// The null device reads as an empty file.
 #[test]
 fn the_null_device_is_an_empty_file() {
     let folder = folder();
@@ -197,9 +197,9 @@ fn the_null_device_is_an_empty_file() {
     folder.run("config").fails(2, "the file is empty");
 }
 
-/// A scene, or a mesh, may come from a stranger: what it names is a plain file.
+/// A scene or a mesh may come from a stranger: the files that it names must be regular files.
 #[test]
-fn what_a_file_names_is_a_plain_file() {
+fn files_named_in_a_file_must_be_regular_files() {
     let folder = Folder::new();
     folder.write("mesh.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Mesh(path: \"named\")])");
     let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n";

@@ -46,7 +46,7 @@ pub(crate) const BALL: &str = r##"(
 )
 "##;
 
-/// A folder of its own, in which the program runs. It has `ball.ron`.
+/// A temporary folder with `ball.ron`, in which the program runs.
 pub(crate) struct Folder {
     folder: TempDir,
 }
@@ -90,7 +90,7 @@ impl Folder {
         finish(&mut self.command(arguments))
     }
 
-    /// The program with this on its standard input.
+    /// Runs the program with this standard input.
     #[track_caller]
     pub(crate) fn run_on(&self, arguments: &str, input: impl AsRef<[u8]>) -> Run {
         let mut file = scratch();
@@ -143,7 +143,7 @@ pub(crate) fn finish(command: &mut Command) -> Run {
 }
 
 impl Run {
-    /// All went well, without a word; what was written.
+    /// Asserts success without a message, and returns the output.
     #[track_caller]
     pub(crate) fn done(self) -> Vec<u8> {
         assert_eq!((self.code, self.stderr.as_str()), (Some(0), ""));
@@ -179,7 +179,7 @@ impl Run {
         assert_eq!(self.stderr.lines().count(), 1, "{self:?}");
     }
 
-    /// The command line is wrong; these words say why.
+    /// Asserts that the command line was refused with these words.
     #[track_caller]
     pub(crate) fn is_misused(&self, words: &str) {
         assert_eq!(self.code, Some(2), "{self:?}");
@@ -190,7 +190,7 @@ impl Run {
     }
 }
 
-/// All shipped scenes.
+/// Returns all shipped scenes.
 pub(crate) fn shipped_scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let entries = fs::read_dir(folder).expect("the folder is there");

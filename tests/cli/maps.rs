@@ -4,7 +4,7 @@ use super::Folder;
 use termtrace::Map;
 
 #[test]
-fn a_frame_or_a_film_is_of_the_map_asked_for() {
+fn a_frame_or_film_shows_the_chosen_map() {
     let folder = Folder::new();
     let mut seen = vec![];
     for map in Map::ALL {
@@ -24,7 +24,7 @@ fn a_frame_or_a_film_is_of_the_map_asked_for() {
 }
 
 #[test]
-fn what_a_map_makes_no_use_of_is_turned_away() {
+fn flags_without_effect_on_a_map_are_rejected() {
     let folder = Folder::new();
     for command in ["frame ball.ron", "record ball.ron -o x.gif", "ball.ron"] {
         let run = folder.run(&format!("{command} --map depth --samples 4"));
@@ -37,7 +37,7 @@ fn what_a_map_makes_no_use_of_is_turned_away() {
 
 /// Maps were called views, which are camera positions now.
 #[test]
-fn the_old_name_of_the_flag_leads_to_the_new_one() {
+fn the_old_flag_suggests_the_new_one() {
     let folder = Folder::new();
     for command in ["ball.ron --view depth", "frame ball.ron --view=depth", "record ball.ron --view depth -o x.gif"] {
         let run = folder.run(command);

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 
-/// Commands, and the file that each writes: more than the limit of [`in_a_small_space`].
+/// Commands, and the file that each writes, of more bytes than the limit of [`in_a_small_space`].
 const WRITERS: [(&str, &str); 9] = [
     ("frame ball.ron --size 400x200 -o x.txt", "x.txt"),
     ("frame ball.ron --size 300x100 -o x.ansi", "x.ansi"),
@@ -89,7 +89,7 @@ fn heed_signals() {
     }
 }
 
-/// A film that takes very long, once its file is begun.
+/// Starts a film that takes very long, and waits until its file is begun.
 fn endless(folder: &Folder, name: &str) -> Child {
     heed_signals();
     let mut command = folder.command(&format!("record ball.ron --seconds 1000 --size 60x20 -o {name}"));
@@ -136,7 +136,7 @@ fn a_signal_leaves_the_old_film_or_none() {
 
 /// A signal ends a program that waits for a pipe's reader, or in the middle for room in the pipe.
 #[test]
-fn a_signal_ends_who_writes_to_a_pipe() {
+fn a_signal_ends_a_program_that_writes_to_a_pipe() {
     for is_read in [false, true] {
         let folder = Folder::new();
         let pipe = folder.path("x.cast");
@@ -156,7 +156,7 @@ fn a_signal_ends_who_writes_to_a_pipe() {
     }
 }
 
-/// Three at once: one that was killed, one that goes on, and the one that cleans up.
+/// Three write at once: one is killed, one goes on, and one removes the first one's file.
 #[test]
 fn the_next_run_removes_what_a_killed_one_left_and_nothing_else() {
     let folder = Folder::new();
@@ -228,7 +228,8 @@ fn plain_users_program(folder: &Folder) -> PathBuf {
     let copy = folder.path("settings/termtrace");
     if !copy.exists() {
         fs::create_dir(folder.path("settings")).expect("a folder can be made");
-        // By another process: a child that another test forks while this one writes would keep the copy from starting.
+        // Another process copies: a child that another test forks while this one writes would keep the copy from
+        // starting.
         assert!(Command::new("cp").arg(PROGRAM).arg(&copy).status().is_ok_and(|status| status.success()));
     }
     copy
@@ -257,7 +258,7 @@ fn set_mode(folder: &Folder, name: &str, mode: u32) {
 }
 
 #[test]
-fn what_may_not_be_written_is_refused_though_the_folder_may() {
+fn a_read_only_file_is_refused_in_a_writable_folder() {
     let folder = Folder::new();
     set_mode(&folder, ".", 0o777);
     for (arguments, name) in WRITERS {
@@ -299,7 +300,7 @@ fn where_it_cannot_be_replaced_a_file_is_written_in_place() {
 fn a_full_disk_leaves_the_old_bytes_where_a_file_is_written_in_place() {
     let folder = Folder::new();
     let program = plain_users_program(&folder);
-    // More than a file may have here, and less.
+    // One is more than a file may have here, the other less.
     for old in ["the old one".repeat(10_000), "the old one".to_owned()] {
         for (arguments, name) in WRITERS.into_iter().filter(|(arguments, _)| !arguments.contains('%')) {
             folder.write(name, &old);

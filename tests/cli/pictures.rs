@@ -17,7 +17,7 @@ struct Png {
 }
 
 impl Png {
-    /// Decoded by the `png` crate; marked as sRGB, as every PNG of ours.
+    /// Decodes a file by the `png` crate, and asserts that it is marked as sRGB.
     #[track_caller]
     fn decode(bytes: &[u8]) -> Self {
         let mut reader = Decoder::new(Cursor::new(bytes)).read_info().expect("a PNG");
@@ -34,7 +34,7 @@ impl Png {
         self.pixels[y * self.width + x]
     }
 
-    /// The two pixels of a cell; none below the edge.
+    /// Returns the two pixels of a cell; none below the edge.
     fn cell(&self, column: usize, row: usize) -> (Rgb, Option<Rgb>) {
         (self.pixel(column, 2 * row), (2 * row + 1 < self.height).then(|| self.pixel(column, 2 * row + 1)))
     }
@@ -84,9 +84,9 @@ fn cells_of_ansi(bytes: &[u8]) -> Vec<Vec<AnsiCell>> {
 /// Returns the screen of a terminal of that size after the bytes were printed on it.
 fn shown(bytes: &[u8], columns: usize, rows: usize) -> vt100::Parser {
     let side = |length: usize| NonZeroU16::new(length as u16).expect("not zero");
-    // A row more than the frame has: the line feed after the last row scrolls nothing away.
+    // The screen has a row more than the frame: the line feed after the last row scrolls nothing away.
     let mut terminal = vt100::Parser::new(side(rows + 1), side(columns), 0);
-    // The terminal driver's part.
+    // The terminal driver does this.
     terminal.process(&bytes.split(|&byte| byte == b'\n').collect::<Vec<_>>().join(&b"\r\n"[..]));
     terminal
 }
@@ -99,7 +99,8 @@ fn rgb_of(color: vt100::Color) -> Option<Rgb> {
     }
 }
 
-/// The cell shows these pixels: upper and lower, or the upper one alone at an odd edge.
+/// Asserts that the cell shows these pixels: upper and lower, or the upper one alone at an odd
+/// edge.
 #[track_caller]
 fn assert_shows((glyph, fg, bg): AnsiCell, (upper, lower): (Rgb, Option<Rgb>)) {
     match (glyph, lower) {
@@ -141,7 +142,7 @@ fn judge(folder: &Folder, arguments: &str) {
     }
 }
 
-/// The ramp in ten equal steps of CIE 1976 lightness, worked out in f64 from the PNG's pixels.
+/// Asserts the ramp in ten equal steps of CIE 1976 lightness, worked out in f64 from the PNG.
 #[track_caller]
 fn assert_lightness(glyph: char, (upper, lower): (Rgb, Option<Rgb>)) {
     let linear = |band: u8| {
@@ -237,7 +238,7 @@ fn colours_are_srgb_by_the_real_transfer_function() {
     }
 }
 
-/// Pixel (0, 0) is top left: a ball to the left and above is seen there.
+/// Pixel (0, 0) is top left, where a ball to the left and above is drawn.
 #[test]
 fn the_first_pixel_is_top_left() {
     let folder = Folder::new();

@@ -22,7 +22,7 @@ fn without_a_terminal_one_frame_is_printed() {
         ("--quiet", &text),
     ] {
         assert!(&folder.run(&format!("ball.ron {flags}")).done() == expected, "{flags}");
-        // What a terminal would be asked for changes nothing either.
+        // Flags about a terminal have no effect, either.
         let mut command = folder.command(&format!("ball.ron {flags}"));
         command.env_clear().envs([("TERM", "xterm-256color"), ("COLORTERM", "truecolor"), ("COLUMNS", "10")]);
         assert!(&finish(&mut command).done() == expected, "{flags}, on a fine terminal");
@@ -66,7 +66,7 @@ fn a_minus_reads_the_scene_from_standard_input() {
     }
 }
 
-/// A folder on standard input, or none at all: a message.
+/// A folder as standard input, or a closed one, is an error.
 #[test]
 fn standard_input_that_cannot_be_read() {
     let folder = Folder::new();
@@ -78,7 +78,7 @@ fn standard_input_that_cannot_be_read() {
     finish(&mut closed).fails(2, "empty");
 }
 
-/// `| head -1`: a reader that has seen enough is no error.
+/// `| head -1`: a reader that closes the pipe is no error.
 #[test]
 fn a_closed_pipe_is_no_error() {
     let folder = Folder::new();
@@ -121,7 +121,7 @@ fn a_closed_standard_error_is_no_panic() {
 }
 
 #[test]
-fn places_that_take_nothing() {
+fn outputs_that_take_no_bytes_are_errors() {
     let folder = Folder::new();
     for place in ["/nonexistent/x.txt", "missing/x.png", ".//x/y.ansi"] {
         folder.run(&format!("frame ball.ron -o {place}")).fails_in_a_line(1, place);

@@ -48,7 +48,7 @@ fn played(cast: &[u8]) -> Played {
     Played { header, events: events.collect() }
 }
 
-/// The two colours of each cell, upper half first, as the terminal shows them.
+/// Returns the two colours of each cell, upper half first, as the terminal shows them.
 fn halves_shown(terminal: &avt::Terminal, columns: usize, rows: usize) -> Vec<[Option<avt::Color>; 2]> {
     let cell = |row: usize, column: usize| {
         let line = terminal.screen().line(row).expect("the row is on the screen");
@@ -140,7 +140,8 @@ fn distance(shown: &[[Option<avt::Color>; 2]], wanted: &[[Option<avt::Color>; 2]
     halves.map(|(&shown, &wanted)| oklab(shown).distance(oklab(wanted))).fold(0.0, f32::max)
 }
 
-/// Within its cap while it moves; exact where it has stood still for a second, and in the end.
+/// A film of less quality is within its cap while it moves, and exact after a second of rest and at
+/// the end.
 #[test]
 fn a_cast_of_less_quality_is_near_and_becomes_exact() {
     let folder = Folder::new();
@@ -164,11 +165,11 @@ fn a_cast_of_less_quality_is_near_and_becomes_exact() {
         }
         assert!(distances.iter().all(|&distance| distance <= cap), "{quality}: {distances:?}");
         assert!(distances[6..15].iter().all(|&distance| distance > cap / 2.0), "{quality} uses its cap: {distances:?}");
-        // It stands from frame 15 on.
+        // The camera rests from frame 15 on.
         assert!(distances[15 + 20..].iter().all(|&distance| distance == 0.0), "{quality} at rest: {distances:?}");
         assert!(bytes(&cast) < exact, "{quality}: {} bytes against {exact}", bytes(&cast));
 
-        // Cut off in motion, the last frame is exact all the same.
+        // A film that ends in motion has an exact last frame, too.
         let cast = record(&format!("--seconds 0.6 --quality {quality}"));
         let mut terminal = avt::Terminal::new(80, 24).expect("a screen has cells");
         let events = played(&cast).events;
@@ -215,7 +216,7 @@ fn a_cast_shows_each_frame_of_a_path() {
         assert!(events[1..=5].iter().all(|(_, data)| data.is_empty()), "where nothing moves, nothing is sent");
         assert!(events.len() <= 15 || events[16..].iter().all(|(_, data)| data.is_empty()), "it stands at the end");
     }
-    // What a keyframe does not say is the scene's, or the command line's.
+    // Fields that a keyframe leaves out are the scene's, or the command line's.
     let flags = "--size 40x10 --fps 20 --path flight.ron --seconds 0.05";
     let narrow = folder.run(&format!("record ball.ron {flags} --fov 20 --up 1,1,0")).done();
     let lens = ball().camera().rectangle().with_vertical_fov(20_f32.to_radians()).expect("an angle");
@@ -239,7 +240,7 @@ fn the_defaults() {
     let raster = folder.run("record ball.ron --order raster").done();
     assert!(raster != cast);
     assert!(raster == folder.run("record ball.ron --compressed-link").done());
-    // The camera and the samples of the command line.
+    // The camera and the samples are those of the command line.
     let played = |flags: &str| folder.run(&format!("record ball.ron --seconds 0.1 --size 20x6 {flags}")).done();
     for flags in ["--eye 3,2,5", "--target 0,1,0", "--up 0.2,1,0", "--fov 60", "--samples 4"] {
         assert!(played(flags) != played(""), "{flags}");
@@ -248,7 +249,7 @@ fn the_defaults() {
 
 /// A cast has no mode changes, and no query that a viewer's terminal would answer.
 #[test]
-fn a_cast_holds_nothing_but_frames() {
+fn a_cast_has_frames_only() {
     let folder = Folder::new();
     for order in ["color", "raster"] {
         let cast = folder.run(&format!("record ball.ron --seconds 0.5 --order {order}")).done();
@@ -265,7 +266,7 @@ fn a_cast_holds_nothing_but_frames() {
 
 /// Neither the number of threads nor the environment nor the time is seen in any byte.
 #[test]
-fn a_film_hangs_on_nothing_else() {
+fn a_film_depends_on_its_arguments_alone() {
     let folder = Folder::new();
     for name in ["x.cast", "x.gif", "%d.png"] {
         let arguments = format!("record ball.ron --seconds 0.2 --samples 2 --size 50x20 -o {name}");
@@ -371,7 +372,7 @@ fn a_ball_is_round_in_a_gif() {
     }
 }
 
-/// Numbered from 1, each as `frame` writes it.
+/// The files are numbered from 1, each as `frame` writes it.
 #[test]
 fn pngs_are_numbered_frames() {
     let folder = Folder::new();
@@ -390,7 +391,7 @@ fn pngs_are_numbered_frames() {
 }
 
 #[test]
-fn what_cannot_be_recorded_is_turned_away() {
+fn impossible_recordings_are_rejected() {
     let folder = Folder::new();
     folder.write("flight.ron", FLIGHT);
     folder.write("still.ron", "(keyframes: [(time: 0, eye: (0, 0, 5), target: (0, 0, 0))])");
@@ -446,7 +447,7 @@ fn what_cannot_be_recorded_is_turned_away() {
 }
 
 #[test]
-fn places_that_take_no_film() {
+fn outputs_that_take_no_film_are_errors() {
     let folder = Folder::new();
     for place in ["missing/x.cast", "missing/x.gif"] {
         folder.run(&format!("record ball.ron --seconds 0.1 -o {place}")).fails_in_a_line(1, place);
@@ -468,7 +469,7 @@ fn places_that_take_no_film() {
     }
 }
 
-/// `| head`: who has seen enough ends the film, without a word.
+/// `| head`: a reader that closes the pipe ends the film, without a message.
 #[test]
 fn a_reader_may_leave_early() {
     let folder = Folder::new();
@@ -542,13 +543,13 @@ fn a_bar_shows_the_progress_and_leaves_nothing() {
         assert!(seen.screen().text().iter().all(|line| line.trim().is_empty()), "{:?}", seen.screen().text());
         assert_eq!(seen.screen().cursor(), Some((0, 0)));
     }
-    // A film that fails says so on a line of its own.
+    // The error of a film is on a line of its own.
     let mut session = on_a_terminal(&folder, "--seconds 2 -o /missing/%d.png").spawn();
     assert_eq!(session.wait_exit(SOON).code(), Some(1));
     assert!(session.seen().screen().text()[0].starts_with("termtrace: /missing/1.png: No such file"));
 }
 
-/// A terminal that cannot go back on its line is not written full.
+/// A terminal that cannot return to the start of a line gets no bar.
 #[test]
 fn a_dumb_terminal_gets_no_bar() {
     let folder = Folder::new();
@@ -593,7 +594,7 @@ fn ctrl_c_ends_by_the_signal_and_leaves_no_bar() {
 fn ctrl_z_stops_a_recording() {
     let folder = Folder::new();
     let record = format!("'{}' record ball.ron --seconds 1000 -o x.cast", env!("CARGO_BIN_EXE_termtrace"));
-    // With job control, and an end that takes the stopped job along.
+    // The shell has job control, and its end kills the stopped job.
     let script =
         format!("cd '{}'; set -m; {record}; printf '\\nstatus <%s>\\n' $?; kill -KILL %1", folder.path(".").display());
     let mut session = Start::shell(&script).spawn();

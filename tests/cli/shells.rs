@@ -18,7 +18,7 @@ fn every_shell_learns_of_every_command_and_flag() {
     folder.run("completions").is_misused("<SHELL>");
 }
 
-/// The script is one that the shell takes.
+/// The shell accepts the script.
 #[test]
 fn bash_takes_its_completions() {
     let folder = Folder::new();
@@ -26,7 +26,7 @@ fn bash_takes_its_completions() {
     let script = "source ./termtrace.bash && COMP_WORDS=(termtrace frame --pix) COMP_CWORD=2 && _termtrace termtrace --pix frame && echo ${COMPREPLY[@]}";
     let mut bash = std::process::Command::new("bash");
     let run = bash.args(["-c", script]).current_dir(folder.path(".")).output();
-    // Not every system has it.
+    // Not every system has this shell.
     let Ok(run) = run else { return };
     assert_eq!(String::from_utf8_lossy(&run.stdout).trim(), "--pixels", "{run:?}");
 }
@@ -45,9 +45,9 @@ fn the_manual_has_a_page_for_each_command() {
     folder.run("man nothing").fails_in_a_line(2, "there is no command \"nothing\"");
 }
 
-/// A link that leads nowhere, or in a circle, is in its folder and is no file.
+/// A link that leads nowhere, or in a circle, is in its folder, but is no file to suggest.
 #[test]
-fn a_name_that_was_just_given_is_not_proposed() {
+fn a_link_that_leads_nowhere_is_not_suggested() {
     let folder = Folder::new();
     for (name, target) in [("dangling.ron", "nowhere.ron"), ("circle.ron", "circle.ron"), ("bal.ron", "nowhere.ron")] {
         std::os::unix::fs::symlink(target, folder.path(name)).expect("a link can be made");
@@ -57,7 +57,7 @@ fn a_name_that_was_just_given_is_not_proposed() {
             ("dangling.ron", "there is no such file"),
             ("./dangling.ron", "there is no such file"),
             ("circle.ron", "cannot be read: Too many levels of symbolic links (os error 40)"),
-            // And neither is another one of them.
+            // Nor are other such links.
             ("dangling", "there is no such file"),
             ("circel.ron", "there is no such file"),
             ("bal.ron", "there is no such file; did you mean ball.ron?"),
@@ -69,7 +69,7 @@ fn a_name_that_was_just_given_is_not_proposed() {
 }
 
 #[test]
-fn who_misspells_a_scene_or_a_command_is_helped() {
+fn misspelt_scenes_and_commands_get_suggestions() {
     let folder = Folder::new();
     folder.write("teapot.obj", "");
     std::fs::create_dir(folder.path("more")).expect("a folder can be made");

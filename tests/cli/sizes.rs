@@ -16,7 +16,7 @@ fn text_size(frame: &[u8]) -> (usize, usize) {
     (lines[0].len(), lines.len())
 }
 
-/// The defaults are promised: a test may rely on them.
+/// The defaults are promised: users' tests may rely on them.
 #[test]
 fn a_frame_is_80_by_24_characters() {
     let folder = Folder::new();
@@ -24,7 +24,7 @@ fn a_frame_is_80_by_24_characters() {
     assert_eq!(text_size(&frame), (80, 24));
     assert_eq!(frame.len(), 81 * 24);
     assert_eq!(frame, folder.frame("ball.ron --size 80x24 --format text --samples 1 --cell-aspect 2"));
-    // And it is what the library gives to a test.
+    // The library's text frame is the same.
     let scene = Scene::from_ron("ball.ron", BALL).expect("the scene is fine");
     assert_eq!(frame, text_frame(&scene, Size::new(80, 24)).into_bytes());
 }
@@ -51,7 +51,7 @@ fn any_size_works() {
     }
 }
 
-/// The lowest row of an odd number of pixels fills its cells by half.
+/// An odd number of pixel rows fills the upper halves of the last cells.
 #[test]
 fn an_odd_number_of_pixel_rows_ends_in_half_a_cell() {
     let folder = Folder::new();
@@ -63,7 +63,7 @@ fn an_odd_number_of_pixel_rows_ends_in_half_a_cell() {
 }
 
 #[test]
-fn sizes_that_are_none_are_turned_away() {
+fn invalid_sizes_are_rejected() {
     let folder = Folder::new();
     for size in ["0x5", "5x0", "80", "80x", "x24", "80x24x3", "-5x5", "8.5x4", "axb", "99999999999x1", "80*24"] {
         folder.run(&format!("frame ball.ron --size={size}")).is_misused("such as 80x24");

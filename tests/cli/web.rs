@@ -34,7 +34,7 @@ fn frames_for_the_web_are_golden() {
 
 /// A frame runs no script and loads nothing, and escapes the characters of HTML's tags.
 #[test]
-fn frames_for_the_web_are_alone() {
+fn frames_for_the_web_load_nothing() {
     let folder = Folder::new();
     for format in ["svg", "html"] {
         for flags in ["", "--glyphs shape", "--glyphs shape --color never", "--glyphs ramp --color 256"] {
@@ -57,7 +57,7 @@ fn frames_for_the_web_are_alone() {
     assert_eq!(shown.lines().collect::<Vec<_>>(), trimmed);
 }
 
-/// The drawing is as wide and high as its cells.
+/// The drawing has the width and height of its cells.
 #[test]
 fn frames_for_the_web_have_the_right_shape() {
     let folder = Folder::new();

@@ -20,14 +20,14 @@ use std::rc::Rc;
 use termtrace::internals::{grid, overlay};
 use termtrace::{Cell, Encoder, EncoderBackend, Grid, Ink, Order};
 
-/// Two emulators on one line, and what has come over it.
+/// Two emulators that receive the same bytes, and the bytes of each write.
 #[derive(Clone)]
 pub(crate) struct Wire(Rc<RefCell<Emulators>>);
 
 struct Emulators {
     avt: avt::Terminal,
     vt100: vt100::Parser,
-    /// One for each write.
+    /// The text of each write.
     writes: Vec<String>,
 }
 
@@ -116,7 +116,7 @@ impl Write for Wire {
     }
 }
 
-/// ratatui's own backend, with the emulator for the terminal that it would ask.
+/// ratatui's own backend, whose queries the emulator answers.
 pub(crate) struct Theirs(pub(crate) CrosstermBackend<Wire>, Wire);
 
 impl Backend for Theirs {
@@ -245,7 +245,7 @@ impl Pair {
         self.assert_equal();
     }
 
-    /// The window gets another size; its owner tells our backend of it.
+    /// Resizes the window, and tells our backend so as its owner does.
     fn resize(&mut self, size: Size) {
         self.line.resize(size);
         self.other_line.resize(size);
@@ -317,7 +317,7 @@ impl<B: Backend<Error = io::Error>> Calls for B {
 const REGIONS: [ClearType; 5] =
     [ClearType::All, ClearType::AfterCursor, ClearType::BeforeCursor, ClearType::CurrentLine, ClearType::UntilNewLine];
 
-/// Letters and colours in every cell.
+/// Draws letters and colours in every cell.
 pub(crate) fn full(frame: &mut Frame<'_>) {
     for (at, cell) in (0_u8..).zip(&mut frame.buffer_mut().content) {
         cell.set_char(char::from(b'a' + at % 26)).set_bg(Color::Indexed(at % 7));
@@ -342,7 +342,7 @@ fn each_region_is_cleared() {
 
 /// Clearing mends what another program has written there, and only there.
 #[test]
-fn clearing_is_not_believed_to_be_done() {
+fn clearing_mends_what_another_program_wrote() {
     for region in REGIONS {
         let mut pair = Pair::fullscreen();
         pair.clear();
@@ -354,7 +354,7 @@ fn clearing_is_not_believed_to_be_done() {
 
 /// Clearing the screen resets the pen that another program has left, and hides the cursor again.
 #[test]
-fn clearing_the_screen_mends_it_all() {
+fn clearing_the_screen_resets_pen_and_cursor() {
     let line = Wire::new(SIZE);
     let mut terminal = Terminal::new(EncoderBackend::new(line.clone(), SIZE)).expect("it can be written");
     terminal.draw(full).expect("it can be written");
@@ -366,7 +366,7 @@ fn clearing_the_screen_mends_it_all() {
 
 /// The encoder may have drawn on another screen before: nothing is taken as shown.
 #[test]
-fn an_encoder_that_has_drawn_before() {
+fn an_encoder_that_drew_elsewhere_draws_all() {
     let mut grid = Grid::new(grid::Size::new(SIZE.width, SIZE.height));
     *grid.cell_mut(2, 1) = Cell::new('x', Ink::Default, Ink::Default);
     let mut encoder = Encoder::new();
@@ -377,7 +377,7 @@ fn an_encoder_that_has_drawn_before() {
 
 /// Another program may have changed the cursor: its state is sent even if it was sent before.
 #[test]
-fn the_cursor_is_not_believed_to_be_there() {
+fn the_cursor_is_sent_even_if_unchanged() {
     let mut pair = Pair::fullscreen();
     let render = |frame: &mut Frame<'_>| frame.set_cursor_position((4, 4));
     pair.draw(render);
@@ -387,7 +387,7 @@ fn the_cursor_is_not_believed_to_be_there() {
     pair.ours.show_cursor().expect("it can be written");
     pair.theirs.show_cursor().expect("it can be written");
     pair.assert_equal();
-    // A window of the same size, of which nothing is known.
+    // A resize to the same size means that the screen's contents are unknown.
     pair.disturb("\x1b[H\x1b[?25l");
     pair.ours.backend_mut().resize(SIZE);
     pair.draw(render);
@@ -397,7 +397,7 @@ fn the_cursor_is_not_believed_to_be_there() {
 ///
 /// Cells that are not the program's are left alone.
 #[test]
-fn what_stands_behind_a_cluster() {
+fn cells_behind_a_split_cluster_are_sent_again() {
     let line = Wire::new(SIZE);
     line.feed("$ shell tex");
     let mut backend = EncoderBackend::new(line.clone(), SIZE);
@@ -423,9 +423,9 @@ fn lines_are_appended() {
 
 /// An inline viewport keeps the shell's lines above it, and inserted lines come in between.
 #[test]
-fn inline_viewports() {
-    // With scrolling regions ratatui's own backend asks for a region of one row where the viewport fills the screen, or
-    // all but a row of it, which terminals do not know.
+fn an_inline_viewport_keeps_the_lines_above_it() {
+    // Where the viewport fills the screen, or all but a row of it, ratatui's own backend with scrolling regions uses a
+    // region of one row, which terminals do not know.
     let heights: &[u16] = if cfg!(feature = "scrolling-regions") { &[1, 2, 3] } else { &[1, 2, 3, 5, 6, 9] };
     for (rows_before, &height) in (0..=7).flat_map(|rows| heights.iter().map(move |height| (rows, height))) {
         let mut pair = Pair::inline(rows_before, height);
@@ -448,7 +448,7 @@ fn inline_viewports() {
 }
 
 #[test]
-fn windows_change_their_size() {
+fn windows_are_resized() {
     for (viewport, before) in [(Viewport::Fullscreen, 0), (Viewport::Inline(3), 2), (Viewport::Inline(2), 5)] {
         let mut pair = Pair::new(SIZE, Encoder::new(), &viewport, &shell(before));
         pair.draw(full);
@@ -460,9 +460,9 @@ fn windows_change_their_size() {
     }
 }
 
-/// A viewport in the midst of others' text: what is not drawn stays, in gaps and beside it.
+/// Cells that a viewport does not draw keep another program's text, in gaps and beside it.
 #[test]
-fn what_is_not_drawn_is_left_alone() {
+fn cells_that_are_not_drawn_are_left_alone() {
     for order in [Order::Raster, Order::Color] {
         let viewport = Viewport::Fixed(Rect::new(2, 1, 8, 4));
         let mut pair = Pair::new(SIZE, Encoder::new().with_order(order), &viewport, &shell(6));
@@ -489,7 +489,7 @@ fn the_cursor_is_where_the_program_wants_it() {
 
 /// A frame that changes nothing sends nothing, and no cursor that is where the frame ends.
 #[test]
-fn nothing_new_is_nothing_sent() {
+fn a_frame_without_changes_sends_nothing() {
     for synchronized in [false, true] {
         let encoder = Encoder::new().with_synchronized_output(synchronized);
         let mut pair = Pair::new(SIZE, encoder, &Viewport::Fullscreen, "");
@@ -508,7 +508,7 @@ fn nothing_new_is_nothing_sent() {
     }
 }
 
-/// The cursor goes with the frame, and both stand in the brackets.
+/// A frame and its cursor are one write, in one pair of brackets.
 #[test]
 fn a_frame_is_one_write() {
     for synchronized in [false, true] {
@@ -529,7 +529,7 @@ fn a_frame_is_one_write() {
     }
 }
 
-/// One frame in its brackets, or without any.
+/// Asserts that a frame is in brackets, or that it has none.
 #[track_caller]
 pub(crate) fn assert_bracketed(frame: &str, synchronized: bool) {
     let inside = frame.strip_prefix("\x1b[?2026h").and_then(|frame| frame.strip_suffix("\x1b[?2026l"));
@@ -539,7 +539,7 @@ pub(crate) fn assert_bracketed(frame: &str, synchronized: bool) {
 
 /// Bytes that the program writes itself have no colour of ours, and the next frame is right.
 #[test]
-fn what_the_program_writes_itself() {
+fn the_programs_own_bytes_get_no_colour_of_ours() {
     let mut pair = Pair::fullscreen();
     for x in 3..6 {
         let look = |frame: &mut Frame<'_>| {
@@ -559,7 +559,7 @@ fn what_the_program_writes_itself() {
 /// The program knows that the screen was lost: what it draws or clears is sent, even if nothing
 /// changed.
 #[test]
-fn what_is_drawn_again_is_sent_again() {
+fn cells_that_are_drawn_again_are_sent_again() {
     let mut pair = Pair::fullscreen();
     pair.draw(full);
     pair.disturb("\x1b[2J");
@@ -575,7 +575,7 @@ fn what_is_drawn_again_is_sent_again() {
 /// After a failed write the state of the terminal is unknown: all is drawn again, with the cursor's
 /// state.
 #[test]
-fn a_line_that_fails() {
+fn after_a_failed_write_all_is_drawn_again() {
     struct Failing(Wire, bool);
     impl Write for Failing {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -603,9 +603,9 @@ fn a_line_that_fails() {
     assert!(!line.is_cursor_visible());
 }
 
-/// Neither a screen without cells nor cells without a screen are a fault.
+/// An empty screen is no error, nor is a cell outside of it.
 #[test]
-fn anywhere_and_nowhere() {
+fn empty_screens_and_cells_outside_are_no_error() {
     let cell = ratatui::buffer::Cell::new("世");
     for size in [(0, 0), (0, 5), (5, 0), (1, 1), (3, 2)] {
         let mut backend = EncoderBackend::new(Vec::new(), size);
@@ -624,7 +624,7 @@ fn anywhere_and_nowhere() {
 }
 
 #[test]
-fn the_size_is_its_owners() {
+fn the_size_is_the_one_that_was_set() {
     let mut backend = EncoderBackend::new(Vec::new(), (80, 24));
     backend.set_pixels((800, 480));
     let window = |width, height, pixels| WindowSize { columns_rows: Size::new(width, height), pixels };
@@ -672,7 +672,7 @@ impl Strict {
     }
 }
 
-/// Buffers of some texts in some styles.
+/// Returns buffers of some texts in some styles.
 fn panels(clusters: Clusters) -> impl Strategy<Value = Vec<Vec<Buffer>>> {
     let frame = vec(panel(clusters).prop_map(|panel| panel.buffer()), 0..4);
     vec(frame, 1..6)
@@ -685,7 +685,7 @@ fn render(buffers: &[Buffer], frame: &mut Frame<'_>) {
         for place in area.positions() {
             target[place] = buffer[place].clone();
         }
-        // Half of what is wide is nothing.
+        // The second half of a wide character is no cell of its own.
         for y in area.rows().map(|row| row.y) {
             halve(target, y);
         }

@@ -32,7 +32,7 @@ fn encoded(encoder: &mut Encoder, grid: &Grid) -> String {
 }
 
 #[test]
-fn a_first_frame_says_each_colour_once() {
+fn a_first_frame_sets_each_colour_once() {
     let grid = flat(&Cell::new('▄', A, B));
     assert_eq!(
         encoded(&mut Encoder::new(), &grid),
@@ -49,14 +49,14 @@ fn the_first_colours_are_short() {
     let cell = |index, attributes| Cell { attributes, ..Cell::new('x', Ink::Indexed(index), Ink::Indexed(index)) };
     for (index, attributes, expected) in [
         (3, Attributes::empty(), "\x1b[33;43mx"),
-        // Not what was said before, brightened.
+        // This colour is set again: the earlier one would be brightened.
         (3, Attributes::BOLD, "\x1b[0;1;38;5;3;43mx"),
         (4, Attributes::BOLD, "\x1b[38;5;4;44mx"),
         (7, Attributes::empty(), "\x1b[0;37;47mx"),
         (8, Attributes::empty(), "\x1b[38;5;8;48;5;8mx"),
         (8, Attributes::BOLD, "\x1b[1mx"),
         (8, Attributes::BOLD | Attributes::DIM, "\x1b[2mx"),
-        // The other way round some terminals would end bold.
+        // In the other order some terminals would end bold.
         (9, Attributes::DIM, "\x1b[0;2;38;5;9;48;5;9mx"),
         (9, Attributes::DIM | Attributes::BOLD, "\x1b[0;1;2;38;5;9;48;5;9mx"),
     ] {
@@ -85,7 +85,7 @@ fn long_sequences_are_split() {
 
 /// CUP, SGR of only the colour that differs from the pen, and the character.
 #[test]
-fn one_changed_cell_is_a_place_a_colour_and_a_character() {
+fn one_changed_cell_is_a_position_a_colour_and_a_character() {
     let mut encoder = Encoder::new();
     let start = Cell::new('▄', A, B);
     let mut grid = flat(&start);
@@ -134,7 +134,7 @@ fn attributes_are_added_and_all_switched_off_together() {
 /// A gap of one is written again, if the pen is right for it: a byte instead of three. After the last column the
 /// cursor's position is unknown; from anywhere else a line feed goes down.
 #[test]
-fn a_run_of_changes_says_its_place_once() {
+fn a_run_of_changes_has_one_position() {
     let mut encoder = Encoder::new();
     let mut grid = flat(&Cell::BLANK);
     encoded(&mut encoder, &grid);
@@ -185,7 +185,7 @@ fn cells_of_the_same_colours_follow_each_other() {
 ///
 /// Never with the terminal's own colours: its foreground is not its background.
 #[test]
-fn either_half_saves_a_colour() {
+fn the_other_half_block_saves_a_colour() {
     let mut grid = Grid::new(Size::new(2, 1));
     *grid.cell_mut(0, 0) = Cell::new('▄', A, B);
     *grid.cell_mut(1, 0) = Cell::new('▄', B, C);
@@ -201,7 +201,7 @@ fn either_half_saves_a_colour() {
 ///
 /// Never with the terminal's own colours: its foreground is not its background.
 #[test]
-fn a_space_takes_the_colour_that_glyphs_have() {
+fn a_space_uses_the_foreground_inverted() {
     let mut encoder = Encoder::new();
     let mut grid = flat(&Cell::new('▄', A, B));
     encoded(&mut encoder, &grid);
@@ -226,7 +226,7 @@ fn a_space_takes_the_colour_that_glyphs_have() {
 
 /// In the order of colours, too, where a space looks ahead to the colour of the next glyph.
 #[test]
-fn an_exchanged_space_keeps_its_colour() {
+fn an_inverted_space_keeps_its_colour() {
     let (one, two) = (Ink::Indexed(1), Ink::Indexed(200));
     let mut grid = Grid::new(Size::new(3, 1));
     *grid.cell_mut(0, 0) = Cell::new('x', one, two);
@@ -242,7 +242,7 @@ fn an_exchanged_space_keeps_its_colour() {
 ///
 /// It is written again, with the half for which the pen is right.
 #[test]
-fn a_half_block_on_the_way_is_written_again() {
+fn a_half_block_in_a_gap_is_written_again() {
     for (turned, expected) in [(false, "\x1b[1;2Hx▄x"), (true, "\x1b[1;2Hx▀x")] {
         let mut encoder = Encoder::new().with_half_blocks(HalfBlocks::Either);
         let mut grid = flat(&Cell::new('y', A, B));
@@ -285,7 +285,7 @@ fn cluster(text: &str) -> Cell {
 ///
 /// Cells that a terminal writes over when it splits the cluster are written again, and no others.
 #[test]
-fn clusters_are_followed_by_a_place() {
+fn clusters_are_followed_by_a_position() {
     let mut encoder = Encoder::new();
     let mut grid = flat(&Cell::new('x', Ink::Default, Ink::Default));
     encoded(&mut encoder, &grid);
@@ -364,7 +364,7 @@ fn bytes_are_appended() {
 
 /// The largest screen and the furthest cell.
 #[test]
-fn places_have_five_digits_where_they_need_them() {
+fn positions_have_up_to_five_digits() {
     let mut encoder = Encoder::new();
     let mut grid = Grid::new(Size::new(65_535, 1));
     encoded(&mut encoder, &grid);
@@ -386,7 +386,7 @@ fn bracketed(frame: &str) -> String {
     if frame.is_empty() { String::new() } else { format!("{begin}{frame}{end}") }
 }
 
-/// Around what would be sent without them, if anything is.
+/// Brackets are around a frame that is not empty.
 #[test]
 fn synchronized_frames_are_bracketed() {
     let mut plain = Encoder::new();
@@ -462,7 +462,7 @@ impl Synchronizing {
     }
 }
 
-/// Wherever its bytes are cut: what is shown is the frame before, or this one.
+/// Wherever the bytes are cut, the screen shows the frame before or this one.
 #[test]
 fn a_synchronized_frame_is_never_shown_by_half() {
     let size = Size::new(9, 4);
@@ -508,7 +508,7 @@ impl Write for Line {
 ///
 /// After a failed write it gets all of them again, because the state of the terminal is unknown.
 #[test]
-fn frames_are_written_to_a_line() {
+fn a_writer_gets_the_bytes_of_encode() {
     let grid = flat(&Cell::new('▄', A, B));
     let expected = encoded(&mut Encoder::new(), &grid);
     let mut encoder = Encoder::new();

@@ -11,9 +11,9 @@ use termtrace::{Cell, Grid, Ink, Order, Quality, Size, Srgb8};
 
 const GLYPHS: [&str; 9] = ["▄", "▀", " ", "a", "@", "é", "│", "世", "🙂"];
 
-/// Panics if a terminal shows anything else than it should.
+/// Asserts that all terminals show what they should.
 pub(crate) fn hold_for(data: &[u8]) {
-    // Bytes that have come to their end are a story's end.
+    // The session ends with the bytes.
     let _ = tell(&mut Unstructured::new(data));
 }
 
@@ -77,7 +77,7 @@ fn cell(bytes: &mut Unstructured<'_>) -> Result<Cell> {
     })
 }
 
-/// Many of few colours, which neighbours share, and of colours that are near each other.
+/// Returns one of few colours, which neighbours often share, or a colour near another.
 fn ink(bytes: &mut Unstructured<'_>) -> Result<Ink> {
     Ok(match bytes.int_in_range(0..=9)? {
         0 => Ink::Default,

@@ -12,7 +12,7 @@ use termtrace::internals::encode::Allowance;
 use termtrace::internals::grid::HalfBlocks;
 use termtrace::{Cell, Encoder, Grid, Ink, Order, Quality, Size};
 
-/// Colours that are near each other, further than a quality allows, and in between.
+/// Returns colours that are near each other, further apart than a quality allows, and in between.
 fn near_ink() -> impl Strategy<Value = Ink> {
     prop_oneof![
         4 => (0_u8..8).prop_map(|step| rgb(100 + step, 120, 140 - step)),
@@ -30,7 +30,7 @@ fn picture_cell() -> impl Strategy<Value = Cell> {
     })
 }
 
-/// A picture with text here and there.
+/// Returns cells of a picture, with some text.
 fn cells() -> impl Strategy<Value = Vec<Cell>> {
     vec(prop_oneof![9 => picture_cell(), 1 => cell(anything(Clusters::None))], CELLS)
 }
@@ -87,7 +87,7 @@ proptest! {
         }
     }
 
-    /// The exact ones too, read in any pieces.
+    /// Exact and lossy frames look the same, in whatever pieces they are read.
     #[test]
     fn a_frame_is_the_same_in_any_pieces(
         size in size(),
@@ -110,7 +110,7 @@ fn allowance(millis: u64, quality: Quality, max_bytes: Option<usize>) -> Allowan
     Allowance { quality, now: Duration::from_millis(millis), max_bytes }
 }
 
-/// Flat cells of one grey.
+/// Returns flat cells of one grey.
 fn grey(size: Size, level: u8) -> Grid {
     let mut grid = Grid::new(size);
     grid.cells_mut().fill(Cell::new(' ', Ink::Default, rgb(level, level, level)));
@@ -126,7 +126,7 @@ fn encoded(encoder: &mut Encoder, grid: &Grid, allowance: Allowance) -> String {
 /// An invisible change is left out at first, and sent half a second later: neither earlier nor
 /// twice.
 #[test]
-fn a_small_change_waits_for_half_a_second() {
+fn an_invisible_change_is_delayed_by_half_a_second() {
     for quality in [Quality::Equal, Quality::Fast] {
         let size = Size::new(9, 3);
         let mut encoder = Encoder::new();
@@ -185,7 +185,7 @@ fn the_largest_errors_come_first() {
             let level = 20 + (at * 37 % 200) as u8;
             *cell = Cell::new('▄', rgb(level, 20, 20), rgb(20, level, 20));
         }
-        // Judged by what is watched: no frame above the limit, nothing written before what is worse.
+        // The watched encoder asserts that no frame is above the limit, and that larger errors are sent first.
         let limited = allowance(0, quality, Some(300));
         let sent = watched.send_within(&wanted, limited);
         assert!((1..=300).contains(&sent), "{sent} bytes");
@@ -194,7 +194,7 @@ fn the_largest_errors_come_first() {
     }
 }
 
-/// Text goes through any limit; the picture waits.
+/// Text is sent under any limit; the picture is delayed.
 #[test]
 fn a_limit_does_not_keep_text_back() {
     let size = Size::new(30, 8);
@@ -209,7 +209,7 @@ fn a_limit_does_not_keep_text_back() {
     watched.rest(&wanted, limited);
 }
 
-/// A picture of noise, all of it near one grey.
+/// Returns a picture of noise near one grey.
 fn nearly_grey(size: Size, number: &mut impl FnMut() -> u32) -> Grid {
     let mut grid = Grid::new(size);
     for cell in grid.cells_mut() {
@@ -247,9 +247,9 @@ fn exact_colours_are_spread_over_frames() {
     assert!(frames > 1, "there was more to send than one frame may take");
 }
 
-/// However small the screen, all becomes exact.
+/// All cells become exact, on a screen of any size.
 #[test]
-fn small_screens_come_to_rest() {
+fn small_screens_become_exact() {
     for size in [(1, 1), (2, 1), (1, 2), (3, 1), (10, 1), (5, 3)] {
         let size = Size::new(size.0, size.1);
         let mut watched = Watched::new(Order::Raster, HalfBlocks::Either, size, Clusters::None);
@@ -304,7 +304,7 @@ fn blanks_of_text_do_not_wait() {
     watched.rest(&alike, later);
 }
 
-/// A limit beyond what one frame may take is none.
+/// A limit above that of one frame has no effect.
 #[test]
 fn a_generous_limit_does_not_loosen_the_usual_one() {
     let size = Size::new(40, 10);

@@ -36,7 +36,7 @@ pub(crate) const fn rgb(r: u8, g: u8, b: u8) -> Ink {
     Ink::Rgb(Srgb8::new(r, g, b))
 }
 
-/// Few colours, so that neighbours often share one.
+/// Returns one of few colours, so that neighbours often share one.
 fn ink() -> impl Strategy<Value = Ink> {
     prop_oneof![
         1 => Just(Ink::Default),
@@ -46,7 +46,7 @@ fn ink() -> impl Strategy<Value = Ink> {
     ]
 }
 
-/// The bits of text attributes, which are the same in a grid and in ratatui's buffers.
+/// Returns the bits of text attributes, which are the same in a grid and in ratatui's buffers.
 fn attribute_bits() -> impl Strategy<Value = u16> {
     prop_oneof![4 => Just(0), 1 => any::<u16>()]
 }
@@ -125,13 +125,13 @@ fn panel(clusters: Clusters) -> impl Strategy<Value = Panel> {
 enum Step {
     /// The same frame again.
     Same,
-    /// Some cells are others.
+    /// A frame of which some cells change.
     Change(Vec<(usize, Cell)>),
     /// A frame of which any cell may change.
     Redraw(Vec<Cell>),
     /// A picture with a panel over it; the panel is gone with the next frame.
     Panel(Vec<Cell>, Panel),
-    /// The window has another size.
+    /// A resize of the window.
     Resize(Size, Vec<Cell>),
     /// Bytes of another program on the screen.
     Disturb,
@@ -149,14 +149,14 @@ fn step(clusters: Clusters) -> impl Strategy<Value = Step> {
     ]
 }
 
-/// A watched encoder, and the grid that is wanted.
+/// A watched encoder, and the grid that it is to show.
 pub(crate) struct Stage {
     watched: Watched,
     clusters: Clusters,
     grid: Grid,
 }
 
-/// Each way of encoding.
+/// All orders and half blocks.
 pub(crate) const WAYS: [(Order, HalfBlocks); 4] = [
     (Order::Raster, HalfBlocks::Lower),
     (Order::Raster, HalfBlocks::Either),
@@ -169,12 +169,12 @@ impl Stage {
         Self { watched: Watched::new(order, half_blocks, grid.size(), clusters), clusters, grid }
     }
 
-    /// One for each way of encoding.
+    /// Returns a stage for each order and half block.
     pub(crate) fn all(grid: &Grid, clusters: Clusters) -> [Self; 4] {
         WAYS.map(|way| Self::new(way, grid.clone(), clusters))
     }
 
-    /// Takes the step; what the bytes have to be fewer than.
+    /// Takes the step, and returns the limit of its bytes.
     fn take(&mut self, step: &Step) -> usize {
         let all = 4 + self.grid.size().cell_count() * MOST_BYTES;
         match step {
@@ -184,8 +184,8 @@ impl Stage {
                 for (place, cell) in changes {
                     put_at(&mut self.grid, place % count, cell);
                 }
-                // Each may also have cut a wide character to its left and to its right; and with a cluster all that
-                // stands behind it in its row may be written again.
+                // Each panel may also have cut a wide character to its left and to its right; behind a cluster the rest
+                // of its row may be written again.
                 let cells = if matches!(self.clusters, Clusters::None) { 3 } else { 3 * 12 };
                 return changes.len() * cells * MOST_BYTES;
             }
@@ -213,11 +213,12 @@ impl Stage {
     }
 }
 
-/// A place, all nine attributes, three colours, a wide cluster that is written on blanks.
+/// The longest bytes of a cell: a position, all nine attributes, three colours, a wide cluster that
+/// is written on blanks.
 const MOST_BYTES: usize = "\x1b[12;12H\x1b[0;1;2;3;4;5;6;7;8;9m\x1b[38;2;255;255;255;48;2;255;255;255m".len()
     + "\x1b[58:2::255:255:255m  \x1b[12;12H👨\u{200d}👩\u{200d}👧".len();
 
-/// A first grid, and what happens to it.
+/// Returns a first grid, and the steps after it.
 fn story(clusters: Clusters) -> impl Strategy<Value = (Size, Vec<Cell>, Vec<Step>)> {
     (size(), vec(cell(anything(clusters)), CELLS), vec(step(clusters), 1..8))
 }

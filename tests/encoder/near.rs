@@ -41,7 +41,7 @@ pub(crate) fn halves(cell: &Cell) -> Option<[Srgb8; 2]> {
     }
 }
 
-/// The three terminals show the same, and all text of it as it is wanted. What they show.
+/// Asserts that the three terminals show the same, with all text exact, and returns their screen.
 #[track_caller]
 pub(crate) fn assert_text_is_exact(screens: &Screens, wanted: &Grid) -> Grid {
     let mut seen = wanted.clone();
@@ -62,7 +62,7 @@ pub(crate) fn assert_within(caps: Caps, seen: &Grid, wanted: &Grid) {
         let (Some(seen), Some(wanted)) = (halves(seen), halves(wanted)) else { continue };
         for (seen, wanted) in seen.into_iter().zip(wanted) {
             let distance = distance(seen, wanted);
-            // The encoder reckons in f32.
+            // The encoder computes in f32.
             assert!(distance <= caps.distance + 1e-6, "cell {at}: {seen:?} for {wanted:?} is {distance} away");
             sum += f64::from(square(seen, wanted));
             bands += 3.0;
@@ -74,7 +74,7 @@ pub(crate) fn assert_within(caps: Caps, seen: &Grid, wanted: &Grid) {
     }
 }
 
-/// The square of the difference of two colours, over all three bands.
+/// Returns the square of the difference of two colours, over all three channels.
 pub(crate) fn square(a: Srgb8, b: Srgb8) -> u32 {
     [a.r.abs_diff(b.r), a.g.abs_diff(b.g), a.b.abs_diff(b.b)].map(|band| u32::from(band).pow(2)).iter().sum()
 }

@@ -10,7 +10,7 @@ use termtrace::internals::grid::Attributes;
 use termtrace::{Cell, Encoder, Glyph, Grid, Ink, Size, lay_over};
 use unicode_width::UnicodeWidthStr;
 
-/// A picture of one colour.
+/// Returns a picture of one colour.
 fn picture(size: Size) -> Grid {
     let mut grid = Grid::new(size);
     for row in 0..size.rows {
@@ -21,7 +21,7 @@ fn picture(size: Size) -> Grid {
     grid
 }
 
-/// The cell that was there; a blank where it is a part of something wide that the area cuts.
+/// Returns the cell that was there, or a blank if the area cuts its wide character.
 fn uncut(before: &Grid, column: u16, row: u16, area: Rect) -> Cell {
     let is_covered = |column: &u16| before.cell(*column, row).glyph == Glyph::Covered;
     let start = (0..=column).rev().find(|column| !is_covered(column)).unwrap_or(0);
@@ -31,7 +31,7 @@ fn uncut(before: &Grid, column: u16, row: u16, area: Rect) -> Cell {
     if is_cut { Cell { glyph: Glyph::Char(' '), ..cell } } else { cell }
 }
 
-/// Inside the buffer's area the grid is the buffer, outside it is what it was.
+/// Asserts that the grid is the buffer inside its area, and unchanged outside.
 #[track_caller]
 pub(crate) fn assert_lies_over(grid: &Grid, before: &Grid, buffer: &Buffer) {
     let columns = grid.size().columns;
@@ -142,9 +142,9 @@ fn all_named_colours() {
     }
 }
 
-/// A wide character half over the edge is a space; a panel outside is nothing.
+/// A wide character half over the edge is a space; a panel outside has no effect.
 #[test]
-fn what_goes_over_the_edge_is_cut() {
+fn text_is_cut_at_the_edge() {
     let size = Size::new(3, 2);
     let mut grid = picture(size);
     lay_over(&mut grid, &line("a世b", Style::new()));
@@ -157,7 +157,7 @@ fn what_goes_over_the_edge_is_cut() {
     assert_eq!(grid, picture(Size::new(1, 1)));
 }
 
-/// A character keeps its marks, and a family its members: as many cells as ratatui takes them for.
+/// A character keeps its marks, and a family its members, in as many cells as in ratatui.
 #[test]
 fn clusters_are_kept_whole() {
     for (symbol, clusters) in [
@@ -179,7 +179,7 @@ fn clusters_are_kept_whole() {
 
 /// All cells behind a cluster are right in a terminal that splits it.
 #[test]
-fn clusters_taken_apart_disturb_nothing() {
+fn split_clusters_disturb_no_cell() {
     for symbol in ["e\u{301}", "👨\u{200d}👩\u{200d}👧", "🇫🇷", "👍🏽"] {
         let mut grid = picture(Size::new(12, 3));
         let mut screens = Screens::disturbed(grid.size(), Clusters::None);

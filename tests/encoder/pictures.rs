@@ -1,4 +1,4 @@
-//! Whole pictures of kinds that are hard on an encoder, and what moves in them.
+//! Whole pictures that are hard on an encoder, and movements in them.
 
 use super::grids::put;
 use super::screens::Clusters;
@@ -22,7 +22,7 @@ fn picture(size: Size, mut color: impl FnMut(u16, u16) -> Ink) -> Grid {
     grid
 }
 
-/// Marsaglia's xorshift: noise that is the same every time.
+/// Returns Marsaglia's xorshift: noise that is the same in every run.
 pub(crate) fn noise(mut state: u32) -> impl FnMut() -> u32 {
     move || {
         state ^= state << 13;
@@ -43,7 +43,7 @@ fn assert_shown(frames: &[Grid]) {
     for mut stage in Stage::all(&frames[0], Clusters::None) {
         for frame in frames {
             stage.grid = frame.clone();
-            // As many bytes as a row's number, a column's, two colours and a half block can take.
+            // The most bytes of a cell: a row, a column, two colours and a half block.
             stage.send(4 + 48 * frame.size().cell_count());
         }
     }

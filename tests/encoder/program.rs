@@ -23,7 +23,7 @@ macro_rules! execute_both {
     }};
 }
 
-/// The shell's screen and its cursor are what they were, as with ratatui's own backend.
+/// The shell's screen and its cursor are restored, as by ratatui's own backend.
 #[test]
 fn the_alternate_screen_is_entered_and_left() {
     for rows in [0, 3, 6] {
@@ -45,7 +45,7 @@ fn the_alternate_screen_is_entered_and_left() {
     }
 }
 
-/// Clears both screens. Where the cursor is then, only a terminal that is asked can tell.
+/// Clears both screens. The cursor's position is then unknown without a query.
 fn clear(pair: &mut Pair) {
     pair.ours.clear().expect("it can be written");
     pair.theirs.clear().expect("it can be written");
@@ -64,7 +64,7 @@ fn sequences_between_frames() {
         execute_both!(pair, SetTitle(format!("frame {x}")));
         assert_eq!(pair.line.take_writes().concat(), format!("\x1b]0;frame {x}\x07"));
     }
-    // Text of the program's own is in no colour of ours, and stays where nothing is drawn.
+    // The program's own text has no colour of ours, and stays where no cell is drawn.
     pair.ours.backend_mut().write_all(b"own").expect("it can be written");
     pair.theirs.backend_mut().0.write_all(b"own").expect("it can be written");
     pair.assert_screens_equal();
@@ -85,7 +85,7 @@ fn bytes_keep_their_order() {
     assert_eq!(&backend.writer()[text.len()..], b"\x1b[0m", "nothing is drawn again by itself");
 }
 
-/// A window and a cursor that a closure is asked for.
+/// The size and the cursor that a closure returns to the backend.
 #[derive(Clone)]
 struct Asked(Arc<Mutex<(Size, Position)>>);
 
@@ -112,7 +112,7 @@ impl Asked {
 
 /// A resize is noticed although neither backend nor terminal is told of it.
 #[test]
-fn windows_are_followed() {
+fn resizes_are_noticed() {
     for (viewport, before) in [(Viewport::Fullscreen, 0), (Viewport::Inline(3), 2), (Viewport::Inline(2), 5)] {
         let (asked, mut pair) = Asked::pair(&viewport, &shell(before));
         pair.draw(full);
@@ -133,7 +133,7 @@ fn a_window_that_cannot_be_asked_is_an_error() {
     assert_eq!(Terminal::new(backend).expect_err("it has no size").to_string(), "no window");
 }
 
-/// A picture of half blocks that moves, with a line of text.
+/// Draws a picture of half blocks that moves, with a line of text.
 fn moving(frame: &mut Frame<'_>, step: u16) {
     let area = frame.area();
     for (x, y) in area.positions().map(|at| (at.x, at.y)) {
@@ -169,7 +169,7 @@ impl Timed {
         *self.now.lock().expect("no panic") = now;
     }
 
-    /// Draws that step at its time; how many bytes that took.
+    /// Draws a step at its time, and returns the number of bytes.
     fn draw(&mut self, step: u16) -> usize {
         self.set(u32::from(step) * Duration::from_millis(33));
         self.terminal.draw(|frame| moving(frame, step)).expect("it can be written");
@@ -210,7 +210,7 @@ fn flat(cell: Cell) -> Cell {
 }
 
 #[test]
-fn a_quality_saves_bytes_and_comes_to_rest() {
+fn a_quality_saves_bytes_and_becomes_exact() {
     let sum = |quality| {
         let mut timed = Timed::new(quality, None);
         timed.draw(0);

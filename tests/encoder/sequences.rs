@@ -80,7 +80,7 @@ fn gradient() {
 }
 
 #[test]
-fn drawn_ones() {
+fn random_sequences() {
     for sequence in Sequence::drawn(11) {
         assert_all_played(&sequence, SMALL, 8);
     }
@@ -88,7 +88,7 @@ fn drawn_ones() {
 
 /// While one sphere moves, what has been still for a second is exact.
 #[test]
-fn what_is_still_is_exact() {
+fn cells_at_rest_are_exact() {
     let frames = frames(&Sequence::of(Kind::Sphere), SMALL, 1);
     for quality in [Quality::Equal, Quality::Fast] {
         let mut watched = Watched::new(Order::Color, HalfBlocks::Either, SMALL, Clusters::None);

@@ -140,7 +140,7 @@ fn cameras_are_refused_in_the_words_of_scene_files() {
 }
 
 #[test]
-fn meshes_say_what_is_wrong_with_them() {
+fn meshes_with_faults_are_errors() {
     let corners = || vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     let error = |positions, indices| Mesh::from_triangles(positions, indices).expect_err("a fault").to_string();
     assert_eq!(error(corners(), vec![]), "indices: a mesh has 1 to 67108864 triangles; there are 0");

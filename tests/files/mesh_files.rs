@@ -79,7 +79,7 @@ fn every_tetrahedron_is_the_same() {
 }
 
 #[test]
-fn every_square_has_all_that_its_format_can_say() {
+fn every_square_has_all_attributes_of_its_format() {
     let colors = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 1.0, 1.0)];
     let meshes = meshes_of("square");
     assert!(meshes.len() >= 5, "{}", meshes.len());
@@ -197,7 +197,7 @@ fn jpeg_textures_are_read() {
 }
 
 #[test]
-fn pictures_that_are_cut_short_are_said_so() {
+fn truncated_textures_are_errors() {
     let obj = "mtllib x.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl a\nf 1 2 3\n";
     for name in ["grey_to_red.jpg", "square.png"] {
         let bytes = std::fs::read(folder().join(name)).unwrap();
@@ -217,7 +217,7 @@ fn pictures_that_are_cut_short_are_said_so() {
 
 /// A child stands in its parent's coordinates, not the other way about.
 #[test]
-fn nodes_of_gltf_stand_in_their_parents() {
+fn gltf_nodes_are_relative_to_their_parents() {
     let document = std::fs::read_to_string(folder().join("tetrahedron_data.gltf")).unwrap();
     let nodes = r#"[{"children":[1],"scale":[2,2,2],"rotation":[0,0,1,1]},{"mesh":0,"translation":[1,0,0]}]"#;
     let mesh = read("x.gltf", &document.replacen(r#"[{"mesh": 0}]"#, nodes, 1));
@@ -297,7 +297,7 @@ fn repeated_meshes_are_limited() {
 }
 
 #[test]
-fn formats_are_told_by_content_first() {
+fn formats_are_recognised_by_content_first() {
     for entry in std::fs::read_dir(folder()).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -312,7 +312,7 @@ fn formats_are_told_by_content_first() {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_said_so() {
+fn a_missing_file_is_an_error() {
     // What a mesh names is called by its whole path too.
     let mesh = "mtllib x.mtl\nv 0 0 0\n";
     let error = MeshFile::from_bytes("models/x.obj", mesh.as_bytes(), &mut |_| Ok(b"Kd 1".to_vec())).unwrap_err();

@@ -43,7 +43,7 @@ fn unless_cancelled<T, E: std::fmt::Debug>(done: Result<T, Unfinished<E>>) -> Op
 
 /// Each format reports its progress from start to end, and can be cancelled after any report.
 #[test]
-fn reading_is_watched_and_can_be_given_up() {
+fn reading_reports_progress_and_can_be_cancelled() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let mesh = ball(30_000);
     for writer in WRITERS {
@@ -80,7 +80,7 @@ fn assert_steps(reports: &[Progress], work: &Work, step: usize, total: usize) {
 
 /// The meshes that a scene names are watched like one alone.
 #[test]
-fn a_scenes_meshes_are_watched() {
+fn reading_the_meshes_of_a_scene_reports_progress() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     fs::write(folder.path().join("ball.stl"), written(&ball(20_000), "binary.stl")).expect("a file can be written");
     let scene = folder.path().join("scene.ron");
@@ -102,7 +102,7 @@ fn balls(count: usize) -> String {
 }
 
 #[test]
-fn a_scenes_text_is_watched_and_can_be_given_up() {
+fn reading_scene_text_reports_progress_and_can_be_cancelled() {
     let text = balls(30_000);
     let load = |reporter: &Reporter<'_>| unless_cancelled(Draft::from_bytes("x.ron", text.as_bytes(), reporter));
     let (reports, draft) = heard(usize::MAX, load);
@@ -116,7 +116,7 @@ fn a_scenes_text_is_watched_and_can_be_given_up() {
 
 /// The steps behind the syntax tree can be cancelled, too.
 #[test]
-fn a_scenes_objects_are_given_up() {
+fn checking_objects_can_be_cancelled() {
     let cancelled = Cancellation::default();
     let on_progress = |_| ControlFlow::Continue(());
     let reporter = Reporter::new(&on_progress).cancelled_by(&cancelled);
@@ -139,7 +139,7 @@ fn a_scenes_objects_are_given_up() {
 }
 
 #[test]
-fn building_is_watched_and_can_be_given_up() {
+fn building_reports_progress_and_can_be_cancelled() {
     let draft = Draft::of_mesh(read(100_000)).expect("it has a size");
     let build = |reporter: &Reporter<'_>| draft.clone().build_or_cancel(reporter).ok();
     let (reports, scene) = heard(usize::MAX, build);

@@ -205,17 +205,17 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+    fn any_bytes_give_a_scene_or_faults(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
         let _ = read(&bytes);
     }
 
     #[test]
-    fn any_text_of_ron_characters_is_survived(text in "[-+.,:()\\[\\]{}\"'#!/*\\\\a-e0-9 \n\t\r_=é地\u{1b}]{0,120}") {
+    fn any_ron_characters_give_a_scene_or_faults(text in "[-+.,:()\\[\\]{}\"'#!/*\\\\a-e0-9 \n\t\r_=é地\u{1b}]{0,120}") {
         let _ = read(text.as_bytes());
     }
 
     #[test]
-    fn a_scene_with_bytes_changed_is_survived(
+    fn a_scene_with_changed_bytes_gives_a_scene_or_faults(
         changes in prop::collection::vec((0..SCENE.len(), prop_oneof![any::<u8>(), Just(b'"'), Just(b'('), Just(b')')]), 1..4)
     ) {
         let mut bytes = SCENE.as_bytes().to_vec();
@@ -226,7 +226,7 @@ proptest! {
     }
 
     #[test]
-    fn a_scene_with_a_piece_moved_is_survived(from in 0..SCENE.len(), length in 0_usize..60, to in 0..SCENE.len()) {
+    fn a_scene_with_a_moved_piece_gives_a_scene_or_faults(from in 0..SCENE.len(), length in 0_usize..60, to in 0..SCENE.len()) {
         let mut bytes = SCENE.as_bytes().to_vec();
         let piece: Vec<_> = bytes.drain(from..(from + length).min(SCENE.len())).collect();
         let to = to.min(bytes.len());

@@ -64,7 +64,7 @@ fn a_color_has_many_forms() {
 
 /// A view takes missing fields from the camera; of the lens, all or none.
 #[test]
-fn views_go_by_the_camera() {
+fn views_default_to_the_camera() {
     let text = "(
         camera: (eye: (0, 0, 5), target: (0, 0, 0), up: (1, 2, 0), vertical_fov: 30, shift: (0, 1)),
         views: [
@@ -155,7 +155,7 @@ fn triangles_have_three_corners() {
 ///
 /// The file has the tetrahedron between the origin and the points at the distances 1, 2 and 3 on the axes.
 #[test]
-fn meshes_are_put_where_the_scene_wants_them() {
+fn meshes_are_scaled_turned_and_moved() {
     let mesh = |fields: &str| {
         let mesh = scene(&format!("objects: [Mesh(path: \"tests/meshes/tetrahedron.ply\"{fields})]"));
         let mut corners = corners(&mesh);
@@ -191,7 +191,7 @@ fn meshes_are_put_where_the_scene_wants_them() {
 
 /// A file's own colours are used, unless the scene has others.
 #[test]
-fn meshes_bring_their_colours() {
+fn meshes_keep_their_colours() {
     let light = |fields: &str| {
         let mut scene = Scene::from_ron(
             "x.ron",
@@ -232,7 +232,7 @@ fn a_mesh_alone_is_a_scene() {
 }
 
 #[test]
-fn a_mesh_that_nobody_could_see_is_told() {
+fn a_mesh_without_a_visible_size_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in [
         ("point.obj", "v 1 2 3\nf 1 1 1\n"),
@@ -248,7 +248,7 @@ fn a_mesh_that_nobody_could_see_is_told() {
 
 /// The extreme numbers of a scene divide by no zero and overflow no bound of the tracer.
 #[test]
-fn the_outermost_values_make_a_picture() {
+fn extreme_values_make_a_picture() {
     let text = "(
         camera: (eye: (1e9, 1e9, 1e9), target: (-1e9, 0, 1e9), up: (0, 1e-8, 0), vertical_fov: 179.9, shift: (1000, -1000)),
         lights: [Point(position: (1e9, 1, 1e9), color: 1e12, intensity: 1e12), Point(position: (0, 0, 0))],

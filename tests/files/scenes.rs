@@ -4,7 +4,7 @@ use std::path::Path;
 use termtrace::{CameraPath, Scene};
 
 #[test]
-fn every_scene_loads_and_says_what_to_look_at() {
+fn every_scene_loads_and_begins_with_a_comment() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {

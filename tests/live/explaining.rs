@@ -1,4 +1,4 @@
-//! A pixel explained in the live view: keys in, a panel and a cursor on the screen.
+//! The explanation of a pixel in the live view: keys in, a panel and a cursor on the screen.
 
 use crate::pty::{SOON, Screen, Session, Size, Start, halves_of, picture, shows};
 use std::path::Path;
@@ -14,7 +14,7 @@ fn grid(size: Size) -> Grid {
     picture(&scene(), CellMode::HALF_BLOCK, termtrace::Size::new(size.columns, size.rows), 2.0)
 }
 
-/// A session that shows its finished picture.
+/// Starts the view and waits for its refined picture.
 #[track_caller]
 fn looking(size: Size) -> Session {
     let mut session = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).size(size).spawn();
@@ -61,7 +61,7 @@ fn x_explains_the_middle_and_arrows_go_on_by_a_pixel() {
         }
         session.send(b"\x1b[1;2C");
         session.wait_for("eight pixels on", SOON, |seen| explains(seen.screen(), size, [x + 8, y]));
-        // Esc leaves nothing behind, and the camera has not moved.
+        // Esc removes the panel, and the camera has not moved.
         session.send(b"\x1b");
         let wanted = grid(size);
         session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
@@ -71,7 +71,7 @@ fn x_explains_the_middle_and_arrows_go_on_by_a_pixel() {
 
 /// The cell under the cursor shows the picture; the panel moves to the other side of the screen.
 #[test]
-fn nothing_is_on_the_pixel_that_is_explained() {
+fn the_explained_pixel_is_not_covered() {
     let size = Size::cells(80, 24);
     let mut session = looking(size);
     let wanted = grid(size);
@@ -112,7 +112,7 @@ fn the_text_is_scrolled_to_its_end() {
 
 /// The explanation follows the eye that moves and the size that changes.
 #[test]
-fn the_explanation_goes_with_the_view_and_the_window() {
+fn the_explanation_follows_the_view_and_the_window() {
     let size = Size::cells(80, 24);
     let mut session = looking(size);
     session.send(b"x");
@@ -123,7 +123,7 @@ fn the_explanation_goes_with_the_view_and_the_window() {
     session.wait_for_text("o       0.0000    1.0000    5.0000");
     session.resize(Size::cells(100, 40));
     session.wait_for_text("(i, j) = (50, 40) of 100x80");
-    // Too small for panels: they step aside, and come again.
+    // Below this size panels are hidden, and come back above it.
     let small = Size::cells(39, 24);
     session.resize(small);
     let wanted = grid(small);

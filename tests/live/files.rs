@@ -15,7 +15,7 @@ const TEXT: &str = "// Mine.
 )
 ";
 
-/// A folder with `ball.ron`, in which the program runs.
+/// Returns a folder with `ball.ron`, in which the program runs.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().expect("a folder can be made");
     fs::write(folder.path().join("ball.ron"), TEXT).expect("a file can be written");
@@ -73,7 +73,7 @@ fn the_picture_is_written_in_five_formats_and_never_over_a_file() {
         session.send(key.as_bytes());
         session.wait_for_text(&format!("written: {name}"));
     }
-    // Without what lies over it.
+    // The saved picture has no panels.
     let grid = grid(TEXT);
     assert_eq!(read(&folder, "ball.svg"), export::svg(&grid, 2.0));
     assert_eq!(read(&folder, "ball-2.svg"), read(&folder, "ball.svg"));
@@ -82,7 +82,7 @@ fn the_picture_is_written_in_five_formats_and_never_over_a_file() {
     let text = read(&folder, "ball.txt");
     assert!(text.lines().count() == 24 && text.contains('*') && text.is_ascii(), "{text}");
     assert!(fs::read(folder.path().join("ball.png")).is_ok_and(|png| png.starts_with(b"\x89PNG")));
-    // Any other key leaves the question.
+    // Any other key answers no.
     session.send(b"o");
     session.wait_for_text("save picture as");
     session.send(b"\x1b");
@@ -93,9 +93,9 @@ fn the_picture_is_written_in_five_formats_and_never_over_a_file() {
 
 /// A full disk gives an error in the middle of the file.
 #[test]
-fn a_full_disk_leaves_nothing_of_a_picture_and_the_scene_as_it_was() {
+fn a_full_disk_leaves_no_picture_and_the_old_scene() {
     let folder = folder();
-    // Longer than a file may become.
+    // The scene is longer than the limit of files.
     let text = format!("// {}\n{TEXT}", "x".repeat(4000));
     fs::write(folder.path().join("ball.ron"), &text).expect("a file can be written");
     let limits = "trap '' XFSZ && ulimit -f 2";
@@ -172,7 +172,7 @@ fn base64(bytes: &[u8]) -> String {
 
 /// A built-in scene has no file to keep a view in.
 #[test]
-fn a_built_in_scene_keeps_nothing() {
+fn a_built_in_scene_saves_no_view() {
     let program = Path::new(env!("CARGO_BIN_EXE_termtrace"));
     let mut session = Start::new(program).spawn();
     session.wait_for_text("a built-in scene; termtrace FILE opens yours");

@@ -80,7 +80,7 @@ fn a_stream_cut_inside_a_sequence_is_seen() {
 }
 
 #[test]
-fn modes_are_told_from_bytes() {
+fn modes_are_read_from_bytes() {
     let left = |bytes: &[u8]| Modes::after(bytes).left_on();
     for clean in [
         &b""[..],
@@ -184,7 +184,7 @@ fn what_is_typed_is_read() {
 }
 
 #[test]
-fn the_size_is_told_and_a_resize_too() {
+fn the_child_gets_the_size_and_a_resize() {
     let script = "trap 'stty size; exit' WINCH; stty size; printf ready; while :; do sleep 0.01; done";
     let mut session = Start::shell(script).size(Size::cells(30, 10)).spawn();
     session.wait_for_text("ready");
@@ -196,7 +196,7 @@ fn the_size_is_told_and_a_resize_too() {
 }
 
 #[test]
-fn the_size_in_pixels_is_told() {
+fn the_child_gets_the_size_in_pixels() {
     let mut session = Start::shell("read line").size(Size::cells(30, 10).of_pixels(9, 19)).spawn();
     let size = session.window_size();
     assert_eq!((size.ws_xpixel, size.ws_ypixel), (270, 190));
@@ -341,7 +341,7 @@ fn is_gone(pid: Pid) -> bool {
 }
 
 #[test]
-fn a_kitty_terminal_tells_its_flags_in_the_order_of_the_questions() {
+fn a_kitty_terminal_reports_its_flags_in_the_order_of_the_queries() {
     let script = "stty raw -echo; \
         printf '\\033[?u\\033[>15u\\033[?u\\033[?1049h\\033[?u\\033[?1049l\\033[<1u\\033[?u\\033[c'; \
         head -c 30 | tr '\\033' '^'";
@@ -349,7 +349,7 @@ fn a_kitty_terminal_tells_its_flags_in_the_order_of_the_questions() {
     session.wait_for_text("^[?0u^[?15u^[?0u^[?0u^[?62;22c");
 }
 
-/// A child that always has more to say is not listened to for ever.
+/// A wait ends at its deadline even if the child never stops writing.
 #[test]
 fn a_wait_ends_at_its_deadline() {
     let mut session = Start::shell("while :; do echo more; done").spawn();

@@ -8,7 +8,7 @@ use termtrace::internals::control::GLIDE_TIME;
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 const PUSH: &[u8] = b"\x1b[>15u";
 const POP: &[u8] = b"\x1b[<1u";
-/// The last of the questions at the start, and the last answer.
+/// The last query at the start, and its last reply.
 const FENCE: &[u8] = b"\x1b[16t\x1b[c";
 const FENCE_ANSWER: &[u8] = b"\x1b[?62;22c";
 /// The distance that the eye of the scene moves in a second.
@@ -66,7 +66,7 @@ fn rest_after_stop(session: &mut Session) {
     }
 }
 
-/// The eye that the status line tells.
+/// Returns the eye that the status line shows.
 fn eye(session: &mut Session) -> [f32; 3] {
     eye_in(session.seen())
 }
@@ -95,7 +95,7 @@ fn a_key_moves_from_its_press_to_its_release() {
     let start = Instant::now();
     press(&session, 'w');
     session.wait_for("a movement", SOON, |seen| !seen.screen().text().concat().contains("eye 0.00 1.00 5.00"));
-    // Farther than any glide, without a repeat.
+    // The eye has moved farther than by any glide, without a repeat.
     let (glide, frame) = (SPEED * GLIDE_TIME.as_secs_f32(), SPEED / 60.0);
     session.wait_for("more than a glide", SOON, |seen| eye_in(seen)[2] < 5.0 - 1.2 * glide);
     release(&session, 'w');
@@ -107,12 +107,12 @@ fn a_key_moves_from_its_press_to_its_release() {
 }
 
 #[test]
-fn any_number_of_keys_are_held_together_and_let_go_one_by_one() {
+fn any_number_of_keys_are_held_together_and_released_one_by_one() {
     let mut session = flying();
     session.send(b"\x1b[119u\x1b[100u\x1b[101u");
     session.wait_for("a way to the right", SOON, |seen| eye_in(seen)[0] > 0.4);
     session.send(b"\x1b[100;1:3u\x1b[119;1:3u");
-    // Two frames of the third key alone: the first may be of all.
+    // The third key has two frames of its own: all keys may share the first.
     let mut last = eye(&mut session);
     session.wait_for("a way straight up", SOON, |seen| {
         let (before, now) = (last, eye_in(seen));
@@ -128,7 +128,7 @@ fn any_number_of_keys_are_held_together_and_let_go_one_by_one() {
     assert!(x > 0.3 && z < 4.7 && (x + z - 5.0).abs() < 0.06, "ahead and to the right alike: {x} {z}");
     assert_eq!([x, z], [between[0], between[2]], "both are let go");
     assert!(y > between[1] + 0.3, "the third is not");
-    // Turned to the left on the way.
+    // The eye turned to the left on the way.
     tap(&session, 'r');
     press(&session, 'w');
     session.send(b"\x1b[D");
@@ -163,7 +163,7 @@ fn only_a_press_acts() {
         repeat(&session, '?');
     }
     release(&session, '?');
-    // A release of a key never pressed, a modifier alone, a key that means nothing.
+    // A release of a key never pressed, a modifier alone, an unbound key.
     session.send(b"\x1b[113;1:3u\x1b[99;5:3u\x1b[57441;2u\x1b[57441;1:3u\x1b[122u\x1b[57376u");
     session.wait_for_rest();
     session.wait_for_text("move forward");
@@ -174,7 +174,7 @@ fn only_a_press_acts() {
 #[test]
 fn every_binding_works_as_a_sequence() {
     let mut session = flying_of(Size::cells(80, 24));
-    // With what Shift makes of the key, and on a terminal that does not tell; Escape acts at once.
+    // The shifted character may be reported or not; Escape acts at once.
     for help in [&b"\x1b[47:63;2u"[..], b"\x1b[47;2u"] {
         session.send(help);
         session.wait_for_text("move forward");
@@ -214,7 +214,7 @@ fn no_key_is_stuck_when_the_focus_is_lost() {
     session.send(b"\x1b[O");
     session.wait_for_rest();
     let there = eye(&mut session);
-    // Let go elsewhere, or here when the focus is back.
+    // The key is released in another window, or here once the focus is back.
     session.send(b"\x1b[I");
     release(&session, 'w');
     session.wait_for_rest();
@@ -233,7 +233,7 @@ fn no_key_is_stuck_that_comes_as_a_character() {
     leave(&mut session);
 }
 
-/// The half of a sequence that comes late is not the Escape key, and the release in it counts.
+/// A sequence whose second half is late is no Escape key, and its release counts.
 #[test]
 fn a_release_in_two_pieces_presses_no_escape() {
     let mut session = flying_of(Size::cells(80, 24));
@@ -242,7 +242,7 @@ fn a_release_in_two_pieces_presses_no_escape() {
     press(&session, 'w');
     session.wait_for("a movement", SOON, |seen| eye_in(seen)[2] < 5.0);
     session.send(b"\x1b");
-    // Nothing is answered meanwhile: a terminal does not answer in the middle of a key.
+    // No reply comes meanwhile: a terminal does not reply in the middle of a key.
     std::thread::sleep(Duration::from_millis(150));
     session.send(b"[119;1:3u");
     session.wait_for_rest();
@@ -263,7 +263,7 @@ fn a_terminal_that_does_not_know_the_protocol_is_not_sent_it() {
 
 /// Pushed flags count once the terminal reports that they are on; until then a press glides.
 #[test]
-fn flags_that_do_not_come_back_are_not_believed() {
+fn flags_that_are_not_reported_are_not_used() {
     std::thread::scope(|scope| {
         for flags in ["0", "1", "9", "4"] {
             scope.spawn(move || assert_glides(flags));
@@ -293,10 +293,10 @@ fn assert_glides(flags: &str) {
 }
 
 #[test]
-fn a_late_answer_pushes_the_keyboard_once() {
+fn a_late_reply_pushes_the_keyboard_once() {
     let mut session = termtrace().mute().spawn();
     session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
-    // Shown when the program has given up waiting for the first answers.
+    // The picture is shown when the program has stopped waiting for the first replies.
     session.send(b"i");
     session.wait_for_text("eye 0.00 1.00 5.00");
     assert!(!session.seen().has(PUSH));
@@ -336,7 +336,7 @@ fn the_release_of_q_is_not_left_for_the_shell() {
 /// Replies that come while the program is stopped may have had another reader: it asks again, and
 /// pushes once.
 #[test]
-fn answers_that_come_during_a_stop_are_asked_for_again() {
+fn queries_whose_replies_come_during_a_stop_are_sent_again() {
     let mut session = termtrace().mute().spawn();
     session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
     session.signal(Signal::STOP);
@@ -356,7 +356,7 @@ fn answers_that_come_during_a_stop_are_asked_for_again() {
 /// A stop releases held keys. It pops the keyboard protocol; after it the protocol is pushed, and
 /// used once it is reported.
 #[test]
-fn a_stop_pops_the_keyboard_and_lets_go_of_all_keys() {
+fn a_stop_pops_the_keyboard_and_releases_all_keys() {
     let mut session = flying();
     press(&session, 'w');
     session.wait_for("a movement", SOON, |seen| eye_in(seen)[2] < 4.9);
@@ -367,7 +367,7 @@ fn a_stop_pops_the_keyboard_and_lets_go_of_all_keys() {
     assert_eq!(count(session.seen(), POP), 1);
     rest_after_stop(&mut session);
     let z = eye(&mut session)[2];
-    // The repeat of a key that is still held takes it up again.
+    // The repeat of a held key moves again.
     repeat(&session, 'w');
     session.wait_for("a movement", SOON, |seen| eye_in(seen)[2] < z - 1.5);
     release(&session, 'w');

@@ -19,7 +19,7 @@ enum Way {
     Key(&'static [u8]),
     Fault(Answer),
     Death(Signal),
-    /// A stop, and `fg`.
+    /// The stop key, and `fg`.
     StopKey,
     StopSignal,
 }
@@ -39,9 +39,9 @@ enum Phase {
     AllModes,
     /// The terminal has taken a part of a frame, and no more.
     MidFrame,
-    /// The window is dragged about.
+    /// The window is being resized.
     Storm,
-    /// The kitty keyboard protocol is asked for, and has not answered.
+    /// The kitty keyboard protocol is queried, and has no reply.
     Keyboard,
 }
 
@@ -63,7 +63,7 @@ impl Phase {
     }
 }
 
-/// The way's tests: one for each phase.
+/// Defines the tests of a way out, one for each phase.
 macro_rules! ways_out {
     ($($name:ident: $way:expr;)*) => {$(
         mod $name {
@@ -156,7 +156,7 @@ fn start(way: Way, phase: Phase, phases: &Phases) -> Start {
     start.env("TERMTRACE_TEST_SOCKET", phases.path()).size(phase.size())
 }
 
-/// The child waits in that phase: there it happens.
+/// Leaves a child that waits in that phase.
 fn go(way: Way, phase: Phase, session: &mut Session, phases: Phases, storm: Option<pty::Storm>) {
     act(way, session);
     phases.answer(if let Way::Fault(answer) = way { answer } else { Answer::GoOn });
@@ -172,7 +172,7 @@ fn go(way: Way, phase: Phase, session: &mut Session, phases: Phases, storm: Opti
     }
 }
 
-/// Types or signals; faults are the answer's.
+/// Types a key or sends a signal; a fault is the answer to the phase.
 fn act(way: Way, session: &mut Session) {
     match way {
         Way::Key(key) => press(key, session),
@@ -213,7 +213,7 @@ fn check_end(way: Way, status: ExitStatus, session: &mut Session) {
     }
 }
 
-/// Given back first, told then, and told once; and it can be read.
+/// Asserts that the message comes once, after the terminal is restored, and is readable.
 fn check_message(message: &str, session: &mut Session) {
     let seen = session.seen();
     let told = String::from_utf8_lossy(seen.bytes()).into_owned();
@@ -279,7 +279,7 @@ fn looking_of(start: Start) -> Session {
     session
 }
 
-/// The numbers of a seed, one after the other (xorshift).
+/// Returns the next random number of a seed (xorshift).
 fn random(seed: &mut u32) -> u32 {
     *seed ^= *seed << 13;
     *seed ^= *seed >> 17;
@@ -287,11 +287,12 @@ fn random(seed: &mut u32) -> u32 {
     *seed
 }
 
-/// Fifty kills at random times, from before the start to the middle of a flight.
+/// Kills fifty programs at random times, from before the start to the middle of a flight.
 fn kill_at_random_times(signal: Signal) {
     let mut seed = 0x5eed_0000 + signal.as_raw().unsigned_abs();
     let times: Vec<_> = (0..50).map(|_| Duration::from_micros(u64::from(random(&mut seed) % 150_000))).collect();
-    // Two at once: most of the time is spent on waiting, and more would not be read in time on a busy machine.
+    // Two run at once: most of the time is spent on waiting, and the output of more would not be read in time on a busy
+    // machine.
     std::thread::scope(|scope| {
         for times in times.chunks(25) {
             scope.spawn(|| times.iter().for_each(|&time| kill_after(time, signal)));
@@ -299,7 +300,7 @@ fn kill_at_random_times(signal: Signal) {
     });
 }
 
-/// Kills a flight at that time after its start.
+/// Kills a program in flight at that time after its start.
 fn kill_after(time: Duration, signal: Signal) {
     let mut session = Start::new(PROGRAM).arg(SCENE).spawn();
     session.send(b"w");
@@ -401,22 +402,22 @@ fn ctrl_z_stops_the_whole_group() {
 /// The keyboard's reply has come before the stop; giving the terminal back reads it and waits for
 /// no other.
 #[test]
-fn what_could_be_read_before_a_stop_is_not_waited_for() {
+fn a_stop_waits_for_no_second_reply() {
     let mut phases = Phases::new();
     let start = job().env("TERMTRACE_TEST_SOCKET", phases.path()).size(Size::cells(80, 4));
     let mut session = start.kitty().spawn();
     phases.wait_for_on(Phase::Keyboard.name(), &mut session);
     session.wait_for("the question, which is answered", SOON, |seen| seen.has(b"\x1b[>15u\x1b[?u"));
     act(Way::StopSignal, &mut session);
-    // Both are known when it goes on.
+    // Both are known when the program is continued.
     session.sees(Duration::from_millis(100), |_| false);
     phases.answer(Answer::GoOn);
     come_back(&mut session, None);
 }
 
-/// Stopped again and again.
+/// A job that is stopped again and again is continued each time.
 #[test]
-fn it_comes_back_as_often_as_it_goes() {
+fn a_job_can_be_stopped_and_continued_again_and_again() {
     let rounds = 5;
     let script =
         format!("set -m; '{PROGRAM}' '{SCENE}'; while echo \"status <$?>\"; read line; do fg >/dev/null; done");
@@ -432,7 +433,7 @@ fn it_comes_back_as_often_as_it_goes() {
     }
 }
 
-/// A stopped job that is killed dies, with the terminal left alone: the shell has it.
+/// A stopped job that is killed leaves the terminal alone: the shell has it.
 #[test]
 fn a_stopped_job_can_be_killed() {
     let script = format!(
@@ -473,7 +474,7 @@ const PARKED: &str = "until ps -o stat= -p $! | grep -q '^T'; do sleep 0.01; don
 
 /// In the background it does not touch the terminal before it is in the foreground; after `bg` too.
 #[test]
-fn in_the_background_it_leaves_the_terminal_alone() {
+fn a_program_in_the_background_leaves_the_terminal_alone() {
     let script = format!(
         "set -m; '{PROGRAM}' '{SCENE}' & {PARKED}; read line; jobs; fg >/dev/null; echo \"status <$?>\"; read line; bg; \
          {PARKED}; read line; fg >/dev/null; echo \"ended <$?>\"; read line"
@@ -495,7 +496,7 @@ fn in_the_background_it_leaves_the_terminal_alone() {
     session.assert_clean();
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
-    // It was continued twice, and has taken the terminal once: giving it back throws keys away.
+    // The job was continued twice, and has taken the terminal once: giving it back drops keys.
     let leaves = |seen: &Seen| seen.bytes()[before..].windows(8).any(|bytes| bytes == b"\x1b[?1049l");
     session.send(b"i");
     session.wait_for_text("rays/s");
@@ -505,9 +506,9 @@ fn in_the_background_it_leaves_the_terminal_alone() {
     session.assert_clean();
 }
 
-/// Killed there, it ends when it hears of that, without waiting for the terminal any longer.
+/// A signal there ends it without waiting for the terminal any longer.
 #[test]
-fn killed_in_the_background_it_ends() {
+fn a_program_killed_in_the_background_ends() {
     let stopped = 128 + Signal::TTOU.as_raw();
     for arguments in [format!("'{SCENE}'"), "doctor".to_owned()] {
         let script = format!(
@@ -523,7 +524,7 @@ fn killed_in_the_background_it_ends() {
     }
 }
 
-/// A part of a job does not stop alone: its shell would not know of it, and never continue it.
+/// A whole job stops: its shell would not notice a part of it, and never continue it.
 #[test]
 fn in_the_background_the_whole_job_stops() {
     let script =
@@ -531,7 +532,7 @@ fn in_the_background_the_whole_job_stops() {
     let mut session = Start::shell(&script).spawn();
     session.wait_for_text("parked");
     session.send(b"\n");
-    // Not on the screen: the picture soon takes its place.
+    // This goes to standard error: on the screen the picture would soon cover it.
     session.wait_for("the stop", SOON, |seen| seen.has(b"Stopped"));
     session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(80, 24)));
     session.send(b"q");
@@ -574,7 +575,7 @@ fn no_key_is_stuck() {
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
     stands_still(&mut session);
-    // What passed until the stop, but not the rest of the glide, whose end is at 4.04.
+    // The glide has moved the eye until the stop, but not to its end at 4.04.
     let eye = eye_line(&mut session);
     let forward: f32 = eye.split_whitespace().nth(2).and_then(|z| z.parse().ok()).expect("the eye's third number");
     assert!(forward > 4.1, "{eye}");
@@ -582,7 +583,7 @@ fn no_key_is_stuck() {
     stands_still(&mut session);
 }
 
-/// Within a quarter of a glide the eye comes to rest.
+/// Asserts that the eye comes to rest within a quarter of a glide.
 fn stands_still(session: &mut Session) {
     session.sees(Duration::from_millis(175), |_| false);
     let before = eye_line(session);
@@ -631,7 +632,7 @@ fn a_frame_is_one_write() {
     let mut session = Start::new(PROGRAM).arg(SCENE).size(Size::cells(40, 8)).says_when_it_rests().spawn();
     session.wait_for("the picture", SOON, |seen| shows_all(seen.bytes(), Size::cells(40, 8)));
     session.wait_for_rest();
-    // Threads that start beside the first picture write too: what they wake the loop with is through when a key is.
+    // Threads that start beside the first picture write, too: their wakes of the loop are over when a key is handled.
     let bytes = session.seen().bytes().len();
     session.send(b"\x0c");
     session.wait_for("a frame", SOON, |seen| seen.bytes().len() > bytes + 2_000);
@@ -688,22 +689,22 @@ fn standard_output_that_is_no_terminal_gets_one_plain_frame_or_a_line_of_error()
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told_in_one_line() {
+fn a_full_disk_is_reported_in_one_line() {
     let (code, said) = run_with(">/dev/full");
     assert_eq!((code, said.as_str()), (Some(1), "termtrace: standard output: No space left on device\r\n"));
 }
 
-/// A screen without keys: a line, and nothing is turned on.
+/// Without a terminal for keys there is one line of error, and no mode is turned on.
 #[cfg(target_os = "linux")]
 #[test]
-fn without_keys_there_is_one_line() {
+fn without_a_terminal_for_keys_there_is_one_line_of_error() {
     let mut session = Start::shell(&format!("setsid -w '{PROGRAM}' '{SCENE}' </dev/null")).spawn();
     assert_eq!(session.wait_exit(SOON).code(), Some(1));
     session.assert_clean();
     let said = String::from_utf8_lossy(session.seen().bytes()).into_owned();
     assert!(said.starts_with("termtrace: terminal: no terminal to read keys from") && !said.contains('\x1b'), "{said}");
     assert_eq!(said.lines().count(), 1);
-    // With keys, it needs no controlling terminal.
+    // With a terminal for keys it needs no controlling terminal.
     let mut session = looking_of(Start::shell(&format!("setsid -w '{PROGRAM}' '{SCENE}'")));
     session.send(b"q");
     assert_eq!(session.wait_exit(SOON).code(), Some(0));

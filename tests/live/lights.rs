@@ -32,12 +32,12 @@ fn arrows_move_the_light_that_g_takes() {
     let mut session = looking(BALL, &[]);
     session.send(b"g");
     session.wait_for_text("light 1 of 1");
-    // It is far outside of the picture, up and to the right.
+    // The light is far outside of the picture, up and to the right.
     session.wait_for("its mark", SOON, |seen| seen.screen().text()[0].ends_with("(*)"));
     session.send(b"\x1b[D\x1b[D\x1b[B\x1b");
     let step = 1.0 / 32.0;
     wait_for_light(&mut session, dragged(Vec2::new(-2.0 * step / ASPECT_RATIO, step)));
-    // With Shift four steps; r goes back; Esc leaves it where it is.
+    // With Shift a press is four steps; r resets the light; Esc leaves it where it is.
     session.send(b"g\x1b[1;2D\x1b");
     wait_for_light(&mut session, dragged(Vec2::new(-6.0 * step / ASPECT_RATIO, step)));
     session.send(b"gr\x1b");

@@ -18,7 +18,7 @@ use termtrace::{CellMode, Scene};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 
-/// A ball that is large enough to be sketched.
+/// Returns a ball that is large enough to be sketched.
 fn big_ball() -> Vec<u8> {
     written(&ball(150_000), "binary.stl")
 }
@@ -31,7 +31,7 @@ struct Source {
     rest: Sender<Vec<u8>>,
 }
 
-/// Many times in a second.
+/// The time between two bytes of a mesh that does not end yet.
 const NOW_AND_THEN: Duration = Duration::from_millis(100);
 
 impl Source {
@@ -42,7 +42,7 @@ impl Source {
         assert!(made.is_ok_and(|status| status.success()), "a pipe with a name can be made");
         let (rest, wanted) = channel::<Vec<u8>>();
         std::thread::spawn(move || {
-            // This waits for the child; it may leave in the middle.
+            // This waits for the child, which may leave in the middle.
             let mut pipe = fs::OpenOptions::new().write(true).open(path)?;
             // The balls of the tests begin alike.
             for (written, byte) in big_ball().into_iter().enumerate() {
@@ -61,13 +61,13 @@ impl Source {
         self.folder.path().join("ball.stl")
     }
 
-    /// This is the mesh: what is left of it comes now.
+    /// Sends the rest of the mesh.
     fn end(&mut self, whole: Vec<u8>) {
         self.rest.send(whole).expect("the child reads");
     }
 }
 
-/// Looks at a mesh of which next to nothing comes yet.
+/// Starts the view with a mesh of which next to nothing has come.
 fn waiting(start: Start, source: &Source) -> Session {
     let mut session = start.arg(source.path()).says_when_it_rests().spawn();
     session.wait_for_text("reading ball.stl");
@@ -78,7 +78,7 @@ fn program() -> Start {
     Start::new(PROGRAM)
 }
 
-/// Looks at a ball that is read and not built: the child stays there.
+/// Starts the view with a ball that is read, and holds the child before it is built.
 fn sketched(start: Start, source: &mut Source, phases: &mut Phases) -> Session {
     let mut session = start.arg(source.path()).env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
     phases.wait_for_on("all modes", &mut session);
@@ -94,7 +94,7 @@ fn has_picture(screen: &pty::Screen) -> bool {
     [0, 23].into_iter().all(|row| (0..80).all(|column| screen.cell(column, row).background != pty::Colour::Default))
 }
 
-/// All phases from here on are passed through.
+/// Lets the child go on at all later phases.
 fn pass(mut phases: Phases) {
     phases.send(Answer::GoOn);
 }
@@ -122,7 +122,7 @@ fn leave(session: &mut Session, (keys, signal): (&[u8], Option<Signal>)) {
 }
 
 #[test]
-fn it_can_be_left_while_it_reads() {
+fn the_view_can_be_left_while_it_reads() {
     for way in WAYS {
         let source = Source::new();
         leave(&mut waiting(program(), &source), way);
@@ -132,7 +132,7 @@ fn it_can_be_left_while_it_reads() {
 /// While the pipe delivers next to nothing, nothing is written or computed; a key has nothing to
 /// move.
 #[test]
-fn while_next_to_nothing_comes_nothing_happens() {
+fn a_slow_pipe_causes_no_output_and_no_work() {
     let source = Source::new();
     let mut session = waiting(program(), &source);
     session.send(b"w");
@@ -142,7 +142,7 @@ fn while_next_to_nothing_comes_nothing_happens() {
 
 /// A pipe without a writer does not block: keys work, the error is reported, and the view ends.
 #[test]
-fn a_pipe_without_a_writer_is_told_when_the_terminal_is_back() {
+fn a_pipe_without_a_writer_is_reported_when_the_terminal_is_back() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let path = folder.path().join("ball.stl");
     nix::unistd::mkfifo(&path, nix::sys::stat::Mode::S_IRWXU).expect("a pipe can be made");
@@ -154,7 +154,7 @@ fn a_pipe_without_a_writer_is_told_when_the_terminal_is_back() {
 }
 
 #[test]
-fn it_can_be_left_while_it_builds() {
+fn the_view_can_be_left_while_it_builds() {
     for way in WAYS {
         let (mut source, mut phases) = (Source::new(), Phases::new());
         leave(&mut sketched(program(), &mut source, &mut phases), way);
@@ -182,7 +182,7 @@ fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
     let mut session = sketched(program(), &mut source, &mut phases);
     let wanted = picture(&ball_scene(), Size::cells(80, 24));
     assert!(!shows(session.seen().screen(), &wanted), "the sketch is coarse");
-    // In flight, still in the sketch.
+    // The eye flies in the sketch.
     session.send(b"i");
     session.wait_for_text("rays/s");
     let before = eye(session.seen());
@@ -197,7 +197,7 @@ fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
     leave(&mut session, (b"q", None));
 }
 
-/// The whole scene is seen from where its sketch was left.
+/// The whole scene is shown from the eye of its sketch.
 #[test]
 fn the_scene_is_seen_from_where_the_sketch_was() {
     let (mut source, mut phases) = (Source::new(), Phases::new());
@@ -219,7 +219,7 @@ fn the_scene_is_seen_from_where_the_sketch_was() {
     leave(&mut session, (b"q", None));
 }
 
-/// A scene file and its mesh, with the same words about it.
+/// A scene file whose mesh is large has a sketch and the same messages.
 #[test]
 fn a_scene_with_a_big_mesh_is_sketched_too() {
     let folder = tempfile::tempdir().expect("a folder can be made");
@@ -241,7 +241,7 @@ fn a_scene_with_a_big_mesh_is_sketched_too() {
     leave(&mut session, (b"q", None));
 }
 
-/// The panel has room, and is drawn anew at another size and after a stop.
+/// The panel fits, and is drawn again at another size and after a stop.
 #[test]
 fn the_panel_fits_any_screen() {
     let source = Source::new();
@@ -262,7 +262,7 @@ fn the_panel_fits_any_screen() {
 }
 
 #[test]
-fn it_can_be_stopped_while_it_reads() {
+fn the_view_can_be_stopped_while_it_reads() {
     let source = Source::new();
     let path = source.path();
     let script =
@@ -281,7 +281,7 @@ fn it_can_be_stopped_while_it_reads() {
 
 /// The terminal is given back; then one line of error follows, and exit code 2.
 #[test]
-fn what_is_wrong_with_a_mesh_is_told_when_the_terminal_is_back() {
+fn errors_of_a_mesh_are_reported_when_the_terminal_is_back() {
     let mut wrong = big_ball();
     let last = wrong.len() - 10;
     wrong[last..last + 4].copy_from_slice(&f32::NAN.to_le_bytes());
@@ -303,7 +303,7 @@ fn what_is_wrong_with_a_mesh_is_told_when_the_terminal_is_back() {
 
 /// The picture is there, and only its changes are not.
 #[test]
-fn what_cannot_be_watched_is_said() {
+fn a_file_that_cannot_be_watched_is_reported() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let path = folder.path().join("x.ron");
     fs::write(&path, include_str!("../../scenes/three_spheres.ron")).expect("a file can be written");
@@ -319,7 +319,7 @@ fn what_cannot_be_watched_is_said() {
 }
 
 #[test]
-fn a_panic_while_it_builds_is_told_when_the_terminal_is_back() {
+fn a_panic_while_it_builds_is_reported_when_the_terminal_is_back() {
     let (mut source, mut phases) = (Source::new(), Phases::new());
     let mut session = sketched(program(), &mut source, &mut phases);
     phases.answer(Answer::Panic);

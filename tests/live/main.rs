@@ -18,7 +18,7 @@ mod orbit;
 mod paths;
 #[path = "../pty/mod.rs"]
 mod pty;
-mod questions;
+mod queries;
 mod reduced_motion;
 mod refining;
 mod scenes;

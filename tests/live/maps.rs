@@ -26,7 +26,7 @@ fn scene() -> Scene {
     Scene::load(Path::new(SCENE)).expect("the scene is fine")
 }
 
-/// The whole picture of a map, as fine as it gets.
+/// Returns the refined picture of a map.
 fn whole(map: Map) -> Picture {
     let scene = scene();
     let resolution = cell::resolution(CellMode::HALF_BLOCK, grid_size(), 2.0).expect("a size that pictures can have");
@@ -59,7 +59,7 @@ fn wait_for(session: &mut Session, what: &str, picture: &Picture, last: impl Fn(
 }
 
 #[test]
-fn v_and_b_go_through_the_maps_and_say_what_their_colours_mean() {
+fn v_and_b_cycle_through_the_maps_and_show_their_legends() {
     let mut session = start();
     wait_for(&mut session, "the light", &whole(Map::Shaded), |last| !last.contains("shaded"));
     let scene = scene();
@@ -135,7 +135,7 @@ fn wiped(left: &Picture, right: &Picture, line: u32) -> Picture {
     Picture::from_pixels(left.width(), left.height(), pixels).expect("all its pixels")
 }
 
-/// Panels step aside where there is no room.
+/// Legends are hidden on a small screen.
 #[test]
 fn small_screens_have_no_legend() {
     let size = Size { rows: 11, ..SIZE };

@@ -18,7 +18,7 @@ const WAY: u16 = 32;
 const WHEEL_UP: u16 = 64;
 const WHEEL_DOWN: u16 = 65;
 
-/// A report of the mouse in a cell, from (0, 0).
+/// Returns a report of the mouse in a cell, counted from (0, 0).
 pub(crate) fn report(code: u16, [column, row]: [u16; 2], end: char) -> String {
     format!("\x1b[<{code};{};{}{end}", column + 1, row + 1)
 }
@@ -44,9 +44,9 @@ fn assert_near(found: Vec3, wanted: Vec3) {
     assert!(found.abs_diff_eq(wanted, 1e-3), "{found} is not {wanted}");
 }
 
-/// Across the height of the picture it is half a round: 24 columns are as long as that.
+/// A drag over the height of the picture, 24 columns long, is half a round.
 #[test]
-fn the_left_button_goes_around_a_mesh() {
+fn the_left_button_orbits_a_mesh() {
     let start = load(TEAPOT).camera().pose();
     let way = start.eye - start.target;
     for (to, steps) in [([32, 6], -10.0), ([8, 6], 10.0), ([20, 6], 0.0)] {
@@ -63,7 +63,7 @@ fn the_left_button_looks_around_in_flight() {
     let start = load(BALL).camera().pose();
     let found = after(BALL, &drag(LEFT, [20, 6], [24, 6]));
     assert_eq!(found.pose().eye, start.eye);
-    // What was in the middle has gone with the pointer.
+    // The point in the middle has moved with the pointer.
     let at = found.project(start.target, ASPECT_RATIO).expect("it is in front of the eye");
     assert!(at.abs_diff_eq(Vec2::new(0.6, 0.5), 5e-3), "{at}");
 }
@@ -82,16 +82,16 @@ fn the_other_buttons_and_shift_shift_the_picture() {
 }
 
 #[test]
-fn the_wheel_comes_nearer_to_what_is_under_the_pointer() {
+fn the_wheel_moves_towards_the_point_under_the_pointer() {
     let start = *load(BALL).camera();
-    // In the middle it is the ball, which is four away.
+    // The pointer in the middle is on the ball, at distance 4.
     let two = report(WHEEL_UP, [20, 6], 'M').repeat(2);
     let nearer = after(BALL, &two).pose();
     let middle = start.project(Vec3::new(0.0, 1.0, 1.0), ASPECT_RATIO).expect("in front");
     assert!(middle.abs_diff_eq(Vec2::splat(0.5), 1e-6));
     assert!((nearer.eye.z - (1.0 + 4.0 * 0.88 * 0.88)).abs() < 0.02, "{nearer:?}");
     assert!((nearer.eye.distance(nearer.target) - 5.0).abs() < 1e-4, "in flight the target goes with the eye");
-    // On the floor, lower left: a point of it stays where it is in the picture.
+    // The pointer is on the floor, lower left: its point stays where it is in the picture.
     let at = [8, 10];
     let place = Vec2::new(8.5 / 40.0, 10.5 / 12.0);
     let ray = start.eye_rays(ASPECT_RATIO).through(place.x, 1.0 - place.y - 0.25 / 12.0);
@@ -107,7 +107,7 @@ fn the_wheel_comes_nearer_to_what_is_under_the_pointer() {
 }
 
 #[test]
-fn a_double_click_shows_everything() {
+fn a_double_click_frames_the_scene() {
     let scene = load(TEAPOT);
     let bounds = scene.bounds().expect("there is a mesh");
     let moved = report(WHEEL_UP, [3, 3], 'M').repeat(4) + &click([20, 6]);
@@ -121,7 +121,7 @@ fn a_double_click_shows_everything() {
 
 /// Of several reports that are read together only the last counts; all lead to the same camera.
 #[test]
-fn a_pointer_that_runs_ahead_is_caught_up_with_at_once() {
+fn only_the_last_of_several_pointer_reports_counts() {
     let there_and_back =
         |row: u16| (0..40).chain((0..40).rev()).map(move |column| report(LEFT + WAY, [column, row], 'M'));
     let ways: String = (0..40).flat_map(|_| there_and_back(6)).collect();
@@ -171,16 +171,16 @@ fn a_click_puts_the_cursor_of_an_explanation() {
     assert_eq!(camera(&mut session), None);
 }
 
-/// Places in pixels, where the terminal says that it can: the same drag as in cells.
+/// Positions are in pixels if the terminal reports that mode: the same drag as in cells.
 #[test]
-fn places_may_be_told_in_pixels() {
+fn positions_may_be_reported_in_pixels() {
     let program = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(TEAPOT).size(Size::cells(40, 12)).mute();
     let mut session = program.says_when_it_rests().spawn();
     session.wait_for("the questions", SOON, |seen| seen.has(b"\x1b[?1016$p"));
     assert!(!session.seen().has(b"\x1b[?1016h"));
     session.send(b"\x1b[?1016;2$y\x1b[?62c");
     session.wait_for("pixels", SOON, |seen| seen.has(b"\x1b[?1016h"));
-    // What is asked after the first questions.
+    // The queries after the first ones.
     let fence = session.seen().bytes().windows(3).position(|bytes| bytes == b"\x1b[c").expect("it has asked");
     session.answer_from(fence + 3);
     session.wait_for_rest();
@@ -191,7 +191,7 @@ fn places_may_be_told_in_pixels() {
     assert_near(pose.eye, start.target + turned(start.eye - start.target, -10.0));
 }
 
-/// While something is asked, keys answer, and the view stays.
+/// While a question is open, keys answer it, and the view stays.
 #[test]
 fn a_question_is_not_dragged_away() {
     let mut session = looking(TEAPOT, &[]);

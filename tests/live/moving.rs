@@ -34,7 +34,7 @@ fn wait_for_picture(session: &mut Session, size: Size) {
     session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
 }
 
-/// A session that shows its picture.
+/// Starts the view and waits for its picture.
 #[track_caller]
 fn looking(start: Start) -> Session {
     let mut session = start.spawn();
@@ -76,7 +76,7 @@ fn the_first_frame_is_sent_in_the_order_that_is_asked_for() {
         (&["--order=raster"], Order::Raster),
         (&["--compressed-link"], Order::Raster),
     ] {
-        // So that the first frame is the last one, too.
+        // One sample a pixel: the first frame is the last one, too.
         let mut session = looking(flags.iter().fold(termtrace().arg("--samples=best"), Start::arg));
         let mut wanted = Vec::new();
         let mut encoder = Encoder::new().with_order(order).with_half_blocks(HalfBlocks::Either);
@@ -95,7 +95,7 @@ fn ctrl_c_leaves() {
 }
 
 #[test]
-fn signals_are_died_of_with_the_terminal_given_back() {
+fn a_signal_gives_the_terminal_back_and_ends_the_program() {
     for signal in [Signal::TERM, Signal::HUP, Signal::INT, Signal::QUIT] {
         let mut session = looking(termtrace());
         session.signal(signal);
@@ -104,7 +104,7 @@ fn signals_are_died_of_with_the_terminal_given_back() {
     }
 }
 
-/// The eye of the `camera:` line that is printed on leaving.
+/// Returns the eye of the `camera:` line that is printed on leaving.
 fn eye_in(said: &str) -> [f32; 3] {
     let numbers = said.split("eye: (").nth(1).and_then(|rest| rest.split(')').next()).expect("an eye point is printed");
     let numbers: Vec<f32> = numbers.split(", ").map(|n| n.parse().expect("a number")).collect();
@@ -160,7 +160,7 @@ fn help_shows_every_binding_and_goes_away() {
     let keymap = Keymap::default();
     for binding in keymap.of(KeyMode::Fly).chain(keymap.of(KeyMode::Always)) {
         session.wait_for_text(binding.command.description());
-        // Many for the same are in one row.
+        // Keys of one command share a row.
         if !matches!(binding.command, Command::View(_)) {
             session.wait_for_text(&binding.label());
         }
@@ -176,7 +176,7 @@ fn help_shows_every_binding_and_goes_away() {
 }
 
 #[test]
-fn the_status_line_tells_size_and_eye() {
+fn the_status_line_shows_size_and_eye() {
     let mut session = looking(termtrace());
     session.send(b"i");
     for text in ["80x24", "rays/s", "fps", "eye 0.00 1.00 5.00"] {
@@ -207,7 +207,7 @@ fn any_quality_is_exact_at_rest() {
 /// Steps are of one size whatever the machine does meanwhile, and frames are counted by the queries that end them:
 /// where the machine is so busy that replies are late, some end with none, and the steps are taken again.
 #[test]
-fn an_equal_picture_takes_fewer_bytes_while_it_moves() {
+fn invisible_differences_are_not_sent_while_moving() {
     let [exact, equal] = ["exact", "equal"].map(|quality| {
         let mut session = looking(termtrace().arg("--reduced-motion").arg("--quality").arg(quality));
         let per_frame = (0..40).find_map(|_| bytes_per_frame(&mut session));
@@ -281,7 +281,7 @@ fn live_elsewhere() {
     leave(&mut looking(termtrace()));
 }
 
-/// The clock ticks of CPU that a process has used.
+/// Returns the clock ticks of CPU that a process has used.
 #[cfg(target_os = "linux")]
 fn ticks(session: &Session) -> u64 {
     let stat = std::fs::read_to_string(format!("/proc/{}/stat", session.pid().as_raw_nonzero())).expect("it runs");
@@ -292,13 +292,13 @@ fn ticks(session: &Session) -> u64 {
 #[cfg(target_os = "linux")]
 #[test]
 fn at_rest_nothing_is_computed() {
-    // In a folder of its own: the watcher hears of every file that is opened in the scene's folder.
+    // The scene has a folder of its own: the watcher reports every file that is opened in it.
     let folder = tempfile::tempdir().expect("a folder can be made");
     let scene = folder.path().join("ball.ron");
     std::fs::copy(SCENE, &scene).expect("a file can be copied");
     let mut session = looking(program().arg(scene));
     session.wait_for_rest();
-    // What tracing threads do before they sleep comes after the last frame, and takes them a moment.
+    // Tracing threads run on for a moment after the last frame before they sleep.
     let mut deadline = Deadline::after(SOON);
     let mut before = switches(&session);
     loop {
@@ -333,7 +333,7 @@ fn a_held_key_that_changes_nothing_costs_nothing() {
     let mut session = termtrace().arg("--eye").arg("0,9,0.1").arg("--target").arg("0,99,0.11").spawn();
     session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
     session.send(b"k");
-    // Up to the pole, and on until the glide ends.
+    // The eye goes up to the pole, until the glide ends.
     session.wait_for_rest();
     let (before, bytes) = (ticks(&session), session.seen().bytes().len());
     for _ in 0..20 {
@@ -345,7 +345,7 @@ fn a_held_key_that_changes_nothing_costs_nothing() {
     leave(&mut session);
 }
 
-/// Frames are at least a sixtieth of a second apart, however small and quick they are.
+/// Frames are at least a sixtieth of a second apart, however small and fast they are.
 #[test]
 fn no_more_than_sixty_frames_are_shown_in_a_second() {
     let size = Size::cells(80, 3);
@@ -364,7 +364,7 @@ fn no_more_than_sixty_frames_are_shown_in_a_second() {
     leave(&mut session);
 }
 
-/// Whole frames until no buffer holds more.
+/// Sends whole frames until no buffer holds more.
 fn fill_a_terminal_that_does_not_read(session: &mut Session) {
     session.stop_reading();
     for _ in 0..60 {
@@ -373,7 +373,7 @@ fn fill_a_terminal_that_does_not_read(session: &mut Session) {
     }
 }
 
-/// A terminal that has stopped reading (Ctrl-S, a dead link) is left all the same.
+/// Leaving works on a terminal that has stopped reading (Ctrl-S, a dead link).
 #[test]
 fn a_terminal_that_does_not_read_is_left() {
     std::thread::scope(|scope| {
@@ -397,9 +397,9 @@ fn leave_a_terminal_that_does_not_read(signal: Option<Signal>) {
     assert_eq!(session.termios_changes(), Vec::<String>::new());
 }
 
-/// A frame that takes long is given up.
+/// A frame that takes long is cancelled.
 #[test]
-fn a_slow_frame_does_not_keep_anybody_from_leaving() {
+fn a_slow_frame_does_not_delay_leaving() {
     use std::fmt::Write as _;
     let mut scene = String::from("(camera: (eye: (0, 0, 30), target: (0, 0, 0)), objects: [");
     for n in 0..20_000 {
@@ -417,7 +417,7 @@ fn a_slow_frame_does_not_keep_anybody_from_leaving() {
 
 /// Modes are undone in the reverse order: the cursor first, then the colours, then the screen.
 #[test]
-fn what_was_turned_on_is_undone_in_reverse() {
+fn modes_are_undone_in_reverse_order() {
     let mut session = looking(termtrace());
     let said = leave(&mut session);
     let places = ["\x1b[?2004l", "\x1b[?25h", "\x1b[0m", "\x1b[?1049l"].map(|off| said.rfind(off));
@@ -426,11 +426,11 @@ fn what_was_turned_on_is_undone_in_reverse() {
 
 /// Keys that are unread when the program leaves are not left for the shell.
 #[test]
-fn keys_that_were_meant_for_us_are_not_left_for_the_shell() {
+fn unread_keys_are_not_left_for_the_shell() {
     let mut session = looking(termtrace());
     fill_a_terminal_that_does_not_read(&mut session);
     session.send(b"q");
-    // It leaves, and waits for the terminal to take the last bytes: it reads no keys any more.
+    // The program leaves and waits for the terminal to take the last bytes. It reads no more keys.
     session.wait_for_no_reader();
     session.send(b"rm -r precious\r");
     session.wait_exit(SOON);
@@ -448,7 +448,7 @@ fn pasted_text_presses_no_keys() {
 }
 
 #[test]
-fn redraw_repairs_a_screen_that_something_else_wrote_on() {
+fn redraw_repairs_a_screen_that_another_program_wrote_on() {
     let mut session = looking(termtrace());
     let before = session.seen().bytes().len();
     session.send(b"\x0c");
@@ -487,7 +487,7 @@ fn any_size_works() {
 }
 
 #[test]
-fn the_flag_says_the_cell_aspect_where_the_terminal_does_not() {
+fn the_flag_sets_the_cell_aspect_that_the_terminal_does_not_report() {
     let mut session = termtrace().arg("--cell-aspect").arg("2.2").size(Size::cells(80, 24).of_pixels(0, 0)).spawn();
     wait_for_picture(&mut session, Size::cells(80, 24).of_pixels(10, 22));
     leave(&mut session);
@@ -520,7 +520,7 @@ fn has_sgr(bytes: &[u8]) -> bool {
 }
 
 #[test]
-fn without_colour_nothing_is_said_of_any() {
+fn without_colour_no_sgr_is_sent() {
     for (environment, flags, glyphs) in [
         (&[("NO_COLOR", "1")][..], &[][..], Glyphs::Shape),
         (&[("TERM", "dumb"), ("COLORTERM", "")], &[], Glyphs::Shape),
@@ -582,7 +582,7 @@ fn the_scene_may_be_typed() {
 }
 
 #[test]
-fn a_wrong_scene_is_told_without_touching_the_terminal() {
+fn a_wrong_scene_is_reported_without_touching_the_terminal() {
     let mut file = tempfile::NamedTempFile::new().expect("a file can be made");
     file.write_all(b"(camera: (eye: (0, 0, 5), target: (0, 0, 5)))").expect("a file can be written");
     let mut session = program().arg(file.path()).spawn();
@@ -603,7 +603,7 @@ fn output_that_is_no_terminal_gets_one_plain_frame() {
     assert_eq!(text, termtrace::text_frame(&Scene::load(Path::new(SCENE)).unwrap(), termtrace::Size::new(80, 24)));
 }
 
-/// The flag would stay on the terminal when we are gone, and the shell would find it set.
+/// O_NONBLOCK would stay on the shared terminal after the program, and the shell would find it set.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_shared_terminal_never_gets_nonblocking() {

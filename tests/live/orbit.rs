@@ -40,14 +40,14 @@ fn after(scene: &str, keys: &[u8]) -> Camera {
     camera(&mut session).unwrap_or_else(|| *load(scene).camera())
 }
 
-/// A step is nine degrees.
+/// Returns a vector turned by steps of nine degrees.
 pub(crate) fn turned(v: Vec3, steps: f32) -> Vec3 {
     let (sin, cos) = libm::sincosf(steps * std::f32::consts::PI / 20.0);
     Vec3::new(v.x * cos + v.z * sin, v.y, v.z * cos - v.x * sin)
 }
 
 #[test]
-fn a_mesh_given_by_name_is_gone_around() {
+fn a_mesh_given_by_name_is_orbited() {
     let Pose { eye, target, .. } = load(TEAPOT).camera().pose();
     for (keys, steps) in [(&b"\x1b[D\x1b[Dh"[..], -3.0), (b"\x1b[Cll", 3.0), (b"L", 4.0)] {
         let pose = after(TEAPOT, keys).pose();
@@ -78,7 +78,7 @@ fn a_scene_is_flown_through_until_tab() {
 }
 
 #[test]
-fn f_shows_everything() {
+fn f_frames_the_scene() {
     let scene = load(BALL);
     let bounds = scene.bounds().expect("there is a ball");
     let found = after(BALL, b"wwwf");
@@ -88,7 +88,7 @@ fn f_shows_everything() {
 }
 
 #[test]
-fn brackets_change_the_field_of_view_and_tell_it() {
+fn brackets_change_the_field_of_view_and_show_it() {
     let mut session = looking(BALL, &[]);
     session.send(b"[[[");
     session.wait_for_text("field of view: 34.6 degrees");
@@ -144,7 +144,7 @@ fn digits_go_to_the_views_of_the_scene_and_to_saved_ones() {
     let scene = load(file);
     assert_eq!(after(file, b"1"), scene.views()[0]);
     assert_eq!(after(file, b"1r2"), scene.views()[1]);
-    // Saved over, and only for this session; by the number that follows.
+    // Saves over a view, for this session only; the digit that follows is its number.
     let moved = after(file, b"2w");
     assert_eq!(after(file, b"2wm1r1"), moved);
     assert_eq!(after(file, b"2wm9rr9"), moved);

@@ -19,7 +19,7 @@ fn lime() -> String {
     ball("lime", EYE)
 }
 
-/// A folder in which `s.ron` is red, after that was done in it.
+/// Returns a folder whose `s.ron` is red, after `arrange` has changed it.
 fn folder(arrange: impl FnOnce(&Path)) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder can be made");
     write(folder.path(), "s.ron", &red());
@@ -39,13 +39,13 @@ fn rename(folder: &Path, from: &str, to: &str) {
     fs::rename(folder.join(from), folder.join(to)).expect("it can be renamed");
 }
 
-/// Puts a link into a place where something may be.
+/// Replaces a path by a link.
 fn link(folder: &Path, to: &str, name: &str) {
     symlink(to, folder.join("new~")).expect("a link can be made");
     rename(folder, "new~", name);
 }
 
-/// Looks at a path in that folder, which is the current one; paths are seen from there.
+/// Starts the view of a path in that folder, which is the current folder.
 fn looking(folder: &TempDir, path: &str) -> Session {
     let program_path = env!("CARGO_BIN_EXE_termtrace");
     let script = format!("cd '{}' && exec '{program_path}' {path}", folder.path().display());
@@ -91,7 +91,7 @@ const GUESTS: [Guest; 8] = [
 ];
 
 #[test]
-fn a_file_is_seen_after_whatever_stood_in_its_place() {
+fn a_file_is_shown_after_anything_that_took_its_place() {
     for (what, come, said) in GUESTS {
         for is_renamed in [false, true] {
             let folder = folder(|folder| write(folder, "other", "no scene"));
@@ -117,7 +117,7 @@ fn a_file_is_seen_after_whatever_stood_in_its_place() {
 /// A case: its name, the path that is shown, the files at first, and the change.
 type Case = (&'static str, &'static str, fn(&Path), fn(&Path));
 
-/// The scene in a folder of its own.
+/// Puts the scene into a folder of its own.
 fn inside(folder: &Path) {
     make(folder, "in");
     rename(folder, "s.ron", "in/s.ron");
@@ -259,7 +259,7 @@ const CASES: [Case; 14] = [
 ];
 
 #[test]
-fn a_file_is_seen_whichever_way_leads_to_it() {
+fn a_file_is_shown_through_any_links_and_folders() {
     for (what, path, arrange, act) in CASES {
         println!("{what}");
         let folder = folder(arrange);
@@ -273,7 +273,7 @@ fn a_file_is_seen_whichever_way_leads_to_it() {
 /// The system does not report that a folder is removed while a process has it as current folder,
 /// here the program itself.
 #[test]
-fn a_folder_that_a_process_stands_in_is_seen_coming_back() {
+fn the_return_of_a_current_folder_is_noticed() {
     let folder = folder(inside);
     let path = folder.path().join("in/s.ron");
     let inner = folder.path().join("in");
@@ -288,9 +288,9 @@ fn a_folder_that_a_process_stands_in_is_seen_coming_back() {
     leave(&mut session);
 }
 
-/// A mesh, too, may be something else for a while.
+/// A mesh, too, may be replaced by a folder for a while.
 #[test]
-fn a_mesh_that_was_a_folder_is_seen() {
+fn a_mesh_that_replaces_a_folder_is_shown() {
     let triangle = "mtllib m.mtl\nusemtl a\nv -2 -2 0\nv 2 -2 0\nv 0 2 0\nf 1 2 3\n";
     let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, objects: [Mesh(path: \"m.obj\")])";
     let folder = folder(|folder| {

@@ -14,7 +14,7 @@ fn eye_after(keys: &[u8], flags: &[&str]) -> Vec<f32> {
     eye(&mut session)
 }
 
-/// The eye of the line that is printed on leaving.
+/// Leaves, and returns the eye of the line that is printed.
 fn eye(session: &mut Session) -> Vec<f32> {
     let before = session.seen().bytes().len();
     session.send(b"q");

@@ -22,7 +22,7 @@ fn picture(sampling: Sampling, scene: &Path, size: Size) -> Grid {
     pty::picture_with(sampling, &scene, CellMode::HALF_BLOCK, termtrace::Size::new(size.columns, size.rows), 2.0)
 }
 
-/// The bytes of a whole frame that shows just this.
+/// Returns the bytes of a whole frame that shows this grid.
 fn whole_frame(grid: &Grid) -> usize {
     let mut bytes = Vec::new();
     Encoder::new().with_order(Order::Raster).with_half_blocks(HalfBlocks::Either).encode(grid, &mut bytes);
@@ -40,7 +40,7 @@ fn assert_comes_to_its_end(scene: &Path, size: Size) {
     assert_refined(&mut session, &mut phases, &wanted, &format!("{what} at first"));
     session.send(b"d");
     phases.count_on("refinement", &mut session, SOON, |seen| !shows(seen.screen(), &wanted));
-    // The space bar stops it.
+    // The space bar stops the refinement.
     session.send(b" ");
     phases.count_until_rest("refinement", &mut session);
     session.send(b"r");
@@ -63,7 +63,7 @@ fn assert_refined(session: &mut Session, phases: &mut Phases, wanted: &Grid, wha
 }
 
 #[test]
-fn a_picture_that_stands_still_comes_to_its_end_in_few_steps() {
+fn a_resting_picture_is_refined_in_few_steps() {
     for name in ["three_spheres", "many_spheres", "corridor", "teapots"] {
         let scene = Path::new(SCENES).join(name).with_extension("ron");
         for size in [Size::cells(80, 24), Size::cells(150, 45)] {
@@ -74,11 +74,11 @@ fn a_picture_that_stands_still_comes_to_its_end_in_few_steps() {
 
 /// A scene whose every cell has edges is refined to its end.
 #[test]
-fn also_a_picture_of_edges_comes_to_its_end_in_few_steps() {
+fn a_picture_of_edges_is_refined_in_few_steps() {
     assert_comes_to_its_end(gravel().path(), LARGE);
 }
 
-/// The status line says how many samples a pixel has.
+/// The status line shows the number of samples of a pixel.
 #[test]
 fn samples_may_be_forced() {
     let scene = Path::new(SCENES).join("three_spheres.ron");
@@ -91,7 +91,7 @@ fn samples_may_be_forced() {
         let end = session.seen().bytes().len();
         session.wait_for_rest();
         assert!(session.seen().bytes().len() <= end + FENCE.len(), "{flag}: more is sent");
-        // Also in motion.
+        // The number is fixed in motion, too.
         session.send(b"id");
         session.wait_for("a moving eye", SOON, |seen| {
             let status = seen.screen().text().pop().unwrap_or_default();

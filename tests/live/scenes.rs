@@ -7,7 +7,7 @@ use std::time::Duration;
 use tempfile::TempDir;
 use termtrace::{CellMode, Scene};
 
-/// A ball of that colour, looked at from there.
+/// Returns a scene with a ball of that colour, seen from that eye.
 pub(crate) fn ball(color: &str, eye: &str) -> String {
     format!(
         "(camera: (eye: {eye}, target: (0, 0, 0)), background: \"navy\", lights: [Point(position: (3, 4, 5), intensity: 40)],
@@ -45,7 +45,7 @@ pub(crate) fn program() -> Start {
     Start::new(env!("CARGO_BIN_EXE_termtrace")).says_when_it_rests()
 }
 
-/// A session that looks at these.
+/// Starts the view with these files.
 fn looking(paths: &[&Path]) -> Session {
     let mut session = paths.iter().fold(program(), Start::arg).spawn();
     sees(&mut session, &fs::read_to_string(paths[0]).expect("it is there"));
@@ -82,7 +82,7 @@ pub(crate) fn leave(session: &mut Session) -> String {
 }
 
 #[test]
-fn a_changed_scene_is_seen_however_it_is_written() {
+fn a_changed_scene_is_shown_however_it_is_written() {
     let folder = Folder::new();
     let path = folder.write("ball.ron", ball("red", EYE));
     let mut session = looking(&[&path]);
@@ -93,7 +93,7 @@ fn a_changed_scene_is_seen_however_it_is_written() {
         folder.replace("ball.ron", &renamed);
         sees(&mut session, &renamed);
     }
-    // As vim writes: the old file gets another name first.
+    // vim renames the old file first.
     fs::rename(&path, folder.path("ball.ron~")).expect("a file can be renamed");
     folder.write("ball.ron", ball("teal", EYE));
     fs::remove_file(folder.path("ball.ron~")).expect("a file can be removed");
@@ -103,7 +103,7 @@ fn a_changed_scene_is_seen_however_it_is_written() {
 }
 
 #[test]
-fn a_broken_scene_keeps_its_picture_and_says_why_until_it_is_mended() {
+fn a_broken_scene_keeps_its_picture_and_shows_its_error() {
     let folder = Folder::new();
     let path = folder.write("ball.ron", ball("red", EYE));
     let mut session = looking(&[&path]);
@@ -115,7 +115,7 @@ fn a_broken_scene_keeps_its_picture_and_says_why_until_it_is_mended() {
     assert_eq!(text[caret].find('^'), text[caret - 1].find("radus"), "{text:?}");
     assert!(caret == 23 || caret == 22, "at the bottom: {text:?}");
     assert!(upper_half_shows(&mut session, &ball("red", EYE)), "the picture stays");
-    // Another fault takes its place.
+    // The error of the next fault replaces it.
     folder.write("ball.ron", "(camera: (eye: (0, 0, 5)))");
     session.wait_for_text("missing field \"target\"");
     session.wait_for("the old fault to go", SOON, |seen| !seen.screen().text().concat().contains("radus"));
@@ -124,9 +124,9 @@ fn a_broken_scene_keeps_its_picture_and_says_why_until_it_is_mended() {
     leave(&mut session);
 }
 
-/// A pipe that nothing is written to is a fault like another, and the view goes on.
+/// A pipe without a writer is an error like any other, and the view goes on.
 #[test]
-fn a_scene_that_becomes_a_pipe_is_told() {
+fn a_scene_that_becomes_a_pipe_is_an_error() {
     let folder = Folder::new();
     let path = folder.write("ball.ron", ball("red", EYE));
     let mut session = looking(&[&path]);
@@ -138,9 +138,9 @@ fn a_scene_that_becomes_a_pipe_is_told() {
     leave(&mut session);
 }
 
-/// A mesh and the texture that it uses are files of the scene, also while one of them is missing.
+/// A mesh and its texture are files of the scene, even while one of them is missing.
 #[test]
-fn a_changed_mesh_is_seen() {
+fn a_changed_mesh_is_shown() {
     let folder = Folder::new();
     let square = |size: f32| {
         format!("v -{size} -{size} 0\nv {size} -{size} 0\nv {size} {size} 0\nv -{size} {size} 0\nf 1 2 3 4\n")
@@ -162,7 +162,7 @@ fn a_changed_mesh_is_seen() {
     session.wait_for_text("square.obj");
     folder.write("square.obj", square(1.5));
     sees(&mut session);
-    // What it names from now on.
+    // The mesh names another texture now.
     folder.write("square.obj", format!("mtllib square.mtl\nusemtl m\n{}", square(1.0)));
     session.wait_for_text("square.mtl");
     folder.write("square.mtl", "newmtl m\nKd 1 0 0\n");
@@ -186,14 +186,14 @@ fn sees_another_color(session: &mut Session) {
     });
 }
 
-/// The user's view stays, unless the file's changes.
+/// The user's view stays, unless the view in the file changes.
 #[test]
-fn the_view_stays_where_it_is() {
+fn a_reload_keeps_the_view() {
     let folder = Folder::new();
     let path = folder.write("ball.ron", ball("red", EYE));
     let mut session = looking(&[&path]);
     session.send(b"d");
-    // The glide ends.
+    // This waits for the end of the glide.
     session.wait_for_rest();
     folder.write("ball.ron", ball("lime", EYE));
     sees_another_color(&mut session);
@@ -210,7 +210,7 @@ fn the_view_stays_where_it_is() {
 
 /// Changes of other files in the folder, and writes without a change, have no effect.
 #[test]
-fn what_is_not_the_scenes_is_nothing() {
+fn changes_of_other_files_are_ignored() {
     let folder = Folder::new();
     let path = folder.write("ball.ron", ball("red", EYE));
     let mut session = looking(&[&path]);
@@ -224,7 +224,7 @@ fn what_is_not_the_scenes_is_nothing() {
 }
 
 #[test]
-fn several_scenes_are_gone_through() {
+fn several_scenes_are_shown_in_turn() {
     let folder = Folder::new();
     let [red, lime, gold] =
         ["red", "lime", "gold"].map(|color| folder.write(&format!("{color}.ron"), ball(color, EYE)));
@@ -233,10 +233,10 @@ fn several_scenes_are_gone_through() {
         session.send(key);
         sees(&mut session, &ball(color, EYE));
     }
-    // The one that is looked at is the one that is watched.
+    // The scene that is shown is the one that is watched.
     folder.write("lime.ron", ball("teal", EYE));
     sees(&mut session, &ball("teal", EYE));
-    // Each is left as it was.
+    // Each scene keeps its view.
     session.send(b"d");
     session.wait_for_rest();
     session.send(b"n");
@@ -250,7 +250,7 @@ fn several_scenes_are_gone_through() {
 }
 
 #[test]
-fn a_broken_one_of_several_is_told_and_left_behind() {
+fn a_broken_scene_among_several_is_reported_and_skipped() {
     let folder = Folder::new();
     let red = folder.write("red.ron", ball("red", EYE));
     let broken = folder.write("broken.ron", "(camera: 5)");
@@ -260,7 +260,7 @@ fn a_broken_one_of_several_is_told_and_left_behind() {
     session.wait_for_text("broken.ron:1:10: expected a camera");
     session.send(b"n");
     session.wait_for_text("missing.ron: there is no such file");
-    // It may come.
+    // The missing file may be written later.
     folder.write("missing.ron", ball("lime", EYE));
     sees(&mut session, &ball("lime", EYE));
     session.send(b"n");
@@ -269,18 +269,18 @@ fn a_broken_one_of_several_is_told_and_left_behind() {
 }
 
 #[test]
-fn without_a_scene_there_is_one() {
+fn the_built_in_scene_is_the_default() {
     let mut session = program().spawn();
     session.wait_for_text("termtrace FILE opens yours");
-    // Until the first key.
+    // The message stays until the first key.
     session.send(b" ");
     sees(&mut session, include_str!("../../scenes/three_spheres.ron"));
     leave(&mut session);
 }
 
-/// On a small screen the picture has all the room.
+/// On a small screen the error is hidden and the picture has all rows.
 #[test]
-fn faults_step_aside_where_there_is_no_room() {
+fn errors_are_hidden_on_a_small_screen() {
     let folder = Folder::new();
     let path = folder.write("ball.ron", ball("red", EYE));
     let mut session = looking(&[&path]);

@@ -1,4 +1,4 @@
-//! The user's own settings and keys in the live view, and what is told of keys.
+//! The user's own settings and keys in the live view, and the texts about keys.
 
 use crate::pty::{SOON, Session, Size, Start};
 use std::fs;
@@ -7,7 +7,7 @@ use termtrace::internals::control::{KeyMode, Keymap};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 
-/// A user who has these files.
+/// Returns the folder of a user with these files.
 fn user(files: &[(&str, &str)]) -> TempDir {
     let home = tempfile::tempdir().expect("a folder can be made");
     let folder = home.path().join(".config/termtrace");
@@ -36,7 +36,7 @@ fn wait_for_picture(session: &mut Session) {
     session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains(['▄', '▀']));
 }
 
-/// The screen no longer has this.
+/// Waits until the screen no longer has these words.
 #[track_caller]
 fn wait_for_no(session: &mut Session, words: &str) {
     session.wait_for(&format!("no {words}"), SOON, |seen| !seen.screen().text().concat().contains(words));
@@ -52,7 +52,7 @@ fn leave_moved(session: &mut Session, key: &[u8]) -> bool {
     String::from_utf8_lossy(&session.seen().bytes()[before..]).contains("camera:")
 }
 
-/// The last row of the screen has this.
+/// Waits until the last row of the screen has these words.
 #[track_caller]
 fn wait_for_last(session: &mut Session, words: &str) {
     session.wait_for(words, SOON, |seen| seen.screen().text().last().is_some_and(|row| row.contains(words)));
@@ -64,7 +64,7 @@ fn leave(session: &mut Session) {
 }
 
 #[test]
-fn what_the_file_sets_holds_unless_a_flag_or_a_variable_says_otherwise() {
+fn flags_and_variables_override_the_settings_file() {
     let home = user(&[("config.ron", "(map: depth)")]);
     for (flags, legend) in [(&[][..], "depth:"), (&["--map=normal"], "normal:")] {
         let mut session = start(&home, flags);
@@ -86,7 +86,7 @@ fn what_the_file_sets_holds_unless_a_flag_or_a_variable_says_otherwise() {
 
 /// Errors of settings and keys are reported before the terminal is touched.
 #[test]
-fn a_file_that_is_wrong_is_told_of_before_anything_else() {
+fn a_wrong_settings_file_is_reported_first() {
     let home = user(&[("config.ron", "(\n    mpa: depth,\n    fps: 0,\n)")]);
     let mut session = start(&home, &[]);
     assert_eq!(session.wait_exit(SOON).code(), Some(2));
@@ -98,7 +98,7 @@ fn a_file_that_is_wrong_is_told_of_before_anything_else() {
 }
 
 #[test]
-fn keys_of_ones_own_do_what_the_file_says_and_are_told_of() {
+fn user_keys_work_and_are_shown_in_the_help() {
     let keys = r#"(fly: { "8": MoveForward, "w": None }, always: { "Q": Quit, "q": None, "?": None, "F1": Help })"#;
     let home = user(&[("keys.ron", keys)]);
     let mut session = start(&home, &["--reduced-motion"]);
@@ -125,7 +125,7 @@ fn keys_of_ones_own_do_what_the_file_says_and_are_told_of() {
 
 /// Every text that names a key names the bound one.
 #[test]
-fn all_that_is_said_of_keys_goes_by_the_file() {
+fn every_text_names_the_bound_keys() {
     let keys = r#"(explain: { "Space": ScrollDown, "PageDown": None }, always: { "Q": Quit, "q": None, "F1": Help, "?": None })"#;
     let home = user(&[("keys.ron", keys)]);
     let mut session = Start::new(env!("CARGO_BIN_EXE_termtrace")).env("HOME", home.path()).spawn();
@@ -140,7 +140,7 @@ fn all_that_is_said_of_keys_goes_by_the_file() {
 }
 
 #[test]
-fn keys_that_are_wrong_are_told_of_before_anything_else() {
+fn wrong_keys_are_reported_first() {
     let home = user(&[("keys.ron", "(fly: { \"Up\": MovForward })")]);
     let mut session = start(&home, &[]);
     assert_eq!(session.wait_exit(SOON).code(), Some(2));
@@ -171,7 +171,7 @@ fn the_help_has_pages_where_the_screen_is_small() {
 }
 
 #[test]
-fn below_40x12_panels_step_aside_and_their_keys_with_them() {
+fn below_40x12_panels_are_hidden_and_their_keys_off() {
     let mut session = looking(20, 10);
     session.send(b"?");
     wait_for_last(&mut session, "help needs 40x12");
@@ -194,7 +194,7 @@ fn below_40x12_panels_step_aside_and_their_keys_with_them() {
 }
 
 #[test]
-fn the_status_line_tells_the_mode_and_its_keys() {
+fn the_status_line_shows_the_mode_and_its_keys() {
     let mut session = looking(80, 24);
     session.send(b"i");
     let row = |session: &mut Session, words: &str| {
@@ -210,7 +210,7 @@ fn the_status_line_tells_the_mode_and_its_keys() {
 }
 
 #[test]
-fn escape_closes_what_lies_on_top() {
+fn escape_closes_the_topmost_panel() {
     let mut session = looking(80, 24);
     session.send(b"x");
     session.wait_for_text("in front:");

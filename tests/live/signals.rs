@@ -64,7 +64,7 @@ fn every_signal_that_ends_a_program_gives_the_terminal_back() {
 
 /// The first signal decides, whatever other signals are pending when the program ends.
 #[test]
-fn of_several_signals_one_is_died_of() {
+fn the_first_of_several_signals_ends_the_program() {
     let mut session = looking(Start::new(PROGRAM).arg(SCENE));
     session.signal(Signal::STOP);
     session.wait_stopped(SOON);
@@ -98,7 +98,7 @@ fn signals_that_the_parent_ignores_stay_ignored() {
 ///
 /// It does not matter whether replies are outstanding.
 #[test]
-fn keys_typed_around_a_stop_without_a_word_are_heard() {
+fn keys_typed_around_a_sigstop_are_read() {
     let plain: [&[u8]; 2] = [b"q", b"\x03"];
     let kitty: [&[u8]; 2] = [b"\x1b[113u", b"\x1b[99;5u"];
     for (is_mute, is_kitty, [q, ctrl_c]) in [(true, false, plain), (false, false, plain), (false, true, kitty)] {
@@ -123,9 +123,9 @@ fn keys_typed_around_a_stop_without_a_word_are_heard() {
     }
 }
 
-/// Signals that mean nothing to a program by default mean nothing here.
+/// Signals that a program ignores by default do not end it.
 #[test]
-fn harmless_signals_do_not_end_it() {
+fn harmless_signals_do_not_end_the_program() {
     let mut session = looking(Start::new(PROGRAM).arg(SCENE));
     for signal in [Signal::CHILD, Signal::URG] {
         session.signal(signal);

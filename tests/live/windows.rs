@@ -1,4 +1,4 @@
-//! Windows of any size: what a terminal claims costs no more memory than there is.
+//! Windows of any size: a picture takes bounded memory, whatever size a terminal reports.
 
 use crate::pty::{SOON, Session, Start};
 use rustix::termios::{Winsize, tcsetwinsize};
@@ -7,7 +7,7 @@ use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 
-/// A folder with `empty.ron`, of which a million pixels are traced in a moment.
+/// Returns a folder with `empty.ron`, of which a million pixels are traced in a moment.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), background: \"teal\")";
@@ -15,7 +15,7 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The program in that folder, after a command of the shell, when it shows something.
+/// Starts the program in that folder, after a command of the shell, and waits for its first output.
 fn looking(folder: &TempDir, before: &str) -> Session {
     let script = format!("cd '{}'; {before} exec '{PROGRAM}' empty.ron", folder.path().display());
     let mut session = Start::shell(&script).spawn();
@@ -23,7 +23,7 @@ fn looking(folder: &TempDir, before: &str) -> Session {
     session
 }
 
-/// The window claims another size, of which the tests' own screen makes no cells.
+/// Reports another size of the window, for which the tests' own screen makes no cells.
 fn claim(session: &Session, columns: u16, rows: u16) {
     let size = Winsize { ws_col: columns, ws_row: rows, ws_xpixel: 0, ws_ypixel: 0 };
     tcsetwinsize(session.terminal(), size).expect("a terminal can be resized");
@@ -48,7 +48,7 @@ fn a_window_of_any_size_shows_a_picture_of_bounded_size() {
         session.wait_for("the limit is told", SOON, |seen| {
             seen.bytes()[before..].windows(told.len()).any(|bytes| bytes == told.as_bytes())
         });
-        // What the picture does not cover is emptied, in the terminal's own colours.
+        // Cells outside the picture are erased in the terminal's own colours.
         let erase = b"\x1b[m\x1b[2J";
         assert!(session.seen().bytes()[before..].windows(erase.len()).any(|bytes| bytes == erase));
     }
@@ -61,7 +61,7 @@ fn a_window_of_any_size_shows_a_picture_of_bounded_size() {
 
 /// Leaving does not wait for the unread rest of a large picture.
 #[test]
-fn leaving_a_large_picture_that_is_on_its_way_is_quick() {
+fn leaving_does_not_wait_for_a_large_picture() {
     let folder = folder();
     let mut session = looking(&folder, "");
     session.stop_reading();

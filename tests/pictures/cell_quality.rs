@@ -139,7 +139,7 @@ fn nearest(picture: &Picture, indices: std::ops::RangeInclusive<u8>) -> Picture 
 }
 
 #[test]
-fn few_colours_look_like_the_picture_from_some_way_off() {
+fn few_colours_resemble_the_picture_at_a_distance() {
     for (colors, indices, most, naive) in
         [(Colors::Indexed256, 16..=255, 1.0, 2.0), (Colors::SIXTEEN, 0..=15, 3.1, 8.0)]
     {
@@ -189,7 +189,7 @@ fn psnr(lines: &str, picture: &Picture, sheet: &[Vec<f64>]) -> f64 {
 }
 
 #[test]
-fn characters_by_shape_look_like_the_picture_from_some_way_off() {
+fn characters_by_shape_resemble_the_picture_at_a_distance() {
     let sheet = glyph_sheet();
     let mean = |glyphs| {
         let mode = CellMode { glyphs, colors: Colors::None };

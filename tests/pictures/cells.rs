@@ -237,7 +237,7 @@ fn few_colours_of_flat_pictures() {
 
 /// With only the terminal's own colours, dark on light, light pixels are blank.
 #[test]
-fn a_light_background_turns_what_has_no_colour() {
+fn a_light_background_inverts_pictures_without_colour() {
     for mode in modes() {
         let size = mode.pixels_per_cell();
         let glyph = |pixel: Srgb8, light| {
@@ -340,7 +340,7 @@ fn covered_cells_are_not_written_to_files() {
 
 /// A panel over half of a wide character leaves blanks of its colours beside it.
 #[test]
-fn what_is_cut_becomes_blanks() {
+fn halves_of_cut_wide_characters_are_blanks() {
     let wide = |text: &str| Cell { glyph: Glyph::Cluster(text.into()), bg: Ink::Indexed(1), ..Cell::BLANK };
     let letter = |cell: &Cell| if cell.glyph == Glyph::Covered { "<".to_owned() } else { cell.glyph.to_string() };
     for (column, columns, expected) in [

@@ -223,7 +223,7 @@ fn a_surface_is_dark_on_the_side_away_from_the_light() {
 }
 
 #[test]
-fn light_from_behind_is_nothing_also_where_nothing_casts_a_shadow() {
+fn light_from_behind_is_zero_even_without_a_shadow() {
     // Without shadows the surface itself is not in the way: max(0, n.l) alone makes it dark.
     for (eye, object) in [([0.0, -2.0, 2.0], floor()), ([0.0, 0.0, -4.0], unit_sphere())] {
         let mut scene = lit(camera(eye, [0.0, 0.0, 0.0], 40.0), vec![object], vec![light([0.0, 3.0, 4.0], 9.0)]);
@@ -257,7 +257,7 @@ fn a_shadow_reaches_the_point_of_contact() {
 }
 
 #[test]
-fn of_two_surfaces_in_one_place_the_first_is_seen() {
+fn the_first_of_two_coincident_surfaces_is_seen() {
     let ball = |grey| {
         Object::new(
             Sphere::new(Vec3::ZERO, 1.0).expect("a sphere"),
@@ -334,7 +334,7 @@ fn edges_of_a_checker() {
 }
 
 #[test]
-fn of_two_crossings_the_closer_one_in_front_counts() {
+fn the_closest_crossing_in_front_of_the_eye_is_the_hit() {
     let sphere = Sphere::new(Vec3::ZERO, 2.0).expect("a sphere");
     let crossing = |z: f32| {
         let ray = Ray { origin: Vec3::new(0.0, 0.0, z), direction: Vec3::new(0.0, 0.0, -0.5) };
@@ -460,7 +460,7 @@ fn light_becomes_srgb_by_its_own_curve() {
 }
 
 #[test]
-fn light_that_no_number_can_hold_is_still_a_number() {
+fn light_that_overflows_is_still_a_number() {
     // A light that nearly lies in the surface: I n.l / d^2 is beyond f32, and 0 times that would be NaN.
     let point = floor().shape.primitive(0).at_crossing(&Ray { origin: Vec3::Y, direction: -Vec3::Y }, 1.0);
     for height in [1e-10, 1e-18, 1e-22] {

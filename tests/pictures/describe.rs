@@ -14,7 +14,7 @@ fn told_of(text: &str) -> String {
 }
 
 #[test]
-fn shipped_scenes_are_told_as_their_goldens() {
+fn shipped_scenes_are_described_as_in_their_goldens() {
     let mut settings = insta::Settings::clone_current();
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
@@ -38,7 +38,7 @@ fn ball_at(place: &str) -> String {
 }
 
 #[test]
-fn places_are_the_pictures() {
+fn positions_are_described_as_seen_in_the_picture() {
     for (place, words) in [
         ("(0, 0, 0)", "in the middle"),
         ("(-4, 0, 0)", "on the left"),
@@ -56,7 +56,7 @@ fn places_are_the_pictures() {
 }
 
 #[test]
-fn what_hides_what_is_said_of_both() {
+fn an_occlusion_is_described_for_both_objects() {
     let text = told_of(
         "(camera: (eye: (0, 0, 10), target: (0, 0, 0)), objects: [
             Sphere(center: (0.7, 0, 0), radius: 1, material: Diffuse(\"blue\")),
@@ -91,7 +91,7 @@ fn lights_come_from_where_the_viewer_sees_them() {
 
 /// However large the scene, the text can be listened to.
 #[test]
-fn big_scenes_are_summed_up() {
+fn large_scenes_are_summarised() {
     let ball = |at: usize| {
         let (x, y) = (at % 20, at / 20);
         format!("Sphere(center: ({}, {}, 0), radius: 0.2),", x as f32 * 0.5 - 5.0, y as f32 * 0.5 - 2.5)

@@ -147,7 +147,7 @@ fn eye_ray(camera: &Camera, resolution: Resolution, at: usize) -> termtrace::int
 ///
 /// The rays are the eye ray, and one for each light that the surface faces.
 #[test]
-fn the_cost_is_what_rays_are_tested_against() {
+fn the_cost_counts_the_tests_of_rays() {
     let scene = scene("three_spheres");
     let resolution = Resolution::square(40, 30);
     let picture = picture(Map::Cost, &scene, scene.camera(), resolution, ONE);
@@ -180,7 +180,7 @@ fn legends_are_short() {
 }
 
 #[test]
-fn maps_go_round() {
+fn the_last_map_is_followed_by_the_first() {
     for map in Map::ALL {
         assert_eq!(map.next().back(), map);
         assert_eq!(Map::named(map.name()), Some(map));

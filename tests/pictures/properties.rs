@@ -218,7 +218,7 @@ proptest! {
     ///
     /// Also along the axes, where some divide by zero, and among objects that lie in one another.
     #[test]
-    fn many_rays_are_each_traced_as_if_alone(objects in objects(), twice in 0..3_usize, rays in prop::collection::vec(any_ray(), 0..30)) {
+    fn a_packet_has_the_same_bits_as_single_rays(objects in objects(), twice in 0..3_usize, rays in prop::collection::vec(any_ray(), 0..30)) {
         let camera = Camera::new(Pose { eye: Vec3::ZERO, target: Vec3::X, up: Vec3::Y }, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
         let again = objects.iter().take(twice).cloned().collect();
         let scene = Scene::new(camera, [again, objects].concat());
@@ -304,7 +304,7 @@ proptest! {
     }
 
     #[test]
-    fn the_number_of_threads_does_not_show(scene in scene()) {
+    fn the_number_of_threads_does_not_change_the_picture(scene in scene()) {
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| picture(&scene, scene.camera(), 50, 37).hash())

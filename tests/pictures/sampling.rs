@@ -36,7 +36,7 @@ fn psnr(scene: &Scene, a: &Framebuffer, b: &Framebuffer) -> f64 {
 }
 
 #[test]
-fn the_steps_of_a_refinement_do_not_show() {
+fn the_steps_of_a_refinement_do_not_change_its_result() {
     for (path, scene) in shipped() {
         let at_once = render(&scene, scene.camera(), SIZE, Sampling::BEST).hash();
         for steps in [&[1, 4, 16, 64][..], &[4, 64], &[1, 2, 3, 17, 63, 64], &[16, 16, 64, 64]] {
@@ -94,7 +94,7 @@ fn one_sample_at_most_is_one_sample() {
 }
 
 #[test]
-fn threads_do_not_show_in_a_refined_picture() {
+fn threads_do_not_change_a_refined_picture() {
     let (_, scene) = shipped().next().expect("there are scenes");
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -123,7 +123,7 @@ fn a_coarse_picture_is_made_of_blocks() {
 }
 
 #[test]
-fn a_refinement_can_be_given_up() {
+fn a_refinement_can_be_cancelled() {
     let (_, scene) = shipped().next().expect("there are scenes");
     let mut picture = ProgressiveRender::new(scene.camera(), SIZE);
     let token = Cancellation::default();

@@ -179,7 +179,7 @@ proptest! {
     ///
     /// Each triangle, however small for its distance, is hit if the ray passes all three edges on the same side.
     #[test]
-    fn on_which_side_of_an_edge_a_ray_goes_by_is_told_exactly(
+    fn the_side_on_which_a_ray_passes_an_edge_is_exact(
         origin in whole(1 << 22),
         place in whole(1 << 21),
         corners in (2..21_u32).prop_flat_map(|size| [whole(1 << size), whole(1 << size), whole(1 << size)]),
@@ -353,7 +353,7 @@ proptest! {
 
     /// An observed ray has the same hit, and the observer gets each step to it.
     #[test]
-    fn a_witness_changes_nothing_and_knows_all(shapes in prop::collection::vec(shape(), 1..40), ray in ray()) {
+    fn an_observer_changes_no_hit_and_gets_every_test(shapes in prop::collection::vec(shape(), 1..40), ray in ray()) {
         let scene = scene(shapes);
         let mut observer = TestRecorder::default();
         let hit = closest_hit_observed(&scene, &ray, &mut observer);
@@ -374,7 +374,7 @@ proptest! {
     }
 
     #[test]
-    fn nothing_is_left_out(shapes in prop::collection::vec(shape(), 1..40), rays in prop::collection::vec(ray(), 1..20)) {
+    fn the_tree_finds_the_hits_of_a_brute_force_search(shapes in prop::collection::vec(shape(), 1..40), rays in prop::collection::vec(ray(), 1..20)) {
         let doubled: Vec<Shape> = shapes.iter().chain(&shapes[..shapes.len() / 2]).cloned().collect();
         let scene = scene(doubled);
         for ray in &rays {
@@ -388,7 +388,7 @@ proptest! {
 
     /// Objects that are not visible change the tree, but not the picture.
     #[test]
-    fn the_tree_does_not_show(shapes in prop::collection::vec(shape(), 1..40), hidden in prop::collection::vec(anywhere(), 1..40)) {
+    fn hidden_objects_do_not_change_the_picture(shapes in prop::collection::vec(shape(), 1..40), hidden in prop::collection::vec(anywhere(), 1..40)) {
         let light = PointLight::new(Vec3::new(3.0, 6.0, 5.0), LinearRgb::grey(40.0)).expect("a light");
         let picture = |shapes: Vec<Shape>| {
             let scene = scene(shapes).with_lights(vec![light]);
@@ -401,7 +401,7 @@ proptest! {
 
     /// The interval of a ray in a box has that of its contents, and of a box in it.
     #[test]
-    fn ways_through_boxes_contain_one_another(corners in [place(), place()], more in place(), ray in ray(), share in [0.0_f32..=1.0, 0.0..=1.0, 0.0..=1.0]) {
+    fn intervals_of_nested_boxes_are_nested(corners in [place(), place()], more in place(), ray in ray(), share in [0.0_f32..=1.0, 0.0..=1.0, 0.0..=1.0]) {
         let inner = Bounds::of(corners);
         let outer = inner.union(&Bounds::of([more]));
         let probe = Probe::new(ray);
@@ -518,7 +518,7 @@ fn a_tree_is_never_too_deep_for_its_stack() {
 }
 
 #[test]
-fn building_tells_how_far_it_is_and_can_be_given_up() {
+fn a_build_reports_progress_and_can_be_cancelled() {
     let (points, triangles) = icosphere(6);
     let corners = |triangle: &[u32; 3]| triangle.map(|corner| points[corner as usize]);
     let boxes: Vec<Bounds> = triangles.iter().map(|triangle| Bounds::of(corners(triangle))).collect();

@@ -15,7 +15,7 @@ pub(crate) struct Deadline {
 const LONGEST_STEP: Duration = Duration::from_millis(100);
 
 impl Deadline {
-    /// The end of a wait that begins now.
+    /// Returns the end of a wait that begins now.
     pub(crate) fn after(limit: Duration) -> Self {
         Self { left: limit, looked: Instant::now() }
     }

@@ -104,7 +104,7 @@ impl Size {
     }
 }
 
-/// A program about to be started.
+/// The command, terminal and environment of a program to start.
 pub(crate) struct Start {
     program: OsString,
     arguments: Vec<OsString>,
@@ -118,9 +118,10 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// A program, found by its path or in this process's PATH, on 80x24 cells of 10x20 pixels.
+    /// Prepares a program, found by its path or in this process's PATH.
     ///
-    /// Of the environment it gets PATH, a TERM with truecolor and a locale of UTF-8, and what is added.
+    /// The terminal has 80x24 cells of 10x20 pixels. The environment has PATH, a TERM with truecolor and a locale of
+    /// UTF-8, and what is added.
     pub(crate) fn new(program: impl AsRef<OsStr>) -> Self {
         let start = Self {
             program: program.as_ref().to_owned(),
@@ -140,7 +141,7 @@ impl Start {
             .env("LC_ALL", "C.UTF-8")
     }
 
-    /// A script for `sh`.
+    /// Prepares `sh` with a script.
     pub(crate) fn shell(script: &str) -> Self {
         Self::new("sh").arg("-c").arg(script)
     }
@@ -151,14 +152,14 @@ impl Start {
         self
     }
 
-    /// A variable of the environment, in the place of an earlier one of that name.
+    /// Sets a variable of the environment.
     pub(crate) fn env(mut self, name: &str, value: impl AsRef<OsStr>) -> Self {
         self.environment.retain(|(known, _)| known != name);
         self.environment.push((name.into(), value.as_ref().to_owned()));
         self
     }
 
-    /// The size of the terminal.
+    /// Sets the size of the terminal.
     pub(crate) fn size(self, size: Size) -> Self {
         Self { size, ..self }
     }
@@ -192,19 +193,19 @@ impl Start {
         self
     }
 
-    /// A terminal that reports modes as well (DECRQM): that it knows none of those asked for.
+    /// Makes the terminal report modes (DECRQM), none of which it knows.
     pub(crate) fn reports_modes(mut self) -> Self {
         self.replies.modes = true;
         self
     }
 
-    /// A terminal of whose replies to DA1 and about modes some have a fault.
+    /// Makes some of the replies to DA1 and about modes faulty.
     pub(crate) fn with_fault(mut self, fault: Fault, which: Which) -> Self {
         self.replies.fault = Some((fault, which));
         self
     }
 
-    /// A program with test-only hooks, which says when it rests: for [`Session::wait_for_rest`].
+    /// Makes the program's test-only hooks report each rest, for [`Session::wait_for_rest`].
     pub(crate) fn says_when_it_rests(self) -> Self {
         let rest = Rest::listen();
         Self { rest: Some(rest), ..self }
@@ -303,7 +304,7 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    /// The bytes.
+    /// Returns the bytes.
     pub(crate) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -328,7 +329,7 @@ impl Seen {
         self.screen.feed(bytes);
     }
 
-    /// The screen and the end of the bytes, for the message of a failed wait.
+    /// Returns the screen and the end of the bytes, for the message of a failed wait.
     fn describe(&self) -> String {
         let tail = &self.bytes[self.bytes.len().saturating_sub(300)..];
         let screen = self.screen.text().join("\n");
@@ -341,7 +342,7 @@ impl Seen {
     }
 }
 
-/// A program on its pseudo-terminal. It is killed when this is dropped, with what it started.
+/// A program on its pseudo-terminal. The drop kills it, with the processes that it started.
 pub(crate) struct Session {
     child: Child,
     status: Option<ExitStatus>,
@@ -357,7 +358,7 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    /// The process started.
+    /// Returns the process that was started.
     pub(crate) fn pid(&self) -> Pid {
         Pid::from_child(&self.child)
     }
@@ -383,7 +384,7 @@ impl Session {
         rustix::process::kill_process(self.pid(), signal).expect("one's own child takes signals");
     }
 
-    /// Gives the terminal another size, of which the kernel tells the foreground by SIGWINCH.
+    /// Resizes the terminal. The kernel sends SIGWINCH to the foreground.
     pub(crate) fn resize(&mut self, size: Size) {
         self.pump();
         self.seen.screen.resize(size.columns, size.rows);
@@ -406,7 +407,7 @@ impl Session {
         Storm::over(Arc::clone(&self.master))
     }
 
-    /// The terminal is gone, as when its window is closed or the link is cut.
+    /// Removes the terminal, as when its window is closed or the link is cut.
     pub(crate) fn vanish(&mut self) {
         self.output.stop();
         self.pump();
@@ -416,7 +417,7 @@ impl Session {
         self.slave_side = null.expect("there is always /dev/null");
     }
 
-    /// The terminal's own side, for another process to use.
+    /// Returns the terminal's own side, for another process to use.
     pub(crate) fn terminal(&self) -> std::fs::File {
         let name = rustix::termios::ttyname(&self.slave_side, Vec::new()).expect("a terminal has a name");
         let mut options = std::fs::OpenOptions::new();
@@ -445,13 +446,13 @@ impl Session {
     /// Returns the typed bytes that are unread, which the next reader, such as a shell, would get.
     pub(crate) fn typed_ahead(&mut self) -> Vec<u8> {
         let mut bytes = vec![0; 4096];
-        // Nothing there is WouldBlock.
+        // WouldBlock: there is no input.
         let count = self.slave_side.read(&mut bytes).unwrap_or(0);
         bytes.truncate(count);
         bytes
     }
 
-    /// The terminal's size, as it would be told to the child.
+    /// Returns the terminal's size as the child sees it.
     pub(crate) fn window_size(&self) -> Winsize {
         rustix::termios::tcgetwinsize(&*self.master).expect("a terminal has a size")
     }
@@ -525,9 +526,9 @@ impl Session {
             if wanted(&self.seen) {
                 return true;
             }
-            // A child that always has more to say must not keep us beyond the deadline.
+            // A child that never stops writing must not keep us beyond the deadline.
             if deadline.has_passed() {
-                // What came between the last look and the deadline counts.
+                // Output between the last look and the deadline counts.
                 self.pump();
                 return wanted(&self.seen);
             }
@@ -591,7 +592,7 @@ impl Session {
             if let Some(status) = self.status {
                 return status;
             }
-            // Looked at before the output, so that what is written in between is not missed.
+            // The status is read before the output, so that no output in between is missed.
             let status = self.look_for_exit();
             if status.is_some() {
                 self.take_last_output();
@@ -663,8 +664,8 @@ impl Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        // The child and the group it leads. An error means that nothing is left of it. Groups made by a shell with job
-        // control go by the SIGHUP of the terminal's end, if they do not ignore it.
+        // Kills the child and the group that it leads. An error means that no process of it is left. Groups made by a
+        // shell with job control end by the SIGHUP of the terminal's end, if they do not ignore it.
         let _ = rustix::process::kill_process_group(self.pid(), Signal::KILL);
         let _ = self.child.wait();
     }

@@ -63,7 +63,7 @@ pub(crate) struct Modes {
 }
 
 impl Modes {
-    /// The state after these bytes.
+    /// Returns the state after these bytes.
     pub(crate) fn after(bytes: &[u8]) -> Self {
         let mut modes = Self::default();
         let mut parser = vte::Parser::new();
@@ -86,7 +86,7 @@ impl Modes {
         self.private.get(&mode).copied().unwrap_or(ON_AT_START.contains(&mode))
     }
 
-    /// The flags of the kitty keyboard protocol that are on.
+    /// Returns the flags of the kitty keyboard protocol that are on.
     pub(crate) fn keyboard_flags(&self) -> u16 {
         let screen = self.screen();
         self.keyboard[screen].last().copied().unwrap_or(self.keyboard_flags[screen])
@@ -126,7 +126,7 @@ impl Modes {
         }
     }
 
-    /// 0 on the main screen, 1 on the alternate one.
+    /// Returns 0 on the main screen, 1 on the alternate one.
     fn screen(&self) -> usize {
         usize::from([47, 1047, 1049].iter().any(|&mode| self.is_on(mode)))
     }
@@ -134,7 +134,7 @@ impl Modes {
     fn set_private(&mut self, params: &Params, on: bool) {
         for mode in params.iter().map(|param| param[0]) {
             if let 47 | 1047 | 1049 = mode {
-                // Three names of one screen: leaving by any of them leaves it.
+                // These are three modes of one screen: resetting any of them leaves it.
                 self.private.retain(|known, _| !matches!(known, 47 | 1047 | 1049));
             }
             self.private.insert(mode, on);
@@ -150,7 +150,7 @@ impl Modes {
             b'<' => {
                 let count = usize::from(numbers[0].max(1));
                 if count > pushed.len() {
-                    // To pop more than there is resets all.
+                    // Popping more than was pushed resets all.
                     *base = 0;
                 }
                 pushed.truncate(pushed.len().saturating_sub(count));
@@ -172,7 +172,7 @@ impl Modes {
         while let Some(param) = params.next() {
             match param {
                 [0] => self.pen.clear(),
-                // The numbers of the colour follow, in this form as numbers of their own.
+                // In this form the numbers of the colour follow as parameters of their own.
                 [kind @ (38 | 48 | 58)] => {
                     match params.next() {
                         Some([2]) => params.by_ref().take(3).for_each(drop),
@@ -221,7 +221,7 @@ impl Modes {
         }
     }
 
-    /// DECSTR: not the screen, the mouse, or anything of later days.
+    /// Applies DECSTR, which resets neither the screen nor the mouse nor later extensions.
     fn soft_reset(&mut self) {
         for mode in [1, 6, 66] {
             self.private.remove(&mode);
@@ -329,7 +329,7 @@ impl Place {
     }
 }
 
-/// Hears what is printed, and nothing else.
+/// A listener that receives printed characters only.
 #[derive(Default)]
 struct Probe {
     heard: Vec<char>,

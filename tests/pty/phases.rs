@@ -21,11 +21,11 @@ pub(crate) enum Answer {
     Error,
     /// A panic in the thread that runs the loop.
     Panic,
-    /// A panic in one of those that trace.
+    /// A panic in a thread that traces.
     WorkerPanic,
 }
 
-/// A child's phases, told through a socket that its test-only hooks connect to.
+/// A child's phases, reported through a socket that its test-only hooks connect to.
 pub(crate) struct Phases {
     listener: UnixListener,
     path: PathBuf,
@@ -129,7 +129,7 @@ impl Phases {
         matches!(told, Ok(1..))
     }
 
-    /// Lets the child go on, with that, and hears nothing of it any more.
+    /// Lets the child go on with that action, and reads no later phase.
     pub(crate) fn answer(mut self, answer: Answer) {
         self.send(answer);
     }

@@ -41,7 +41,7 @@ pub(crate) fn shows(screen: &Screen, grid: &Grid) -> bool {
     })
 }
 
-/// The colours of a cell's upper and lower half, if it is of a picture.
+/// Returns the colours of a cell's upper and lower half, if it is a picture's.
 pub(crate) fn halves_of(glyph: char, fg: Colour, bg: Colour) -> Option<[Colour; 2]> {
     match glyph {
         '▄' => Some([bg, fg]),

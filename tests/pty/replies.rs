@@ -1,4 +1,4 @@
-//! The terminal's replies to what the child asks, and what happens to them on the way.
+//! The terminal's replies to the child's queries, and their faults on the way.
 
 use super::Modes;
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ pub(crate) enum Fault {
     Lost,
     /// The reply comes twice.
     Doubled,
-    /// One to a query that was not made comes in its place.
+    /// A reply to another query comes in its place.
     Garbled,
     /// The reply comes this much later than the replies behind it.
     Late(Duration),
@@ -25,9 +25,9 @@ pub(crate) enum Fault {
 /// Which replies have a fault, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Which {
-    /// One.
+    /// One reply.
     Only(usize),
-    /// This and each third after it.
+    /// This reply and each third after it.
     EachThirdFrom(usize),
 }
 
@@ -40,7 +40,7 @@ impl Which {
     }
 }
 
-/// Which queries the terminal answers, and how.
+/// The queries that the terminal answers, and its replies.
 pub(super) struct Replies {
     /// The byte of the output from which on queries have no reply; `None` if none are answered.
     pub(super) unanswered: Option<usize>,
@@ -106,7 +106,7 @@ impl Replies {
     }
 }
 
-/// The digits of the private mode that a query (DECRQM) at the beginning of these bytes asks for.
+/// Returns the digits of the private mode that a query (DECRQM) at the start of these bytes has.
 fn mode_asked_for(bytes: &[u8]) -> Option<&[u8]> {
     let digits = bytes.strip_prefix(b"\x1b[?")?;
     let end = digits.iter().position(|byte| !byte.is_ascii_digit())?;

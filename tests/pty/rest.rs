@@ -1,4 +1,4 @@
-//! Rest: the child says through its test-only hooks when it sleeps until something new happens.
+//! Rest: the child reports through its test-only hooks that it sleeps until an event.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -27,7 +27,7 @@ impl Rest {
         let listener = UnixListener::bind(folder.path().join("phases")).expect("a socket can be had");
         let said = Arc::new(AtomicU64::new(0));
         let heard = Arc::clone(&said);
-        // It ends with the child, and with the test program where no child connects.
+        // The thread ends with the child, and with the test program if no child connects.
         std::thread::spawn(move || hear(&listener, &heard));
         Self { folder, said }
     }

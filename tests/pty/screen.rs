@@ -5,9 +5,9 @@ use std::num::NonZeroU16;
 /// A colour of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Colour {
-    /// The terminal's own.
+    /// The terminal's default colour.
     Default,
-    /// One of the 256.
+    /// One of the 256 indexed colours.
     Indexed(u8),
     /// Red, green and blue.
     Rgb(u8, u8, u8),
@@ -34,7 +34,7 @@ pub(crate) struct Cell {
     pub(crate) background: Colour,
 }
 
-/// A screen, shown by `avt`; `vt100` is there to be asked for a second opinion.
+/// A screen of `avt`, and one of `vt100` for a second opinion.
 pub(crate) struct Screen {
     terminal: avt::Terminal,
     second: vt100::Parser,
@@ -53,7 +53,7 @@ impl Screen {
         }
     }
 
-    /// Shows what these bytes say.
+    /// Shows these bytes.
     pub(crate) fn feed(&mut self, bytes: &[u8]) {
         self.second.process(bytes);
         self.partial.extend_from_slice(bytes);
@@ -62,19 +62,19 @@ impl Screen {
         self.partial.drain(..whole);
     }
 
-    /// Takes another size.
+    /// Resizes the screen.
     pub(crate) fn resize(&mut self, columns: u16, rows: u16) {
         self.terminal.resize(columns.into(), rows.into());
         self.second.set_size(at_least_one(rows), at_least_one(columns));
     }
 
-    /// The lines, from the top, without the blanks at their ends.
+    /// Returns the lines, from the top, without the blanks at their ends.
     pub(crate) fn text(&self) -> Vec<String> {
         let lines = self.terminal.screen().visible_lines();
         lines.map(|line| line.text().trim_end().to_owned()).collect()
     }
 
-    /// The cell in this column and row, both from 0.
+    /// Returns the cell in this column and row, both from 0.
     pub(crate) fn cell(&self, column: usize, row: usize) -> Cell {
         let line = self.terminal.screen().line(row).expect("the row is on the screen");
         let cell = &line.cells()[column];
@@ -84,7 +84,7 @@ impl Screen {
         Cell { glyph: cell.char(), foreground, background }
     }
 
-    /// The column and row of the cursor, both from 0, if it is shown.
+    /// Returns the column and row of the cursor, both from 0, if it is shown.
     pub(crate) fn cursor(&self) -> Option<(usize, usize)> {
         self.terminal.cursor().position()
     }
@@ -94,7 +94,7 @@ impl Screen {
         self.second.screen().alternate_screen()
     }
 
-    /// The second model.
+    /// Returns the second emulator's screen.
     pub(crate) fn second_opinion(&self) -> &vt100::Screen {
         self.second.screen()
     }

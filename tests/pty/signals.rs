@@ -27,7 +27,7 @@ pub(crate) fn reset_for_children() {
     SigSet::empty().thread_set_mask().expect("a thread may receive every signal");
 }
 
-/// The ignored signals, as far as the system says so: only Linux does.
+/// Returns the ignored signals. Only Linux reports them.
 fn ignored() -> impl Iterator<Item = i32> {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -1,4 +1,4 @@
-//! A window whose size is dragged about.
+//! A window that is resized again and again.
 
 use std::{
     sync::{
@@ -11,7 +11,7 @@ use std::{
 
 use pty_process::blocking::Pty;
 
-/// Gives a terminal one size after the other until it is dropped.
+/// Resizes a terminal again and again until it is dropped.
 pub(crate) struct Storm {
     over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,

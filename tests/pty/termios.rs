@@ -2,7 +2,7 @@
 
 use rustix::termios::{SpecialCodeIndex, Termios};
 
-/// One line for each difference.
+/// Returns one line for each difference.
 pub(super) fn changes(before: &Termios, after: &Termios) -> Vec<String> {
     let mut changes = Vec::new();
     // The four sets of flags are four types: a macro does for them what a function cannot.

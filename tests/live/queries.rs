@@ -18,7 +18,7 @@ const FENCE: &[u8] = b"\x1b[c";
 const ESCAPE: Duration = Duration::from_millis(150);
 const FENCE_ANSWER: &[u8] = b"\x1b[?62;22c";
 
-/// A terminal whose name tells of 256 colours, that answers nothing by itself.
+/// Starts the view on a terminal whose name means 256 colours, and which replies to nothing.
 fn live() -> Start {
     Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).env("COLORTERM", "").mute()
 }
@@ -35,7 +35,7 @@ fn wait_for(session: &mut Session, glyphs: Glyphs, colors: Colors, aspect: f32) 
     session.wait_for(&format!("{glyphs:?} in {colors:?}"), SOON, |seen| shows(seen.screen(), &wanted));
 }
 
-/// A session that shows the picture that the environment tells of, and has asked.
+/// Waits for the picture by the environment alone, and for the queries.
 #[track_caller]
 fn looking(start: Start) -> Session {
     let mut session = start.spawn();
@@ -71,7 +71,7 @@ fn everything() -> Vec<u8> {
     .concat()
 }
 
-/// The place in the output behind the questions of the start, which are asked again after a stop.
+/// Returns the end of the first queries in the output. They are sent again after a stop.
 fn end_of_questions(seen: &pty::Seen) -> usize {
     let ask = b"\x1b]11;?";
     let asked = seen.bytes().windows(ask.len()).rposition(|bytes| bytes == ask).expect("it was asked");
@@ -79,7 +79,7 @@ fn end_of_questions(seen: &pty::Seen) -> usize {
     asked + fence + FENCE.len()
 }
 
-/// The last answer to the questions of the start, and those that the frames ask for.
+/// Sends the last reply to the first queries, and the replies to those of frames.
 fn end_answers(session: &mut Session) {
     session.send(FENCE_ANSWER);
     answer_frames(session);
@@ -102,7 +102,7 @@ fn nothing_was_pressed(session: &mut Session) {
 }
 
 #[test]
-fn a_terminal_that_answers_nothing_gets_its_picture_at_once() {
+fn a_terminal_that_never_replies_gets_its_picture_at_once() {
     let mut session = looking(live());
     let bytes = session.seen().bytes();
     let asked = bytes.windows(FENCE.len()).position(|bytes| bytes == FENCE).expect("it was asked");
@@ -111,7 +111,7 @@ fn a_terminal_that_answers_nothing_gets_its_picture_at_once() {
 }
 
 #[test]
-fn all_answers_at_once_improve_the_picture() {
+fn all_replies_at_once_improve_the_picture() {
     let mut session = looking(live().size(Size::cells(80, 24).of_pixels(0, 0)));
     assert!(!session.seen().has(b"\x1b[?2026h"));
     session.send(&String::from_utf8_lossy(&everything()).replace("6;20;10t", "6;24;10t").into_bytes());
@@ -123,7 +123,7 @@ fn all_answers_at_once_improve_the_picture() {
 }
 
 #[test]
-fn answers_count_when_the_last_is_there() {
+fn replies_count_once_the_last_has_come() {
     let mut session = looking(live());
     session.send(&everything());
     let wanted = picture(Glyphs::Half, Colors::Truecolor, 2.0);
@@ -137,9 +137,9 @@ fn answers_count_when_the_last_is_there() {
 }
 
 #[test]
-fn late_answers_count_too() {
+fn late_replies_count_too() {
     let mut session = looking(live());
-    // Shown when the program has given up waiting for the first answers.
+    // The picture is shown when the program has stopped waiting for the first replies.
     session.send(b"i");
     session.wait_for_text("eye 0.00 1.00 5.00");
     session.send(b"i");
@@ -154,10 +154,11 @@ fn late_answers_count_too() {
 ///
 /// The help is open, which Escape would close.
 #[test]
-fn answers_split_at_any_byte_press_no_key() {
+fn replies_split_at_any_byte_press_no_key() {
     let answers = [&b"\x1b[1;2R"[..], b"\x1b]11;rgb:0/0/0\x1b\\", b"\x1bP1$r48;2;1;2;3m\x1b\\", FENCE_ANSWER].concat();
     let places: Vec<_> = (1..answers.len()).collect();
-    // Few at a time: a terminal that has not answered for 3 s is taken for one that does not, and may press Escape.
+    // Eight run at a time: the program takes a terminal that has not replied for 3 s for one that never does, and then
+    // a lone Escape is a key.
     for places in places.chunks(8) {
         answers_split_at(places, &answers);
     }
@@ -203,7 +204,7 @@ fn every_byte_alone_is_the_same_as_all_at_once() {
 /// Replies without a query, nonsense and replies after the last one change nothing and press
 /// nothing.
 #[test]
-fn forged_answers_change_nothing() {
+fn forged_replies_change_nothing() {
     let mut session = looking(live());
     session.send(b"\x1b]11;rgb:q/q/q\x1b\\\x1bP1$rqqqm\x1b\\\x1b[?9999;1$y\x1b[6;0;0t\x1b]4;99;rgb:0/0/0\x07");
     end_answers(&mut session);
@@ -249,14 +250,14 @@ fn sixteen_colours_are_the_terminals_own() {
 }
 
 #[test]
-fn a_light_background_turns_ink_around() {
+fn a_light_background_inverts_ink() {
     let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).arg("--color=never").arg("--glyphs=ramp").mute();
     let mut session = start.spawn();
     let dark = picture(Glyphs::Ramp, Colors::None, 2.0);
     session.wait_for("light on dark", SOON, |seen| shows(seen.screen(), &dark));
     session.send(b"\x1b]11;rgb:ffff/ffff/ffff\x07");
     end_answers(&mut session);
-    // What was ink is blank, and the other way round.
+    // Ink is blank, and blank is ink.
     session.wait_for("dark on light", SOON, |seen| {
         let inked = |screen: &pty::Screen, at: usize| screen.cell(at % 80, at / 80).glyph != ' ';
         let turned = dark.cells().iter().enumerate().filter(|(_, cell)| cell.glyph == ' ');
@@ -266,12 +267,12 @@ fn a_light_background_turns_ink_around() {
 }
 
 #[test]
-fn answers_on_their_way_are_waited_for_and_none_is_left() {
+fn outstanding_replies_are_waited_for_and_none_is_left() {
     let mut session = looking(live());
     session.send(b"q");
     session.wait_for("the terminal to be given back", SOON, |seen| !seen.screen().is_alternate());
     session.send(&everything());
-    // In the middle of the last one, and before it.
+    // The signal comes in the middle of the last reply, and before it.
     session.send(&FENCE_ANSWER[..4]);
     session.wait_until_read();
     session.send(&FENCE_ANSWER[4..]);
@@ -284,7 +285,7 @@ fn answers_on_their_way_are_waited_for_and_none_is_left() {
 
 /// A program that is stopped before the replies came asks again: they may have had another reader.
 #[test]
-fn who_was_stopped_asks_again() {
+fn a_stopped_program_queries_again() {
     let mut session = looking(live());
     session.signal(Signal::STOP);
     session.wait_stopped(SOON);
@@ -299,7 +300,7 @@ fn who_was_stopped_asks_again() {
 }
 
 #[test]
-fn a_signal_waits_for_answers_too_but_not_for_ever() {
+fn a_signal_waits_for_replies_up_to_a_limit() {
     let mut session = looking(live());
     session.signal(Signal::TERM);
     assert_eq!(session.wait_exit(SOON).signal(), Some(Signal::TERM.as_raw()));
@@ -308,7 +309,7 @@ fn a_signal_waits_for_answers_too_but_not_for_ever() {
 
 /// No letter of a query is seen, no half a sequence, and no mode or colour is left on.
 #[test]
-fn no_question_leaves_a_trace_on_the_screen() {
+fn no_query_leaves_a_trace_on_the_screen() {
     for term in ["xterm-256color", "tmux-256color", "screen-256color", "linux", "dumb", "vt100"] {
         let variable = |name: &str| (name == "TERM").then(|| term.to_owned());
         let questions = InitialQueries::all(&Hints::gather(&variable, &|_| None));
@@ -330,7 +331,7 @@ fn no_question_leaves_a_trace_on_the_screen() {
 }
 
 #[test]
-fn doctor_asks_and_tells_what_was_answered() {
+fn doctor_queries_and_reports_the_replies() {
     let doctor = || Start::new(env!("CARGO_BIN_EXE_termtrace")).arg("doctor").env("COLORTERM", "").mute();
     let mut session = doctor().size(Size::cells(80, 24)).spawn();
     session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
@@ -374,7 +375,7 @@ fn doctor_sends_a_dumb_terminal_no_escape_byte() {
 }
 
 #[test]
-fn doctor_does_not_wait_for_ever_and_dies_of_signals() {
+fn doctor_waits_up_to_a_limit_and_ends_on_signals() {
     let doctor = || Start::new(env!("CARGO_BIN_EXE_termtrace")).arg("doctor").mute();
     let mut session = doctor().spawn();
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
