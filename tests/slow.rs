@@ -31,33 +31,33 @@ use termtrace::{Cancelled, CellMode, Render, Resolution, Sampling, Scene, SceneS
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron");
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 
-/// A terminal that has stopped reading is left within this.
-const STOPPED: Duration = Duration::from_secs(2);
+/// The longest time to leave a terminal that has stopped reading.
+const MAX_STOPPED_TIME: Duration = Duration::from_secs(2);
 /// The longest time to leave while a mesh is loading.
-const LOADING: Duration = Duration::from_millis(200);
+const MAX_LOADING_TIME: Duration = Duration::from_millis(200);
 /// The longest time to leave a terminal that has never replied. A wait for a reply would take a
 /// second.
-const SILENT: Duration = Duration::from_millis(250);
+const MAX_SILENT_TIME: Duration = Duration::from_millis(250);
 /// The longest time until a key is seen while the terminal loses a reply, before the first reply
 /// and after it.
-const KEY: [Duration; 2] = [Duration::from_millis(500), Duration::from_millis(250)];
+const MAX_KEY_TIMES: [Duration; 2] = [Duration::from_millis(500), Duration::from_millis(250)];
 /// The longest time to leave a terminal that has vanished.
-const VANISHED: Duration = Duration::from_secs(1);
+const MAX_VANISHED_TIME: Duration = Duration::from_secs(1);
 /// The most CPU time that this takes, in hundredths of a second.
-const VANISHED_TICKS: u64 = 10;
+const MAX_VANISHED_TICKS: u64 = 10;
 /// The indices of the lost replies: those at the start, where the program knows least, and some
 /// later ones.
-const REPLIES: [usize; 11] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
+const LOST_REPLIES: [usize; 11] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
 /// The longest time until a saved scene is shown.
-const SAVED: Duration = Duration::from_millis(100);
+const MAX_RELOAD_TIME: Duration = Duration::from_millis(100);
 /// The longest time until a cancelled render has ended.
-const CANCELLED: Duration = Duration::from_millis(50);
+const MAX_CANCEL_TIME: Duration = Duration::from_millis(50);
 /// The longest CPU time of a draw call, for 95 of 100 calls.
 ///
 /// The program of ratatui has one pane, traced in the background with the best samples, at 200x60 cells.
-const DRAW: Duration = Duration::from_millis(5);
+const MAX_DRAW_TIME: Duration = Duration::from_millis(5);
 /// The longest time until a saved mesh is shown, in times that it takes to read and build it.
-const MESH_SAVED: f64 = 1.2;
+const MAX_MESH_RELOAD_RATIO: f64 = 1.2;
 
 /// Waits for the exit, which has a limit.
 #[track_caller]
@@ -80,7 +80,7 @@ fn a_reader_that_stopped(what: &str, code: Option<i32>, act: impl FnOnce(&Sessio
     phases.wait_for("frame");
     let answer = act(&session);
     phases.answer(answer);
-    let status = exit_within(STOPPED, what, &mut session);
+    let status = exit_within(MAX_STOPPED_TIME, what, &mut session);
     assert_eq!(status.code(), code, "{what}");
     assert_eq!(session.termios_changes(), Vec::<String>::new(), "{what}");
     status
@@ -115,7 +115,7 @@ fn a_reader_that_stopped_is_left_by_fault() {
     }
 }
 
-/// The clock ticks of CPU that a process and its dead children have used; a hundred are a second.
+/// Returns the clock ticks of CPU of a process and its dead children; a hundred are a second.
 #[cfg(target_os = "linux")]
 fn ticks(session: &Session) -> u64 {
     let stat = std::fs::read_to_string(format!("/proc/{}/stat", session.pid().as_raw_nonzero())).expect("it is there");
@@ -123,7 +123,7 @@ fn ticks(session: &Session) -> u64 {
     fields[11..15].iter().map(|ticks| ticks.parse::<u64>().expect("user and system time")).sum()
 }
 
-/// The terminal goes; whether by a signal that is heard or not, the process goes too.
+/// Removes the terminal. The process ends, whether it handles the signal or not.
 #[cfg(target_os = "linux")]
 fn a_terminal_that_vanishes(what: &str, hears: bool, before: impl FnOnce(&mut Session)) {
     let what = format!("{what}, SIGHUP {}", if hears { "heard" } else { "ignored" });
@@ -138,10 +138,10 @@ fn vanish(what: &str, hears: bool, start: Start, before: impl FnOnce(&mut Sessio
     before(&mut session);
     let used = ticks(&session);
     session.vanish();
-    let status = exit_within(VANISHED, what, &mut session);
+    let status = exit_within(MAX_VANISHED_TIME, what, &mut session);
     let used = ticks(&session) - used;
     println!("{what}: {used} ticks, {status}");
-    assert!(used < 3 * VANISHED_TICKS, "{what}: {used} ticks");
+    assert!(used < 3 * MAX_VANISHED_TICKS, "{what}: {used} ticks");
     let (code, signal) = if hears { (None, Some(Signal::HUP.as_raw())) } else { (Some(1), None) };
     assert_eq!((status.code(), status.signal()), (code, signal), "{what}");
 }
@@ -195,7 +195,7 @@ fn a_screen_that_vanishes_while_the_keys_stay() {
     vanish("the screen alone", false, start.stdin(keys.terminal()), |_| {});
 }
 
-/// A mesh of which nothing comes: however long it takes, it is left at once.
+/// A mesh that does not come does not delay leaving.
 #[test]
 fn a_mesh_that_does_not_come_is_left() {
     let folder = tempfile::tempdir().expect("a folder can be made");
@@ -210,7 +210,7 @@ fn a_mesh_that_does_not_come_is_left() {
             Some(signal) => session.signal(signal),
             None => session.send(key),
         }
-        let status = exit_within(LOADING, "while it reads", &mut session);
+        let status = exit_within(MAX_LOADING_TIME, "while it reads", &mut session);
         assert_eq!(status.signal(), signal.map(Signal::as_raw));
         drop(pipe);
     }
@@ -229,7 +229,7 @@ fn reload(session: &mut Session, path: &Path, contents: &[u8]) -> Duration {
     start.elapsed()
 }
 
-/// A scene that shows a mesh in that colour.
+/// Returns a scene that shows a mesh in that colour.
 fn scene_of_mesh(color: &str) -> String {
     format!(
         "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, background: \"navy\",
@@ -248,7 +248,7 @@ fn a_saved_scene_is_shown_soon() {
     for color in ["red", "lime", "gold", "white", "red", "lime", "gold", "white"] {
         let took = reload(&mut session, &path, scene_of_mesh(color).as_bytes());
         println!("a saved scene: seen after {took:?}");
-        assert!(took < 3 * SAVED, "{took:?}");
+        assert!(took < 3 * MAX_RELOAD_TIME, "{took:?}");
     }
 }
 
@@ -272,7 +272,7 @@ fn memory(session: &Session) -> [f64; 2] {
     })
 }
 
-/// Memory while a large scene is saved so often, and after it.
+/// Returns the memory while a large scene is saved that many times, and after it.
 #[cfg(target_os = "linux")]
 fn saved(times: usize) -> [f64; 2] {
     let folder = tempfile::tempdir().expect("a folder can be made");
@@ -328,11 +328,14 @@ fn a_saved_mesh_is_shown_once_it_is_built() {
         assert!(checked.is_ok_and(|output| output.status.success()));
         let built = start.elapsed();
         println!("a saved mesh: seen after {took:?}, read and built in {built:?}");
-        assert!(took < built.mul_f64(3.0 * MESH_SAVED) + 3 * SAVED, "{took:?}, built in {built:?}");
+        assert!(
+            took < built.mul_f64(3.0 * MAX_MESH_RELOAD_RATIO) + 3 * MAX_RELOAD_TIME,
+            "{took:?}, built in {built:?}"
+        );
     }
 }
 
-/// The coordinates of the eye in the figures that `i` shows.
+/// Returns the coordinates of the eye in the figures that `i` shows.
 fn eye(seen: &Seen) -> Option<String> {
     let text = seen.screen().text();
     text.iter().find_map(|line| Some(line.split_once("  eye ")?.1.trim_end().to_owned()))
@@ -365,7 +368,7 @@ fn slowest_key(reports_modes: bool, fault: Fault, which: Which, last: usize) -> 
 #[test]
 fn a_lost_reply_does_not_delay_a_key() {
     let faults = [Fault::Lost, Fault::Doubled, Fault::Garbled, Fault::Late(Duration::from_secs(20))];
-    let which: Vec<_> = REPLIES.map(Which::Only).into_iter().chain([Which::EachThirdFrom(1)]).collect();
+    let which: Vec<_> = LOST_REPLIES.map(Which::Only).into_iter().chain([Which::EachThirdFrom(1)]).collect();
     for (reports_modes, fault) in [true, false].into_iter().flat_map(|modes| faults.map(|fault| (modes, fault))) {
         let wait = |which| match which {
             Which::Only(reply) => slowest_key(reports_modes, fault, which, reply),
@@ -379,7 +382,8 @@ fn a_lost_reply_does_not_delay_a_key() {
             });
             println!("reports modes: {reports_modes}, {fault:?}, {which:?}: {waits:.0?}");
             // Until the second reply the terminal has not replied to a frame.
-            let limit = |which| KEY[usize::from(!matches!(which, Which::Only(1 | 2) | Which::EachThirdFrom(_)))];
+            let limit =
+                |which| MAX_KEY_TIMES[usize::from(!matches!(which, Which::Only(1 | 2) | Which::EachThirdFrom(_)))];
             assert!(which.iter().zip(&waits).all(|(&which, &wait)| wait < 3 * limit(which)), "{waits:?}");
         }
     }
@@ -387,7 +391,7 @@ fn a_lost_reply_does_not_delay_a_key() {
 
 const LARGE: Size = Size { columns: 120, rows: 40, cell: (10, 20) };
 
-/// A session in which a refinement has just been begun.
+/// Starts a session in which a refinement has just begun.
 fn refining(scene: &NamedTempFile) -> (Session, Phases) {
     let mut phases = Phases::new();
     let start = Start::new(PROGRAM).arg(scene.path()).size(LARGE);
@@ -414,7 +418,7 @@ fn a_key_does_not_wait_for_a_refinement() {
     session.send(b"w");
     let start = Instant::now();
     phases.answer(Answer::GoOn);
-    // More than a question.
+    // The bytes are more than a query.
     session.wait_for("another picture", 6 * SOON, |seen| seen.bytes().len() > before + 1_000);
     let seen = start.elapsed();
 
@@ -458,22 +462,22 @@ fn a_terminal_that_has_sent_all_replies_is_left_at_once() {
     session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
     session.wait_for_rest();
     session.send(b"q");
-    exit_within(SILENT, "all answered", &mut session);
+    exit_within(MAX_SILENT_TIME, "all answered", &mut session);
     session.assert_clean();
 }
 
-/// A terminal that has never answered for three seconds is not waited for.
+/// A terminal that has not replied for three seconds is not waited for.
 #[test]
 fn a_terminal_that_has_never_replied_is_left_at_once() {
     let mut session = Start::new(PROGRAM).arg(SCENE).mute().spawn();
     session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
     session.sees(Duration::from_millis(3_200), |_| false);
     session.send(b"q");
-    exit_within(SILENT, "never answered", &mut session);
+    exit_within(MAX_SILENT_TIME, "never answered", &mut session);
     session.assert_clean();
 }
 
-/// Wherever it is, in a picture of 10 million pixels.
+/// A cancel ends a render in any phase, of a picture of 10 million pixels.
 #[test]
 fn a_cancelled_render_ends_at_once() {
     let scene = Scene::load(Path::new(SCENE)).expect("the scene is fine");
@@ -494,7 +498,7 @@ fn a_cancelled_render_ends_at_once() {
             assert_eq!(render.cancelled_by(&token).on_progress(cancel).run(), Err(Cancelled));
             let took = cancelled.get().expect("it was cancelled").elapsed();
             println!("{sampling:?} cancelled at {part}: given up in {took:?}");
-            assert!(took < 3 * CANCELLED, "{sampling:?} at {part}: {took:?}");
+            assert!(took < 3 * MAX_CANCEL_TIME, "{sampling:?} at {part}: {took:?}");
         }
     }
 }
@@ -523,5 +527,5 @@ fn a_draw_call_with_a_pane_in_the_background_is_short() {
         .collect();
     draws.sort_unstable();
     println!("a draw call: {:?}, the 95th of 100 {:?}", draws[50], draws[95]);
-    assert!(draws[95] < 3 * DRAW, "{:?}", draws[95]);
+    assert!(draws[95] < 3 * MAX_DRAW_TIME, "{:?}", draws[95]);
 }

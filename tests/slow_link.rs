@@ -21,10 +21,10 @@ mod source;
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron");
 
 /// The factor by which a time may be longer than promised.
-const SLACK: f64 = 3.0;
+const TIME_SLACK: f64 = 3.0;
 
-const SLOW: Link = Link { rate: 50_000.0, round_trip: Duration::from_millis(200), answers: true };
-const FAST: Link = Link { rate: 1e9, round_trip: Duration::from_micros(200), answers: true };
+const SLOW_LINK: Link = Link { rate: 50_000.0, round_trip: Duration::from_millis(200), answers: true };
+const FAST_LINK: Link = Link { rate: 1e9, round_trip: Duration::from_micros(200), answers: true };
 
 fn termtrace() -> Start {
     termtrace_of(SCENE)
@@ -39,7 +39,7 @@ fn ms(milliseconds: u64) -> Duration {
     Duration::from_millis(milliseconds)
 }
 
-/// A program whose status line is shown, and whose picture has long come.
+/// Starts a program, and waits for its status line and its refined picture.
 fn looking(program: Start, link: Link) -> Relay {
     let mut relay = Relay::start(program, link);
     assert!(relay.run(SOON, |relay| relay.taken() > 1_000), "a picture");
@@ -49,7 +49,7 @@ fn looking(program: Start, link: Link) -> Relay {
     relay
 }
 
-/// The eye point that the status line tells.
+/// Returns the eye point that the status line shows.
 fn eye(status: &str) -> Option<[f64; 3]> {
     let (_, numbers) = status.rsplit_once("eye ")?;
     let numbers: Vec<f64> = numbers.split_whitespace().filter_map(|number| number.parse().ok()).collect();
@@ -57,8 +57,8 @@ fn eye(status: &str) -> Option<[f64; 3]> {
 }
 
 /// The eye at the start.
-const HOME: [f64; 3] = [0.0, 1.0, 5.0];
-/// Which keys move the eye down and up an axis.
+const HOME_EYE: [f64; 3] = [0.0, 1.0, 5.0];
+/// The keys that move the eye down and up an axis.
 const AXES: [(usize, [&[u8]; 2]); 2] = [(0, [b"a", b"d"]), (2, [b"w", b"s"])];
 
 /// Presses keys that change the direction of the movement, and returns how long each takes to be
@@ -74,7 +74,7 @@ fn walk(relay: &mut Relay, keys: usize) -> Vec<Duration> {
             let pressed = relay.now();
             let before = relay.frames.len();
             let is_above =
-                relay.frames.last().and_then(|frame| eye(&frame.status)).is_none_or(|e| e[axis] >= HOME[axis]);
+                relay.frames.last().and_then(|frame| eye(&frame.status)).is_none_or(|e| e[axis] >= HOME_EYE[axis]);
             relay.press(if is_above { down } else { up });
             let mut shown = None;
             relay.run(ms(20_000), |relay| {
@@ -103,7 +103,7 @@ fn keys() -> usize {
 
 #[test]
 fn a_key_is_soon_seen_on_a_slow_link() {
-    let mut relay = looking(termtrace(), SLOW);
+    let mut relay = looking(termtrace(), SLOW_LINK);
     // From rest, the link is found slow.
     walk(&mut relay, 4);
     let (first, since) = (relay.frames.len(), relay.now());
@@ -113,7 +113,7 @@ fn a_key_is_soon_seen_on_a_slow_link() {
     let frames = &relay.frames[first..];
     let bytes: usize = frames.iter().map(|frame| frame.bytes).sum();
     let largest = frames.iter().map(|frame| frame.bytes).max().unwrap_or(0);
-    let (fps, share) = (frames.len() as f64 / seconds, bytes as f64 / seconds / SLOW.rate);
+    let (fps, share) = (frames.len() as f64 / seconds, bytes as f64 / seconds / SLOW_LINK.rate);
     // The others make the last picture better.
     let new = frames.windows(2).filter(|pair| eye(&pair[0].status) != eye(&pair[1].status)).count();
     let (p50, p99) = (percentile(&times, 0.5), percentile(&times, 0.99));
@@ -122,13 +122,13 @@ fn a_key_is_soon_seen_on_a_slow_link() {
     println!("{new} of {} frames are of a new picture", frames.len());
     println!("in flight beyond the formula: {:.0} bytes", relay.excess);
     println!("{}", relay.frames.last().expect("there are frames").status);
-    assert!(p50 <= ms(310).mul_f64(SLACK), "p50 {p50:?}");
-    assert!(p99 <= ms(400).mul_f64(SLACK), "p99 {p99:?}");
-    assert!(fps >= 10.0 / SLACK, "{fps} frames/s");
+    assert!(p50 <= ms(310).mul_f64(TIME_SLACK), "p50 {p50:?}");
+    assert!(p99 <= ms(400).mul_f64(TIME_SLACK), "p99 {p99:?}");
+    assert!(fps >= 10.0 / TIME_SLACK, "{fps} frames/s");
     assert!(new * 10 >= frames.len() * 9, "{new} of {} frames are of a new picture", frames.len());
-    assert!(share >= 0.85 / SLACK, "{share} of the link");
-    assert!(largest as f64 <= SLOW.rate / 15.0 * 1.1, "a frame of {largest} bytes");
-    // What the link's own delays seem to be is measured, too: on a busy machine they are longer.
+    assert!(share >= 0.85 / TIME_SLACK, "{share} of the link");
+    assert!(largest as f64 <= SLOW_LINK.rate / 15.0 * 1.1, "a frame of {largest} bytes");
+    // The link's own delays are measured, too: on a busy machine they are longer.
     assert!(relay.excess <= 5_000.0, "{} bytes too many in flight", relay.excess);
     assert!(relay.frames.last().is_some_and(|frame| frame.status.contains("slow link")));
 }
@@ -151,15 +151,15 @@ fn seen_after<T: PartialEq>(
     let times: Vec<_> = times.collect();
     let (p50, p99) = (percentile(&times, 0.5), percentile(&times, 0.99));
     println!("{what}, {} times: p50 {p50:?} p99 {p99:?}", times.len());
-    assert!(p50 <= ms(310).mul_f64(SLACK), "{what}: p50 {p50:?}");
-    assert!(p99 <= ms(400).mul_f64(SLACK), "{what}: p99 {p99:?}");
+    assert!(p50 <= ms(310).mul_f64(TIME_SLACK), "{what}: p50 {p50:?}");
+    assert!(p99 <= ms(400).mul_f64(TIME_SLACK), "{what}: p99 {p99:?}");
     times
 }
 
-/// A panel that changes with each key, and a picture that follows the pointer.
+/// Each key changes a panel, and the picture follows the pointer.
 #[test]
 fn panels_and_the_pointer_are_as_quick_as_the_picture() {
-    let mut relay = looking(termtrace(), SLOW);
+    let mut relay = looking(termtrace(), SLOW_LINK);
     walk(&mut relay, 4);
     relay.press(b"x");
     let explained = |relay: &Relay| relay.screen().text().into_iter().find(|line| line.contains("(i, j) = "));
@@ -179,7 +179,7 @@ fn panels_and_the_pointer_are_as_quick_as_the_picture() {
 /// Frames of one size, whatever the link: only their number can be fitted to it.
 #[test]
 fn a_key_is_soon_seen_among_frames_of_four_kilobytes() {
-    let mut relay = Relay::start(Start::shell("stty raw -echo; echo ready; exec sleep 10000"), SLOW);
+    let mut relay = Relay::start(Start::shell("stty raw -echo; echo ready; exec sleep 10000"), SLOW_LINK);
     assert!(relay.run(SOON, |relay| relay.taken() >= b"ready\n".len()), "a raw terminal");
     let terminal = relay.session.terminal();
     let source = std::thread::spawn(|| source::run(terminal));
@@ -189,17 +189,17 @@ fn a_key_is_soon_seen_among_frames_of_four_kilobytes() {
     let times = walk(&mut relay, keys());
     let seconds = relay.since(since).as_secs_f64();
     let frames = &relay.frames[first..];
-    // A question alone comes with the frame behind it.
+    // A query alone comes with the frame behind it.
     assert!(frames.iter().all(|frame| frame.bytes == 4_000), "frames of one size");
-    let (fps, share) = (frames.len() as f64 / seconds, frames.len() as f64 * 4_000.0 / seconds / SLOW.rate);
+    let (fps, share) = (frames.len() as f64 / seconds, frames.len() as f64 * 4_000.0 / seconds / SLOW_LINK.rate);
     let (p50, p99) = (percentile(&times, 0.5), percentile(&times, 0.99));
     println!("4 kB: {} keys: p50 {p50:?} p99 {p99:?} max {:?}", times.len(), percentile(&times, 1.0));
     println!("4 kB: {fps:.1} frames/s, {:.1} % of the link", 100.0 * share);
     println!("4 kB: in flight beyond the formula: {:.0} bytes", relay.excess);
-    assert!(p50 <= ms(420).mul_f64(SLACK), "p50 {p50:?}");
-    assert!(p99 <= ms(480).mul_f64(SLACK), "p99 {p99:?}");
-    assert!(fps >= 10.0 / SLACK, "{fps} frames/s");
-    assert!(share >= 0.85 / SLACK, "{share} of the link");
+    assert!(p50 <= ms(420).mul_f64(TIME_SLACK), "p50 {p50:?}");
+    assert!(p99 <= ms(480).mul_f64(TIME_SLACK), "p99 {p99:?}");
+    assert!(fps >= 10.0 / TIME_SLACK, "{fps} frames/s");
+    assert!(share >= 0.85 / TIME_SLACK, "{share} of the link");
     assert!(relay.excess <= 5_000.0, "{} bytes too many in flight", relay.excess);
     relay.session.send(b"q");
     source.join().expect("the source does not panic");
@@ -220,7 +220,7 @@ fn spheres(scene: &Scene, eye: Option<[f64; 3]>) -> Grid {
     pty::picture(&scene, CellMode::HALF_BLOCK, Size::new(80, 24), 2.0)
 }
 
-/// The halves of all cells but those of the lowest rows, where the status is.
+/// Returns the halves of all cells but those of the lowest rows, where the status line is.
 fn halves(columns: usize, mut cell: impl FnMut(usize, usize) -> Option<[Colour; 2]>) -> Vec<[f64; 3]> {
     let cells = (0..22).flat_map(|row| (0..columns).map(move |column| (column, row)));
     let halves = cells.flat_map(|(column, row)| cell(column, row).expect("a cell of a picture"));
@@ -232,7 +232,7 @@ fn halves(columns: usize, mut cell: impl FnMut(usize, usize) -> Option<[Colour; 
         .collect()
 }
 
-/// The ratio of the peak to the noise between what is shown and what is wanted, in decibels.
+/// Returns the PSNR of the screen against the wanted grid, in decibels.
 fn psnr(screen: &Screen, wanted: &Grid) -> f64 {
     let shown = halves(80, |column, row| {
         let cell = screen.cell(column, row);
@@ -247,11 +247,11 @@ fn psnr(screen: &Screen, wanted: &Grid) -> f64 {
     10.0 * libm::log10(255.0 * 255.0 * 3.0 * shown.len() as f64 / squares.sum::<f64>())
 }
 
-/// The wanted picture is that of the eye in the status line, which is told to a hundredth.
+/// The wanted picture is that of the eye in the status line, which has two decimals.
 #[test]
 fn a_picture_in_motion_is_near_on_a_slow_link_and_exact_once_still() {
     let scene = Scene::load(Path::new(SPHERES)).expect("the scene is fine");
-    let mut relay = looking(termtrace_of(SPHERES), SLOW);
+    let mut relay = looking(termtrace_of(SPHERES), SLOW_LINK);
     let mut found = Vec::new();
     for key in [b"a", b"w", b"d", b"s"].into_iter().cycle().take(keys().min(40)) {
         relay.press(key);
@@ -297,11 +297,11 @@ fn late_until(relay: &Relay, dropped: Duration) -> Duration {
 /// A key along another axis than the movement up to then: it is not to be taken for that.
 #[test]
 fn a_link_that_becomes_ten_times_slower_is_soon_kept_up_with() {
-    let mut relay = looking(termtrace(), SLOW);
+    let mut relay = looking(termtrace(), SLOW_LINK);
     walk(&mut relay, 6);
     relay.link.rate /= 10.0;
     let dropped = relay.now();
-    let limit = ms(2_000).mul_f64(if cfg!(debug_assertions) { SLACK } else { 1.0 });
+    let limit = ms(2_000).mul_f64(if cfg!(debug_assertions) { TIME_SLACK } else { 1.0 });
     keep_moving(&mut relay, limit);
     let (pressed, before) = (relay.now(), relay.frames.len());
     relay.press(b"w");
@@ -312,17 +312,17 @@ fn a_link_that_becomes_ten_times_slower_is_soon_kept_up_with() {
     keep_moving(&mut relay, ms(3_000));
     let late = late_until(&relay, dropped);
     println!("keys are late until {late:?} after the drop; one {limit:?} after it took {time:?}");
-    assert!(late <= ms(2_000).mul_f64(SLACK), "{late:?}");
-    assert!(time <= ms(400).mul_f64(SLACK), "{time:?}");
+    assert!(late <= ms(2_000).mul_f64(TIME_SLACK), "{late:?}");
+    assert!(time <= ms(400).mul_f64(TIME_SLACK), "{time:?}");
 }
 
 /// And back.
 #[test]
 fn a_link_that_becomes_fast_is_used() {
-    let mut relay = looking(termtrace(), SLOW);
+    let mut relay = looking(termtrace(), SLOW_LINK);
     walk(&mut relay, 6);
     assert!(relay.frames.last().is_some_and(|frame| frame.status.contains("slow link")));
-    relay.link = FAST;
+    relay.link = FAST_LINK;
     walk(&mut relay, 12);
     let status = &relay.frames.last().expect("there are frames").status;
     assert!(!status.contains("slow link"), "{status}");
@@ -368,32 +368,32 @@ fn frames_per_second(relay: &mut Relay, time: Duration) -> f64 {
 
 #[test]
 fn a_terminal_that_never_replies_gets_thirty_frames_a_second_at_most() {
-    let mut relay = looking(termtrace(), Link { answers: false, ..FAST });
+    let mut relay = looking(termtrace(), Link { answers: false, ..FAST_LINK });
     let silent = frames_per_second(&mut relay, ms(2_000));
-    let mut relay = looking(termtrace(), FAST);
+    let mut relay = looking(termtrace(), FAST_LINK);
     let answering = frames_per_second(&mut relay, ms(2_000));
     println!("{silent:.1} frames/s without answers, {answering:.1} with");
-    assert!((30.0 / SLACK..=31.0).contains(&silent), "{silent} frames/s");
+    assert!((30.0 / TIME_SLACK..=31.0).contains(&silent), "{silent} frames/s");
     assert!(answering > silent && answering <= 62.0, "{answering} frames/s with answers");
 }
 
 #[test]
 fn fps_caps_the_frames() {
-    let mut relay = looking(termtrace().arg("--fps").arg("12"), FAST);
+    let mut relay = looking(termtrace().arg("--fps").arg("12"), FAST_LINK);
     let fps = frames_per_second(&mut relay, ms(2_000));
     println!("{fps:.1} frames/s of 12");
-    assert!((12.0 / SLACK..=13.0).contains(&fps), "{fps} frames/s");
+    assert!((12.0 / TIME_SLACK..=13.0).contains(&fps), "{fps} frames/s");
 }
 
 #[test]
 fn max_rate_caps_the_bytes() {
-    let mut relay = looking(termtrace().arg("--max-rate").arg("50k"), FAST);
+    let mut relay = looking(termtrace().arg("--max-rate").arg("50k"), FAST_LINK);
     keep_moving(&mut relay, ms(1_000));
     let (before, since) = (relay.taken(), relay.now());
     keep_moving(&mut relay, ms(4_000));
     let rate = (relay.taken() - before) as f64 / relay.since(since).as_secs_f64();
     println!("{rate:.0} bytes/s of 50000");
-    assert!((50_000.0 * 0.95 / SLACK..=50_000.0 * 1.05).contains(&rate), "{rate} bytes/s");
+    assert!((50_000.0 * 0.95 / TIME_SLACK..=50_000.0 * 1.05).contains(&rate), "{rate} bytes/s");
 }
 
 /// Returns how often the threads of a process have gone to sleep.
@@ -413,7 +413,7 @@ fn sleeps(relay: &Relay) -> u64 {
 #[test]
 fn at_rest_nothing_happens() {
     for answers in [true, false] {
-        let mut relay = looking(termtrace(), Link { answers, ..FAST });
+        let mut relay = looking(termtrace(), Link { answers, ..FAST_LINK });
         relay.press(b"a");
         relay.run(ms(2_500), |_| false);
         let (bytes, before) = (relay.taken(), sleeps(&relay));
@@ -426,7 +426,7 @@ fn at_rest_nothing_happens() {
 /// Replies without a query, doubled and cut ones press no key, and keys go on to be seen.
 #[test]
 fn replies_without_a_query_are_ignored() {
-    let mut relay = looking(termtrace(), SLOW);
+    let mut relay = looking(termtrace(), SLOW_LINK);
     walk(&mut relay, 2);
     relay.run(ms(2_500), |_| false);
     let still = relay.frames.last().map(|frame| frame.status.clone());
@@ -443,5 +443,5 @@ fn replies_without_a_query_are_ignored() {
         relay.run(ms(2_500), |_| false);
     }
     let times = walk(&mut relay, 6);
-    assert!(times.iter().all(|&time| time <= ms(800).mul_f64(SLACK)), "{times:?}");
+    assert!(times.iter().all(|&time| time <= ms(800).mul_f64(TIME_SLACK)), "{times:?}");
 }

@@ -1,4 +1,4 @@
-//! Scenes built in code: what a scene file would refuse is an error there, too, in the same words.
+//! Scenes built in code: invalid values are errors in the words of scene files.
 
 use glam::{Vec2, Vec3};
 use std::error::Error;
@@ -12,13 +12,13 @@ fn camera() -> Camera {
     Camera::look_at(Vec3::Z * 5.0, Vec3::ZERO).expect("a view")
 }
 
-/// The message of an error, without the name and the value that come first where it has them.
+/// Returns the message of an error, without the name and value at its start, if any.
 fn message<T>(made: Result<T, impl Error>) -> String {
     let error = made.map(drop).expect_err("a fault").to_string();
     error.rsplit(": ").next().unwrap_or_default().to_owned()
 }
 
-/// The message of a scene file's first fault, without its place.
+/// Returns the message of a scene file's first fault, without its position.
 fn in_file(fields: &str) -> String {
     let has_camera = fields.contains("camera:");
     let camera = if has_camera { "" } else { "camera: (eye: (0, 0, 5), target: (0, 0, 0)), " };

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use termtrace::{CameraPath, Scene, SceneError};
 
-/// A folder of broken files, how many there are at least, and what reads them.
+/// A folder of broken files, their least number, and the function that reads them.
 struct Kind {
     folder: &'static str,
     at_least: usize,
@@ -74,7 +74,7 @@ fn files_and_messages_come_in_pairs() {
     }
 }
 
-/// The message stands where its first line says, and nothing in it moves a cursor.
+/// Each message begins with its position, and has no control characters.
 #[test]
 fn messages_are_plain_text() {
     for kind in KINDS {

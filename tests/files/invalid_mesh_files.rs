@@ -10,7 +10,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/invalid_meshes")
 }
 
-/// The files of the folder, messages or not.
+/// Returns the messages of the folder, or its other files.
 fn files(are_messages: bool) -> Vec<PathBuf> {
     let mut files: Vec<_> = std::fs::read_dir(folder())
         .unwrap()
@@ -61,7 +61,7 @@ fn meshes_and_messages_come_in_pairs() {
     assert_eq!(files(true), expected);
 }
 
-/// One line, in which nothing moves a cursor, with the name of a file before it.
+/// Each message is one line without control characters, after the name of the file.
 #[test]
 fn messages_are_one_plain_line() {
     for path in files(false) {

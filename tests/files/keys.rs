@@ -6,7 +6,7 @@ use termtrace::internals::control::{Command, Key, KeyMode, Keymap};
 
 const KEYS: [&str; 14] = ["q", "Q", "w", "W", "Esc", "Ctrl-C", "Ctrl-Q", "Space", "PageUp", "F1", "é", "\\", "\"", "?"];
 
-/// `mode: { [keys]: command }`, of which each part is one that there is.
+/// Returns a valid line `mode: { [keys]: command }`.
 fn line() -> impl Strategy<Value = (KeyMode, String)> {
     let commands: Vec<_> = Command::all().map(Command::name).chain(["None", "Quit", "Quit"]).collect();
     let keys = subsequence(KEYS.to_vec(), 1..3);

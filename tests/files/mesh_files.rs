@@ -14,7 +14,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes")
 }
 
-/// The meshes of that shape: files whose names begin so and end with a format's ending.
+/// Returns the meshes of that shape: files with its name and a format's extension.
 fn meshes_of(shape: &str) -> Vec<(String, MeshFile)> {
     let mut paths: Vec<_> = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
@@ -39,7 +39,7 @@ fn read(name: &str, text: &str) -> MeshFile {
     MeshFile::from_bytes(name, text.as_bytes(), &mut alone).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A text whose other files are those given.
+/// Reads a text that may name the given files.
 fn read_with(name: &str, text: &str, files: &[(&str, &[u8])]) -> Result<MeshFile, String> {
     let mut open = |path: &Path| {
         let found = files.iter().find(|(name, _)| Path::new(name) == path);
@@ -48,7 +48,7 @@ fn read_with(name: &str, text: &str, files: &[(&str, &[u8])]) -> Result<MeshFile
     MeshFile::from_bytes(name, text.as_bytes(), &mut open).map_err(|error| error.to_string())
 }
 
-/// The corners of each triangle, the least first, in thousandths.
+/// Returns the corners of each triangle, the least first, in thousandths.
 fn corners(mesh: &MeshFile) -> Vec<[[i32; 3]; 3]> {
     let corner = |index: u32| mesh.positions()[index as usize].to_array().map(|x| (x * 1e3).round() as i32);
     let mut triangles: Vec<_> = mesh.triangles().iter().map(|triangle| triangle.map(corner)).collect();
@@ -215,7 +215,7 @@ fn truncated_textures_are_errors() {
     assert!(error.ends_with("is a JPEG picture that is cut short"), "{error}");
 }
 
-/// A child stands in its parent's coordinates, not the other way about.
+/// A child is in its parent's coordinates, not the other way round.
 #[test]
 fn gltf_nodes_are_relative_to_their_parents() {
     let document = std::fs::read_to_string(folder().join("tetrahedron_data.gltf")).unwrap();
@@ -238,7 +238,7 @@ fn vertices_that_primitives_share_are_kept_once() {
     assert_eq!(found, [[(false, None); 4].as_slice(), &[(true, Some(1)); 2]].concat());
 }
 
-/// Normals stay square to surfaces that are stretched, and mirrored ones point outwards.
+/// Normals stay perpendicular to stretched surfaces, and mirrored ones point outwards.
 #[test]
 fn normals_of_gltf_are_turned_with_their_node() {
     let document = std::fs::read_to_string(folder().join("square.gltf")).unwrap();
@@ -271,7 +271,7 @@ fn nodes_may_be_deep() {
     assert_eq!(read("x.gltf", &text).triangles().len(), 4);
 }
 
-/// Nor can a document of many small values, each of which takes many times its text.
+/// A document of many small values, each of which takes many times its text, is limited, too.
 #[test]
 fn values_of_json_are_limited() {
     let start = r#"{"asset":{"version":"2.0"},"extras":["#;
@@ -313,7 +313,7 @@ fn formats_are_recognised_by_content_first() {
 
 #[test]
 fn a_missing_file_is_an_error() {
-    // What a mesh names is called by its whole path too.
+    // Messages name a mesh's files by their whole path, too.
     let mesh = "mtllib x.mtl\nv 0 0 0\n";
     let error = MeshFile::from_bytes("models/x.obj", mesh.as_bytes(), &mut |_| Ok(b"Kd 1".to_vec())).unwrap_err();
     assert!(error.to_string().starts_with("models/x.mtl:1:1: "), "{error}");

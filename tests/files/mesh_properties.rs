@@ -54,7 +54,7 @@ proptest! {
     }
 }
 
-/// The bytes of all valid files.
+/// Returns the bytes of all valid files.
 fn valid_files() -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
     let read = |path: &Path| (path.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(path).unwrap());

@@ -31,7 +31,7 @@ fn heard<T>(most: usize, work: impl FnOnce(&Reporter<'_>) -> T) -> (Vec<Progress
     (heard.into_inner().expect("nobody panics"), done)
 }
 
-/// The result, or `None` if the work was cancelled.
+/// Returns the result, or `None` if the work was cancelled.
 #[track_caller]
 fn unless_cancelled<T, E: std::fmt::Debug>(done: Result<T, Unfinished<E>>) -> Option<T> {
     match done {
@@ -55,7 +55,7 @@ fn reading_reports_progress_and_can_be_cancelled() {
         assert_eq!(read, Some(MeshFile::load(&path).expect("it is a mesh")), "{}", writer.name);
         assert_steps(&reports, &Work::Reading(path.to_string_lossy().into()), 1 << 20, size);
         let parsing = Work::Parsing(path.to_string_lossy().into());
-        // Its parts are read in any order.
+        // The parts of the file are read in any order.
         if writer.name == "x.glb" {
             assert!(reports.iter().any(|report| report.work == parsing && report.total == 0));
         } else {
@@ -78,7 +78,7 @@ fn assert_steps(reports: &[Progress], work: &Work, step: usize, total: usize) {
     assert!(steps.windows(2).all(|pair| pair[1] - pair[0] <= step + 100), "{work:?} {steps:?}");
 }
 
-/// The meshes that a scene names are watched like one alone.
+/// Meshes that a scene names report progress as one alone does.
 #[test]
 fn reading_the_meshes_of_a_scene_reports_progress() {
     let folder = tempfile::tempdir().expect("a folder can be made");
@@ -125,7 +125,7 @@ fn checking_objects_can_be_cancelled() {
     assert_eq!(SceneFile::read(&root, &reporter, &mut faults).objects.len(), 10);
     cancelled.cancel();
     assert_eq!(SceneFile::read(&root, &reporter, &mut faults).objects.len(), 0);
-    // While the objects are checked: at the first mesh.
+    // The cancel comes while the objects are checked, at the first mesh.
     let cancelled = Cancellation::default();
     let needed = Mutex::new(0);
     let on_dependency = |_: &Path| {
@@ -152,7 +152,7 @@ fn building_reports_progress_and_can_be_cancelled() {
     }
 }
 
-/// There is none of what is as soon built.
+/// A scene that is built as fast has no sketch.
 #[test]
 fn a_sketch_looks_like_the_scene() {
     assert!(Draft::of_mesh(read(50_000)).expect("it has a size").sketch().is_none());

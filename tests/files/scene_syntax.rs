@@ -102,7 +102,7 @@ fn files_beyond_the_limit_are_not_read() {
     assert_eq!(error.to_string(), "x.ron:1:1: the file is larger than 16 MiB, too large to be read");
 }
 
-/// Our tree, in a notation of the test's own.
+/// Returns our tree in a notation of the test's own.
 fn ours(node: &SyntaxNode<'_>) -> String {
     let many = |nodes: &[SyntaxNode<'_>]| nodes.iter().map(ours).collect::<Vec<_>>().join(" ");
     match &node.value {
@@ -131,7 +131,7 @@ fn ours(node: &SyntaxNode<'_>) -> String {
     }
 }
 
-/// The other reader's tree in the same notation, and the same places.
+/// Returns the other reader's tree in the same notation, with its positions.
 fn theirs(expr: &ron2::ast::Expr<'_>) -> String {
     use ron2::ast::{Expr, StructBody, StructField, TupleElement};
     let many = |elements: &[TupleElement<'_>]| elements.iter().map(|e| theirs(&e.expr)).collect::<Vec<_>>().join(" ");
@@ -164,7 +164,7 @@ fn theirs(expr: &ron2::ast::Expr<'_>) -> String {
     }
 }
 
-/// Valid RON of the kinds that scenes use, with white space and comments anywhere.
+/// Returns valid RON of the kinds that scenes use, with white space and comments anywhere.
 fn ron() -> impl Strategy<Value = String> {
     let word = "[a-z_][a-zA-Z0-9_]{0,6}"
         .prop_filter("reserved", |word| !["true", "false", "r", "b", "br", "inf"].contains(&word.as_str()));

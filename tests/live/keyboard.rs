@@ -10,9 +10,9 @@ const PUSH: &[u8] = b"\x1b[>15u";
 const POP: &[u8] = b"\x1b[<1u";
 /// The last query at the start, and its last reply.
 const FENCE: &[u8] = b"\x1b[16t\x1b[c";
-const FENCE_ANSWER: &[u8] = b"\x1b[?62;22c";
+const FENCE_REPLY: &[u8] = b"\x1b[?62;22c";
 /// The distance that the eye of the scene moves in a second.
-const SPEED: f32 = 2.5;
+const EYE_SPEED: f32 = 2.5;
 
 fn termtrace() -> Start {
     Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(SCENE).says_when_it_rests()
@@ -96,12 +96,12 @@ fn a_key_moves_from_its_press_to_its_release() {
     press(&session, 'w');
     session.wait_for("a movement", SOON, |seen| !seen.screen().text().concat().contains("eye 0.00 1.00 5.00"));
     // The eye has moved farther than by any glide, without a repeat.
-    let (glide, frame) = (SPEED * GLIDE_TIME.as_secs_f32(), SPEED / 60.0);
+    let (glide, frame) = (EYE_SPEED * GLIDE_TIME.as_secs_f32(), EYE_SPEED / 60.0);
     session.wait_for("more than a glide", SOON, |seen| eye_in(seen)[2] < 5.0 - 1.2 * glide);
     release(&session, 'w');
     session.wait_for_rest();
     let moved = 5.0 - eye(&mut session)[2];
-    let most = SPEED * start.elapsed().as_secs_f32() + frame;
+    let most = EYE_SPEED * start.elapsed().as_secs_f32() + frame;
     assert!((1.2 * glide..=most).contains(&moved), "moved {moved}, at most {most}");
     leave(&mut session);
 }
@@ -275,7 +275,7 @@ fn flags_that_are_not_reported_are_not_used() {
 fn assert_glides(flags: &str) {
     let mut session = termtrace().mute().spawn();
     session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
-    session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+    session.send(&[b"\x1b[?0u", FENCE_REPLY].concat());
     session.wait_for("the keyboard pushed", SOON, |seen| seen.has(PUSH) && seen.has(b"\x1b[>15u\x1b[?u"));
     session.send(format!("\x1b[?{flags}u").as_bytes());
     session.send(b"i");
@@ -284,10 +284,10 @@ fn assert_glides(flags: &str) {
     session.wait_for("a movement", SOON, |seen| !seen.screen().text().concat().contains("eye 0.00 1.00 5.00"));
     session.wait_for_rest();
     let moved = 5.0 - eye(&mut session)[2];
-    assert!((moved - SPEED * 0.717).abs() < 0.1, "flags {flags}: a glide is not {moved}");
+    assert!((moved - EYE_SPEED * 0.717).abs() < 0.1, "flags {flags}: a glide is not {moved}");
     session.send(b"q");
     session.wait_for("the last question", SOON, |seen| seen.has(b"\x1b[?1049l\x1b[c"));
-    session.send(FENCE_ANSWER);
+    session.send(FENCE_REPLY);
     session.wait_exit(SOON);
     session.assert_clean();
 }
@@ -300,7 +300,7 @@ fn a_late_reply_pushes_the_keyboard_once() {
     session.send(b"i");
     session.wait_for_text("eye 0.00 1.00 5.00");
     assert!(!session.seen().has(PUSH));
-    session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+    session.send(&[b"\x1b[?0u", FENCE_REPLY].concat());
     session.wait_for("the keyboard pushed", SOON, |seen| seen.has(PUSH));
     session.send(b"\x1b[?15u\x1b[?15u");
     session.wait_for_rest();
@@ -315,7 +315,7 @@ fn leave_answering(session: &mut Session) {
     press(session, 'q');
     session.wait_for("the last question", SOON, |seen| seen.has(b"\x1b[?1049l\x1b[c"));
     release(session, 'q');
-    session.send(FENCE_ANSWER);
+    session.send(FENCE_REPLY);
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
     session.assert_clean();
     assert_eq!(session.typed_ahead(), b"");
@@ -327,7 +327,7 @@ fn leave_answering(session: &mut Session) {
 fn the_release_of_q_is_not_left_for_the_shell() {
     let mut session = termtrace().mute().spawn();
     session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
-    session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+    session.send(&[b"\x1b[?0u", FENCE_REPLY].concat());
     session.wait_for("the keyboard pushed", SOON, |seen| seen.has(PUSH));
     session.send(b"\x1b[?15u");
     leave_answering(&mut session);
@@ -341,10 +341,10 @@ fn queries_whose_replies_come_during_a_stop_are_sent_again() {
     session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
     session.signal(Signal::STOP);
     session.wait_stopped(SOON);
-    session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+    session.send(&[b"\x1b[?0u", FENCE_REPLY].concat());
     session.signal(Signal::CONT);
     session.wait_for("the questions again", SOON, |seen| count(seen, FENCE) == 2);
-    session.send(&[b"\x1b[?0u", FENCE_ANSWER].concat());
+    session.send(&[b"\x1b[?0u", FENCE_REPLY].concat());
     session.wait_for("the keyboard pushed", SOON, |seen| seen.has(PUSH));
     session.send(b"\x1b[?15u");
     rest_after_stop(&mut session);

@@ -15,8 +15,8 @@ const FENCE: &[u8] = b"\x1b[c";
 /// A time longer than the parser holds back an Escape byte that may begin a sequence.
 ///
 /// No event reports the end of that time.
-const ESCAPE: Duration = Duration::from_millis(150);
-const FENCE_ANSWER: &[u8] = b"\x1b[?62;22c";
+const PAST_ESCAPE_TIMEOUT: Duration = Duration::from_millis(150);
+const FENCE_REPLY: &[u8] = b"\x1b[?62;22c";
 
 /// Starts the view on a terminal whose name means 256 colours, and which replies to nothing.
 fn live() -> Start {
@@ -51,15 +51,14 @@ fn leave(session: &mut Session) {
     session.send(b"q");
     if keyboard {
         session.wait_for("the last question", SOON, |seen| seen.has(b"\x1b[?1049l\x1b[c"));
-        session.send(FENCE_ANSWER);
+        session.send(FENCE_REPLY);
     }
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
     session.assert_clean();
 }
 
-/// Returns the replies of a terminal that supports everything, in the order of the queries, without
-/// the fence's.
-fn everything() -> Vec<u8> {
+/// Returns the replies of a terminal that supports all queries, in order, without the fence's.
+fn all_replies() -> Vec<u8> {
     [
         &b"\x1b[1;2R"[..],
         b"\x1b]11;rgb:1e1e/1e1e/1e1e\x1b\\",
@@ -72,23 +71,23 @@ fn everything() -> Vec<u8> {
 }
 
 /// Returns the end of the first queries in the output. They are sent again after a stop.
-fn end_of_questions(seen: &pty::Seen) -> usize {
+fn end_of_queries(seen: &pty::Seen) -> usize {
     let ask = b"\x1b]11;?";
     let asked = seen.bytes().windows(ask.len()).rposition(|bytes| bytes == ask).expect("it was asked");
-    let fence = seen.bytes()[asked..].windows(FENCE.len()).position(|bytes| bytes == FENCE).expect("questions end");
+    let fence = seen.bytes()[asked..].windows(FENCE.len()).position(|bytes| bytes == FENCE).expect("queries end");
     asked + fence + FENCE.len()
 }
 
 /// Sends the last reply to the first queries, and the replies to those of frames.
-fn end_answers(session: &mut Session) {
-    session.send(FENCE_ANSWER);
-    answer_frames(session);
+fn send_last_replies(session: &mut Session) {
+    session.send(FENCE_REPLY);
+    reply_to_frames(session);
 }
 
-/// Answers the queries of frames from now on. A terminal answers in order: so the earlier ones are
+/// Answers the queries of frames from now on. A terminal replies in order: so the earlier ones are
 /// answered.
-fn answer_frames(session: &mut Session) {
-    let from = end_of_questions(session.seen());
+fn reply_to_frames(session: &mut Session) {
+    let from = end_of_queries(session.seen());
     session.answer_from(from);
 }
 
@@ -106,7 +105,7 @@ fn a_terminal_that_never_replies_gets_its_picture_at_once() {
     let mut session = looking(live());
     let bytes = session.seen().bytes();
     let asked = bytes.windows(FENCE.len()).position(|bytes| bytes == FENCE).expect("it was asked");
-    assert!(bytes[..asked].windows(4).any(|bytes| bytes == b"$qm\x1b"), "the fence is behind the questions");
+    assert!(bytes[..asked].windows(4).any(|bytes| bytes == b"$qm\x1b"), "the fence is behind the queries");
     leave(&mut session);
 }
 
@@ -114,8 +113,8 @@ fn a_terminal_that_never_replies_gets_its_picture_at_once() {
 fn all_replies_at_once_improve_the_picture() {
     let mut session = looking(live().size(Size::cells(80, 24).of_pixels(0, 0)));
     assert!(!session.seen().has(b"\x1b[?2026h"));
-    session.send(&String::from_utf8_lossy(&everything()).replace("6;20;10t", "6;24;10t").into_bytes());
-    end_answers(&mut session);
+    session.send(&String::from_utf8_lossy(&all_replies()).replace("6;20;10t", "6;24;10t").into_bytes());
+    send_last_replies(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.4);
     assert!(session.seen().has(b"\x1b[?2026h") && session.seen().has(b"\x1b[?2026l"));
     nothing_was_pressed(&mut session);
@@ -125,13 +124,13 @@ fn all_replies_at_once_improve_the_picture() {
 #[test]
 fn replies_count_once_the_last_has_come() {
     let mut session = looking(live());
-    session.send(&everything());
+    session.send(&all_replies());
     let wanted = picture(Glyphs::Half, Colors::Truecolor, 2.0);
     session.wait_until_read();
     nothing_was_pressed(&mut session);
     session.send(b"i");
     assert!(!shows(session.seen().screen(), &wanted));
-    end_answers(&mut session);
+    send_last_replies(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
     leave(&mut session);
 }
@@ -143,8 +142,8 @@ fn late_replies_count_too() {
     session.send(b"i");
     session.wait_for_text("eye 0.00 1.00 5.00");
     session.send(b"i");
-    session.send(&everything());
-    end_answers(&mut session);
+    session.send(&all_replies());
+    send_last_replies(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
     nothing_was_pressed(&mut session);
     leave(&mut session);
@@ -155,27 +154,27 @@ fn late_replies_count_too() {
 /// The help is open, which Escape would close.
 #[test]
 fn replies_split_at_any_byte_press_no_key() {
-    let answers = [&b"\x1b[1;2R"[..], b"\x1b]11;rgb:0/0/0\x1b\\", b"\x1bP1$r48;2;1;2;3m\x1b\\", FENCE_ANSWER].concat();
-    let places: Vec<_> = (1..answers.len()).collect();
+    let replies = [&b"\x1b[1;2R"[..], b"\x1b]11;rgb:0/0/0\x1b\\", b"\x1bP1$r48;2;1;2;3m\x1b\\", FENCE_REPLY].concat();
+    let places: Vec<_> = (1..replies.len()).collect();
     // Eight run at a time: the program takes a terminal that has not replied for 3 s for one that never does, and then
     // a lone Escape is a key.
     for places in places.chunks(8) {
-        answers_split_at(places, &answers);
+        split_replies_at(places, &replies);
     }
 }
 
-fn answers_split_at(places: &[usize], answers: &[u8]) {
-    let mut sessions: Vec<_> = places.iter().map(|&at| (answers.split_at(at), live().spawn())).collect();
+fn split_replies_at(places: &[usize], replies: &[u8]) {
+    let mut sessions: Vec<_> = places.iter().map(|&at| (replies.split_at(at), live().spawn())).collect();
     for ((beginning, _), session) in &mut sessions {
-        session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
+        session.wait_for("the queries", SOON, |seen| seen.has(FENCE));
         session.send(b"?");
         session.wait_for_text("move forward");
         session.send(beginning);
     }
-    std::thread::sleep(ESCAPE);
+    std::thread::sleep(PAST_ESCAPE_TIMEOUT);
     for ((_, rest), session) in &mut sessions {
         session.send(rest);
-        answer_frames(session);
+        reply_to_frames(session);
     }
     for ((beginning, _), session) in &mut sessions {
         session.send(b"i");
@@ -191,11 +190,11 @@ fn answers_split_at(places: &[usize], answers: &[u8]) {
 #[test]
 fn every_byte_alone_is_the_same_as_all_at_once() {
     let mut session = looking(live());
-    for byte in [&everything()[..], FENCE_ANSWER].concat() {
+    for byte in [&all_replies()[..], FENCE_REPLY].concat() {
         session.send(&[byte]);
         session.wait_until_read();
     }
-    answer_frames(&mut session);
+    reply_to_frames(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
     nothing_was_pressed(&mut session);
     leave(&mut session);
@@ -207,8 +206,8 @@ fn every_byte_alone_is_the_same_as_all_at_once() {
 fn forged_replies_change_nothing() {
     let mut session = looking(live());
     session.send(b"\x1b]11;rgb:q/q/q\x1b\\\x1bP1$rqqqm\x1b\\\x1b[?9999;1$y\x1b[6;0;0t\x1b]4;99;rgb:0/0/0\x07");
-    end_answers(&mut session);
-    session.send(&everything());
+    send_last_replies(&mut session);
+    session.send(&all_replies());
     session.send(b"\x1b[1;9R\x1b[?1;2c");
     nothing_was_pressed(&mut session);
     session.send(b"i");
@@ -224,7 +223,7 @@ fn blocks_that_are_not_one_column_wide_are_not_used() {
     {
         let mut session = looking(live());
         session.send(answer);
-        end_answers(&mut session);
+        send_last_replies(&mut session);
         wait_for(&mut session, glyphs, Colors::Indexed256, 2.0);
         leave(&mut session);
     }
@@ -236,15 +235,15 @@ fn sixteen_colours_are_the_terminals_own() {
     wait_for(&mut session, Glyphs::Half, Colors::SIXTEEN, 2.0);
     assert!(session.seen().has(b"\x1b]4;15;?"));
     let mut values = [Srgb8::default(); 16];
-    let mut answers = String::new();
+    let mut replies = String::new();
     for (index, value) in values.iter_mut().enumerate() {
         let grey = 17 * index as u8;
         *value = Srgb8::new(grey, grey, 255 - grey);
         let _ =
-            write!(answers, "\x1b]4;{index};rgb:{0:02x}{0:02x}/{0:02x}{0:02x}/{1:02x}{1:02x}\x1b\\", grey, 255 - grey);
+            write!(replies, "\x1b]4;{index};rgb:{0:02x}{0:02x}/{0:02x}{0:02x}/{1:02x}{1:02x}\x1b\\", grey, 255 - grey);
     }
-    session.send(answers.as_bytes());
-    end_answers(&mut session);
+    session.send(replies.as_bytes());
+    send_last_replies(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Indexed16(values), 2.0);
     leave(&mut session);
 }
@@ -256,7 +255,7 @@ fn a_light_background_inverts_ink() {
     let dark = picture(Glyphs::Ramp, Colors::None, 2.0);
     session.wait_for("light on dark", SOON, |seen| shows(seen.screen(), &dark));
     session.send(b"\x1b]11;rgb:ffff/ffff/ffff\x07");
-    end_answers(&mut session);
+    send_last_replies(&mut session);
     // Ink is blank, and blank is ink.
     session.wait_for("dark on light", SOON, |seen| {
         let inked = |screen: &pty::Screen, at: usize| screen.cell(at % 80, at / 80).glyph != ' ';
@@ -271,12 +270,12 @@ fn outstanding_replies_are_waited_for_and_none_is_left() {
     let mut session = looking(live());
     session.send(b"q");
     session.wait_for("the terminal to be given back", SOON, |seen| !seen.screen().is_alternate());
-    session.send(&everything());
+    session.send(&all_replies());
     // The signal comes in the middle of the last reply, and before it.
-    session.send(&FENCE_ANSWER[..4]);
+    session.send(&FENCE_REPLY[..4]);
     session.wait_until_read();
-    session.send(&FENCE_ANSWER[4..]);
-    answer_frames(&mut session);
+    session.send(&FENCE_REPLY[4..]);
+    reply_to_frames(&mut session);
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
     session.assert_clean();
     assert_eq!(session.typed_ahead(), b"");
@@ -292,9 +291,9 @@ fn a_stopped_program_queries_again() {
     session.signal(Signal::CONT);
     let question = b"\x1bP$qm\x1b\\\x1b[0m\x1b[c";
     let asked = |seen: &pty::Seen| seen.bytes().windows(question.len()).filter(|bytes| bytes == question).count();
-    session.wait_for("the questions again", SOON, |seen| asked(seen) == 2);
-    session.send(&everything());
-    end_answers(&mut session);
+    session.wait_for("the queries again", SOON, |seen| asked(seen) == 2);
+    session.send(&all_replies());
+    send_last_replies(&mut session);
     wait_for(&mut session, Glyphs::Half, Colors::Truecolor, 2.0);
     leave(&mut session);
 }
@@ -312,9 +311,9 @@ fn a_signal_waits_for_replies_up_to_a_limit() {
 fn no_query_leaves_a_trace_on_the_screen() {
     for term in ["xterm-256color", "tmux-256color", "screen-256color", "linux", "dumb", "vt100"] {
         let variable = |name: &str| (name == "TERM").then(|| term.to_owned());
-        let questions = InitialQueries::all(&Hints::gather(&variable, &|_| None));
+        let queries = InitialQueries::all(&Hints::gather(&variable, &|_| None));
         let mut screen = pty::Screen::new(80, 24);
-        screen.feed(questions.bytes());
+        screen.feed(queries.bytes());
         for text in [screen.text().concat(), screen.second_opinion().contents()] {
             assert_eq!(text, "", "{term}");
         }
@@ -325,8 +324,8 @@ fn no_query_leaves_a_trace_on_the_screen() {
             ('x', Colour::Default, Colour::Default),
             "{term}"
         );
-        assert_eq!(pty::Modes::after(questions.bytes()), pty::Modes::after(b""), "{term}");
-        assert_eq!(questions.bytes().is_empty(), ["dumb", "vt100"].contains(&term), "{term}");
+        assert_eq!(pty::Modes::after(queries.bytes()), pty::Modes::after(b""), "{term}");
+        assert_eq!(queries.bytes().is_empty(), ["dumb", "vt100"].contains(&term), "{term}");
     }
 }
 
@@ -334,15 +333,15 @@ fn no_query_leaves_a_trace_on_the_screen() {
 fn doctor_queries_and_reports_the_replies() {
     let doctor = || Start::new(env!("CARGO_BIN_EXE_termtrace")).arg("doctor").env("COLORTERM", "").mute();
     let mut session = doctor().size(Size::cells(80, 24)).spawn();
-    session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
-    session.send(&[&everything()[..], b"\x1b]4;0;rgb:0/0/0\x07", FENCE_ANSWER].concat());
+    session.wait_for("the queries", SOON, |seen| seen.has(FENCE));
+    session.send(&[&all_replies()[..], b"\x1b]4;0;rgb:0/0/0\x07", FENCE_REPLY].concat());
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
     session.assert_clean();
     assert_eq!(session.typed_ahead(), b"");
     let text = session.seen().screen().text();
     let rows: Vec<String> =
         text[1..12].iter().map(|row| row.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
-    assert!(rows[0].starts_with("it was asked everything answered after "), "{rows:#?}");
+    assert!(rows[0].starts_with("it was asked all_replies answered after "), "{rows:#?}");
     assert_eq!(
         rows[1..],
         [
@@ -380,9 +379,9 @@ fn doctor_waits_up_to_a_limit_and_ends_on_signals() {
     let mut session = doctor().spawn();
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
     session.assert_clean();
-    session.wait_for_text("no end of answers in 2 s");
+    session.wait_for_text("no end of replies in 2 s");
     let mut session = doctor().spawn();
-    session.wait_for("the questions", SOON, |seen| seen.has(FENCE));
+    session.wait_for("the queries", SOON, |seen| seen.has(FENCE));
     session.signal(Signal::TERM);
     assert_eq!(session.wait_exit(SOON).signal(), Some(Signal::TERM.as_raw()));
     session.assert_clean();

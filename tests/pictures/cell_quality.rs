@@ -8,7 +8,7 @@ use termtrace::{CellMode, Colors, Glyphs, Grid, Ink, Picture, Resolution, Scene,
 
 const SCENES: [&str; 3] = ["three_spheres", "many_spheres", "inside_sphere"];
 
-/// A shipped scene at that size in pixels, of a screen of 60x20 cells.
+/// Returns a picture of a shipped scene, of a screen of 60x20 cells.
 fn picture(scene: &str, width: u32, height: u32) -> Picture {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{scene}.ron"));
     let scene = Scene::load(&path).expect("the scene is fine");
@@ -49,7 +49,7 @@ impl Plane {
         let mut values = Vec::new();
         for row in self.values.chunks(self.width) {
             let (first, end) = (reach, reach + row.len());
-            // Places are counted from `reach` before the row.
+            // Indices count from `reach` pixels before the row.
             let mirrored = |at: usize| match at {
                 _ if at < first => row[first - 1 - at],
                 _ if at < end => row[at - first],
@@ -112,7 +112,7 @@ fn shown(index: u8) -> Srgb8 {
     }
 }
 
-/// The pixels that half blocks show.
+/// Returns the pixels that half blocks show.
 fn pixels(grid: &Grid) -> Picture {
     let shown = |ink| match ink {
         Ink::Indexed(index) => shown(index),

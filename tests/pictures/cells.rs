@@ -5,7 +5,7 @@ use termtrace::{
     Cell, CellMode, Colors, Encoder, Glyph, Glyphs, Grid, Ink, Painter, Picture, Resolution, Size, Srgb8, export,
 };
 
-/// Rows of pixels, each a letter: b(lack), w(hite), r(ed), g(rey).
+/// Returns a picture from rows of letters: b(lack), w(hite), r(ed), g(rey).
 fn picture(rows: &[&str]) -> Picture {
     let pixels = rows.iter().flat_map(|row| row.chars()).map(color).collect();
     Picture::from_pixels(rows[0].len() as u32, rows.len() as u32, pixels).expect("all its pixels")
@@ -37,21 +37,22 @@ fn assert_half_blocks(rows: &[&str], expected: &[&str]) {
     assert_eq!(written(&grid_from_picture(CellMode::HALF_BLOCK, &picture(rows))), expected, "{rows:?}");
 }
 
-/// The lower half block: its colour is the lower pixel's, the upper one's lies behind it.
+/// The foreground of a lower half block is the lower pixel's colour, the background the upper
+/// one's.
 #[test]
 fn a_half_block_is_the_lower_pixel_on_the_upper() {
     assert_half_blocks(&["b", "w"], &["▄wb"]);
     assert_half_blocks(&["bw", "wr", "rg", "gb"], &["▄wb ▄rw", "▄gr ▄bg"]);
 }
 
-/// A full block would show hairlines in some fonts.
+/// A flat cell is a space: a full block would show hairlines in some fonts.
 #[test]
 fn a_flat_cell_is_a_space() {
     assert_half_blocks(&["r", "r"], &[" -r"]);
     assert_half_blocks(&["rrb", "rbb"], &[" -r ▄br  -b"]);
 }
 
-/// Below the edge there is nothing: the terminal's own colour.
+/// Below the edge the colour is the terminal's own.
 #[test]
 fn an_odd_row_fills_the_upper_half() {
     assert_half_blocks(&["r"], &["▀r-"]);
@@ -110,7 +111,7 @@ fn trailing_blanks_are_kept() {
     assert_ramp(&["wbb", "wbb", "bbb", "bbb"], "@  \n   \n");
 }
 
-/// Two pixels to a cell, one above the other, each as high as half of it.
+/// A cell of half blocks has two pixels, one above the other, each as high as half of it.
 #[test]
 fn pixels_of_a_screen() {
     for mode in [CellMode::HALF_BLOCK, CellMode::RAMP] {
@@ -124,7 +125,7 @@ fn pixels_of_a_screen() {
     assert_eq!(high, Resolution::new(1, 131_070));
 }
 
-/// Two by four pixels to a cell of characters by shape.
+/// A cell of characters by shape has two by four pixels.
 #[test]
 fn pixels_of_shapes() {
     let mode = CellMode { glyphs: Glyphs::Shape, colors: Colors::None };
@@ -166,7 +167,7 @@ fn only_the_colours_of_the_mode_are_used() {
             let is_allowed = match (ink, mode.colors) {
                 (Ink::Default, _) | (Ink::Rgb(_), Colors::Truecolor) => true,
                 (Ink::Indexed(index), Colors::Indexed16(_)) => index < 16,
-                // Users choose what the first sixteen look like.
+                // Users may change the first sixteen colours.
                 (Ink::Indexed(index), Colors::Indexed256) => index >= 16,
                 _ => false,
             };
@@ -211,7 +212,7 @@ fn dithering_keeps_to_its_pixel() {
     }
 }
 
-/// Black is black and white is white, not a mix of others; a grey between two is a mix of greys.
+/// Black and white are not mixed; a grey between two is a mix of greys.
 #[test]
 fn few_colours_of_flat_pictures() {
     let indices = |colors, grey| -> std::collections::BTreeSet<u8> {
@@ -229,7 +230,7 @@ fn few_colours_of_flat_pictures() {
     assert_eq!(indices(Colors::Indexed256, 255), [231].into());
     let greys = indices(Colors::Indexed256, 100);
     assert!(greys.len() > 1 && greys.iter().all(|&index| index >= 232 || index == 59 || index == 102), "{greys:?}");
-    // With other sixteen colours, the white may be elsewhere.
+    // With other sixteen colours the nearest to white may be another one.
     let mut turned = [Srgb8::new(0, 0, 0); 16];
     turned[3] = Srgb8::new(255, 255, 255);
     assert_eq!(indices(Colors::Indexed16(turned), 255), [3].into());
@@ -305,7 +306,7 @@ fn goldens() {
     }
 }
 
-/// Two lines for each row of cells, the upper halves' colours and the lower ones'.
+/// Returns two lines for each row of cells, the upper halves' colours and the lower ones'.
 fn numbers(grid: &Grid, digits: usize) -> String {
     let number = |ink| match ink {
         Ink::Indexed(index) => format!("{index:0digits$x}"),

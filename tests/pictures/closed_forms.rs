@@ -16,7 +16,7 @@ use termtrace::{
     Sphere, ToneCurve, ViewRectangle, render, tone,
 };
 
-/// A camera that sees `fov` degrees vertically.
+/// Returns a camera that sees `fov` degrees vertically.
 fn camera(eye: [f32; 3], target: [f32; 3], fov: f32) -> Camera {
     let pose = Pose { eye: Vec3::from(eye), target: Vec3::from(target), up: Vec3::Y };
     Camera::new(pose, ViewRectangle::from_vertical_fov(fov.to_radians()).unwrap()).unwrap()
@@ -304,7 +304,7 @@ fn squares_of_a_checker() {
         Plane::new(Vec3::new(1.0, 0.0, -2.0), Vec3::Y).expect("a plane"),
         Material::from(Checker::new(a, b, 2.0).expect("a pattern")),
     );
-    // The square from (1, -2) to (3, 0) is of a; its neighbours are of b.
+    // The square from (1, -2) to (3, 0) has colour a; its neighbours have colour b.
     for (x, z, expected) in
         [(1.5, -1.5, 0.9), (2.9, -0.1, 0.9), (3.1, -0.1, 0.1), (0.9, -1.5, 0.1), (0.9, -2.1, 0.9), (2.0, 0.1, 0.1)]
     {
@@ -314,7 +314,7 @@ fn squares_of_a_checker() {
     }
 }
 
-/// A pixel that sees two squares, or four, has the mean of what it sees.
+/// A pixel over two squares, or four, has the mean of its parts.
 #[test]
 fn edges_of_a_checker() {
     let (a, b) = (LinearRgb::grey(0.9), LinearRgb::grey(0.1));
@@ -322,7 +322,7 @@ fn edges_of_a_checker() {
         Plane::new(Vec3::ZERO, Vec3::Y).expect("a plane"),
         Material::from(Checker::new(a, b, 2.0).expect("a pattern")),
     );
-    // From height 1 straight down a pixel is so wide.
+    // The width of a pixel, from height 1 straight down.
     let width = 2.0 * tan_of_degrees(5.0);
     let share = |distance: f64| 0.5 - distance / width;
     let four = share(0.02) * share(-0.03) + share(-0.02) * share(0.03);

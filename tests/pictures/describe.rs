@@ -29,7 +29,7 @@ fn shipped_scenes_are_described_as_in_their_goldens() {
     }
 }
 
-/// A ball at that place, before an eye on the z axis.
+/// Returns a scene with a ball at that position, before an eye on the z axis.
 fn ball_at(place: &str) -> String {
     told_of(&format!(
         "(camera: (eye: (0, 0, 10), target: (0, 0, 0)),
@@ -89,7 +89,7 @@ fn lights_come_from_where_the_viewer_sees_them() {
     assert_eq!(lines[3], "Nothing casts a shadow.");
 }
 
-/// However large the scene, the text can be listened to.
+/// The text of any scene is short enough to be read aloud.
 #[test]
 fn large_scenes_are_summarised() {
     let ball = |at: usize| {

@@ -91,7 +91,7 @@ fn equations_and_lines_say_the_same_as_the_picture() {
     }
 }
 
-/// The lit and the shadowed side of a lecture's picture: a ball on a floor under one light.
+/// A ball on a floor under one light: the lit side and the shadow.
 #[test]
 fn the_blocker_of_a_light_is_named() {
     let scene = Scene::from_ron(

@@ -16,7 +16,7 @@ fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// The names of a folder's files without this ending.
+/// Returns the names of a folder's files without this extension.
 fn stems(folder: &Path, ending: &str) -> BTreeSet<String> {
     let entries = std::fs::read_dir(folder).expect("the folder is there");
     entries
@@ -41,7 +41,8 @@ fn framed(frame: &str) -> String {
     framed + &edge
 }
 
-/// One test, in this order: where goldens are written anew, what follows reads the new ones.
+/// These checks are one test, in this order: where goldens are written anew, the later ones read
+/// the new ones.
 #[test]
 fn every_scene_has_its_golden() {
     every_scene_looks_as_its_golden();
@@ -56,7 +57,7 @@ fn every_scene_looks_as_its_golden() {
     settings.set_snapshot_path("../snapshots");
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    // Each of them is looked at, so that one run shows all that differ.
+    // Each golden is compared, so that one run shows all that differ.
     let differing: Vec<_> = scenes
         .into_iter()
         .filter(|name| {

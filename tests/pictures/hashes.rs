@@ -20,7 +20,7 @@ fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// All shipped scenes by name.
+/// Returns all shipped scenes by name.
 fn scenes() -> BTreeMap<String, Scene> {
     std::fs::read_dir(path("scenes"))
         .expect("the folder is there")
@@ -33,7 +33,7 @@ fn scenes() -> BTreeMap<String, Scene> {
         .collect()
 }
 
-/// `scene WIDTHxHEIGHT samples` to hash, as the file says it.
+/// Returns the hashes of the file by `scene WIDTHxHEIGHT samples`.
 fn expected() -> BTreeMap<String, String> {
     std::fs::read_to_string(path("tests/hashes.txt"))
         .unwrap_or_default()
@@ -80,7 +80,7 @@ fn every_frame_has_the_same_bits_everywhere() {
     );
 }
 
-/// One line for each frame whose hash is not the expected one, and for each that only one side has.
+/// Returns one line for each frame whose hash is not the expected one, or is on one side only.
 fn differences(expected: &BTreeMap<String, String>, found: &BTreeMap<String, String>) -> String {
     let nothing = "nothing".to_owned();
     let mut frames: Vec<_> = expected.keys().chain(found.keys()).collect();

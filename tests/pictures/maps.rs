@@ -21,7 +21,7 @@ fn scene(name: &str) -> Scene {
     Scene::load(&path).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// FNV-1a, as of framebuffers.
+/// Returns a picture's FNV-1a, as of framebuffers.
 fn hash(picture: &Picture) -> u64 {
     let size = [picture.width(), picture.height()].map(u32::to_le_bytes).concat();
     let bytes = picture.pixels().iter().flat_map(|pixel| [pixel.r, pixel.g, pixel.b]);
@@ -76,7 +76,7 @@ fn every_map_has_the_same_bytes_everywhere() {
     settings().bind(|| insta::assert_snapshot!("hashes", hashes.join("\n")));
 }
 
-/// Two by two pixels are alike while the camera moves.
+/// While the camera moves, two by two pixels are alike.
 #[test]
 fn a_coarse_map_is_of_larger_pixels() {
     let scene = scene("three_spheres");
@@ -155,13 +155,13 @@ fn the_cost_counts_the_tests_of_rays() {
     kinds.sort();
     kinds.dedup();
     assert!((2..=12).contains(&kinds.len()), "{} costs", kinds.len());
-    // Into the sky goes the eye ray alone; from the spheres and the floor shadow rays go on.
+    // A ray into the sky is the eye ray alone; spheres and floor have shadow rays.
     let sky = picture.pixels()[0];
     assert_eq!(sky, Srgb8::new(31, 128, 224), "four tests: the second of the scale's colours");
     let at = |x: usize, y: usize| picture.pixels()[y * 40 + x];
     assert_eq!(at(39, 0), sky);
     assert!(at(20, 15) != sky && at(20, 29) != sky);
-    // Without shadows no ray goes on.
+    // Without shadows there are no shadow rays.
     let bare = scene.clone().with_shadows(false);
     let bare = maps::picture(Map::Cost, &bare, bare.camera(), resolution, ONE);
     assert!(bare.pixels().iter().all(|&pixel| pixel == sky), "each eye ray meets the same tests");

@@ -321,7 +321,7 @@ fn odd_arguments_end_as_they_are_documented() {
     for (name, ends, call) in renders().into_iter().chain(scenes()).chain(cells()).chain(files()) {
         let ended = catch_unwind(AssertUnwindSafe(call));
         let (is_right, found) = match (&ended, ends) {
-            // Where a message has the value before it, its end is what is looked for.
+            // Some messages begin with the value: their end is compared.
             (Ok(found), With(wanted)) => (found.starts_with(wanted) || found.contains(wanted), found.clone()),
             (Ok(found), InPanic(_)) => (false, found.clone()),
             (Err(panic), ends) => {

@@ -22,7 +22,7 @@ fn point(limit: f32) -> impl Strategy<Value = Vec3> {
     [number(limit), number(limit), number(limit)].prop_map(Vec3::from)
 }
 
-/// A direction of unit length.
+/// Returns a direction of unit length.
 fn direction() -> impl Strategy<Value = Vec3> {
     point(1.0).prop_filter_map("too short to have a direction", |v| (v.length() > 0.1).then(|| v.normalize()))
 }
@@ -47,7 +47,7 @@ fn ray() -> impl Strategy<Value = Ray> {
     (point(8.0), direction(), 0.1_f32..10.0).prop_map(|(origin, d, length)| Ray { origin, direction: d * length })
 }
 
-/// Half of them along an axis or two, from whole numbers.
+/// Returns any ray, half of them along an axis or two, from whole numbers.
 fn any_ray() -> impl Strategy<Value = Ray> {
     let along = (0..3_usize, -5..=5_i32, -5..=5_i32, any::<bool>()).prop_map(|(axis, x, y, turned)| {
         let origin = Vec3::new(x as f32, y as f32, (x - y) as f32);
@@ -99,7 +99,7 @@ fn picture(scene: &Scene, camera: &Camera, width: u32, height: u32) -> Framebuff
     render(scene, camera, Resolution::square(width, height), NonZeroU32::MIN)
 }
 
-/// f(x) of the lecture in f64, over its gradient's length: the distance to the surface near it.
+/// Returns f(x) of the lecture in f64, over its gradient's length: the distance to a near surface.
 fn distance_to(shape: &Shape, x: DVec3) -> f64 {
     match shape.primitive(0) {
         Primitive::Sphere(sphere) => x.distance(sphere.center().as_dvec3()) - f64::from(sphere.radius()),
@@ -112,7 +112,7 @@ fn distance_to(shape: &Shape, x: DVec3) -> f64 {
     }
 }
 
-/// All t > 0 at which the line crosses the shape, in f64, by the formulas of the lecture.
+/// Returns all t > 0 at which the line crosses the shape, in f64, by the lecture's formulas.
 fn crossings(shape: &Shape, ray: &Ray) -> Vec<f64> {
     let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let found = match shape.primitive(0) {
@@ -184,7 +184,7 @@ proptest! {
         let all: Vec<f64> = scene.objects().iter().flat_map(|object| crossings(&object.shape, &ray)).collect();
         let closest = all.iter().copied().fold(f64::INFINITY, f64::min);
         let found = closest_hit(&scene, &ray);
-        // Grazing rays may be seen either way.
+        // A grazing ray may hit or miss.
         let grazes = scene.objects().iter().any(|object| match object.shape.primitive(0) {
             Primitive::Sphere(sphere) => {
                 let (f, d) = ((ray.origin - sphere.center()).as_dvec3(), ray.direction.as_dvec3());
@@ -328,7 +328,7 @@ fn scaled(shape: &Shape, s: f32) -> Shape {
     }
 }
 
-/// A sequence of numbers in -1..1 that is the same in every run: the trials below count rare cases.
+/// Random numbers in -1..1, the same in every run: the trials below count rare cases.
 struct Numbers(u64);
 
 impl Numbers {
@@ -365,7 +365,7 @@ fn surfaces_do_not_shadow_themselves() {
                 let lamp = PointLight::new(center + numbers.direction() * (8.0 * scale), LinearRgb::grey(1.0))
                     .expect("a light")
                     .with_falloff(Falloff::None);
-                // Lights that the surface hardly faces are left out: the sphere really is in the way of those.
+                // Lights at a grazing angle are left out: the sphere really shadows those.
                 let faces = (lamp.position() - point.position).normalize().dot(point.shading_normal) > 1e-3;
                 faces
                     && sphere
@@ -416,7 +416,7 @@ fn far_spheres_are_hit_where_they_are() {
             let found = sphere.closest_crossing(&Probe::new(ray), Interval::IN_FRONT);
             let (f, d) = (ray.origin.as_dvec3() - sphere.center().as_dvec3(), ray.direction.as_dvec3());
             let to_line = (f - d * (f.dot(d) / d.dot(d))).length();
-            // Closer to the edge than f32 can say where the ray is: either answer is right.
+            // Closer to the edge than the resolution of f32 either answer is right.
             if (to_line - 1.0).abs() < 2e-7 * f64::from(distance) {
                 continue;
             }

@@ -50,7 +50,7 @@ fn the_steps_of_a_refinement_do_not_change_its_result() {
     }
 }
 
-/// Light that is written with the sign of a number below zero is no other light.
+/// Light of -0.0 is equal to light of 0.0.
 #[test]
 fn zero_has_no_sign() {
     let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), background: (-0.0, -0.0, -0.0))";
@@ -60,7 +60,7 @@ fn zero_has_no_sign() {
     assert_eq!(each, at_most);
 }
 
-/// Nearly the picture that 64 rays through every pixel give, at a part of their price.
+/// Refinement gives nearly the picture of 64 rays for every pixel, at a part of their cost.
 #[test]
 fn samples_go_where_the_edges_are() {
     for (path, scene) in shipped() {
@@ -104,7 +104,7 @@ fn threads_do_not_change_a_refined_picture() {
     assert_eq!(on(1), on(7));
 }
 
-/// Each two by two pixels are one, and the picture as a whole stays where it is; sides may be odd.
+/// Two by two pixels are one block, and the picture stays where it is; sides may be odd.
 #[test]
 fn a_coarse_picture_is_made_of_blocks() {
     for (path, scene) in shipped() {
@@ -133,7 +133,7 @@ fn a_refinement_can_be_cancelled() {
     assert_eq!(cancelled, Err(Cancelled));
 }
 
-/// A checkered floor to the horizon, lit by ambient light alone.
+/// Returns a checkered floor to the horizon, lit by ambient light alone.
 fn floor(size: f32) -> Scene {
     let pose = Pose { eye: Vec3::new(0.3, 1.0, 0.0), target: Vec3::new(0.9, 0.8, -3.0), up: Vec3::Y };
     let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
@@ -143,7 +143,7 @@ fn floor(size: f32) -> Scene {
     scene
 }
 
-/// Far away a pattern is its mean: no pixel is off by what one square is, and neighbours are alike.
+/// Far away a pattern is its mean: no pixel has the colour of one square, and neighbours are alike.
 #[test]
 fn far_checkers_are_grey() {
     let scene = floor(0.02);

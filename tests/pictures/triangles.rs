@@ -1,4 +1,4 @@
-//! Triangles and the tree over them: no gaps, and nothing left out.
+//! Triangles and the tree over them: no gaps between triangles, and no missed hits.
 
 use glam::Vec3;
 use proptest::prelude::*;
@@ -163,7 +163,7 @@ fn meshes_do_not_shadow_themselves() {
     }
 }
 
-/// Whole numbers, which f32 holds and whose products i128 holds.
+/// Returns whole numbers, exact in f32, whose products are exact in i128.
 fn whole(limit: i128) -> impl Strategy<Value = [i128; 3]> {
     [-limit..=limit, -limit..=limit, -limit..=limit]
 }
@@ -205,7 +205,7 @@ proptest! {
     }
 }
 
-/// One triangle seen from both sides, on its edges, and beside it.
+/// A triangle is hit from both sides and on its edges, and not beside it.
 #[test]
 fn a_triangle_is_between_its_corners() {
     let triangle = Triangle::unchecked([Vec3::ZERO, Vec3::X, Vec3::Y]);
@@ -308,11 +308,11 @@ fn brute_force(scene: &Scene, ray: &Ray, within: Interval) -> Option<Hit> {
             let t = shape.primitive(primitive).closest_crossing(&probe, within)?;
             Some(Hit { t, object, primitive })
         })
-        // The first of those at the same t.
+        // The first of several hits at the same t.
         .min_by(|a, b| a.t.partial_cmp(&b.t).expect("no t is NaN"))
 }
 
-/// Keeps all that it is told.
+/// An observer that records every test.
 #[derive(Default)]
 struct TestRecorder {
     boxes: usize,
@@ -362,7 +362,7 @@ proptest! {
         let closest = observer.tests.iter().filter_map(|test| test.t).fold(f32::INFINITY, f32::min);
         prop_assert_eq!(hit.map_or(f32::INFINITY, |hit| hit.t), closest);
         let parts: u32 = scene.objects().iter().map(|object| object.shape.primitive_count()).sum();
-        // More than a leaf of each kind: there is a tree, and its root is looked at.
+        // There are more primitives than a leaf of each kind holds: the tree has inner nodes, whose root is visited.
         prop_assert!(parts <= 16 || observer.boxes > 0 || observer.tests.len() == parts as usize);
         for within in [PointLight::IN_THE_WAY, Interval { min: 0.3, max: 0.7 }, Interval { min: -1.0, max: 0.5 }] {
             let mut observer = TestRecorder::default();
@@ -453,7 +453,7 @@ proptest! {
             let hit = |rays: &EightRays, lane| is_active(rays, lane).then(|| brute_force(&scene, &rays.ray(lane), within)).flatten();
             eights.iter().map(|rays| std::array::from_fn(|lane| hit(rays, lane))).collect()
         };
-        // Once for all kernels.
+        // The truth is computed once for all kernels.
         let closest = by_brute_force(Interval::IN_FRONT);
         let met = [PointLight::IN_THE_WAY, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }, Interval { min: -0.5, max: 0.5 }].map(|within| {
             let bits = |hits: [Option<Hit>; LANES]| (0..LANES).filter(|&lane| hits[lane].is_some()).fold(0_u32, |met, lane| met | 1 << lane);
@@ -500,7 +500,7 @@ impl LeafVisitor for Count<'_> {
     }
 }
 
-/// Boxes each of which is half as far off as the next: no cut between equal bins parts them well.
+/// Each box is half as far away as the next: no cut between equal bins parts them well.
 #[test]
 fn a_tree_is_never_too_deep_for_its_stack() {
     let boxes: Vec<Bounds> = (0..100_000)

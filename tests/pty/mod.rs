@@ -64,13 +64,13 @@ pub(crate) use storm::Storm;
 pub(crate) const SOON: Duration = Duration::from_secs(60);
 
 /// The time between two looks at whether the child has exited, which only its parent is told.
-const LOOK: Duration = Duration::from_millis(2);
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// The longest wait for the last output of a dead child. Only a stopped terminal takes that long.
-const LAST_OUTPUT: Duration = Duration::from_secs(1);
+const LAST_OUTPUT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The marker that the harness writes after the child's last byte: all output before it has come.
-const END_OF_OUTPUT: &[u8] = b"\x1b_the end of the output\x1b\\";
+const END_MARKER: &[u8] = b"\x1b_the end of the output\x1b\\";
 
 /// The size of a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -439,7 +439,7 @@ impl Session {
         let mut deadline = Deadline::after(SOON);
         while rustix::io::ioctl_fionread(&self.slave_side).expect("a terminal counts what was typed") > 0 {
             assert!(!deadline.has_passed(), "what was typed is not read");
-            self.output.wait_for_more(Instant::now() + LOOK);
+            self.output.wait_for_more(Instant::now() + POLL_INTERVAL);
         }
     }
 
@@ -479,7 +479,7 @@ impl Session {
     fn answer(&mut self) {
         let replies = self.replies.to(&self.seen.bytes);
         // The child may have exited, and then reads no reply.
-        if let Ok(true) = write_before(&mut &*self.master, &replies, Instant::now() + LOOK) {
+        if let Ok(true) = write_before(&mut &*self.master, &replies, Instant::now() + POLL_INTERVAL) {
             self.typed.update(|typed| typed + replies.len() as u64);
         }
     }
@@ -514,7 +514,7 @@ impl Session {
                 return;
             }
             assert!(!deadline.has_passed(), "it does not come to rest: {}", self.seen.describe());
-            self.output.wait_for_more(Instant::now() + LOOK);
+            self.output.wait_for_more(Instant::now() + POLL_INTERVAL);
         }
     }
 
@@ -568,7 +568,7 @@ impl Session {
                 return signal;
             }
             assert!(!deadline.has_passed(), "not stopped within {limit:?}");
-            self.output.wait_for_more(Instant::now() + LOOK);
+            self.output.wait_for_more(Instant::now() + POLL_INTERVAL);
             self.pump();
         }
     }
@@ -579,7 +579,7 @@ impl Session {
         let mut deadline = Deadline::after(limit);
         while self.look_for_exit().is_none() {
             assert!(!deadline.has_passed(), "still running after {limit:?}");
-            self.output.wait_for_more(Instant::now() + LOOK);
+            self.output.wait_for_more(Instant::now() + POLL_INTERVAL);
             self.pump();
         }
     }
@@ -603,7 +603,7 @@ impl Session {
                 self.pump();
                 panic!("still running after {limit:?}: {}", self.seen.describe());
             }
-            self.output.wait_for_more(Instant::now() + LOOK);
+            self.output.wait_for_more(Instant::now() + POLL_INTERVAL);
             self.pump();
         }
     }
@@ -629,9 +629,9 @@ impl Session {
     /// writes comes after all of it.
     #[track_caller]
     fn take_last_output(&mut self) {
-        let deadline = Instant::now() + LAST_OUTPUT;
-        let bytes = match write_before(&mut self.slave_side, END_OF_OUTPUT, deadline) {
-            Ok(true) => self.output.take_up_to(Some(END_OF_OUTPUT)),
+        let deadline = Instant::now() + LAST_OUTPUT_TIMEOUT;
+        let bytes = match write_before(&mut self.slave_side, END_MARKER, deadline) {
+            Ok(true) => self.output.take_up_to(Some(END_MARKER)),
             // The terminal was stopped (Ctrl-S): what it holds back is never shown.
             Ok(false) => self.output.take(),
             // Some systems revoke the terminal of a dead session leader, which ends its output.

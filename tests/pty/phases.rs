@@ -121,7 +121,7 @@ impl Phases {
 
     /// Returns whether the child reports a phase now or within a moment.
     fn is_told(&self) -> bool {
-        let moment = super::LOOK.try_into().expect("it is short");
+        let moment = super::POLL_INTERVAL.try_into().expect("it is short");
         let told = match &self.child {
             Some(child) => poll(&mut [PollFd::new(child.get_ref(), PollFlags::IN)], Some(&moment)),
             None => poll(&mut [PollFd::new(&self.listener, PollFlags::IN)], Some(&moment)),

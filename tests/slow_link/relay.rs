@@ -5,11 +5,11 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 /// The query that ends each frame.
-const QUESTION: &[u8] = b"\x1b[c";
+const QUERY: &[u8] = b"\x1b[c";
 /// The reply of the far terminal: an xterm's.
-const ANSWER: &[u8] = b"\x1b[?64;1;2;6;9;15;16;17;18;21;22;28c";
+const REPLY: &[u8] = b"\x1b[?64;1;2;6;9;15;16;17;18;21;22;28c";
 /// The number of bytes that the link passes on at once.
-const PIECE: usize = 64;
+const PIECE_BYTES: usize = 64;
 
 /// The properties of a link.
 #[derive(Clone, Copy)]
@@ -134,7 +134,7 @@ impl Relay {
         if bytes.is_empty() {
             return;
         }
-        self.waiting.extend(bytes.chunks(PIECE).map(|piece| (now, piece.to_vec())));
+        self.waiting.extend(bytes.chunks(PIECE_BYTES).map(|piece| (now, piece.to_vec())));
         self.taken += bytes.len();
         // One frame: a terminal's bytes may come in pieces.
         let may_be = self.link.rate * (self.link.round_trip.as_secs_f64() + 1.0 / 15.0);
@@ -157,7 +157,7 @@ impl Relay {
             let Some((at, sent, piece)) = self.there.pop_front() else { break };
             for byte in piece {
                 self.arrived.push(byte);
-                if self.arrived.ends_with(QUESTION) {
+                if self.arrived.ends_with(QUERY) {
                     let frame = std::mem::take(&mut self.arrived);
                     self.show(&frame, sent, at);
                 }
@@ -169,11 +169,11 @@ impl Relay {
         self.screen.feed(frame);
         if self.link.answers {
             let back = at + self.link.round_trip / 2;
-            self.back.push_back((back, ANSWER.to_vec(), frame.len()));
+            self.back.push_back((back, REPLY.to_vec(), frame.len()));
             // Keys and answers in the order in which they were sent.
             self.back.make_contiguous().sort_by_key(|bytes| bytes.0);
         }
-        if frame.len() > QUESTION.len() {
+        if frame.len() > QUERY.len() {
             let status = self.screen.text().pop().unwrap_or_default();
             self.frames.push(Frame { sent, at, bytes: frame.len(), status });
         }

@@ -8,7 +8,7 @@ use termtrace::internals::input::{Input, Parser, Reply};
 use termtrace::internals::pace::Link;
 
 /// The bytes of a frame, with its question.
-const FRAME: usize = 4_000;
+const FRAME_BYTES: usize = 4_000;
 
 /// Writes frames to a terminal in raw mode, until it reads `q` or the terminal is gone.
 ///
@@ -62,6 +62,6 @@ pub(crate) fn run(mut terminal: File) {
 fn frame(eye: [i32; 2], slow: bool) -> Vec<u8> {
     let link = if slow { "slow link" } else { "" };
     let status = format!("\x1b[24;1H {link} eye {}.00 1.00 {}.00\x1b[K", eye[0], 5 + eye[1]);
-    let spaces = " ".repeat(FRAME - b"\x1b[c".len() - b"\x1b[1;1H".len() - status.len());
+    let spaces = " ".repeat(FRAME_BYTES - b"\x1b[c".len() - b"\x1b[1;1H".len() - status.len());
     format!("\x1b[1;1H{spaces}{status}").into_bytes()
 }
