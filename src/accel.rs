@@ -27,8 +27,8 @@ pub(crate) struct PrimitiveId {
     pub(crate) index: u32,
 }
 
-/// The ids of eight primitives, as the bits of f32: they are gathered and selected as numbers are. No arithmetic
-/// touches them, so that patterns of NaN survive.
+/// The ids of eight primitives, as the bits of f32: they are gathered and selected as numbers are.
+// No arithmetic touches them, so that patterns of NaN survive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PrimitiveIds<N> {
     object: N,
@@ -166,6 +166,7 @@ macro_rules! accelerator {
                     built.$name = List { first: end, primitives: self.$name };
                     end = built.$name.end();
                 } })*
+                // A leaf's primitives start at a multiple of eight: index % 8 is the lane.
                 end = end.next_multiple_of(LANES as u32);
                 $($(#[$on])* { only! { tree in $group
                     built.$name = self.$name.build(end, report)?;
@@ -236,8 +237,9 @@ pub(crate) struct Tree<S> {
     pub(crate) bvh: Bvh,
     /// The leaves, with up to eight primitives each.
     pub(crate) leaves: Vec<S>,
-    /// The ids of the primitives of each leaf; unused lanes repeat the last one. Apart from the leaves, as only hits
-    /// need them: a leaf of triangles has 288 bytes instead of 352, and incoherent rays are 1 to 5 % faster.
+    /// The ids of the primitives of each leaf; unused lanes repeat the last one.
+    // Apart from the leaves, as only hits need them: a leaf of triangles has 288 bytes instead of 352, and incoherent
+    // rays are 1 to 5 % faster.
     ids: Vec<PrimitiveIds<F32x8>>,
     /// The index of the first primitive.
     pub(crate) first: u32,
@@ -279,6 +281,7 @@ impl Accelerator {
                 lists.push(PrimitiveId { object, index }, shape.primitive(index));
             }
         }
+        // Counted over all trees, as the user sees one progress for the scene.
         let (done, total) = (AtomicUsize::new(0), lists.boxes().count());
         let report_more = |more| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
@@ -409,8 +412,8 @@ impl<S> Tree<S> {
     }
 }
 
-/// Number of leaves from which on they are filled on all threads. For one leaf of four spheres rayon's pool was
-/// started: .15 ms of the first picture.
+/// Number of leaves from which on they are filled on all threads.
+// For one leaf of four spheres rayon's pool was started: .15 ms of the first picture.
 const MIN_PARALLEL_LEAVES: usize = 1024;
 
 /// The bounded primitives of one kind, in the order of the scene, before the build.
@@ -443,6 +446,7 @@ impl<T: Surface + Copy + Sync> TreeBuilder<T> {
         let (bvh, places) = Bvh::new_or_cancel(&self.boxes, report)?;
         let leaf = |leaf: usize| {
             let numbers = places.boxes(leaf);
+            // Unused lanes repeat the last primitive's id.
             let number = |lane: usize| numbers[lane.min(numbers.len() - 1)] as usize;
             let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)]);
             (S::of(&shapes[..numbers.len()]), PrimitiveIds::of(from_fn(|lane| self.ids[number(lane)])))

@@ -13,8 +13,8 @@ pub struct Bounds {
     pub max: Vec3,
 }
 
-/// Relative widening of a ray's interval in a box at both ends: 16 units of 2^-24. `culling.md`, 3: three units for the
-/// rounding of an end, one for this product, twelve for a surface's own t.
+/// Relative widening of a ray's interval in a box at both ends: 16 units of 2^-24.
+// `culling.md`, 3: three units for the rounding of an end, one for this product, twelve for a surface's own t.
 const CROSSING_SLACK: f32 = 16.0 / 16_777_216.0;
 
 impl Bounds {
@@ -64,6 +64,8 @@ impl Bounds {
 pub fn crossed<N: Number>([min, max]: [Vector<N>; 2], rays: &Rays<N>) -> [N; 2] {
     let slab = |min: N, max: N, origin: N, inverse: N| {
         let is_backward = inverse.lt(N::splat(0.0));
+        // By the sign of the inverse, not by `min` and `max` of both planes: that would lose the order of NaN
+        // (`culling.md`, 2).
         let near = N::select(is_backward, max, min);
         let far = N::select(is_backward, min, max);
         [(near - origin) * inverse, (far - origin) * inverse]

@@ -49,9 +49,8 @@ impl Leaves {
 }
 
 /// Eight boxes in SoA layout, and their children.
-///
-/// The children share a cache line with the first bounds: they are loaded by the time the hit mask is known. Together
-/// with the shortcut for a single hit child this makes single rays 4 to 6 % faster.
+// The children share a cache line with the first bounds: they are loaded by the time the hit mask is known. Together
+// with the shortcut for a single hit child this makes single rays 4 to 6 % faster.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C, align(64))]
 struct Node {
@@ -88,7 +87,9 @@ impl Node {
     #[inline(always)]
     fn intersect<N: Lanes>(&self, slabs: &Slabs<N>, within: Interval) -> (N, u32) {
         let (mut start, mut end) = (N::splat(within.min), N::splat(within.max));
+        // The order does not change the mask: `max` and `min` of the same numbers, with NaN skipped.
         for axis in [2, 1, 0] {
+            // The near plane by an index, not by a select: the sign is the same in all lanes.
             let (bounds, near) = (&self.bounds[axis], usize::from(slabs.is_backward[axis]));
             let origin = slabs.origin[axis];
             // In this order `max` and `min` skip NaN, as in `bounds::crossed`.
@@ -103,15 +104,17 @@ impl Node {
 /// (`culling.md`, 4).
 struct Slabs<N> {
     origin: [N; 3],
-    /// The negated inverses, widened for the near and for the far planes. Negated, because `origin - plane` lets the
-    /// CPU subtract a memory operand: 1 to 5 % on incoherent rays, with the smaller leaves of the same change.
+    /// The negated inverses, widened for the near and for the far planes.
+    // Negated, because `origin - plane` lets the CPU subtract a memory operand: 1 to 5 % on incoherent rays, with the
+    // smaller leaves of the same change.
     near: [N; 3],
     far: [N; 3],
     is_backward: [bool; 3],
 }
 
-/// Relative widening of both ends of a slab interval: 128 units of 2^-24 (`culling.md`, 4). Multiplied into the inverse
-/// once per ray, it saves the widening in each test: a node takes 36 instructions instead of 60.
+/// Relative widening of both ends of a slab interval: 128 units of 2^-24 (`culling.md`, 4).
+// Multiplied into the inverse once per ray, it saves the widening in each test: a node takes 36 instructions instead of
+// 60.
 const SLAB_SLACK: f32 = 128.0 / 16_777_216.0;
 
 impl<N: Lanes> Slabs<N> {
@@ -134,6 +137,7 @@ impl<N: Lanes> Slabs<N> {
 pub struct Child(u32);
 
 impl Child {
+    // The highest bit: nodes and leaves are numbered apart, and `build` admits fewer than 2^31 boxes.
     const LEAF: u32 = 1 << 31;
 
     const fn node(at: u32) -> Self {
@@ -251,8 +255,9 @@ impl Bvh {
         }
     }
 
-    /// Prefetches a child that is hit. On the dragon's 871 k triangles, whose tree exceeds the L2 cache, packets of eye
-    /// rays are 10 % faster, and single rays 5 %. Scenes that fit the cache do not change.
+    /// Prefetches a child that is hit.
+    // On the dragon's 871 k triangles, whose tree exceeds the L2 cache, packets of eye rays are 10 % faster, and single
+    // rays 5 %. Scenes that fit the cache do not change.
     #[inline(always)]
     fn prefetch(&self, child: Child, leaves: &impl Prefetch) {
         match child.as_leaf() {
@@ -263,13 +268,15 @@ impl Bvh {
 }
 
 /// A child that a single ray has yet to visit, below the bits of its entry t: the order of these numbers is that of the
-/// entries. One comparison and one move per step of the sort, instead of two each.
+/// entries.
+// One comparison and one move per step of the sort, instead of two each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct RayStackEntry(u64);
 
 impl RayStackEntry {
     #[inline(always)]
     fn new(Child(child): Child, start: f32) -> Self {
+        // The bits of numbers from 0 on are ordered as the numbers are.
         Self(u64::from(start.to_bits()) << 32 | u64::from(child))
     }
 
@@ -341,6 +348,7 @@ impl RayStack {
     fn make_room(&mut self) {
         #[cold]
         fn grow(entries: &mut Vec<RayStackEntry>) {
+            // Cold: a stack grows a few times per kernel.
             entries.resize(2 * entries.len() + 8 * LANES, RayStackEntry(0));
         }
         if self.entries.len() < self.len + LANES {

@@ -48,6 +48,7 @@ pub trait Number:
     /// Compares with `==`; false for NaN.
     #[inline(always)]
     fn eq(self, other: Self) -> Self::Mask {
+        // Two comparisons instead of a third primitive for each register type: only ties of hits and patterns use it.
         self.le(other) & other.le(self)
     }
 
@@ -84,9 +85,9 @@ pub trait SimdKernel {
 
 /// A vector of eight numbers, in an array or in registers.
 pub trait Lanes: Number<Mask: LaneMask> {
-    /// Runs the kernel in a function of its own, compiled with the same target features. Inlined into the packets'
-    /// function, a single ray's numbers lived in memory; a function of its own, with new slabs and stack entries, took
-    /// 14 % fewer instructions.
+    /// Runs the kernel in a function of its own, compiled with the same target features.
+    // Inlined into the packets' function, a single ray's numbers lived in memory; a function of its own, with new slabs
+    // and stack entries, took 14 % fewer instructions.
     fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output;
 
     /// Loads from memory.
@@ -220,7 +221,8 @@ impl Mask for bool {
     }
 }
 
-/// Number of lanes of a vector. Eight f32 fill a register of AVX2.
+/// Number of lanes of a vector.
+// Eight f32 fill a register of AVX2.
 pub const LANES: usize = 8;
 
 /// The mask with all lanes set.
@@ -230,8 +232,10 @@ pub const ALL: u32 = (1 << LANES) - 1;
 #[inline(always)]
 pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
+        // `% LANES` bounds the index without a branch: callers index arrays of eight without a check.
         let lowest = bits.trailing_zeros() as usize % LANES;
         let is_any = bits != 0;
+        // Clears the lowest set bit: one instruction (BLSR) with BMI1.
         bits &= bits.wrapping_sub(1);
         is_any.then_some(lowest)
     })
@@ -240,6 +244,7 @@ pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
 /// A vector of eight numbers in an array, aligned for registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
+// Aligned for loads and stores of a whole AVX register.
 pub struct F32x8(pub [f32; LANES]);
 
 /// A mask of eight lanes in an array: all bits of a set lane are 1.
@@ -279,6 +284,8 @@ impl F32x8 {
     #[inline(always)]
     pub fn reduce_min(self) -> f32 {
         let Self([a, b, c, d, e, f, g, h]) = self;
+        // `Number::min` instead of `f32::min`, which leaves the order of zeros to the platform. A tree of depth three,
+        // as the registers reduce: with NaN or two zeros the order of operands decides the bits.
         let min = <f32 as Number>::min;
         min(min(min(a, b), min(c, d)), min(min(e, f), min(g, h)))
     }
@@ -332,10 +339,12 @@ impl Number for F32x8 {
 
     #[inline(always)]
     fn select(Mask32x8(mask): Mask32x8, Self(yes): Self, Self(no): Self) -> Self {
+        // By bits, not by branches: the compiler made scalar code of comparisons that chose among lanes.
         let bits = |lane: usize| (yes[lane].to_bits() & mask[lane]) | (no[lane].to_bits() & !mask[lane]);
         Self(from_fn(|lane| f32::from_bits(bits(lane))))
     }
 
+    // The one operation that need not be inlined: its formulas are rare and scalar.
     fn map_lanes<const IN: usize, const OUT: usize>(
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],

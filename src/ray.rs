@@ -55,16 +55,19 @@ impl<N: Number> Rays<N> {
         Self {
             origin,
             direction,
+            // Infinite for a zero coordinate, on purpose: slabs then decide by sign (`culling.md`, 2).
             inverse: Vector { x: one / x, y: one / y, z: one / z },
             squared_length,
             inverse_squared_length: one / squared_length,
+            // Set by the callers: a division that scenes without triangles do not need.
             shear: Shear::none(),
         }
     }
 }
 
 impl<N: Lanes> Rays<N> {
-    /// Loads eight rays. The shear costs a division per ray, so it is omitted for scenes without triangles.
+    /// Loads eight rays.
+    // The shear costs a division per ray, so it is omitted for scenes without triangles.
     #[inline(always)]
     pub fn load(rays: &EightRays, needs_shear: bool) -> Self {
         let direction = rays.direction.load();
@@ -73,8 +76,7 @@ impl<N: Lanes> Rays<N> {
     }
 
     /// Returns the ray of `lane` in all lanes.
-    ///
-    /// Shuffles within registers: through memory, single rays in three spheres were 22 % slower.
+    // Shuffles within registers: through memory, single rays in three spheres were 22 % slower.
     #[inline(always)]
     pub(crate) fn splat_lane(&self, lane: usize) -> Self {
         Self {
@@ -110,6 +112,7 @@ impl EightRays {
     /// # Panics
     /// If `rays` is empty.
     pub fn of(rays: &[Ray]) -> Self {
+        // The last ray is repeated: it widens no bounds, as zeros would.
         let ray = |lane: usize| &rays[lane.min(rays.len() - 1)];
         Self {
             origin: Vector::of(from_fn(|lane| ray(lane).origin)),
@@ -182,8 +185,10 @@ impl<N: Number> Shear<N> {
     #[inline(always)]
     fn of(direction: Vector<N>) -> Self {
         let length = Vector { x: direction.x.abs(), y: direction.y.abs(), z: direction.z.abs() };
+        // Strict comparisons, so that ties choose the same axis for one ray, for eight and in f64.
         let is_x = length.y.lt(length.x) & length.z.lt(length.x);
         let is_y = length.z.lt(length.y) & !is_x;
+        // A common axis for all lanes, as in most packets, saves six selects per corner.
         let axis = if is_x.all() {
             DominantAxis::X
         } else if is_y.all() {
@@ -194,6 +199,7 @@ impl<N: Number> Shear<N> {
             DominantAxis::Z
         };
         let Vector { x, y, z } = axis.rotate_to_z(direction);
+        // Divisions, not products with 1 / z: statement 6 of `culling.md` counts one rounding per factor.
         Self { axis, factor: Vector { x: x / z, y: y / z, z: N::splat(1.0) / z }, length: z.abs() }
     }
 
@@ -207,8 +213,7 @@ impl<N: Number> Shear<N> {
 
 /// Transforms a vector from the ray's origin as [`Shear`] does, in f64, with x and y scaled by the dominant coordinate
 /// of the direction.
-///
-/// The scale avoids a division, whose rounding would move the corners. For what is exact see `culling.md`, 8.
+// The scale avoids a division, whose rounding would move the corners. For what is exact see `culling.md`, 8.
 pub fn sheared_in_f64(from_origin: DVec3, direction: Vec3) -> DVec3 {
     let [x, y, z] = match Shear::of(Vector::<f32>::splat(direction)).axis {
         DominantAxis::X => [1, 2, 0],

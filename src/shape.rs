@@ -228,7 +228,8 @@ pub enum Side {
 }
 
 /// The clearance relative to the coordinates: 32 units of 2^-24. A point is off by a few units, and so is the crossing
-/// of a second ray. Not proved, but counted: at most 10 false shadows of 100,000 at each scale (`culling.md`, 15).
+/// of a second ray.
+// Not proved, but counted: at most 10 false shadows of 100,000 at each scale (`culling.md`, 15).
 const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 
 /// Passes the table of all surfaces to a macro, one line each: `tree`, or `list` for unbounded ones; the field of the

@@ -17,6 +17,7 @@ pub use prefetch::prefetch;
 /// Runs the kernel with the widest instruction set of this CPU.
 #[inline]
 pub fn dispatch<K: SimdKernel>(kernel: K) -> K::Output {
+    // The detection is cached by the standard library: a load and a bit test for each kernel.
     #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
     if has_avx512() {
         // SAFETY: `has_avx512` has checked the CPU.
@@ -41,6 +42,8 @@ pub fn run_scalar<K: SimdKernel>(kernel: K) -> K::Output {
 
 #[cfg(target_arch = "x86_64")]
 #[inline]
+// With BMI1, LZCNT and POPCNT, since loops over masks count and clear bits; every known CPU with
+// AVX2 has them, but no specification says so.
 fn has_avx2() -> bool {
     is_x86_feature_detected!("avx2")
         && is_x86_feature_detected!("bmi1")
@@ -50,6 +53,7 @@ fn has_avx2() -> bool {
 
 #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
 #[inline]
+// VL for masks of registers of eight, DQ for moves of eight-bit masks.
 fn has_avx512() -> bool {
     has_avx2()
         && is_x86_feature_detected!("avx512f")
@@ -60,6 +64,7 @@ fn has_avx512() -> bool {
 }
 
 #[cfg(target_arch = "x86_64")]
+// `avx` holds what AVX2 and AVX-512 share; they differ in their masks only.
 mod avx;
 #[cfg(target_arch = "x86_64")]
 mod avx2;

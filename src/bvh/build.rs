@@ -6,8 +6,8 @@ use super::{Bvh, Leaves};
 use crate::bounds::Bounds;
 use crate::threads;
 
-/// Number of items below which a subtree is built on one thread. The dragon's 871 k triangles still make over 100
-/// tasks, enough to balance the threads.
+/// Number of items below which a subtree is built on one thread.
+// The dragon's 871 k triangles still make over 100 tasks, enough to balance the threads.
 const MIN_TASK_ITEMS: usize = 8192;
 
 type Report<'r, E> = &'r (dyn Fn(usize) -> Result<(), E> + Sync);
@@ -22,6 +22,7 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
     let pairs = subtree(&mut items, &around, Place { first: 0, depth: 0 }, report)?;
     let mut wide = Wide::of(&pairs);
     let root = Some(wide.append(0));
+    // The items were partitioned in place: their order is that of the leaves.
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
     Ok((Bvh { nodes: wide.nodes, root }, Leaves { order, ranges: wide.leaves }))
 }
@@ -41,8 +42,9 @@ impl Place {
     }
 }
 
-/// Returns the binary tree over these items with these bounds. Large halves are built in parallel; as nodes store the
-/// distance to their children, a subtree is the same wherever it is placed.
+/// Returns the binary tree over these items with these bounds.
+// Large halves are built in parallel; as nodes store the distance to their children, a subtree is the same wherever it
+// is placed.
 fn subtree<E: Send>(
     items: &mut [Item],
     around: &Around,
@@ -54,6 +56,7 @@ fn subtree<E: Send>(
         append(items, around, at, &mut nodes);
         return report(items.len()).map(|()| nodes);
     }
+    // Reported without progress, so that a large build can be cancelled between subtrees.
     report(0)?;
     let bounds = around.boxes.bounds();
     let Halves { cut, around } = cut(items, around, at.depth).unwrap_or_else(|| Halves::at(items.len() / 2, items));

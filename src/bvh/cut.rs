@@ -7,8 +7,8 @@ use crate::lanes::LANES;
 use glam::Vec3;
 use std::array::from_fn;
 
-/// A box as two rows of four numbers, which fit the CPU's registers. Together with two passes over the items instead of
-/// five, and leaves of eight, the dragon's tree took .6 of the time.
+/// A box as two rows of four numbers, which fit the CPU's registers.
+// Together with two passes over the items instead of five, and leaves of eight, the dragon's tree took .6 of the time.
 #[derive(Clone, Copy)]
 #[repr(align(16))]
 pub(super) struct Rows {
@@ -21,6 +21,8 @@ impl Rows {
 
     #[inline(always)]
     fn grow(&mut self, other: &Self) {
+        // By comparison and four numbers at a time, which the compiler turns into MINPS and MAXPS; `f32::min` would
+        // check for NaN.
         for at in 0..4 {
             self.min[at] = if other.min[at] < self.min[at] { other.min[at] } else { self.min[at] };
             self.max[at] = if other.max[at] > self.max[at] { other.max[at] } else { self.max[at] };
@@ -53,10 +55,11 @@ pub(super) fn item((number, bounds): (u32, &Bounds)) -> Item {
 const MAX_LEAF_BOXES: usize = LANES;
 
 /// Limit on the depth of a tree.
+// The depth bounds the recursion of the build and the stacks of the traversal.
 const MAX_DEPTH: usize = 96;
 
-/// Depth up to which cuts may be unbalanced. Below it they halve the items, so that no path is longer than `MAX_DEPTH`:
-/// 2^32 items are halved 32 times.
+/// Depth up to which cuts may be unbalanced.
+// Below it they halve the items, so that no path is longer than `MAX_DEPTH`: 2^32 items are halved 32 times.
 const FREE_DEPTH: usize = MAX_DEPTH - 34;
 
 /// The bounds of some items.
@@ -109,8 +112,9 @@ pub(super) fn cut(items: &mut [Item], around: &Around, depth: usize) -> Option<H
     Some(partition(items, |item| bin.of(item) < before))
 }
 
-/// Moves the items for which `is_first` is true before the others. The bounds of both sides are computed on the way:
-/// with a separate pass over the items of each node, the tree of the dragon's 871 k triangles took 1.01 times as long.
+/// Moves the items for which `is_first` is true before the others.
+// The bounds of both sides are computed on the way: with a separate pass over the items of each node, the tree of the
+// dragon's 871 k triangles took 1.01 times as long.
 fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
     let (mut start, mut end) = (0, items.len());
     let [mut first, mut last] = [Around::NOTHING; 2];
@@ -146,6 +150,8 @@ struct Bin {
 impl Bin {
     fn along(axis: usize, middles: &Rows, bins: usize) -> Option<Self> {
         let extent = middles.max[axis] - middles.min[axis];
+        // A little less than the number of bins, so that the last middle falls into the last bin; `min` below guards
+        // the rounding.
         let scale = bins as f32 * 0.999 / extent;
         let start = middles.min[axis];
         (extent > 0.0 && scale.is_finite()).then_some(Self { axis, start, scale, last: bins - 1 })
@@ -181,6 +187,7 @@ impl Cut {
             }
         }
         let planes = axes.into_iter().zip(&bins).filter_map(|(bin, bins)| Self::between(bin?, &bins[..count]));
+        // Of equal costs the first: the tree is the same on every machine.
         planes.min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
@@ -197,6 +204,7 @@ impl Cut {
         for before in 1..bins.len() {
             sum.0.grow(&bins[before - 1].0);
             sum.1 += bins[before - 1].1;
+            // An empty side would make a child without boxes.
             if sum.1 == 0 || behind[before].1 == 0 {
                 continue;
             }
@@ -210,10 +218,9 @@ impl Cut {
 }
 
 /// Returns the half area of the box times the expected number of tests below it.
-///
-/// A leaf's boxes are tested eight at a time, so what counts is the number of blocks of eight. A sixteenth for each box
-/// tells apart cuts with as many blocks. Counting single boxes instead made 18 % more leaves of the dragon's 871 k
-/// triangles, and 5 % slower rays.
+// A leaf's boxes are tested eight at a time, so what counts is the number of blocks of eight. A sixteenth for each box
+// tells apart cuts with as many blocks. Counting single boxes instead made 18 % more leaves of the dragon's 871 k
+// triangles, and 5 % slower rays.
 #[inline(always)]
 fn cost((rows, count): (Rows, u32)) -> f32 {
     let [x, y, z, _]: [f32; 4] = from_fn(|at| rows.max[at] - rows.min[at]);

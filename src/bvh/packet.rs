@@ -40,26 +40,25 @@ struct AxisRanges<N> {
     inverse: [N; 2],
 }
 
-/// Relative widening of the range of inverse directions at both ends: 128 units of 2^-24 (`culling.md`, 5). Widened
-/// once per packet, which saves the widening in each test: 19 operations per box instead of 38.
+/// Relative widening of the range of inverse directions at both ends: 128 units of 2^-24 (`culling.md`, 5).
+// Widened once per packet, which saves the widening in each test: 19 operations per box instead of 38.
 const PACKET_SLACK: f32 = 128.0 / 16_777_216.0;
 
 /// The least magnitude of an inverse that can be widened by a relative amount: 2^-124, as widening stays normal
 /// (`culling.md`, 5).
 const MIN_INVERSE: f32 = 4.0 * f32::MIN_POSITIVE;
 
-/// The largest ratio of inverses in a packet of one sign: 2^40. It bounds how far a product that rounds to zero for a
-/// ray can lie below zero for its packet (`culling.md`, 5).
+/// The largest ratio of inverses in a packet of one sign: 2^40.
+// It bounds how far a product that rounds to zero for a ray can lie below zero for its packet (`culling.md`, 5).
 const MAX_INVERSE_RATIO: f32 = 1_099_511_627_776.0;
 
-/// Added to a packet's exits: 2^-100. A ray's product below 2^-150 rounds to zero, and its packet's is at most
-/// [`MAX_INVERSE_RATIO`] times as far below zero (`culling.md`, 5).
+/// Added to a packet's exits: 2^-100.
+// A ray's product below 2^-150 rounds to zero, and its packet's is at most `MAX_INVERSE_RATIO` times as far below
+// zero (`culling.md`, 5).
 const EXIT_SLACK: f32 = 1.0 / (MAX_INVERSE_RATIO * MAX_INVERSE_RATIO * 1_048_576.0);
 
 /// Returns the minimum and the maximum of each group.
-///
-/// Three rounds of shuffles for eight registers: scalars from memory made a frame of 100,000 spheres 1.18 times as
-/// long.
+// Three rounds of shuffles for eight registers: scalars from memory made a frame of 100,000 spheres 1.18 times as long.
 #[inline(always)]
 fn group_ranges<N: Lanes>(groups: [N; GROUPS]) -> [N; 2] {
     [N::min_of_each(&groups), N::max_of_each(&groups)]
@@ -77,6 +76,7 @@ impl<N: Lanes> AxisRanges<N> {
     fn of(origin: [N; GROUPS], inverse: [N; GROUPS]) -> (DirectionSign, [Self; 2]) {
         let origin = group_ranges(origin);
         let [low, high] = group_ranges(inverse);
+        // The range of all follows from the groups' ranges, without another pass over the rays.
         let (all_origin, all_inverse) = (total_range(origin), total_range([low, high]));
         let sign = DirectionSign::of(all_inverse);
         if sign == DirectionSign::Mixed {
@@ -118,10 +118,9 @@ impl<N: Lanes> AxisRanges<N> {
     }
 
     /// Returns a lower bound of the entries and an upper bound of the exits, of rays that meet the box at t >= 0.
-    ///
-    /// With directions of one sign the entry is the product of the least distance and the least inverse, the exit that
-    /// of the greatest. Behind the origin the distance is negative, and the sign of the product alone counts. So one
-    /// product per side suffices; with both ends of the inverses it was two, and packets took up to 1.16 times as long.
+    // With directions of one sign the entry is the product of the least distance and the least inverse, the exit that
+    // of the greatest. Behind the origin the distance is negative, and the sign of the product alone counts. So one
+    // product per side suffices; with both ends of the inverses it was two, and packets took up to 1.16 times as long.
     #[inline(always)]
     fn slab_range(&self, sign: DirectionSign, min: N, max: N) -> [N; 2] {
         let Self { origin, inverse } = *self;
@@ -172,8 +171,8 @@ impl<N: Lanes> Packet<N> {
         Self { signs: [x, y, z], groups: [groups_x, groups_y, groups_z], all: [all_x, all_y, all_z] }
     }
 
-    /// Returns whether the directions have mixed signs along two axes or more. Such a packet culls hardly any box:
-    /// incoherent rays are 1.2 to 1.5 times as fast as single rays from the root.
+    /// Returns whether the directions have mixed signs along two axes or more.
+    // Such a packet culls hardly any box: incoherent rays are 1.2 to 1.5 times as fast as single rays from the root.
     #[inline(always)]
     pub fn is_incoherent(&self) -> bool {
         self.signs.iter().filter(|&&sign| sign == DirectionSign::Mixed).count() > 1
@@ -209,8 +208,9 @@ fn crossed<N: Lanes>(
 
 /// The visitor of a packet's traversal.
 pub trait Visitor<N>: Prefetch {
-    /// Whether nearer boxes are visited before farther ones: hits there shorten the rays. For any-hit rays sorting
-    /// costs more than it saves: without it shadow rays are 6 % faster on the dragon's 871 k triangles.
+    /// Whether nearer boxes are visited before farther ones: hits there shorten the rays.
+    // For any-hit rays sorting costs more than it saves: without it shadow rays are 6 % faster on the dragon's 871 k
+    // triangles.
     const NEAREST_FIRST: bool;
 
     /// Number of hit children from which on [`split`](Self::split) is called.
@@ -256,6 +256,7 @@ impl Bvh {
         let min = N::splat(visitor.t_min());
         let mut next = Some(StackEntry { child: root, slot: u32::MAX, start: visitor.t_min() });
         while let Some(StackEntry { child, slot, start }) = next.take().or_else(|| waiting.pop()) {
+            // Hits since the push may have ended the rays before this box.
             if start > visitor.max_t_max() {
                 continue;
             }
@@ -263,9 +264,12 @@ impl Bvh {
                 visitor.visit_leaf(leaf);
                 continue;
             }
+            // The root has no box of its own to test.
             let is_root = slot == u32::MAX;
             let mut groups = 0;
             if !is_root {
+                // The box group by group, exactly as narrow as each group: many boxes that the whole packet meets, no
+                // group does.
                 let [starts, ends] = packet.crossed_by_groups(self.slot_box(slot), [min, visitor.t_max()]);
                 groups = starts.le(ends).bits();
                 if groups == 0 {
@@ -283,6 +287,7 @@ impl Bvh {
                 visitor.trace_singles(child, rays, groups);
                 continue;
             }
+            // All hit children will be visited, most of them soon.
             for lane in set_bits(hit_mask) {
                 self.prefetch(node.children[lane], visitor);
             }

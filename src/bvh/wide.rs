@@ -80,9 +80,8 @@ const WHOLE: usize = 0;
 
 /// Chooses the wide nodes that a ray is expected to meet least often, by dynamic programming over the binary tree
 /// (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017).
-///
-/// To open the largest box until there are eight left a third of the nodes with two children. This way the dragon's 871
-/// k triangles have 28 % fewer nodes.
+// To open the largest box until there are eight left a third of the nodes with two children. This way the dragon's 871
+// k triangles have 28 % fewer nodes.
 fn fillings(pairs: &[BinaryNode]) -> Vec<Filling> {
     let mut fillings = vec![[WHOLE as u8; LANES]; pairs.len()];
     // From the last node to the first, both children come before their parent, the first child on top.

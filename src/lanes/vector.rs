@@ -59,6 +59,7 @@ impl<N: Number> Vector<N> {
     /// Returns the dot product, summed in the order x, y, z on every CPU.
     #[inline(always)]
     pub fn dot(self, other: Self) -> N {
+        // No FMA and no horizontal add: their rounding differs between CPUs.
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 }

@@ -27,8 +27,8 @@ pub struct CommonOrigin<N: Lanes> {
 }
 
 /// Lengths by which a depth can be divided and multiplied again with an underflow of 2^-117 at most, and no overflow
-/// below 2^95 (`culling.md`, 14). Without the limit, a review found, directions of 2^120 decided wrongly for their
-/// packet.
+/// below 2^95 (`culling.md`, 14).
+// Without the limit, a review found, directions of 2^120 decided wrongly for their packet.
 const SAFE_LENGTHS: [f32; 2] = [1.0 / 4_294_967_296.0, 4_294_967_296.0];
 
 impl<N: Lanes> CommonOrigin<N> {
@@ -37,8 +37,10 @@ impl<N: Lanes> CommonOrigin<N> {
     #[inline(always)]
     pub fn of(groups: &[Rays<N>; LANES]) -> Option<Self> {
         let zero = N::splat(0.0);
+        // A ray near the middle of the tile keeps the offsets, and so all bounds, small.
         let middle = &groups[LANES / 2];
         let start = middle.origin.splat_lane(0);
+        // Eye rays share their origin bit for bit: no error, and no second search.
         if max_distance(groups, zero, start).le(zero).all() {
             return Self::around(start, zero, groups);
         }
@@ -63,6 +65,8 @@ impl<N: Lanes> CommonOrigin<N> {
         let (mut depth_range, mut share_axis) = ([N::splat(f32::INFINITY), N::splat(f32::NEG_INFINITY)], true);
         for (at, rays) in groups.iter().enumerate() {
             let (direction, inverse) = (axis.rotate_to_z(rays.direction), axis.rotate_to_z(rays.inverse));
+            // A product with the inverse, which the ray has, not a division: two units of error instead of one
+            // (statement 11).
             xs[at] = direction.x * inverse.z - slope[0];
             ys[at] = direction.y * inverse.z - slope[1];
             // Compared this way round, NaN is not near.

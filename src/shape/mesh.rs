@@ -144,7 +144,9 @@ impl Facet<'_> {
     /// have normals. `geometric_normal` gives the visible side, as files order corners either way.
     pub fn smooth(&self, position: Vec3, geometric_normal: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
         let normals = self.mesh.file.normals_of(self.index as usize)?;
+        // Opposite normals may cancel out: then the flat normal.
         let smooth = between(normals, uv).normalize_or(geometric_normal);
+        // The interpolated normal may point away from the visible side, as files order corners either way.
         let sign = if smooth.dot(geometric_normal) < 0.0 { -1.0 } else { 1.0 };
         Some((position + self.lift(position, uv, normals.map(|normal| normal * sign)), smooth * sign))
     }
@@ -294,6 +296,7 @@ fn turn(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
 
 /// Returns cosine and sine of an angle in degrees; exact for quarter turns.
 fn cosine_and_sine(degrees: f64) -> (f64, f64) {
+    // Reduced to a quarter turn in degrees, where multiples of 90 are exact, before the conversion to radians.
     let quarters = libm::round(degrees / 90.0);
     let (sine, cosine) = libm::sincos((degrees - 90.0 * quarters).to_radians());
     match (quarters as i64).rem_euclid(4) {

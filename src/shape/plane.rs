@@ -62,6 +62,7 @@ impl Plane {
 
 /// Returns the x axis projected into the plane, or the z axis if the normal is close to x.
 fn pattern_axis(normal: Vec3) -> Vec3 {
+    // 0.9 keeps the projection longer than 0.43, far from a division by zero.
     let axis = if normal.x.abs() < 0.9 { Vec3::X } else { Vec3::Z };
     (axis - normal * axis.dot(normal)).normalize()
 }
@@ -125,6 +126,7 @@ impl<N: Number> AtCrossing<N> for Plane {
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
         let (point, normal) = (Vector::splat(self.point), Vector::splat(self.normal));
         let hit = rays.origin + rays.direction * t;
+        // Projected onto the plane: `hit` is off by units of t, the projection by units of the coordinates.
         let position = hit - normal * (hit - point).dot(normal);
         let from_point = position - point;
         let uv = [from_point.dot(Vector::splat(self.u)), from_point.dot(Vector::splat(self.v))];

@@ -46,6 +46,8 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
         let (min, mut crosses, mut t) = (min.store(), 0, F32x8::ZERO);
         for (lane, surface) in self.0.iter().enumerate() {
             let within = Interval { min: min.0[lane], max: f32::MAX };
+            // The shared values are computed again per surface: a simple path for new surfaces; fast ones implement
+            // `SoaLeaf`.
             let probe = Probe::new(ray_of(rays, lane));
             if let Some(crossing) = surface.as_ref().and_then(|surface| surface.closest_crossing(&probe, within)) {
                 crosses |= 1 << lane;

@@ -13,8 +13,8 @@ use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, 
 use glam::Vec3;
 use std::array::from_fn;
 
-/// Distance in radii from which on a crossing is refined by a Newton step. At 200 radii it brings the crossing from
-/// 6e-5 to 5e-5 radii of the surface.
+/// Distance in radii from which on a crossing is refined by a Newton step.
+// At 200 radii it brings the crossing from 6e-5 to 5e-5 radii of the surface.
 const NEWTON_MIN_RADII: f32 = 8.0;
 
 /// The squared cosine to the normal below which a ray is grazing: the derivative is near zero, and a Newton step
@@ -71,7 +71,8 @@ pub struct SphereN<N> {
 
 impl<N: Number> SphereN<N> {
     /// Returns t after one Newton step. From afar, t is large and rounded by units of itself; the remaining distance to
-    /// the surface is short and computed more exactly. Grazing rays keep t.
+    /// the surface is short and computed more exactly.
+    // Grazing rays keep t.
     #[inline(always)]
     fn newton_step(&self, t: N, f: Vector<N>, rays: &Rays<N>) -> N {
         let squared_radius = self.radius * self.radius;
@@ -108,17 +109,21 @@ impl<N: Number> Crossable<N> for SphereN<N> {
         let under_root = squared_radius - to_line.dot(to_line);
         // Compared this way round, NaN is no crossing.
         let crosses = zero.le(under_root);
+        // Before the square root and the division, which take longer than the rest.
         if !crosses.any() {
             return None;
         }
         let root = (rays.squared_length * under_root).sqrt();
+        // The sum of two terms of one sign: no cancellation.
         let q = N::select(half_b.lt(zero), half_b - root, half_b + root);
         let ff = f.dot(f);
         let (t0, t1) = ((ff - squared_radius) / q, q * rays.inverse_squared_length);
+        // The direct root is the larger or the smaller one by the sign of f.d.
         let is_sorted = t0.le(t1);
         let (first, second) = (N::select(is_sorted, t0, t1), N::select(is_sorted, t1, t0));
         let t = N::select(min.le(first), first, second);
         let is_far = (N::splat(NEWTON_MIN_RADII * NEWTON_MIN_RADII) * squared_radius).lt(ff);
+        // Skipped where all spheres are near.
         let t = if is_far.any() { N::select(is_far, self.newton_step(t, f, rays), t) } else { t };
         let [start, end] = crossed(self.boxes(), rays);
         let t = nearest_in(start, end, t);

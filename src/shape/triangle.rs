@@ -54,21 +54,24 @@ impl<N: Number> TriangleN<N> {
     /// Tests by the method of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013).
     ///
     /// In sheared coordinates the ray runs along z. It hits if the origin of the xy plane lies on the same side of all
-    /// three edges, or on them. Where the sign of a weight is within its error bound, f64 decides. (With the signs of
-    /// f32 alone, one of a million rays hit a triangle of the dragon that it misses by 1.4e-6 of its size.)
+    /// three edges, or on them. Where the sign of a weight is within its error bound, f64 decides.
+    // (With the signs of f32 alone, one of a million rays hit a triangle of the dragon that it misses by 1.4e-6 of its
+    // size.)
     #[inline(always)]
     fn crossing(&self, rays: &Rays<N>) -> Option<(N::Mask, Crossing<N>)> {
         let corners = self.sheared(rays);
         self.crossing_of(corners, weights(corners), rays)
     }
 
-    /// Tests rays whose [`weight_error_bound`] is at most `error_bound`. If that decides all lanes, their own bounds, a
-    /// third of the work of a test, are not computed: bunny took .95 of the time.
+    /// Tests rays whose [`weight_error_bound`] is at most `error_bound`.
+    // If that decides all lanes, their own bounds, a third of the work of a test, are not computed: bunny took .95 of
+    // the time.
     #[inline(always)]
     fn crossing_with_bound(&self, rays: &Rays<N>, error_bound: N) -> Option<(N::Mask, Crossing<N>)> {
         let corners = self.sheared(rays);
         let weights = weights(corners);
         let [agree, differ] = signs(weights, error_bound);
+        // One uncertain lane makes all compute their own bounds: lanes cannot branch apart.
         if !(agree | differ).all() {
             return self.crossing_of(corners, weights, rays);
         }
@@ -107,6 +110,7 @@ impl<N: Number> TriangleN<N> {
     /// [`first_crossing`](Crossable::first_crossing).
     #[inline(always)]
     fn first_from(&self, min: N, rays: &Rays<N>, (crosses, crossing): (N::Mask, Crossing<N>)) -> Option<(N::Mask, N)> {
+        // The first division of the test: most tests end before it.
         let t = crossing.t / crossing.sum;
         // Rejected before the box test, as a shadow ray always crosses the line of the triangle that it starts on: 1.3
         // to 1.9 % faster with shadows.
@@ -114,6 +118,7 @@ impl<N: Number> TriangleN<N> {
         if !crosses.any() {
             return None;
         }
+        // The clamp makes hits independent of the tree (`culling.md`, 2).
         let [start, end] = crossed(self.boxes(), rays);
         let t = nearest_in(start, end, t);
         Some((crosses & start.le(end) & min.le(t), t))
@@ -142,8 +147,8 @@ impl<N: Number> TriangleN<N> {
 
 /// Tests one lane in f64. Returns 1 for a hit, the weights and t, divided by the sum so that f32 can hold them.
 ///
-/// Each sign is that of the exact weight or zero, and neighbours agree on it: `culling.md`, 8. Out of line, as one ray
-/// of thousands needs it.
+/// Each sign is that of the exact weight or zero, and neighbours agree on it: `culling.md`, 8.
+// Out of line, as one ray of thousands needs it.
 #[cold]
 fn crossing_in_f64([is_active, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, dx, dy, dz]: [f32; 16]) -> [f32; 5] {
     if is_active == 0.0 {
@@ -190,6 +195,7 @@ fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
 /// Returns the masks of lanes whose weights all have one sign, and of lanes where two differ, beyond the error bound.
 #[inline(always)]
 fn signs<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N::Mask; 2] {
+    // Minimum and maximum serve both masks; sign bits alone could not be compared with the error bound.
     let (least, greatest) = (x.min(y.min(z)), x.max(y.max(z)));
     let agree = error_bound.lt(least) | greatest.lt(-error_bound);
     [agree, least.lt(-error_bound) & error_bound.lt(greatest)]
@@ -227,6 +233,7 @@ impl SoaLeaf for TriangleN<F32x8> {
     }
 
     fn of(shapes: &[Triangle]) -> Self {
+        // Infinite corners: their weights are NaN, and `crossing_of` keeps them from f64.
         let corners = |lane: usize| shapes.get(lane).map_or([Vec3::INFINITY; 3], Triangle::corners);
         Self(from_fn(|corner| Vector::of(from_fn(|lane| corners(lane)[corner]))))
     }

@@ -28,6 +28,7 @@ impl MaskOps for Mask256 {
     unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+        // The one function that is compiled with these features; never inlined into a caller without them.
         fn compiled_for_avx2<K: SimdKernel>(kernel: K) -> K::Output {
             kernel.run::<Register<Mask256>>()
         }
@@ -52,6 +53,7 @@ impl MaskOps for Mask256 {
 
     #[inline(always)]
     fn from_bits(bits: u32) -> Self {
+        // Each lane keeps its own bit of the broadcast bits, and compares it with that bit.
         let each = avx!(_mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
         let own = avx!(_mm256_and_si256(_mm256_set1_epi32(bits.cast_signed()), each));
         Self(avx!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(own, each))))

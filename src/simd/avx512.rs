@@ -30,6 +30,7 @@ impl MaskOps for Bitmask {
     unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,bmi1,bmi2,lzcnt,popcnt")]
+        // The one function that is compiled with these features; never inlined into a caller without them.
         fn compiled_for_avx512<K: SimdKernel>(kernel: K) -> K::Output {
             kernel.run::<Register<Bitmask>>()
         }

@@ -24,6 +24,7 @@ pub(super) fn map_lanes<N: Lanes, const IN: usize, const OUT: usize>(
     numbers: [N; IN],
     formula: impl Fn([f32; IN]) -> [f32; OUT],
 ) -> [N; OUT] {
+    // Through memory: the formula is scalar anyway.
     let mut stored = [F32x8::ZERO; IN];
     for (stored, numbers) in stored.iter_mut().zip(numbers) {
         *stored = numbers.store();
@@ -61,11 +62,13 @@ fn both(a: [__m128; 2], b: [__m128; 2], instruction: impl Fn(__m128, __m128) -> 
 
 #[inline(always)]
 fn select(mask: __m128, yes: __m128, no: __m128) -> __m128 {
+    // SSE2 has no blend (SSE4.1).
     sse!(_mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no)))
 }
 
-/// Rounds down: truncates, and subtracts 1 where that is above the number. SSE2 has no `floor` (SSE4.1), and its
-/// conversion overflows from 2^31 on; from 2^23 on, and for NaN, the number is returned as it is.
+/// Rounds down: truncates, and subtracts 1 where that is above the number.
+// SSE2 has no `floor` (SSE4.1), and its conversion overflows from 2^31 on; from 2^23 on, and for NaN, the number is
+// returned as it is.
 #[inline(always)]
 fn floor(number: __m128) -> __m128 {
     sse!({
@@ -202,6 +205,7 @@ impl Lanes for Registers {
 
     #[inline(always)]
     fn mask_from_bits(bits: u32) -> Masks {
+        // Each lane keeps its own bit of the broadcast bits, and compares it with that bit.
         let has = |each| {
             sse!(_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(bits.cast_signed()), each), each)))
         };
