@@ -1,5 +1,6 @@
-//! The capabilities of a terminal, as plain values, and their detection from the environment and the terminal's
-//! replies.
+//! The capabilities of a terminal as plain values, and their detection.
+//!
+//! They are detected from the environment, the window and the terminal's replies.
 
 mod replies;
 mod detection;

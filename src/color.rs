@@ -1,4 +1,4 @@
-//! Colours: linear RGB, 8-bit sRGB, the transfer function between them, and OKLab for perceived differences.
+//! Colours: linear RGB, 8-bit sRGB and the transfer function between them; OKLab for differences.
 //!
 //! Colours have two types, because a picture in which they are confused looks plausible and is wrong: [`LinearRgb`] is
 //! an amount of light, which may be added and scaled; [`Srgb8`] is a code for a file or a terminal, which may not. The
@@ -10,8 +10,9 @@ mod names;
 
 use std::ops::{Add, AddAssign, Mul};
 
-/// Linear light in the three channels of sRGB's primaries. 1 is the screen's white at exposure 1; larger values are
-/// valid light.
+/// Linear light in the three channels of sRGB's primaries.
+///
+/// 1 is the screen's white at exposure 1; larger values are valid light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinearRgb {
     /// Red, linear.
@@ -135,8 +136,9 @@ impl Srgb8 {
         Self { r, g, b }
     }
 
-    /// Returns the nearest 8-bit colour: each channel clamped to 0..=1, encoded by the transfer function, and rounded.
-    /// NaN counts as no light.
+    /// Returns the nearest 8-bit colour.
+    ///
+    /// Each channel is clamped to 0..=1, encoded by the transfer function, and rounded. NaN counts as no light.
     #[inline]
     #[doc(hidden)]
     pub fn from_linear(light: LinearRgb) -> Self {
@@ -163,16 +165,19 @@ impl From<Srgb8> for [u8; 3] {
     }
 }
 
-/// Returns the nearest 8-bit colour: each channel clamped to 0..=1, encoded by the transfer function, and rounded. NaN
-/// counts as no light.
+/// Returns the nearest 8-bit colour.
+///
+/// Each channel is clamped to 0..=1, encoded by the transfer function, and rounded. NaN counts as no light.
 impl From<LinearRgb> for Srgb8 {
     fn from(light: LinearRgb) -> Self {
         Self::from_linear(light)
     }
 }
 
-/// A colour in OKLab (Björn Ottosson, "A perceptual color space for image processing", 2020), in which equal distances
-/// look about equally different. It is used to compare colours only, never to mix them.
+/// A colour in OKLab, in which equal distances look about equally different.
+///
+/// Source: Björn Ottosson, "A perceptual color space for image processing", 2020. OKLab only serves to compare colours,
+/// never to mix them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Oklab {
     /// Lightness: 0 is black, 1 the screen's white.

@@ -106,7 +106,7 @@ pub enum Ink {
 pub enum Glyph {
     /// A character whose width, one or two cells, is the same in every terminal.
     Char(char),
-    /// A grapheme cluster, on whose width terminals disagree: a letter with combining marks, a family emoji, a flag.
+    /// A grapheme cluster, on whose width terminals disagree: an accented letter, a family, a flag.
     // Shared, because a grid is cloned for each frame, and clusters are rare.
     Cluster(Arc<str>),
     /// No glyph: the wide glyph to the left also covers this cell.
@@ -364,7 +364,9 @@ impl Grid {
         }
     }
 
-    /// Moves the content of these rows up by `by` rows; blank rows come in below it. Rows outside the grid are ignored.
+    /// Moves the content of these rows up by `by` rows; blank rows come in below.
+    ///
+    /// Rows outside the grid are ignored.
     #[cfg(feature = "backend")]
     pub(crate) fn scroll_up(&mut self, region: Range<u16>, by: u16) {
         let (cells, shift) = self.region(region, by);
@@ -373,8 +375,9 @@ impl Grid {
         cells[kept..].fill(Cell::BLANK);
     }
 
-    /// Moves the content of these rows down by `by` rows; blank rows come in above it. Rows outside the grid are
-    /// ignored.
+    /// Moves the content of these rows down by `by` rows; blank rows come in above.
+    ///
+    /// Rows outside the grid are ignored.
     #[cfg(feature = "scrolling-regions")]
     pub(crate) fn scroll_down(&mut self, region: Range<u16>, by: u16) {
         let (cells, shift) = self.region(region, by);

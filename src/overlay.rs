@@ -145,7 +145,7 @@ fn ink_from_ratatui(color: Color) -> Ink {
     }
 }
 
-/// Returns a buffer with the cells of the grid, from (0, 0) on; [`Glyph::Foreign`] becomes a skipped cell.
+/// Returns a buffer with the grid's cells from (0, 0) on; [`Glyph::Foreign`] becomes a skipped cell.
 ///
 /// ```
 /// use ratatui::buffer::Buffer;

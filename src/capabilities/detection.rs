@@ -34,7 +34,9 @@ pub struct Clues<'a> {
     pub variable: &'a dyn Fn(&str) -> Option<String>,
     /// Whether the terminal kept a 24-bit colour, if it replied (DECRQSS of SGR).
     pub truecolor_reply: Option<bool>,
-    /// Returns the colours of a terminal name in terminfo, if known (`terminfo_colors` with the feature `live`).
+    /// Returns the colours of a terminal name in terminfo, if known.
+    ///
+    /// With the feature `live` this is `terminfo_colors`.
     pub terminfo: &'a dyn Fn(&str) -> Option<Colors>,
 }
 
@@ -62,7 +64,9 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
-/// Returns the glyphs to use: half blocks, unless the locale cannot encode them or there are no colours.
+/// Returns the glyphs to use.
+///
+/// They are half blocks, unless the locale cannot encode them or there are no colours.
 pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) -> Detected<Glyphs> {
     if let Some(value) = choice {
         return Detected { value, source: Source::User };

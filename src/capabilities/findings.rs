@@ -1,4 +1,4 @@
-//! The findings about a terminal from all sources: the user, the environment, the window, its own replies.
+//! The findings about a terminal from all sources: user, environment, window and replies.
 
 use super::detection::{colorterm, locale, requested_by_variable};
 use super::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT, colors, glyphs};
@@ -66,7 +66,9 @@ impl Hints {
         self.evaluate(None, locale)
     }
 
-    /// Returns the set variable that requests or refuses colours: `NO_COLOR`, `CLICOLOR_FORCE`, `FORCE_COLOR`.
+    /// Returns the variable that requests or refuses colours, if one is set.
+    ///
+    /// The candidates are `NO_COLOR`, `CLICOLOR_FORCE` and `FORCE_COLOR`.
     pub fn color_variable(&self) -> Option<&'static str> {
         match self.evaluate(None, requested_by_variable)?.source {
             Source::Variable(name) => Some(name),

@@ -9,7 +9,8 @@ pub struct Replies {
     pub truecolor: Option<bool>,
     /// Whether the terminal supports synchronized output (DECRQM of mode 2026).
     pub synchronized_output: Option<bool>,
-    /// Whether the terminal supports the kitty keyboard protocol; never `Some(false)`, as no reply means "no".
+    /// Whether the terminal supports the kitty keyboard protocol.
+    // Never `Some(false)`: a terminal without it does not reply.
     pub kitty_keyboard: Option<bool>,
     /// Whether the terminal supports SGR mouse reports (DECRQM of mode 1006).
     pub sgr_mouse: Option<bool>,

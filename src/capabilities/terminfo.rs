@@ -30,7 +30,7 @@ fn entry_colors(entry: &TermInfo) -> Colors {
 mod tests {
     use super::*;
 
-    /// Returns an entry as in term(5) with this number of colours, and this extended flag beside an extended string.
+    /// Returns an entry as in term(5) with this number of colours, this extended flag and a string.
     fn entry(colors: Option<i16>, flag: &str) -> Vec<u8> {
         let len = |text: &str| i16::try_from(text.len()).expect("it is short");
         let shorts = |numbers: &[i16]| -> Vec<u8> { numbers.iter().flat_map(|number| number.to_le_bytes()).collect() };

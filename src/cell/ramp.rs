@@ -1,4 +1,6 @@
-//! The ASCII ramp: one of ten characters by lightness, for terminals without colour and golden text frames.
+//! The ASCII ramp: one of ten characters by lightness.
+//!
+//! It serves terminals without colour, and golden text frames.
 
 use super::glyph_kind::{Fill, GlyphKind};
 use super::pair;

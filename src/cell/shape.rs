@@ -138,7 +138,7 @@ fn gaussian_weights<const N: usize>(deviation: f64) -> [f32; N] {
 mod tests {
     use super::*;
 
-    /// Returns the character for a cell given as rows of two pixels, each a letter from a (black) to z (white).
+    /// Returns the character for a cell of rows of two pixels, each a letter from a (black) to z (white).
     fn character(pixels: &str) -> String {
         let grey = |letter: char| ((letter as u32 - 'a' as u32) * 255 / 25) as u8;
         let pixels = pixels.chars().map(|letter| Srgb8::new(grey(letter), grey(letter), grey(letter)));

@@ -22,7 +22,7 @@ use std::io::{self, Write};
 use std::ops::Range;
 use std::time::Duration;
 
-/// A [`Backend`](ratatui_core::backend::Backend) on any [`Write`], in place of `CrosstermBackend` and its like.
+/// A [`Backend`](ratatui_core::backend::Backend) on any [`Write`], in place of `CrosstermBackend`.
 ///
 /// ```
 /// use ratatui::{Terminal, widgets::Gauge};
@@ -140,10 +140,10 @@ impl<W> EncoderBackend<W> {
         self
     }
 
-    /// Sets the quality of pictures of half blocks while they change; `clock` returns the time from any fixed start.
+    /// Sets the quality of pictures of half blocks while they change.
     ///
-    /// Text is always exact, and pictures are exact half a second after their last change, if a frame is drawn then. A
-    /// program that only draws on events has to draw once more for that.
+    /// `clock` returns the time from any fixed start. Text is always exact, and pictures are exact half a second after
+    /// their last change, if a frame is drawn then. A program that only draws on events has to draw once more for that.
     ///
     /// ```
     /// use ratatui::{Terminal, widgets::Paragraph};

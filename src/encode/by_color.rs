@@ -15,7 +15,7 @@ use super::strokes::cursor_after;
 use crate::grid::{Attributes, Cell, Glyph, Grid, HalfBlocks, Ink};
 use std::ops::Range;
 
-/// Returns the changed cells in the order in which they are written: text row by row, then the picture's tour.
+/// Returns the changed cells in writing order: text row by row, then the tour of the picture.
 pub(super) fn order(wanted: &Grid, changed: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) -> Vec<CellPosition> {
     let is_picture = |position: &&CellPosition| picture_inks(wanted.cell(position.column, position.row)).is_some();
     let picture: Vec<CellPosition> = changed.iter().filter(is_picture).copied().collect();
@@ -83,7 +83,7 @@ struct Tour<'a> {
 /// A colour of the picture and its pairs.
 struct Color {
     sort_key: u32,
-    /// The range of its pairs in `Tour::pairs_by_color`, a stack with the first pair in reading order on top.
+    /// The range of its pairs in `Tour::pairs_by_color`: a stack, the first pair in reading order on top.
     // A visited pair is dropped when it is found on top, which is cheaper than finding it when it is visited.
     pairs: Range<usize>,
     /// The number of its unvisited pairs.
@@ -247,7 +247,7 @@ fn distinct(colors: &[usize; 2]) -> &[usize] {
     if colors[0] == colors[1] { &colors[..1] } else { colors }
 }
 
-/// Returns a cell with the sort keys of its colours; the smaller key comes first if the cell may be flipped.
+/// Returns a cell with the sort keys of its colours, the smaller first if the cell may be flipped.
 fn with_sort_keys(wanted: &Grid, position: CellPosition, half_blocks: HalfBlocks) -> (u32, u32, CellPosition) {
     let (fg, bg) = picture_inks(wanted.cell(position.column, position.row)).unwrap_or_default();
     let (a, b) = (sort_key(fg), sort_key(bg));

@@ -1,4 +1,4 @@
-//! Lossy frames: a grid that is indistinguishable from the wanted one, or nearly so, and takes fewer bytes.
+//! Lossy frames: grids that hardly differ from the wanted one and take fewer bytes to show.
 //!
 //! Only the picture may differ, never text. A half cell may have another colour within the quality's cap in OKLab, as
 //! long as the whole picture keeps its signal-to-noise ratio. A cell that shows a near colour already is not written,

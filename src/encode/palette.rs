@@ -1,7 +1,7 @@
-//! Reduction of a frame's colours: each half takes a colour within its tolerance that many other halves take too.
+//! Reduction of a frame's colours within the tolerance.
 //!
-//! A palette is chosen by greedy set cover (Johnson 1974): the colour that covers the most halves, then the one that
-//! covers the most of the rest, and so on. Then pairs of its colours are chosen in the same way, because the cells of
+//! A palette is chosen by greedy set cover (Johnson 1974): the colour that the most halves can take, then the one that
+//! the most of the rest can take, and so on. Then pairs of its colours are chosen in the same way, because the cells of
 //! one pair are written without a change of the pen.
 
 use super::halves::{Halves, Tolerance, squared_difference};
@@ -11,7 +11,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::mem;
 
-/// Replaces the cells' colours by colours of a palette, each within the tolerance of the colour it stands for.
+/// Replaces the cells' colours by colours of a palette within the tolerance.
 ///
 /// With [`HalfBlocks::Either`] a pair of colours serves both ways round. The pen's colours are candidates for the
 /// palette.
@@ -139,7 +139,7 @@ fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks)
     chosen
 }
 
-/// Returns sets that cover all members with a weight: each next set adds the largest weight, until none is left.
+/// Returns sets that cover all members: each next one adds the largest weight, until none is left.
 fn greedy_cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
     let mut left = weights.to_vec();
     // A set's gain only shrinks, so one whose gain is still that of its heap entry is the best of all (Minoux 1978).

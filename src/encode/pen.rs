@@ -271,7 +271,7 @@ pub(super) fn write_char(character: char, bytes: &mut Vec<u8>) {
     bytes.extend_from_slice(character.encode_utf8(&mut utf8).as_bytes());
 }
 
-/// Appends the SGR parameters of a colour; `tens` is the first digit: 3 for glyphs, 4 for the background.
+/// Appends the SGR parameters of a colour; they begin with `tens`: 3 for glyphs, 4 for backgrounds.
 fn write_ink(ink: Ink, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
     match ink {
         Ink::Default => bytes.extend_from_slice(&[tens, b'9']),

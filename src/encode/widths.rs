@@ -8,7 +8,9 @@ pub(super) fn leading_width(cells: &[Cell]) -> usize {
     1 + cells.iter().skip(1).take_while(|cell| cell.glyph == Glyph::Covered).count()
 }
 
-/// Returns the largest width of a cluster in any terminal: the sum of its characters, at least one column each.
+/// Returns the largest width of a cluster in any terminal.
+///
+/// It is the sum of the widths of its characters, each at least one column.
 // Terminals without support for clusters show its characters one by one, some even combining marks.
 pub(super) fn max_cluster_width(text: &str) -> usize {
     text.chars().map(|c| c.width().unwrap_or(0).max(1)).sum()

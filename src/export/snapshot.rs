@@ -43,7 +43,7 @@ pub fn framed(grid: &Grid) -> String {
     out
 }
 
-/// Returns the grid's characters in a frame, the code of each cell's style in a second one, and a legend.
+/// Returns the grid's characters in a frame, the codes of their styles in another, and a legend.
 ///
 /// All colours and attributes are contained, in a form that a person can review. A dot stands for the default colours.
 /// The codes are letters in the order in which the styles first occur; beyond 62 styles a code has two letters, or

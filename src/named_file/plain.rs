@@ -6,8 +6,8 @@ use std::fs::{File, Metadata};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-/// Opens a file and returns its size. Only plain files are accepted: waiting for pipes works differently on each
-/// system.
+/// Opens a plain file and returns its size.
+// Pipes are refused: waiting for them works differently on each system.
 pub(super) fn open(path: &Path, _: Accepted) -> io::Result<(File, u64)> {
     // Checked before it is opened, because opening a device may have an effect, and again afterwards, because the name
     // may have been replaced.

@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// The writer waits until its last bytes have been read: the reader then has found the pipe empty, or is about to.
+    /// The writer yields after each part, so that the reader finds the pipe empty, or is about to.
     #[test]
     fn a_slow_pipe_is_read_to_its_end() {
         let folder = tempfile::tempdir().expect("a folder can be made");

@@ -64,9 +64,10 @@ impl SceneState {
         self.set_drag_state(None);
     }
 
-    /// Moves the eye towards the point shown at a position by notches of the mouse wheel; negative ones move away.
+    /// Moves the eye towards the point shown at a position, by notches of the mouse wheel.
     ///
-    /// The point keeps its place in the picture. Returns whether the position is inside the picture.
+    /// Negative notches move away. The point keeps its place in the picture. Returns whether the position is inside the
+    /// picture.
     pub fn scroll(&mut self, scene: &Scene, at: Position, notches: f32) -> bool {
         let Some(point) = self.point_at(scene, at) else { return false };
         self.move_camera(self.camera().wheeled_around(point, notches, self.scale()));

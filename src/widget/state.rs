@@ -77,7 +77,7 @@ impl SceneState {
         }
     }
 
-    /// Traces the pictures on a thread of its own, and calls `wake` there whenever a new picture can be drawn.
+    /// Traces the pictures on a background thread, which calls `wake` whenever one can be drawn.
     ///
     /// A draw call then shows the newest finished picture and requests another if that is out of date. One picture is
     /// traced at a time; of several requests only the newest is kept. With

@@ -98,7 +98,8 @@ impl Worker {
 }
 
 impl Drop for Worker {
-    /// Cancels the shot in progress and joins the thread, after at most 256 more rays on each tracing thread.
+    /// Cancels the shot in progress and joins the thread.
+    // Each tracing thread traces at most 256 more rays, a batch.
     fn drop(&mut self) {
         let mut state = self.shared.lock();
         state.is_closed = true;

@@ -26,7 +26,7 @@ def ink(character):
     return list(cell.resize((ACROSS, DOWN), Image.Resampling.BOX).tobytes())
 
 
-print("//! The ink of the printable ASCII characters in `DejaVu` Sans Mono; made by `glyphs.py` beside this file.")
+print("//! The ink of the printable ASCII characters in `DejaVu` Sans Mono, made by `glyphs.py`.")
 print()
 print("/// Columns of samples in a cell.")
 print(f"pub(super) const SAMPLE_COLUMNS: usize = {ACROSS};")

@@ -1,4 +1,4 @@
-//! The ink of the printable ASCII characters in `DejaVu` Sans Mono; made by `glyphs.py` beside this file.
+//! The ink of the printable ASCII characters in `DejaVu` Sans Mono, made by `glyphs.py`.
 
 /// Columns of samples in a cell.
 pub(super) const SAMPLE_COLUMNS: usize = 2;
