@@ -171,12 +171,11 @@ impl Findings {
                 .or(by_pixels)
                 .unwrap_or_else(|| found(replied_aspect(replies), Source::Reply, USUAL_CELL_ASPECT)),
             // The window's size, if reported, is current; the reply is from the start.
-            half_blocks: match window.aspect {
-                Some(_) => Detected { value: window.half_blocks, source: Source::Window },
-                None => {
-                    let replied = replies.cell_pixels.map(|(_, height)| HalfBlocks::of_cell_height(height));
-                    found(replied, Source::Reply, HalfBlocks::Lower)
-                }
+            half_blocks: if window.aspect.is_some() {
+                Detected { value: window.half_blocks, source: Source::Window }
+            } else {
+                let replied = replies.cell_pixels.map(|(_, height)| HalfBlocks::of_cell_height(height));
+                found(replied, Source::Reply, HalfBlocks::Lower)
             },
             light_background: answered(replies.light_background()),
             synchronized_output: answered(replies.synchronized_output),
