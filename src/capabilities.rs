@@ -30,7 +30,7 @@ pub struct Capabilities {
     pub half_blocks: HalfBlocks,
     /// Whether the terminal's default colours are dark text on a light background.
     pub light_background: bool,
-    /// Whether the terminal supports synchronized output (DEC mode 2026), which shows each frame at once.
+    /// Whether the terminal supports synchronized output (DEC private mode 2026).
     pub synchronized_output: bool,
 }
 

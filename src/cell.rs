@@ -43,7 +43,7 @@ crate::table::table! {
     pub enum Glyphs: GlyphKind {
         /// Half blocks: two pixels per cell, one above the other.
         Half = half::KIND;
-        /// The printable ASCII character whose ink is distributed most like the light of eight pixels.
+        /// The printable ASCII character whose ink is most like the light of eight pixels.
         Shape = shape::KIND;
         /// One of ten ASCII characters, by the lightness of two pixels.
         Ramp = ramp::KIND;
@@ -114,7 +114,7 @@ impl CellMode {
     /// The ramp in the terminal's default colours: the mode of golden text frames.
     pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
 
-    /// Returns the resolution of a picture for a screen of this size and cell aspect (height / width).
+    /// Returns a picture's resolution for a screen of this size and cell aspect (height / width).
     ///
     /// ```
     /// use termtrace::{CellMode, Size};
@@ -191,7 +191,9 @@ impl Painter {
         Self { mode, light_background: false, inks: InkConverter::of(mode.colors) }
     }
 
-    /// Sets whether the background is light. In the default colours light pixels are then left blank.
+    /// Sets whether the background is light.
+    ///
+    /// In the default colours light pixels are then left blank.
     #[doc(hidden)]
     pub fn with_light_background(self, light_background: bool) -> Self {
         Self { light_background, ..self }
@@ -203,7 +205,7 @@ impl Painter {
         self.mode
     }
 
-    /// Returns the cells of a picture. They depend on nothing else, in particular not on earlier pictures.
+    /// Returns the cells of a picture, whatever pictures were painted before.
     ///
     /// Cells at the right and the lower edge may be filled only in part.
     ///

@@ -52,7 +52,9 @@ impl LinearRgb {
         Self::new(table[usize::from(color.r)], table[usize::from(color.g)], table[usize::from(color.b)])
     }
 
-    /// Returns the relative luminance Y of CIE 1931 (the second row of sRGB's matrix; IEC 61966-2-1).
+    /// Returns the relative luminance Y of CIE 1931.
+    ///
+    /// The weights are the second row of sRGB's matrix (IEC 61966-2-1).
     #[doc(hidden)]
     pub fn luminance(self) -> f32 {
         0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
@@ -203,7 +205,7 @@ impl Oklab {
         }
     }
 
-    /// Returns the perceived difference of two colours: their distance, which is 1 for black and white.
+    /// Returns the perceived difference of two colours: their distance, 1 for black and white.
     pub fn distance(self, other: Self) -> f32 {
         let (l, a, b) = (self.l - other.l, self.a - other.a, self.b - other.b);
         (l * l + a * a + b * b).sqrt()
@@ -363,7 +365,7 @@ mod tests {
         }
     }
 
-    /// The table agrees with the formula in f64 at both sides of each step, and over the whole range.
+    /// The table agrees with the formula in f64 beside each step, and over the whole range.
     #[test]
     fn quantisation_equals_the_rounded_formula() {
         let by_formula = |x: f32| (srgb_from_linear(f64::from(x)) * 255.0).round() as u8;

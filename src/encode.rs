@@ -219,7 +219,7 @@ impl Encoder {
         self.bracket(start, bytes);
     }
 
-    /// Appends a lossy frame without synchronized output, and returns the cursor's position, if certain.
+    /// Appends a lossy frame, not enclosed, and returns the cursor's position, if certain.
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let Some(caps) = lossy::QualityCaps::of(allowance.quality) else { return self.draw(wanted, bytes) };
         self.change_times.record(wanted, allowance.now);
@@ -263,7 +263,7 @@ impl Encoder {
         cursor
     }
 
-    /// Returns the time at which to encode the last wanted grid again, if no other is wanted until then.
+    /// Returns the time at which to encode the last wanted grid again, unless another is wanted.
     ///
     /// Cells that are not shown exactly are then sent. `None` means that all cells are exact and nothing would be sent.
     #[doc(hidden)]
@@ -271,7 +271,7 @@ impl Encoder {
         self.due
     }
 
-    /// Takes the state of a terminal of this size out of the encoder; a reset starts an unknown one.
+    /// Takes the state of a terminal of this size; an unknown one begins with a reset.
     fn take_state(&mut self, size: Size, bytes: &mut Vec<u8>) -> TerminalState {
         self.known.take().filter(|known| known.shown.size() == size).unwrap_or_else(|| {
             let mut pen = Pen::default();
@@ -283,7 +283,7 @@ impl Encoder {
         })
     }
 
-    /// Appends an exact frame without synchronized output, and returns the cursor's position, if certain.
+    /// Appends an exact frame, not enclosed, and returns the cursor's position, if certain.
     fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let mut known = self.take_state(wanted.size(), bytes);
         let cursor = self.write(wanted, &mut known, bytes);
@@ -315,7 +315,7 @@ impl Encoder {
         writer.write_all(bytes).and_then(|()| writer.flush()).inspect_err(|_| self.forget())
     }
 
-    /// Appends the bytes that make the terminal show a grid, and returns the cursor's position, if certain.
+    /// Appends the bytes that show a grid, and returns the cursor's position, if certain.
     fn write(&self, wanted: &Grid, known: &mut TerminalState, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let changed = update(&mut known.shown, wanted);
         let strokes = match self.order {

@@ -64,7 +64,9 @@ pub enum HalfBlocks {
     /// Lower half blocks only, which is right at every cell height.
     #[default]
     Lower,
-    /// Either half block, whichever saves a change of colour. Both have to meet in the same line of pixels.
+    /// Either half block, whichever saves a change of colour.
+    ///
+    /// Both have to meet in the same line of pixels.
     Either,
 }
 
@@ -100,7 +102,9 @@ pub enum Ink {
     Rgb(Srgb8),
 }
 
-/// The glyph of a cell. A glyph that is two columns wide is followed by a cell with [`Glyph::Covered`].
+/// The glyph of a cell.
+///
+/// A glyph that is two columns wide is followed by a cell with [`Glyph::Covered`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Glyph {
@@ -111,7 +115,7 @@ pub enum Glyph {
     Cluster(Arc<str>),
     /// No glyph: the wide glyph to the left also covers this cell.
     Covered,
-    /// Foreign content: in a wanted grid the cell is left alone, in a shown grid its content is unknown.
+    /// Foreign content: left alone in a wanted grid, unknown in a shown grid.
     Foreign,
 }
 
@@ -285,7 +289,7 @@ impl Grid {
         &self.cells[self.index(column, row)..][..left]
     }
 
-    /// Returns the cell in this column and row, counted from 0 at the top left; `None` outside the grid.
+    /// Returns the cell in this column and row, from 0 at the top left; `None` outside the grid.
     ///
     /// ```
     /// use termtrace::{Grid, Size};
@@ -333,7 +337,9 @@ impl Grid {
         &mut self.cells[index]
     }
 
-    /// Puts a cell whose glyph is `columns` wide. A wide glyph that is overwritten in part becomes blanks.
+    /// Puts a cell whose glyph is `columns` wide.
+    ///
+    /// A wide glyph that is overwritten in part becomes blanks.
     ///
     /// # Panics
     /// If the cells are outside the grid.

@@ -27,7 +27,7 @@ use refusal::refused;
 pub enum Accepted {
     /// Plain files: for names given in a scene file, which may come from a stranger.
     Files,
-    /// Plain files, pipes (such as `<(...)` in a shell) and `/dev/null`: for names given by the user.
+    /// Plain files, pipes (`<(...)` in a shell) and `/dev/null`: for names given by the user.
     FilesAndPipes,
 }
 

@@ -165,7 +165,7 @@ fn rename_or_overwrite(temporary: &mut Temporary, existing: &Metadata, target: &
     in_place::write(target, &temporary.contents()?)
 }
 
-/// Returns whether the folder refuses a new file or a replaced name, although the file may be writable.
+/// Returns whether the folder refuses a new file or a replaced name.
 // That is so for another user's file in a sticky folder, and for a mount point.
 fn is_replacement_refused(error: &io::Error) -> bool {
     use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem, ResourceBusy};

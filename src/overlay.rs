@@ -1,4 +1,6 @@
-//! Conversion between grids and ratatui's buffers: panels laid over a picture, and a grid as a buffer.
+//! Conversion between grids and ratatui's buffers.
+//!
+//! Panels are laid over a picture, and a grid becomes a buffer.
 
 use crate::color::Srgb8;
 use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
@@ -145,7 +147,7 @@ fn ink_from_ratatui(color: Color) -> Ink {
     }
 }
 
-/// Returns a buffer with the grid's cells from (0, 0) on; [`Glyph::Foreign`] becomes a skipped cell.
+/// Returns a buffer with the grid's cells; a [`Glyph::Foreign`] becomes a skipped cell.
 ///
 /// ```
 /// use ratatui::buffer::Buffer;

@@ -1,4 +1,4 @@
-//! Serialization of plain values by serde, with their invariants checked when they are deserialized.
+//! Serialization of plain values by serde; deserialization checks their invariants.
 
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle};
 use crate::color::{LinearRgb, Srgb8};
@@ -41,7 +41,9 @@ serialize_as! {
     Map as String: |map| map.name().to_owned(), |name: String| name.parse::<Self>();
     Sampling as SamplingForm: |&sampling| sampling.into(), |form: SamplingForm| Ok::<_, Infallible>(form.into());
     Pose as PoseForm: |&Pose { eye, target, up }| PoseForm { eye: eye.into(), target: target.into(), up: up.into() },
-        |PoseForm { eye, target, up }| Ok::<_, Infallible>(Self { eye: eye.into(), target: target.into(), up: up.into() });
+        |PoseForm { eye, target, up }| {
+            Ok::<_, Infallible>(Self { eye: eye.into(), target: target.into(), up: up.into() })
+        };
     ViewRectangle as RectangleForm: RectangleForm::of, RectangleForm::checked;
     Camera as CameraForm: |camera| CameraForm { pose: camera.pose(), rectangle: camera.rectangle() },
         |CameraForm { pose, rectangle }| Self::new(pose, rectangle);

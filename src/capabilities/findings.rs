@@ -32,7 +32,7 @@ pub enum SafeQueries {
     /// Queries that GNU screen answers itself.
     // It passes device control strings on to the outer terminal, which would print them.
     Screen,
-    /// Queries that tmux answers itself; cell size and colours would be those of the outer terminal.
+    /// Queries that tmux answers itself: not those about cell size and colours.
     Tmux,
     /// All queries.
     All,
@@ -56,7 +56,7 @@ impl Hints {
         Self { color: ColorChoice::Exactly(mode.colors), glyphs: Some(mode.glyphs), ..Self::default() }
     }
 
-    /// Returns the value of an environment variable, if it is one of [`VARIABLES`], set, and not empty.
+    /// Returns the value of one of [`VARIABLES`], if it is set and not empty.
     pub fn variable(&self, name: &str) -> Option<&str> {
         self.raw(name).filter(|value| !value.is_empty())
     }
@@ -214,7 +214,7 @@ fn with_replied_palette(mut found: Detected<Colors>, replies: &Replies) -> Detec
     found
 }
 
-/// Replaces half blocks that are not one column wide by ASCII characters, unless the user chose them.
+/// Replaces half blocks of another width than one column by ASCII, unless the user chose them.
 // In some East Asian locales blocks are two columns wide; a terminal without UTF-8 shows three characters.
 fn with_replied_width(glyphs: Detected<Glyphs>, replies: &Replies) -> Detected<Glyphs> {
     let is_broken = glyphs.value == Glyphs::Half && replies.block_width.is_some_and(|width| width != 1);

@@ -69,7 +69,7 @@ impl Replies {
         }
     }
 
-    /// Records the width of a half block, from the cursor's column (from 1) after one in the first column.
+    /// Records the width of a half block, from the cursor's column (from 1) after it.
     pub fn take_cursor(&mut self, column: u16) {
         // On a screen of one column the cursor cannot move past the block.
         self.block_width = column.checked_sub(1).filter(|&width| width > 0);

@@ -62,7 +62,7 @@ mod tests {
         }
     }
 
-    /// Every truncated entry, and every entry with one byte changed, is parsed or refused without a panic.
+    /// Every truncated entry, and every entry with a changed byte, is parsed without a panic.
     #[test]
     fn broken_entries_do_not_panic() {
         let whole = entry(Some(256), "Tc");

@@ -104,7 +104,9 @@ fn wrapped_distance(a: usize, b: usize) -> usize {
     distance.min(TILE_SIDE - distance)
 }
 
-/// The filter by distance `d` in pixels: `10,000 exp(-d^2 / 4.5)`, with Ulichney's sigma of 1.5 pixels.
+/// The filter by distance `d` in pixels: `10,000 exp(-d^2 / 4.5)`.
+///
+/// Its sigma of 1.5 pixels is Ulichney's.
 const GAUSSIAN: [i32; TILE_SIDE / 2 + 1] = [10_000, 8_007, 4_111, 1_353, 286, 39, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 
 #[cfg(test)]

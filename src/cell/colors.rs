@@ -9,7 +9,9 @@ pub enum Colors {
     None,
     /// The first sixteen palette colours, with the values that the terminal's theme gives them.
     Indexed16([Srgb8; 16]),
-    /// The 240 palette colours that themes leave alone: a cube of six levels per channel, and 24 greys.
+    /// The 240 palette colours that themes leave alone.
+    ///
+    /// They are a cube of six levels per channel, and 24 greys.
     Indexed256,
     /// Every 8-bit sRGB colour.
     Truecolor,

@@ -13,7 +13,9 @@ pub(super) struct GlyphKind {
     pub(super) title: &'static str,
     pub(super) pixels_per_cell: (u32, u32),
     pub(super) has_blocks: bool,
-    /// The kind to use without colours, with equal pixels per cell; `None` if this one needs no colours.
+    /// The kind to use without colours, if this one needs them.
+    ///
+    /// It has the same number of pixels per cell.
     pub(super) plain: Option<Glyphs>,
     pub(super) fill: Fill,
 }

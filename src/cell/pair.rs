@@ -3,7 +3,7 @@
 use crate::color::Srgb8;
 use crate::tone::Picture;
 
-/// Returns the upper and the lower pixel of a cell; the lower one is `None` below the picture's edge.
+/// Returns the upper and the lower pixel of a cell; `None` below the picture's edge.
 pub(super) fn pixels(picture: &Picture, column: u16, row: u16) -> (Srgb8, Option<Srgb8>) {
     let width = picture.width as usize;
     let upper = usize::from(row) * 2 * width + usize::from(column);

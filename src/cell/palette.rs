@@ -139,7 +139,7 @@ impl Cube {
         }
     }
 
-    /// Returns the eight corners of the cube cell that contains the light, and the two nearest greys.
+    /// Returns the corners of the cube cell that contains the light, and the two nearest greys.
     // Not all 240 colours: mixes of near colours have the least grain, and ten candidates are compared faster.
     fn neighbours(&self, light: LinearRgb) -> [Candidate; 10] {
         let [r, g, b] = [light.r, light.g, light.b].map(|channel| level_below(&self.levels, channel));

@@ -39,7 +39,7 @@ fn fill(grid: &mut Grid, picture: &Picture) {
     }
 }
 
-/// Returns the lightness of a cell's pixels; beyond the picture's edge the last pixels are repeated.
+/// Returns the lightness of a cell's pixels; beyond the edge the last pixels are repeated.
 fn samples(picture: &Picture, column: u16, row: u16) -> Samples {
     let (left, top) = (usize::from(column) * SAMPLE_COLUMNS, usize::from(row) * SAMPLE_ROWS);
     let (last_x, last_y) = (picture.width as usize - 1, picture.height as usize - 1);
@@ -138,7 +138,7 @@ fn gaussian_weights<const N: usize>(deviation: f64) -> [f32; N] {
 mod tests {
     use super::*;
 
-    /// Returns the character for a cell of rows of two pixels, each a letter from a (black) to z (white).
+    /// Returns the character for a cell of four rows of two letters, a (black) to z (white).
     fn character(pixels: &str) -> String {
         let grey = |letter: char| ((letter as u32 - 'a' as u32) * 255 / 25) as u8;
         let pixels = pixels.chars().map(|letter| Srgb8::new(grey(letter), grey(letter), grey(letter)));

@@ -181,7 +181,7 @@ impl<W> EncoderBackend<W> {
         self
     }
 
-    /// Sets the function that returns the window's size in columns and rows, called whenever it matters.
+    /// Sets the function that returns the window's size in columns and rows.
     ///
     /// A window that becomes smaller and large again between two frames goes unnoticed, as with any backend.
     pub fn sized_by(mut self, ask: impl Fn() -> io::Result<Size> + Send + Sync + 'static) -> Self {
@@ -189,7 +189,9 @@ impl<W> EncoderBackend<W> {
         self
     }
 
-    /// Sets the function that returns the cursor's column and row, from 0, called when they are unknown.
+    /// Sets the function that returns the cursor's column and row, from 0.
+    ///
+    /// The backend calls it when the position is unknown.
     pub fn located_by(mut self, ask: impl Fn() -> io::Result<Position> + Send + Sync + 'static) -> Self {
         self.ask_position = Some(Box::new(ask));
         self
@@ -388,7 +390,9 @@ impl<W: Write> EncoderBackend<W> {
         self.send_cursor()
     }
 
-    /// Sends line feeds from the cursor's position; rows that leave at the top enter the scrollback.
+    /// Sends line feeds from the cursor's position.
+    ///
+    /// Rows that leave the screen at the top enter the scrollback.
     fn feed_lines(&mut self, lines: u16) -> io::Result<()> {
         let Position { x, y } = self.locate()?;
         self.put_cursor(Position::new(x, y));

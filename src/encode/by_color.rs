@@ -83,7 +83,7 @@ struct Tour<'a> {
 /// A colour of the picture and its pairs.
 struct Color {
     sort_key: u32,
-    /// The range of its pairs in `Tour::pairs_by_color`: a stack, the first pair in reading order on top.
+    /// The range of its pairs in `Tour::pairs_by_color`: a stack in reverse reading order.
     // A visited pair is dropped when it is found on top, which is cheaper than finding it when it is visited.
     pairs: Range<usize>,
     /// The number of its unvisited pairs.

@@ -112,7 +112,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the largest squared difference that a half may have so that the mean stays within its cap.
+    /// Returns the largest squared difference of a half that keeps the mean within its cap.
     // Halves that differ more are written, and then differ by anything up to this square: by a third of it in the mean.
     fn max_square(&self) -> u32 {
         const HISTOGRAM_LEN: usize = 1024;
@@ -165,12 +165,14 @@ impl<'a> Plan<'a> {
         self.writes
     }
 
-    /// Returns the number of cells that cannot wait; with `within_caps` also those that differ too much.
+    /// Returns the number of cells that cannot wait.
+    ///
+    /// With `within_caps` those that differ too much cannot wait either.
     pub(super) fn min_writes(&self, within_caps: bool) -> usize {
         self.count_from(if within_caps { Urgency::Differs(0) } else { Urgency::Appears })
     }
 
-    /// Returns the next grid to show: the wanted text, and the `writes` most urgent cells of the picture.
+    /// Returns the next grid: the wanted text, and the `writes` most urgent cells of the picture.
     pub(super) fn grid(&self, writes: usize) -> Grid {
         let (written, left) = self.differences.split_at(writes);
         let left: u64 = left.iter().filter_map(|left| Some(sum(squares(left.shown?, left.wanted)))).sum();

@@ -149,7 +149,7 @@ impl Pen {
         self.after_attributes(wanted.attributes).cost_of_colors(codes, wanted, lens) + split
     }
 
-    /// Returns the cost of the colours and of attribute codes that take `code` bytes in their sequence.
+    /// Returns the cost of the colours and of attributes that take `code` bytes.
     // Inlined always: it is the innermost step of the choice of half blocks, two to four calls per cell.
     #[inline(always)]
     fn cost_of_colors(&self, code: usize, wanted: &Self, [fg, bg]: [usize; 2]) -> usize {
@@ -160,7 +160,7 @@ impl Pen {
         underline + if codes == 0 { 0 } else { 2 + codes }
     }
 
-    /// Switches to another pen: attributes and colours in one sequence, the underline's colour in another.
+    /// Switches to another pen: one sequence, and another for the underline's colour.
     pub(super) fn switch_to(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if *self != wanted && wanted == Self::default() {
             bytes.extend_from_slice(SGR_RESET);

@@ -18,7 +18,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference: difference::by_rows,
 };
 
-/// Returns the bytes that print the grid on a terminal with these colours; without colours, plain text.
+/// Returns the bytes that print the grid in these colours; plain text without colours.
 pub fn ansi_or_text(grid: &Grid, colors: Colors) -> Vec<u8> {
     match colors {
         // Not even a reset: without colours no sequence is sent, for terminals that would print it.

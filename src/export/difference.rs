@@ -101,7 +101,9 @@ fn marks(a: &Row, b: &Row) -> String {
 }
 
 impl Difference {
-    /// Returns the first differing row from 0; if one text has more rows, the first that only it has.
+    /// Returns the first differing row, from 0.
+    ///
+    /// If one text has more rows, it may be the first that only this text has.
     #[doc(hidden)]
     pub fn row(&self) -> usize {
         self.same
@@ -212,7 +214,7 @@ impl Difference {
         writeln!(f, "{on}{sign} {:digits$} |{text}|{off}", row + 1, digits = self.digits())
     }
 
-    /// Writes the marks below a pair; if only styles differ, with those of the first differing cell.
+    /// Writes the marks below a pair, and the first differing style if the glyphs are equal.
     fn write_marks(&self, f: &mut fmt::Formatter<'_>, a: &Row, b: &Row) -> fmt::Result {
         write!(f, "  {:digits$}  {}", "", marks(a, b), digits = self.digits())?;
         let glyphs = |row: &Row| row.iter().map(|&(character, _)| character).collect::<Vec<_>>();
@@ -253,8 +255,11 @@ mod tests {
     #[test]
     fn rows_far_apart_each_have_their_neighbours() {
         let text = |a, b| format!("1\n{a}\n3\n4\n5\n{b}\n");
-        let expected = "2 of 6 rows differ, first line 2, column 1\n  1 |1|\n- 2 |2|\n+ 2 |x|\n     ^\n  3 |3|\n  ...\n  5 \
-                        |5|\n- 6 |6|\n+ 6 |66|\n      ^\n";
+        let expected = concat!(
+            "2 of 6 rows differ, first line 2, column 1\n",
+            "  1 |1|\n- 2 |2|\n+ 2 |x|\n     ^\n  3 |3|\n  ...\n",
+            "  5 |5|\n- 6 |6|\n+ 6 |66|\n      ^\n",
+        );
         let with_size = format!("1x6 characters were expected, 2x6 found\n{expected}");
         assert_eq!(shown(&text("2", "6"), &text("x", "66")), with_size);
     }
@@ -262,8 +267,10 @@ mod tests {
     /// Rows before and after an insertion are not reported as changed.
     #[test]
     fn inserted_rows_are_found() {
-        let expected = "1x3 characters were expected, 1x4 found\nthe first difference: line 3, column 1\n  2 |b|\n+ 3 |x|\n  \
-                        4 |c|\n";
+        let expected = concat!(
+            "1x3 characters were expected, 1x4 found\nthe first difference: line 3, column 1\n",
+            "  2 |b|\n+ 3 |x|\n  4 |c|\n",
+        );
         assert_eq!(shown("a\nb\nc\n", "a\nb\nx\nc\n"), expected);
         assert!(shown("a\na\n", "a\n").contains("\n- 2 |a|\n"));
     }

@@ -26,7 +26,7 @@ pub(super) struct FormatRow {
 #[derive(Clone, Copy)]
 // Function pointers, not a trait: rows are constants, and a format is no more than its function.
 pub enum Contents {
-    /// The picture's pixels, with their aspect (height / width) and the side of each in the file's pixels.
+    /// The picture's pixels, their aspect (height / width), and the side of each in the file.
     Pixels(fn(&Picture, f32, u32) -> io::Result<Vec<u8>>),
     /// The cells that show the picture.
     Cells {

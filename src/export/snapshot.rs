@@ -5,7 +5,7 @@ use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// Returns the grid's characters in a frame, below its size, for snapshot tools that trim their input.
+/// Returns the grid's characters in a frame, for snapshot tools that trim their input.
 ///
 /// [insta](https://docs.rs/insta) trims its input, so that a snapshot of [`text`](super::text()) does not contain the
 /// blank rows at the end, and so not the height.

@@ -53,7 +53,9 @@ impl Attributes {
         Self((1 << Self::NAMES.len()) - 1)
     }
 
-    /// Returns the attributes of these bits, [`BOLD`](Self::BOLD) lowest; the highest seven are ignored.
+    /// Returns the attributes of these bits, [`BOLD`](Self::BOLD) lowest.
+    ///
+    /// The highest seven bits are ignored.
     #[doc(hidden)]
     pub const fn from_bits_truncate(bits: u16) -> Self {
         Self(bits & Self::all().0)

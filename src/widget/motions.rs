@@ -15,7 +15,9 @@ impl SceneState {
         self.move_camera(self.camera().orbited(right, up));
     }
 
-    /// Moves eye and target to the right and upwards, by parts of the picture's height at the target.
+    /// Moves eye and target to the right and upwards.
+    ///
+    /// The distances are parts of the picture's height at the target.
     pub fn pan(&mut self, right: f32, up: f32) {
         let aspect_ratio = self.aspect_ratio();
         self.move_camera(self.camera().panned(Vec2::new(-right / aspect_ratio, up), aspect_ratio));
@@ -39,7 +41,9 @@ impl SceneState {
         }
     }
 
-    /// Starts a drag, until [`release`](Self::release). Returns whether the position is inside the picture.
+    /// Starts a drag, until [`release`](Self::release).
+    ///
+    /// Returns whether the position is inside the picture.
     pub fn press(&mut self, at: Position, grip: Grip) -> bool {
         // Outside the picture a previous drag ends, so that a missed release does no harm.
         self.set_drag_state(self.ray_through(at).map(|_| (grip, at)));
@@ -74,7 +78,7 @@ impl SceneState {
         true
     }
 
-    /// Returns the point shown in a cell; if the ray hits nothing, the point at the target's distance.
+    /// Returns the point shown in a cell, or the point at the target's distance.
     fn point_at(&self, scene: &Scene, at: Position) -> Option<Vec3> {
         let ray = self.ray_through(at)?;
         // Eye rays have a component of 1 along -w, so t is the depth, as the target's distance is.

@@ -83,7 +83,7 @@ impl Tracer {
         self.shown(shot, &picture, true)
     }
 
-    /// Traces a shot and delivers its picture, after one with a sample per pixel if more are requested.
+    /// Traces a shot and delivers its pictures, the first with one sample per pixel.
     ///
     /// The final picture equals that of [`trace`](Self::trace).
     ///

@@ -124,7 +124,7 @@ impl SceneState {
         self.scale
     }
 
-    /// Returns the kind of the current drag and the last position of the pointer; `None` without a drag.
+    /// Returns the kind of the current drag and the last position of the pointer.
     pub(super) fn drag_state(&self) -> Option<(Grip, Position)> {
         self.drag_state
     }
@@ -134,7 +134,7 @@ impl SceneState {
         self.drag_state = drag_state;
     }
 
-    /// Returns whether the pane shows the requested picture with all samples, of the current camera.
+    /// Returns whether the pane shows the requested picture with all samples.
     ///
     /// In the background, `wake` is called before this becomes true.
     pub fn is_current(&self) -> bool {
@@ -196,7 +196,7 @@ impl SceneState {
         self.area = Rect::ZERO;
     }
 
-    /// Requests the picture of a shot, unless it was the last request, and returns the picture to draw.
+    /// Requests the picture of a new shot, and returns the picture to draw.
     ///
     /// The rectangle is the part of the pane that this picture covers.
     ///

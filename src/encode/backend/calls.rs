@@ -9,7 +9,7 @@ use std::io::{self, Write};
 impl<W: Write> Backend for EncoderBackend<W> {
     type Error = io::Error;
 
-    /// Records the cells; nothing is sent before `flush`. Cells covered by a wide glyph are ignored.
+    /// Records the cells, except those that a wide glyph covers; `flush` sends them.
     fn draw<'a, I>(&mut self, content: I) -> io::Result<()>
     where
         I: Iterator<Item = (u16, u16, &'a Cell)>,
