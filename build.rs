@@ -1,15 +1,24 @@
-//! Tells the library whether its compiler has AVX-512, which came with Rust 1.89.
+//! Tells the library whether its compiler has AVX-512, which came with Rust 1.89, and whether the files of the larger
+//! unit tests are present, which the published package leaves out.
 
 use std::env;
+use std::path::Path;
 use std::process::Command;
 
 const FIRST: u32 = 89;
+
+/// One of the files that the package leaves out, for all of them.
+const UNIT_TESTS: &str = "src/pace/tests.rs";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rustc-check-cfg=cfg(compiler_has_avx512)");
     if minor_version().is_some_and(|minor| minor >= FIRST) {
         println!("cargo::rustc-cfg=compiler_has_avx512");
+    }
+    println!("cargo::rustc-check-cfg=cfg(unit_tests)");
+    if Path::new(UNIT_TESTS).exists() {
+        println!("cargo::rustc-cfg=unit_tests");
     }
 }
 

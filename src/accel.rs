@@ -15,7 +15,7 @@ use std::convert::Infallible;
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod builds;
 
 /// A primitive of a scene. The order is that of the scene: of two hits at the same t, the smaller one counts.
@@ -272,7 +272,7 @@ impl Accelerator {
         shapes: impl Iterator<Item = &'s Shape>,
         report: &(dyn Fn(Progress) -> Result<(), E> + Sync),
     ) -> Result<Self, E> {
-        #[cfg(test)]
+        #[cfg(all(test, unit_tests))]
         builds::count();
         let (mut lists, mut has_smooth) = (PrimitiveLists::default(), false);
         for (object, shape) in (0..).zip(shapes) {

@@ -11,7 +11,7 @@ use std::fmt;
 mod motion;
 #[cfg(feature = "ratatui")]
 mod on_screen;
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests;
 
 pub(crate) use motion::{FRAMED_SHARE, framing_distance};

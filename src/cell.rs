@@ -14,7 +14,7 @@ use std::str::FromStr;
 
 mod blue_noise;
 mod colors;
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod dots;
 mod glyph_kind;
 mod half;
@@ -48,7 +48,7 @@ crate::table::table! {
         /// One of ten ASCII characters, by the lightness of two pixels.
         Ramp = ramp::KIND;
         /// A dot for a light pixel; exists in tests only.
-        #[cfg(test)]
+        #[cfg(all(test, unit_tests))]
         Dots = dots::KIND;
     }
 }

@@ -12,7 +12,7 @@ mod png;
 mod sgr;
 mod snapshot;
 mod svg;
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tally;
 mod text;
 
@@ -57,7 +57,7 @@ crate::table::table! {
         /// Cells as a web page: [`html()`].
         Html = html::KIND;
         /// The number of times each character occurs; exists in tests only.
-        #[cfg(test)]
+        #[cfg(all(test, unit_tests))]
         Tally = tally::KIND;
     }
 }
@@ -210,7 +210,7 @@ pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f
     cell::grid_from_picture(cell_mode, &picture)
 }
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests {
     use super::*;
     use crate::capabilities::Colors;

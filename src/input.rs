@@ -46,7 +46,7 @@ mod mouse;
 mod paste;
 mod state;
 mod reply;
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests;
 mod token;
 

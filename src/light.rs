@@ -11,11 +11,11 @@ use crate::written::{InSceneFile, NodeReader, Validator};
 use glam::Vec3;
 
 mod point;
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod sun;
 
 pub use point::{Falloff, PointLight, WrittenPointLight};
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 pub use sun::Sun;
 
 /// A kind of light source.
@@ -154,6 +154,6 @@ macro_rules! lights {
 
 lights! {
     Point: PointLight, "A point source.";
-    #[cfg(test)]
+    #[cfg(all(test, unit_tests))]
     Sun: Sun, "Light from infinitely far.";
 }

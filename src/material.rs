@@ -14,12 +14,12 @@ use crate::written::{InSceneFile, NodeReader, Validator};
 
 mod checker;
 mod diffuse;
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod stripes;
 
 pub use checker::{Checker, WrittenChecker};
 pub use diffuse::Diffuse;
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 pub use stripes::Stripes;
 
 /// A diffuse material, plain or patterned. Reflectances are linear, each channel in 0..=1.
@@ -137,7 +137,7 @@ macro_rules! materials {
 materials! {
     Diffuse, "The same reflectance everywhere.";
     Checker, "Squares of two reflectances in turn.";
-    #[cfg(test)]
+    #[cfg(all(test, unit_tests))]
     Stripes, "Stripes of two reflectances in turn.";
 }
 

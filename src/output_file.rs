@@ -172,5 +172,5 @@ fn is_replacement_refused(error: &io::Error) -> bool {
     matches!(error.kind(), PermissionDenied | ReadOnlyFilesystem | ResourceBusy)
 }
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests;

@@ -282,7 +282,7 @@ impl Link {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod faults;
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests;

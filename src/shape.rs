@@ -14,7 +14,7 @@ use crate::ray::{CommonOrigin, Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 pub mod cube;
 pub mod described;
 pub mod equation;
@@ -25,7 +25,7 @@ pub mod sphere;
 pub mod triangle;
 mod written;
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 pub use cube::Cube;
 pub use described::Described;
 pub use equation::{Equation, Step};
@@ -240,7 +240,7 @@ macro_rules! surfaces {
             tree spheres: Sphere as $crate::shape::SphereN<$crate::lanes::F32x8>, "All points at one distance from a centre.";
             list planes: Plane as $crate::shape::Plane, "All points whose difference from a given point is perpendicular to the normal.";
             tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>, "The part of a plane between three points.";
-            #[cfg(test)]
+            #[cfg(all(test, unit_tests))]
             tree cubes: Cube as $crate::shape::ScalarLeaf<$crate::shape::Cube>, "All points at one distance from a centre, along the axis along which they are farthest.";
         }
     };

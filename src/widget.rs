@@ -26,7 +26,7 @@ mod worker;
 mod state;
 mod motions;
 mod view;
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests;
 
 pub use state::SceneState;

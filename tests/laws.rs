@@ -45,9 +45,12 @@ fn library_files() -> Vec<(PathBuf, String)> {
     files.into_iter().filter(|(path, _)| !tests.contains(path)).collect()
 }
 
+/// The attributes of items that only tests have. The published package does not have those with `unit_tests`.
+const TEST_ONLY: [&str; 2] = ["#[cfg(test)]", "#[cfg(all(test, unit_tests))]"];
+
 /// The files of the modules that this one has for tests only.
 fn test_files(path: &Path, text: &str) -> Vec<PathBuf> {
-    let pairs = text.lines().zip(text.lines().skip(1)).filter(|(attribute, _)| *attribute == "#[cfg(test)]");
+    let pairs = text.lines().zip(text.lines().skip(1)).filter(|(attribute, _)| TEST_ONLY.contains(attribute));
     let names =
         pairs.filter_map(|(_, module)| module.trim_start_matches("pub ").strip_prefix("mod ")?.strip_suffix(';'));
     names.map(|name| path.with_extension("").join(name).with_extension("rs")).collect()
@@ -79,7 +82,7 @@ fn code(text: &str) -> String {
     let mut lines = text.lines();
     while let Some(line) = lines.next() {
         let trimmed = line.trim_start();
-        if trimmed.starts_with("#[cfg(test)]") || trimmed.starts_with("#[cfg(doctest)]") {
+        if TEST_ONLY.iter().any(|attribute| trimmed.starts_with(attribute)) || trimmed.starts_with("#[cfg(doctest)]") {
             skip_item(&mut lines);
         } else if !trimmed.starts_with("//") {
             code.push_str(line.split(" // ").next().unwrap_or(line));
@@ -378,7 +381,10 @@ fn ways_back_are_found() {
     assert!(!found("scene.rs", "use crate::{color::Srgb8, shape::{self, Shape}};"));
     assert!(!found("shape/plane.rs", "use super::Surface;"));
     let shape = root().join("src/shape.rs");
-    assert_eq!(test_files(&shape, "mod a;\n#[cfg(test)]\nmod b;\nmod c;"), [root().join("src/shape/b.rs")]);
+    for attribute in TEST_ONLY {
+        let text = format!("mod a;\n{attribute}\nmod b;\nmod c;");
+        assert_eq!(test_files(&shape, &text), [root().join("src/shape/b.rs")]);
+    }
     assert!(!found(
         "shape.rs",
         "/// See [`crate::scene`].\n#[cfg(test)]\nmod tests {\n    use crate::scene::Scene;\n}"

@@ -1,7 +1,8 @@
 //! Names what `cargo test` leaves out in the package.
 //!
-//! The package has no test data, so of the test programs it has this one alone. There it prints the others by name; in the
-//! repository it fails if its list is not theirs.
+//! The package has no test data, so of the test programs it has this one alone, and it lacks the files of the larger unit
+//! tests. There this program prints the other programs and the modules of these files by name; in the repository it fails
+//! if a test program is missing from its list, or if it finds no such module.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -30,11 +31,20 @@ fn main() -> ExitCode {
     if std::env::args().any(|argument| argument == "--list") {
         return ExitCode::SUCCESS;
     }
-    let there = programs(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let there = programs(&root.join("tests"));
+    let modules = modules(&root.join("src"));
+    if modules.is_empty() {
+        eprintln!("tests/left_out.rs finds no module behind {ATTRIBUTE}");
+        return ExitCode::FAILURE;
+    }
     if there.is_empty() {
         println!(
-            "The package has the unit tests and the documentation's examples. Other test programs need the repository:"
+            "The package has the smaller unit tests and the documentation's examples. The others are in the repository:"
         );
+        for module in &modules {
+            println!("unit tests {module} ... left out");
+        }
         for (name, tests) in LEFT_OUT {
             println!("test program {name} ... left out: {tests}");
         }
@@ -46,6 +56,29 @@ fn main() -> ExitCode {
     }
     eprintln!("LEFT_OUT of tests/left_out.rs lists {listed:?}, but the test programs are {there:?}");
     ExitCode::FAILURE
+}
+
+/// The attribute of items that the package leaves out: build.rs sets `unit_tests` in the repository alone.
+const ATTRIBUTE: &str = "#[cfg(all(test, unit_tests))]";
+
+/// Returns the paths of the modules behind [`ATTRIBUTE`] in the files of `folder`.
+fn modules(folder: &Path) -> BTreeSet<String> {
+    let mut modules = BTreeSet::new();
+    for path in fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).map(|entry| entry.path()) {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let below = |module: &str| format!("{name}::{module}");
+        if path.is_dir() {
+            modules.extend(self::modules(&path).iter().map(|module| below(module)));
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        for (_, item) in text.lines().zip(text.lines().skip(1)).filter(|(attribute, _)| *attribute == ATTRIBUTE) {
+            let module =
+                item.trim_start_matches("pub ").strip_prefix("mod ").map(|rest| rest.trim_end_matches([';', '{', ' ']));
+            modules.extend(module.map(below));
+        }
+    }
+    modules
 }
 
 /// Returns the names of the test programs in `folder` but for this one.

@@ -114,3 +114,35 @@ fn workflows_and_documentation_name_features_that_exist() {
 
 /// Features without an item of the library.
 const UNDOCUMENTED: [&str; 3] = ["default", "cli", "test-hooks"];
+
+/// A gated file that is packed would be dead weight; one that is left out without its gate would break `cargo test` in the
+/// package.
+#[test]
+fn the_package_leaves_out_the_files_of_gated_modules() {
+    let src = root().join("src");
+    let mut gated = BTreeSet::new();
+    for path in paths(&src).into_iter().filter(|path| path.extension().is_some_and(|extension| extension == "rs")) {
+        let text = fs::read_to_string(&path).expect("a source file can be read");
+        for (_, item) in text.lines().zip(text.lines().skip(1)).filter(|(attribute, _)| *attribute == GATE) {
+            let module = item.trim_start_matches("pub ").strip_prefix("mod ").and_then(|rest| rest.strip_suffix(';'));
+            gated.extend(module.map(|module| path.with_extension("").join(module).with_extension("rs")));
+        }
+    }
+    assert!(gated.len() > 10, "{gated:?}");
+    let patterns = section("[package]")
+        .into_iter()
+        .filter_map(|line| Some(line.trim().strip_prefix("\"!/src/")?.trim_end_matches("\",").to_owned()));
+    let patterns: Vec<_> = patterns.collect();
+    let is_left_out = |path: &Path| {
+        let name = path.strip_prefix(&src).expect("below src").to_string_lossy().into_owned();
+        patterns.iter().any(|pattern| pattern.strip_prefix("**/").map_or(name == *pattern, |end| name.ends_with(end)))
+    };
+    let packed: Vec<_> = gated.iter().filter(|path| !is_left_out(path)).collect();
+    assert!(packed.is_empty(), "add to `include` of Cargo.toml: {packed:?}");
+    let left_out: BTreeSet<_> = paths(&src).into_iter().filter(|path| path.is_file() && is_left_out(path)).collect();
+    let ungated: Vec<_> = left_out.difference(&gated).collect();
+    assert!(ungated.is_empty(), "put {GATE} before their `mod`: {ungated:?}");
+}
+
+/// The attribute of modules whose files the package leaves out.
+const GATE: &str = "#[cfg(all(test, unit_tests))]";

@@ -69,7 +69,7 @@ pub(super) fn stem(name: &str) -> String {
     if plain.is_empty() { "scene".to_owned() } else { plain.to_owned() }
 }
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests {
     use super::*;
     use crate::capabilities::{Glyphs, HalfBlocks};

@@ -197,5 +197,5 @@ const TURN_SPEED: f32 = std::f32::consts::FRAC_PI_4;
 // Exponential, so that the target is approached at every scale and never passed.
 const NEARER_SPEED: f32 = 1.0;
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests;

@@ -75,7 +75,7 @@ impl Lights {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests {
     use super::*;
     use crate::camera::{Camera, Pose, ViewRectangle};

@@ -142,5 +142,5 @@ impl QualityControl {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, unit_tests))]
 mod tests;
