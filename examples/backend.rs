@@ -17,7 +17,7 @@ fn main() -> io::Result<()> {
         return Ok(());
     }
     terminal::enable_raw_mode()?;
-    let encoder = Encoder::new().with_order(Order::Color).with_synchronized_output(true);
+    let encoder = Encoder::new().with_order(Order::Color);
     // Where there was CrosstermBackend::new(io::stdout()).
     let backend = EncoderBackend::new(io::stdout(), terminal::size()?)
         .with_encoder(encoder)

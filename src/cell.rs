@@ -125,7 +125,8 @@ impl CellMode {
     /// ```
     ///
     /// # Errors
-    /// If the screen has more pixels than a picture may have, or the aspect is not greater than 0 and finite.
+    /// If the screen has more cells than a grid or more pixels than a picture may have, or the aspect is not greater
+    /// than 0 and finite.
     pub fn resolution(self, size: Size, cell_aspect: f32) -> Result<Resolution, ResolutionError> {
         resolution(self, size, cell_aspect)
     }
@@ -146,8 +147,10 @@ impl CellMode {
 /// Returns the resolution of a picture for a screen of this size and cell aspect (height / width).
 ///
 /// # Errors
-/// If the screen has more pixels than a picture may have, or the aspect is not greater than 0 and finite.
+/// If the screen has more cells than a grid or more pixels than a picture may have, or the aspect is not greater than 0
+/// and finite.
 pub fn resolution(mode: CellMode, size: Size, cell_aspect: f32) -> Result<Resolution, ResolutionError> {
+    size.checked_cell_count()?;
     let (across, down) = mode.pixels_per_cell();
     Resolution::new(u32::from(size.columns) * across, u32::from(size.rows) * down)?
         .with_pixel_aspect(cell_aspect * across as f32 / down as f32) // 1 for half blocks in cells of aspect 2

@@ -153,11 +153,11 @@ impl Encoder {
         self.order = order;
     }
 
-    /// Sets the half blocks that cells may use.
+    /// Sets the half blocks that cells may use: [`HalfBlocks::Lower`] unless set otherwise.
     ///
-    /// [`HalfBlocks::Either`] is right where a cell has an even number of pixel rows. At odd heights some terminals
-    /// split the two glyphs a pixel row apart, and a mix of them shows.
-    #[doc(hidden)]
+    /// With [`HalfBlocks::Either`] a moving picture takes about a tenth fewer bytes. It is right where a cell has an even
+    /// number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and a mix of them
+    /// shows.
     pub fn with_half_blocks(self, half_blocks: HalfBlocks) -> Self {
         Self { half_blocks, ..self }
     }

@@ -49,6 +49,7 @@ impl Resolution {
     ///
     /// # Panics
     /// If there are more than [`MAX_PIXELS`](Self::MAX_PIXELS).
+    #[doc(hidden)]
     pub const fn square(width: u32, height: u32) -> Self {
         match Self::new(width, height) {
             Ok(resolution) => resolution,
@@ -105,7 +106,7 @@ impl Resolution {
     }
 }
 
-/// The error of an invalid resolution.
+/// The error of an invalid resolution, or of a grid with too many cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ResolutionError {
@@ -116,9 +117,20 @@ pub enum ResolutionError {
         /// The number of rows.
         height: u32,
     },
+    /// The grid has more than 16,777,216 cells.
+    TooManyCells {
+        /// The number of cells in a row.
+        columns: u16,
+        /// The number of rows.
+        rows: u16,
+    },
     /// The pixel aspect, given here, is not greater than 0 and finite.
     PixelAspect(f32),
 }
+
+/// Largest number of cells of a grid, which take 700 MB.
+// A 4K screen has 100,000 cells of 8 by 10 pixels. Without a limit, 65,535 columns and rows abort the process for memory.
+pub(crate) const MAX_CELLS: usize = 1 << 24;
 
 impl fmt::Display for ResolutionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -126,6 +138,9 @@ impl fmt::Display for ResolutionError {
             Self::TooLarge { width, height } => {
                 let most = Resolution::MAX_PIXELS;
                 write!(f, "a picture of {width}x{height} pixels is too large; at most {most} pixels in all")
+            }
+            Self::TooManyCells { columns, rows } => {
+                write!(f, "a grid of {columns}x{rows} cells is too large; at most {MAX_CELLS} cells in all")
             }
             Self::PixelAspect(aspect) => {
                 write!(f, "a pixel's height over its width must be greater than 0 and finite, and is {aspect}")

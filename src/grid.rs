@@ -4,6 +4,7 @@
 //! [`overlay`](crate::overlay) lays text over it, [`encode`](crate::encode) and [`export`](crate::export) write it out.
 
 use crate::color::Srgb8;
+use crate::framebuffer::{MAX_CELLS, ResolutionError};
 use std::fmt;
 #[cfg(feature = "backend")]
 use std::ops::Range;
@@ -46,6 +47,16 @@ impl Size {
     pub const fn cell_count(self) -> usize {
         // At most 65,535 squared, which fits into 32 bits: no overflow on any target.
         self.columns as usize * self.rows as usize
+    }
+
+    /// Returns the number of cells, if a grid may have as many.
+    ///
+    /// # Errors
+    /// [`ResolutionError::TooManyCells`], if there are more than [`MAX_CELLS`].
+    pub(crate) fn checked_cell_count(self) -> Result<usize, ResolutionError> {
+        let Self { columns, rows } = self;
+        let count = self.cell_count();
+        if count <= MAX_CELLS { Ok(count) } else { Err(ResolutionError::TooManyCells { columns, rows }) }
     }
 }
 
@@ -192,12 +203,26 @@ pub struct Grid {
     cells: Vec<Cell>,
 }
 
+/// A blank grid of a size that is checked before memory is allocated.
+///
+/// ```
+/// use termtrace::{Grid, Size};
+///
+/// let error = Grid::try_from(Size::new(65_535, 65_535)).unwrap_err();
+/// assert_eq!(error.to_string(), "a grid of 65535x65535 cells is too large; at most 16777216 cells in all");
+/// ```
+impl TryFrom<Size> for Grid {
+    type Error = ResolutionError;
+
+    fn try_from(size: Size) -> Result<Self, ResolutionError> {
+        Ok(Self { size, cells: vec![Cell::BLANK; size.checked_cell_count()?] })
+    }
+}
+
 impl Grid {
     /// Largest number of cells of a grid: 16,777,216, which take 700 MB.
-    // A 4K screen has 100,000 cells of 8 by 10 pixels. Without a limit, 65,535 columns and rows abort the process for
-    // memory.
     #[doc(hidden)]
-    pub const MAX_CELLS: usize = 1 << 24;
+    pub const MAX_CELLS: usize = MAX_CELLS;
 
     /// Returns a grid of this size, full of blanks.
     ///
@@ -208,7 +233,7 @@ impl Grid {
     /// ```
     ///
     /// # Panics
-    /// If it has more than 16,777,216 cells.
+    /// If it has more than 16,777,216 cells. For a size that comes from elsewhere there is `Grid::try_from(size)`.
     pub fn new(size: Size) -> Self {
         Self { size, cells: vec![Cell::BLANK; Self::checked_cell_count(size)] }
     }
@@ -239,9 +264,7 @@ impl Grid {
     /// Returns the number of cells, if it is within the limit.
     // A panic, not an error: sizes come from terminals, which are checked where they are read.
     fn checked_cell_count(size: Size) -> usize {
-        let count = size.cell_count();
-        assert!(count <= Self::MAX_CELLS, "a grid of {count} cells is too large; it may have {}", Self::MAX_CELLS);
-        count
+        size.checked_cell_count().unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// Returns the size in cells.

@@ -4,18 +4,17 @@
 //! bytes -> a terminal or a file; and back: bytes -> events -> camera.
 //!
 //! ```
-//! use std::num::NonZeroU32;
-//! use termtrace::{Resolution, Scene, render, tone};
+//! use termtrace::{Render, Resolution, Scene, tone};
 //!
 //! let scene = Scene::from_ron("ball.ron", r##"(
 //!     camera: (eye: (0, 1, 4), target: (0, 1, 0)),
 //!     lights: [Point(position: (3, 4, 5), intensity: 40)],
 //!     objects: [Sphere(center: (0, 1, 0), radius: 1, material: Diffuse("#e04030"))],
 //! )"##)?;
-//! let light = render(&scene, scene.camera(), Resolution::square(80, 48), NonZeroU32::MIN);
+//! let light = Render::new(&scene).resolution(Resolution::new(80, 48)?).run()?;
 //! let picture = tone(&light, &scene);
 //! assert_eq!(picture.pixels().len(), 80 * 48);
-//! # Ok::<(), termtrace::SceneError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! The same scene without a file. What no scene may hold is an error of its constructor, in the words of a scene file's
@@ -48,8 +47,7 @@
 //! - Scenes in code: [`Scene::builder`], [`Camera`], [`Object`], [`Shape`], [`Material`], [`Light`], [`Background`],
 //!   [`ToneCurve`], [`LinearRgb`]
 //! - Cameras over time: [`CameraPath`]
-//! - Pictures: [`Render`], and [`render()`] in short, with [`Resolution`] and [`Sampling`] -> [`Framebuffer`],
-//!   [`tone()`] -> [`Picture`]; [`Map`]
+//! - Pictures: [`Render`] with [`Resolution`] and [`Sampling`] -> [`Framebuffer`], [`tone()`] -> [`Picture`]; [`Map`]
 //! - Pictures in words: [`describe()`], [`explain()`]
 //! - Cells and text: [`Grid`], [`CellMode`], [`Painter`], [`text_frame`], [`frame_grid`], [`export`]
 //! - ratatui: [`SceneView`] and its [`SceneState`], a scene as a widget; `EncoderBackend` (feature `backend`) and its
@@ -338,7 +336,7 @@ pub use explain::{Explanation, explain};
 // Cells and text.
 pub use cell::{CellMode, Colors, Glyphs, Painter};
 pub use export::{Difference, compare, frame_grid, text_frame};
-pub use grid::{Cell, Glyph, Grid, Ink, Size};
+pub use grid::{Cell, Glyph, Grid, HalfBlocks, Ink, Size};
 
 // ratatui.
 #[cfg(feature = "ratatui")]

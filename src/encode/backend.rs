@@ -11,6 +11,7 @@ mod regions;
 
 use super::moves::CellPosition;
 use super::{Encoder, Quality};
+use crate::framebuffer::ResolutionError;
 use crate::grid::{self, Cell, Grid};
 use crate::overlay;
 use cursor::Cursor;
@@ -104,8 +105,16 @@ pub struct EncoderBackend<W> {
 /// A function that finds something out about the terminal.
 type Query<T> = Box<dyn Fn() -> io::Result<T> + Send + Sync>;
 
+/// Returns the error for a window with too many cells.
+fn invalid_size(error: ResolutionError) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, error)
+}
+
 impl<W> EncoderBackend<W> {
     /// Creates a backend for a terminal of this size, about which nothing else is known.
+    ///
+    /// # Panics
+    /// If the terminal has more than 16,777,216 cells.
     pub fn new(writer: W, size: impl Into<Size>) -> Self {
         let mut backend = Self {
             writer,
@@ -183,7 +192,8 @@ impl<W> EncoderBackend<W> {
 
     /// Sets the function that returns the window's size in columns and rows.
     ///
-    /// A window that becomes smaller and large again between two frames goes unnoticed, as with any backend.
+    /// A window of more than 16,777,216 cells is an error of the call that follows. A window that becomes smaller and
+    /// large again between two frames goes unnoticed, as with any backend.
     pub fn sized_by(mut self, ask: impl Fn() -> io::Result<Size> + Send + Sync + 'static) -> Self {
         self.ask_size = Some(Box::new(ask));
         self
@@ -198,6 +208,9 @@ impl<W> EncoderBackend<W> {
     }
 
     /// Sets the size of the window; its contents and its size in pixels are then unknown.
+    ///
+    /// # Panics
+    /// If the window has more than 16,777,216 cells.
     #[doc(hidden)]
     pub fn resize(&mut self, size: impl Into<Size>) {
         let Size { width, height } = size.into();
@@ -299,6 +312,7 @@ impl<W: Write> EncoderBackend<W> {
         if let Some(ask) = &self.ask_size {
             let size = ask()?;
             if size != self.window.columns_rows {
+                grid::Size::new(size.width, size.height).checked_cell_count().map_err(invalid_size)?;
                 self.resize(size);
             }
         }

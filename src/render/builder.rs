@@ -27,7 +27,7 @@ type ProgressCallback<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Send + Sync + '
 ///     objects: [Sphere(center: (0, 0, 0), radius: 1)],
 /// )")?;
 /// let picture = Render::new(&scene)
-///     .resolution(Resolution::square(40, 30))
+///     .resolution(Resolution::new(40, 30)?)
 ///     .sampling(Sampling::BEST)
 ///     .on_progress(|share| {
 ///         eprint!("\r{:3.0} %", 100.0 * share);

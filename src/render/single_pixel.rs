@@ -42,11 +42,11 @@ impl Scene {
     ///
     /// let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
     /// let scene = Scene::from_ron("ball.ron", text)?;
-    /// let resolution = Resolution::square(81, 81);
+    /// let resolution = Resolution::new(81, 81)?;
     /// let hit = scene.hit(scene.camera(), resolution, [40, 40]);
     /// assert!(hit.is_some_and(|hit| hit.object == 0 && (hit.t - 4.0).abs() < 1e-3));
     /// assert_eq!(scene.hit(scene.camera(), resolution, [0, 0]), None);
-    /// # Ok::<(), termtrace::SceneError>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn hit(&self, camera: &Camera, resolution: Resolution, pixel: [u32; 2]) -> Option<Hit> {
         let is_inside = pixel[0] < resolution.width() && pixel[1] < resolution.height();
