@@ -166,8 +166,16 @@ fn paints(sequence: &[u8]) -> bool {
 
 /// Waits for at most `timeout` and returns whether the terminal accepts bytes or has hung up.
 fn is_writable(file: &impl AsFd, timeout: Duration) -> bool {
-    let mut fds = [PollFd::new(file, PollFlags::OUT)];
-    poll(&mut fds, Some(&timespec(timeout))).is_ok_and(|ready| ready > 0)
+    let deadline = Instant::now() + timeout;
+    loop {
+        let left = deadline.saturating_duration_since(Instant::now());
+        match poll(&mut [PollFd::new(file, PollFlags::OUT)], Some(&timespec(left))) {
+            // A window that is dragged sends a SIGWINCH every few milliseconds. Taken for a terminal that accepts
+            // nothing, it would lose the message of an error.
+            Err(rustix::io::Errno::INTR) => {}
+            ready => return ready.is_ok_and(|ready| ready > 0),
+        }
+    }
 }
 
 /// Returns whether a message to standard error would not block.
@@ -205,6 +213,9 @@ pub(super) fn timespec(duration: Duration) -> rustix::event::Timespec {
 mod tests {
     use super::*;
     use std::io::Read;
+    use std::os::unix::net::UnixStream;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::mpsc::channel;
     use std::thread;
 
@@ -233,6 +244,35 @@ mod tests {
 
     fn string(bytes: &[u8]) -> String {
         String::from_utf8(bytes.to_vec()).expect("no character is cut")
+    }
+
+    /// Otherwise a window that is resized while the program ends would cost the message that tells why.
+    #[test]
+    fn signals_do_not_end_the_wait_for_a_terminal() {
+        use nix::sys::pthread::{pthread_kill, pthread_self};
+        use signal_hook::consts::SIGWINCH;
+
+        let caught = Arc::new(AtomicBool::new(false));
+        signal_hook::flag::register(SIGWINCH, Arc::clone(&caught)).expect("a handler can be set");
+        let (near, mut far) = UnixStream::pair().expect("sockets can be had");
+        near.set_nonblocking(true).expect("a socket has flags");
+        while (&near).write(&[0; 4096]).is_ok() {}
+        let waiting = pthread_self();
+        thread::scope(|scope| {
+            scope.spawn(move || {
+                for _ in 0..20 {
+                    pthread_kill(waiting, nix::sys::signal::Signal::SIGWINCH).expect("the thread waits");
+                    while !caught.swap(false, Ordering::SeqCst) {
+                        thread::yield_now();
+                    }
+                }
+                far.set_nonblocking(true).expect("a socket has flags");
+                while far.read(&mut [0; 4096]).is_ok() {}
+                // Dropped behind the wait: a closed socket would count as writable, too.
+                far
+            });
+            assert!(is_writable(&near, Duration::from_secs(60)));
+        });
     }
 
     /// A frame that does not fit does not block the sender, even on a descriptor in blocking mode.
