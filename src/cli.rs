@@ -22,6 +22,7 @@ mod record;
 mod renamed;
 mod scene_args;
 mod settings;
+mod threads;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use deferred_args::DeferredArgs;

@@ -4,8 +4,8 @@ mod generated;
 
 use super::outcome::{CommandResult, Failure, usage, write_stdout};
 use super::picture::{check_pixel_count, parse_size};
-use super::scene_args::on_threads;
 use super::scene_source::SceneSource;
+use super::threads::on_threads;
 use clap::{Args, ValueEnum};
 use generated::Generated;
 use std::fmt::Write;
@@ -84,7 +84,7 @@ impl BenchArgs {
     /// The scene, and its name.
     fn scene(&self) -> Result<(String, Scene), Failure> {
         let (name, scene) = if let Some(path) = &self.scene {
-            (visible(&path.display().to_string()), SceneSource::of(path)?.load()?)
+            (visible(&path.display().to_string()), SceneSource::of(path)?.load(self.threads)?)
         } else {
             let generated = self.generated.unwrap_or(Generated::Three);
             (format!("{generated:?}").to_lowercase(), generated.scene().map_err(usage)?)

@@ -4,9 +4,10 @@ use super::Cli;
 use super::completions::{command_near, no_command};
 use super::encoding::OrderArgs;
 use super::outcome::{CommandResult, Failure, exit_after_panic, print_clap_message, reason, usage, write_stdout};
-use super::scene_args::{CameraArgs, on_threads};
+use super::scene_args::CameraArgs;
 use super::scene_source::SceneSource;
 use super::settings::{SettingArgs, Settings, keys};
+use super::threads::on_threads;
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, CommandFactory};
 use std::io::{self, IsTerminal};
@@ -99,7 +100,7 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
             return Err(Failure::Usage(message));
         }
     };
-    let scene = source.load()?;
+    let scene = source.load(args.camera_args.threads)?;
     let camera = args.camera_args.camera(scene.camera()).map_err(usage)?;
     let scene = scene.with_camera(camera);
     let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);

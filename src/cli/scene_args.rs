@@ -2,6 +2,7 @@
 
 use super::outcome::{CommandResult, Failure, usage};
 use super::scene_source::SceneSource;
+use super::threads::on_threads;
 use clap::Args;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -39,7 +40,7 @@ impl SceneArgs {
 
     /// The scene, with the camera that the command line wants.
     pub(super) fn load(&self) -> Result<Scene, Failure> {
-        let scene = SceneSource::of(&self.scene)?.load()?;
+        let scene = SceneSource::of(&self.scene)?.load(self.camera_args.threads)?;
         let camera = self.camera_args.camera(scene.camera()).map_err(usage)?;
         Ok(scene.with_camera(camera))
     }
@@ -88,13 +89,6 @@ impl CameraArgs {
             None => Ok(camera),
         }
     }
-}
-
-/// Does something on so many threads; by default on as many as there are cores.
-pub(super) fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    let Some(threads) = threads else { return Ok(work()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build();
-    pool.map(|pool| pool.install(work)).map_err(|error| Failure::runtime("--threads", error))
 }
 
 /// `x,y,z`, within what a scene file may say.

@@ -2,6 +2,7 @@
 
 use super::outcome::{Failure, reason, usage};
 use super::suggestions;
+use super::threads::on_threads;
 use std::fmt;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -29,9 +30,10 @@ impl SceneSource {
         if path == Path::new("-") { read_stdin().map(Self::Stdin) } else { Ok(Self::File(path.to_owned())) }
     }
 
-    /// The scene as it was written.
-    pub(super) fn load(&self) -> Result<Scene, Failure> {
-        self.draft(&Reporter::silent()).map(Draft::finish)
+    /// Returns the complete scene as it is written, built on this number of threads.
+    pub(super) fn load(&self, threads: Option<u16>) -> Result<Scene, Failure> {
+        let draft = self.draft(&Reporter::silent())?;
+        on_threads(threads, || draft.finish())
     }
 
     /// The scene, not built yet, until the reporter cancels it.

@@ -252,6 +252,20 @@ fn too_little_memory_is_an_error_message() {
     }
 }
 
+/// No system has room for a stack of 100 TB, which the environment asks for.
+#[test]
+fn threads_that_cannot_be_started_are_an_error_message() {
+    let folder = Folder::new();
+    folder.write("ball.ron", BALL);
+    for line in
+        ["frame ball.ron", "frame ball.ron --threads 2", "describe ball.ron", "check ball.ron", "bench ball.ron"]
+    {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_termtrace"));
+        command.args(line.split(' ')).env("RUST_MIN_STACK", "100000000000000").current_dir(folder.path(""));
+        super::finish(&mut command).fails_in_a_line(1, "threads: no more can be started: ");
+    }
+}
+
 /// As for the scene, `-` is the standard stream.
 #[test]
 fn a_dash_is_standard_output() {
