@@ -38,7 +38,9 @@ const CHUNK_LEN: u64 = 1 << 20;
 /// Returns all bytes of the file at `path`, at most `max_len(bytes so far)`.
 ///
 /// The limit may depend on the file's first bytes, which tell its format. The number of bytes read is
-/// reported; after a cancel reading ends with [`ErrorKind::Interrupted`]. A pipe is waited for, a second at a time.
+/// reported; after a cancel reading ends with [`ErrorKind::Interrupted`]. A pipe that
+/// delivers at least a byte a second is read to its end, as `cat` does: its size is limited, its time is not, because
+/// the user sees how far it is and can press Ctrl-C.
 ///
 /// # Errors
 /// The system's error; another kind of file than accepted; a pipe that delivers nothing for a second
