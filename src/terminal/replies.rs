@@ -1,5 +1,6 @@
 //! Replies that are outstanding when the terminal is restored.
 
+use super::fault_injection;
 use super::output::timespec;
 use crate::input::Input;
 use crate::protocol::Receiver;
@@ -41,7 +42,10 @@ fn read_up_to_last(
             Err(_) => return,
         }
         match keys.read(&mut buffer) {
-            Ok(count) if count > 0 => inputs.extend(receiver.receive(&buffer[..count], now + start.elapsed())),
+            Ok(count) if count > 0 => {
+                fault_injection::count_read(count);
+                inputs.extend(receiver.receive(&buffer[..count], now + start.elapsed()));
+            }
             // The terminal has hung up.
             _ => return,
         }

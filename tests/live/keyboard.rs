@@ -1,6 +1,6 @@
 //! Keys on a terminal with the kitty keyboard protocol: in use, with late replies, and without it.
 
-use crate::pty::{Deadline, SOON, Seen, Session, Size, Start};
+use crate::pty::{SOON, Seen, Session, Size, Start};
 use rustix::process::Signal;
 use std::time::{Duration, Instant};
 use termtrace::internals::control::GLIDE_TIME;
@@ -51,19 +51,6 @@ fn release(session: &Session, key: char) {
 fn tap(session: &Session, key: char) {
     press(session, key);
     release(session, key);
-}
-
-/// Waits until nothing has been sent for a while.
-///
-/// A stop throws input away, which `wait_for_rest` would wait for.
-#[track_caller]
-fn rest_after_stop(session: &mut Session) {
-    let mut deadline = Deadline::after(SOON);
-    let mut before = session.seen().bytes().len();
-    while session.sees(Duration::from_millis(200), |seen| seen.bytes().len() != before) {
-        before = session.seen().bytes().len();
-        assert!(!deadline.has_passed(), "it never comes to rest");
-    }
 }
 
 /// Returns the eye that the status line shows.
@@ -347,7 +334,7 @@ fn queries_whose_replies_come_during_a_stop_are_sent_again() {
     session.send(&[b"\x1b[?0u", FENCE_REPLY].concat());
     session.wait_for("the keyboard pushed", SOON, |seen| seen.has(PUSH));
     session.send(b"\x1b[?15u");
-    rest_after_stop(&mut session);
+    session.wait_for_rest();
     assert_eq!(session.seen().modes().keyboard_flags(), 15);
     assert_eq!(count(session.seen(), PUSH), 1 + count(session.seen(), POP));
     leave_answering(&mut session);
@@ -365,7 +352,7 @@ fn a_stop_pops_the_keyboard_and_releases_all_keys() {
     session.signal(Signal::CONT);
     session.wait_for("the keyboard pushed again", SOON, |seen| count(seen, PUSH) == 2);
     assert_eq!(count(session.seen(), POP), 1);
-    rest_after_stop(&mut session);
+    session.wait_for_rest();
     let z = eye(&mut session)[2];
     // The repeat of a held key moves again.
     repeat(&session, 'w');

@@ -10,6 +10,7 @@ use std::io::Write;
 use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
 use std::process::Command;
+use std::sync::LazyLock;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 use tempfile::TempDir;
@@ -20,7 +21,8 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 
 /// Returns a ball that is large enough to be sketched.
 fn big_ball() -> Vec<u8> {
-    written(&ball(150_000), "binary.stl")
+    static BALL: LazyLock<Vec<u8>> = LazyLock::new(|| written(&ball(150_000), "binary.stl"));
+    BALL.clone()
 }
 
 /// A mesh that comes through a pipe when the test wants.
@@ -41,11 +43,13 @@ impl Source {
         let made = Command::new("mkfifo").arg(&path).status();
         assert!(made.is_ok_and(|status| status.success()), "a pipe with a name can be made");
         let (rest, wanted) = channel::<Vec<u8>>();
+        // Made before the pipe is opened: the child waits no longer than a second for its first byte.
+        let ball = big_ball();
         std::thread::spawn(move || {
             // This waits for the child, which may leave in the middle.
             let mut pipe = fs::OpenOptions::new().write(true).open(path)?;
             // The balls of the tests begin alike.
-            for (written, byte) in big_ball().into_iter().enumerate() {
+            for (written, byte) in ball.into_iter().enumerate() {
                 match wanted.recv_timeout(NOW_AND_THEN) {
                     Ok(whole) => return pipe.write_all(&whole[written..]),
                     Err(RecvTimeoutError::Timeout) => pipe.write_all(&[byte])?,

@@ -76,13 +76,16 @@ fn the_first_frame_is_sent_in_the_order_that_is_asked_for() {
         (&["--order=raster"], Order::Raster),
         (&["--compressed-link"], Order::Raster),
     ] {
-        // One sample a pixel: the first frame is the last one, too.
-        let mut session = looking(flags.iter().fold(termtrace().arg("--samples=best"), Start::arg));
         let mut wanted = Vec::new();
         let mut encoder = Encoder::new().with_order(order).with_half_blocks(HalfBlocks::Either);
         encoder.encode(&picture(CellMode::HALF_BLOCK, Size::cells(80, 24)), &mut wanted);
-        let sent = session.seen().bytes();
-        assert!(sent.windows(wanted.len()).any(|bytes| bytes == wanted), "{flags:?}");
+        // With the best samples the first frame is the last one, too. Where loading takes longer than 100 ms, as on a
+        // busy machine, a panel comes before the picture.
+        let look = |_| looking(flags.iter().fold(termtrace().arg("--samples=best"), Start::arg));
+        let has_no_panel = |session: &mut Session| !session.seen().has("╭".as_bytes());
+        let mut session = (0..50).map(look).find_map(|mut session| has_no_panel(&mut session).then_some(session));
+        let session = session.as_mut().expect("some load takes less than 100 ms");
+        assert!(session.seen().has(&wanted), "{flags:?}");
     }
 }
 
@@ -338,8 +341,9 @@ fn a_held_key_that_changes_nothing_costs_nothing() {
     let (before, bytes) = (ticks(&session), session.seen().bytes().len());
     for _ in 0..20 {
         session.send(b"k");
-        assert!(!session.sees(Duration::from_millis(40), |_| false));
+        session.wait_until_read();
     }
+    session.wait_for_rest();
     assert_eq!(session.seen().bytes().len(), bytes, "frames at the pole");
     assert!(ticks(&session) - before <= 8, "{} ticks of 80", ticks(&session) - before);
     leave(&mut session);

@@ -501,8 +501,7 @@ impl Session {
     /// Waits until the child has read all input and sleeps, with all its output taken in.
     ///
     /// Nothing is sent or computed from then on unless the test does something. After a signal, a resize or a change of
-    /// a file, wait for its effect first. Between a stop and an exit the child throws input away, so this wait would
-    /// not end.
+    /// a file, wait for its effect first. Stops other than SIGSTOP throw input away, so this wait would not end.
     #[track_caller]
     pub(crate) fn wait_for_rest(&mut self) {
         let mut deadline = Deadline::after(SOON);
@@ -516,6 +515,11 @@ impl Session {
             assert!(!deadline.has_passed(), "it does not come to rest: {}", self.seen.describe());
             self.output.wait_for_more(Instant::now() + POLL_INTERVAL);
         }
+    }
+
+    /// Returns how many loads of a scene have reached the building of its trees.
+    pub(crate) fn loads(&self) -> u64 {
+        self.rest.as_ref().expect("the child reports its phases").loads()
     }
 
     /// Waits until what came out fulfils a condition; whether it did so in time.
