@@ -7,6 +7,8 @@
 
 mod gravel;
 mod mesh_writers;
+#[path = "slow/paths.rs"]
+mod paths;
 mod pty;
 
 use gravel::gravel;
@@ -234,6 +236,14 @@ fn scene_of_mesh(color: &str) -> String {
     format!(
         "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, background: \"navy\",
         objects: [Mesh(path: \"ball.stl\", material: Diffuse(\"{color}\"))])"
+    )
+}
+
+/// Returns the text of a scene with one ball of a colour.
+fn scene_of_ball(color: &str) -> String {
+    format!(
+        "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, background: \"navy\",
+        objects: [Sphere(center: (0, 0, 0), radius: 1, material: Diffuse(\"{color}\"))])"
     )
 }
 
