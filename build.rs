@@ -1,5 +1,6 @@
-//! Tells the library whether its compiler has AVX-512, which came with Rust 1.89, and whether the files of the larger
-//! unit tests are present, which the published package leaves out.
+//! Tells the library what its compiler has and which of its files are present.
+//!
+//! AVX-512 came with Rust 1.89. The published package leaves out the files of the larger unit tests.
 
 use std::env;
 use std::path::Path;

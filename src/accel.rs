@@ -18,7 +18,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[cfg(all(test, unit_tests))]
 mod builds;
 
-/// A primitive of a scene. The order is that of the scene: of two hits at the same t, the smaller one counts.
+/// A primitive of a scene.
+///
+/// The order is that of the scene: of two hits at the same t, the smaller one counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct PrimitiveId {
     /// Index of the object in the scene.
@@ -85,8 +87,10 @@ impl<N: Lanes> PrimitiveIds<N> {
     }
 }
 
-/// Expands by the group of a surface, `list` or `tree`: to the type that is kept, the type that collects primitives for
-/// the build, or to the code that follows if the group matches.
+/// Expands by the group of a surface, `list` or `tree`.
+///
+/// It gives the type that is kept, the type that collects primitives for the build, or the code that follows if the
+/// group matches.
 macro_rules! only {
     (list of $kept:ty) => { List<$kept> };
     (tree of $kept:ty) => { Tree<$kept> };
@@ -100,8 +104,10 @@ macro_rules! only {
 /// Makes the accelerator from the table of [`surfaces`](crate::shape).
 macro_rules! accelerator {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
-        /// The primitives of some shapes. Each has an index: first the lists', then those of the trees' leaves. A leaf
-        /// takes eight indices from a multiple of eight on, so that the lowest three bits are the lane of a gather.
+        /// The primitives of some shapes.
+        ///
+        /// Each has an index: first the lists', then those of the trees' leaves. A leaf takes eight indices from a
+        /// multiple of eight on, so that the lowest three bits are the lane of a gather.
         #[derive(Clone, Default, PartialEq)]
         pub(crate) struct Accelerator {
             $($(#[$on])* $name: only!($group of $kept),)*
@@ -111,7 +117,7 @@ macro_rules! accelerator {
         }
 
         impl Accelerator {
-            /// Passes through all parts: the lists first, then the trees, each in the order of the table.
+            /// Traverses all parts: lists first, then trees, each in the order of the table.
             #[inline(always)]
             pub(crate) fn visit<'a>(&'a self, visitor: &mut impl Visitor<'a>) {
                 $($(#[$on])* { only! { list in $group visitor.list(&self.$name); } })*

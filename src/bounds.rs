@@ -41,14 +41,17 @@ impl Bounds {
         self.max - self.min
     }
 
-    /// Returns half the surface area. Under the surface area heuristic the probability that a ray meets the box is
-    /// proportional to it.
+    /// Returns half the surface area.
+    ///
+    /// Under the surface area heuristic the probability that a ray meets the box is proportional to it.
     pub(crate) fn half_area(&self) -> f32 {
         let Vec3 { x, y, z } = self.extent();
         x * y + y * z + z * x
     }
 
-    /// Returns the interval of t in which the ray's line is inside; empty (`min > max`) if it misses the box.
+    /// Returns the interval of t in which the ray's line is inside the box.
+    ///
+    /// It is empty (`min > max`) if the line misses the box.
     ///
     /// The interval is widened by 16 units of 2^-24 (`culling.md`, 3). It contains the interval of each box inside this
     /// one, bit for bit (`culling.md`, 2), so that the boxes above a shape never hide it.
@@ -59,7 +62,7 @@ impl Bounds {
     }
 }
 
-/// Computes [`Bounds::crossed`] for one ray or eight and one box or eight: the ends of the interval.
+/// Computes [`Bounds::crossed`] for one ray or eight and one box or eight.
 #[inline(always)]
 pub fn crossed<N: Number>([min, max]: [Vector<N>; 2], rays: &Rays<N>) -> [N; 2] {
     let slab = |min: N, max: N, origin: N, inverse: N| {

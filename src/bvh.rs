@@ -55,7 +55,9 @@ impl Leaves {
 #[repr(C, align(64))]
 struct Node {
     children: [Child; LANES],
-    /// The minima and maxima along each axis. An unused lane has an inverted infinite box, which no ray meets.
+    /// The minima and maxima along each axis.
+    ///
+    /// An unused lane has an inverted infinite box, which no ray meets.
     bounds: [[F32x8; 2]; 3],
 }
 
@@ -100,8 +102,9 @@ impl Node {
     }
 }
 
-/// A ray in all lanes, prepared for slab tests. For t >= 0 its interval in a box contains that of [`Bounds::crossed`]
-/// (`culling.md`, 4).
+/// A ray in all lanes, prepared for slab tests.
+///
+/// For t >= 0 its interval in a box contains that of [`Bounds::crossed`] (`culling.md`, 4).
 struct Slabs<N> {
     origin: [N; 3],
     /// The negated inverses, widened for the near and for the far planes.
@@ -169,7 +172,7 @@ struct StackEntry {
 pub struct PacketStack(Vec<StackEntry>);
 
 impl Bvh {
-    /// Builds the tree over boxes with finite coordinates, on all threads of the current rayon pool.
+    /// Builds the tree over boxes with finite coordinates, on the current rayon pool.
     ///
     /// # Panics
     /// If there are 2^31 boxes or more.
@@ -178,8 +181,10 @@ impl Bvh {
         built
     }
 
-    /// Builds as [`new`](Self::new) does, and stops when `report` returns an error. It is called from any thread with
-    /// the number of boxes that have reached their leaves since the last call, which may be 0.
+    /// Builds as [`new`](Self::new) does, and stops when `report` returns an error.
+    ///
+    /// It is called from any thread with the number of boxes that have reached their leaves since the last call, which
+    /// may be 0.
     ///
     /// # Errors
     /// The error that `report` returned.
@@ -209,8 +214,9 @@ impl Bvh {
         self.root
     }
 
-    /// Visits the leaves below `from` that a single ray, repeated in all lanes, meets in the interval, nearer ones
-    /// first. `within.min` is at least 0 (`culling.md`, 4).
+    /// Visits the leaves below `from` that a single ray meets in the interval, nearer ones first.
+    ///
+    /// The ray is repeated in all lanes. `within.min` is at least 0 (`culling.md`, 4).
     #[inline(always)]
     pub fn visit<N: Lanes>(
         &self,
@@ -267,8 +273,9 @@ impl Bvh {
     }
 }
 
-/// A child that a single ray has yet to visit, below the bits of its entry t: the order of these numbers is that of the
-/// entries.
+/// A child that a single ray has yet to visit, below the bits of its entry t.
+///
+/// The order of these numbers is that of the entries.
 // One comparison and one move per step of the sort, instead of two each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct RayStackEntry(u64);
@@ -300,7 +307,9 @@ pub struct RayStack {
 }
 
 impl RayStack {
-    /// Returns the nearest hit child, and pushes the others, nearer ones above farther ones. At least one is hit.
+    /// Returns the nearest hit child, and pushes the others, nearer ones above farther ones.
+    ///
+    /// At least one is hit.
     #[inline(always)]
     fn push_all_but_nearest<N: Lanes>(&mut self, node: &Node, mut hit_mask: u32, starts: N) -> Child {
         let lowest = |bits: u32| bits.trailing_zeros() as usize % LANES;
@@ -369,8 +378,9 @@ pub trait LeafVisitor: Prefetch {
     #[inline(always)]
     fn node_tested(&mut self) {}
 
-    /// Tests the primitives of a leaf. Returns the new upper end of the ray's interval, or `Break` to end the
-    /// traversal.
+    /// Tests the primitives of a leaf.
+    ///
+    /// Returns the new upper end of the ray's interval, or `Break` to end the traversal.
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32>;
 }
 

@@ -155,9 +155,9 @@ impl Encoder {
 
     /// Sets the half blocks that cells may use: [`HalfBlocks::Lower`] unless set otherwise.
     ///
-    /// With [`HalfBlocks::Either`] a moving picture takes about a tenth fewer bytes. It is right where a cell has an even
-    /// number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and a mix of them
-    /// shows.
+    /// With [`HalfBlocks::Either`] a moving picture takes about a tenth fewer bytes. It is right where a cell has an
+    /// even number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and a mix of
+    /// them shows.
     pub fn with_half_blocks(self, half_blocks: HalfBlocks) -> Self {
         Self { half_blocks, ..self }
     }

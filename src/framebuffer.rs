@@ -129,7 +129,8 @@ pub enum ResolutionError {
 }
 
 /// Largest number of cells of a grid, which take 700 MB.
-// A 4K screen has 100,000 cells of 8 by 10 pixels. Without a limit, 65,535 columns and rows abort the process for memory.
+// A 4K screen has 100,000 cells of 8 by 10 pixels. Without a limit, 65,535 columns and rows abort the process for
+// memory.
 pub(crate) const MAX_CELLS: usize = 1 << 24;
 
 impl fmt::Display for ResolutionError {

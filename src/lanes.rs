@@ -1,4 +1,4 @@
-//! Numbers and vectors of eight numbers: a formula written over [`Number`] computes one ray or eight.
+//! Numbers and vectors of eight: a formula over [`Number`] computes one ray or eight.
 //!
 //! All operations are exactly defined by IEEE 754, so that a ray among eight gets the same bits as alone. [`F32x8`] is
 //! a plain array for any CPU; the types of [`simd`](crate::simd) are registers.
@@ -12,8 +12,9 @@ mod vector;
 pub use vector::Vector;
 
 /// A number, or a vector of numbers with lane-wise operations.
-pub trait Number:
-    Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+pub trait Number: Copy + Debug + Neg<Output = Self>
+where
+    Self: Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>,
 {
     /// The result of a comparison.
     type Mask: Mask;
@@ -52,7 +53,9 @@ pub trait Number:
         self.le(other) & other.le(self)
     }
 
-    /// Returns the larger number; `other` if `self` is NaN or both are zero, as the instruction of SSE and AVX does.
+    /// Returns the larger number.
+    ///
+    /// `other` if `self` is NaN or both are zero, as the instruction of SSE and AVX does.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(other.lt(self), self, other)
@@ -111,7 +114,7 @@ pub trait Lanes: Number<Mask: LaneMask> {
         Self::splat(self.lane(lane))
     }
 
-    /// Returns in each lane the number of the lane that the lowest three bits of `lanes` select there.
+    /// Returns in each lane the number of the lane selected by the lowest three bits of `lanes`.
     #[inline(always)]
     fn gather(self, lanes: Self) -> Self {
         let (mut picked, numbers, lanes) = (F32x8::ZERO, self.store(), lanes.store());

@@ -8,7 +8,9 @@ mod common_origin;
 
 pub use common_origin::CommonOrigin;
 
-/// The half line `origin + t * direction`. `t` is measured in lengths of the direction, which need not be 1.
+/// The half line `origin + t * direction`.
+///
+/// `t` is measured in lengths of the direction, which need not be 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// The start of the ray: the lecture's **o** (or **p**).
@@ -101,8 +103,10 @@ pub struct EightRays {
     pub origin: Vector<F32x8>,
     /// The directions; not zero.
     pub direction: Vector<F32x8>,
-    /// The active mask, lane 0 lowest. Inactive lanes repeat an active ray, so that they widen no bounds of a packet;
-    /// if no lane is active, they hold any numbers.
+    /// The active mask, lane 0 lowest.
+    ///
+    /// Inactive lanes repeat an active ray, so that they widen no bounds of a packet; if no lane is active, they hold
+    /// any numbers.
     pub active: u32,
 }
 
@@ -155,7 +159,7 @@ impl Probe {
 #[derive(Clone, Copy, Debug)]
 pub struct Shear<N: Number> {
     axis: DominantAxis<N::Mask>,
-    /// The slopes of the ray in x and y per unit of the dominant axis, and the increase of t per unit.
+    /// The slopes of the ray in x and y, and the increase of t, per unit of the dominant axis.
     factor: Vector<N>,
     /// The length of the direction along its dominant axis.
     pub length: N,
@@ -211,8 +215,9 @@ impl<N: Number> Shear<N> {
     }
 }
 
-/// Transforms a vector from the ray's origin as [`Shear`] does, in f64, with x and y scaled by the dominant coordinate
-/// of the direction.
+/// Transforms a vector from the ray's origin as [`Shear`] does, in f64.
+///
+/// x and y are scaled by the dominant coordinate of the direction.
 // The scale avoids a division, whose rounding would move the corners. For what is exact see `culling.md`, 8.
 pub fn sheared_in_f64(from_origin: DVec3, direction: Vec3) -> DVec3 {
     let [x, y, z] = match Shear::of(Vector::<f32>::splat(direction)).axis {
@@ -231,7 +236,9 @@ impl<M: Mask> DominantAxis<M> {
         matches!((self, other), (Self::X, DominantAxis::X) | (Self::Y, DominantAxis::Y) | (Self::Z, DominantAxis::Z))
     }
 
-    /// Rotates the coordinates so that the dominant one is z. Keeps a right-handed basis right-handed.
+    /// Rotates the coordinates so that the dominant one is z.
+    ///
+    /// Keeps a right-handed basis right-handed.
     #[inline(always)]
     fn rotate_to_z<N: Number<Mask = M>>(self, Vector { x, y, z }: Vector<N>) -> Vector<N> {
         match self {

@@ -42,33 +42,40 @@ pub trait Surface {
     /// Returns the smallest box around the surface, or `None` if it is unbounded.
     fn bounds(&self) -> Option<Bounds>;
 
-    /// Returns the least t in the interval at which the ray crosses the surface: a root of f(origin + t direction) = 0.
+    /// Returns the least t in the interval at which the ray crosses the surface.
+    ///
+    /// It is a root of f(origin + t direction) = 0.
     ///
     /// The crossing of a bounded surface is clamped to the [interval of its box](Bounds::crossed), however rounding has
     /// moved it. So culling by boxes never drops a hit (`culling.md`, 2).
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32>;
 
-    /// Returns the surface point at the crossing `t` that [`closest_crossing`](Self::closest_crossing) found for this
-    /// ray.
+    /// Returns the surface point at a crossing `t`.
+    ///
+    /// [`closest_crossing`](Self::closest_crossing) found it for this ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint;
 
-    /// Returns the footprint of a pixel in [`uv`](SurfacePoint::uv): the distance from the crossing at `t` to the
-    /// crossings of the neighbouring rays, whose directions differ by `steps`. Zero if the surface has no coordinates.
+    /// Returns the footprint of a pixel in [`uv`](SurfacePoint::uv).
+    ///
+    /// It is the distance from the crossing at `t` to the crossings of the neighbouring rays, whose directions differ
+    /// by `steps`; zero if the surface has no coordinates.
     #[inline(always)]
     fn footprint<N: Number>(&self, _direction: Vector<N>, _t: N, _steps: [Vec3; 2]) -> [N; 2] {
         [N::splat(0.0); 2]
     }
 }
 
-/// The crossing formula of a surface, for one ray and one surface, eight rays and one surface, or one ray and eight
-/// surfaces: a lane for each pair.
+/// The crossing formula of a surface, a lane for each pair of a ray and a surface.
+///
+/// One ray and one surface, eight rays and one surface, or one ray and eight surfaces.
 pub trait Crossable<N: Number> {
     /// Returns the hit mask and the first crossing at `min` or later of each pair, as
     /// [`closest_crossing`](Surface::closest_crossing) does; `None` only if no lane hits.
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)>;
 
-    /// Computes [`first_crossing`](Self::first_crossing) for rays of a packet with a common error bound
-    /// ([`EdgeFunctions::packet_error_bound`]); infinity if none is known.
+    /// Computes [`first_crossing`](Self::first_crossing) for rays of a packet.
+    ///
+    /// They share an error bound ([`EdgeFunctions::packet_error_bound`]); infinity if none is known.
     #[inline(always)]
     fn first_crossing_with_bound(&self, rays: &Rays<N>, min: N, _error_bound: N) -> Option<(N::Mask, N)> {
         self.first_crossing(rays, min)
@@ -84,7 +91,7 @@ pub trait AtCrossing<N: Number> {
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N>;
 }
 
-/// One surface point, or eight in SoA layout: the fields of [`SurfacePoint`] that all surfaces have.
+/// One surface point, or eight in SoA layout: the fields that all surfaces have.
 #[derive(Clone, Copy, Debug)]
 pub struct Points<N: Number> {
     /// [`SurfacePoint::position`].
@@ -100,8 +107,9 @@ pub struct Points<N: Number> {
 }
 
 impl<N: Number> Points<N> {
-    /// Returns the point at `position`, where the front has the normal `front`; `size` is the largest coordinate
-    /// involved.
+    /// Returns the point at `position`, where the front has the normal `front`.
+    ///
+    /// `size` is the largest coordinate involved.
     #[inline(always)]
     fn seen_by(rays: &Rays<N>, position: Vector<N>, front: Vector<N>, size: N, uv: [N; 2]) -> Self {
         let is_front = rays.direction.dot(front).lt(N::splat(0.0));
@@ -183,7 +191,7 @@ pub trait SoaLeaf: Copy {
     /// Whether [`edge_functions`](Self::edge_functions) returns any.
     const HAVE_EDGE_FUNCTIONS: bool = false;
 
-    /// Returns edge functions that cull groups of rays before the exact test, if they cost less than the test.
+    /// Returns edge functions that cull groups of rays, if they cost less than the exact test.
     #[inline(always)]
     fn edge_functions<N: Lanes>(&self, _: &CommonOrigin<N>) -> Option<EdgeFunctions> {
         None
@@ -195,24 +203,32 @@ pub trait SoaLeaf: Copy {
 pub struct SurfacePoint {
     /// The lecture's **p**, moved onto the surface up to the precision of f32.
     pub position: Vec3,
-    /// The shading normal **n**, on the side that the ray came from: on smooth meshes interpolated. Unit length.
+    /// The shading normal **n**, on the side that the ray came from: on smooth meshes interpolated.
+    ///
+    /// Unit length.
     pub shading_normal: Vec3,
     /// The geometric normal, on the side that the ray came from. Unit length.
     pub geometric_normal: Vec3,
     /// The visible side of the surface.
     pub side: Side,
-    /// The distance along `geometric_normal` at which a ray may start without hitting the surface again. Proportional
-    /// to the coordinates involved, not a constant of the scene's size.
+    /// The distance along `geometric_normal` at which a ray may start.
+    ///
+    /// From there it does not hit the surface again. Proportional to the coordinates involved, not a constant of the
+    /// scene's size.
     pub clearance: f32,
-    /// Coordinates on the surface for patterns: on a plane in world units, in a triangle the barycentric weights of its
-    /// second and third corner; zero if the surface has none.
+    /// Coordinates on the surface for patterns.
+    ///
+    /// On a plane in world units, in a triangle the barycentric weights of its second and third corner; zero if the
+    /// surface has none.
     pub uv: Vec2,
 }
 
 impl SurfacePoint {
-    /// Returns the origin of a ray that leaves the surface: `position`, moved by the clearance, so that the surface
-    /// does not shadow itself (after Waechter and Binder, Ray Tracing Gems, chapter 6, and pbrt's `OffsetRayOrigin`).
-    /// It lies outside the error box of the hit at any scale; a fixed epsilon fails in small and in large scenes.
+    /// Returns the origin of a ray that leaves the surface without hitting it again.
+    ///
+    /// It is `position`, moved by the clearance (after Waechter and Binder, Ray Tracing Gems, chapter 6, and pbrt's
+    /// `OffsetRayOrigin`). It lies outside the error box of the hit at any scale; a fixed epsilon fails in small and in
+    /// large scenes.
     pub fn ray_origin(&self) -> Vec3 {
         self.position + self.geometric_normal * self.clearance
     }
@@ -227,21 +243,28 @@ pub enum Side {
     Back,
 }
 
-/// The clearance relative to the coordinates: 32 units of 2^-24. A point is off by a few units, and so is the crossing
-/// of a second ray.
+/// The clearance relative to the coordinates: 32 units of 2^-24.
+///
+/// A point is off by a few units, and so is the crossing of a second ray.
 // Not proved, but counted: at most 10 false shadows of 100,000 at each scale (`culling.md`, 15).
 const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 
-/// Passes the table of all surfaces to a macro, one line each: `tree`, or `list` for unbounded ones; the field of the
-/// accelerator; the type; the type of a leaf, or of one unbounded surface; a description.
+/// Passes the table of all surfaces to a macro, one line each.
+///
+/// `tree`, or `list` for unbounded ones; the field of the accelerator; the type; the type of a leaf, or of one
+/// unbounded surface; a description.
 macro_rules! surfaces {
     ($with:ident) => {
         $with! {
-            tree spheres: Sphere as $crate::shape::SphereN<$crate::lanes::F32x8>, "All points at one distance from a centre.";
-            list planes: Plane as $crate::shape::Plane, "All points whose difference from a given point is perpendicular to the normal.";
-            tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>, "The part of a plane between three points.";
+            tree spheres: Sphere as $crate::shape::SphereN<$crate::lanes::F32x8>,
+                "All points at one distance from a centre.";
+            list planes: Plane as $crate::shape::Plane,
+                "All points whose difference from a given point is perpendicular to the normal.";
+            tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>,
+                "The part of a plane between three points.";
             #[cfg(all(test, unit_tests))]
-            tree cubes: Cube as $crate::shape::ScalarLeaf<$crate::shape::Cube>, "All points at one distance from a centre, along the axis along which they are farthest.";
+            tree cubes: Cube as $crate::shape::ScalarLeaf<$crate::shape::Cube>,
+                "All points at one distance from a centre, along the axis along which they are farthest.";
         }
     };
 }
@@ -343,8 +366,9 @@ impl From<Mesh> for Shape {
 }
 
 impl Primitive<'_> {
-    /// Returns the diffuse reflectance of the surface itself at these [coordinates](SurfacePoint::uv): that of a mesh
-    /// whose file has colours.
+    /// Returns the diffuse reflectance of the surface itself at these coordinates.
+    ///
+    /// For a mesh whose file has colours; by [`uv`](SurfacePoint::uv).
     pub fn own_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         match self {
             Self::Facet(facet) => facet.reflectance(uv),

@@ -1,7 +1,9 @@
-//! Tables: an enum with a row for each of its values, and one constant with everything particular to a row.
+//! Tables: an enum of rows, and one constant with everything particular to a row.
 
-/// Defines an enum whose variants are the rows of a table, with the list of them and the constant of each. Everything
-/// else about a row follows from its constant, so that a new row is one line here and one file with the constant.
+/// Defines an enum whose variants are the rows of a table.
+///
+/// With the list of them and the constant of each. Everything else about a row follows from its constant, so that a new
+/// row is one line here and one file with the constant.
 macro_rules! table {
     (
         $(#[$about:meta])*

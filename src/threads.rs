@@ -1,5 +1,6 @@
-//! Parallel work: on the threads of the current rayon pool with the feature `parallel`, on the calling thread without
-//! it. Results are the same and in the same order.
+//! Parallel work, on the current rayon pool.
+//!
+//! Without the feature `parallel` it runs on the calling thread. Results are the same and in the same order.
 
 #[cfg(not(feature = "parallel"))]
 mod alone;

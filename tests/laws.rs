@@ -45,7 +45,9 @@ fn library_files() -> Vec<(PathBuf, String)> {
     files.into_iter().filter(|(path, _)| !tests.contains(path)).collect()
 }
 
-/// The attributes of items that only tests have. The published package does not have those with `unit_tests`.
+/// The attributes of items that only tests have.
+///
+/// The published package does not have those with `unit_tests`.
 const TEST_ONLY: [&str; 2] = ["#[cfg(test)]", "#[cfg(all(test, unit_tests))]"];
 
 /// The files of the modules that this one has for tests only.

@@ -1,8 +1,8 @@
 //! Names what `cargo test` leaves out in the package.
 //!
-//! The package has no test data, so of the test programs it has this one alone, and it lacks the files of the larger unit
-//! tests. There this program prints the other programs and the modules of these files by name; in the repository it fails
-//! if a test program is missing from its list, or if it finds no such module.
+//! The package has no test data, so of the test programs it has this one alone, and it lacks the files of the larger
+//! unit tests. There this program prints the other programs and the modules of these files by name; in the repository
+//! it fails if a test program is missing from its list, or if it finds no such module.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -58,7 +58,8 @@ fn main() -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// The attribute of items that the package leaves out: build.rs sets `unit_tests` in the repository alone.
+/// The attribute of items that the package leaves out: build.rs sets `unit_tests` in the repository
+/// alone.
 const ATTRIBUTE: &str = "#[cfg(all(test, unit_tests))]";
 
 /// Returns the paths of the modules behind [`ATTRIBUTE`] in the files of `folder`.

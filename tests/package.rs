@@ -115,8 +115,8 @@ fn workflows_and_documentation_name_features_that_exist() {
 /// Features without an item of the library.
 const UNDOCUMENTED: [&str; 3] = ["default", "cli", "test-hooks"];
 
-/// A gated file that is packed would be dead weight; one that is left out without its gate would break `cargo test` in the
-/// package.
+/// A gated file that is packed would be dead weight; one that is left out without its gate would
+/// break `cargo test` in the package.
 #[test]
 fn the_package_leaves_out_the_files_of_gated_modules() {
     let src = root().join("src");

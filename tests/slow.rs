@@ -311,8 +311,8 @@ fn saved(times: usize) -> [f64; 2] {
 fn many_saves_take_the_memory_of_one() {
     let (one, many) = (saved(1), saved(30));
     println!("kB at most and afterwards: {one:?} for one save, {many:?} for 30");
-    // 1.2 times is promised for what stays, and .88 measured for 12 MB of text; as everywhere here, three times that excess.
-    // (Of a scene this small the allocator's own share varies: 1.21 was seen.)
+    // 1.2 times is promised for what stays, and .88 measured for 12 MB of text; as everywhere here, three times that
+    // excess. (Of a scene this small the allocator's own share varies: 1.21 was seen.)
     assert!(many[0] < 2.0 * one[0] && many[1] < 1.6 * one[1], "{one:?} {many:?}");
 }
 

@@ -41,7 +41,8 @@ impl Wire {
         Self(Rc::new(RefCell::new((vt100::Parser::new(side(size.rows), side(size.columns), 0), 0))))
     }
 
-    /// Returns the look of each cell: of a blank its background, of a half block the colours of both halves.
+    /// Returns the look of each cell: of a blank its background, of a half block the colours of
+    /// both halves.
     fn cells(&self, size: Size) -> Vec<String> {
         let places = (0..size.rows).flat_map(|row| (0..size.columns).map(move |column| (row, column)));
         let line = self.0.borrow();

@@ -1,4 +1,6 @@
-//! Counts builds of trees, for the tests that a scene builds its trees once and no picture builds one.
+//! Counts builds of trees.
+//!
+//! Tests hold with it that a scene builds its trees once and no picture builds one.
 
 use crate::camera::Pose;
 use crate::color::LinearRgb;

@@ -175,8 +175,8 @@ impl<E: Send + 'static> Worker<E> {
         Self { queue: Arc::clone(&self.queue), threads: self.threads, waker: Arc::clone(&self.waker) }.start()
     }
 
-    /// Returns a pool with the requested number of threads, or of this thread alone if they cannot be started. (Rayon's
-    /// global pool, which `None` stands for, would panic then.)
+    /// Returns a pool with the requested number of threads, or of this thread alone if they cannot
+    /// be started. (Rayon's global pool, which `None` stands for, would panic then.)
     fn pool(&self) -> Option<ThreadPool> {
         let pool = ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0)).build();
         pool.or_else(|_| ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()).ok()

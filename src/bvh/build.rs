@@ -27,7 +27,7 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
     Ok((Bvh { nodes: wide.nodes, root }, Leaves { order, ranges: wide.leaves }))
 }
 
-/// The position of a node's items: the index of the first in the order, and the number of nodes above them.
+/// The position of a node's items: its first index in the order, and the number of nodes above.
 #[derive(Clone, Copy)]
 struct Place {
     first: usize,

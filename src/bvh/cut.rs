@@ -1,6 +1,7 @@
-//! The choice of a cut between the items of a node: the one that the surface area heuristic expects to be cheapest
-//! (Goldsmith and Salmon 1987), among the cuts between a few bins along each axis (Wald, On fast Construction of
-//! SAH-based Bounding Volume Hierarchies, 2007).
+//! The choice of a cut between the items of a node, by the surface area heuristic.
+//!
+//! The cut of least expected cost (Goldsmith and Salmon 1987), among the cuts between a few bins along each axis (Wald,
+//! On fast Construction of SAH-based Bounding Volume Hierarchies, 2007).
 
 use crate::bounds::Bounds;
 use crate::lanes::LANES;

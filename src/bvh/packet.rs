@@ -32,20 +32,23 @@ enum DirectionSign {
     Mixed,
 }
 
-/// The ranges of origins and inverse directions along an axis. For directions of one sign, index 0 bounds entries into
-/// boxes and index 1 exits; for mixed signs, index 0 bounds entries of forward rays and index 1 those of backward rays.
+/// The ranges of origins and inverse directions along an axis.
+///
+/// For directions of one sign, index 0 bounds entries into boxes and index 1 exits; for mixed signs, index 0 bounds
+/// entries of forward rays and index 1 those of backward rays.
 #[derive(Clone, Copy, Debug)]
 struct AxisRanges<N> {
     origin: [N; 2],
     inverse: [N; 2],
 }
 
-/// Relative widening of the range of inverse directions at both ends: 128 units of 2^-24 (`culling.md`, 5).
+/// Relative widening of inverse directions at both ends: 128 units of 2^-24 (`culling.md`, 5).
 // Widened once per packet, which saves the widening in each test: 19 operations per box instead of 38.
 const PACKET_SLACK: f32 = 128.0 / 16_777_216.0;
 
-/// The least magnitude of an inverse that can be widened by a relative amount: 2^-124, as widening stays normal
-/// (`culling.md`, 5).
+/// The least magnitude of an inverse that can be widened by a relative amount: 2^-124.
+///
+/// Widening stays normal (`culling.md`, 5).
 const MIN_INVERSE: f32 = 4.0 * f32::MIN_POSITIVE;
 
 /// The largest ratio of inverses in a packet of one sign: 2^40.
@@ -117,7 +120,7 @@ impl<N: Lanes> AxisRanges<N> {
         Self { origin: [last, first], inverse: [above, below] }
     }
 
-    /// Returns a lower bound of the entries and an upper bound of the exits, of rays that meet the box at t >= 0.
+    /// Returns a lower bound of the entries and an upper bound of the exits at t >= 0.
     // With directions of one sign the entry is the product of the least distance and the least inverse, the exit that
     // of the greatest. Behind the origin the distance is negative, and the sign of the product alone counts. So one
     // product per side suffices; with both ends of the inverses it was two, and packets took up to 1.16 times as long.
@@ -178,8 +181,9 @@ impl<N: Lanes> Packet<N> {
         self.signs.iter().filter(|&&sign| sign == DirectionSign::Mixed).count() > 1
     }
 
-    /// Returns the range of t in which the packet crosses each of eight boxes, clipped to `within`, which starts at 0
-    /// or later.
+    /// Returns the range of t in which the packet crosses each of eight boxes.
+    ///
+    /// It is clipped to `within`, which starts at 0 or later.
     #[inline(always)]
     pub fn crossed(&self, boxes: [Vector<N>; 2], within: [N; 2]) -> [N; 2] {
         crossed(&self.all, self.signs, boxes, within)
@@ -228,8 +232,10 @@ pub trait Visitor<N>: Prefetch {
     /// Tests the primitives of a leaf.
     fn visit_leaf(&mut self, leaf: usize);
 
-    /// Returns for each group the mask of rays that continue as single rays from a node, or `None` if the packet
-    /// continues. `one` is the box of the node in all lanes, `groups` the mask of groups that may meet it; not 0.
+    /// Returns the rays of each group that continue as single rays from a node.
+    ///
+    /// `None` if the packet continues. `one` is the box of the node in all lanes, `groups` the mask of groups that may
+    /// meet it; not 0.
     fn split(&self, one: [Vector<N>; 2], groups: u32) -> Option<[u32; GROUPS]>;
 
     /// Traces single rays of these groups from a node down.
@@ -334,8 +340,7 @@ mod tests {
         (length, two_to([0, 0, -30, 30, -100, 100][seed as usize / 9 % 6]))
     }
 
-    /// A narrow or wide packet with directions and distances of all sizes, and boxes: ahead, behind, flat, and touching
-    /// an origin.
+    /// A packet and boxes: narrow or wide, of all sizes, ahead, behind, flat, touching an origin.
     fn random_case(seed: u64) -> ([EightRays; GROUPS], [[Vector<F32x8>; 2]; 2]) {
         let (mut numbers, (length, scale)) = (Numbers(seed), sizes(seed));
         let width = two_to(-((seed / 54 % 14) as i32));

@@ -11,7 +11,8 @@ pub(super) struct BinaryNode {
     pub(super) bounds: Bounds,
     /// Number of boxes of a leaf; 0 for an inner node.
     pub(super) count: u32,
-    /// For a leaf, the index of its first box in the order; for an inner node, the distance to its second child.
+    /// The index of a leaf's first box in the order, or an inner node's distance to its second
+    /// child.
     pub(super) at: u32,
 }
 
@@ -71,15 +72,19 @@ struct Children {
     count: usize,
 }
 
-/// How the nodes below a node of the binary tree are distributed over 1 to 8 places of a wide node: for each number of
-/// places, how many of them go to the first child, or [`WHOLE`] where the node itself takes one place.
+/// The distribution of the nodes below a binary node over 1 to 8 places of a wide node.
+///
+/// For each number of places it has how many of them go to the first child, or [`WHOLE`] where the node itself takes
+/// one place.
 type Filling = [u8; LANES];
 
 /// The node takes one place by itself.
 const WHOLE: usize = 0;
 
-/// Chooses the wide nodes that a ray is expected to meet least often, by dynamic programming over the binary tree
-/// (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017).
+/// Chooses the wide nodes that a ray is expected to meet least often.
+///
+/// By dynamic programming over the binary tree (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs
+/// Through Compressed Wide BVHs, 2017).
 // To open the largest box until there are eight left a third of the nodes with two children. This way the dragon's 871
 // k triangles have 28 % fewer nodes.
 fn fillings(pairs: &[BinaryNode]) -> Vec<Filling> {
@@ -97,8 +102,9 @@ fn fillings(pairs: &[BinaryNode]) -> Vec<Filling> {
     fillings
 }
 
-/// Finds the cheapest distribution for each number of places, and returns what each costs: the half areas of the wide
-/// nodes in it.
+/// Returns the cost of the cheapest distribution for each number of places.
+///
+/// The cost is the half areas of the wide nodes in it.
 fn fill(area: f32, left: [f32; LANES], right: [f32; LANES], filling: &mut Filling) -> [f32; LANES] {
     let mut cost = [f32::INFINITY; LANES];
     for places in 2..=LANES {
@@ -175,7 +181,7 @@ mod tests {
         if places == 1 { whole() } else { split(places).min(whole()) }
     }
 
-    /// The sum of half areas of the wide nodes that the fillings make, and how many boxes they reach.
+    /// The sum of half areas of the wide nodes of the fillings, and the number of boxes reached.
     fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
         if wide.pairs[at].count > 0 {
             return (0.0, 1);

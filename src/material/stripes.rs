@@ -57,7 +57,7 @@ mod tests {
     use crate::scene::Scene;
     use std::num::NonZeroU32;
 
-    /// Returns the text of a scene seen from above, with one pixel per unit and an ambient light of 1.
+    /// Returns a scene seen from above, with one pixel per unit and an ambient light of 1.
     fn scene(objects: &str) -> String {
         let camera = "camera: (eye: (0, 1, 0), target: (0, 0, 0), up: (0, 0, -1), vertical_fov: 126.86989764584402)";
         format!("({camera}, ambient: 1.0, objects: [{objects}])")

@@ -3,14 +3,15 @@
 use super::{DominantAxis, Rays, Shear};
 use crate::lanes::{LANES, Lanes, Mask, Vector};
 
-/// The common origin of a packet: the eye, or a light. Seen from there each ray is a point of an image plane, its
-/// *offset*, and culling becomes a test of offsets.
+/// The common origin of a packet: the eye, or a light.
+///
+/// Seen from there each ray is a point of an image plane, its *offset*, and culling becomes a test of offsets.
 ///
 /// Bounds of errors are numbered statements in `culling.md`.
 #[derive(Clone, Copy, Debug)]
 pub struct CommonOrigin<N: Lanes> {
     origin: Vector<N>,
-    /// Upper bound of the distance by which a line misses the origin along any axis, times 2^24 (statement 9).
+    /// Upper bound of a line's distance from the origin along any axis, times 2^24 (statement 9).
     pub origin_error: N,
     axis: DominantAxis<N::Mask>,
     /// The slopes in x and y of a ray in the middle of the packet, per unit of its dominant axis.
@@ -21,19 +22,23 @@ pub struct CommonOrigin<N: Lanes> {
     pub half_extents: [N; 2],
     /// The largest absolute coordinate of an offset, at most 1.
     pub max_offset: N,
-    /// The range of the rays' origins along z, relative to the common origin. Infinite unless all rays have this
-    /// dominant axis and a length in [`SAFE_LENGTHS`].
+    /// The range of the rays' origins along z, relative to the common origin.
+    ///
+    /// Infinite unless all rays have this dominant axis and a length in [`SAFE_LENGTHS`].
     pub depth_range: [N; 2],
 }
 
-/// Lengths by which a depth can be divided and multiplied again with an underflow of 2^-117 at most, and no overflow
-/// below 2^95 (`culling.md`, 14).
+/// Lengths by which a depth can be divided and multiplied again (`culling.md`, 14).
+///
+/// With an underflow of 2^-117 at most, and no overflow below 2^95.
 // Without the limit, a review found, directions of 2^120 decided wrongly for their packet.
 const SAFE_LENGTHS: [f32; 2] = [1.0 / 4_294_967_296.0, 4_294_967_296.0];
 
 impl<N: Lanes> CommonOrigin<N> {
-    /// Finds the common origin of rays that start in one point (eye rays) or have one at t = 1 up to rounding (shadow
-    /// rays). Returns `None` for others, and for rays with offsets over 1.
+    /// Finds the common origin of eye rays or shadow rays.
+    ///
+    /// They start in one point, or have one at t = 1 up to rounding. Returns `None` for others, and for rays with
+    /// offsets over 1.
     #[inline(always)]
     pub fn of(groups: &[Rays<N>; LANES]) -> Option<Self> {
         let zero = N::splat(0.0);
@@ -105,8 +110,10 @@ impl<N: Lanes> CommonOrigin<N> {
         })
     }
 
-    /// Transforms a point to coordinates relative to the common origin in which the ray with `slope` runs along z. For
-    /// the errors see statement 10; rounding of `slope` is none, as offsets are relative to the rounded one.
+    /// Transforms a point to coordinates in which the ray with `slope` runs along z.
+    ///
+    /// They are relative to the common origin. For the errors see statement 10; rounding of `slope` is none, as offsets
+    /// are relative to the rounded one.
     #[inline(always)]
     pub fn apply(&self, point: Vector<N>) -> Vector<N> {
         let Vector { x, y, z } = self.axis.rotate_to_z(point - self.origin);

@@ -1,4 +1,6 @@
-//! Ray-cube intersection: a surface for tests, which shows that one file and one line of the table suffice.
+//! Ray-cube intersection: a surface for tests.
+//!
+//! It shows that one file and one line of the table suffice.
 
 use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};

@@ -17,12 +17,14 @@ pub trait Described {
     /// Returns the lecture's equation for the ray.
     fn equation(&self, ray: &Ray) -> Equation;
 
-    /// Returns whether the point lies inside the surface; false for surfaces that enclose no volume.
+    /// Returns whether the point lies inside the surface.
+    ///
+    /// False for surfaces that enclose no volume.
     fn encloses(&self, _point: Vec3) -> bool {
         false
     }
 
-    /// Returns centre and radius of the surface if its outline is a circle from every side: a sphere's.
+    /// Returns centre and radius of the surface if its outline is always a circle: a sphere's.
     fn circle(&self) -> Option<(Vec3, f32)> {
         None
     }
@@ -52,7 +54,9 @@ macro_rules! described {
                 }
             }
 
-            /// Returns whether the point lies inside the shape; false for meshes, which need not be closed.
+            /// Returns whether the point lies inside the shape.
+            ///
+            /// False for meshes, which need not be closed.
             #[doc(hidden)]
             pub fn encloses(&self, point: Vec3) -> bool {
                 match self {
@@ -80,7 +84,7 @@ macro_rules! described {
                 }
             }
 
-            /// Returns centre and radius of the primitive if its outline is a circle from every side.
+            /// Returns centre and radius of the primitive if its outline is always a circle.
             pub fn circle(&self) -> Option<(Vec3, f32)> {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.circle(),)*

@@ -39,8 +39,9 @@ impl Mesh {
         Ok(Self { file })
     }
 
-    /// Returns the mesh of triangles given by the indices of their corners in `positions`, counterclockwise seen from
-    /// outside. A triangle may have no area; no ray hits it.
+    /// Returns the mesh of triangles given by the indices of their corners in `positions`.
+    ///
+    /// They are counterclockwise seen from outside. A triangle may have no area; no ray hits it.
     ///
     /// ```
     /// use glam::Vec3;
@@ -56,8 +57,8 @@ impl Mesh {
     /// ```
     ///
     /// # Errors
-    /// Unless all coordinates lie within ±1e9, there is at least one triangle and no more than [`MAX_TRIANGLES`], and each
-    /// index has its position.
+    /// Unless all coordinates lie within ±1e9, there is at least one triangle and no more than [`MAX_TRIANGLES`], and
+    /// each index has its position.
     pub fn from_triangles(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> Result<Self, SceneFault> {
         for (at, &position) in positions.iter().enumerate() {
             checks::checked_point(format_args!("positions[{at}]"), position)?;
@@ -140,8 +141,10 @@ impl Facet<'_> {
         &self.triangle
     }
 
-    /// Returns the position and the shading normal of the smooth surface that the triangle approximates, if its corners
-    /// have normals. `geometric_normal` gives the visible side, as files order corners either way.
+    /// Returns the position and the shading normal of the smooth surface.
+    ///
+    /// The triangle approximates it if its corners have normals. `geometric_normal` gives the visible side, as files
+    /// order corners either way.
     pub fn smooth(&self, position: Vec3, geometric_normal: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
         let normals = self.mesh.file.normals_of(self.index as usize)?;
         // Opposite normals may cancel out: then the flat normal.
@@ -151,16 +154,17 @@ impl Facet<'_> {
         Some((position + self.lift(position, uv, normals.map(|normal| normal * sign)), smooth * sign))
     }
 
-    /// Returns the offset from the triangle to the smooth surface, interpolated from the tangent planes of the corners
-    /// (Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4). Shadow rays from there do not hit
-    /// neighbouring triangles where the smooth surface is lit.
+    /// Returns the offset from the triangle to the smooth surface.
+    ///
+    /// It is interpolated from the tangent planes of the corners (Hanika, Hacking the Shadow Terminator, Ray Tracing
+    /// Gems II, chapter 4). Shadow rays from there do not hit neighbouring triangles where the smooth surface is lit.
     fn lift(&self, position: Vec3, uv: Vec2, normals: [Vec3; 3]) -> Vec3 {
         let [a, b, c] = self.triangle.corners();
         let above = |corner: Vec3, normal: Vec3| normal * (corner - position).dot(normal).max(0.0);
         between([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], uv)
     }
 
-    /// Returns the product of the colours that the file has: of the material, the texture and the corners.
+    /// Returns the product of the file's colours: of the material, the texture and the corners.
     pub(super) fn reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         let (file, index) = (&self.mesh.file, self.index as usize);
         let material = file.material_of(index).map(|index| &file.materials()[index]);

@@ -23,7 +23,9 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Returns the plane through `point`, perpendicular to `normal`, which may have any length but 0.
+    /// Returns the plane through `point`, perpendicular to `normal`.
+    ///
+    /// The normal may have any length but 0.
     ///
     /// # Errors
     /// Unless all coordinates lie within ±1e9, and the normal has a length.
@@ -52,7 +54,9 @@ impl Plane {
         self.normal
     }
 
-    /// Solves (p + t d - a).n = 0: t = (a - p).n / d.n, infinite or NaN for a ray parallel to the plane.
+    /// Solves (p + t d - a).n = 0: t = (a - p).n / d.n.
+    ///
+    /// Infinite or NaN for a ray parallel to the plane.
     #[inline(always)]
     fn crossing<N: Number>(&self, rays: &Rays<N>) -> N {
         let normal = Vector::splat(self.normal);
@@ -96,8 +100,9 @@ impl Surface for Plane {
         AtCrossing::points_at(self, &Probe::new(*ray).rays, t).point()
     }
 
-    /// A neighbouring ray p + t (d + e) crosses the plane at t - t e.n / d.n, to first order (Igehy, Tracing Ray
-    /// Differentials, 1999).
+    /// A neighbouring ray p + t (d + e) crosses the plane at t - t e.n / d.n, to first order.
+    ///
+    /// (Igehy, Tracing Ray Differentials, 1999.)
     #[inline(always)]
     fn footprint<N: Number>(&self, d: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
         let (normal, u, v) = (Vector::splat(self.normal), Vector::splat(self.u), Vector::splat(self.v));

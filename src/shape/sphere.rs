@@ -17,8 +17,9 @@ use std::array::from_fn;
 // At 200 radii it brings the crossing from 6e-5 to 5e-5 radii of the surface.
 const NEWTON_MIN_RADII: f32 = 8.0;
 
-/// The squared cosine to the normal below which a ray is grazing: the derivative is near zero, and a Newton step
-/// diverges.
+/// The squared cosine to the normal below which a ray is grazing.
+///
+/// There the derivative is near zero, and a Newton step diverges.
 const GRAZING_COSINE_SQUARED: f32 = 1e-3;
 
 /// All points x with ||x - c||^2 - r^2 = 0.
@@ -70,8 +71,10 @@ pub struct SphereN<N> {
 }
 
 impl<N: Number> SphereN<N> {
-    /// Returns t after one Newton step. From afar, t is large and rounded by units of itself; the remaining distance to
-    /// the surface is short and computed more exactly.
+    /// Returns t after one Newton step.
+    ///
+    /// From afar, t is large and rounded by units of itself; the remaining distance to the surface is short and
+    /// computed more exactly.
     // Grazing rays keep t.
     #[inline(always)]
     fn newton_step(&self, t: N, f: Vector<N>, rays: &Rays<N>) -> N {

@@ -21,8 +21,9 @@ mod edge_functions;
 
 pub use edge_functions::EdgeFunctions;
 
-/// All points of the plane through three corners that lie between them. It is seen from both sides; the front is the
-/// one from which the corners go round counterclockwise.
+/// All points of the plane through three corners that lie between them.
+///
+/// It is seen from both sides; the front is the one from which the corners go round counterclockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     corners: [Vec3; 3],
@@ -32,7 +33,9 @@ pub struct Triangle {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleN<N>([Vector<N>; 3]);
 
-/// The crossing of a line and a triangle's plane, scaled by the sum of the weights: rays that miss need no division.
+/// The crossing of a line and a triangle's plane, scaled by the sum of the weights.
+///
+/// Rays that miss need no division.
 #[derive(Clone, Copy)]
 struct Crossing<N> {
     /// The unnormalized barycentric weights of the corners; all have one sign.
@@ -51,7 +54,9 @@ impl<N: Number> Crossing<N> {
 }
 
 impl<N: Number> TriangleN<N> {
-    /// Tests by the method of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013).
+    /// Tests by the method of Woop, Benthin and Wald.
+    ///
+    /// (Watertight Ray/Triangle Intersection, JCGT 2013.)
     ///
     /// In sheared coordinates the ray runs along z. It hits if the origin of the xy plane lies on the same side of all
     /// three edges, or on them. Where the sign of a weight is within its error bound, f64 decides.
@@ -145,7 +150,9 @@ impl<N: Number> TriangleN<N> {
     }
 }
 
-/// Tests one lane in f64. Returns 1 for a hit, the weights and t, divided by the sum so that f32 can hold them.
+/// Tests one lane in f64.
+///
+/// Returns 1 for a hit, the weights and t, divided by the sum so that f32 can hold them.
 ///
 /// Each sign is that of the exact weight or zero, and neighbours agree on it: `culling.md`, 8.
 // Out of line, as one ray of thousands needs it.
@@ -171,8 +178,10 @@ fn crossing_in_f64([is_active, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, d
     [1.0, x, y, z, (weights.dot(DVec3::new(a.z, b.z, c.z)) / sum) as f32]
 }
 
-/// Returns the edge functions: for each corner twice the signed area between the other two and the origin of the xy
-/// plane. A neighbour computes the same number for a shared edge, negated.
+/// Returns the edge functions of the triangle.
+///
+/// For each corner twice the signed area between the other two and the origin of the xy plane. A neighbour computes the
+/// same number for a shared edge, negated.
 #[inline(always)]
 fn weights<N: Number>([a, b, c]: [Vector<N>; 3]) -> Vector<N> {
     Vector { x: area(c, b), y: area(a, c), z: area(b, a) }
@@ -183,8 +192,10 @@ fn area<N: Number>(from: Vector<N>, to: Vector<N>) -> N {
     from.x * to.y - from.y * to.x
 }
 
-/// Returns an upper bound of the error of the weights in f32: 24 s (s + r) units of 2^-24, and the least normal number
-/// for underflow (`culling.md`, 7). s is the largest x or y, r the largest z in lengths of the direction.
+/// Returns an upper bound of the error of the weights in f32 (`culling.md`, 7).
+///
+/// 24 s (s + r) units of 2^-24, and the least normal number for underflow. s is the largest x or y, r the largest z in
+/// lengths of the direction.
 #[inline(always)]
 fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
     let across = a.x.abs().max(a.y.abs()).max(b.x.abs().max(b.y.abs())).max(c.x.abs().max(c.y.abs()));
@@ -192,7 +203,9 @@ fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
     across * (across + along * length) * N::splat(24.0 / 16_777_216.0) + N::splat(f32::MIN_POSITIVE)
 }
 
-/// Returns the masks of lanes whose weights all have one sign, and of lanes where two differ, beyond the error bound.
+/// Returns the masks of lanes whose weights all have one sign, and of lanes where two differ.
+///
+/// Both beyond the error bound.
 #[inline(always)]
 fn signs<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N::Mask; 2] {
     // Minimum and maximum serve both masks; sign bits alone could not be compared with the error bound.
@@ -279,7 +292,9 @@ impl Triangle {
         Ok(Self { corners })
     }
 
-    /// Returns the unchecked triangle. If its corners lie on one line, as they may in a mesh, no ray hits it.
+    /// Returns the unchecked triangle.
+    ///
+    /// If its corners lie on one line, as they may in a mesh, no ray hits it.
     #[doc(hidden)]
     #[inline]
     pub fn unchecked(corners: [Vec3; 3]) -> Self {
@@ -350,8 +365,9 @@ impl Described for Triangle {
         format!("a {color} triangle, {}", sides(&Bounds::of(self.corners)))
     }
 
-    /// Solves for the plane. The crossing has barycentric shares, one of which is negative if it lies outside the
-    /// triangle.
+    /// Solves for the plane.
+    ///
+    /// The crossing has barycentric shares, one of which is negative if it lies outside the triangle.
     fn equation(&self, ray: &Ray) -> Equation {
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let [a, b, c] = self.corners.map(Vec3::as_dvec3);

@@ -46,8 +46,14 @@ macro_rules! written {
             /// The names of all shapes.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* <super::$surface as InSceneFile>::NAME,)*];
 
-            /// Reads the fields of the shape called `name`. Also returns the fields, for those of the object.
-            pub(crate) fn read<'n>(name: &str, reader: &mut NodeReader<'_>, node: &'n SyntaxNode<'n>) -> Option<(Self, Fields<'n>)> {
+            /// Reads the fields of the shape called `name`.
+            ///
+            /// Also returns the fields, for those of the object.
+            pub(crate) fn read<'n>(
+                name: &str,
+                reader: &mut NodeReader<'_>,
+                node: &'n SyntaxNode<'n>,
+            ) -> Option<(Self, Fields<'n>)> {
                 $($(#[$on])* if name == super::$surface::NAME {
                     use super::$surface as Surface;
                     let fields = reader.fields(node, Surface::OWNER, Surface::FORM, Surface::FIELDS)?;
@@ -70,7 +76,7 @@ macro_rules! written {
                 }
             }
 
-            /// Returns the names, with articles, of the surfaces that have coordinates for patterns.
+            /// Returns the names, with articles, of surfaces that have coordinates for patterns.
             pub(crate) fn with_coordinates() -> Vec<&'static str> {
                 let all = [$($(#[$on])* (super::$surface::HAS_COORDINATES, super::$surface::OWNER),)*];
                 all.into_iter().filter_map(|(has_coordinates, owner)| has_coordinates.then_some(owner)).collect()
@@ -95,7 +101,7 @@ macro_rules! written {
 
 surfaces! { written }
 
-/// Makes the methods of a checked [`Shape`] that depend on its kind only, from the table of surfaces.
+/// Makes the methods of a checked [`Shape`] that depend on its kind, from the table of surfaces.
 macro_rules! of_kind {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         impl Shape {
@@ -120,8 +126,9 @@ macro_rules! of_kind {
 
 surfaces! { of_kind }
 
-/// Returns the message for a material and its [pattern](crate::material::Reflecting::PATTERN) on a shape without
-/// coordinates, each with an article.
+/// Returns the message for a material with a pattern on a shape without coordinates.
+///
+/// Each with an article; see [pattern](crate::material::Reflecting::PATTERN).
 pub(crate) fn without_coordinates((material, pattern): (&str, &str), shape: &str) -> String {
     let wanted = text::any_of(&WrittenShape::with_coordinates());
     format!("{material} needs {wanted}, on which {pattern} are laid out; this is {shape}")

@@ -1,4 +1,6 @@
-//! Vectors of eight numbers in a register of AVX2. The type of their masks depends on whether the CPU has AVX-512.
+//! Vectors of eight numbers in a register of AVX2.
+//!
+//! The type of their masks depends on whether the CPU has AVX-512.
 
 #![allow(unsafe_code)]
 
@@ -38,7 +40,9 @@ pub(super) trait MaskOps: LaneMask {
     fn has_bits(numbers: __m256, bits: u32) -> Self;
 }
 
-/// Eight numbers in a register. Only [`MaskOps::run`] starts kernels with it: where one exists, the CPU has AVX2.
+/// Eight numbers in a register.
+///
+/// Only [`MaskOps::run`] starts kernels with it: where one exists, the CPU has AVX2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Register<M>(__m256, PhantomData<M>);
 
@@ -60,7 +64,9 @@ macro_rules! avx {
 
 pub(super) use avx;
 
-/// Reduces eight registers to one with the minimum or maximum of each: over neighbours, pairs, then halves.
+/// Reduces eight registers to one with the minimum or maximum of each.
+///
+/// Over neighbours, pairs, then halves.
 // A transposing reduction takes three rounds, where scalars from memory take eight loads per register.
 macro_rules! of_each {
     ($choose:ident, $eights:expr) => {{

@@ -6,7 +6,9 @@
 #[cfg(target_arch = "x86_64")]
 const CACHE_LINE: usize = 64;
 
-/// Starts to load all cache lines of a value into the L1 cache. Does nothing on CPUs other than x86-64.
+/// Starts to load all cache lines of a value into the L1 cache.
+///
+/// Does nothing on CPUs other than x86-64.
 #[inline(always)]
 pub fn prefetch<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]

@@ -246,7 +246,8 @@ mod tests {
         String::from_utf8(bytes.to_vec()).expect("no character is cut")
     }
 
-    /// Otherwise a window that is resized while the program ends would cost the message that tells why.
+    /// Otherwise a window that is resized while the program ends would cost the message that tells
+    /// why.
     #[test]
     fn signals_do_not_end_the_wait_for_a_terminal() {
         use nix::sys::pthread::{pthread_kill, pthread_self};

@@ -1,4 +1,6 @@
-//! The calling thread only. The bounds on types are those of `pool`, so that all code compiles with both.
+//! The calling thread only.
+//!
+//! The bounds on types are those of `pool`, so that all code compiles with both.
 
 /// Returns 1.
 pub(crate) fn count() -> usize {

@@ -29,8 +29,9 @@ pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written.par_chunks_mut(length).zip(read.par_chunks(length)).for_each(|(written, read)| work(written, read));
 }
 
-/// Returns the result of `work` for each item, in any order. Threads take items one by one, which balances the load;
-/// each keeps a state of its own.
+/// Returns the result of `work` for each item, in any order.
+///
+/// Threads take items one by one, which balances the load; each keeps a state of its own.
 pub(crate) fn map_one_by_one<I, S, T>(
     items: I,
     state: impl Fn() -> S + Send + Sync,
@@ -43,7 +44,9 @@ where
     items.par_bridge().map_init(state, work).collect()
 }
 
-/// Runs `work` in a pool with that number of threads, or in the current one if they cannot be started.
+/// Runs `work` in a pool of that number of threads.
+///
+/// It uses the current pool if they cannot be started.
 pub(crate) fn in_pool_of<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(work),

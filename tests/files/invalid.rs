@@ -1,7 +1,8 @@
 //! Messages about broken files, word for word.
 //!
-//! In `tests/invalid`, `NAME.ron` is a scene and `NAME.txt` the message about it; in `tests/invalid_paths`, `NAME.ron` is a
-//! camera path. `BLESS=1 cargo test --test files invalid` writes the messages anew; read them before they are committed.
+//! In `tests/invalid`, `NAME.ron` is a scene and `NAME.txt` the message about it; in `tests/invalid_paths`, `NAME.ron`
+//! is a camera path. `BLESS=1 cargo test --test files invalid` writes the messages anew; read them before they are
+//! committed.
 
 use std::path::{Path, PathBuf};
 use termtrace::{CameraPath, Scene, SceneError};

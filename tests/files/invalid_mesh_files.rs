@@ -1,7 +1,8 @@
 //! Messages about broken meshes, word for word.
 //!
-//! In `tests/invalid_meshes`, `NAME` is a mesh and `NAME.txt` the message about it; `beside/` has the files that the meshes
-//! name. `BLESS=1 cargo test --test files invalid_mesh_files` writes the messages anew; read them before they are committed.
+//! In `tests/invalid_meshes`, `NAME` is a mesh and `NAME.txt` the message about it; `beside/` has the files that the
+//! meshes name. `BLESS=1 cargo test --test files invalid_mesh_files` writes the messages anew; read them before they
+//! are committed.
 
 use std::path::{Path, PathBuf};
 use termtrace::internals::mesh_file::MeshFile;

@@ -1,8 +1,8 @@
 //! A golden frame of every shipped scene: 80x24 characters that can be read in a diff.
 //!
-//! After a wanted change of the pictures, `INSTA_UPDATE=always cargo test --test pictures goldens` writes them anew (a golden
-//! whose scene is gone is removed by hand); read them before they are committed. Without that variable, a frame that
-//! differs is written beside its golden as `.snap.new`, and the test fails.
+//! After a wanted change of the pictures, `INSTA_UPDATE=always cargo test --test pictures goldens` writes them anew (a
+//! golden whose scene is gone is removed by hand); read them before they are committed. Without that variable, a frame
+//! that differs is written beside its golden as `.snap.new`, and the test fails.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;

@@ -1,7 +1,8 @@
 //! Every map of one scene: goldens, the same bytes on any number of threads, and the values of each
 //! pixel.
 //!
-//! `INSTA_UPDATE=always cargo test --test pictures maps` writes the goldens in `tests/snapshots/maps` and the hashes anew.
+//! `INSTA_UPDATE=always cargo test --test pictures maps` writes the goldens in `tests/snapshots/maps` and the hashes
+//! anew.
 
 use std::num::NonZeroU32;
 use std::path::Path;

@@ -4,8 +4,9 @@ use super::TriangleN;
 use crate::lanes::{F32x8, LaneMask, Lanes, Vector};
 use crate::ray::CommonOrigin;
 
-/// The edge functions of eight triangles in the image plane of a packet's common origin (Pineda, A Parallel Algorithm
-/// for Polygon Rasterization, 1988).
+/// The edge functions of eight triangles in the image plane of a packet's common origin.
+///
+/// (Pineda, A Parallel Algorithm for Polygon Rasterization, 1988.)
 ///
 /// The weight of each corner is a linear function of a ray's offset. It is set up once for all 64 rays, and its range
 /// over a group takes a few steps. Where two weights differ in sign over the whole group, no ray of it hits.
@@ -103,8 +104,10 @@ mod tests {
         f32::from_bits(((127 + power) as u32) << 23)
     }
 
-    /// Eight triangles, and groups of rays from one point or to one, each aimed at or just beside a corner or an edge.
-    /// The triangles are small, large or without area; near, far or behind the rays.
+    /// Eight triangles, and groups of rays aimed at or just beside a corner or an edge.
+    ///
+    /// The rays start from one point or end in one. The triangles are small, large or without area; near, far or behind
+    /// the rays.
     fn random_case(seed: u64) -> (Vec<Triangle>, [EightRays; LANES]) {
         let mut numbers = Numbers(seed);
         let scale = two_to((seed % 41) as i32 * 2 - 40);
