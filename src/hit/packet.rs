@@ -23,15 +23,15 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     rays: &'p [EightRays],
     groups: [Rays<N>; GROUPS],
     within: Interval,
-    /// The t_max of each ray: its closest hit so far or the interval's end.
+    /// The `t_max` of each ray: its closest hit so far or the interval's end.
     ///
     /// [`TERMINATED`] for inactive and finished rays.
     t: [N; GROUPS],
     /// The bits of the index of each ray's hit primitive.
     primitive: [N; GROUPS],
-    /// The largest t_max of each group.
+    /// The largest `t_max` of each group.
     group_t_max: F32x8,
-    /// The largest t_max of the packet, or an earlier and larger one.
+    /// The largest `t_max` of the packet, or an earlier and larger one.
     // Kept instead of reduced at each node and leaf: packets are about 1 % faster.
     packet_t_max: f32,
     /// The number of times that a ray has left the packet at a node.
@@ -43,7 +43,7 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
 /// The index of no primitive.
 const NO_PRIMITIVE: u32 = EightHits::NO_PRIMITIVE;
 
-/// The t_max of a ray that needs no further tests.
+/// The `t_max` of a ray that needs no further tests.
 // Less than every t, so that comparisons with t_max need no mask of their own.
 const TERMINATED: f32 = f32::NEG_INFINITY;
 
@@ -183,7 +183,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         }
     }
 
-    /// Recomputes the packet's t_max after hits.
+    /// Recomputes the packet's `t_max` after hits.
     #[inline(always)]
     fn update_packet_t_max(&mut self) {
         self.packet_t_max = N::load(&self.group_t_max).reduce_max();

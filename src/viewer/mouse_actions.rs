@@ -42,7 +42,7 @@ impl Viewer {
             Gesture::Drag { from, to, grip } => self.drag(from, to, grip),
             Gesture::Release => {}
             Gesture::DoubleClick if self.pointer.drag_target() == DragTarget::View => {
-                self.execute(Command::FrameAll, false)
+                self.execute(Command::FrameAll, false);
             }
             // A second click on a thing is a click on it, not a command for the view.
             Gesture::DoubleClick => self.drag(at, at, Grip::Turn),
