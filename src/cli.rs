@@ -1,4 +1,4 @@
-//! The command line: what it says, and what is then done.
+//! The command line: its arguments, its help, and the dispatch to commands.
 
 mod bench;
 mod cells;
@@ -32,27 +32,27 @@ use std::process::ExitCode;
 const ABOUT: &str = "A live ray tracer whose screen is the terminal";
 
 const EXAMPLES: &str = "\
-Without a scene there is one to look into that is built in. Of several, n shows the next, and p the one before.
+Without a scene the built-in one is shown. With several, n shows the next one and p the previous one.
 
 Examples:
-  termtrace scenes/three_spheres.ron                     look into a scene; ? shows the keys, q quits
+  termtrace scenes/three_spheres.ron                     open a scene; ? shows the keys, q quits
   termtrace scenes/three_spheres.ron --eye 0,4,9         from another eye point
   termtrace frame scenes/three_spheres.ron               one frame as text
   termtrace frame scenes/three_spheres.ron -o ball.png --pixels 800x600 --samples 16
   termtrace frame my.ron --check my.txt                  compare with a golden frame (--bless writes it)
   termtrace record scenes/three_spheres.ron --seconds 4 -o orbit.cast
-  termtrace describe my.ron                              say in words what there is to see
-  termtrace explain my.ron --pixel 40,24                 say what a pixel comes from, in the lecture's symbols
-  termtrace check my.ron                                 say what is wrong with a scene file
-  termtrace bench my.ron --pixels 200x120                say how fast its rays are traced
-  termtrace doctor                                       say what this terminal can do, with a test card
-  termtrace config                                       say which settings hold, and who says so
-  termtrace completions bash                             what a shell completes; termtrace man is the manual
+  termtrace describe my.ron                              describe the picture in words
+  termtrace explain my.ron --pixel 40,24                 explain one pixel in the lecture's symbols
+  termtrace check my.ron                                 report every fault of a scene file
+  termtrace bench my.ron --pixels 200x120                measure how fast its rays are traced
+  termtrace doctor                                       show what was detected about this terminal
+  termtrace config                                       show the effective settings and their sources
+  termtrace completions bash                             print shell completions; termtrace man prints the man page
   generate_scene | termtrace -                           read the scene from standard input
 
-Exit codes: 0 done; 1 it could not be done, or --check found a difference; 2 wrong arguments or a wrong scene";
+Exit codes: 0 success; 1 failure or a difference found by --check; 2 wrong arguments or a faulty scene";
 
-/// Stands below the options.
+/// Returns the help text below the options.
 fn help() -> String {
     let cells = cells::after_help();
     let explained = [&cells, map::MAP_HELP, encoding::ENCODING_HELP, settings::SETTINGS_HELP].join("\n");
@@ -67,45 +67,48 @@ struct Cli {
     command: Option<Command>,
     #[command(flatten)]
     live: live::LiveArgs,
-    /// Read none of the user's own files
+    /// Ignore config.ron and keys.ron
     #[arg(long, global = true)]
     no_config: bool,
 }
 
 #[derive(Subcommand)]
 enum Command {
-    /// Print one frame, or compare it with a golden one
+    /// Print one frame, or compare it with a golden frame
     Frame(DeferredArgs<frame::FrameArgs>),
     /// Record a film along a camera path: asciicast, GIF or numbered PNGs
     Record(DeferredArgs<record::RecordArgs>),
-    /// Say what a pixel comes from: its ray, what that met, the lights
+    /// Explain one pixel: its ray, what it hit, each light
     Explain(DeferredArgs<explain::ExplainArgs>),
-    /// Say what is wrong with a scene file, or that it is fine
+    /// Report every fault of a scene file
     Check(DeferredArgs<check::CheckArgs>),
-    /// Say in words what a picture shows
+    /// Describe a picture in words
     Describe(DeferredArgs<describe::DescribeArgs>),
-    /// Time the tracing of a scene
+    /// Measure how fast a scene is traced
     Bench(DeferredArgs<bench::BenchArgs>),
-    /// Say what this terminal can do and who says so, and draw a test card
+    /// Show what was detected about this terminal, and a test card
     Doctor(DeferredArgs<doctor::DoctorArgs>),
-    /// Say which settings hold, and who says so
+    /// Show the effective settings and where each comes from
     Config(DeferredArgs<config::ConfigArgs>),
-    /// Print what a shell is to know to complete arguments
+    /// Print shell completions
     Completions(DeferredArgs<completions::CompletionsArgs>),
-    /// Print the manual, for man
+    /// Print the man page
     Man(DeferredArgs<completions::ManArgs>),
 }
 
-/// Reads the command line, does what it says, and says what went wrong.
+/// Runs the command of the command line and returns its exit code. Errors are printed to standard
+/// error.
 pub(crate) fn main() -> ExitCode {
+    // A panic message printed at once would end up in the alternate screen and vanish with it.
     termtrace::internals::terminal::hold_panic_messages();
-    // Where it cannot be done, such a write ends the process as it would any other.
+    // A write beyond the file size limit raises SIGXFSZ, which would kill the process before it restores the terminal;
+    // this turns it into an error. Where that is not possible the process dies of the signal, as any other would.
     let _ = termtrace::internals::terminal::fail_large_writes();
     let (cli, given) = match parse(std::env::args_os()) {
         Ok(parsed) => parsed,
         Err(exit) => return exit,
     };
-    // What was given to the command, if there is one.
+    // The matches of the subcommand if there is one: only these know which flags the user gave.
     let given = given.subcommand().map_or(&given, |(_, given)| given);
     let done = match cli.command {
         Some(Command::Frame(DeferredArgs(args))) => frame::run(&args),

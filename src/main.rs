@@ -1,6 +1,6 @@
-//! Arguments in; a picture or one line of error out; the exit code.
+//! The program `termtrace`: arguments in; a picture or an error message, and an exit code, out.
 //!
-//! 0: done. 1: it could not be done, or `frame --check` found a difference. 2: the command line or the scene is wrong.
+//! Exit codes: 0 success; 1 failure, or a difference found by `frame --check`; 2 wrong arguments or a faulty scene.
 
 mod cli;
 

@@ -1,4 +1,4 @@
-//! `termtrace bench`: how fast a scene is traced.
+//! `termtrace bench`: measures how fast a scene is traced.
 
 mod generated;
 
@@ -18,8 +18,8 @@ use termtrace::internals::text::visible;
 use termtrace::{Resolution, Scene, render, tone};
 
 const FIGURES: &str = "\
-A round traces the rays of a picture, and one from each hit to each light, and says what they met, how long that took and
-how many rays a second that is; then how long a whole frame took, to its bytes, and a hash of its light.";
+A round traces the eye rays of a picture and a shadow ray from each hit to each light. It prints the number of hits, the
+time and the rays per second; then the time of a whole frame, up to its 8-bit picture, and a hash of its light.";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -33,7 +33,7 @@ pub(super) struct BenchArgs {
     /// The scene file [default: --scene three]
     #[arg(value_name = "SCENE", conflicts_with = "generated")]
     scene: Option<PathBuf>,
-    /// A scene that is made rather than read
+    /// A generated scene instead of a file
     #[arg(long = "scene", value_name = "NAME")]
     generated: Option<Generated>,
     /// The picture's size in pixels
@@ -42,30 +42,30 @@ pub(super) struct BenchArgs {
     /// Rays per pixel
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=65_536))]
     samples: u32,
-    /// How many threads trace [default: as many as there are cores]
+    /// Number of threads that trace [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// How the rays go through the scene: it changes how long that takes, and nothing else
+    /// How rays are traced through the scene; affects the time only
     #[arg(long, value_name = "HOW", default_value = "auto")]
     kernel: KernelArg,
-    /// How many times
+    /// Number of rounds
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: u32,
-    /// Trace no rays to the lights
+    /// Trace no shadow rays
     #[arg(long)]
     no_shadow: bool,
 }
 
-/// A [`Kernel`].
+/// The values of `--kernel`: a [`Kernel`] with help for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum KernelArg {
-    /// Together as long as that is cheaper
+    /// As packets, while that is cheaper than single rays
     Auto,
-    /// One by one, against eight boxes or parts at once
+    /// Single rays, each against eight boxes or primitives at once
     Single,
-    /// Always together
+    /// Always as packets
     Packet,
-    /// One by one, without the CPU's own instructions
+    /// Single rays, without SIMD instructions
     Scalar,
 }
 
@@ -81,7 +81,7 @@ impl KernelArg {
 }
 
 impl BenchArgs {
-    /// The scene, and its name.
+    /// Returns the scene's name and the scene.
     fn scene(&self) -> Result<(String, Scene), Failure> {
         let (name, scene) = if let Some(path) = &self.scene {
             (visible(&path.display().to_string()), SceneSource::of(path)?.load(self.threads)?)
@@ -101,12 +101,15 @@ impl BenchArgs {
 }
 
 pub(super) fn run(args: &BenchArgs) -> CommandResult {
+    // Before the scene is generated or read, which takes seconds for a large one.
     let resolution = args.resolution()?;
+    // The scene is built in the same pool, so that `--threads` also sets the time of the build.
     on_threads(args.threads, || {
         let (name, scene) = args.scene()?;
         write_stdout(tree(&name, &scene).as_bytes())?;
         for number in 1..=args.rounds {
             let samples = NonZeroU32::new(args.samples).unwrap_or(NonZeroU32::MIN);
+            // Each round is printed as soon as it ends: a bench that is stopped has its figures so far.
             let round = Round::of(args.kernel.kernel(), &scene, resolution, samples);
             write_stdout(round.line(number).as_bytes())?;
         }
@@ -114,8 +117,9 @@ pub(super) fn run(args: &BenchArgs) -> CommandResult {
     })?
 }
 
-/// What the scene's tree is, and what it takes to build it again.
+/// Returns the line about the scene's trees: the time of a build and their size.
 fn tree(name: &str, scene: &Scene) -> String {
+    // Built a second time, because loading the scene has timed its parsing as well.
     let objects = scene.objects().to_vec();
     let start = Instant::now();
     let again = Scene::new(*scene.camera(), objects);
@@ -123,7 +127,7 @@ fn tree(name: &str, scene: &Scene) -> String {
     format!("{name}: built in {:.3} s, {} bytes\n", built.as_secs_f64(), again.tree_bytes())
 }
 
-/// What was counted and timed.
+/// The counts and times of one round.
 struct Round {
     counts: Counts,
     trace: Duration,
@@ -138,6 +142,7 @@ impl Round {
         let trace = start.elapsed();
         let start = Instant::now();
         let light = render(scene, scene.camera(), resolution, samples);
+        // Without the black box the optimiser removes the tone mapping, whose result is not used.
         std::hint::black_box(tone(&light, scene));
         Self { counts, trace, frame: start.elapsed(), hash: light.hash() }
     }
@@ -145,6 +150,7 @@ impl Round {
     fn line(&self, number: u32) -> String {
         let Counts { rays, hits, lit, depths } = self.counts;
         let [trace, frame] = [self.trace, self.frame].map(|time| time.as_secs_f64());
+        // A clock may be too coarse for a tiny picture: no division by 0.
         let rate = rays as f64 / trace.max(1e-9) / 1e6;
         let mut line = format!("round {number}: {rays} rays, {hits} hits, {lit} lit, depths {depths:.3}, ");
         let _ = writeln!(line, "{trace:.6} s, {rate:.1} Mrays/s; frame {frame:.6} s, hash {:016x}", self.hash);

@@ -1,4 +1,4 @@
-//! What the picture's cells are made of: the flags of the commands that show cells.
+//! `--color` and `--glyphs`: the colours and glyphs of the cells that a command prints.
 
 use super::settings::defaults;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -8,16 +8,16 @@ use termtrace::{CellMode, Colors, Glyphs};
 
 const CELL_HELP: &str = "\
 The colours (--color):
-  auto       as many as the terminal has, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own answer,
-             terminfo and TERM; termtrace doctor says who said what
-  always     the same, but at least 16 and whatever NO_COLOR says
-  never      none: no escape sequence says anything of colours
+  auto       as many as the terminal supports, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own reply,
+             terminfo and TERM; termtrace doctor shows which of them decided
+  always     as auto, but at least 16 colours, even if NO_COLOR is set
+  never      no colours, and no escape sequences for them
   truecolor, 256, 16
-             just these; of few colours the picture is mixed by dithering
-What stands in the cells (--glyphs):
-  auto       half blocks; shape where there is no colour, the locale is not UTF-8, or a block is not one column wide";
+             exactly these; with 256 or 16 the picture is dithered
+The characters of cells (--glyphs):
+  auto       half blocks; shape if there is no colour, the locale is not UTF-8, or a block is not one column wide";
 
-/// Stands below the options in the help.
+/// Returns the help text below the options: the colours, and every kind of glyphs.
 pub(super) fn after_help() -> String {
     Glyphs::ALL
         .iter()
@@ -26,9 +26,10 @@ pub(super) fn after_help() -> String {
 
 #[derive(Args)]
 pub(super) struct CellArgs {
-    #[arg(long, help = defaults::help("color", "Which colours the picture may have"), value_name = "WHICH")]
+    #[arg(long, help = defaults::help("color", "Colours to draw with"), value_name = "WHICH")]
     color: Option<ColorArg>,
-    #[arg(long, help = defaults::help("glyphs", "What its cells are made of"), value_name = "KIND", value_parser = glyph_parser())]
+    #[arg(long, value_name = "KIND", value_parser = glyph_parser())]
+    #[arg(help = defaults::help("glyphs", "Characters to draw with"))]
     glyphs: Option<GlyphChoice>,
 }
 
@@ -44,7 +45,7 @@ enum ColorArg {
     Indexed16,
 }
 
-/// What leaves the choice to the terminal, or to the format of the file.
+/// The value that leaves the choice to the terminal, or to the file format.
 const AUTO: &str = "auto";
 
 fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
@@ -53,12 +54,12 @@ fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
 }
 
 impl CellArgs {
-    /// Whether anything of it was said.
+    /// Returns whether either flag is given.
     pub(super) fn is_given(&self) -> bool {
         self.color.is_some() || self.glyphs.is_some()
     }
 
-    /// Whether colours were asked for.
+    /// Returns whether the flags require colours.
     pub(super) fn wants_color(&self) -> bool {
         !matches!(self.color_choice(), ColorChoice::Auto | ColorChoice::Never)
     }
@@ -78,7 +79,8 @@ impl CellArgs {
         self.glyphs.flatten()
     }
 
-    /// What is wanted of a terminal, and what the environment tells of it.
+    /// Returns the flags and the environment variables from which a terminal's capabilities are
+    /// detected.
     pub(super) fn hints(&self, cell_aspect: Option<f32>) -> Hints {
         let mut hints = Hints::gather(&|name| std::env::var(name).ok(), &terminfo_colors);
         hints.color = self.color_choice();
@@ -87,8 +89,8 @@ impl CellArgs {
         hints
     }
 
-    /// For a file or a pipe, of which the environment says nothing: in these colours if any will do. Without colours it is
-    /// the ramp, which is the text that people compare.
+    /// Returns the cell mode for a file or a pipe, about which the environment says nothing. `auto`
+    /// are the colours if the flags leave the choice.
     pub(super) fn mode_for_file(&self, auto: Colors) -> CellMode {
         let colors = match self.color_choice() {
             ColorChoice::Auto => auto,
@@ -96,6 +98,8 @@ impl CellArgs {
             ColorChoice::Never => Colors::None,
             ColorChoice::Exactly(colors) => colors,
         };
+        // Without colours the ramp, not shapes: golden frames are compared as text, and the ramp is promised not to
+        // change.
         let auto = if colors == Colors::None { Glyphs::Ramp } else { Glyphs::Half };
         CellMode { glyphs: self.glyph_choice().unwrap_or(auto), colors }
     }

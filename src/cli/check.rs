@@ -1,4 +1,4 @@
-//! `termtrace check`: what is wrong with a scene file.
+//! `termtrace check`: reports every fault of a scene file.
 
 use super::outcome::{CommandResult, write_stdout};
 use super::scene_args::SceneArgs;
@@ -8,7 +8,7 @@ use termtrace::internals::text::visible;
 const EXAMPLES: &str = "\
 Examples:
   termtrace check my.ron
-  termtrace check my.ron --eye 0,0,0      whether the scene can be looked at from there";
+  termtrace check my.ron --eye 0,0,0      check the scene with this eye point";
 
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
@@ -17,12 +17,12 @@ pub(super) struct CheckArgs {
     scene: SceneArgs,
 }
 
-/// Every fault was said by `load`; a scene that loads is fine.
+/// Loads the scene, whose error lists every fault, and prints that it has none.
 pub(super) fn run(args: &CheckArgs) -> CommandResult {
     let scene = args.scene.load()?;
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights().len(), "light");
     let path = args.scene.path().display().to_string();
-    write_stdout(format!("{}: fine ({objects}, {lights})\n", visible(&path)).as_bytes())
+    write_stdout(format!("{}: OK ({objects}, {lights})\n", visible(&path)).as_bytes())
 }

@@ -1,4 +1,5 @@
-//! `termtrace completions` and `termtrace man`: what a system wants to know of the command line.
+//! `termtrace completions` and `termtrace man`: shell completions and man pages, generated from the
+//! command line.
 
 use super::Cli;
 use super::outcome::{CommandResult, Failure, reason, write_stdout};
@@ -21,7 +22,7 @@ Examples:
 #[derive(Args)]
 #[command(after_help = COMPLETIONS)]
 pub(super) struct CompletionsArgs {
-    /// For which shell
+    /// The shell to complete for
     #[arg(value_name = "SHELL")]
     shell: Shell,
 }
@@ -29,21 +30,22 @@ pub(super) struct CompletionsArgs {
 #[derive(Args)]
 #[command(after_help = MAN)]
 pub(super) struct ManArgs {
-    /// Of which command [default: the whole program]
+    /// The command [default: the whole program]
     #[arg(value_name = "COMMAND")]
     command: Option<String>,
 }
 
-/// A script for the shell.
+/// Prints a completion script for the shell.
 pub(super) fn complete(args: &CompletionsArgs) -> CommandResult {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "termtrace", &mut script);
     write_stdout(&script)
 }
 
-/// A page of the manual, as roff.
+/// Prints a man page, as roff.
 pub(super) fn man(args: &ManArgs) -> CommandResult {
     let mut program = Cli::command();
+    // Lists the deferred arguments of all commands, without which their pages would be empty.
     program.build();
     let page = match &args.command {
         None => program,
@@ -51,20 +53,22 @@ pub(super) fn man(args: &ManArgs) -> CommandResult {
     };
     let mut roff = Vec::new();
     let written = clap_mangen::Man::new(page).render(&mut roff);
-    written.map_err(|error| Failure::runtime("the manual", reason(&error)))?;
+    written.map_err(|error| Failure::runtime("the man page", reason(&error)))?;
     write_stdout(&roff)
 }
 
-/// Says so, and which one was likely meant. What stands before a command makes it the name of a scene.
+/// Returns the error about an unknown command, with the command that was probably meant. A known
+/// one got here because of a flag before it, after which clap takes it for the name of a scene.
 pub(super) fn no_command(name: &str) -> Failure {
+    // A known command is no misspelling: the flag before it is at fault.
     if Cli::command().find_subcommand(name).is_some() {
-        return Failure::Usage(format!("what goes with a command comes after it: termtrace {name} ..."));
+        return Failure::Usage(format!("flags of a command go after it: termtrace {name} ..."));
     }
     let meant = command_near(name).map(|meant| format!("; did you mean \"{meant}\"?")).unwrap_or_default();
     Failure::Usage(format!("there is no command \"{name}\"{meant}"))
 }
 
-/// The command that was likely meant by a name that is none.
+/// Returns the command that was probably meant by an unknown name.
 pub(super) fn command_near(name: &str) -> Option<String> {
     let program = Cli::command();
     closest(name, program.get_subcommands().map(clap::Command::get_name)).map(str::to_owned)

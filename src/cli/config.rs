@@ -1,4 +1,4 @@
-//! `termtrace config`: every setting, what holds, and who says so; and the keys.
+//! `termtrace config`: every setting with its effective value and its source; and the keys.
 
 use super::outcome::{CommandResult, write_stdout};
 use super::settings::files::path_of;
@@ -10,18 +10,18 @@ use unicode_width::UnicodeWidthStr;
 
 const EXAMPLES: &str = "\
 Examples:
-  termtrace config                     what holds, and who says so
-  termtrace config --fps 30            the same with a flag
-  termtrace config --no-config         the same without the files
-  termtrace config --keys              what keys do; the start of a keys.ron of one's own";
+  termtrace config                     the effective settings and their sources
+  termtrace config --fps 30            the settings with a flag
+  termtrace config --no-config         the settings without config.ron
+  termtrace config --keys              what each key does, as a keys.ron to edit";
 
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct ConfigArgs {
-    // They are read from what clap has matched, which knows which were given.
+    // Parsed here only for the help: `Settings::gather` reads clap's matches, which know which flags were given.
     #[command(flatten)]
     _settings: SettingArgs,
-    /// Print what keys do instead, in the form of keys.ron
+    /// Print the keys instead, in the form of keys.ron
     #[arg(long)]
     keys: bool,
 }
@@ -33,6 +33,7 @@ pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
         return write_stdout(keymap.to_ron().as_bytes());
     }
     let settings = Settings::gather(given)?;
+    // Columns, not characters: a value from the environment may contain wide characters.
     let width = settings.effective.iter().map(|held| held.value.width()).max().unwrap_or(0);
     let mut text = String::new();
     for EffectiveSetting { name, value, source } in &settings.effective {
@@ -40,20 +41,21 @@ pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
     }
     text.push('\n');
     for name in ["config.ron", "keys.ron"] {
-        let _ = writeln!(text, "{name:<16}{}", place(name, no_config));
+        let _ = writeln!(text, "{name:<16}{}", status(name, no_config));
     }
+    // Paths and variables may contain escape sequences.
     write_stdout(visible_lines(&text).as_bytes())
 }
 
-/// Where a file is looked for, and whether there is one.
-fn place(name: &str, unread: bool) -> String {
+/// Returns the path of one of the user's files and whether it was read.
+fn status(name: &str, is_ignored: bool) -> String {
     let Some(path) = path_of(name) else {
-        return "nowhere: neither XDG_CONFIG_HOME nor HOME names a folder".to_owned();
+        return "nowhere: neither XDG_CONFIG_HOME nor HOME is the path of a folder".to_owned();
     };
     let found = match path.exists() {
-        _ if unread => "not read: --no-config",
+        _ if is_ignored => "ignored: --no-config",
         true => "read",
-        false => "not there",
+        false => "does not exist",
     };
     format!("{} ({found})", path.display())
 }

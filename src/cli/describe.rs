@@ -1,4 +1,4 @@
-//! `termtrace describe`: what a picture shows, as text for those who cannot see it.
+//! `termtrace describe`: describes a picture in words, for people who cannot see it.
 
 use super::outcome::{CommandResult, write_stdout};
 use super::picture::{check_pixel_count, parse_size};
@@ -8,27 +8,27 @@ use termtrace::internals::text::visible;
 use termtrace::{Resolution, describe};
 
 const EXAMPLES: &str = "\
-It tells of the objects that are seen, the largest first: kind, colour and size, where in the picture, how much of it, how
-far away, and what hides what; of those that are not seen, and why; of the background and the lights. Objects have the
-numbers of their places in the scene file.
+The text lists the visible objects, the largest first: kind, colour and size, position and share of the picture,
+distance, and what hides what; then the objects that are not visible, and why; the background and the lights. Objects
+are numbered in the order of the scene file.
 
 Examples:
   termtrace describe my.ron
-  termtrace describe my.ron --eye 0,5,0.1      what is seen from above";
+  termtrace describe my.ron --eye 0,5,0.1      the view from above";
 
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct DescribeArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// The size of the screen whose picture is told, in cells
+    /// The size of the screen, in cells
     #[arg(long, value_name = "COLSxROWS", default_value = "80x24", value_parser = parse_size)]
     size: (u32, u32),
 }
 
 pub(super) fn run(args: &DescribeArgs) -> CommandResult {
     let (columns, rows) = args.size;
-    // Eight points in each cell of the usual shape, two by four: as fine as characters show a picture.
+    // Two by four pixels per cell, as many as the finest glyphs (`shape`) show, so that nothing visible is left out.
     let [width, height] = [columns.saturating_mul(2), rows.saturating_mul(4)];
     check_pixel_count(width.into(), height.into())?;
     let resolution = Resolution::square(width, height);

@@ -1,4 +1,5 @@
-//! `termtrace doctor`: what is known of this terminal, from where, and a card that shows whether it is right.
+//! `termtrace doctor`: shows what was detected about this terminal, and a test card to check it by
+//! eye.
 
 mod card;
 mod report;
@@ -17,12 +18,13 @@ use termtrace::live::Signals;
 
 #[derive(Args)]
 pub(super) struct DoctorArgs {
-    // They are read from what clap has matched, which knows which were given.
+    // Parsed here only for the help: `Settings::gather` reads clap's matches, which know which flags were given.
     #[command(flatten)]
     _terminal: TerminalArgs,
 }
 
-/// How long the terminal may take to answer.
+/// Time limit for the terminal's replies. Generous, because the command shows whether a slow
+/// terminal replies at all; the live view does not wait for replies.
 const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
 
 pub(super) fn run(given: &ArgMatches) -> CommandResult {
@@ -33,10 +35,10 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let is_terminal = io::stdout().is_terminal();
     let outcome = match hints.safe_queries() {
         _ if !is_terminal => QueryOutcome::NoTerminal,
-        // Nothing to ask it, and nothing that it would not print.
+        // Such a terminal would print any query instead of replying.
         SafeQueries::None => QueryOutcome::Answered(Duration::ZERO),
         _ => match query_terminal(&mut questions, &mut cell) {
-            // Its answers cannot be had.
+            // Replies would arrive on standard input, which is not this terminal.
             Err(_) if !io::stdin().is_terminal() => QueryOutcome::NoTerminal,
             outcome => outcome.map_err(|error| Failure::runtime("terminal", reason(&error)))?,
         },
@@ -45,14 +47,15 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let report =
         Report { settings: &settings, hints: &hints, findings: &findings, replies: questions.replies(), outcome };
     write_stdout(report::text(&report).as_bytes())?;
+    // Into a pipe the card would be escape sequences that nothing draws.
     if is_terminal { write_stdout(&card::bytes(&findings.capabilities())) } else { Ok(()) }
 }
 
-/// Takes the terminal, asks, and gives it back.
+/// Takes the terminal, sends the queries, waits for the replies, and restores the terminal.
 fn query_terminal(questions: &mut InitialQueries, cell: &mut CellShape) -> io::Result<QueryOutcome> {
     let mut signals = Signals::catch()?;
     let mut terminal = Terminal::take(&signals).inspect_err(|_| {
-        // While it waited to be brought to the foreground.
+        // A signal that came while the program waited to be brought to the foreground.
         if let Some(signal) = signals.deadly() {
             die_of(signal);
         }
@@ -66,13 +69,14 @@ fn query_terminal(questions: &mut InitialQueries, cell: &mut CellShape) -> io::R
         await_replies(&mut terminal, &mut receiver, &mut signals, questions, asked)
     });
     terminal.restore(&mut receiver, asked.elapsed());
+    // Only after the terminal is restored; the shell must see the death by the signal, not an exit code.
     if let Some(signal) = signals.deadly() {
         die_of(signal);
     }
     outcome
 }
 
-/// Waits for the last reply, for a signal to end, or until the terminal has had its time.
+/// Waits for the last reply, at most [`QUERY_TIMEOUT`], or until a signal ends the program.
 fn await_replies(
     terminal: &mut Terminal,
     receiver: &mut Receiver,
@@ -96,7 +100,7 @@ fn await_replies(
     Ok(QueryOutcome::Answered(asked.elapsed()))
 }
 
-/// Keys are nobody's here, and are thrown away.
+/// Reads replies that have arrived. Keys among them are discarded.
 fn take_replies(
     terminal: &mut Terminal,
     receiver: &mut Receiver,

@@ -1,20 +1,19 @@
-//! How the encoder turns grids into bytes: the flags of every command that sends frames.
+//! `--order`, `--quality` and related flags: how the encoder turns grids into bytes.
 
 use super::settings::defaults;
 use clap::{Args, ValueEnum};
 use termtrace::internals::encode;
 
-/// Stands below the options in the help.
+/// The help text below the options.
 pub(super) const ENCODING_HELP: &str = "\
-The order of cells:
-  color    so that colours are reused: the fewest bytes on a plain link
-  raster   row by row: more bytes, but a compressor makes the least of them, because each frame resembles the last;
-           and less work
-  ssh's own setting cannot be seen from here, so a link that compresses has to be told by --compressed-link.
-The quality of a picture in motion (what stands still is exact within a second, and text always is):
-  exact    every half cell has its colour
-  equal    within 0.01 of it in OKLab, which nobody sees, and 44 dB; half the bytes or less
-  fast     within 0.02, and 41 dB; fewer still";
+The order of cells (--order):
+  color    by colour, so that colour changes are rare: the fewest bytes on a link without compression
+  raster   row by row: more bytes, but they compress best, because each frame resembles the last; less computing
+  The program cannot see whether ssh compresses: say so with --compressed-link.
+The quality of a moving picture (--quality; a still picture is exact within a second, text always is):
+  exact    every half cell has its exact colour
+  equal    within 0.01 of it in OKLab, which is invisible, and 44 dB; half the bytes or less
+  fast     within 0.02, and 41 dB; fewer bytes still";
 
 #[derive(Args)]
 pub(super) struct EncodingArgs {
@@ -24,23 +23,26 @@ pub(super) struct EncodingArgs {
     pub(super) loss: LossArgs,
 }
 
-/// In which order.
+/// The flags for the order of cells.
 #[derive(Args)]
 pub(super) struct OrderArgs {
-    /// In which order changed cells are sent [default: color; live, raster until the link is found slow]
+    /// Order in which changed cells are sent [default: color; live, raster until the link is found
+    /// slow]
     #[arg(long, value_name = "ORDER", conflicts_with = "compressed_link")]
     order: Option<OrderArg>,
-    /// The link compresses, as ssh -C does: --order raster
+    /// The link compresses, as ssh -C does; the same as --order raster
     #[arg(long)]
     compressed_link: bool,
 }
 
-/// What may be lost on the way.
+/// The flags for lossy encoding.
 #[derive(Args)]
 pub(super) struct LossArgs {
-    #[arg(long, help = defaults::help("quality", "How near a moving picture is to the right one; it decides bytes, not rays"), value_name = "QUALITY")]
+    #[arg(long, value_name = "QUALITY")]
+    #[arg(help = defaults::help("quality", "Fidelity of the picture while it moves: lower sends fewer bytes"))]
     quality: Option<QualityArg>,
-    #[arg(long, help = defaults::help("max_rate", "The most bytes per second in the mean, such as 50k or 2M; what is most wrong is sent first"), value_name = "BYTES", value_parser = parse_rate)]
+    #[arg(long, value_name = "BYTES", value_parser = parse_rate)]
+    #[arg(help = defaults::help("max_rate", "Average bandwidth cap in bytes per second, such as 50k or 2M"))]
     max_rate: Option<u32>,
 }
 
@@ -58,19 +60,19 @@ enum QualityArg {
 }
 
 impl EncodingArgs {
-    /// Whether anything of it was said.
+    /// Returns whether any of the flags is given.
     pub(super) fn is_given(&self) -> bool {
         self.order().is_some() || self.loss.quality.is_some() || self.loss.max_rate.is_some()
     }
 
-    /// If it was said.
+    /// Returns the order, if given.
     pub(super) fn order(&self) -> Option<encode::Order> {
         self.order.order()
     }
 }
 
 impl OrderArgs {
-    /// If it was said.
+    /// Returns the order, if given by either flag.
     pub(super) fn order(&self) -> Option<encode::Order> {
         match self.order {
             Some(OrderArg::Raster) => Some(encode::Order::Raster),
@@ -81,7 +83,7 @@ impl OrderArgs {
 }
 
 impl LossArgs {
-    /// If it was said.
+    /// Returns the quality, if given.
     pub(super) fn quality(&self) -> Option<encode::Quality> {
         self.quality.map(|quality| match quality {
             QualityArg::Exact => encode::Quality::Exact,
@@ -90,13 +92,14 @@ impl LossArgs {
         })
     }
 
-    /// In bytes per second.
+    /// Returns the bandwidth cap in bytes per second, if given.
     pub(super) fn max_rate(&self) -> Option<u32> {
         self.max_rate
     }
 }
 
-/// A whole number of bytes, with k for thousands or M for millions: from 1,000 on, with which a screen takes seconds.
+/// Parses a number of bytes per second, where k stands for thousands and M for millions. At least
+/// 1,000: below, a single screen would take many seconds.
 fn parse_rate(text: &str) -> Result<u32, String> {
     let (digits, unit) = match text.strip_suffix(['k', 'K']) {
         Some(digits) => (digits, 1_000),

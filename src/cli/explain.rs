@@ -1,4 +1,4 @@
-//! `termtrace explain`: all that a pixel of a frame comes from.
+//! `termtrace explain`: explains how the colour of one pixel is computed.
 
 use super::outcome::{CommandResult, usage, write_stdout};
 use super::picture::SizeArgs;
@@ -8,10 +8,10 @@ use termtrace::internals::explain::cell_of_pixel;
 use termtrace::{CellMode, explain};
 
 const MEANING: &str = "\
-It says what the program does for the pixel, in the symbols of the lecture: the eye ray o + t d through the point (q_u, q_v)
-of the view rectangle, the t of every surface that it was tested against, the equation of the closest one, the point p and
-its normal n, l and n.l of each light and what stands in its way, and the light from there to the bytes of the frame.
-Surfaces and lights are counted from 1, as they stand in the scene file. Of more --samples than one, it is the first.";
+The explanation uses the symbols of the lecture: the eye ray o + t d through the point (q_u, q_v) of the view rectangle,
+t for every surface that the ray was tested against, the equation of the closest one, the point p and its normal n, the
+direction l and n.l of each light and the object that blocks it, and the light from there to the bytes of the frame.
+Surfaces and lights are numbered from 1, in the order of the scene file. With several samples it explains the first.";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,6 +31,7 @@ pub(super) struct ExplainArgs {
 }
 
 pub(super) fn run(args: &ExplainArgs) -> CommandResult {
+    // The mode of the live view, so that a pixel has the same number in both.
     let mode = CellMode::HALF_BLOCK;
     let resolution = args.size.resolution(mode)?;
     let [width, height] = [resolution.width(), resolution.height()];
@@ -44,8 +45,8 @@ pub(super) fn run(args: &ExplainArgs) -> CommandResult {
     write_stdout(lines.map(|line| line + "\n").collect::<String>().as_bytes())
 }
 
-/// `40,24`.
+/// Parses a pixel's column and row, such as `40,24`.
 fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
     let numbers = text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
-    numbers.ok_or_else(|| "expected two whole numbers from 0 on with a comma between them, such as 40,24".to_owned())
+    numbers.ok_or_else(|| "expected two whole numbers with a comma between them, such as 40,24".to_owned())
 }

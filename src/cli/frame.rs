@@ -1,4 +1,4 @@
-//! `termtrace frame`: one frame without a terminal. Nothing is read from the environment.
+//! `termtrace frame`: one frame without a terminal. It reads nothing from the environment.
 
 mod golden;
 
@@ -18,12 +18,12 @@ use termtrace::internals::export::Contents;
 use termtrace::internals::text::{any_of, listed};
 use termtrace::{CellMode, Colors};
 
-/// What is written where nothing says otherwise.
+/// The format if neither `--format` nor a file name decides.
 const DEFAULT: Format = Format::Text;
 
 const FILES: &str = "\
-A frame does not depend on the terminal or the environment: auto is the ramp without colour for text, and half blocks in
-truecolor for ANSI, SVG and HTML.";
+A frame does not depend on the terminal or the environment: auto means the ramp without colours for text, and truecolor
+half blocks for ANSI, SVG and HTML.";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -46,23 +46,26 @@ pub(super) struct FrameArgs {
     map: MapArgs,
     #[command(flatten)]
     cells: CellArgs,
-    /// What to write [default: as the file name's ending says, or text]
+    /// Format to write [default: by the file name's extension, or text]
     #[arg(long, value_parser = format_parser())]
     format: Option<Format>,
     /// Write to a file; - is standard output [default: -]
     #[arg(short, long, value_name = "FILE", conflicts_with = "check")]
     output: Option<PathBuf>,
-    /// Compare with the frame in a file instead of writing one; exit code 1 and a diff if they differ
+    /// Compare with the frame in a file instead of writing one; exit code 1 and a diff if they
+    /// differ
     #[arg(long, value_name = "GOLDEN")]
     check: Option<PathBuf>,
-    /// With --check: write the file
+    /// With --check: write the golden frame instead of comparing
     #[arg(long, requires = "check")]
     bless: bool,
 }
 
-/// In the order of the help: the default, other formats of cells, those of pixels.
+/// Returns all formats in the order of the help: the default, other formats of cells, formats of
+/// pixels.
 fn formats() -> Vec<Format> {
     let mut formats = Format::ALL.to_vec();
+    // A stable sort: within each group the order of the table stays.
     formats.sort_by_key(|&format| (format != DEFAULT, format.has_pixels()));
     formats
 }
@@ -73,7 +76,7 @@ fn format_parser() -> impl TypedValueParser<Value = Format> {
 }
 
 impl FrameArgs {
-    /// What is to be written, by the flag, or by the file's name.
+    /// Returns the format: from the flag, or else from the file's name.
     fn format(&self) -> Result<Format, Failure> {
         match (self.format, self.output().or(self.check.as_deref())) {
             (Some(format), _) => Ok(format),
@@ -82,12 +85,12 @@ impl FrameArgs {
         }
     }
 
-    /// The file to write to, if it is not standard output.
+    /// Returns the file to write to; `None` for standard output.
     fn output(&self) -> Option<&Path> {
         self.output.as_deref().filter(|&path| path != Path::new("-"))
     }
 
-    /// What the frame's cells are made of; a picture file has the pixels of half blocks.
+    /// Returns the cell mode of the frame. A picture file has the pixels of half blocks.
     fn cell_mode(&self, format: Format) -> CellMode {
         match format.contents() {
             Contents::Pixels(_) => CellMode::HALF_BLOCK,
@@ -96,14 +99,15 @@ impl FrameArgs {
         }
     }
 
-    /// Turns away what the format makes no use of.
+    /// Refuses flags that have no effect on the format: an ignored flag would look like a fault of
+    /// the program.
     fn check_flags(&self, format: Format) -> CommandResult {
         let wrong = |why: String| Err(Failure::Usage(why));
         self.map.check_samples(self.picture.samples())?;
         let name = format.name();
         match format.contents() {
             Contents::Pixels(_) if self.cells.is_given() => {
-                wrong(format!("--color and --glyphs are for cells; a {} has pixels", name.to_uppercase()))
+                wrong(format!("--color and --glyphs are for cells; a {} consists of pixels", name.to_uppercase()))
             }
             Contents::Pixels(_) if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
                 wrong(format!("a {} would garble the terminal; name a file with -o, or pipe it", name.to_uppercase()))
@@ -114,13 +118,13 @@ impl FrameArgs {
                 wrong(format!("--scale is for {}; frames of cells take their size from --size", listed(&names)))
             }
             Contents::Cells { has_colors: false, .. } if self.cells.wants_color() => {
-                wrong(format!("{name} has no colours; say --format ansi"))
+                wrong(format!("{name} has no colours; use --format ansi"))
             }
             _ => Ok(()),
         }
     }
 
-    /// The frame in a format.
+    /// Returns the bytes of the frame in a format.
     fn contents(&self, format: Format) -> Result<Vec<u8>, Failure> {
         let scene = self.scene.load()?;
         let mode = self.cell_mode(format);
@@ -128,6 +132,7 @@ impl FrameArgs {
         self.picture.check_scaled_pixel_count(resolution)?;
         let samples = self.picture.samples();
         let map = self.map.map();
+        // Only tracing runs in the pool of `--threads`; one thread encodes the file.
         let picture = self
             .scene
             .on_threads(|| termtrace::internals::maps::picture(map, &scene, scene.camera(), resolution, samples))?;
@@ -144,6 +149,7 @@ impl FrameArgs {
 
 pub(super) fn run(args: &FrameArgs) -> CommandResult {
     let format = args.format()?;
+    // All that can be refused is refused before the scene is loaded, which may take seconds.
     args.check_flags(format)?;
     if let Some(file) = args.output().or(args.check.as_deref().filter(|_| args.bless)) {
         args.scene.refuse_overwriting(&[], file)?;
@@ -163,6 +169,6 @@ fn format_by_ending(path: &Path) -> Result<Format, Failure> {
         let endings: Vec<_> = formats().into_iter().map(|format| format!(".{}", format.extension())).collect();
         let names: Vec<_> = formats().into_iter().map(Format::name).collect();
         let (endings, names) = (any_of(&endings), any_of(&names));
-        Failure::Usage(format!("{}: the name does not end in {endings}; say --format {names}", path.display()))
+        Failure::Usage(format!("{}: the name does not end in {endings}; choose with --format {names}", path.display()))
     })
 }

@@ -22,7 +22,7 @@ use termtrace::internals::{app, cell, maps};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
 use termtrace::{Colors, Sampling, Size, export};
 
-/// For who has not named a scene.
+/// Returns the note shown at the start if the command line names no scene.
 fn welcome(keymap: &Keymap) -> String {
     let said = [(Command::Help, "shows the keys"), (Command::Quit, "quits")].map(|(command, does)| {
         let key = keymap.key_of(&[KeyMode::Fly, KeyMode::Always], command);
@@ -33,7 +33,7 @@ fn welcome(keymap: &Keymap) -> String {
 
 #[derive(Args)]
 pub(super) struct LiveArgs {
-    /// The scene files; - reads a scene from standard input [default: a scene that is built in]
+    /// The scene files; - reads a scene from standard input [default: the built-in scene]
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
@@ -42,13 +42,14 @@ pub(super) struct LiveArgs {
     settings: SettingArgs,
     #[command(flatten)]
     order: OrderArgs,
-    /// Do not print the camera on leaving
+    /// Do not print the camera on exit
     #[arg(long)]
     quiet: bool,
 }
 
 impl LiveArgs {
-    /// With these settings, which its flags are a part of, and these keys.
+    /// Returns the options of the live view: `settings` are the effective ones, with this command
+    /// line's flags in them.
     fn options(&self, settings: &SettingArgs, keymap: Keymap) -> Options {
         let mut options = Options::new(settings.terminal.hints());
         options.order = self.order.order();
@@ -67,9 +68,10 @@ impl LiveArgs {
     }
 }
 
-/// `given` is what clap has matched of `args`: it knows which flags were given.
+/// Opens the live view if standard output is a terminal, and prints one frame otherwise. `given`
+/// are clap's matches of `args`, which know which flags were given.
 pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
-    // The name of a command that was misspelt looks like a scene's.
+    // clap takes a misspelt command for the name of a scene. A file of that name wins.
     if let Some(first) = args.scenes.first().and_then(|first| first.to_str())
         && !Path::new(first).exists()
         && command_near(first).is_some()
@@ -79,13 +81,14 @@ pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     if io::stdout().is_terminal() { open_view(args, given) } else { print_frame(args) }
 }
 
-/// One frame, as `termtrace frame` prints it: by the flags alone.
+/// Prints one frame as `termtrace frame` does, from the flags alone: a pipe's bytes must not depend
+/// on config.ron.
 fn print_frame(args: &LiveArgs) -> CommandResult {
     let settings = &args.settings;
     settings.check_samples()?;
     let source = match &args.scenes[..] {
         [] => {
-            let missing = "without a terminal to show the built-in scene on, name a scene: termtrace <SCENE>";
+            let missing = "standard output is not a terminal: name a scene to print, as in termtrace <SCENE>";
             print_clap_message(&Cli::command().error(ErrorKind::MissingRequiredArgument, missing));
             return Err(Failure::Reported(2));
         }
@@ -93,7 +96,7 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
         [first, more @ ..] => {
             let more: Vec<_> = more.iter().map(|path| path.to_string_lossy()).collect();
             let message = format!(
-                "without a terminal one scene at a time: what is \"{}\" after \"{}\"?",
+                "standard output is not a terminal: only one scene can be printed, but \"{}\" follows \"{}\"",
                 more.join(" "),
                 first.display()
             );
@@ -114,7 +117,8 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
     write_stdout(&export::ansi_or_text(&grid, cell_mode.colors))
 }
 
-/// The live view. Whatever happens in it, the terminal is given back before a word is said.
+/// Runs the live view. However it ends, even by a panic, the terminal is restored before anything
+/// is printed.
 fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     #[cfg(feature = "test-hooks")]
     inject_faults();
@@ -122,10 +126,12 @@ fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     settings.check_samples()?;
     let keymap = keys::keymap(given.get_flag("no_config"))?;
     let (sources, options) = (sources(args)?, args.options(&settings, keymap));
+    // Caught before the terminal is put into raw mode, which no signal may leave behind.
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard, .. } = match ended {
         Ok(outcome) => outcome.map_err(|error| match error {
+            // The message names the picture's size already; "terminal: " before it would mislead.
             app::Error::Terminal(error) if error.kind() == io::ErrorKind::OutOfMemory => {
                 Failure::Runtime(error.to_string())
             }
@@ -136,16 +142,18 @@ fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
         Err(_) => exit_after_panic(),
     };
     if let Ending::Signal(signal) = ending {
+        // The shell must see the death by the signal, not an exit code.
         die_of(signal);
     }
     match moved {
-        // With a comma: a line for the scene file.
+        // The comma makes it a complete line of a scene file.
         Some(camera) if heard && !args.quiet => write_stdout(format!("{},\n", camera.to_ron()).as_bytes()),
         _ => Ok(()),
     }
 }
 
-/// What there is to look at; standard input is read here, before the terminal is taken.
+/// Returns the scenes to show. Standard input is read here, before the terminal is put into raw
+/// mode: it may be typed.
 fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
     if args.scenes.is_empty() {
         return Ok(vec![live_source(SceneSource::BuiltIn, &args.camera_args)]);
@@ -156,13 +164,14 @@ fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
 fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Source<Failure> {
     let file = if let SceneSource::File(path) = &scene { Some(path.clone()) } else { None };
     let (name, camera_args) = (scene.to_string(), camera_args.clone());
+    // By the name alone: the file is read later, on another thread.
     let is_mesh = is_mesh(&name, &[]);
     let source = Source::new(name, move |watcher| camera_args.draft(&scene, watcher));
     let source = if is_mesh { source.orbited() } else { source };
     file.into_iter().fold(source, Source::with_file)
 }
 
-/// Lets the test that started us say where things are to go wrong.
+/// Connects to the test that started the program, which then injects faults.
 #[cfg(feature = "test-hooks")]
 fn inject_faults() {
     let path = std::env::var_os("TERMTRACE_TEST_SOCKET");

@@ -1,4 +1,4 @@
-//! `--map`: what the commands that make pictures show of the scene.
+//! `--map`: the shaded picture or a map of the scene, for the commands that make pictures.
 
 use super::outcome::{CommandResult, Failure};
 use super::settings::defaults;
@@ -7,22 +7,23 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::num::NonZeroU32;
 use termtrace::{Map, Sampling};
 
-/// Stands below the options in the help.
+/// The help text below the options.
 pub(super) const MAP_HELP: &str = "\
-Maps (--map); all but the first trace one ray per pixel:
-  shaded     the light
-  lambert    n.l of all lights, at most 1: no colours, no shadows
-  depth      how far away it is: white at the eye, half as light at the target's distance, black far away
+Maps (--map); all but shaded trace one ray per pixel:
+  shaded     the lit picture
+  lambert    the sum of n.l over all lights, at most 1: no colours, no shadows
+  depth      the distance: white at the eye, half as light at the target's distance, black far away
   normal     (n + 1) / 2 as red, green and blue
-  object     a colour for each object
-  shadow     dark grey where no light arrives, white where all do
-  cost       how many surfaces and nodes of the tree the pixel's rays are tested against: blue 1, green 16, red 256
-  facing     the front of surfaces blue, the back red
+  object     one colour per object
+  shadow     the lights that reach the surface: dark grey for none, white for all
+  cost       the number of surfaces and tree nodes that the pixel's rays are tested against: blue 1, green 16, red 256
+  facing     front sides blue, back sides red
   contrast   black and white, with lines between objects";
 
 #[derive(Args)]
 pub(super) struct MapArgs {
-    #[arg(long, help = defaults::help("map", "The shaded picture, or a map of the scene"), value_name = "MAP", value_parser = map_parser(), hide_possible_values = true)]
+    #[arg(long, value_name = "MAP", value_parser = map_parser(), hide_possible_values = true)]
+    #[arg(help = defaults::help("map", "The shaded picture, or a map of the scene"))]
     map: Option<Map>,
 }
 
@@ -35,13 +36,14 @@ impl MapArgs {
         self.map.unwrap_or_default()
     }
 
-    /// Refuses more samples than one for each pixel where the map has no use for them.
+    /// Refuses more than one sample per pixel for a map that does not average: half an object
+    /// number means nothing.
     pub(super) fn check_samples(&self, sampling: Sampling) -> CommandResult {
         let map = self.map();
         if map.refines() || sampling == Sampling::Each(NonZeroU32::MIN) {
             return Ok(());
         }
         let name = map.name();
-        Err(Failure::Usage(format!("--samples is for the shaded picture: --map {name} has one ray for each pixel")))
+        Err(Failure::Usage(format!("--samples is for the shaded picture: --map {name} traces one ray per pixel")))
     }
 }

@@ -1,4 +1,4 @@
-//! How a command ends: what it says, and its exit code.
+//! The outcome of a command: its error message and its exit code.
 
 use std::fmt::{self, Display};
 use std::io::{self, Write};
@@ -6,26 +6,27 @@ use std::process::ExitCode;
 use termtrace::SceneError;
 use termtrace::internals::text::{Notice, visible_lines};
 
-/// Why a command ends without having done what was asked.
+/// The reason why a command failed.
 pub(super) enum Failure {
-    /// It could not be done: exit code 1.
+    /// The system refused something: exit code 1.
     Runtime(String),
     /// The command line or a file is wrong: exit code 2.
     Usage(String),
     /// The scene is wrong: exit code 2.
     Scene(SceneError),
-    /// All is said already, but for the exit code.
+    /// The message has been printed already; the exit code is left.
     Reported(u8),
 }
 
 impl Failure {
-    /// It could not be done, with the reason after what it was about.
+    /// Returns a failure with the message `what: why`, such as a file's name and the system's
+    /// reason.
     pub(super) fn runtime(what: impl Display, why: impl Display) -> Self {
         Self::Runtime(format!("{what}: {why}"))
     }
 }
 
-/// The command line or the scene is wrong.
+/// Returns the failure of a wrong command line or file.
 pub(super) fn usage(error: impl Display) -> Failure {
     Failure::Usage(error.to_string())
 }
@@ -51,7 +52,7 @@ impl From<Failure> for Notice {
 
 pub(super) type CommandResult = Result<(), Failure>;
 
-/// Says what went wrong, if anything did.
+/// Prints the error message, if any, and returns the exit code.
 pub(super) fn exit_code(done: CommandResult) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -62,14 +63,15 @@ pub(super) fn exit_code(done: CommandResult) -> ExitCode {
     }
 }
 
-/// Prints what clap says of the command line, which it may quote. Help and version are no errors; a closed pipe hides
-/// either.
+/// Prints a message of clap: an error, the help or the version. Returns the exit code.
 pub(super) fn print_clap_message(message: &clap::Error) -> ExitCode {
+    // The message quotes arguments, which may contain escape sequences.
     let text = visible_lines(&message.render().to_string());
     if message.use_stderr() {
         print_error(&text);
         return ExitCode::from(2);
     }
+    // Help into a closed or full pipe is still a success, as with other programs.
     let _ = write_stdout(text.as_bytes());
     ExitCode::SUCCESS
 }
@@ -79,22 +81,25 @@ fn report_failure(message: &str, code: u8) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Prints it if that stops nobody. Where no one listens any more, the exit code says it too.
+/// Prints a message to standard error, unless the write could block or stop the program.
 fn print_error(text: &str) {
+    // A background process that writes to a terminal with `stty tostop` is stopped by SIGTTOU. A failed write is
+    // ignored: there is no other place for the message, and the exit code reports the failure.
     if termtrace::internals::terminal::stderr_accepts_message() {
         let _ = io::stderr().write_all(text.as_bytes());
     }
 }
 
-/// What the system says went wrong, without its number.
+/// Returns the system's message without the "(os error N)" that Rust appends.
 pub(super) fn reason(error: &io::Error) -> String {
     let text = error.to_string();
     let number = error.raw_os_error().map(|number| format!(" (os error {number})"));
     number.and_then(|number| text.strip_suffix(&number)).unwrap_or(&text).to_owned()
 }
 
-/// Says what the threads said when they panicked, and ends as a panic does.
+/// Prints the held panic messages of all threads and exits with 101, the code of a panic.
 pub(super) fn exit_after_panic() -> ! {
+    // Several threads may have panicked; the first message is the cause.
     let messages = termtrace::internals::terminal::take_panic_messages();
     for message in messages {
         print_error(&(visible_lines(&message) + "\n"));
@@ -102,9 +107,10 @@ pub(super) fn exit_after_panic() -> ! {
     std::process::exit(101)
 }
 
-/// To standard output. A reader that has seen enough (`| head`) is no error.
+/// Writes to standard output. A closed pipe, as after `| head`, is not an error.
 pub(super) fn write_stdout(bytes: &[u8]) -> CommandResult {
     let mut stdout = io::stdout().lock();
+    // Flushed here, because the error of a flush at exit is lost.
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::runtime("standard output", reason(&error)))

@@ -1,4 +1,5 @@
-//! The files that a command writes. A signal that ends the program removes the one that is not finished.
+//! The files that a command writes. A signal that ends the program removes the unfinished one
+//! first.
 
 use super::outcome::{CommandResult, Failure, reason};
 use std::fs::File;
@@ -8,37 +9,39 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use termtrace::internals::output_file::{OutputFile, open_stream};
 use termtrace::internals::terminal::before_death;
 
-/// The file that is being written, shared with the thread that hears of signals. Whoever has locked it keeps the other
-/// from beginning, writing, finishing or removing it; streams, which may block, are not in it.
+/// The file being written, shared with the signal thread. The lock covers every begin, write,
+/// finish and removal, so that a signal meets a consistent state. Streams are not in it: a write to a full pipe blocks,
+/// and with the lock held the signal thread would wait for it.
 type PartialFile = Mutex<Option<OutputFile>>;
 
-/// Writes a whole file, or nothing.
+/// Writes a file as a whole or not at all.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> CommandResult {
     let mut outputs = Outputs::default();
     outputs.remove_on_signals(|| ());
     outputs.write(path, bytes).map_err(|error| Failure::runtime(path.display(), reason(&error)))
 }
 
-/// The files of a command, one after the other.
+/// The files of a command, written one after the other.
 #[derive(Default)]
 pub(super) struct Outputs {
     unfinished: Arc<PartialFile>,
-    /// Whether leftovers were looked for: once is enough for the thousands of files of a film.
+    /// Whether leftovers of killed runs were removed: once is enough for the thousands of files of
+    /// a film.
     has_cleaned: bool,
 }
 
 impl Outputs {
-    /// From now on a signal that ends the program removes the unfinished file, and does something else, first. Where
-    /// signals cannot be caught, the next run removes it: no reason to give up.
+    /// Has a deadly signal remove the unfinished file and call `last_act` before the program dies.
     pub(super) fn remove_on_signals(&self, last_act: impl FnOnce() + Send + 'static) {
         let unfinished = Arc::downgrade(&self.unfinished);
+        // If signals cannot be caught, the next run removes the file: not a reason to fail.
         let _ = before_death(move || {
             abandon(&unfinished);
             last_act();
         });
     }
 
-    /// Begins a file, or opens a device or pipe.
+    /// Creates a file, or opens a device or pipe.
     pub(super) fn begin(&mut self, path: &Path) -> io::Result<Output> {
         if let Some(stream) = open_stream(path)? {
             return Ok(Output::Stream(stream));
@@ -58,16 +61,16 @@ impl Outputs {
     }
 }
 
-/// What a command writes to.
+/// The destination of a command's bytes.
 pub(super) enum Output {
     Stdout(Stdout),
-    /// A device or a pipe: what is written is gone.
+    /// A device or a pipe, whose bytes cannot be taken back.
     Stream(File),
     File(Arc<PartialFile>),
 }
 
 impl Output {
-    /// All is written: a file gets its name.
+    /// Finishes the output; only now a file gets its name.
     pub(super) fn finish(mut self) -> io::Result<()> {
         self.flush()?;
         match self {
@@ -85,6 +88,7 @@ impl Write for Output {
         match self {
             Self::Stdout(stdout) => stdout.write(bytes),
             Self::Stream(file) => file.write(bytes),
+            // Without a file a signal has removed it: the bytes are dropped until the program dies.
             Self::File(unfinished) => locked(unfinished).as_mut().map_or(Ok(bytes.len()), |file| file.write(bytes)),
         }
     }
@@ -92,17 +96,21 @@ impl Write for Output {
     fn flush(&mut self) -> io::Result<()> {
         match self {
             Self::Stdout(stdout) => stdout.flush(),
+            // Neither has a buffer of its own.
             Self::Stream(_) | Self::File(_) => Ok(()),
         }
     }
 }
 
 fn locked(unfinished: &PartialFile) -> MutexGuard<'_, Option<OutputFile>> {
+    // A panic in another thread must not keep the file from being removed.
     unfinished.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the unfinished file. It stays locked: nothing is begun any more.
+/// Removes the unfinished file and keeps the lock for ever, so that no other file is created before
+/// the program dies.
 fn abandon(unfinished: &Weak<PartialFile>) {
+    // A weak reference: outputs that are dropped have no file to remove.
     if let Some(unfinished) = unfinished.upgrade() {
         let mut file = locked(&unfinished);
         file.take();

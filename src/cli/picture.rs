@@ -1,4 +1,4 @@
-//! How large frames are, and how finely traced: the flags of `frame` and `record`.
+//! Size, samples and scale of frames: the flags of `frame`, `record` and `explain`.
 
 use super::outcome::{CommandResult, Failure};
 use clap::Args;
@@ -6,13 +6,14 @@ use std::num::NonZeroU32;
 use termtrace::internals::capabilities::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT};
 use termtrace::{CellMode, Resolution, Sampling};
 
-/// How large a frame is.
+/// The flags for the size of a frame.
 #[derive(Args)]
 pub(super) struct SizeArgs {
     /// The frame's size in cells [default: 80x24]
     #[arg(long, value_name = "COLSxROWS", value_parser = parse_size, conflicts_with = "pixels")]
     size: Option<(u32, u32)>,
-    /// The frame's size in pixels; a cell has two of them, one above the other, or with --glyphs shape two by four
+    /// The frame's size in pixels; a cell has two pixels, one above the other, or with --glyphs
+    /// shape two by four
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pixels: Option<(u32, u32)>,
     /// A cell's height over its width
@@ -24,10 +25,10 @@ pub(super) struct SizeArgs {
 pub(super) struct PictureArgs {
     #[command(flatten)]
     size: SizeArgs,
-    /// Rays per pixel, the first through its centre; or `best`: 1, and up to 64 where there are edges
+    /// Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges
     #[arg(long, value_name = "N|best", default_value = "1", value_parser = parse_samples)]
     samples: Sampling,
-    /// Picture files: make each pixel N by N of the file's [default: 1]
+    /// Picture files: draw each pixel as N by N pixels of the file [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     scale: Option<u32>,
 }
@@ -37,6 +38,7 @@ impl SizeArgs {
         let (across, down) = mode.pixels_per_cell();
         let (columns, rows) = self.size.unwrap_or((80, 24));
         let (width, height) = self.pixels.unwrap_or((columns.saturating_mul(across), rows.saturating_mul(down)));
+        // A grid counts its columns and rows in 16 bits.
         let limit = u32::from(u16::MAX);
         if width > across * limit || height > down * limit {
             return Err(too_large(width.into(), height.into()));
@@ -52,7 +54,7 @@ impl PictureArgs {
         self.size.resolution(mode)
     }
 
-    /// A cell's height over its width.
+    /// Returns a cell's height over its width.
     pub(super) fn cell_aspect(&self) -> f32 {
         self.size.cell_aspect
     }
@@ -61,46 +63,47 @@ impl PictureArgs {
         self.samples
     }
 
-    /// How many pixels of a file make up one of the picture, each way.
+    /// Returns the side of the square of file pixels that stands for one pixel of the picture.
     pub(super) fn scale(&self) -> u32 {
         self.scale.unwrap_or(1)
     }
 
-    /// Whether a file with the picture at that scale is not too large.
+    /// Refuses a picture that is too large at its scale.
     pub(super) fn check_scaled_pixel_count(&self, resolution: Resolution) -> CommandResult {
         let [width, height] =
             [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(self.scale()));
         check_pixel_count(width, height)
     }
 
-    /// Whether anybody has asked for it.
+    /// Returns whether `--scale` is given.
     pub(super) fn has_scale(&self) -> bool {
         self.scale.is_some()
     }
 }
 
-/// No picture is larger than memory can be expected to hold.
+/// Refuses a picture with more than [`Resolution::MAX_PIXELS`], which memory may not hold.
 pub(super) fn check_pixel_count(width: u64, height: u64) -> CommandResult {
     let most = u64::from(Resolution::MAX_PIXELS);
+    // Saturating: two sides of 32 bits, times a scale, may exceed 64.
     if width.saturating_mul(height) > most { Err(too_large(width, height)) } else { Ok(()) }
 }
 
 fn too_large(width: u64, height: u64) -> Failure {
     let most = Resolution::MAX_PIXELS;
     Failure::Usage(format!(
-        "a frame of {width}x{height} pixels is too large; at most 65535 cells each way, and {most} pixels in all"
+        "a frame of {width}x{height} pixels is too large; at most 65535 cells in a row or column, and {most} pixels"
     ))
 }
 
-/// `80x24`, both at least 1.
+/// Parses a width and a height, both at least 1, such as `80x24`.
 pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X']).and_then(|(across, down)| Some((across.parse().ok()?, down.parse().ok()?)));
     sides
         .filter(|&(across, down)| across > 0 && down > 0)
-        .ok_or_else(|| "expected two whole numbers from 1 on with an x between them, such as 80x24".to_owned())
+        .ok_or_else(|| "expected two whole numbers of at least 1 with an x between them, such as 80x24".to_owned())
 }
 
-/// `best`, or so many.
+/// Parses a number of samples per pixel, or `best`.
 pub(super) fn parse_samples(text: &str) -> Result<Sampling, String> {
     if text == "best" {
         return Ok(Sampling::BEST);
@@ -109,7 +112,7 @@ pub(super) fn parse_samples(text: &str) -> Result<Sampling, String> {
     number.map(Sampling::Each).ok_or_else(|| "expected a whole number from 1 to 65536, or best".to_owned())
 }
 
-/// A cell that anybody could read in.
+/// Parses a cell's height over its width. Text would be unreadable in a cell beyond the limits.
 pub(super) fn parse_cell_aspect(text: &str) -> Result<f32, String> {
     let aspect = text.parse().ok().filter(|aspect| CELL_ASPECT_RANGE.contains(aspect));
     aspect.ok_or_else(|| "expected a number from 0.1 to 10, such as 2".to_owned())

@@ -1,4 +1,4 @@
-//! `termtrace record`: a film along a camera path. Nothing is read from the environment.
+//! `termtrace record`: a film along a camera path. It reads nothing from the environment.
 
 mod numbered;
 mod progress;
@@ -20,9 +20,9 @@ use termtrace::{Camera, CameraPath, Cast, CellMode, Encoder, Gif, Order, Picture
 
 const EXAMPLES: &str = "\
 Camera paths:
-  orbit       once around the scene's target at constant height, in --seconds (8), beginning with the scene's own view
+  orbit       once around the scene's target at constant height, in --seconds (8), starting at the scene's own view
   FILE.ron    through keyframes: (keyframes: [(time: 0, eye: (0, 1, 5), target: (0, 0, 0)), ...]); a keyframe may also
-              say up and vertical_fov; the film ends with the last one, or after --seconds
+              have up and vertical_fov; the film ends at the last keyframe, or after --seconds
 
 Examples:
   termtrace record my.ron -o my.cast                          an orbit, 80x24 cells; asciinema play my.cast
@@ -35,10 +35,10 @@ Examples:
 pub(super) struct RecordArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// How the camera moves: orbit, or a file of keyframes
+    /// Path of the camera: orbit, or a file of keyframes
     #[arg(long, value_name = "orbit|FILE", default_value = "orbit")]
     path: PathBuf,
-    /// How long the film is [default: 8, or as long as the path file]
+    /// Length of the film in seconds [default: 8, or the length of the path file]
     #[arg(long, value_name = "S", value_parser = parse_seconds)]
     seconds: Option<f64>,
     /// Frames per second
@@ -50,19 +50,22 @@ pub(super) struct RecordArgs {
     map: MapArgs,
     #[command(flatten)]
     encoding: EncodingArgs,
-    /// Write to FILE.cast (asciicast), FILE.gif, or numbered from 1 to FILE-%04d.png; - is an asciicast to standard
-    /// output [default: -]
+    /// Write to FILE.cast (asciicast), FILE.gif, or FILE-%04d.png, numbered from 1; - writes an
+    /// asciicast to standard output [default: -]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
 
-/// An hour at 25 frames per second, and more than anybody waits for.
+/// Limit on the frames of a film: more than an hour at 25 per second. All cameras are computed
+/// before the first frame.
 const MAX_FRAMES: usize = 100_000;
-/// Viewers show a delay of one hundredth of a second as ten.
+/// Limit on the frame rate of a GIF: delays are in hundredths of a second, and viewers take a delay
+/// of 1 for 10.
 const MAX_GIF_FPS: u32 = 50;
+/// Default length of an orbit in seconds.
 const ORBIT_SECONDS: f64 = 8.0;
 
-/// What the film becomes.
+/// The format of a film and its files.
 enum FilmFormat {
     /// An asciicast, on standard output if there is no file.
     Cast(Option<PathBuf>),
@@ -70,7 +73,7 @@ enum FilmFormat {
     Png(NumberedFiles),
 }
 
-/// All that has been asked for, found to be possible.
+/// A film whose arguments have been checked.
 struct Film {
     scene: Scene,
     cameras: Vec<Camera>,
@@ -103,7 +106,7 @@ impl RecordArgs {
         Ok(Film { scene, cameras, resolution, format })
     }
 
-    /// Turns away what the format cannot be, or makes no use of.
+    /// Refuses what the format cannot represent, and flags that have no effect on it.
     fn check_flags(&self, format: &FilmFormat, resolution: Resolution) -> CommandResult {
         let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
         self.map.check_samples(self.picture.samples())?;
@@ -116,9 +119,10 @@ impl RecordArgs {
         }
         if !is_cast && self.encoding.is_given() {
             return wrong(
-                "--order, --compressed-link, --quality and --max-rate are for an asciicast; other films have no bytes to save",
+                "--order, --compressed-link, --quality and --max-rate are for an asciicast; other films send no cells",
             );
         }
+        // A GIF has square pixels, so its size differs from the resolution.
         let (width, height) = gif_size(resolution, self.picture.scale());
         match format {
             FilmFormat::Cast(_) => Ok(()),
@@ -126,22 +130,22 @@ impl RecordArgs {
             FilmFormat::Gif(_) if self.fps > MAX_GIF_FPS => {
                 wrong("a GIF has at most 50 frames per second: viewers slow down one that has more")
             }
-            FilmFormat::Gif(_) if width.max(height) > u16::MAX.into() => {
-                Err(Failure::Usage(format!("a GIF of {width}x{height} pixels is too large; at most 65535 each way")))
-            }
+            FilmFormat::Gif(_) if width.max(height) > u16::MAX.into() => Err(Failure::Usage(format!(
+                "a GIF of {width}x{height} pixels is too large; at most 65535 in each direction"
+            ))),
             FilmFormat::Gif(_) => check_pixel_count(width, height),
         }
     }
 
-    /// The camera of each frame.
+    /// Returns the camera of each frame.
     fn cameras(&self, camera: &Camera) -> Result<Vec<Camera>, Failure> {
         let path = self.camera_path(camera)?;
         let name = self.path.display();
         let seconds = self.seconds.unwrap_or(path.seconds());
         if seconds == 0.0 {
-            return Err(Failure::Usage(format!("{name}: the path ends at 0 seconds; say --seconds for a longer film")));
+            return Err(Failure::Usage(format!("{name}: the path ends at 0 seconds; set a length with --seconds")));
         }
-        // At most 120 million.
+        // At most 120 million, because `--seconds` is at most 1e6 and `--fps` 120: the cast does not saturate.
         let frames = ((seconds * f64::from(self.fps)).round() as usize).max(1);
         if frames > MAX_FRAMES {
             return Err(Failure::Usage(format!("a film of {frames} frames is too long; at most {MAX_FRAMES}")));
@@ -154,9 +158,7 @@ impl RecordArgs {
             return Ok(CameraPath::orbit(*camera, self.seconds.unwrap_or(ORBIT_SECONDS)));
         }
         if self.scene.camera_args.eye.is_some() || self.scene.camera_args.target.is_some() {
-            return Err(Failure::Usage(
-                "--eye and --target are for the orbit; a path file says both itself".to_owned(),
-            ));
+            return Err(Failure::Usage("--eye and --target are for the orbit; a path file contains both".to_owned()));
         }
         CameraPath::load(&self.path, camera).map_err(|error| Failure::Usage(error.to_string()))
     }
@@ -170,12 +172,13 @@ impl RecordArgs {
                     None => Output::Stdout(io::stdout()),
                 };
                 let (across, down) = CellMode::HALF_BLOCK.pixels_per_cell();
-                // A resolution is checked to have no more cells.
+                // `SizeArgs::resolution` refuses more than 65535 cells in either direction.
                 let size = Size::new((resolution.width() / across) as u16, resolution.height().div_ceil(down) as u16);
-                // Players draw the two halves of a cell alike.
+                // Players draw both half blocks without a seam, so the encoder may choose between them.
                 let encoder = Encoder::new()
                     .with_order(self.encoding.order().unwrap_or(Order::Color))
                     .with_half_blocks(HalfBlocks::Either);
+                // Frames are written in many small pieces.
                 let cast = Cast::begin(BufWriter::new(out), size, encoder, self.fps)?;
                 Sink::Cast(
                     cast.with_quality(self.encoding.loss.quality().unwrap_or_default())
@@ -191,7 +194,7 @@ impl RecordArgs {
     }
 }
 
-/// Where frames go.
+/// The destination of frames.
 enum Sink {
     Cast(Cast<BufWriter<Output>>),
     Gif(Gif<BufWriter<Output>>),
@@ -224,7 +227,7 @@ fn finish(out: BufWriter<Output>) -> io::Result<()> {
 }
 
 impl Film {
-    /// The file that a frame, counted from 0, goes to.
+    /// Returns the file of a frame, counted from 0.
     fn file(&self, frame: usize) -> PathBuf {
         match &self.format {
             FilmFormat::Cast(None) => "standard output".into(),
@@ -233,7 +236,8 @@ impl Film {
         }
     }
 
-    /// A reader that has seen enough (`| head`) is no error.
+    /// Adds the file of a frame to an error of writing. A closed pipe, as after `| head`, is not an
+    /// error.
     fn written<T>(&self, frame: usize, result: io::Result<T>) -> Result<T, Stop> {
         result.map_err(|error| match self.format {
             FilmFormat::Cast(None) if error.kind() == io::ErrorKind::BrokenPipe => Stop::NoReader,
@@ -242,8 +246,9 @@ impl Film {
     }
 }
 
-/// Why a film ends early.
+/// The reason why a film ends early.
 enum Stop {
+    /// The reader of standard output has closed the pipe.
     NoReader,
     Failure(Failure),
 }
@@ -257,18 +262,18 @@ pub(super) fn run(args: &RecordArgs) -> CommandResult {
     }
 }
 
-/// Frame by frame: no more than one is there at a time.
+/// Traces and writes frame by frame, so that memory does not grow with the length of the film.
 fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     let mut outputs = Outputs::default();
     let bar = progress::bar(film.cameras.len() as u64);
     let shown = bar.downgrade();
     outputs.remove_on_signals(move || {
-        // Whoever ends the recording finds a clean line.
+        // Otherwise the shell's prompt would follow the bar on its line.
         if let Some(bar) = shown.upgrade() {
             bar.finish_and_clear();
         }
     });
-    // Not before: a signal would leave it.
+    // Drawn only now: before the handler above, a signal would leave the bar on the screen.
     bar.tick();
     let mut sink = film.written(0, args.sink(film, &mut outputs))?;
     for (frame, camera) in film.cameras.iter().enumerate() {
@@ -277,10 +282,11 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
         film.written(frame, sink.take(&picture, &film.file(frame), &mut outputs))?;
         bar.inc(1);
     }
+    // Only now a cast or GIF gets its name: a film that was interrupted leaves no file.
     film.written(0, sink.end())
 }
 
-/// Greater than 0, and not beyond what a path file can say.
+/// Parses a length in seconds: greater than 0, and at most the largest time of a path file.
 fn parse_seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|&seconds| seconds > 0.0 && seconds <= 1e6);
     seconds.ok_or_else(|| "expected a number of seconds greater than 0 and at most 1e6, such as 8".to_owned())

@@ -1,4 +1,4 @@
-//! Where a scene comes from, and what is said if it does not.
+//! The source of a scene: a file, standard input, or the program itself.
 
 use super::outcome::{Failure, reason, usage};
 use super::suggestions;
@@ -10,33 +10,33 @@ use termtrace::internals::progress::{Reporter, Unfinished};
 use termtrace::internals::scene::Draft;
 use termtrace::{LoadError, Scene, SceneError};
 
-/// The scene that is shown when none is named.
+/// The scene that is shown if the command line names none.
 const BUILT_IN: &str = include_str!("../../scenes/three_spheres.ron");
 
-/// Where a scene comes from: once found out, it can be read again and again.
+/// The source of a scene, which can be read repeatedly.
 #[derive(Clone)]
 pub(super) enum SceneSource {
     File(PathBuf),
-    /// What standard input said.
+    /// The contents of standard input.
     Stdin(Vec<u8>),
-    /// The program itself.
+    /// The scene that is built into the program.
     BuiltIn,
 }
 
 impl SceneSource {
-    /// What the command line calls by that name. Standard input, which may be the terminal, is read here: before that is
-    /// taken.
+    /// Returns the source that a command line argument names. Standard input (`-`) is read here,
+    /// before the terminal, which it may be, is put into raw mode.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         if path == Path::new("-") { read_stdin().map(Self::Stdin) } else { Ok(Self::File(path.to_owned())) }
     }
 
-    /// Returns the complete scene as it is written, built on this number of threads.
+    /// Loads the scene and builds its trees on this number of threads.
     pub(super) fn load(&self, threads: Option<u16>) -> Result<Scene, Failure> {
         let draft = self.draft(&Reporter::silent())?;
         on_threads(threads, || draft.finish())
     }
 
-    /// The scene, not built yet, until the reporter cancels it.
+    /// Loads the scene without building its trees, until the reporter cancels.
     pub(super) fn draft(&self, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
         match self {
             Self::File(path) => Draft::load(path, reporter).map_err(|error| not_loaded(path, error)),
@@ -63,11 +63,12 @@ fn wrong(unfinished: Unfinished<SceneError>) -> Failure {
     }
 }
 
-/// With what may have been meant by the name of a file that is not there.
+/// Returns the failure of loading a file, with a suggestion if the file does not exist.
 fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
     if let Unfinished::Failed(LoadError::Scene(error)) = error {
         return Failure::Scene(error);
     }
+    // A file that exists was read and is wrong: another name would not help.
     let meant = if path.exists() { None } else { suggestions::scene_like(path) };
     Failure::Usage(match meant {
         Some(meant) => format!("{error}; did you mean {}?", meant.display()),
@@ -75,7 +76,8 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
     })
 }
 
-/// All of it, up to one byte more than a scene may have.
+/// Reads standard input, up to one byte more than a scene may have: the excess byte becomes the
+/// error about the size.
 fn read_stdin() -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let limit = termtrace::internals::scene_text::MAX_TEXT_BYTES as u64 + 1;

@@ -1,8 +1,8 @@
-//! The settings: flags of the live view that the environment and the user's own file, `config.ron`, may set too.
+//! Settings: flags of the live view that can also be set in the environment and in `config.ron`.
 //!
-//! There is no second list of them, and no second reader: each argument of [`SettingArgs`] is a setting, its name with
-//! underscores that in the file, and whatever is written there is read as the flag is. What comes first holds: flag,
-//! environment, file, default.
+//! Each argument of [`SettingArgs`] is a setting, and clap is the only list and parser of them: a setting's name in the
+//! file is the flag's with underscores, and its value there is parsed as the flag's. Precedence: flag, environment,
+//! file, default.
 
 pub(super) mod defaults;
 mod entries;
@@ -24,52 +24,58 @@ use termtrace::Sampling;
 use termtrace::internals::capabilities::Hints;
 use termtrace::internals::control::KeySpeed;
 
-/// Stands below the options in the help.
+/// The help text below the options.
 pub(super) const SETTINGS_HELP: &str = "\
-Settings: what holds for good stands in config.ron, by the flags' names, as in (fps: 30, color: 256), or in the
-environment, as in TERMTRACE_FPS=30; a flag goes before the environment, and that before the file. keys.ron beside it
-binds keys. termtrace config says what holds, who says so, and where the files are looked for.";
+Settings: permanent settings live in config.ron under the flags' names, as in (fps: 30, color: 256), or in the
+environment, as in TERMTRACE_FPS=30. A flag overrides the environment, which overrides the file. keys.ron beside it
+binds keys. termtrace config shows the effective settings, where each comes from, and where the files are.";
 
-/// What is wanted of the terminal.
+/// The flags that override what is detected about the terminal.
 #[derive(Args)]
 pub(super) struct TerminalArgs {
     #[command(flatten)]
     pub(super) cells: CellArgs,
-    #[arg(long, help = defaults::help("cell_aspect", "A cell's height over its width"), value_name = "A", value_parser = parse_cell_aspect)]
+    #[arg(long, value_name = "A", value_parser = parse_cell_aspect)]
+    #[arg(help = defaults::help("cell_aspect", "A cell's height over its width"))]
     pub(super) cell_aspect: Option<f32>,
 }
 
 impl TerminalArgs {
-    /// That, and what the environment tells of it.
+    /// Returns these flags and the environment variables from which capabilities are detected.
     pub(super) fn hints(&self) -> Hints {
         self.cells.hints(self.cell_aspect)
     }
 }
 
-/// What of the live view may be set once and for all.
+/// The settings, as flags.
 #[derive(Args)]
 pub(super) struct SettingArgs {
     #[command(flatten)]
     pub(super) terminal: TerminalArgs,
     #[command(flatten)]
     pub(super) map: MapArgs,
-    #[arg(long, help = defaults::help("samples", "Rays per pixel, also in motion, or `best`: 1, and up to 64 where there are edges"), value_name = "N|best", value_parser = parse_samples)]
+    #[arg(long, value_name = "N|best", value_parser = parse_samples)]
+    #[arg(help = defaults::help("samples", "Rays per pixel, also in motion, or `best`: 1, and up to 64 at edges"))]
     pub(super) samples: Option<Sampling>,
     #[command(flatten)]
     pub(super) loss: LossArgs,
-    #[arg(long, help = defaults::help("fps", "The most frames per second"), value_name = "N", value_parser = parse_fps)]
+    #[arg(long, value_name = "N", value_parser = parse_fps)]
+    #[arg(help = defaults::help("fps", "Frame-rate cap in frames per second"))]
     pub(super) fps: Option<f32>,
-    #[arg(long, help = defaults::help("move_speed", "How fast keys move the eye: a factor from 0.1 to 10"), value_name = "N", value_parser = parse_speed)]
+    #[arg(long, value_name = "N", value_parser = parse_speed)]
+    #[arg(help = defaults::help("move_speed", "Speed at which keys move the eye: a factor from 0.1 to 10"))]
     move_speed: Option<f32>,
-    #[arg(long, help = defaults::help("turn_speed", "How fast keys turn the view: a factor from 0.1 to 10"), value_name = "N", value_parser = parse_speed)]
+    #[arg(long, value_name = "N", value_parser = parse_speed)]
+    #[arg(help = defaults::help("turn_speed", "Speed at which keys turn the view: a factor from 0.1 to 10"))]
     turn_speed: Option<f32>,
-    #[arg(long, help = defaults::help("reduced_motion", "Each press of a key moves one step at once; nothing glides or moves by itself"), value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    #[arg(help = defaults::help("reduced_motion", "Each key press moves one step at once; nothing moves by itself"))]
     #[arg(hide_possible_values = true)]
     reduced_motion: Option<bool>,
 }
 
 impl SettingArgs {
-    /// Refuses more samples than one for each pixel where the map has no use for them.
+    /// Refuses more than one sample per pixel for a map that does not average.
     pub(super) fn check_samples(&self) -> CommandResult {
         self.samples.map_or(Ok(()), |samples| self.map.check_samples(samples))
     }
@@ -83,38 +89,40 @@ impl SettingArgs {
     }
 }
 
-/// Frames per second: more than one in a hundred seconds, so that a typing error does not look like a crash.
+/// Parses a frame rate: at least one frame in 100 seconds, because with fewer a typing error would
+/// look like a hang.
 fn parse_fps(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|fps| (0.01..=1_000.0).contains(fps));
     number.ok_or_else(|| "expected frames per second, from 0.01 to 1000".to_owned())
 }
 
-/// So many times as fast as usual.
+/// Parses a factor of the default speed.
 fn parse_speed(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|speed| (0.1..=10.0).contains(speed));
     number.ok_or_else(|| "expected a factor from 0.1 to 10".to_owned())
 }
 
-/// What holds, and who says so.
+/// The effective settings.
 pub(super) struct Settings {
     pub(super) args: SettingArgs,
-    /// In the order of the help.
+    /// The settings with their sources, in the order of the help.
     pub(super) effective: Vec<EffectiveSetting>,
 }
 
-/// A setting as it holds.
+/// The value of a setting and its source.
 pub(super) struct EffectiveSetting {
-    /// As the file calls it.
+    /// The name in `config.ron`.
     pub(super) name: String,
     pub(super) value: String,
     pub(super) source: SettingSource,
 }
 
-/// Who says how something is to be.
+/// The source of a setting's value.
 pub(super) enum SettingSource {
     Flag(String),
+    /// An environment variable.
     Variable(String),
-    /// The file, in that line.
+    /// The file and the line, counted from 1.
     File(PathBuf, usize),
     Default,
 }
@@ -131,7 +139,8 @@ impl std::fmt::Display for SettingSource {
 }
 
 impl Settings {
-    /// All of them, with the flags that were given, and the user's file unless he wants none.
+    /// Gathers all settings from the flags, the environment, `config.ron` (unless `--no-config` is
+    /// given) and the defaults.
     pub(super) fn gather(given: &ArgMatches) -> Result<Self, Failure> {
         let command = command();
         let file = if given.get_flag("no_config") { None } else { UserFile::read("config.ron").map_err(usage)? };
@@ -149,6 +158,7 @@ impl Settings {
                 EffectiveSetting { name: setting.get_id().to_string(), value: said.0, source: said.1 }
             })
             .collect();
+        // The winning values become a command line of their own: what parses it is what parses the flags.
         let mut words = Vec::new();
         for (setting, held) in command.get_arguments().zip(&effective) {
             if let SettingSource::Variable(name) = &held.source {
@@ -163,13 +173,13 @@ impl Settings {
         Ok(Self { args: args.map_err(usage)?, effective })
     }
 
-    /// Who says how the setting of that name is to be.
+    /// Returns the source of the setting with this name.
     pub(super) fn source(&self, name: &str) -> &SettingSource {
         self.effective.iter().find(|held| held.name == name).map_or(&SettingSource::Default, |held| &held.source)
     }
 }
 
-/// A command line that has nothing but the settings.
+/// Returns a command line with only the settings.
 fn command() -> Command {
     SettingArgs::augment_args(Command::new("termtrace").no_binary_name(true))
 }
@@ -178,15 +188,17 @@ type Given = (String, SettingSource);
 
 fn by_flag(setting: &Arg, given: &ArgMatches) -> Option<Given> {
     let id = setting.get_id().as_str();
-    // A command need not have all of the flags.
+    // A command need not have every setting as a flag: `doctor` has only those of the terminal.
     let text = given.try_get_raw(id).ok()??.next()?.to_string_lossy().into_owned();
     let is_given = given.value_source(id) == Some(ValueSource::CommandLine);
     is_given.then_some((text, SettingSource::Flag(values::flag(setting))))
 }
 
-/// By its own variable, or, for colours, by those that all programs heed.
+/// Returns the value from the setting's own variable or, for colours, from those that are common to
+/// all programs.
 fn by_environment(setting: &Arg) -> Option<Given> {
     let name = format!("TERMTRACE_{}", setting.get_id().as_str().to_uppercase());
+    // An empty variable counts as unset, as for `NO_COLOR`.
     if let Some(text) = std::env::var_os(&name).filter(|text| !text.is_empty()) {
         return Some((text.to_string_lossy().into_owned(), SettingSource::Variable(name)));
     }
@@ -204,7 +216,6 @@ fn by_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<Given> {
 mod tests {
     use super::*;
 
-    /// What `termtrace config` says where nothing is said of a setting.
     #[test]
     fn the_help_of_every_setting_says_its_default() {
         for setting in command().get_arguments() {

@@ -1,28 +1,29 @@
-//! The file that was meant by a name that is none.
+//! Suggestions for misspelt file names.
 
 use std::path::{Path, PathBuf};
 use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::text::closest;
 
-/// So many files of a folder are looked at.
+/// Limit on the files of a folder that are compared, so that an error message does not wait for a
+/// huge folder.
 const MAX_LISTED_FILES: usize = 10_000;
 
-/// Returns the scene or mesh in the same folder whose name is most like that one, with or without its extension; of two
-/// that are as near, the one with the same extension.
+/// Returns the scene or mesh in the same folder with the most similar name, compared without
+/// extensions. Among equally similar names, the same extension wins.
 pub(super) fn scene_like(path: &Path) -> Option<PathBuf> {
     let name = path.file_name()?.to_str()?;
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
     let files = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
     let names = files.take(MAX_LISTED_FILES).filter_map(|file| file.ok()?.file_name().into_string().ok());
     let scenes = names.filter(|name| is_mesh(name, &[]) || Path::new(name).extension().is_some_and(|end| end == "ron"));
-    // What a folder lists may not be there: a link that leads nowhere, the name itself among them.
+    // A folder also lists dangling links, and the misspelt name itself may be one.
     let there: Vec<_> = scenes.filter(|other| path.with_file_name(other).exists()).collect();
     nearest(name, there).map(|other| path.with_file_name(other))
 }
 
 fn nearest(name: &str, mut others: Vec<String>) -> Option<String> {
     let extension = |name: &str| Path::new(name).extension().map(std::ffi::OsStr::to_ascii_lowercase);
-    // A folder lists its files in any order.
+    // The order of a folder's files is unspecified, and the suggestion must not depend on it.
     others.sort_by_cached_key(|other| (extension(other) != extension(name), other.clone()));
     let meant = closest(stem(name), others.iter().map(|other| stem(other)))?;
     others.iter().find(|other| stem(other) == meant).cloned()
@@ -37,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slips_of_the_finger_are_few() {
+    fn the_most_similar_name_is_suggested() {
         for (name, others, expected) in [
             ("three_shperes.ron", &["three_spheres.ron"][..], Some("three_spheres.ron")),
             ("three_spheres", &["three_spheres.ron"], Some("three_spheres.ron")),

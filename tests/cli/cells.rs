@@ -103,7 +103,7 @@ fn flags_without_effect_on_a_format_are_rejected() {
         folder.run(&format!("frame ball.ron --color {color}")).fails_in_a_line(2, "text has no colours");
     }
     for flags in ["--color never", "--color 256", "--glyphs half"] {
-        folder.run(&format!("frame ball.ron -o ball.png {flags}")).fails_in_a_line(2, "a PNG has pixels");
+        folder.run(&format!("frame ball.ron -o ball.png {flags}")).fails_in_a_line(2, "a PNG consists of pixels");
     }
     folder.run("ball.ron --color 88").is_misused("auto, always, never, truecolor, 256, 16");
     folder.run("frame ball.ron --glyphs octants").is_misused("auto, half, shape, ramp");

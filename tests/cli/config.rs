@@ -91,9 +91,9 @@ fn the_readmes_file_has_every_setting() {
         assert!(line.contains("config.ron:"), "the README's file lacks {line}");
     }
     assert!(place.contains("settings/termtrace/config.ron (read)\n"), "{place}");
-    assert!(place.ends_with("settings/termtrace/keys.ron (not there)\n"), "{place}");
+    assert!(place.ends_with("settings/termtrace/keys.ron (does not exist)\n"), "{place}");
     let text = config(&folder, "--no-config", &[]).text();
-    assert!(text.contains("settings/termtrace/config.ron (not read: --no-config)\n"), "{text}");
+    assert!(text.contains("settings/termtrace/config.ron (ignored: --no-config)\n"), "{text}");
 }
 
 #[test]
@@ -110,10 +110,10 @@ fn the_settings_file_is_searched_in_xdg_config_home_first() {
     let (settings, home) = (&*settings.to_string_lossy(), &*home.to_string_lossy());
     let there = format!("{settings}/termtrace/config.ron (read)");
     assert_eq!(place(&[("XDG_CONFIG_HOME", settings), ("HOME", home)]), there);
-    let default = format!("{home}/.config/termtrace/config.ron (not there)");
+    let default = format!("{home}/.config/termtrace/config.ron (does not exist)");
     assert_eq!(place(&[("HOME", home)]), default);
     assert_eq!(place(&[("XDG_CONFIG_HOME", "settings"), ("HOME", home)]), default, "no absolute path");
-    assert_eq!(place(&[]), "nowhere: neither XDG_CONFIG_HOME nor HOME names a folder");
+    assert_eq!(place(&[]), "nowhere: neither XDG_CONFIG_HOME nor HOME is the path of a folder");
 }
 
 const WRONG: &str = "(
@@ -159,8 +159,8 @@ fn all_faults_of_a_file_are_in_one_message() {
     for (text, words) in [
         ("", "the file is empty; the smallest file of settings is ()"),
         ("(fps: 30", "this `(` is never closed by a `)`"),
-        ("[30]", "expected settings with their names"),
-        ("(30)", "expected settings with their names"),
+        ("[30]", "expected named settings"),
+        ("(30)", "expected named settings"),
         ("\0", "not a text file"),
     ] {
         with_settings(text).run("config").fails(2, words);

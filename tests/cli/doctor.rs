@@ -14,21 +14,24 @@ fn doctor_reports_findings_with_their_sources() {
     let said = doctor("", &environment).text();
     let (first, rest) = said.split_once('\n').expect("lines");
     let version = env!("CARGO_PKG_VERSION");
-    assert_eq!(first, format!("What this terminal (TERM=some-terminal) can do, and who says so; termtrace {version}"));
+    assert_eq!(
+        first,
+        format!("This terminal (TERM=some-terminal): capabilities and their sources; termtrace {version}")
+    );
     assert_eq!(
         rest,
         "\
-it was asked          nothing: there is none here   -
+queries sent          none: not a terminal          -
 colours               truecolor                     COLORTERM
 locale                en_US.UTF-8                   LANG
 cells                 half blocks                   LANG
 cell, height/width    2.000                         assumed
-half blocks meet      not known: no                 not asked
-background            not known: dark               not asked
-its 16 colours        not known                     not asked
-synchronized output   not known: no                 not asked
-kitty keyboard        not known: no                 not asked
-mouse, by pixels      not known                     not asked
+half blocks join      unknown (assumed no)          not queried
+background            unknown (assumed dark)        not queried
+palette               unknown                       not queried
+synchronized output   unknown (assumed no)          not queried
+kitty keyboard        unknown (assumed no)          not queried
+mouse reports         unknown                       not queried
 "
     );
 }
@@ -50,7 +53,7 @@ fn doctor_reports_other_environments_and_flags() {
     assert!(said.contains("\ncolours               16                            --color\n"), "{said}");
     assert!(said.contains("\ncells                 characters by lightness       --glyphs\n"), "{said}");
     let said = doctor("", &[("TERM", "some-terminal")]).text();
-    assert!(said.contains("\nlocale                none: taken for UTF-8         assumed\n"), "{said}");
+    assert!(said.contains("\nlocale                not set: UTF-8 assumed        assumed\n"), "{said}");
     let said = doctor("", &[("TERM", "some-terminal"), ("LC_ALL", "C")]).text();
     assert!(said.contains("\ncolours               256                           TERM\n"), "{said}");
     assert!(said.contains("\ncells                 characters by shape           LC_ALL\n"), "{said}");

@@ -341,25 +341,25 @@ fn doctor_queries_and_reports_the_replies() {
     let text = session.seen().screen().text();
     let rows: Vec<String> =
         text[1..12].iter().map(|row| row.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
-    assert!(rows[0].starts_with("it was asked all_replies answered after "), "{rows:#?}");
+    assert!(rows[0].starts_with("queries sent all replies after "), "{rows:#?}");
     assert_eq!(
         rows[1..],
         [
-            "colours truecolor its answer",
+            "colours truecolor its reply",
             "locale C.UTF-8 LC_ALL",
             "cells half blocks, 1 column LC_ALL",
             "cell, height/width 2.000 (10x20 pixels) the window's pixels",
-            "half blocks meet yes the window's pixels",
-            "background dark, #1e1e1e its answer",
-            "its 16 colours 1 known its answer",
-            "synchronized output yes its answer",
-            "kitty keyboard yes its answer",
-            "mouse, by pixels yes, yes its answer",
+            "half blocks join yes the window's pixels",
+            "background dark, #1e1e1e its reply",
+            "palette 1 of 16 colours known its reply",
+            "synchronized output yes its reply",
+            "kitty keyboard yes its reply",
+            "mouse reports in cells and in pixels its reply",
         ]
     );
     let all = text.join("\n");
-    assert!(all.contains("The circle must be round;") && all.contains("--cell-aspect (it is 2.00 here)"), "{all}");
-    assert!(all.contains("The gradient must be smooth;") && all.contains("The stripes must be even"), "{all}");
+    assert!(all.contains("Circle not round?") && all.contains("--cell-aspect (now 2.00)"), "{all}");
+    assert!(all.contains("Gradient not smooth?") && all.contains("Stripes uneven or crooked?"), "{all}");
     assert!(all.contains('▄') && all.contains('▀'), "the card is of half blocks:\n{all}");
 }
 
@@ -369,8 +369,8 @@ fn doctor_sends_a_dumb_terminal_no_escape_byte() {
     let mut session = start.mute().spawn();
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
     assert!(!session.seen().bytes().contains(&0x1b));
-    session.wait_for_text("nothing, by its name");
-    session.wait_for_text("The circle must be round");
+    session.wait_for_text("none, because of its name");
+    session.wait_for_text("Circle not round?");
 }
 
 #[test]
@@ -379,7 +379,7 @@ fn doctor_waits_up_to_a_limit_and_ends_on_signals() {
     let mut session = doctor().spawn();
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
     session.assert_clean();
-    session.wait_for_text("no end of replies in 2 s");
+    session.wait_for_text("replies incomplete after 2 s");
     let mut session = doctor().spawn();
     session.wait_for("the queries", SOON, |seen| seen.has(FENCE));
     session.signal(Signal::TERM);

@@ -1,4 +1,4 @@
-//! Scenes of any number of shapes, the same in every program that is compared with this one.
+//! Generated scenes with many shapes, which other programs can generate too, for comparisons.
 
 use clap::ValueEnum;
 use glam::Vec3;
@@ -6,19 +6,19 @@ use termtrace::{
     Camera, CameraError, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Shape, Sphere, ViewRectangle,
 };
 
-/// Which of them.
+/// The values of `--scene`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Generated {
     /// Three spheres on a plane
     Three,
     /// 1,000 spheres in a cube
     S1k,
-    /// 100,000 of them, smaller
+    /// 100,000 smaller spheres in the same cube
     S100k,
 }
 
 impl Generated {
-    /// The scene, under one light.
+    /// Returns the scene, with one light.
     pub(super) fn scene(self) -> Result<Scene, CameraError> {
         let grey = |shape: Shape| Object::new(shape, Material::diffuse(LinearRgb::grey(0.5)).expect("a reflectance"));
         let light = PointLight::new(Vec3::new(4.0, 6.0, 5.0), LinearRgb::grey(50.0)).expect("a light");
@@ -45,8 +45,10 @@ fn camera() -> Result<Camera, CameraError> {
     Camera::new(pose, ViewRectangle::from_vertical_fov(40_f32.to_radians())?)
 }
 
-/// So many at random places, half to one and a half times as large.
+/// Returns `count` spheres at random positions in a cube of side 2.4, with radii of 0.5 to 1.5
+/// times `radius`.
 fn spheres(count: usize, radius: f32) -> Vec<Shape> {
+    // A fixed seed, so that figures of different days and programs are about the same scene.
     let mut random = Xorshift(0x9E37_79B9_7F4A_7C15);
     let sphere = |_| {
         let [x, y, z] = [(); 3].map(|()| random.next() * 2.4 - 1.2);
@@ -55,11 +57,14 @@ fn spheres(count: usize, radius: f32) -> Vec<Shape> {
     (0..count).map(sphere).collect()
 }
 
-/// Marsaglia's generator (2003), 64 bits, shifts 13, 7 and 17.
+/// Marsaglia's xorshift generator (Xorshift RNGs, 2003) with 64 bits and the shifts 13, 7 and 17.
+/// Our own, because a crate's generator may change its sequence with a release, and a program in another language needs
+/// the same one.
 struct Xorshift(u64);
 
 impl Xorshift {
-    /// From 0 to 1, 1 excluded.
+    /// Returns the next number, uniform in 0..1: the upper 24 bits, as many as f32 represents
+    /// exactly.
     fn next(&mut self) -> f32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;

@@ -1,18 +1,22 @@
-//! The test card: a circle, a gradient, and stripes of half cells; and what to set where one is wrong.
+//! The test card: a circle, a gradient and stripes of half cells, with the flag to set if one of
+//! them looks wrong.
 
 use termtrace::internals::capabilities::{Capabilities, HalfBlocks};
 use termtrace::internals::cell;
 use termtrace::{Cell, Colors, Grid, LinearRgb, Painter, Picture, Size, Srgb8, export};
 
-/// With the report, all of it is on a screen of 24 rows.
+/// Height of the card. With the report above it, everything fits on a screen of 24 rows.
 const ROWS: u16 = 8;
-/// Where the parts begin, in columns, and where the last ends. What lies between them stays black.
+/// First columns of the gradient and the stripes, and the width of the card. The circle starts at
+/// column 0.
 const GRADIENT: u16 = 24;
 const STRIPES: u16 = 50;
 const COLUMNS: u16 = 70;
-/// Between parts.
+/// Black columns between two parts, without which the circle's edge could not be told from the
+/// gradient.
 const GAP: u16 = 2;
 
+/// Returns the bytes that draw the card, and the advice below it.
 pub(super) fn bytes(capabilities: &Capabilities) -> Vec<u8> {
     let grid = grid(capabilities);
     let mut bytes = export::ansi_or_text(&grid, capabilities.cell_mode.colors);
@@ -22,16 +26,16 @@ pub(super) fn bytes(capabilities: &Capabilities) -> Vec<u8> {
 
 fn advice(capabilities: &Capabilities) -> String {
     let stripes = if capabilities.cell_mode.glyphs.has_blocks() {
-        "The stripes must be even and straight; else set --glyphs=shape"
+        "Stripes uneven or crooked?       Set --glyphs=shape"
     } else {
-        "No half blocks are used here;          for them set --glyphs=half"
+        "No half blocks are used here.    To use them, set --glyphs=half"
     };
     let gradient = match capabilities.cell_mode.colors {
-        Colors::Truecolor => "The gradient must be smooth;           else set --color=256, 16 or never",
-        _ => "The gradient is of few colours here;   for all set --color=truecolor",
+        Colors::Truecolor => "Gradient not smooth?             Set --color=256, 16 or never",
+        _ => "The gradient has few colours.    To use all, set --color=truecolor",
     };
     format!(
-        "The circle must be round;              else set --cell-aspect (it is {:.2} here)\n\
+        "Circle not round?                Set --cell-aspect (now {:.2})\n\
          {gradient}\n\
          {stripes}\n",
         capabilities.cell_aspect
@@ -41,7 +45,8 @@ fn advice(capabilities: &Capabilities) -> String {
 fn grid(capabilities: &Capabilities) -> Grid {
     let mut painter = Painter::new(capabilities.cell_mode).with_light_background(capabilities.light_background);
     let mut grid = painter.grid(&picture(capabilities));
-    // As in the live view, where the halves are said to meet.
+    // The live view uses the upper half block too if the terminal's half blocks join without a seam. Every second
+    // column of the stripes does the same here, so that a seam would show.
     if capabilities.half_blocks == HalfBlocks::Either {
         let is_upper = |column: usize| column >= usize::from(STRIPES) && column % 2 == 1;
         for row in grid.rows_mut() {
@@ -54,7 +59,7 @@ fn grid(capabilities: &Capabilities) -> Grid {
     grid
 }
 
-/// The same halves by the other block.
+/// Draws the same two colours with the upper half block instead of the lower one.
 fn use_upper_half(cell: &mut Cell) {
     if cell.glyph == '▄' {
         *cell = Cell::new('▀', cell.bg, cell.fg);
@@ -79,7 +84,7 @@ fn picture(capabilities: &Capabilities) -> Picture {
     Picture::from_pixels(resolution.width(), resolution.height(), pixels).expect("a pixel for each place")
 }
 
-/// A place on the card, in cells, and the size of a pixel.
+/// The centre of a pixel on the card and the pixel's size, both in cells.
 struct CardPoint {
     column: f32,
     row: f32,
@@ -101,10 +106,11 @@ impl CardPoint {
         }
     }
 
-    /// A disc as large as its part, with its edge smoothed.
+    /// Returns the colour of a disc that fills its part of the card.
     fn disc(&self, cell_aspect: f32) -> Srgb8 {
+        // All lengths are in cell widths.
         let (width, height) = (f32::from(GRADIENT - GAP), f32::from(ROWS) * cell_aspect);
-        // All lengths are in widths of a cell.
+        // 4 x 4 samples per pixel: steps along the edge would hide whether the disc is round.
         let radius = 0.46 * width.min(height);
         let samples = (0..16).filter(|sample| {
             let within = |sample: u32| (sample as f32 + 0.5) / 4.0 - 0.5;
@@ -116,13 +122,14 @@ impl CardPoint {
         Srgb8::from_linear(LinearRgb { g: light.g * 0.7, b: light.b * 0.3, ..light })
     }
 
-    /// Small steps from one pixel to the next: few colours show as bands.
+    /// Returns the colour of the gradient, whose steps are so small that a terminal with few
+    /// colours shows bands.
     fn shade(&self, along: f32) -> Srgb8 {
         let down = self.row / f32::from(ROWS);
         Srgb8::new((50.0 + 110.0 * along) as u8, (70.0 + 80.0 * down) as u8, (150.0 - 90.0 * along) as u8)
     }
 
-    /// Half cells, light and dark in turns.
+    /// Returns the colour of the stripes: half cells, alternately dark and light.
     fn stripe(&self) -> Srgb8 {
         let level = if ((self.row * 2.0) as u32).is_multiple_of(2) { 40 } else { 230 };
         Srgb8::new(level, level, level)

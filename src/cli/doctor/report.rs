@@ -1,4 +1,4 @@
-//! What is known of the terminal, as a table.
+//! The table of what was detected about the terminal.
 
 use crate::cli::settings::Settings;
 use std::fmt::Write;
@@ -7,18 +7,18 @@ use termtrace::Colors;
 use termtrace::internals::capabilities::{Detected, Findings, HalfBlocks, Hints, Replies, SafeQueries, Source};
 use termtrace::internals::text::visible_lines;
 
-/// How the talk with the terminal went.
+/// The outcome of the queries to the terminal.
 #[derive(Clone, Copy)]
 pub(super) enum QueryOutcome {
-    /// There is no terminal.
+    /// Standard input or output is not a terminal.
     NoTerminal,
-    /// The last answer came after that time; at once, where nothing was asked.
+    /// The last reply came after this time; zero if no query was sent.
     Answered(Duration),
-    /// It came too late, or never.
+    /// The last reply did not come within the time limit.
     TimedOut,
 }
 
-/// All that is to be told.
+/// The contents of the table.
 pub(super) struct Report<'a> {
     pub(super) settings: &'a Settings,
     pub(super) hints: &'a Hints,
@@ -30,21 +30,22 @@ pub(super) struct Report<'a> {
 pub(super) fn text(report: &Report<'_>) -> String {
     let term = report.hints.variable("TERM").unwrap_or_default();
     let version = env!("CARGO_PKG_VERSION");
-    let mut text = format!("What this terminal (TERM={term}) can do, and who says so; termtrace {version}\n");
-    for (what, value, who) in report.rows() {
-        let _ = writeln!(text, "{what:<20}  {value:<28}  {who}");
+    let mut text = format!("This terminal (TERM={term}): capabilities and their sources; termtrace {version}\n");
+    for (what, value, source) in report.rows() {
+        let _ = writeln!(text, "{what:<20}  {value:<28}  {source}");
     }
-    // A name is not to steer the terminal that it is printed on.
+    // TERM and the locale come from the environment and may contain escape sequences.
     visible_lines(&text)
 }
 
+/// A capability, its value, and the source that decided.
 type ReportRow = (&'static str, String, String);
 
 impl Report<'_> {
     fn rows(&self) -> Vec<ReportRow> {
         let findings = self.findings;
         vec![
-            self.questions(),
+            self.queries(),
             self.set("colours", "color", findings.colors, colors),
             self.locale(),
             self.set("cells", self.chosen_by(), findings.glyphs, |cells| cells.title().to_owned() + &self.width()),
@@ -60,52 +61,53 @@ impl Report<'_> {
         ]
     }
 
-    /// What the user may have set, by that setting.
+    /// Returns the row of a capability that the user may override by `setting`.
     fn set<T>(
         &self,
         what: &'static str,
         setting: &str,
         found: Detected<T>,
-        say: impl FnOnce(T) -> String,
+        shown: impl FnOnce(T) -> String,
     ) -> ReportRow {
         match found.source {
-            Source::User => (what, say(found.value), self.settings.source(setting).to_string()),
-            _ => row(what, found, say),
+            Source::User => (what, shown(found.value), self.settings.source(setting).to_string()),
+            _ => row(what, found, shown),
         }
     }
 
-    /// The setting that says what stands in cells: without colours it is that of the colours.
+    /// Returns the setting that decides the glyphs: `color`, if without colours the glyphs follow
+    /// from it.
     fn chosen_by(&self) -> &'static str {
         if self.hints.glyphs.is_some() { "glyphs" } else { "color" }
     }
 
-    fn questions(&self) -> ReportRow {
-        let asked = match self.hints.safe_queries() {
-            _ if matches!(self.outcome, QueryOutcome::NoTerminal) => "nothing: there is none here",
-            SafeQueries::None => "nothing, by its name",
-            SafeQueries::Console => "what a console understands",
-            SafeQueries::Screen => "what screen understands",
-            SafeQueries::Tmux => "what tmux understands",
-            SafeQueries::All => "everything",
+    fn queries(&self) -> ReportRow {
+        let sent = match self.hints.safe_queries() {
+            _ if matches!(self.outcome, QueryOutcome::NoTerminal) => "none: not a terminal",
+            SafeQueries::None => "none, because of its name",
+            SafeQueries::Console => "those that a console knows",
+            SafeQueries::Screen => "those that screen knows",
+            SafeQueries::Tmux => "those that tmux knows",
+            SafeQueries::All => "all",
         };
-        let how = match self.outcome {
+        let reply = match self.outcome {
             QueryOutcome::NoTerminal => "-".to_owned(),
             QueryOutcome::Answered(_) if self.hints.safe_queries() == SafeQueries::None => "-".to_owned(),
-            QueryOutcome::Answered(after) => format!("answered after {} ms", after.as_millis()),
-            QueryOutcome::TimedOut => "no end of answers in 2 s".to_owned(),
+            QueryOutcome::Answered(after) => format!("replies after {} ms", after.as_millis()),
+            QueryOutcome::TimedOut => "replies incomplete after 2 s".to_owned(),
         };
-        ("it was asked", asked.to_owned(), how)
+        ("queries sent", sent.to_owned(), reply)
     }
 
     fn locale(&self) -> ReportRow {
-        let (value, who) = match self.hints.locale() {
+        let (value, source) = match self.hints.locale() {
             Some((name, locale)) => (locale, name.to_owned()),
-            None => ("none: taken for UTF-8".to_owned(), source_name(Source::Assumed)),
+            None => ("not set: UTF-8 assumed".to_owned(), source_name(Source::Assumed)),
         };
-        ("locale", value, who)
+        ("locale", value, source)
     }
 
-    /// How many columns a half block takes.
+    /// Returns the number of columns that a half block takes, if it was measured.
     fn width(&self) -> String {
         self.replies.block_width.map_or_else(String::new, |width| format!(", {}", columns(width)))
     }
@@ -114,60 +116,63 @@ impl Report<'_> {
         self.replies.cell_pixels.map_or_else(String::new, |(width, height)| format!(" ({width}x{height} pixels)"))
     }
 
-    fn answered(&self, what: &'static str, answer: Option<String>) -> ReportRow {
-        match answer {
-            Some(answer) => (what, answer, "its answer".to_owned()),
-            None => (what, "not known".to_owned(), self.no_answer().to_owned()),
+    fn replied(&self, what: &'static str, reply: Option<String>) -> ReportRow {
+        match reply {
+            Some(reply) => (what, reply, "its reply".to_owned()),
+            None => (what, "unknown".to_owned(), self.no_reply().to_owned()),
         }
     }
 
-    fn no_answer(&self) -> &'static str {
+    fn no_reply(&self) -> &'static str {
         match (self.outcome, self.hints.safe_queries()) {
-            (QueryOutcome::NoTerminal, _) | (_, SafeQueries::None) => "not asked",
-            (_, SafeQueries::All) => "no answer",
-            _ => "no answer, or not asked",
+            (QueryOutcome::NoTerminal, _) | (_, SafeQueries::None) => "not queried",
+            (_, SafeQueries::All) => "no reply",
+            // Not every query is safe for such a terminal, so that this one may not have been sent.
+            _ => "no reply, or not queried",
         }
     }
 
     fn yes(&self, what: &'static str, found: Detected<bool>) -> ReportRow {
         if found.source == Source::Assumed {
-            return (what, "not known: no".to_owned(), self.no_answer().to_owned());
+            return (what, "unknown (assumed no)".to_owned(), self.no_reply().to_owned());
         }
         row(what, found, yes_or_no)
     }
 
     fn half_blocks(&self) -> ReportRow {
         let Detected { value, source } = self.findings.half_blocks;
-        self.yes("half blocks meet", Detected { value: value == HalfBlocks::Either, source })
+        self.yes("half blocks join", Detected { value: value == HalfBlocks::Either, source })
     }
 
     fn background(&self) -> ReportRow {
         let kind = if self.findings.light_background.value { "light" } else { "dark" };
         match self.replies.background {
-            Some(c) => self.answered("background", Some(format!("{kind}, #{:02x}{:02x}{:02x}", c.r, c.g, c.b))),
-            None => ("background", format!("not known: {kind}"), self.no_answer().to_owned()),
+            Some(c) => self.replied("background", Some(format!("{kind}, #{:02x}{:02x}{:02x}", c.r, c.g, c.b))),
+            None => ("background", format!("unknown (assumed {kind})"), self.no_reply().to_owned()),
         }
     }
 
     fn sixteen(&self) -> ReportRow {
         let count = self.replies.sixteen.iter().flatten().count();
-        self.answered("its 16 colours", (count > 0).then(|| format!("{count} known")))
+        self.replied("palette", (count > 0).then(|| format!("{count} of 16 colours known")))
     }
 
     fn mouse(&self) -> ReportRow {
-        let what = "mouse, by pixels";
-        match (self.replies.sgr_mouse, self.replies.pixel_mouse) {
-            (None, None) => self.answered(what, None),
-            (cells, pixels) => {
-                let say = |known: Option<bool>| yes_or_no(known.unwrap_or(false));
-                self.answered(what, Some(format!("{}, {}", say(cells), say(pixels))))
-            }
-        }
+        let units = match (self.replies.sgr_mouse, self.replies.pixel_mouse) {
+            (None, None) => None,
+            (cells, pixels) => Some(match (cells.unwrap_or(false), pixels.unwrap_or(false)) {
+                (true, true) => "in cells and in pixels",
+                (true, false) => "in cells",
+                (false, true) => "in pixels",
+                (false, false) => "none",
+            }),
+        };
+        self.replied("mouse reports", units.map(str::to_owned))
     }
 }
 
-fn row<T>(what: &'static str, found: Detected<T>, say: impl FnOnce(T) -> String) -> ReportRow {
-    (what, say(found.value), source_name(found.source))
+fn row<T>(what: &'static str, found: Detected<T>, shown: impl FnOnce(T) -> String) -> ReportRow {
+    (what, shown(found.value), source_name(found.source))
 }
 
 fn source_name(source: Source) -> String {
@@ -175,7 +180,7 @@ fn source_name(source: Source) -> String {
         Source::User => "the user",
         Source::Variable(name) => name,
         Source::Window => "the window's pixels",
-        Source::Reply => "its answer",
+        Source::Reply => "its reply",
         Source::Terminfo => "terminfo",
         Source::Assumed => "assumed",
     };

@@ -1,4 +1,4 @@
-//! `frame --check`: is the frame the one in the file, and if not, where do they differ?
+//! `frame --check`: compares the frame with a file and prints a diff if they differ.
 
 use crate::cli::outcome::{CommandResult, Failure, write_stdout};
 use std::io;
@@ -8,11 +8,12 @@ use termtrace::internals::named_file::{self, Accepted};
 use termtrace::internals::progress::Reporter;
 use termtrace::internals::text::visible;
 
-/// The most bytes that a golden frame has: 16 MiB, as any text that is read, or four times as many as the frame that it is
-/// compared with. A larger one is of another picture, and its diff would be as long.
+/// Limit on the size of a golden frame: 16 MiB, as for a scene file, or four times the size of the
+/// frame that it is compared with, whichever is larger. A larger file shows another picture, and the diff would be as
+/// long.
 const MAX_GOLDEN_BYTES: usize = 16 << 20;
 
-/// Done if the file holds exactly this frame; else a diff goes to standard output.
+/// Returns `Ok` if the file holds exactly this frame; otherwise prints a diff to standard output.
 pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult {
     let most = MAX_GOLDEN_BYTES.max(4 * frame.len());
     let golden = named_file::read(path, Accepted::FilesAndPipes, |_| most, &Reporter::silent()).map_err(|error| {

@@ -1,9 +1,9 @@
-//! Names of files that are numbered from 1: `frame-%04d.png`.
+//! Names of numbered files: `frame-%04d.png`.
 
 use crate::cli::outcome::Failure;
 use std::path::{Path, PathBuf};
 
-/// What stands before and after the number, and with how many digits it is written at least.
+/// A pattern for file names: the text before and after the number, and its least number of digits.
 #[derive(Debug, PartialEq)]
 pub(super) struct NumberedFiles {
     before: String,
@@ -12,7 +12,9 @@ pub(super) struct NumberedFiles {
 }
 
 impl NumberedFiles {
-    /// As `printf` reads it: `%d` or `%04d` once, and `%%` for a percent sign.
+    /// Parses a pattern as `printf` does: `%d` or `%04d` once, and `%%` for a percent sign.
+    ///
+    /// All other directives are refused, not copied: `%s` or a width without a 0 would give names that sort wrongly.
     pub(super) fn parse(path: &Path) -> Result<Self, Failure> {
         let name = path.to_str().ok_or_else(|| wrong(path, "the name is not UTF-8"))?;
         let (mut before, mut after, mut digits) = (String::new(), String::new(), None);
@@ -35,15 +37,16 @@ impl NumberedFiles {
         Ok(Self { before, digits, after })
     }
 
+    /// Returns the name of file `number`.
     pub(super) fn file(&self, number: usize) -> PathBuf {
         let Self { before, digits, after } = self;
         format!("{before}{number:0digits$}{after}").into()
     }
 }
 
-const NUMBER: &str = "one %d or %04d says where a frame's number goes; a percent sign is %%";
+const NUMBER: &str = "one %d or %04d must show where the frame's number goes; a percent sign is %%";
 
-/// What stands between `%` and `d`.
+/// Parses the width between `%` and `d`; `None` if it is not allowed.
 fn least_digits(width: &str) -> Option<usize> {
     let is_number = width.bytes().all(|byte| byte.is_ascii_digit());
     match width.strip_prefix('0') {
@@ -54,7 +57,7 @@ fn least_digits(width: &str) -> Option<usize> {
 
 fn without_number(path: &Path) -> String {
     let stem = path.with_extension("");
-    format!("each frame is a file of its own; write where its number goes, as in {}-%04d.png", stem.display())
+    format!("each frame is a separate file; show where its number goes, as in {}-%04d.png", stem.display())
 }
 
 fn wrong(path: &Path, why: &str) -> Failure {

@@ -1,24 +1,29 @@
-//! How far the recording has come: on standard error where that is a terminal, nowhere else.
+//! The progress bar of a recording, on standard error if that is a terminal.
 
 use console::Term;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle, TermLike};
 use std::io;
 
-/// A bar over so many frames, shown from its first tick on. Nothing is left of it when it is dropped.
+/// Returns a bar over `frames` frames, shown from its first tick on. It is erased when dropped.
 pub(super) fn bar(frames: u64) -> ProgressBar {
     let terminal = Term::buffered_stderr();
     let is_dumb = std::env::var_os("TERM").is_some_and(|name| name == "dumb");
+    // A dumb terminal would show each update on a line of its own.
     if !terminal.is_term() || is_dumb {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("[{wide_bar}] {pos}/{len} frames, {eta}");
     let style = style.map_or_else(|_| ProgressStyle::default_bar(), |style| style.progress_chars("=> "));
+    // Ten updates a second are smooth, and cost little beside the frames themselves.
     let target = ProgressDrawTarget::term_like_with_hz(Box::new(NarrowTerm(terminal)), 10);
     let bar = ProgressBar::with_draw_target(Some(frames), target).with_style(style);
     bar.with_finish(ProgressFinish::AndClear)
 }
 
-/// The terminal without its last columns: what it echoes of Ctrl-C then stays on the bar's line, and goes with it.
+/// The terminal without its last four columns.
+///
+/// The echo of Ctrl-C (`^C`) then stays on the bar's line and is erased with it. On a full line the echo would wrap,
+/// and the bar would be left on the screen.
 #[derive(Debug)]
 struct NarrowTerm(Term);
 

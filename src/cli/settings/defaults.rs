@@ -1,21 +1,22 @@
-//! What holds where nothing is said of a setting.
+//! The defaults of settings, as text for the help.
 
-/// Each setting with its default, as a person reads it.
+/// Each setting and its default. A table of text, because some defaults are decided while the
+/// program runs.
 const DEFAULTS: [(&str, &str); 11] = [
     ("color", "auto"),
     ("glyphs", "auto"),
     ("map", "shaded"),
     ("quality", "exact; live, on a slow link, equal"),
-    ("max_rate", "as many as the link takes"),
-    ("cell_aspect", "as the terminal says, or 2"),
-    ("samples", "as many as the time allows, at rest best"),
+    ("max_rate", "what the link takes"),
+    ("cell_aspect", "as detected, or 2"),
+    ("samples", "as many as the time allows; best at rest"),
     ("fps", "60"),
     ("move_speed", "1"),
     ("turn_speed", "1"),
     ("reduced_motion", "false"),
 ];
 
-/// The default of the setting of that name.
+/// Returns the default of the setting with this name.
 ///
 /// # Panics
 /// If there is no such setting.
@@ -24,7 +25,7 @@ pub(in crate::cli) fn of(setting: &str) -> &'static str {
     found.map(|(_, default)| *default).expect("every setting has a default")
 }
 
-/// The help of a setting: what it is for, and its default.
+/// Returns the help of a setting: its purpose and its default.
 pub(in crate::cli) fn help(setting: &str, what_for: &str) -> String {
     format!("{what_for} [default: {}]", of(setting))
 }

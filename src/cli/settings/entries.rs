@@ -1,4 +1,4 @@
-//! `config.ron` -> what it says of each setting, as the flag would say it.
+//! The settings in `config.ron`, each as the text that its flag would be given.
 
 use super::files::UserFile;
 use super::values::check;
@@ -8,27 +8,28 @@ use termtrace::SceneError;
 use termtrace::internals::scene_text::{self, Faults, Field, Name, Value, line_and_column};
 use termtrace::internals::text::closest;
 
-/// What the file says of a setting.
+/// A setting in the file.
 pub(super) struct Entry {
     pub(super) name: String,
-    /// As one would write it after the flag.
+    /// The value as it would be written after the flag.
     pub(super) text: String,
-    /// Counted from 1.
+    /// The line of the setting, counted from 1.
     pub(super) line: usize,
 }
 
-/// All that the file says, or all that is wrong with it.
+/// Returns the settings of the file, or all its faults.
 pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, SceneError> {
     let name = file.path.to_string_lossy();
     scene_text::read(&name, &file.text, "file of settings is ()", |root, faults| {
         let mut entries = Vec::new();
         let Some(fields) = root.fields() else {
-            let expected = "expected settings with their names, as in (fps: 30, color: 256)";
+            let expected = "expected named settings, as in (fps: 30, color: 256)";
             faults.add(root.head(), || expected.to_owned());
             return None;
         };
         for (i, field) in fields.iter().enumerate() {
             let Name { text: name, span } = field.name;
+            // Quadratic, but there are only a dozen settings; a file that repeats one is within 64 KiB.
             if fields[..i].iter().any(|before| before.name.text == name) {
                 faults.add(span, || format!("duplicate setting \"{name}\""));
             } else if let Some(text) = text_of(field, command, faults) {
@@ -40,7 +41,8 @@ pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, Sce
     })
 }
 
-/// What the flag would be given, if it is something that the flag takes. `None` says the same as leaving it out.
+/// Returns the value as the text that the flag would be given. `None` in the file means the same as
+/// leaving it out.
 fn text_of(field: &Field<'_>, command: &Command, faults: &mut Faults) -> Option<String> {
     let Field { name, value } = field;
     let Some(setting) = command.get_arguments().find(|setting| setting.get_id() == name.text) else {

@@ -4,7 +4,7 @@ use super::files::UserFile;
 use crate::cli::outcome::{Failure, usage};
 use termtrace::internals::control::Keymap;
 
-/// The built-in keymap, changed as `keys.ron` says, unless the user wants none of his files.
+/// Returns the built-in keys, changed by `keys.ron` unless `--no-config` is given.
 pub(in crate::cli) fn keymap(no_config: bool) -> Result<Keymap, Failure> {
     let file = if no_config { None } else { UserFile::read("keys.ron").map_err(usage)? };
     let own = file.map(|file| Keymap::from_ron(&file.path.to_string_lossy(), &file.text));

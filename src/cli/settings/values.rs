@@ -1,22 +1,25 @@
-//! Values of settings, as flags have them.
+//! Values of settings, as the flags have them.
 
 use clap::builder::PossibleValue;
 use clap::{Arg, Command};
 use termtrace::internals::text::closest;
 
-/// The setting's flag.
+/// Returns the setting's flag.
 pub(super) fn flag(setting: &Arg) -> String {
     format!("--{}", setting.get_long().unwrap_or_default())
 }
 
-/// The setting with that value, as the command line has it.
+/// Returns the setting with this value as one argument of a command line. With `=`, a value may
+/// begin with a hyphen.
 pub(super) fn word(setting: &Arg, text: &str) -> String {
     format!("{}={text}", flag(setting))
 }
 
-/// What is wrong with this as the setting's value, if anything is.
+/// Checks a value with the parser of the setting's flag, and returns its message without clap's
+/// usage lines.
 pub(super) fn check(command: &Command, setting: &Arg, text: &str) -> Result<(), String> {
     let Err(error) = command.clone().try_get_matches_from([word(setting, text)]) else { return Ok(()) };
+    // The message of the flag's own parser, without clap's usage lines, which are about a command line.
     if let Some(wrong) = std::error::Error::source(&error) {
         return Err(wrong.to_string());
     }
